@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a running operation may ask of its surroundings: stop?, report, remember a note, how much memory.
+#pragma once
+#include <atomic>
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <string_view>
+
+namespace sg {
+
+enum class LogLevel { debug, info, warning };
+
+/// Passed by reference through every operation; the callbacks may be empty. Callbacks are called from one thread at a time.
+class Context {
+ public:
+  std::function<void(LogLevel, std::string_view)> on_log;
+  std::function<void(double fraction, std::string_view doing)> on_progress;
+  size_t memory_limit = 0;  ///< bytes; 0 = no limit stated
+
+  /// Asks the running work to stop; safe from any thread and from a signal handler.
+  void cancel() noexcept { cancelled_.store(true, std::memory_order_relaxed); }
+  bool cancelled() const noexcept { return cancelled_.load(std::memory_order_relaxed); }
+  /// Throws Error(cancelled) after cancel().
+  void check() const;
+
+  void progress(double fraction, std::string_view doing) const;
+  void info(std::string_view text) const { log(LogLevel::info, text); }
+  void warn(std::string_view text) const { log(LogLevel::warning, text); }
+  void log(LogLevel level, std::string_view text) const;
+
+ private:
+  std::atomic<bool> cancelled_{false};
+};
+
+}  // namespace sg

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/file.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+
+#include "base/error.h"
+
+namespace sg {
+
+MappedFile::MappedFile(const std::string& path) : path_(path) {
+  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (fd < 0) fail_data(errno == ENOENT ? "no such file" : std::string("cannot be opened: ") + std::strerror(errno), path);
+  struct stat st {};
+  if (::fstat(fd, &st) != 0 || S_ISDIR(st.st_mode)) {
+    ::close(fd);
+    fail_data("is a folder, not a file", path, "name a file in it");
+  }
+  size_ = size_t(st.st_size);
+  if (size_ == 0) {
+    ::close(fd);
+    return;
+  }
+  void* p = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, fd, 0);
+  const int error = errno;
+  ::close(fd);
+  if (p == MAP_FAILED) fail_data(std::string("cannot be mapped: ") + std::strerror(error), path);
+  const size_t n = size_;
+  owner_ = std::shared_ptr<const void>(p, [n](const void* q) { ::munmap(const_cast<void*>(q), n); });
+  data_ = static_cast<const std::byte*>(p);
+}
+
+AtomicFile::AtomicFile(const std::string& path) : path_(path), partial_(path + ".partial-" + std::to_string(::getpid())) {
+  struct stat st {};
+  if (::stat(path.c_str(), &st) == 0 && S_ISDIR(st.st_mode)) fail_data("cannot be written: it is a folder", path);
+  file_ = std::fopen(partial_.c_str(), "wb");
+  if (!file_) {
+    if (errno == ENOENT) fail_data("cannot be written: the folder does not exist", path, "make the folder first");
+    fail("cannot be written");
+  }
+}
+
+AtomicFile::~AtomicFile() {
+  if (!file_) return;
+  std::fclose(file_);
+  ::unlink(partial_.c_str());
+}
+
+void AtomicFile::fail(const char* what) const {
+  fail_data(std::string(what) + ": " + std::strerror(errno ? errno : EIO), path_);
+}
+
+void AtomicFile::write(const void* data, size_t bytes) {
+  errno = 0;
+  if (bytes && std::fwrite(data, 1, bytes, file_) != bytes) fail("write failed");
+  written_ += bytes;
+}
+
+void AtomicFile::commit() {
+  errno = 0;
+  if (std::fflush(file_) != 0) fail("write failed");
+  const int closed = std::fclose(file_);
+  file_ = nullptr;
+  if (closed != 0 || ::rename(partial_.c_str(), path_.c_str()) != 0) {
+    const int error = errno;
+    ::unlink(partial_.c_str());
+    errno = error;
+    fail("write failed");
+  }
+}
+
+void write_file(const std::string& path, std::string_view bytes) {
+  AtomicFile file(path);
+  file.write(bytes);
+  file.commit();
+}
+
+bool file_exists(const std::string& path) {
+  struct stat st {};
+  return ::stat(path.c_str(), &st) == 0;
+}
+
+std::string folder_of(std::string_view path) {
+  const size_t slash = path.rfind('/');
+  return slash == std::string_view::npos ? "" : std::string(path.substr(0, slash + 1));
+}
+
+std::string file_name_of(std::string_view path) {
+  const size_t slash = path.rfind('/');
+  return std::string(slash == std::string_view::npos ? path : path.substr(slash + 1));
+}
+
+std::string extension_of(std::string_view path) {
+  const std::string name = file_name_of(path);
+  const size_t dot = name.rfind('.');
+  if (dot == std::string::npos || dot == 0) return "";
+  std::string ext = name.substr(dot + 1);
+  for (char& c : ext) c = char(std::tolower(static_cast<unsigned char>(c)));
+  return ext;
+}
+
+std::string path_beside(std::string_view beside, std::string_view name) {
+  return !name.empty() && name[0] == '/' ? std::string(name) : folder_of(beside) + std::string(name);
+}
+
+}  // namespace sg

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// ColorScale: from a value to a colour, with everything a legend must show. OpacityCurve: from a value to an opacity.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/vec.h"
+#include "color/colormap.h"
+
+namespace sg {
+
+enum class ScaleKind { linear, log, symlog };
+
+struct ColorScale {
+  Colormap map;
+  double lo = 0, hi = 1;
+  ScaleKind kind = ScaleKind::linear;
+  double linear_threshold = 0;         ///< symlog: linear within +-threshold (> 0)
+  std::optional<Vec3f> below, above;   ///< sRGB; empty = the end colour (clamped)
+  Vec3f nan{0.6f, 0.6f, 0.6f};         ///< sRGB
+  bool clamp = true;                   ///< false: values out of range are not drawn (transparent)
+  std::vector<double> labels;          ///< categorical: the values, in order; a value takes the colour of its place
+  std::vector<std::string> label_names;  ///< categorical: text per label, may be empty
+  std::string title, unit;
+
+  /// Position on the map, may lie outside [0,1] (below, above), NaN for NaN and, on a log scale, for values <= 0.
+  double position(double value) const;
+  /// The value drawn at a position (inverse of position).
+  double value_at(double t) const;
+  /// sRGB colour with alpha 1, or alpha 0 when out of range and not clamped.
+  Vec4f color(double value) const;
+};
+
+/// A table of colours in linear light for renderers: `size` samples over [0,1] of position plus below, above and nan.
+struct ColorTable {
+  std::vector<Vec4f> linear;  ///< linear RGB, straight alpha
+  Vec4f below, above, nan;
+  const Vec4f& at(double position) const {
+    if (!(position == position)) return nan;
+    if (position < 0) return below;
+    if (position > 1) return above;
+    return linear[size_t(position * double(linear.size() - 1) + 0.5)];
+  }
+};
+ColorTable color_table(const ColorScale& scale, int size = 4096);
+
+/// Piecewise-linear opacity over values: sorted (value, opacity) points; constant beyond the ends.
+/// Opacity is per `unit` of length: a segment of length h has alpha = 1 - (1 - opacity)^(h/unit).
+struct OpacityCurve {
+  std::vector<Vec2> points{{0, 0}, {1, 1}};
+  double at(double value) const;
+  /// Largest opacity over [a, b].
+  double most(double a, double b) const;
+};
+
+/// "0:0,0.3:0.1,1:0.8" over positions 0..1 or values (`values` true). Throws Error(usage).
+OpacityCurve parse_opacity(const std::string& text, double lo, double hi);
+
+struct TickLabel {
+  double value;
+  std::string text;
+};
+/// About `wanted` round values in [lo, hi] with texts that tell them apart; powers of ten on a log scale.
+std::vector<TickLabel> nice_ticks(double lo, double hi, int wanted, ScaleKind kind = ScaleKind::linear, double linear_threshold = 0);
+
+}  // namespace sg

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+// validate(): nothing that passes here can make a kernel read outside its arrays.
+#include <atomic>
+
+#include "base/parallel.h"
+#include "data/lattice.h"
+#include "data/mesh.h"
+
+namespace sg {
+
+namespace {
+
+void check_points(const Points& p) {
+  if (p.xyz.count() == 0) return;
+  if (p.xyz.components() != 3) fail_data(fmt::format("points have {} coordinates, not 3", p.xyz.components()));
+  if (!is_float(p.xyz.type())) fail_data(fmt::format("points are {}, not f32 or f64", element_name(p.xyz.type())));
+}
+
+void check_dims(const std::array<size_t, 3>& d) {
+  size_t n = 1;
+  for (size_t a : d)
+    if (__builtin_mul_overflow(n, std::max<size_t>(a, 1), &n) || n > (size_t(1) << 62)) fail_data("the grid has more points than can be counted");
+}
+
+constexpr size_t none = SIZE_MAX;
+
+// The first index for which bad(i) holds, found in parallel; `none` when there is no such index.
+template <class Bad>
+size_t first_bad(size_t n, Bad bad) {
+  return parallel_reduce(n, 1 << 17, none, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i)
+      if (bad(i)) return i;
+    return none;
+  }, [](size_t a, size_t b) { return std::min(a, b); });
+}
+
+template <class T>
+size_t first_outside(const T* ids, size_t n, size_t points) {
+  using U = std::make_unsigned_t<T>;
+  return parallel_reduce(n, 1 << 18, none, [&](size_t begin, size_t end) {
+    U most = 0;  // as unsigned, a negative id is a huge one
+    for (size_t i = begin; i < end; ++i) most = std::max(most, U(ids[i]));
+    if (size_t(most) < points) return none;
+    for (size_t i = begin; i < end; ++i)
+      if (size_t(U(ids[i])) >= points) return i;
+    return none;
+  }, [](size_t a, size_t b) { return std::min(a, b); });
+}
+
+// `listed` is what the numbers in the list refer to (points, faces), `what` names the cells.
+void check_cells(const CellArray& a, size_t limit, const char* what) {
+  const Array& ids = a.connectivity;
+  for (const Array* array : {&a.connectivity, &a.offsets})
+    if (!array->empty() && (array->components() != 1 || (array->type() != ElementType::i64 && array->type() != ElementType::i32)))
+      fail_data(fmt::format("{}: indices must be i32 or i64", what));
+  if (a.fixed > 0) {
+    if (ids.count() % size_t(a.fixed)) fail_data(fmt::format("{}: {} indices do not make cells of {} points", what, ids.count(), a.fixed));
+  } else if (!a.offsets.empty()) {
+    const IndexView at = index_view(a.offsets);
+    const size_t n = a.offsets.count();
+    if (at[0] != 0) fail_data(fmt::format("{}: the first offset is {}, not 0", what, at[0]));
+    if (const size_t i = first_bad(n - 1, [&](size_t k) { return at[k + 1] < at[k]; }); i != none)
+      fail_data(fmt::format("{}: offsets fall from {} to {} at cell {}", what, at[i], at[i + 1], i));
+    if (size_t(at[n - 1]) > ids.count())
+      fail_data(fmt::format("{}: offsets end at {} but there are {} indices", what, at[n - 1], ids.count()));
+  }
+  if (ids.empty()) return;
+  index_view(ids);
+  const size_t bad = ids.type() == ElementType::i64 ? first_outside(ids.view<int64_t>().data, ids.count(), limit)
+                                                    : first_outside(ids.view<int32_t>().data, ids.count(), limit);
+  if (bad != none) fail_data(fmt::format("{}: point id {} at place {} is not in 0..{}", what, index_view(ids)[bad], bad, int64_t(limit) - 1));
+}
+
+void check_axis(const Array& a, char name) {
+  if (a.components() != 1 || !is_float(a.type())) fail_data(fmt::format("the {} coordinates must be f32 or f64", name));
+  if (a.count() < 2) return;
+  const bool up = a.get(a.count() - 1) > a.get(0);
+  for (size_t i = 1; i < a.count(); ++i) {
+    const double d = a.get(i) - a.get(i - 1);
+    if (!(up ? d > 0 : d < 0))
+      fail_data(fmt::format("the {} coordinates are not monotone: {} after {} at {}", name, a.get(i), a.get(i - 1), i));
+  }
+}
+
+struct Checker {
+  void operator()(const UniformGrid& g) const {
+    check_dims(g.dims);
+    for (int a = 0; a < 3; ++a) {
+      if (!std::isfinite(g.origin[a])) fail_data("the origin is not finite");
+      if (!std::isfinite(g.spacing[a]) || (g.spacing[a] == 0 && g.dims[size_t(a)] > 1))
+        fail_data(fmt::format("the spacing along {} is {}", "xyz"[a], g.spacing[a]), {}, "it must be finite and not 0");
+    }
+    if (const double d = determinant(g.direction); !(std::abs(d) > 1e-12)) fail_data("the direction matrix is singular");
+  }
+  void operator()(const RectilinearGrid& g) const {
+    check_dims(g.dims());
+    check_axis(g.x, 'x'), check_axis(g.y, 'y'), check_axis(g.z, 'z');
+  }
+  void operator()(const CurvilinearGrid& g) const {
+    check_dims(g.dims);
+    check_points(g.points);
+    if (g.points.count() != g.dims[0] * g.dims[1] * g.dims[2])
+      fail_data(fmt::format("{} points do not fill a grid of {}x{}x{}", g.points.count(), g.dims[0], g.dims[1], g.dims[2]));
+  }
+  void operator()(const UnstructuredMesh& m) const {
+    check_points(m.points);
+    check_cells(m.cells, m.points.count(), "cells");
+    const size_t n = m.cells.size();
+    if (!m.types.empty() && (m.types.type() != ElementType::u8 || m.types.count() != n || !m.types.packed()))
+      fail_data(fmt::format("{} cell types for {} cells", m.types.count(), n));
+    bool polyhedra = false;
+    auto check_type = [&](size_t c, uint8_t t) {
+      const CellTypeInfo* info = cell_type_info(t);
+      if (!info) fail_data(fmt::format("cell {} has the unknown type {}", c, t));
+      const size_t points = cells_view(m.cells).size(c);
+      if (info->points >= 0 && size_t(info->points) != points)
+        fail_data(fmt::format("cell {} is a {} of {} points, not {}", c, info->name, points, info->points));
+      polyhedra = polyhedra || t == uint8_t(CellType::polyhedron);
+    };
+    if (n > 0 && m.types.empty()) {
+      check_type(0, uint8_t(m.single_type));
+      const CellsView v = cells_view(m.cells);
+      const int points = cell_type_info(m.single_type).points;
+      if (!m.cells.fixed && points >= 0)
+        if (const size_t c = first_bad(n, [&](size_t i) { return v.size(i) != size_t(points); }); c != none) check_type(c, uint8_t(m.single_type));
+    } else if (n > 0) {
+      // Sizes of every type in one table: one look per cell.
+      std::array<int, 256> want{};
+      for (int t = 0; t < 256; ++t) want[size_t(t)] = cell_type_info(uint8_t(t)) ? cell_type_info(uint8_t(t))->points : -2;
+      const auto types = m.types.view<uint8_t>();
+      const CellsView v = cells_view(m.cells);
+      const size_t bad = first_bad(n, [&](size_t c) {
+        const int w = want[types[c]];
+        return w == -2 || (w >= 0 && v.size(c) != size_t(w));
+      });
+      if (bad != none) check_type(bad, types[bad]);
+      polyhedra = first_bad(n, [&](size_t c) { return types[c] == uint8_t(CellType::polyhedron); }) != none;
+    }
+    if (polyhedra && m.polyhedron_faces.count() != n + 1) fail_data("polyhedra without their faces");
+    if (m.polyhedron_faces.count() > 0) {
+      check_cells(m.faces, m.points.count(), "faces of polyhedra");
+      if (m.polyhedron_faces.type() != ElementType::i64 || m.polyhedron_faces.count() != n + 1) fail_data("face lists of polyhedra do not fit the cells");
+      const auto at = m.polyhedron_faces.view<int64_t>();
+      if (at[0] != 0 || size_t(at[n]) > m.faces.size()) fail_data("face lists of polyhedra run out of the faces");
+      if (const size_t c = first_bad(n, [&](size_t i) { return at[i + 1] < at[i]; }); c != none)
+        fail_data(fmt::format("face lists of polyhedra fall at cell {}", c));
+    }
+  }
+  void operator()(const SurfaceMesh& m) const {
+    check_points(m.points);
+    check_cells(m.vertices, m.points.count(), "vertices");
+    check_cells(m.lines, m.points.count(), "lines");
+    check_cells(m.polygons, m.points.count(), "polygons");
+    check_cells(m.strips, m.points.count(), "strips");
+  }
+  void operator()(const PointCloud& m) const { check_points(m.points); }
+  void operator()(const AmrGrid& g) const {
+    if (g.dimension != 2 && g.dimension != 3) fail_data(fmt::format("an AMR grid of {} dimensions", g.dimension));
+    for (size_t l = 0; l < g.levels.size(); ++l)
+      for (const auto& p : g.levels[l].patches)
+        for (size_t a = 0; a < 3; ++a)
+          if (p.hi[a] < p.lo[a] || p.hi[a] - p.lo[a] > (1ll << 40)) fail_data(fmt::format("a patch of level {} runs from {} to {}", l, p.lo[a], p.hi[a]));
+  }
+};
+
+}  // namespace
+
+void validate(const Mesh& mesh) { std::visit(Checker{}, mesh); }
+
+}  // namespace sg

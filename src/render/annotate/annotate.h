@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Text and rulers over a picture: legends, title, axes with numbers, orientation triad. Cairo and Pango.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "color/color_scale.h"
+#include "image/image.h"
+#include "scene/camera.h"
+
+namespace sg {
+
+struct Annotation {
+  std::string title;                      ///< top centre; long titles wrap, then shrink, never crop
+  std::vector<ColorScale> legends;        ///< right side, side by side; each exactly the colours drawn, title, unit, ticks, below/above/NaN
+  std::optional<Box3> box;                ///< bounding box with numbered axes (the box lines themselves are scene lines)
+  std::string axis_names[3] = {"x", "y", "z"};
+  std::string length_unit;
+  bool triad = true;                      ///< orientation axes, lower left
+  bool show_nan_in_legend = false;        ///< NaN swatch (the data has NaN)
+  bool dark_background = false;           ///< light text
+  double scale = 1;                       ///< text size factor; 1 = good for 720 lines, grows with the picture's height by itself
+};
+
+/// Pixels on the right that legends will take (0 without legends): the caller moves the picture's centre by half of it.
+int legend_width(const Annotation& annotation, int width, int height);
+
+/// Draws onto the image (3 or 4 channels). Throws Error(internal) naming the package when no font is installed.
+void annotate(Image& image, const Annotation& annotation, const Projection& projection);
+
+}  // namespace sg

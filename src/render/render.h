@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scene + Camera -> Frame.
+#pragma once
+#include "base/context.h"
+#include "image/image.h"
+#include "scene/scene.h"
+
+namespace sg {
+
+struct RenderOptions {
+  int width = 1280, height = 720;
+  int samples = 0;  ///< per pixel and axis (1, 2, 3, 4); 0 = 2 for surfaces, 1 for volumes alone
+};
+
+/// Surfaces, lines, points and volumes in one picture: opaque ones by depth, translucent ones and volumes in depth order,
+/// over the background. The same bytes for any number of threads and any SIMD target.
+Frame render(const Scene& scene, const Camera& camera, const RenderOptions& options, Context& context);
+
+}  // namespace sg

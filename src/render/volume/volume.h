@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// Volume ray caster: integrates each ray through the volumes up to the opaque depth, mixing in translucent fragments in order.
+#pragma once
+#include "base/context.h"
+#include "image/image.h"
+#include "render/fragments.h"
+#include "scene/scene.h"
+
+namespace sg {
+
+/// The frame holds the opaque picture (rgba, depth); on return rgba is fragments and volumes over it (premultiplied; no
+/// background yet). Scenes without volumes just get their fragments composited.
+void composite_volumes(const Scene& scene, const Projection& projection, const FragmentLists& fragments, Frame& frame, Context& context);
+
+}  // namespace sg

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Camera: right-handed, looks along target - position. Pixel (0,0) is the top left, pixel centres lie at +0.5.
+#pragma once
+#include <optional>
+#include <string>
+
+#include "base/vec.h"
+
+namespace sg {
+
+struct Camera {
+  Vec3 position{0, 0, 1}, target{0, 0, 0}, up{0, 1, 0};
+  double view_angle = 30;  ///< degrees, vertical; perspective only
+  bool parallel = false;
+  double parallel_height = 1;  ///< world height of the picture; parallel only
+  double near_plane = 0.01, far_plane = 1000;  ///< eye distances; depth beyond is clipped
+
+  Vec3 forward() const { return normalize(target - position); }
+};
+
+/// Everything needed to go from world to picture and back. Eye space: x right, y up, z along the view direction (positive
+/// in front): "depth" everywhere is that z.
+struct Projection {
+  int width = 1, height = 1;
+  bool parallel = false;
+  Vec3 eye, right, up, forward;  ///< orthonormal, world
+  double scale = 1;              ///< pixels per unit of (x/z) in perspective, pixels per world unit in parallel
+  double near_plane = 0.01, far_plane = 1000;
+
+  Vec3 to_eye(Vec3 world) const {
+    const Vec3 d = world - eye;
+    return {dot(d, right), dot(d, up), dot(d, forward)};
+  }
+  /// Pixel coordinates (x right, y down) and depth; meaningless for depth <= 0 in perspective.
+  Vec3 to_pixel(Vec3 world) const {
+    const Vec3 e = to_eye(world);
+    const double s = parallel ? scale : scale / e.z;
+    return {0.5 * width + s * e.x, 0.5 * height - s * e.y, e.z};
+  }
+  struct Ray {
+    Vec3 origin, direction;  ///< direction has length 1
+    double per_depth;        ///< ray length per unit of depth
+  };
+  Ray ray(double px, double py) const;
+};
+Projection make_projection(const Camera& camera, int width, int height);
+
+/// Looks at the box from `direction` (towards the viewer; need not be unit) so that all of it is seen with `margin` of the
+/// picture left free on each side; sets near and far. A flat or empty box works too.
+Camera fit_camera(const Box3& box, Vec3 direction, Vec3 up, double aspect, double margin = 0.08, double view_angle = 30, bool parallel = false);
+/// Near and far planes around the box.
+void fit_planes(Camera& camera, const Box3& box);
+
+}  // namespace sg

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// Scene: what is to be seen. Plain data; renderers read it.
+#pragma once
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "color/color_scale.h"
+#include "data/dataset.h"
+#include "scene/camera.h"
+
+namespace sg {
+
+/// Phong terms in linear light. Surfaces are lit on both sides.
+struct Material {
+  float ambient = 0.12f, diffuse = 0.88f, specular = 0.18f, power = 32;
+  bool lit = true;
+};
+
+/// Colour by a field of the item's dataset. One component -> `scale`; `direct`: components are RGB(A) (u8 0..255 or float 0..1).
+struct FieldColor {
+  std::string field;
+  Association association = Association::point;
+  int component = -1;  ///< -1: the only one, or the magnitude
+  ColorScale scale;
+  bool direct = false;
+};
+
+/// Polygons and strips of a SurfaceMesh.
+struct SurfaceItem {
+  DatasetPtr data;
+  std::optional<FieldColor> color_by;
+  Vec3f color{0.80f, 0.80f, 0.82f};  ///< sRGB, without color_by
+  double opacity = 1;
+  Material material;
+  std::string normals;       ///< point field of normals; "" = its field of role normals, else smooth (below feature_angle)
+  bool flat = false;         ///< face normals
+  double feature_angle = 40; ///< degrees; edges sharper than this are not smoothed when normals are computed
+  bool edges = false;        ///< draw the edges of the polygons
+  Vec3f edge_color{0.1f, 0.1f, 0.1f};
+};
+
+/// Lines of a SurfaceMesh; constant width on the picture.
+struct LinesItem {
+  DatasetPtr data;
+  std::optional<FieldColor> color_by;
+  Vec3f color{0.15f, 0.15f, 0.17f};
+  double opacity = 1;
+  double width = 1.5;  ///< pixels
+};
+
+/// Every point of the dataset (or the vertices of a SurfaceMesh) as a round dot.
+struct PointsItem {
+  DatasetPtr data;
+  std::optional<FieldColor> color_by;
+  Vec3f color{0.15f, 0.15f, 0.17f};
+  double opacity = 1;
+  double size = 4;      ///< pixels across
+  bool shaded = true;   ///< as little spheres
+};
+
+/// A scalar field of a lattice, seen through.
+struct VolumeItem {
+  DatasetPtr data;
+  std::string field;
+  Association association = Association::point;
+  int component = -1;
+  ColorScale color;
+  OpacityCurve opacity;        ///< over values
+  double unit_distance = 0;    ///< length to which opacity refers; 0 = 1/100 of the diagonal of the bounds
+  enum class Mode { composite, maximum } mode = Mode::composite;
+  bool shaded = true;
+  double step = 0;             ///< world length; 0 = half the smallest cell edge
+};
+
+using Item = std::variant<SurfaceItem, LinesItem, PointsItem, VolumeItem>;
+
+struct Light {
+  Vec3 direction{0.3, 0.5, 1};  ///< towards the light; in eye space (x right, y up, z towards the viewer) when `follows_camera`
+  bool follows_camera = true;
+  float intensity = 1;
+};
+
+struct Scene {
+  std::vector<Item> items;
+  std::vector<Light> lights;                ///< empty = one light over the viewer's left shoulder and a weak one from the right
+  Vec3f background{1, 1, 1};                ///< sRGB, bottom
+  std::optional<Vec3f> background_top;      ///< sRGB; a vertical gradient when set
+  bool transparent = false;                 ///< no background at all
+};
+
+/// Bounds of everything in the scene.
+Box3 scene_bounds(const Scene& scene);
+
+}  // namespace sg
