@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "data/field_ops.h"
+
+#include <cmath>
+#include <type_traits>
+
+#include "base/parallel.h"
+
+namespace sg {
+
+namespace {
+
+constexpr size_t grain = 1 << 15;
+
+template <class Id>
+Array gather_any(const Array& a, std::span<const Id> ids) {
+  std::byte* out = nullptr;
+  Array r = Array::make_raw(a.type(), ids.size(), a.components(), &out);
+  dispatch(a, [&](auto v) {
+    using T = std::remove_cvref_t<decltype(v[0])>;
+    T* to = reinterpret_cast<T*>(out);
+    const int n = v.components;
+    parallel_for(ids.size(), grain, [&](size_t begin, size_t end) {
+      if (n == 1) {
+        for (size_t i = begin; i < end; ++i) to[i] = v[size_t(ids[i])];
+        return;
+      }
+      for (size_t i = begin; i < end; ++i)
+        for (int c = 0; c < n; ++c) to[i * size_t(n) + size_t(c)] = v(size_t(ids[i]), c);
+    });
+  });
+  return r;
+}
+
+template <class T>
+T blended(double v) {
+  if constexpr (std::is_floating_point_v<T>) return T(v);
+  else return T(std::nearbyint(v));  // a blend of two values of T lies in the range of T
+}
+
+template <class Map>
+void carry(FieldSet& out, const FieldSet& in, Association association, Association as, Map&& map) {
+  for (const Field& f : in)
+    if (f.association == association) out.add({f.name, as, map(f.array), f.unit, f.role});
+}
+
+}  // namespace
+
+Array gather(const Array& a, std::span<const int64_t> ids) { return gather_any(a, ids); }
+Array gather(const Array& a, std::span<const uint32_t> ids) { return gather_any(a, ids); }
+
+Array interpolate(const Array& a, std::span<const EdgePoint> points) {
+  std::byte* out = nullptr;
+  Array r = Array::make_raw(a.type(), points.size(), a.components(), &out);
+  dispatch(a, [&](auto v) {
+    using T = std::remove_cvref_t<decltype(v[0])>;
+    T* to = reinterpret_cast<T*>(out);
+    const int n = v.components;
+    parallel_for(points.size(), grain, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) {
+        const EdgePoint p = points[i];
+        for (int c = 0; c < n; ++c) {
+          const T va = v(p.a, c), vb = v(p.b, c);
+          to[i * size_t(n) + size_t(c)] = p.a == p.b ? va : blended<T>(double(va) * (1.0 - double(p.t)) + double(vb) * double(p.t));
+        }
+      }
+    });
+  });
+  return r;
+}
+
+Array combine(const Array& a, std::span<const int64_t> ids, std::span<const double> weights, size_t n) {
+  const size_t count = n ? ids.size() / n : 0;
+  const bool wide = element_size(a.type()) == 8;
+  std::byte* out = nullptr;
+  Array r = Array::make_raw(wide ? ElementType::f64 : ElementType::f32, count, a.components(), &out);
+  dispatch(a, [&](auto v) {
+    parallel_for(count, grain, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i)
+        for (int c = 0; c < v.components; ++c) {
+          double sum = 0;
+          for (size_t k = i * n; k < (i + 1) * n; ++k)
+            if (weights[k] != 0) sum += weights[k] * double(v(size_t(ids[k]), c));
+          const size_t at = i * size_t(v.components) + size_t(c);
+          if (wide) reinterpret_cast<double*>(out)[at] = sum;
+          else reinterpret_cast<float*>(out)[at] = float(sum);
+        }
+    });
+  });
+  return r;
+}
+
+void carry_gathered(FieldSet& out, const FieldSet& in, Association association, std::span<const int64_t> ids, Association as) {
+  carry(out, in, association, as, [&](const Array& a) { return gather(a, ids); });
+}
+void carry_gathered(FieldSet& out, const FieldSet& in, Association association, std::span<const uint32_t> ids, Association as) {
+  carry(out, in, association, as, [&](const Array& a) { return gather(a, ids); });
+}
+void carry_interpolated(FieldSet& out, const FieldSet& in, std::span<const EdgePoint> points) {
+  carry(out, in, Association::point, Association::point, [&](const Array& a) { return interpolate(a, points); });
+}
+void carry_combined(FieldSet& out, const FieldSet& in, Association association, std::span<const int64_t> ids, std::span<const double> weights, size_t n, Association as) {
+  carry(out, in, association, as, [&](const Array& a) { return combine(a, ids, weights, n); });
+}
+void carry_whole(FieldSet& out, const FieldSet& in) {
+  carry(out, in, Association::whole, Association::whole, [](const Array& a) { return a; });
+}
+
+Array scalar_of(const Field& field, int component, ElementType type) {
+  const Array& a = field.array;
+  if (component >= a.components())
+    fail_usage(fmt::format("field '{}' has {} components, not component {}", field.name, a.components(), component));
+  if (component >= 0 || a.components() == 1) return a.component(std::max(component, 0)).converted(type);
+  std::byte* out = nullptr;
+  Array r = Array::make_raw(type, a.count(), 1, &out);
+  dispatch(a, [&](auto v) {
+    parallel_for(v.count, grain, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) {
+        double sum = 0;
+        for (int c = 0; c < v.components; ++c) sum += double(v(i, c)) * double(v(i, c));
+        if (type == ElementType::f64) reinterpret_cast<double*>(out)[i] = std::sqrt(sum);
+        else reinterpret_cast<float*>(out)[i] = float(std::sqrt(sum));
+      }
+    });
+  });
+  return r;
+}
+
+}  // namespace sg
