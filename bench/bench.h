@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// The runner: every record is measured in a child process of its own, so that peak memory is per record.
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace sg::bench {
+
+/// One measurement. setup() runs once in the child, off the clock, and returns the work; work() returns a count that shows
+/// that the work was done (triangles, points, pixels).
+struct Task {
+  std::string task, size;          ///< the names under which peers' records stand
+  std::string peer;                ///< ours: "sightglass:..."
+  std::string unit;                ///< of the count
+  std::function<std::function<double()>()> setup;
+};
+
+/// A command timed from outside as a whole process.
+struct ProcessTask {
+  std::string task, size, peer;
+  std::vector<std::string> command;
+  std::string output;  ///< file it must write, or ""
+};
+
+std::vector<Task> tasks(const std::string& data_folder);
+std::vector<ProcessTask> process_tasks(const std::string& data_folder, const std::string& program);
+
+/// Writes the input files that are missing in the folder (formulas as in the peers' scripts).
+void make_inputs(const std::string& data_folder);
+
+}  // namespace sg::bench

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is measured, under the names of the peers' records.
+#include "base/file.h"
+#include "bench.h"
+#include "filter/scalar/contour.h"
+#include "inputs.h"
+#include "io/io.h"
+#include "render/raster/raster.h"
+#include "render/render.h"
+
+namespace sg::bench {
+
+namespace {
+
+Camera peers_camera(double turn) {
+  Camera c;
+  const double a = turn * 3.14159265358979323846 / 180;
+  c.position = {2.2 * std::cos(a) + 3.6 * std::sin(a), 2.6, 3.6 * std::cos(a) - 2.2 * std::sin(a)};
+  c.target = {0, 0, 0};
+  c.up = {0, 1, 0};
+  c.view_angle = 40;
+  Box3 box;
+  box.add({-1, -1, -1});
+  box.add({1, 1, 1});
+  fit_planes(c, box);
+  return c;
+}
+
+// Reads the file and touches every value of every field.
+double read_all(const std::string& path) {
+  Context context;
+  double points = 0;
+  for_each_dataset(read_data(path, {}, context), [&](const std::string&, const DatasetPtr& d) {
+    points += double(d->point_count());
+    d->bounds();
+    for (const Field& f : d->fields()) d->stats(f);
+  });
+  return points;
+}
+
+Task reading(const std::string& folder, const std::string& name) {
+  return {"read_file", "file", "sightglass:" + name, "points", [=] {
+            const std::string path = folder + "/" + name;
+            MappedFile warm(path);
+            return [=] { return read_all(path); };
+          }};
+}
+
+Task contouring(size_t n) {
+  return {"contour", fmt::format("uniform{}", n), "sightglass:contour(normals=on)", "triangles", [=] {
+            auto grid = field_grid(n);
+            return [=] {
+              Context context;
+              ContourParams p;
+              p.values = {0};
+              return double(contour(grid, p, context)->cell_count());
+            };
+          }};
+}
+
+// A frame after the camera turned by two degrees; geometry is prepared before the clock, as the peers upload it.
+Task surface(const char* name, size_t n) {
+  return {"surface_render", fmt::format("mesh {}, 1920x1080", name), "sightglass:rasterize", "pixels covered", [=] {
+            Scene scene;
+            SurfaceItem item;
+            item.data = surface_mesh(n);
+            scene.items.emplace_back(item);
+            auto turn = std::make_shared<double>(0);
+            auto shared = std::make_shared<Scene>(std::move(scene));
+            return [=] {
+              Context context;
+              *turn += 2;
+              RenderOptions o;
+              o.width = 1920, o.height = 1080, o.samples = 1;
+              const Frame f = render(*shared, peers_camera(*turn), o, context);
+              return double(std::count_if(f.ids.begin(), f.ids.end(), [](uint32_t id) { return id > 0; }));
+            };
+          }};
+}
+
+Task volume(const char* what, bool shaded, bool maximum, bool fog) {
+  return {"volume_render", "float32 256^3, 1024x1024", fmt::format("sightglass:raycast({})", what), "pixels covered", [=] {
+            Scene scene;
+            VolumeItem item;
+            item.data = field_grid(256);
+            item.field = "f";
+            item.color.map = find_colormap("sight");
+            item.color.lo = -3, item.color.hi = 4;
+            item.opacity.points = {{-3, 0}, {-.9, 0}, {-.6, .15}, {-.3, 0}, {.2, 0}, {.5, .3}, {.8, 0}, {1.6, 0}, {2, .8}, {4, .8}};
+            if (fog) item.opacity.points = {{-3, .002}, {4, .01}};
+            if (maximum) item.mode = VolumeItem::Mode::maximum;
+            item.unit_distance = 2.0 / 255;
+            item.step = 1.0 / 255;
+            item.shaded = shaded;
+            scene.items.emplace_back(item);
+            auto turn = std::make_shared<double>(0);
+            auto shared = std::make_shared<Scene>(std::move(scene));
+            return [=] {
+              Context context;
+              *turn += 2;
+              RenderOptions o;
+              o.width = o.height = 1024, o.samples = 1;
+              const Frame f = render(*shared, peers_camera(*turn), o, context);
+              return double(f.pixels());
+            };
+          }};
+}
+
+}  // namespace
+
+std::vector<Task> tasks(const std::string& folder) {
+  std::vector<Task> t;
+  for (const char* name : {"f256_raw.vti", "f256_zlib.vti", "tet1M_raw.vtu", "mesh1M_binary.stl", "mesh1M_binary.ply", "mesh1M.obj", "mesh1M_raw.vtp"})
+    t.push_back(reading(folder, name));
+  t.push_back(contouring(256));
+  t.push_back(surface("1M", 235));
+  t.push_back(surface("5M", 526));
+  t.push_back(surface("10M", 744));
+  t.push_back(volume("composite", false, false, false));
+  t.push_back(volume("composite,shaded", true, false, false));
+  t.push_back(volume("MIP", false, true, false));
+  t.push_back(volume("composite,fog(no skipping)", false, false, true));
+  return t;
+}
+
+std::vector<ProcessTask> process_tasks(const std::string& folder, const std::string& program) {
+  const std::string vti = folder + "/f256_raw.vti", png = folder + "/ours.png";
+  const std::string camera = "position=2.2,2.6,3.6 target=0,0,0 up=0,1,0 view_angle=40";
+  return {
+      {"first_picture_startup_only", "-", "sightglass --version", {program, "--version"}, ""},
+      {"info_with_ranges", "f256_raw.vti", "sightglass info", {program, "info", vti}, ""},
+      {"first_picture_contour", "vti raw 256^3", "sightglass render, full picture 1280x720",
+       {program, "render", vti, "-f", "contour values=0", "--camera", camera, "--size", "1280x720", "-q", "-o", png}, png},
+      {"first_picture_contour", "vti raw 256^3", "sightglass render, as the peer draws it",
+       {program, "render", vti, "-f", "contour values=0", "--show", "surface color=white", "--camera", camera, "--size", "1024x1024", "-q", "--picture",
+        "samples=1 axes=false triad=false legend=false", "-o", png}, png},
+  };
+}
+
+}  // namespace sg::bench

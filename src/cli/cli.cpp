@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/cli.h"
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <new>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "cli/info.h"
+
+namespace sg {
+
+namespace {
+
+Context* interruptible = nullptr;
+
+void on_interrupt(int) {
+  if (interruptible) interruptible->cancel();
+}
+
+// Messages go to stderr, so that stdout holds results alone.
+void connect(Context& context, const Options& o) {
+  context.memory_limit = o.memory;
+  context.on_log = [quiet = o.quiet, verbose = o.verbose](LogLevel level, std::string_view text) {
+    if (quiet || (level == LogLevel::debug && !verbose)) return;
+    std::fprintf(stderr, "%s%.*s\n", level == LogLevel::warning ? "warning: " : "note: ", int(text.size()), text.data());
+  };
+  if (!o.quiet && ::isatty(2))
+    context.on_progress = [](double fraction, std::string_view doing) {
+      if (fraction >= 1) std::fprintf(stderr, "\r\x1b[K");
+      else std::fprintf(stderr, "\r%3.0f%% %.*s\x1b[K", fraction * 100, int(std::min<size_t>(doing.size(), 60)), doing.data());
+    };
+}
+
+int dispatch_command(const Options& o, Context& context) {
+  struct Command {
+    std::string_view name;
+    int (*run)(const Options&, Context&);
+  };
+  static constexpr Command commands[] = {{"info", run_info}, {"render", run_render}, {"convert", run_convert}, {"run", run_pipeline_file},
+                                         {"open", run_open}, {"ops", run_ops},       {"colormap", run_colormap}, {"demo", run_demo}};
+  for (const Command& c : commands)
+    if (c.name == o.command) return c.run(o, context);
+  return 0;  // --help or --version: all is said
+}
+
+// A message may quote what it was given; it stays one line all the same.
+std::string one_line(std::string s) {
+  for (char& c : s)
+    if (c == '\n' || c == '\r') c = ' ';
+  return s;
+}
+
+}  // namespace
+
+int cli_main(int argc, char** argv) {
+  try {
+    const Options o = parse_options(argc, argv);
+    if (o.threads > 0) set_thread_count(o.threads);
+    Context context;
+    connect(context, o);
+    interruptible = &context;
+    ::signal(SIGINT, on_interrupt);
+    ::signal(SIGPIPE, SIG_IGN);
+    const int status = dispatch_command(o, context);
+    interruptible = nullptr;
+    if (std::fflush(stdout) != 0) fail_data("standard output cannot be written");
+    return status;
+  } catch (const Error& e) {
+    interruptible = nullptr;
+    std::fprintf(stderr, "sightglass: %s\n", one_line(e.what()).c_str());
+    return e.exit_code();
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "sightglass: not enough memory; state a smaller region or fewer fields\n");
+    return 3;
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "sightglass: internal error: %s; please report it with the command and the file\n", one_line(e.what()).c_str());
+    return 4;
+  }
+}
+
+int run_info(const Options& o, Context& context) {
+  ReadOptions read = o.read;
+  read.header_only = o.quick;
+  for (const std::string& path : o.inputs) {
+    const Data data = read_data(path, read, context);
+    const std::string text = o.json ? info_json(data, o.quick) : info_text(data, path, o.quick);
+    std::fwrite(text.data(), 1, text.size(), stdout);
+  }
+  return 0;
+}
+
+}  // namespace sg

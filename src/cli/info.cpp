@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/info.h"
+
+#include "base/text.h"
+#include "data/lattice.h"
+
+namespace sg {
+
+namespace {
+
+std::string number(double v) { return std::isfinite(v) ? exact_number(v) : "null"; }
+
+std::string range_json(const FieldStats& s) {
+  std::string r = "[";
+  for (size_t c = 0; c < s.range.size(); ++c)
+    r += (c ? "," : "") + (s.range[c].empty() ? std::string("null") : "[" + number(s.range[c].lo) + "," + number(s.range[c].hi) + "]");
+  return r + "]";
+}
+
+std::string dataset_json(const Dataset& d, bool quick) {
+  std::string r = fmt::format("\"kind\":\"{}\",\"dims\":[", d.kind());
+  if (is_lattice(d.mesh())) {
+    const auto n = lattice_dims(d.mesh());
+    r += fmt::format("{},{},{}", n[0], n[1], n[2]);
+  }
+  r += fmt::format("],\"points\":{},\"cells\":{},\"cell_types\":{{", d.point_count(), d.cell_count());
+  bool first = true;
+  for (const auto& [name, count] : cell_type_counts(d.mesh())) {
+    r += fmt::format("{}\"{}\":{}", first ? "" : ",", name, count);
+    first = false;
+  }
+  r += "},\"bounds\":";
+  const Box3& b = d.bounds();
+  if (b.empty()) r += "null";
+  else r += "[" + number(b.lo.x) + "," + number(b.hi.x) + "," + number(b.lo.y) + "," + number(b.hi.y) + "," + number(b.lo.z) + "," + number(b.hi.z) + "]";
+  if (auto* g = d.as<UniformGrid>()) {
+    r += fmt::format(",\"origin\":[{},{},{}]", number(g->origin.x), number(g->origin.y), number(g->origin.z));
+    r += fmt::format(",\"spacing\":[{},{},{}],\"direction\":[", number(g->spacing.x), number(g->spacing.y), number(g->spacing.z));
+    for (int i = 0; i < 9; ++i) r += (i ? "," : "") + number(g->direction.m[i / 3][i % 3]);
+    r += "]";
+  }
+  r += ",\"fields\":[";
+  first = true;
+  for (const Field& f : d.fields()) {
+    r += fmt::format("{}{{\"name\":{},\"association\":\"{}\",\"type\":\"{}\",\"components\":{}", first ? "" : ",", json_string(f.name),
+                     association_name(f.association), element_name(f.array.type()), f.components());
+    if (f.association == Association::whole) r += fmt::format(",\"tuples\":{}", f.array.count());
+    if (!f.unit.empty()) r += ",\"unit\":" + json_string(f.unit);
+    if (!quick) {
+      const FieldStats& s = d.stats(f);
+      r += fmt::format(",\"range\":{},\"nan\":{}", range_json(s), s.nan);
+      if (s.infinite) r += fmt::format(",\"infinite\":{}", s.infinite);
+    }
+    r += "}";
+    first = false;
+  }
+  return r + "],\"times\":[" + (d.time() ? number(*d.time()) : std::string()) + "]";
+}
+
+std::string data_json(const Data& data, bool quick) {
+  if (auto* d = std::get_if<DatasetPtr>(&data)) return dataset_json(**d, quick);
+  if (auto* t = std::get_if<TablePtr>(&data)) {
+    std::string r = "\"kind\":\"table\",\"columns\":[";
+    for (size_t i = 0; i < (*t)->columns.size(); ++i)
+      r += fmt::format("{}{{\"name\":{},\"type\":\"{}\",\"rows\":{}}}", i ? "," : "", json_string((*t)->columns[i].name),
+                       element_name((*t)->columns[i].array.type()), (*t)->columns[i].array.count());
+    return r + "]";
+  }
+  std::string r = "\"kind\":\"collection\",\"parts\":[";
+  const auto& parts = std::get<CollectionPtr>(data)->parts;
+  for (size_t i = 0; i < parts.size(); ++i) r += (i ? ",{\"name\":" : "{\"name\":") + json_string(parts[i].name) + "," + data_json(parts[i].data, quick) + "}";
+  return r + "]";
+}
+
+std::string range_text(const Range& r) {
+  if (r.empty()) return "no finite value";
+  return r.lo == r.hi ? short_number(r.lo) + " (constant)" : short_number(r.lo) + " .. " + short_number(r.hi);
+}
+
+std::string field_line(const Dataset& d, const Field& f, size_t width, bool quick) {
+  std::string type(element_name(f.array.type()));
+  if (f.components() > 1) type += fmt::format(" x{}", f.components());
+  std::string line = fmt::format("  {:<{}}  {:<5}  {:<8}", f.name, width, association_name(f.association), type);
+  if (f.association == Association::whole) line += fmt::format("  {} values", f.array.count());
+  if (!quick) {
+    const FieldStats& s = d.stats(f);
+    if (f.components() == 1) line += "  " + range_text(s.range[0]);
+    else if (f.components() <= 4) {
+      line += "  ";
+      for (int c = 0; c < f.components(); ++c) line += (c ? ", " : "") + range_text(s.range[size_t(c)]);
+      line += "; length " + range_text(s.magnitude);
+    } else {
+      Range all;
+      for (const Range& r : s.range) all.add(r);
+      line += "  " + range_text(all) + " over all components";
+    }
+    if (!f.unit.empty()) line += " " + f.unit;
+    if (s.nan) line += fmt::format("; {} NaN", s.nan);
+    if (s.infinite) line += fmt::format("; {} infinite", s.infinite);
+  }
+  return line + "\n";
+}
+
+std::string dataset_text(const Dataset& d, const std::string& name, bool quick) {
+  std::string r = name + "\n  mesh    " + std::string(d.kind());
+  if (is_lattice(d.mesh())) {
+    const auto n = lattice_dims(d.mesh());
+    r += fmt::format(" {} x {} x {}", n[0], n[1], n[2]);
+  }
+  r += fmt::format(", {} points, {} cells", d.point_count(), d.cell_count());
+  const auto types = cell_type_counts(d.mesh());
+  if (!types.empty()) {
+    r += "\n  cells   ";
+    for (size_t i = 0; i < types.size(); ++i) r += fmt::format("{}{} {}", i ? ", " : "", types[i].first, types[i].second);
+  }
+  const Box3& b = d.bounds();
+  if (b.empty()) r += "\n  bounds  none";
+  else
+    r += fmt::format("\n  bounds  x {} .. {}, y {} .. {}, z {} .. {}", short_number(b.lo.x), short_number(b.hi.x), short_number(b.lo.y), short_number(b.hi.y),
+                     short_number(b.lo.z), short_number(b.hi.z));
+  if (auto* g = d.as<UniformGrid>()) {
+    r += fmt::format("\n  spacing {} x {} x {}", short_number(g->spacing.x), short_number(g->spacing.y), short_number(g->spacing.z));
+    if (!(g->direction == Mat3{})) r += ", turned";
+  }
+  if (d.time()) r += "\n  time    " + short_number(*d.time());
+  r += "\n";
+  if (d.fields().empty()) return r + "  no fields\n";
+  size_t width = 5;
+  for (const Field& f : d.fields()) width = std::max(width, std::min<size_t>(f.name.size(), 32));
+  r += fmt::format("  {:<{}}  {:<5}  {:<8}{}\n", "field", width, "on", "type", quick ? "" : "  range");
+  for (const Field& f : d.fields()) r += field_line(d, f, width, quick);
+  return r;
+}
+
+}  // namespace
+
+std::string info_json(const Data& data, bool quick) { return "{" + data_json(data, quick) + "}\n"; }
+
+std::string info_text(const Data& data, const std::string& name, bool quick) {
+  std::string r;
+  for_each_dataset(data, [&](const std::string& part, const DatasetPtr& d) { r += dataset_text(*d, part.empty() ? name : name + ": " + part, quick); });
+  if (auto* t = std::get_if<TablePtr>(&data)) r += fmt::format("{}\n  table of {} columns\n", name, (*t)->columns.size());
+  return r.empty() ? name + "\n  nothing in it\n" : r;
+}
+
+}  // namespace sg

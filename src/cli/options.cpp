@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+// The one file that sees CLI11.
+#include "cli/options.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+
+#include "base/error.h"
+#include "base/text.h"
+
+namespace sg {
+
+namespace {
+
+struct RawText {
+  std::string dims, type, spacing, endian = "little", memory;
+  size_t header = 0;
+  int components = 1;
+};
+
+void add_common(CLI::App& a, Options& o, RawText& raw) {
+  a.add_option("--threads", o.threads, "Worker threads; 0 = all cores")->check(CLI::NonNegativeNumber);
+  a.add_option("--memory", raw.memory, "Memory to stay within, like 2G");
+  a.add_flag("--quiet,-q", o.quiet, "Print errors only");
+  a.add_flag("--verbose,-v", o.verbose, "Print what is done, step by step");
+}
+
+void add_reading(CLI::App& a, RawText& raw) {
+  a.add_option("--dims", raw.dims, "Raw brick: size, like 256,256,128");
+  a.add_option("--type", raw.type, "Raw brick: element type: u8 i8 u16 i16 u32 i32 f32 f64");
+  a.add_option("--spacing", raw.spacing, "Raw brick: distance of samples, like 1,1,2");
+  a.add_option("--endian", raw.endian, "Raw brick: byte order")->check(CLI::IsMember({"little", "big"}));
+  a.add_option("--header", raw.header, "Raw brick: bytes to skip");
+  a.add_option("--components", raw.components, "Raw brick: numbers per sample")->check(CLI::PositiveNumber);
+}
+
+void add_pipeline(CLI::App& a, Options& o) {
+  a.add_option("-f,--filter", o.filters, "An operation and its parameters: 'contour field=T values=300,400'; may be repeated, they chain")->allow_extra_args(false);
+  a.add_option("-s,--source", o.source, "Compute the data instead of reading a file: 'gyroid size=128'");
+  a.add_flag("--explain", o.explain, "Print the plan and what it will cost, run nothing");
+}
+
+void add_picture(CLI::App& a, Options& o) {
+  a.add_option("--show", o.shows, "How to show it: 'surface|volume|lines|points|outline key=value ...'; may be repeated")->allow_extra_args(false);
+  a.add_option("--field", o.field, "Field to colour by");
+  a.add_option("--map", o.map, "Colour map (see: sightglass colormap)");
+  a.add_option("--scale", o.scale, "linear, log or symlog");
+  a.add_option("--camera", o.camera, "'top', 'front', 'iso', or key=value words: 'azimuth=30 elevation=10 zoom=1.5'");
+  a.add_option("--size", o.size, "Pixels, like 1920x1080");
+  a.add_option("--title", o.title, "Text above the picture");
+  a.add_option("--background", o.background, "Colour, or 'transparent'");
+  a.add_option("--picture", o.picture, "Further key=value of the picture (see: sightglass ops picture)")->allow_extra_args(false);
+  a.add_option("-o,--output", o.output, "Picture to write: .png .jpg .webp");
+}
+
+Vec3 triple(const std::string& text, const char* option, double least) {
+  const auto parts = split(text, ',');
+  Vec3 v;
+  for (int i = 0; i < 3; ++i) {
+    const auto x = parts.size() == 3 ? parse_double(parts[size_t(i)]) : std::nullopt;
+    if (!x || !(*x >= least)) fail_usage(fmt::format("'{}' is not three positive numbers", text), option, "like 256,256,128");
+    v[i] = *x;
+  }
+  return v;
+}
+
+void finish_raw(const RawText& raw, Options& o) {
+  if (!raw.dims.empty()) {
+    const Vec3 d = triple(raw.dims, "--dims", 1);
+    for (int i = 0; i < 3; ++i) {
+      if (d[i] != std::floor(d[i]) || d[i] > 1e9) fail_usage(fmt::format("'{}' is not three whole numbers", raw.dims), "--dims", "like 256,256,128");
+      o.read.raw_dims[size_t(i)] = size_t(d[i]);
+    }
+    if (raw.type.empty()) fail_usage("a raw brick needs its element type too", "--type", "one of u8 i8 u16 i16 u32 i32 u64 i64 f32 f64");
+  } else if (!raw.type.empty()) {
+    fail_usage("--type describes a raw brick, whose size is missing", "--dims", "like --dims 256,256,128");
+  }
+  if (!raw.spacing.empty()) o.read.raw_spacing = triple(raw.spacing, "--spacing", 1e-300);
+  o.read.raw_type = raw.type;
+  o.read.raw_big_endian = raw.endian == "big";
+  o.read.raw_header = raw.header;
+  o.read.raw_components = raw.components;
+  if (!raw.memory.empty()) {
+    const auto bytes = parse_bytes(raw.memory);
+    if (!bytes || *bytes == 0) fail_usage(fmt::format("'{}' is not an amount of memory", raw.memory), "--memory", "like 512M or 2G");
+    o.memory = size_t(*bytes);
+  }
+}
+
+// CLI11 says "The following argument was not expected: --sise"; say what was meant.
+[[noreturn]] void fail_unknown(const CLI::App& command, const CLI::ParseError& e) {
+  const std::string text = e.what();
+  const size_t at = text.find(": ");
+  if (e.get_name() == "ExtrasError" && at != std::string::npos) {
+    const std::string word(trim(std::string_view(text).substr(at + 2)));
+    std::vector<std::string> names;
+    if (word.starts_with("-")) {
+      for (const CLI::Option* option : command.get_options())
+        for (const std::string& n : option->get_lnames()) names.push_back("--" + n);
+    }
+    const std::string near = nearest_name(word, names);
+    fail_usage(fmt::format("unknown argument '{}'", word), "sightglass " + command.get_name(),
+               near.empty() ? fmt::format("see: sightglass {} --help", command.get_name()) : fmt::format("did you mean '{}'?", near));
+  }
+  fail_usage(text, "sightglass " + command.get_name(), fmt::format("see: sightglass {} --help", command.get_name()));
+}
+
+const char* const overview =
+    "Sightglass: from the numbers of simulations and scanners to pictures that can be trusted.\n\n"
+    "  sightglass render IN... [-f 'OP key=value ...']... [--show 'surface|volume|lines|points|outline key=value ...']...\n"
+    "             [--camera ...] [--size 1920x1080] [-o OUT.png]      a picture; without options it looks at the data and chooses\n"
+    "  sightglass info IN [--json] [--quick]                         what is in a file\n"
+    "  sightglass convert IN [-f ...]... -o OUT.vtu                  filter and write data\n"
+    "  sightglass run PIPELINE.yaml                                  run a pipeline file\n"
+    "  sightglass open PICTURE.png                                   make a picture again from the recipe inside it\n"
+    "  sightglass ops [NAME] [--json]                                operations and their parameters\n"
+    "  sightglass colormap [NAME]                                    colour maps and their lightness analysis\n"
+    "  sightglass demo                                               some pictures of what it can do, into out/\n\n"
+    "Each command has --help. Exit codes: 0 done, 2 usage, 3 data, 4 internal.\n";
+
+}  // namespace
+
+Options parse_options(int argc, char** argv) {
+  Options o;
+  static const std::vector<std::string> commands = {"render", "info", "convert", "run", "ops", "open", "demo", "colormap"};
+  const std::string first = argc > 1 ? argv[1] : "--help";
+  if (first == "--help" || first == "-h" || first == "help") {
+    std::fputs(overview, stdout);
+    return o;
+  }
+  if (first == "--version") {
+    std::printf("sightglass %s\n", SG_VERSION);
+    return o;
+  }
+  if (std::find(commands.begin(), commands.end(), first) == commands.end())
+    fail_usage(fmt::format("unknown command '{}'", first), "sightglass", unknown_name_hint(first, commands));
+
+  RawText raw;
+  CLI::App a{"", first};
+  a.set_help_flag("-h,--help", "This text");
+  add_common(a, o, raw);
+  if (first == "render") {
+    a.description("Makes a picture of the data. Without options it looks at the data and chooses.");
+    a.add_option("input", o.inputs, "Files to read");
+    add_reading(a, raw), add_pipeline(a, o), add_picture(a, o);
+  } else if (first == "info") {
+    a.description("Says what is in a file: mesh, sizes, cell types, bounds, fields with their ranges.");
+    a.add_option("input", o.inputs, "Files to read")->required();
+    a.add_flag("--json", o.json, "For programs");
+    a.add_flag("--quick", o.quick, "Without ranges: touches no value");
+    add_reading(a, raw);
+  } else if (first == "convert") {
+    a.description("Reads, filters and writes data; the extension of the output chooses the format.");
+    a.add_option("input", o.inputs, "File to read");
+    a.add_option("-o,--output", o.output, "File to write")->required();
+    a.add_option("--encoding", o.write.encoding, "VTK XML")->check(CLI::IsMember({"ascii", "base64", "appended"}));
+    a.add_option("--compression", o.write.compression, "VTK XML, NRRD")->check(CLI::IsMember({"none", "zlib", "lz4", "lzma", "gzip"}));
+    a.add_flag("!--ascii", o.write.binary, "STL and PLY as text");
+    add_reading(a, raw), add_pipeline(a, o);
+  } else if (first == "run") {
+    a.description("Runs a pipeline file.");
+    a.add_option("input", o.inputs, "Pipeline file (YAML)")->required();
+    a.add_option("-o,--output", o.output, "Write the picture here instead");
+    a.add_option("--size", o.size, "Pixels, like 1920x1080");
+    a.add_flag("--explain", o.explain, "Print the plan and what it will cost, run nothing");
+  } else if (first == "open") {
+    a.description("Makes a picture again from the recipe inside it.");
+    a.add_option("input", o.inputs, "Picture (PNG)")->required();
+    a.add_option("-o,--output", o.output, "Write the picture here; default: NAME-again.png beside it");
+    a.add_option("--size", o.size, "Pixels, like 1920x1080");
+    a.add_flag("--recipe", o.recipe, "Print the recipe and stop");
+  } else if (first == "ops") {
+    a.description("Lists operations, or explains one.");
+    a.add_option("name", o.inputs, "Operation, way to show, 'camera' or 'picture'");
+    a.add_flag("--json", o.json, "For programs: JSON schema of the parameters");
+  } else if (first == "colormap") {
+    a.description("Lists colour maps, or prints the lightness analysis of one.");
+    a.add_option("name", o.inputs, "Colour map; NAME_r is its reverse");
+    a.add_option("-o,--output", o.output, "Write a picture of the map");
+    a.add_flag("--json", o.json, "For programs");
+  } else {
+    a.description("Renders some pictures of what Sightglass can do.");
+    a.add_option("-o,--out", o.output, "Folder; default out/");
+    a.add_option("--sheet", o.sheet, "All pictures on one sheet: file to write");
+  }
+  try {
+    std::vector<std::string> args(argv + 2, argv + argc);
+    std::reverse(args.begin(), args.end());  // CLI11 takes them from the back
+    a.parse(std::move(args));
+  } catch (const CLI::CallForHelp&) {
+    std::fputs(a.help().c_str(), stdout);
+    return o;
+  } catch (const CLI::ParseError& e) {
+    fail_unknown(a, e);
+  }
+  finish_raw(raw, o);
+  o.command = first;
+  return o;
+}
+
+}  // namespace sg

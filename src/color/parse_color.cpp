@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "color/parse_color.h"
+
+#include "base/error.h"
+#include "base/text.h"
+
+namespace sg {
+
+namespace {
+
+struct Named {
+  std::string_view name;
+  uint32_t rgb;
+};
+// A few names of the CSS list: enough to try things out.
+constexpr Named named[] = {
+    {"black", 0x000000}, {"white", 0xffffff},  {"gray", 0x808080},   {"grey", 0x808080},   {"silver", 0xc0c0c0}, {"red", 0xff0000},
+    {"green", 0x008000}, {"blue", 0x0000ff},   {"yellow", 0xffff00}, {"cyan", 0x00ffff},   {"magenta", 0xff00ff}, {"orange", 0xffa500},
+    {"tomato", 0xff6347}, {"gold", 0xffd700},  {"navy", 0x000080},   {"teal", 0x008080},   {"purple", 0x800080}, {"brown", 0xa52a2a},
+    {"pink", 0xffc0cb},  {"ivory", 0xfffff0},  {"beige", 0xf5f5dc},  {"tan", 0xd2b48c},    {"steelblue", 0x4682b4}, {"skyblue", 0x87ceeb},
+};
+
+Vec3f from_hex(uint32_t rgb) { return {float(rgb >> 16 & 255) / 255.f, float(rgb >> 8 & 255) / 255.f, float(rgb & 255) / 255.f}; }
+
+int hex_digit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  return -1;
+}
+
+}  // namespace
+
+Vec3f parse_color(std::string_view text, std::string_view where) {
+  const std::string t = to_lower(trim(text));
+  if (!t.empty() && t[0] == '#' && (t.size() == 7 || t.size() == 4)) {
+    uint32_t rgb = 0;
+    bool good = true;
+    for (size_t i = 1; i < t.size(); ++i) {
+      const int d = hex_digit(t[i]);
+      good = good && d >= 0;
+      rgb = t.size() == 7 ? rgb << 4 | uint32_t(d & 15) : rgb << 8 | uint32_t((d & 15) * 17);
+    }
+    if (good) return from_hex(rgb);
+  }
+  if (const auto parts = split(t, ','); parts.size() == 3) {
+    Vec3f c;
+    bool good = true;
+    for (int i = 0; i < 3; ++i) {
+      const auto v = parse_double(parts[size_t(i)]);
+      good = good && v && *v >= 0 && *v <= 1;
+      c[i] = v ? float(*v) : 0.f;
+    }
+    if (good) return c;
+  }
+  std::vector<std::string> names;
+  for (const Named& n : named) {
+    if (n.name == t) return from_hex(n.rgb);
+    names.emplace_back(n.name);
+  }
+  const std::string near = nearest_name(t, names);
+  fail_usage(fmt::format("'{}' is not a colour", text), std::string(where),
+             (near.empty() ? "" : "did you mean '" + near + "'? ") + "write #rrggbb, three numbers from 0 to 1 like 0.9,0.2,0, or a name like white");
+}
+
+std::string color_text(Vec3f c) {
+  auto byte = [](float v) { return int(std::min(1.f, std::max(0.f, v)) * 255.f + 0.5f); };
+  return fmt::format("#{:02x}{:02x}{:02x}", byte(c.x), byte(c.y), byte(c.z));
+}
+
+}  // namespace sg

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/camera_params.h"
+
+#include <numbers>
+
+#include "base/error.h"
+
+namespace sg {
+
+namespace {
+
+struct NamedView {
+  std::string_view name;
+  Vec3 direction, up;
+};
+// Named as an observer says it: "front" looks along +y, z is up.
+const NamedView views[] = {
+    {"front", {0, -1, 0}, {0, 0, 1}}, {"back", {0, 1, 0}, {0, 0, 1}}, {"left", {-1, 0, 0}, {0, 0, 1}},
+    {"right", {1, 0, 0}, {0, 0, 1}},  {"top", {0, 0, 1}, {0, 1, 0}},  {"bottom", {0, 0, -1}, {0, 1, 0}},
+    {"iso", {1, -1, 0.8}, {0, 0, 1}},
+};
+
+// v turned about a unit axis (Rodrigues).
+Vec3 turned(Vec3 v, Vec3 axis, double degrees) {
+  const double a = degrees * std::numbers::pi / 180, c = std::cos(a), s = std::sin(a);
+  return v * c + cross(axis, v) * s + axis * (dot(axis, v) * (1 - c));
+}
+
+}  // namespace
+
+void describe(Schema& s, CameraParams& p) {
+  s("view", p.view, "A named view, or auto.").choices({"auto", "front", "back", "left", "right", "top", "bottom", "iso"});
+  s("position", p.position, "Where the camera stands; default: far enough to see everything.");
+  s("target", p.target, "What it looks at; default: the centre of the data.");
+  s("direction", p.direction, "From the data towards the camera.");
+  s("up", p.up, "What is up in the picture.");
+  s("azimuth", p.azimuth, "Turn about up.").unit("deg");
+  s("elevation", p.elevation, "Raise the camera.").unit("deg").range(-180, 180);
+  s("roll", p.roll, "Turn about the line of sight.").unit("deg");
+  s("zoom", p.zoom, "Above 1 comes closer.").positive();
+  s("view_angle", p.view_angle, "Vertical angle of view.").unit("deg").range(1, 170);
+  s("projection", p.projection, "perspective, or parallel (no foreshortening).").choices({"auto", "perspective", "parallel"});
+}
+
+std::vector<std::string> camera_words(const std::vector<std::string>& words) {
+  std::vector<std::string> r;
+  for (const std::string& w : words) {
+    if (w.find('=') != std::string::npos) r.push_back(w);
+    else if (w == "parallel" || w == "perspective") r.push_back("projection=" + w);
+    else r.push_back("view=" + w);
+  }
+  return r;
+}
+
+Camera make_camera(const CameraParams& p, const Box3& box, double aspect, Vec3 direction, Vec3 up, bool parallel, double margin) {
+  for (const NamedView& v : views)
+    if (p.view == v.name) direction = v.direction, up = v.up;
+  if (p.direction) direction = *p.direction;
+  if (p.up) up = *p.up;
+  if (p.position && p.target) direction = *p.position - *p.target;
+  else if (p.position) direction = *p.position - box.center();
+  if (!(length(direction) > 0)) fail_usage("the camera has no direction to look along", "camera", "position and target must differ; direction must not be 0,0,0");
+  if (!(length(up) > 0)) fail_usage("up must not be 0,0,0", "camera up");
+  if (length(cross(normalize(direction), normalize(up))) < 1e-9) {
+    if (p.up) fail_usage("up lies along the line of sight", "camera up", "choose another up");
+    up = std::abs(normalize(direction).z) < 0.9 ? Vec3{0, 0, 1} : Vec3{0, 1, 0};
+  }
+  up = normalize(up);
+  if (p.azimuth != 0) direction = turned(direction, up, p.azimuth);
+  if (p.elevation != 0) {
+    const Vec3 side = normalize(cross(up, direction));
+    direction = turned(direction, side, -p.elevation);
+    up = turned(up, side, -p.elevation);
+  }
+  if (p.roll != 0) up = turned(up, normalize(direction), p.roll);
+  if (p.projection != "auto") parallel = p.projection == "parallel";
+
+  Camera c = fit_camera(box, direction, up, aspect, margin, p.view_angle, parallel);
+  if (p.target || p.position) {
+    const Vec3 target = p.target ? *p.target : box.center();
+    const double distance = p.position ? length(*p.position - target) : length(c.position - c.target);
+    c.target = target;
+    c.position = target + normalize(direction) * distance;
+  }
+  if (p.zoom != 1) {
+    if (parallel) c.parallel_height /= p.zoom;
+    else if (p.position) c.view_angle = std::atan(std::tan(c.view_angle * std::numbers::pi / 360) / p.zoom) * 360 / std::numbers::pi;
+    else c.position = c.target + (c.position - c.target) / p.zoom;
+  }
+  fit_planes(c, box);
+  return c;
+}
+
+}  // namespace sg

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which colours suit a field when nobody says.
+#include "base/text.h"
+#include "color/parse_color.h"
+#include "data/lattice.h"
+#include "scene/show.h"
+
+namespace sg {
+
+namespace {
+
+constexpr size_t most_labels = 64;
+
+// Distinct values among evenly spread samples, or more than `most_labels` of them.
+std::vector<double> distinct_values(const Field& field, size_t limit) {
+  const size_t n = field.array.count(), step = std::max<size_t>(1, n / 400000);
+  std::vector<double> found;
+  dispatch(field.array, [&](auto v) {
+    double last = NAN;
+    for (size_t i = 0; i < n && found.size() <= limit; i += step) {
+      const double x = double(v[i]);
+      if (x == last) continue;
+      last = x;
+      const auto at = std::lower_bound(found.begin(), found.end(), x);
+      if (at == found.end() || *at != x) found.insert(at, x);
+    }
+  });
+  return found;
+}
+
+// Of neighbours along x of which one at least is not background, the share that is equal.
+double share_of_equal_neighbours(const Field& field, size_t nx, double background) {
+  return dispatch(field.array, [&](auto v) {
+    const size_t n = v.count, rows = n / std::max<size_t>(nx, 1), step = std::max<size_t>(1, rows / 2000);
+    size_t equal = 0, all = 0;
+    for (size_t r = 0; r < rows; r += step)
+      for (size_t i = 1; i < nx; ++i) {
+        const double a = double(v[r * nx + i - 1]), b = double(v[r * nx + i]);
+        if (a == background && b == background) continue;
+        ++all;
+        equal += a == b;
+      }
+    return all ? double(equal) / double(all) : 0.0;
+  });
+}
+
+double nice_symmetric(const Range& r) { return std::max(std::abs(r.lo), std::abs(r.hi)); }
+
+}  // namespace
+
+bool looks_like_labels(const Dataset& data, const Field& field) {
+  if (is_float(field.array.type()) || field.components() != 1 || field.array.count() < 2) return false;
+  if (field.role == Role::global_ids || field.role == Role::colors) return false;
+  const Range r = data.range(field);
+  if (r.empty() || r.lo < 0 || r.hi - r.lo > 10000) return false;
+  const auto values = distinct_values(field, most_labels);
+  if (values.size() > most_labels || values.size() < 2) return false;
+  if (!is_lattice(data.mesh())) return values.size() * 2 <= field.array.count() + 2;
+  if (values.size() == 2) return true;
+  const auto d = lattice_dims(data.mesh());
+  const size_t nx = field.association == Association::point ? d[0] : std::max<size_t>(d[0], 2) - 1;
+  return share_of_equal_neighbours(field, nx, values[0]) > 0.7;
+}
+
+ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringParams& p, Context& context) {
+  ColorScale s;
+  s.title = field.name;
+  if (field.components() > 1) s.title += p.component < 0 ? " magnitude" : fmt::format(" [{}]", p.component);
+  s.unit = field.unit;
+  Range r = data.range(field, field.components() > 1 ? p.component : 0);
+  if (r.empty()) {
+    context.warn(fmt::format("field '{}' has no finite value; it is drawn in the colour of NaN", field.name));
+    r = {0, 1};
+  }
+  const bool automatic = p.map == "auto";
+  const bool labels = automatic ? p.range.empty() && looks_like_labels(data, field) : find_colormap(p.map).categorical();
+  if (!p.range.empty() && (p.range.size() != 2 || !(p.range[0] < p.range[1])))
+    fail_usage("range needs two numbers, the lower one first", "range", "like range=0,100");
+
+  s.kind = p.scale == "log" ? ScaleKind::log : p.scale == "symlog" ? ScaleKind::symlog : ScaleKind::linear;
+  if (s.kind == ScaleKind::log && p.range.empty() && r.lo <= 0) {
+    // Zeros and negative values have no place on a log scale: start at the smallest positive value.
+    Range positive;
+    const Field& f = field;
+    dispatch(f.array, [&](auto v) {
+      for (size_t i = 0; i < v.count; ++i) {
+        const double x = double(v(i, std::max(p.component, 0)));
+        if (x > 0 && std::isfinite(x)) positive.add({x, x});
+      }
+    });
+    if (positive.empty()) fail_usage(fmt::format("field '{}' has no positive value for a log scale", field.name), "scale", "use scale=linear or scale=symlog");
+    r = positive;
+  }
+  const bool is_signed = r.lo < 0 && r.hi > 0 && std::min(-r.lo, r.hi) > 0.05 * std::max(-r.lo, r.hi);
+  if (automatic) s.map = find_colormap(labels ? "labels" : is_signed && s.kind != ScaleKind::log ? "coolwarm" : "sight");
+  else s.map = find_colormap(p.map);
+  if (s.map.kind == MapKind::unsafe)
+    context.warn(fmt::format("colour map '{}' is not perceptually uniform: its lightness rises and falls, so it shows edges that are not in the data; "
+                             "'sight' is the safe choice (see: sightglass colormap {})",
+                             s.map.name, s.map.name));
+
+  if (!p.range.empty()) {
+    s.lo = p.range[0], s.hi = p.range[1];
+  } else if (s.map.kind == MapKind::diverging && is_signed) {
+    s.hi = nice_symmetric(r), s.lo = -s.hi;
+  } else {
+    s.lo = r.lo, s.hi = r.hi;
+  }
+  if (s.lo == s.hi) {  // a constant field: any range around it will do
+    const double d = s.lo == 0 ? 1 : std::abs(s.lo) * 0.01;
+    s.lo -= d, s.hi += d;
+    if (s.kind == ScaleKind::log) s.lo = s.hi / 1.1;
+  }
+  if (s.kind == ScaleKind::symlog) s.linear_threshold = p.linear_threshold > 0 ? p.linear_threshold : nice_symmetric({s.lo, s.hi}) * 1e-3;
+  if (labels) {
+    s.labels = distinct_values(field, 4096);
+    if (!s.labels.empty()) s.lo = s.labels.front(), s.hi = std::max(s.labels.back(), s.lo + 1);
+  }
+  if (!p.below.empty()) s.below = parse_color(p.below, "below");
+  if (!p.above.empty()) s.above = parse_color(p.above, "above");
+  if (!p.nan.empty()) s.nan = parse_color(p.nan, "nan");
+  s.clamp = p.clamp;
+  return s;
+}
+
+}  // namespace sg

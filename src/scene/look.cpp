@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/look.h"
+
+#include "base/text.h"
+#include "data/lattice.h"
+#include "scene/volume_look.h"
+
+namespace sg {
+
+namespace {
+
+// What the picture will be coloured by: the same choice as wanted_field() in show.cpp makes for a surface.
+std::string field_reason(const Dataset& d) {
+  const Field* f = d.fields().with_role(Role::scalars);
+  if (!f) f = d.fields().with_role(Role::colors);
+  if (!f) f = d.fields().active(1);
+  if (!f) f = d.fields().active(3);
+  if (!f) return "one colour (there is no field)";
+  if (f->role == Role::colors) return fmt::format("its own colours '{}'", f->name);
+  return fmt::format("coloured by '{}'{}", f->name, f->components() > 1 ? " (magnitude)" : "");
+}
+
+bool has_polygons(const Dataset& d) {
+  if (auto* s = d.as<SurfaceMesh>()) return s->polygons.size() + s->strips.size() > 0;
+  return true;
+}
+
+// A 3D scalar image or box grid: seen through, or for labels its voxel faces.
+void look_at_grid(const Dataset& d, const Field& f, Look& look, Context&) {
+  double offset = 0;
+  if (d.as<UniformGrid>() && f.association == Association::point && looks_like_labels(d, f)) {
+    look.filter = {"label_surface", "field=" + f.name};
+    look.shows.push_back({"surface", {"field=" + f.name}, false});
+    look.shows.push_back({"outline", {}, true});
+    look.reason = fmt::format("'{}' holds few integer values in pieces: labels, shown as surfaces with one colour each", f.name);
+    return;
+  }
+  look.shows.push_back({"volume", {"field=" + f.name}, true});
+  look.shows.push_back({"outline", {}, true});
+  if (looks_like_ct(d, f, &offset)) {
+    look.reason = fmt::format("'{}' looks like CT (16-bit, air peak): volume with skin and bone colours", f.name);
+    return;
+  }
+  ColoringParams params;
+  Context quiet;
+  VolumeItem item;
+  item.color = choose_scale(d, f, params, quiet);
+  const std::string why = choose_volume_look(d, f, params, item);
+  look.reason = fmt::format("scalar field '{}' on a 3D grid: volume; {}", f.name, why);
+}
+
+}  // namespace
+
+void choose_view(const Box3& b, const std::string& extension, Look& look) {
+  if (b.empty()) return;
+  const Vec3 s = b.size();
+  const double most = std::max({s.x, s.y, s.z});
+  const bool graphics = extension == "obj" || extension == "ply";
+  const double flat = 1e-6 * most;
+  if (s.z <= flat) {
+    look.direction = {0, 0, 1}, look.up = {0, 1, 0}, look.parallel = true;
+  } else if (s.y <= flat) {
+    look.direction = {0, -1, 0}, look.up = {0, 0, 1}, look.parallel = true;
+  } else if (s.x <= flat) {
+    look.direction = {1, 0, 0}, look.up = {0, 0, 1}, look.parallel = true;
+  } else if (graphics) {
+    look.direction = {0.55, 0.42, 1.0}, look.up = {0, 1, 0};
+  }
+}
+
+Look choose_look(const Dataset& d, const std::string& extension, Context& context) {
+  Look look;
+  choose_view(d.bounds(), extension, look);
+  if (d.point_count() == 0) {
+    look.reason = "there are no points: an empty picture";
+    return look;
+  }
+  const auto dims = lattice_dims(d.mesh());
+  const bool grid3 = is_lattice(d.mesh()) && dims[0] > 1 && dims[1] > 1 && dims[2] > 1;
+  const bool box_grid = d.as<UniformGrid>() || d.as<RectilinearGrid>();
+  const Field* scalar = d.fields().with_role(Role::scalars);
+  if (!scalar || scalar->components() != 1) scalar = d.fields().active(1);
+  if (!scalar) scalar = d.fields().active(0);
+  const bool colors = scalar && scalar->role == Role::colors && scalar->components() >= 3;
+
+  if (grid3 && box_grid && scalar && !colors) {
+    look_at_grid(d, *scalar, look, context);
+    return look;
+  }
+  if (d.as<PointCloud>() || (d.cell_count() == 0 && !is_lattice(d.mesh()))) {
+    const double size = d.point_count() > 200000 ? 1.5 : d.point_count() > 5000 ? 3 : 7;
+    look.shows.push_back({"points", {"size=" + short_number(size)}, true});
+    look.reason = fmt::format("points only: dots, {}", field_reason(d));
+    return look;
+  }
+  if (!has_polygons(d)) {
+    look.shows.push_back({"surface", {}, true});
+    look.reason = fmt::format("lines and vertices, {}", field_reason(d));
+    return look;
+  }
+  std::vector<std::string> words;
+  const bool simulation = !d.as<SurfaceMesh>() && !is_lattice(d.mesh());
+  const bool show_edges = simulation && d.cell_count() <= 12000;
+  if (show_edges) words.push_back("edges=true");
+  if (look.parallel && box_grid) words.push_back("lit=false");  // an image: its colours as they are
+  look.shows.push_back({"surface", words, true});
+  if (is_lattice(d.mesh()) && !box_grid) look.shows.push_back({"outline", {}, true});
+  look.reason = fmt::format("{} mesh: its outer surface{}, {}", d.kind(), show_edges ? " with cell edges" : "", field_reason(d));
+  return look;
+}
+
+}  // namespace sg

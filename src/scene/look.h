@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// Good without options: looks at a dataset and chooses how to show it and from where.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "scene/show.h"
+
+namespace sg {
+
+struct Look {
+  std::vector<std::string> filter;  ///< operation and its key=value words to run first; empty = none
+  struct Show {
+    std::string kind;
+    std::vector<std::string> words;
+    bool of_input = false;  ///< show the input, not the filter's result
+  };
+  std::vector<Show> shows;
+  Vec3 direction{0.75, -1.0, 0.55};  ///< from the data towards the viewer
+  Vec3 up{0, 0, 1};
+  bool parallel = false;
+  std::string reason;  ///< one line for the user: what was chosen and why
+};
+
+/// `extension`: of the file the data came from ("obj"); surfaces made for graphics have y up.
+Look choose_look(const Dataset& data, const std::string& extension, Context& context);
+
+/// Direction and up of a picture that looks along the thin axis of flat data, else the usual view.
+void choose_view(const Box3& bounds, const std::string& extension, Look& look);
+
+}  // namespace sg

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/show.h"
+
+#include "color/parse_color.h"
+#include "data/field_ops.h"
+#include "data/lattice.h"
+#include "filter/mesh/surface.h"
+#include "scene/volume_look.h"
+
+namespace sg {
+
+void describe(Schema& s, ColoringParams& p) {
+  s("field", p.field, "Field to colour by; default: the active scalar; 'none' for one colour.");
+  s("component", p.component, "Component of a field with several; -1 is the magnitude.").range(-1, 1e6);
+  s("map", p.map, "Colour map (see: sightglass colormap); 'auto' looks at the data.");
+  s("range", p.range, "Values at the two ends of the map; default: the range of the data.").unit("@field");
+  s("scale", p.scale, "How values spread over the map.").choices({"linear", "log", "symlog"});
+  s("linear_threshold", p.linear_threshold, "symlog: linear between minus and plus this; 0 chooses a thousandth of the range.").at_least(0);
+  s("below", p.below, "Colour of values below the range; default: the first colour.");
+  s("above", p.above, "Colour of values above the range; default: the last colour.");
+  s("nan", p.nan, "Colour where there is no value.");
+  s("clamp", p.clamp, "Values out of range take the end colours; false leaves them out of the picture.");
+  s("color", p.color, "One colour instead of a field: #rrggbb, r,g,b or a name.");
+}
+
+void describe(Schema& s, SurfaceShow& p) {
+  describe(s, p.coloring);
+  s("opacity", p.opacity, "1 hides what is behind, 0 is invisible.").range(0, 1);
+  s("edges", p.edges, "Draw the edges of the polygons.");
+  s("flat", p.flat, "One normal per polygon instead of smooth shading.");
+  s("lit", p.lit, "Light the surface; false shows the plain colours.");
+  s("feature_angle", p.feature_angle, "Edges sharper than this stay sharp when normals are computed.").unit("deg").range(0, 180);
+}
+
+void describe(Schema& s, VolumeShow& p) {
+  describe(s, p.coloring);
+  s("opacity", p.opacity, "Opacity over the colour range as position:opacity points (0:0,0.3:0.1,1:0.8), or 'auto'.");
+  s("unit", p.unit, "Length to which opacity refers; 0 is a hundredth of the diagonal.").at_least(0);
+  s("step", p.step, "Distance of samples along the rays; 0 is half the smallest cell edge.").at_least(0);
+  s("mode", p.mode, "What a ray collects.").choices({"composite", "maximum"});
+  s("shaded", p.shaded, "Light the volume by the gradient of the field.");
+}
+
+void describe(Schema& s, LinesShow& p) {
+  describe(s, p.coloring);
+  s("opacity", p.opacity, "1 hides what is behind, 0 is invisible.").range(0, 1);
+  s("width", p.width, "Width of the lines.").unit("pixels").positive();
+}
+
+void describe(Schema& s, PointsShow& p) {
+  describe(s, p.coloring);
+  s("opacity", p.opacity, "1 hides what is behind, 0 is invisible.").range(0, 1);
+  s("size", p.size, "Diameter of the dots.").unit("pixels").positive();
+}
+
+void describe(Schema& s, OutlineShow& p) {
+  s("color", p.color, "Colour of the box.");
+  s("width", p.width, "Width of the lines.").unit("pixels").positive();
+}
+
+namespace {
+
+// The field to colour by, or null for one colour. `names_input`: what the mistake is about.
+const Field* wanted_field(const Dataset& d, const ColoringParams& p) {
+  if (!p.color.empty() || p.field.name == "none") return nullptr;
+  if (!p.field.empty()) {
+    const Field& f = d.fields().require(p.field.name);
+    if (f.association == Association::whole) fail_usage(fmt::format("field '{}' belongs to the whole dataset, not to points or cells", f.name), "field");
+    return &f;
+  }
+  if (const Field* f = d.fields().with_role(Role::scalars); f && f->components() == 1) return f;
+  if (const Field* f = d.fields().with_role(Role::colors)) return f;
+  if (const Field* f = d.fields().active(1)) return f;
+  if (const Field* f = d.fields().active(3); f && f->role != Role::normals) return f;
+  return nullptr;
+}
+
+bool is_direct(const Field& f) {
+  const int n = f.components();
+  return f.role == Role::colors && (n == 3 || n == 4) && (f.array.type() == ElementType::u8 || is_float(f.array.type()));
+}
+
+std::optional<FieldColor> field_color(const Dataset& d, const ColoringParams& p, Context& context) {
+  const Field* f = wanted_field(d, p);
+  if (!f) return {};
+  FieldColor c;
+  c.field = f->name;
+  c.association = f->association;
+  c.component = p.component;
+  c.direct = is_direct(*f) && p.map == "auto" && p.component < 0;
+  if (!c.direct) c.scale = choose_scale(d, *f, p, context);
+  return c;
+}
+
+std::optional<ColorScale> legend_of(const std::optional<FieldColor>& c) {
+  if (!c || c->direct) return {};
+  return c->scale;
+}
+
+std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const SurfaceShow& p, Context& context) {
+  SurfaceItem item;
+  // Ranges come from the whole input, so that a surface and its volume share colours.
+  item.color_by = field_color(*input, p.coloring, context);
+  item.data = surface_of(input, context);
+  if (!p.coloring.color.empty()) item.color = parse_color(p.coloring.color, "color");
+  item.opacity = p.opacity;
+  item.edges = p.edges;
+  item.flat = p.flat;
+  item.material.lit = p.lit;
+  item.feature_angle = p.feature_angle;
+  const SurfaceMesh& mesh = *item.data->as<SurfaceMesh>();
+  const auto legend = legend_of(item.color_by);
+  if (mesh.lines.size() > 0) {
+    LinesItem lines;
+    lines.data = item.data;
+    lines.color_by = item.color_by;
+    if (!p.coloring.color.empty()) lines.color = item.color;
+    lines.opacity = p.opacity;
+    scene.items.emplace_back(std::move(lines));
+  }
+  if (mesh.vertices.size() > 0) {
+    PointsItem points;
+    points.data = item.data;
+    points.color_by = item.color_by;
+    if (!p.coloring.color.empty()) points.color = item.color;
+    points.opacity = p.opacity;
+    points.size = 6;
+    scene.items.emplace_back(std::move(points));
+  }
+  if (mesh.polygons.size() + mesh.strips.size() > 0) scene.items.emplace_back(std::move(item));
+  return legend;
+}
+
+std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const VolumeShow& p, Context& context) {
+  const Field* f = wanted_field(*input, p.coloring);
+  if (!f) fail_usage("there is no field to see through", "volume", "name one with field=");
+  VolumeItem item;
+  item.data = input;
+  item.field = f->name;
+  item.association = f->association;
+  item.component = p.coloring.component;
+  item.mode = p.mode == "maximum" ? VolumeItem::Mode::maximum : VolumeItem::Mode::composite;
+  item.shaded = p.shaded;
+  item.unit_distance = p.unit;
+  item.step = p.step;
+  item.color = choose_scale(*input, *f, p.coloring, context);
+  if (p.opacity == "auto") choose_volume_look(*input, *f, p.coloring, item);
+  else item.opacity = parse_opacity(p.opacity, item.color.lo, item.color.hi);
+  auto legend = item.color;
+  scene.items.emplace_back(std::move(item));
+  return legend;
+}
+
+std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const LinesShow& p, Context& context) {
+  LinesItem item;
+  item.data = surface_of(input, context);
+  item.color_by = field_color(*input, p.coloring, context);
+  if (!p.coloring.color.empty()) item.color = parse_color(p.coloring.color, "color");
+  item.opacity = p.opacity;
+  item.width = p.width;
+  auto legend = legend_of(item.color_by);
+  scene.items.emplace_back(std::move(item));
+  return legend;
+}
+
+std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const PointsShow& p, Context& context) {
+  PointsItem item;
+  item.data = input;
+  item.color_by = field_color(*input, p.coloring, context);
+  if (item.color_by && item.color_by->association == Association::cell) {
+    context.info("points take their colours from point fields; cell field '" + item.color_by->field + "' is not shown on them");
+    item.color_by.reset();
+  }
+  if (!p.coloring.color.empty()) item.color = parse_color(p.coloring.color, "color");
+  item.opacity = p.opacity;
+  item.size = p.size;
+  auto legend = legend_of(item.color_by);
+  scene.items.emplace_back(std::move(item));
+  return legend;
+}
+
+// The twelve edges of a uniform grid's own box (turned with it), or of the bounds.
+std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const OutlineShow& p, Context&) {
+  const Box3 box = input->bounds();
+  if (box.empty()) return {};
+  Vec3 corner[8];
+  const auto* grid = input->as<UniformGrid>();
+  for (int c = 0; c < 8; ++c) {
+    if (grid) {
+      const Vec3 index{c & 1 ? double(grid->dims[0] - 1) : 0.0, c & 2 ? double(grid->dims[1] - 1) : 0.0, c & 4 ? double(grid->dims[2] - 1) : 0.0};
+      corner[c] = grid->origin + grid->direction * (grid->spacing * index);
+    } else {
+      corner[c] = {c & 1 ? box.hi.x : box.lo.x, c & 2 ? box.hi.y : box.lo.y, c & 4 ? box.hi.z : box.lo.z};
+    }
+  }
+  SurfaceMesh mesh;
+  std::vector<float> xyz;
+  mesh.points.origin = box.center();
+  for (const Vec3& v : corner)
+    for (int a = 0; a < 3; ++a) xyz.push_back(float(v[a] - mesh.points.origin[a]));
+  mesh.points.xyz = Array::from_vector(std::move(xyz), 3);
+  std::vector<int32_t> ends;
+  for (int c = 0; c < 8; ++c)
+    for (int bit : {1, 2, 4})
+      if (!(c & bit) && !(corner[c] == corner[c | bit])) ends.insert(ends.end(), {c, c | bit});
+  mesh.lines.fixed = 2;
+  mesh.lines.connectivity = Array::from_vector(std::move(ends));
+  LinesItem item;
+  item.data = make_dataset(std::move(mesh));
+  item.color = parse_color(p.color, "color");
+  item.width = p.width;
+  scene.items.emplace_back(std::move(item));
+  return {};
+}
+
+template <class P>
+constexpr ShowKind kind(std::string_view name, std::string_view sentence) {
+  return {name, sentence,
+          [] {
+            P p;
+            return params_help(schema_of(p));
+          },
+          [] {
+            P p;
+            return params_json(schema_of(p));
+          },
+          [](const std::vector<std::string>& words) {
+            P p;
+            Schema s = schema_of(p);
+            set_params(s, words, "show");
+          },
+          [](Scene& scene, const DatasetPtr& data, const std::vector<std::string>& words, Context& context) {
+            P p;
+            Schema s = schema_of(p);
+            set_params(s, words, "show");
+            return add(scene, data, p, context);
+          }};
+}
+
+}  // namespace
+
+std::span<const ShowKind> show_kinds() {
+  static constexpr ShowKind kinds[] = {
+      kind<SurfaceShow>("surface", "The outer surface, coloured by a field."),
+      kind<VolumeShow>("volume", "A scalar field of a grid, seen through."),
+      kind<LinesShow>("lines", "Lines of constant width."),
+      kind<PointsShow>("points", "Every point as a dot."),
+      kind<OutlineShow>("outline", "The box around the data."),
+  };
+  return kinds;
+}
+
+const ShowKind& find_show(std::string_view name) {
+  std::vector<std::string> names;
+  for (const ShowKind& k : show_kinds()) {
+    if (k.name == name) return k;
+    names.emplace_back(k.name);
+  }
+  fail_usage(fmt::format("unknown way to show '{}'", name), "--show", unknown_name_hint(name, names));
+}
+
+}  // namespace sg

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// The ways to show a dataset: each is a parameter struct with one declaration and a function that adds items to a scene.
+#pragma once
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/context.h"
+#include "base/schema.h"
+#include "scene/scene.h"
+
+namespace sg {
+
+/// How values become colours: shared by every way to show.
+struct ColoringParams {
+  FieldName field;
+  int component = -1;
+  std::string map = "auto";
+  std::vector<double> range;
+  std::string scale = "linear";
+  double linear_threshold = 0;
+  std::string below, above, nan;
+  bool clamp = true;
+  std::string color;
+};
+void describe(Schema& s, ColoringParams& p);
+
+struct SurfaceShow {
+  ColoringParams coloring;
+  double opacity = 1;
+  bool edges = false, flat = false, lit = true;
+  double feature_angle = 40;
+};
+struct VolumeShow {
+  ColoringParams coloring;
+  std::string opacity = "auto";
+  double unit = 0, step = 0;
+  std::string mode = "composite";
+  bool shaded = true;
+};
+struct LinesShow {
+  ColoringParams coloring;
+  double opacity = 1, width = 1.5;
+};
+struct PointsShow {
+  ColoringParams coloring;
+  double opacity = 1, size = 4;
+};
+struct OutlineShow {
+  std::string color = "#707078";
+  double width = 1.2;
+};
+void describe(Schema& s, SurfaceShow& p);
+void describe(Schema& s, VolumeShow& p);
+void describe(Schema& s, LinesShow& p);
+void describe(Schema& s, PointsShow& p);
+void describe(Schema& s, OutlineShow& p);
+
+/// One way to show, as the command line, pipeline files and help see it.
+struct ShowKind {
+  std::string_view name, sentence;
+  std::string (*help)();
+  std::string (*json)();
+  /// Throws Error(usage) for bad words; all mistakes at once.
+  void (*check)(const std::vector<std::string>& words);
+  /// Adds items for the dataset; returns the colour scale for the legend when a field is mapped to colours.
+  std::optional<ColorScale> (*add)(Scene&, const DatasetPtr&, const std::vector<std::string>& words, Context&);
+};
+std::span<const ShowKind> show_kinds();
+/// Throws Error(usage) with "did you mean".
+const ShowKind& find_show(std::string_view name);
+
+/// The colour scale for a field: map and range as asked, or chosen from the data (categorical for labels, diverging and
+/// symmetric when signed about zero, else sequential).
+ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringParams& params, Context& context);
+
+/// Integer values that name things: few distinct ones, in pieces. For fields of lattices, points and cells.
+bool looks_like_labels(const Dataset& data, const Field& field);
+
+}  // namespace sg

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/program.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "base/file.h"
+#include "support/test.h"
+
+namespace sg::test {
+
+Ran sightglass(const std::vector<std::string>& args, const std::string& folder, long largest_file) {
+  const std::string where = folder.empty() ? temp_folder() : folder;
+  const std::string out = temp_folder() + "stdout.txt", err = temp_folder() + "stderr.txt";
+  std::vector<char*> argv;
+  const std::string program = std::string(SG_BINARY_DIR) + "/sightglass";
+  argv.push_back(const_cast<char*>(program.c_str()));
+  for (const std::string& a : args) argv.push_back(const_cast<char*>(a.c_str()));
+  argv.push_back(nullptr);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const int o = ::open(out.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600), e = ::open(err.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600);
+    if (::chdir(where.c_str()) != 0 || ::dup2(o, 1) < 0 || ::dup2(e, 2) < 0) ::_exit(126);
+    if (largest_file > 0) {
+      const struct rlimit limit {rlim_t(largest_file), rlim_t(largest_file)};
+      ::setrlimit(RLIMIT_FSIZE, &limit);
+      ::signal(SIGXFSZ, SIG_IGN);
+    }
+    ::execv(argv[0], argv.data());
+    ::_exit(127);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  Ran r;
+  r.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  r.out = std::string(MappedFile(out).text());
+  r.err = std::string(MappedFile(err).text());
+  return r;
+}
+
+std::vector<std::string> files_in(const std::string& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+}  // namespace sg::test

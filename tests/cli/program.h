@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs the sightglass program as a user would.
+#pragma once
+#include <string>
+#include <vector>
+
+namespace sg::test {
+
+struct Ran {
+  int status = -1;  ///< exit code; 128 + signal when it was killed
+  std::string out, err;
+};
+/// Runs `sightglass ARGS...` in `folder` (default: the temporary folder).
+/// `largest_file` > 0 limits the size of files it can write, as a full disk does.
+Ran sightglass(const std::vector<std::string>& args, const std::string& folder = {}, long largest_file = 0);
+
+/// Names of the files in a folder, sorted.
+std::vector<std::string> files_in(const std::string& folder);
+
+}  // namespace sg::test
