@@ -20,6 +20,6 @@ int run_colormap(const Options& o, Context& context);
 int run_demo(const Options& o, Context& context);
 
 /// The pipeline that the options of render and convert describe.
-Pipeline pipeline_of(const Options& o);
+PipelineFile pipeline_of(const Options& o);
 
 }  // namespace sg

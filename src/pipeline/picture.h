@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // From a pipeline description to an annotated picture with its recipe inside.
 #pragma once
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "base/context.h"
 #include "base/schema.h"
 #include "image/image.h"
-#include "pipeline/graph.h"
 #include "pipeline/pipeline_file.h"
 
 namespace sg {
@@ -26,13 +26,30 @@ void describe(Schema& s, PictureParams& p);
 /// "1280x720" to numbers; throws Error(usage).
 void parse_size(const std::string& text, int& width, int& height);
 
+/// The words a pipeline file may use under `show` and `picture`.
+PipelineVocabulary picture_vocabulary();
+
+struct PictureOptions {
+  std::shared_ptr<Cache> cache;       ///< shared between pictures; null = one of its own
+  std::vector<std::string> coloring;  ///< words added to every way to show that colours by a field ("field=T", "map=ember")
+};
+
 struct Picture {
-  Image image;                     ///< recipe in image.text under "sightglass"
+  Image image;
   std::vector<std::string> notes;  ///< what was chosen and why, one line each
 };
 
 /// Evaluates the steps, shows what is asked for (or what the data suggests when nothing is), renders and annotates.
-/// `pipeline` is completed with what was chosen, so that emitting it gives the recipe.
-Picture make_picture(Pipeline& pipeline, Graph& graph, Context& context);
+/// `file` is completed with what was chosen, so that recipe_of() gives the recipe. All mistakes that can be seen beforehand are
+/// reported together, before anything runs.
+Picture make_picture(PipelineFile& file, const PictureOptions& options, Context& context);
+
+/// Puts the recipe, the version and the hashes of the inputs into the image's text. Paths of inputs are written relative to
+/// the folder of `picture_path`, where the picture is going to be.
+void attach_recipe(Image& image, const PipelineFile& file, const std::string& picture_path);
+
+/// The recipe inside a picture; its relative paths begin at the picture. Throws Error(data) when there is none.
+/// `changed` receives the inputs whose content is no longer what it was.
+PipelineFile recipe_in(const Image& image, const std::string& picture_path, std::vector<std::string>& changed);
 
 }  // namespace sg

@@ -10,8 +10,8 @@ namespace sg {
 namespace {
 
 // What the picture will be coloured by: the same choice as wanted_field() in show.cpp makes for a surface.
-std::string field_reason(const Dataset& d) {
-  const Field* f = d.fields().with_role(Role::scalars);
+std::string field_reason(const Dataset& d, const std::string& field) {
+  const Field* f = field.empty() ? d.fields().with_role(Role::scalars) : d.fields().find(field);
   if (!f) f = d.fields().with_role(Role::colors);
   if (!f) f = d.fields().active(1);
   if (!f) f = d.fields().active(3);
@@ -26,7 +26,7 @@ bool has_polygons(const Dataset& d) {
 }
 
 // A 3D scalar image or box grid: seen through, or for labels its voxel faces.
-void look_at_grid(const Dataset& d, const Field& f, Look& look, Context&) {
+void look_at_grid(const Dataset& d, const Field& f, Look& look) {
   double offset = 0;
   if (d.as<UniformGrid>() && f.association == Association::point && looks_like_labels(d, f)) {
     look.filter = {"label_surface", "field=" + f.name};
@@ -68,7 +68,7 @@ void choose_view(const Box3& b, const std::string& extension, Look& look) {
   }
 }
 
-Look choose_look(const Dataset& d, const std::string& extension, Context& context) {
+Look choose_look(const Dataset& d, const std::string& field, const std::string& extension) {
   Look look;
   choose_view(d.bounds(), extension, look);
   if (d.point_count() == 0) {
@@ -78,24 +78,24 @@ Look choose_look(const Dataset& d, const std::string& extension, Context& contex
   const auto dims = lattice_dims(d.mesh());
   const bool grid3 = is_lattice(d.mesh()) && dims[0] > 1 && dims[1] > 1 && dims[2] > 1;
   const bool box_grid = d.as<UniformGrid>() || d.as<RectilinearGrid>();
-  const Field* scalar = d.fields().with_role(Role::scalars);
-  if (!scalar || scalar->components() != 1) scalar = d.fields().active(1);
+  const Field* scalar = field.empty() ? d.fields().with_role(Role::scalars) : d.fields().find(field);
+  if (!scalar || (field.empty() && scalar->components() != 1)) scalar = d.fields().active(1);
   if (!scalar) scalar = d.fields().active(0);
   const bool colors = scalar && scalar->role == Role::colors && scalar->components() >= 3;
 
   if (grid3 && box_grid && scalar && !colors) {
-    look_at_grid(d, *scalar, look, context);
+    look_at_grid(d, *scalar, look);
     return look;
   }
   if (d.as<PointCloud>() || (d.cell_count() == 0 && !is_lattice(d.mesh()))) {
     const double size = d.point_count() > 200000 ? 1.5 : d.point_count() > 5000 ? 3 : 7;
     look.shows.push_back({"points", {"size=" + short_number(size)}, true});
-    look.reason = fmt::format("points only: dots, {}", field_reason(d));
+    look.reason = fmt::format("points only: dots, {}", field_reason(d, field));
     return look;
   }
   if (!has_polygons(d)) {
     look.shows.push_back({"surface", {}, true});
-    look.reason = fmt::format("lines and vertices, {}", field_reason(d));
+    look.reason = fmt::format("lines and vertices, {}", field_reason(d, field));
     return look;
   }
   std::vector<std::string> words;
@@ -105,7 +105,7 @@ Look choose_look(const Dataset& d, const std::string& extension, Context& contex
   if (look.parallel && box_grid) words.push_back("lit=false");  // an image: its colours as they are
   look.shows.push_back({"surface", words, true});
   if (is_lattice(d.mesh()) && !box_grid) look.shows.push_back({"outline", {}, true});
-  look.reason = fmt::format("{} mesh: its outer surface{}, {}", d.kind(), show_edges ? " with cell edges" : "", field_reason(d));
+  look.reason = fmt::format("{} mesh: its outer surface{}, {}", d.kind(), show_edges ? " with cell edges" : "", field_reason(d, field));
   return look;
 }
 

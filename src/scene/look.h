@@ -22,8 +22,9 @@ struct Look {
   std::string reason;  ///< one line for the user: what was chosen and why
 };
 
-/// `extension`: of the file the data came from ("obj"); surfaces made for graphics have y up.
-Look choose_look(const Dataset& data, const std::string& extension, Context& context);
+/// `field`: what the user wants to see; "" = the data decides. `extension`: of the file the data came from ("obj"); surfaces
+/// made for graphics have y up.
+Look choose_look(const Dataset& data, const std::string& field, const std::string& extension);
 
 /// Direction and up of a picture that looks along the thin axis of flat data, else the usual view.
 void choose_view(const Box3& bounds, const std::string& extension, Look& look);

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+// render, run, open and convert: each makes a PipelineFile and hands it on.
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/text.h"
+#include "cli/cli.h"
+#include "image/codec.h"
+#include "pipeline/picture.h"
+#include "pipeline/read_params.h"
+
+namespace sg {
+
+namespace {
+
+// "contour field=T values=1,2" -> operation and words.
+void split_words(const std::string& text, const char* option, std::string& first, std::vector<std::string>& rest) {
+  std::vector<std::string> all = quoted_words(text);
+  if (all.empty()) fail_usage("is empty", option, "write a name and key=value words");
+  first = all[0];
+  rest.assign(all.begin() + 1, all.end());
+}
+
+std::vector<std::string> read_words(const std::string& path, const ReadOptions& o) {
+  ReadParams defaults, p;
+  p.path = path;
+  if (o.raw_dims[0] > 0) p.dims = {int64_t(o.raw_dims[0]), int64_t(o.raw_dims[1]), int64_t(o.raw_dims[2])};
+  p.type = o.raw_type;
+  p.big_endian = o.raw_big_endian;
+  p.header = int64_t(o.raw_header);
+  p.components = o.raw_components;
+  p.spacing = o.raw_spacing;
+  Schema have = schema_of(p), plain = schema_of(defaults);
+  std::vector<std::string> words;
+  for (size_t i = 0; i < have.decls().size(); ++i) {
+    const std::string value = param_text(have.decls()[i]);
+    if (value != param_text(plain.decls()[i])) words.push_back(have.decls()[i].name + "=" + value);
+  }
+  return words;
+}
+
+void add_picture_words(const Options& o, PipelineFile& file) {
+  auto add = [&](const char* key, const std::string& value) {
+    if (!value.empty()) file.picture.push_back(fmt::format("{}={}", key, value));
+  };
+  add("size", o.size), add("title", o.title), add("background", o.background);
+  for (const std::string& group : o.picture)
+    for (const std::string& w : quoted_words(group)) file.picture.push_back(w);
+  for (const std::string& w : quoted_words(o.camera)) {
+    const bool named = w.find('=') == std::string::npos;
+    if (named && (w == "parallel" || w == "perspective")) file.picture.push_back("camera.projection=" + w);
+    else file.picture.push_back(named ? "camera.view=" + w : "camera." + w);
+  }
+}
+
+// A picture that cannot be written is found out before any work is done.
+void check_output(const std::string& path) {
+  const std::string ext = extension_of(path);
+  const auto& known = image_extensions();
+  if (std::find(known.begin(), known.end(), ext) == known.end()) {
+    std::string list;
+    for (const std::string& e : known) list += (list.empty() ? "." : " .") + e;
+    fail_usage(fmt::format("'{}' is no picture format", ext), path, "can write: " + list);
+  }
+  AtomicFile probe(path);  // missing folder, no permission, a folder of that name: removed again at once
+}
+
+std::string stem_of(const std::string& path) {
+  const std::string name = file_name_of(path);
+  const size_t dot = name.rfind('.');
+  return dot == std::string::npos || dot == 0 ? name : name.substr(0, dot);
+}
+
+void print_explanation(const PipelineFile& file) {
+  const PipelineGraph built = build_graph(file);
+  std::vector<Target> targets;
+  for (NodeId n : built.show) targets.push_back({n, {}});
+  if (targets.empty()) targets.push_back({built.last, {}});
+  std::fputs(built.graph.explain(targets).c_str(), stdout);
+}
+
+int render_to(PipelineFile& file, const std::string& output, const PictureOptions& options, const Options& o, Context& context) {
+  if (o.explain) {
+    print_explanation(file);
+    return 0;
+  }
+  check_output(output);
+  Picture picture = make_picture(file, options, context);
+  attach_recipe(picture.image, file, output);
+  write_image(output, picture.image);
+  if (!o.quiet) {
+    std::string line = output;
+    for (size_t i = 0; i < picture.notes.size(); ++i) line += (i ? "; " : ": ") + picture.notes[i];
+    std::printf("%s\n", line.c_str());
+  }
+  return 0;
+}
+
+}  // namespace
+
+PipelineFile pipeline_of(const Options& o) {
+  if (o.inputs.empty() == o.source.empty())
+    fail_usage(o.inputs.empty() ? "name a file to read, or a source to compute with --source" : "name files or a --source, not both", "sightglass " + o.command,
+               fmt::format("see: sightglass {} --help", o.command));
+  PipelineFile file;
+  auto chain = [&](std::string name) {
+    for (size_t i = 0; i < o.filters.size(); ++i) {
+      PipelineFile::Step step;
+      split_words(o.filters[i], "-f", step.operation, step.words);
+      step.name = fmt::format("{}_{}{}", name, step.operation, i + 1);
+      file.steps.push_back(std::move(step));
+    }
+    for (const std::string& text : o.shows) {
+      PipelineFile::Show show;
+      split_words(text, "--show", show.kind, show.words);
+      show.of = file.steps.back().name;
+      file.show.push_back(std::move(show));
+    }
+  };
+  for (size_t i = 0; i < o.inputs.size(); ++i) {
+    const std::string name = o.inputs.size() == 1 ? "input" : fmt::format("input{}", i + 1);
+    file.steps.push_back({name, "read", read_words(o.inputs[i], o.read), {}, 0});
+    chain(name);
+  }
+  if (!o.source.empty()) {
+    PipelineFile::Step step;
+    split_words(o.source, "--source", step.operation, step.words);
+    step.name = "source";
+    file.steps.push_back(std::move(step));
+    chain("source");
+  }
+  add_picture_words(o, file);
+  return file;
+}
+
+int run_render(const Options& o, Context& context) {
+  PipelineFile file = pipeline_of(o);
+  PictureOptions options;
+  if (!o.field.empty()) options.coloring.push_back("field=" + o.field);
+  if (!o.map.empty()) options.coloring.push_back("map=" + o.map);
+  if (!o.scale.empty()) options.coloring.push_back("scale=" + o.scale);
+  const std::string output = !o.output.empty() ? o.output : (o.inputs.empty() ? file.steps[0].operation : stem_of(o.inputs[0])) + ".png";
+  return render_to(file, output, options, o, context);
+}
+
+int run_pipeline_file(const Options& o, Context& context) {
+  for (const std::string& path : o.inputs) {
+    PipelineFile file = read_pipeline(path, picture_vocabulary());
+    if (!o.size.empty()) file.picture.push_back("size=" + o.size);
+    std::string output = o.output;
+    if (output.empty()) {
+      const auto stated = word_value(file.picture, "output");
+      output = stated ? path_beside(path, *stated) : folder_of(path) + stem_of(path) + ".png";
+    }
+    render_to(file, output, {}, o, context);
+  }
+  return 0;
+}
+
+int run_open(const Options& o, Context& context) {
+  for (const std::string& path : o.inputs) {
+    const Image image = read_png(path);
+    std::vector<std::string> changed;
+    PipelineFile file = recipe_in(image, path, changed);
+    if (o.recipe) {
+      std::fputs(emit_pipeline(file).c_str(), stdout);
+      continue;
+    }
+    for (const std::string& c : changed) context.warn(fmt::format("'{}' is not what it was when the picture was made", c));
+    if (!o.size.empty()) file.picture.push_back("size=" + o.size);
+    render_to(file, !o.output.empty() ? o.output : folder_of(path) + stem_of(path) + "-again.png", {}, o, context);
+  }
+  return 0;
+}
+
+int run_convert(const Options& o, Context& context) {
+  PipelineFile file = pipeline_of(o);
+  if (o.inputs.size() > 1) fail_usage("converts one file at a time", "sightglass convert");
+  if (o.explain) {
+    print_explanation(file);
+    return 0;
+  }
+  const PipelineGraph built = build_graph(file);
+  const Data data = built.graph.evaluate(built.last, {}, context);
+  write_data(o.output, data, o.write, context);
+  if (!o.quiet) for_each_dataset(data, [&](const std::string& part, const DatasetPtr& d) { std::printf("%s: %s%s\n", o.output.c_str(), part.empty() ? "" : (part + ": ").c_str(), summary(*d).c_str()); });
+  return 0;
+}
+
+}  // namespace sg

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// The recipe inside a picture: the pipeline as YAML, the version, and a hash of each input.
+#include <xxhash.h>
+
+#include <filesystem>
+
+#include "base/file.h"
+#include "base/parallel.h"
+#include "base/text.h"
+#include "pipeline/picture.h"
+
+namespace sg {
+
+namespace {
+
+// XXH3-64 over the hashes of 4 MiB blocks, so that all cores share the work and the result does not depend on them.
+std::string content_hash(const std::string& path) {
+  const MappedFile file(path);
+  constexpr size_t block = size_t(4) << 20;
+  std::vector<uint64_t> parts((file.size() + block - 1) / block);
+  parallel_for(parts.size(), 1, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) parts[i] = XXH3_64bits(file.data() + i * block, std::min(block, file.size() - i * block));
+  });
+  return fmt::format("{:016x}", XXH3_64bits(parts.data(), parts.size() * sizeof(uint64_t)));
+}
+
+std::string relative_to_folder(const std::string& path, const std::string& folder) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path target = fs::weakly_canonical(path, error), base = fs::weakly_canonical(folder.empty() ? "." : folder, error);
+  const fs::path r = target.lexically_relative(base);
+  return r.empty() ? target.string() : r.string();
+}
+
+void replace_path(std::vector<std::string>& words, const std::string& path) {
+  for (std::string& w : words)
+    if (w.starts_with("path=")) w = "path=" + path;
+}
+
+}  // namespace
+
+void attach_recipe(Image& image, const PipelineFile& file, const std::string& picture_path) {
+  PipelineFile recipe = file;
+  const std::string folder = folder_of(picture_path);
+  std::string inputs;
+  for (auto& step : recipe.steps) {
+    if (step.operation != "read") continue;
+    const auto stated = word_value(step.words, "path");
+    if (!stated) continue;
+    const std::string path = path_beside(file.origin, *stated);
+    const std::string relative = relative_to_folder(path, folder);
+    replace_path(step.words, relative);
+    inputs += fmt::format("{} xxh3-4m {}\n", content_hash(path), relative);
+  }
+  std::erase_if(recipe.picture, [](const std::string& w) { return w.starts_with("output="); });
+  image.text.emplace_back("Software", "Sightglass " SG_VERSION);
+  image.text.emplace_back("sightglass", emit_pipeline(recipe));
+  if (!inputs.empty()) image.text.emplace_back("sightglass-inputs", inputs);
+}
+
+PipelineFile recipe_in(const Image& image, const std::string& picture_path, std::vector<std::string>& changed) {
+  const std::string *recipe = nullptr, *inputs = nullptr;
+  for (const auto& [key, value] : image.text) {
+    if (key == "sightglass") recipe = &value;
+    if (key == "sightglass-inputs") inputs = &value;
+  }
+  if (!recipe) fail_data("has no recipe inside", picture_path, "pictures made by sightglass carry one, unless another program rewrote them");
+  PipelineFile file = parse_pipeline(*recipe, picture_path, picture_vocabulary());
+  if (inputs)
+    for (std::string_view line : split(*inputs, '\n')) {
+      const size_t a = line.find(' '), b = a == line.npos ? line.npos : line.find(' ', a + 1);
+      if (b == line.npos) continue;
+      const std::string path = path_beside(picture_path, line.substr(b + 1));
+      if (file_exists(path) && content_hash(path) != line.substr(0, a)) changed.push_back(path);
+    }
+  return file;
+}
+
+}  // namespace sg
