@@ -192,7 +192,8 @@ std::string params_help(const Schema& schema) {
   std::string r;
   for (const ParamDecl& d : schema.decls()) {
     std::string facts = param_type(d);
-    if (!d.choices_.empty()) facts = joined(d.choices_, [](const std::string& s) { return s; });
+    if (!d.choices_.empty()) facts.clear();
+    for (const std::string& c : d.choices_) facts += (facts.empty() ? "" : "|") + c;
     if (std::string t = range_text(d); !t.empty()) facts += ", " + t;
     if (!d.unit_.empty()) facts += d.unit_[0] == '@' ? ", in units of '" + d.unit_.substr(1) + "'" : ", in " + d.unit_;
     if (std::string t = param_text(d); !t.empty()) facts += ", default " + t;
