@@ -18,9 +18,14 @@ class Context {
   std::function<void(double fraction, std::string_view doing)> on_progress;
   size_t memory_limit = 0;  ///< bytes; 0 = no limit stated
 
+  Context() = default;
+  /// For one part of larger work: logs to `parent`, stops when it is cancelled, and reports progress between `from` and `to`
+  /// of the parent's. `parent` must outlive it.
+  Context(const Context& parent, double from, double to);
+
   /// Asks the running work to stop; safe from any thread and from a signal handler.
   void cancel() noexcept { cancelled_.store(true, std::memory_order_relaxed); }
-  bool cancelled() const noexcept { return cancelled_.load(std::memory_order_relaxed); }
+  bool cancelled() const noexcept { return cancelled_.load(std::memory_order_relaxed) || (parent_ && parent_->cancelled()); }
   /// Throws Error(cancelled) after cancel().
   void check() const;
 
@@ -31,6 +36,7 @@ class Context {
 
  private:
   std::atomic<bool> cancelled_{false};
+  const Context* parent_ = nullptr;
 };
 
 }  // namespace sg

@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cctype>
 #include <cerrno>
 #include <cstring>
@@ -36,7 +37,15 @@ MappedFile::MappedFile(const std::string& path) : path_(path) {
   data_ = static_cast<const std::byte*>(p);
 }
 
-AtomicFile::AtomicFile(const std::string& path) : path_(path), partial_(path + ".partial-" + std::to_string(::getpid())) {
+namespace {
+// Two writers of one path, in one process or in two, must not share a partial file.
+std::string partial_name(const std::string& path) {
+  static std::atomic<unsigned> count{0};
+  return fmt::format("{}.partial-{}-{}", path, ::getpid(), count++);
+}
+}  // namespace
+
+AtomicFile::AtomicFile(const std::string& path) : path_(path), partial_(partial_name(path)) {
   struct stat st {};
   if (::stat(path.c_str(), &st) == 0 && S_ISDIR(st.st_mode)) fail_data("cannot be written: it is a folder", path);
   file_ = std::fopen(partial_.c_str(), "wb");

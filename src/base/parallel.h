@@ -30,10 +30,10 @@ void parallel_for(size_t n, size_t grain, F&& f, const Context* context = nullpt
     std::remove_reference_t<F>& f;
     size_t n, grain;
   } body{f, n, grain};
-  detail::run_chunks((n + grain - 1) / grain, [](void* p, size_t chunk) {
+  detail::run_chunks(n / grain + (n % grain != 0), [](void* p, size_t chunk) {
     Body& b = *static_cast<Body*>(p);
     const size_t begin = chunk * b.grain;
-    b.f(begin, begin + b.grain < b.n ? begin + b.grain : b.n);
+    b.f(begin, b.grain < b.n - begin ? begin + b.grain : b.n);
   }, &body, context);
 }
 
@@ -41,7 +41,7 @@ void parallel_for(size_t n, size_t grain, F&& f, const Context* context = nullpt
 template <class T, class Map, class Join>
 T parallel_reduce(size_t n, size_t grain, T init, Map&& map, Join&& join, const Context* context = nullptr) {
   grain = grain ? grain : 1;
-  const size_t chunks = (n + grain - 1) / grain;
+  const size_t chunks = n / grain + (n % grain != 0);
   auto parts = std::make_unique<T[]>(chunks);  // not std::vector: vector<bool> would race
   parallel_for(n, grain, [&](size_t begin, size_t end) { parts[begin / grain] = map(begin, end); }, context);
   for (size_t i = 0; i < chunks; ++i) init = join(std::move(init), std::move(parts[i]));

@@ -40,7 +40,8 @@ struct Setter {
   int64_t integer(std::string_view t) const {
     const auto v = parse_int(t);
     if (!v) fail("a whole number");
-    if (double(*v) < decl.lo || double(*v) > decl.hi) fail("in range: it must be " + range_text(decl));
+    const double d = double(*v);
+    if (d < decl.lo || d > decl.hi || (decl.lo_open && d == decl.lo) || (decl.hi_open && d == decl.hi)) fail("in range: it must be " + range_text(decl));
     return *v;
   }
   std::string word(std::string_view t) const {
@@ -94,6 +95,13 @@ std::string joined(const std::vector<T>& v, F&& text) {
   std::string r;
   for (size_t i = 0; i < v.size(); ++i) r += (i ? "," : "") + text(v[i]);
   return r;
+}
+
+// JSON knows no infinity and no NaN.
+bool all_finite(std::string_view numbers) {
+  for (std::string_view t : split(numbers, ','))
+    if (const auto v = parse_double(t); !v || !std::isfinite(*v)) return false;
+  return true;
 }
 
 std::string triple_text(Vec3 v) { return exact_number(v.x) + "," + exact_number(v.y) + "," + exact_number(v.z); }
@@ -184,7 +192,8 @@ std::string params_help(const Schema& schema) {
   std::string r;
   for (const ParamDecl& d : schema.decls()) {
     std::string facts = param_type(d);
-    if (!d.choices_.empty()) facts = joined(d.choices_, [](const std::string& s) { return s; });
+    if (!d.choices_.empty()) facts.clear();
+    for (const std::string& c : d.choices_) facts += (facts.empty() ? "" : "|") + c;
     if (std::string t = range_text(d); !t.empty()) facts += ", " + t;
     if (!d.unit_.empty()) facts += d.unit_[0] == '@' ? ", in units of '" + d.unit_.substr(1) + "'" : ", in " + d.unit_;
     if (std::string t = param_text(d); !t.empty()) facts += ", default " + t;
@@ -216,7 +225,7 @@ std::string params_json(const Schema& schema) {
     const std::string value = param_text(d);
     const bool finite_number = parse_double(value).has_value() && std::isfinite(*parse_double(value));
     if (json_type == "boolean" || ((json_type == "number" || json_type == "integer") && finite_number)) r += ",\"default\":" + value;
-    else if (list && type != "words" && value != "auto") r += ",\"default\":[" + value + "]";
+    else if (list && type != "words" && value != "auto" && all_finite(value)) r += ",\"default\":[" + value + "]";
     else if (!list && !value.empty() && json_type == "string") r += ",\"default\":" + json_string(value);
     r += ",\"description\":" + json_string(d.doc) + "}";
     first = false;

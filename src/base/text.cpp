@@ -74,24 +74,46 @@ std::vector<std::string> quoted_words(std::string_view s) {
   return r;
 }
 
+namespace {
+
+// One leading plus, but not the one of "+-5".
+std::string_view without_plus(std::string_view s) {
+  if (s.size() > 1 && s[0] == '+' && s[1] != '-') s.remove_prefix(1);
+  return s;
+}
+
+// Power of ten of the first nonzero digit of a well-formed number.
+double decimal_exponent(std::string_view s) {
+  const size_t e = s.find_first_of("eE");
+  const std::string_view digits = s.substr(0, e);
+  double power = 0;
+  if (e != s.npos) {
+    for (const char c : s.substr(e + 1))
+      if (c >= '0' && c <= '9') power = std::min(1e9, power * 10 + (c - '0'));
+    if (s[e + 1] == '-') power = -power;
+  }
+  const size_t point = std::min(digits.find('.'), digits.size()), first = digits.find_first_of("123456789");
+  if (first == s.npos) return 0;
+  return power + (first < point ? double(point - first) - 1 : double(point) - double(first));
+}
+
+}  // namespace
+
 std::optional<double> parse_double(std::string_view s) {
-  s = trim(s);
-  if (!s.empty() && s[0] == '+') s.remove_prefix(1);
+  s = without_plus(trim(s));
   double v = 0;
   const auto [end, error] = std::from_chars(s.data(), s.data() + s.size(), v);
   if (s.empty() || end != s.data() + s.size()) return {};
   if (error == std::errc::result_out_of_range) {  // from_chars leaves v alone: overflow or underflow?
-    const bool small = s.find("e-") != s.npos || s.find("E-") != s.npos || s.find('e') == s.npos;
-    const double big = s[0] == '-' ? -HUGE_VAL : HUGE_VAL;
-    return small ? 0.0 : big;
+    const double sign = s[0] == '-' ? -1.0 : 1.0;
+    return decimal_exponent(s) > 0 ? sign * HUGE_VAL : sign * 0.0;
   }
   if (error != std::errc()) return {};
   return v;
 }
 
 std::optional<int64_t> parse_int(std::string_view s) {
-  s = trim(s);
-  if (!s.empty() && s[0] == '+') s.remove_prefix(1);
+  s = without_plus(trim(s));
   int64_t v = 0;
   const auto [end, error] = std::from_chars(s.data(), s.data() + s.size(), v);
   if (s.empty() || error != std::errc() || end != s.data() + s.size()) return {};

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// What an evaluation would do, and what that may cost.
+#include "base/text.h"
+#include "pipeline/graph_state.h"
+
+namespace sg {
+
+namespace {
+
+constexpr double bytes_per_second = 2e9;  // one pass over memory by a simple kernel
+
+Estimate estimate_of(const Step& s, const Node& node, const std::vector<PlannedStep>& before) {
+  if (auto* read = std::get_if<ReadNode>(&node.what)) {
+    uint64_t bytes = 0;
+    for (const FileState& f : file_and_parts(read->path)) bytes += f.size;
+    return {bytes, double(bytes) / bytes_per_second};
+  }
+  if (auto* given = std::get_if<DataNode>(&node.what)) return {data_bytes(given->data), 0};
+  std::vector<uint64_t> in;
+  for (const int i : s.inputs) in.push_back(before[size_t(i)].bytes);
+  const Operation& o = *std::get<OperationNode>(node.what).found;
+  if (o.estimate) return o.estimate(s.params, in);
+  uint64_t touched = 0, largest = 0;
+  for (const uint64_t b : in) touched += b, largest = std::max(largest, b);
+  return {largest, double(touched + largest) / bytes_per_second};
+}
+
+std::string seconds_text(double s) {
+  if (s <= 0) return "0 s";
+  if (s < 1e-3) return short_number(s * 1e6, 2) + " us";
+  return s < 1 ? short_number(s * 1e3, 2) + " ms" : short_number(s, 3) + " s";
+}
+
+}  // namespace
+
+std::vector<PlannedStep> Graph::plan(std::span<const Target> targets) const {
+  const Plan plan = Planner::make(*this, targets);
+  std::vector<PlannedStep> out;
+  for (const Step& s : plan.steps) {
+    const Node& node = state_->nodes[size_t(s.node)];
+    PlannedStep p{s.node, node.name.empty() ? std::to_string(s.node + 1) : node.name, step_does(node), s.key, s.request, PlannedStep::State::not_needed, 0, 0};
+    const auto cached = state_->cache->peek(s.key);
+    if (cached) p.bytes = *cached;
+    else {
+      const Estimate e = estimate_of(s, node, out);
+      p.bytes = e.bytes, p.seconds = e.seconds;
+    }
+    if (cached || std::holds_alternative<DataNode>(node.what)) p.state = PlannedStep::State::cached;
+    out.push_back(std::move(p));
+  }
+  // Needed are the targets and, above them, whatever is not hidden behind a cached result.
+  std::vector<char> needed(out.size(), 0);
+  for (const int t : plan.targets) needed[size_t(t)] = 1;
+  for (size_t i = out.size(); i-- > 0;) {
+    const bool runs = needed[i] && out[i].state != PlannedStep::State::cached;
+    if (runs) out[i].state = PlannedStep::State::run;
+    else out[i].seconds = 0;
+    if (runs)
+      for (const int in : plan.steps[i].inputs) needed[size_t(in)] = 1;
+  }
+  return out;
+}
+
+std::string Graph::explain(NodeId node, const Request& request) const {
+  const Target t{node, request};
+  return explain(std::span<const Target>(&t, 1));
+}
+
+std::string Graph::explain(std::span<const Target> targets) const {
+  const std::vector<PlannedStep> steps = plan(targets);
+  size_t name_width = 4, does_width = 4;
+  for (const PlannedStep& s : steps) name_width = std::max(name_width, s.name.size()), does_width = std::max(does_width, s.does.size());
+  std::string r = fmt::format("{:<{}}  {:<{}}  {:<8}  {:<10}  {:>12}  {:>8}  {}\n", "step", name_width, "does", does_width, "key", "state", "result", "time", "needs");
+  double seconds = 0;
+  size_t running = 0;
+  for (const PlannedStep& s : steps) {
+    const bool runs = s.state == PlannedStep::State::run, cached = s.state == PlannedStep::State::cached;
+    seconds += s.seconds;
+    running += runs;
+    r += fmt::format("{:<{}}  {:<{}}  {:<8}  {:<10}  {:>12}  {:>8}  {}\n", s.name, name_width, s.does, does_width, key_text(s.key).substr(0, 8),
+                     runs ? "run" : cached ? "cached" : "not needed", (cached ? "" : "~") + human_bytes(s.bytes), runs ? "~" + seconds_text(s.seconds) : "-",
+                     request_text(s.request));
+  }
+  return r + fmt::format("{} of {} steps run, in about {}\n", running, steps.size(), seconds_text(seconds));
+}
+
+}  // namespace sg

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+// Building a graph and finding the mistakes in it.
+#include "pipeline/graph.h"
+
+#include <atomic>
+
+#include "base/file.h"
+#include "base/text.h"
+#include "pipeline/graph_state.h"
+
+namespace sg {
+
+namespace {
+constexpr int deepest_chain = 1000;  // evaluation recurses along it
+}
+
+Graph::Graph(GraphOptions options) : state_(std::make_unique<State>()) {
+  state_->options = std::move(options);
+  state_->cache = state_->options.cache ? state_->options.cache : std::make_shared<Cache>(state_->options.cache_limit);
+}
+Graph::~Graph() = default;
+Graph::Graph(Graph&&) noexcept = default;
+Graph& Graph::operator=(Graph&&) noexcept = default;
+
+size_t Graph::size() const { return state_->nodes.size(); }
+Cache& Graph::cache() const { return *state_->cache; }
+
+NodeId Graph::add_read(std::string path, ReadOptions options, std::string name) {
+  state_->nodes.push_back({std::move(name), ReadNode{std::move(path), std::move(options)}, {}, {}});
+  state_->depth.push_back(1);
+  return NodeId(state_->nodes.size() - 1);
+}
+
+NodeId Graph::add_data(Data data, std::string content, std::string name) {
+  static std::atomic<uint64_t> count{0};
+  KeyBuilder key;
+  key.add("data").add(content);
+  if (content.empty()) key.add(count++);  // an address would come back after its data has died
+  state_->nodes.push_back({std::move(name), DataNode{std::move(data), key.key()}, {}, {}});
+  state_->depth.push_back(1);
+  return NodeId(state_->nodes.size() - 1);
+}
+
+NodeId Graph::add_operation(std::string operation, std::vector<std::string> words, std::vector<NodeId> inputs, std::string name) {
+  const auto id = NodeId(state_->nodes.size());
+  Node node{std::move(name), {}, {}, {}};
+  OperationNode op{std::move(operation), std::move(words), nullptr, {}, false};
+  auto mistake = [&](const std::string& text) { node.mistake += (node.mistake.empty() ? "" : "; ") + text; };
+  try {
+    op.found = &find_operation(op.operation, state_->options.operations);
+    op.params = make_params(*op.found, op.words);
+  } catch (const Error& e) {
+    mistake(e.what());
+  }
+  int depth = 1;
+  for (const NodeId in : inputs) {
+    if (in < 0 || in >= id) mistake(fmt::format("{}: input {} is no earlier step", op.operation, in + 1));
+    else node.inputs.push_back(in), depth = std::max(depth, state_->depth[size_t(in)] + 1);
+  }
+  if (depth > deepest_chain) mistake(fmt::format("the chain of steps is longer than {}", deepest_chain));
+  if (op.found && node.inputs.size() == inputs.size()) {
+    const int n = int(inputs.size()), lo = op.found->min_inputs, hi = op.found->max_inputs;
+    if (lo == 0 && hi == 0 && n > 0) mistake(fmt::format("{}: is a source and takes no input", op.operation));
+    else if (n < lo || (hi >= 0 && n > hi)) mistake(fmt::format("{}: takes {}{} input{}, not {}", op.operation, hi < 0 ? "at least " : "", lo, lo == 1 ? "" : "s", n));
+  }
+  if (op.params && op.found->kind == OperationKind::source) {
+    const ParamDecl* time = op.params->schema.find("time");
+    const bool settable = time && (std::holds_alternative<double*>(time->ref) || std::holds_alternative<std::optional<double>*>(time->ref));
+    op.follows_time = settable && std::none_of(op.words.begin(), op.words.end(), [](const std::string& w) { return trim(w.substr(0, w.find('='))) == "time"; });
+  }
+  node.what = std::move(op);
+  state_->nodes.push_back(std::move(node));
+  state_->depth.push_back(depth);
+  return id;
+}
+
+std::string step_label(const Node& node, NodeId id) { return node.name.empty() ? fmt::format("step {}", id + 1) : fmt::format("step '{}'", node.name); }
+
+std::string step_does(const Node& node) {
+  if (auto* read = std::get_if<ReadNode>(&node.what)) return fmt::format("read '{}'", file_name_of(read->path));
+  if (auto* op = std::get_if<OperationNode>(&node.what)) return op->operation;
+  return "given data";
+}
+
+namespace {
+
+// Names of the fields of a node's result, where they are known for certain without running anything.
+std::optional<std::vector<std::string>> known_fields(const Node& node, const GraphOptions& options) {
+  if (auto* read = std::get_if<ReadNode>(&node.what)) {
+    if (!options.field_names || !file_exists(read->path)) return std::nullopt;
+    try {
+      return options.field_names(read->path, read->options);
+    } catch (const Error&) {
+      return std::nullopt;  // a broken file is for the reader to report
+    }
+  }
+  auto* given = std::get_if<DataNode>(&node.what);
+  if (!given || std::holds_alternative<TablePtr>(given->data)) return std::nullopt;
+  std::vector<std::string> names;
+  for_each_dataset(given->data, [&](const std::string&, const DatasetPtr& d) {
+    for (std::string& n : d->fields().names())
+      if (std::find(names.begin(), names.end(), n) == names.end()) names.push_back(std::move(n));
+  });
+  return names;
+}
+
+void check_fields(const std::vector<Node>& nodes, NodeId id, const GraphOptions& options, std::vector<Mistake>& out) {
+  const Node& node = nodes[size_t(id)];
+  auto* op = std::get_if<OperationNode>(&node.what);
+  if (!op || !op->params || node.inputs.empty()) return;
+  std::vector<std::string> have;
+  for (const NodeId in : node.inputs) {
+    const auto names = known_fields(nodes[size_t(in)], options);
+    if (!names) return;  // a field parameter may mean any of the inputs
+    have.insert(have.end(), names->begin(), names->end());
+  }
+  for (const ParamDecl& d : op->params->schema.decls()) {
+    auto* field = std::get_if<FieldName*>(&d.ref);
+    if (!field || (*field)->empty() || std::find(have.begin(), have.end(), (*field)->name) != have.end()) continue;
+    out.push_back({id, ErrorKind::usage, fmt::format("{}: {} {}: field '{}' not found; {}", step_label(node, id), op->operation, d.name, (*field)->name, unknown_name_hint((*field)->name, have))});
+  }
+}
+
+}  // namespace
+
+std::vector<Mistake> find_mistakes(const std::vector<Node>& nodes, const GraphOptions& options, std::span<const NodeId> sinks) {
+  std::vector<char> reached(nodes.size(), sinks.empty());
+  for (const NodeId s : sinks) reached[size_t(s)] = 1;
+  for (size_t i = nodes.size(); i-- > 0;)
+    if (reached[i])
+      for (const NodeId in : nodes[i].inputs) reached[size_t(in)] = 1;
+  std::vector<Mistake> out;
+  for (size_t i = 0; i < nodes.size(); ++i) {
+    if (!reached[i]) continue;
+    const Node& node = nodes[i];
+    const auto id = NodeId(i);
+    if (!node.mistake.empty()) out.push_back({id, ErrorKind::usage, step_label(node, id) + ": " + node.mistake});
+    if (auto* read = std::get_if<ReadNode>(&node.what); read && !file_exists(read->path))
+      out.push_back({id, ErrorKind::data, fmt::format("{}: {}: no such file", step_label(node, id), read->path)});
+    check_fields(nodes, id, options, out);
+  }
+  return out;
+}
+
+void throw_mistakes(const std::vector<Mistake>& mistakes) {
+  // Usage before data: a missing file may be the consequence of a wrong word.
+  ErrorKind kind = ErrorKind::data;
+  for (const Mistake& m : mistakes)
+    if (m.kind == ErrorKind::usage) kind = ErrorKind::usage;
+  if (mistakes.size() == 1) throw Error(kind, mistakes[0].text);
+  std::string text = fmt::format("{} mistakes:", mistakes.size());
+  for (const Mistake& m : mistakes) text += "\n  " + m.text;
+  throw Error(kind, text);
+}
+
+std::vector<Mistake> Graph::mistakes() const { return find_mistakes(state_->nodes, state_->options, {}); }
+
+void Graph::validate() const {
+  if (const auto found = mistakes(); !found.empty()) throw_mistakes(found);
+}
+
+}  // namespace sg

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/operation.h"
+
+#include "base/error.h"
+#include "base/text.h"
+#include "pipeline/operation_table.h"
+
+namespace sg {
+
+const Operation& find_operation(std::string_view name, std::span<const Operation> table) {
+  std::vector<std::string> names;
+  for (const Operation& o : table) {
+    if (o.name == name) return o;
+    names.emplace_back(o.name);
+  }
+  fail_usage(fmt::format("unknown operation '{}'", name), {}, unknown_name_hint(name, names));
+}
+
+ParamSet make_params(const Operation& operation, const std::vector<std::string>& words) {
+  ParamSet params = operation.make_params();
+  set_params(params.schema, words, operation.name);
+  return params;
+}
+
+Data run_operation(const Operation& operation, const std::vector<Data>& inputs, const std::vector<std::string>& words, Context& context) {
+  const int n = int(inputs.size());
+  if (n < operation.min_inputs || (operation.max_inputs >= 0 && n > operation.max_inputs))
+    fail_usage(fmt::format("takes {} input{}, not {}", operation.min_inputs, operation.min_inputs == 1 ? "" : "s", n), std::string(operation.name));
+  return operation.run(inputs, make_params(operation, words), context);
+}
+
+Request upstream_request(const Operation& operation, const ParamSet& params, const Request& wanted) {
+  if (operation.request) return operation.request(params, wanted);
+  Request all;  // region and piece stop here: only a hook knows what part of the input a part of the result needs
+  all.time = wanted.time;
+  return all;
+}
+
+namespace {
+
+// Adds the fields that the parameters name; false when one is left open, so that the operation chooses among all.
+bool add_named_fields(const ParamSet& params, Request& request) {
+  for (const ParamDecl& d : params.schema.decls())
+    if (auto* field = std::get_if<FieldName*>(&d.ref)) {
+      if ((*field)->empty()) return false;
+      add_field(request, (*field)->name);
+    }
+  return true;
+}
+
+Request named_or_all(const ParamSet& params, Request request, std::optional<double> time) {
+  request.time = time;
+  request.region.reset();
+  request.piece = 0, request.pieces = 1;
+  if (add_named_fields(params, request)) return request;
+  Request all;
+  all.time = time;
+  return all;
+}
+
+}  // namespace
+
+Request detail::request_carried(const ParamSet& params, const Request& wanted) { return named_or_all(params, wanted, wanted.time); }
+
+Request detail::request_named(const ParamSet& params, const Request& wanted) { return named_or_all(params, Request::only({}), wanted.time); }
+
+std::string ops_help(std::string_view name, std::span<const Operation> table) {
+  if (!name.empty()) {
+    const Operation& o = find_operation(name, table);
+    const ParamSet params = o.make_params();
+    std::string r = fmt::format("{} ({}{})\n  {}\n", o.name, o.family, o.kind == OperationKind::filter ? " filter" : "", o.sentence);
+    if (o.min_inputs > 1) r += fmt::format("  Takes {} inputs.\n", o.min_inputs);
+    else if (o.max_inputs < 0) r += "  Takes any number of inputs.\n";
+    const std::string help = params_help(params.schema);
+    return r + (help.empty() ? "\nIt has no parameters.\n" : "\nParameters (key=value):\n" + help);
+  }
+  std::vector<std::string_view> families;
+  size_t width = 0;
+  for (const Operation& o : table) {
+    if (std::find(families.begin(), families.end(), o.family) == families.end()) families.push_back(o.family);
+    width = std::max(width, o.name.size());
+  }
+  std::string r;
+  for (std::string_view family : families) {
+    r += fmt::format("{}{}\n", r.empty() ? "" : "\n", family);
+    for (const Operation& o : table)
+      if (o.family == family) r += fmt::format("  {:<{}}  {}\n", o.name, width, o.sentence);
+  }
+  return r;
+}
+
+std::string ops_json(std::span<const Operation> table) {
+  std::string r = "{\"operations\":[";
+  for (size_t i = 0; i < table.size(); ++i) {
+    const Operation& o = table[i];
+    r += fmt::format("{}{{\"name\":{},\"kind\":\"{}\",\"family\":{},\"sentence\":{},\"version\":{},\"inputs\":[{},{}],\"params\":{}}}", i ? ",\n" : "\n",
+                     json_string(o.name), o.kind == OperationKind::source ? "source" : "filter", json_string(o.family), json_string(o.sentence),
+                     o.version, o.min_inputs, o.max_inputs, params_json(o.make_params().schema));
+  }
+  return r + "\n]}\n";
+}
+
+namespace {
+
+bool is_null(const Data& data) {
+  return std::visit([](const auto& p) { return p == nullptr; }, data);
+}
+
+Data map_tree(const Data& data, const std::string& path, const std::function<Data(const DatasetPtr&)>& f) {
+  if (auto* dataset = std::get_if<DatasetPtr>(&data)) {
+    if (!*dataset) return data;
+    return path.empty() ? f(*dataset) : with_context(fmt::format("in part '{}'", path), [&] { return f(*dataset); });
+  }
+  auto* collection = std::get_if<CollectionPtr>(&data);
+  if (!collection || !*collection) return data;
+  auto out = std::make_shared<Collection>();
+  for (const Collection::Part& part : (*collection)->parts) {
+    Data mapped = map_tree(part.data, path.empty() ? part.name : path + "/" + part.name, f);
+    if (!is_null(mapped)) out->parts.push_back({part.name, std::move(mapped)});
+  }
+  return CollectionPtr(out);
+}
+
+}  // namespace
+
+Data map_parts(const Data& data, std::string_view who, const std::function<Data(const DatasetPtr&)>& f) {
+  if (is_null(data)) fail_internal("got no data", std::string(who));
+  if (std::holds_alternative<TablePtr>(data)) fail_usage("needs a mesh but got a table", std::string(who));
+  return map_tree(data, "", f);
+}
+
+}  // namespace sg

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// From targets to steps: requests go up, keys come down.
+#include <map>
+
+#include "pipeline/graph_state.h"
+
+namespace sg {
+
+namespace {
+
+void want(std::vector<Request>& wanted, const Request& r) {
+  for (Request& have : wanted)
+    if (can_merge(have, r)) {
+      have = merged(std::move(have), r);
+      return;
+    }
+  wanted.push_back(r);
+}
+
+// What the reader is told: the user's list of fields, cut to what is needed.
+ReadOptions read_for(ReadOptions options, const Request& request) {
+  if (request.all_fields) return options;
+  std::vector<std::string> fields;
+  for (const std::string& f : request.fields)
+    if (options.fields.empty() || std::find(options.fields.begin(), options.fields.end(), f) != options.fields.end()) fields.push_back(f);
+  if (fields.empty() && request.fields.empty()) options.header_only = true;
+  else if (!fields.empty()) options.fields = std::move(fields);
+  return options;
+}
+
+Key read_key(const std::string& path, const ReadOptions& o, const Request& request, bool custom_reader, bool strict) {
+  KeyBuilder key;
+  key.add("read").add(file_key(path, strict)).add(uint64_t(o.header_only)).add(uint64_t(o.fields.size()));
+  for (const std::string& f : o.fields) key.add(f);
+  for (const size_t n : o.raw_dims) key.add(uint64_t(n));
+  key.add(o.raw_type).add(uint64_t(o.raw_big_endian)).add(uint64_t(o.raw_header)).add(uint64_t(o.raw_components));
+  for (int i = 0; i < 3; ++i) key.add(std::bit_cast<uint64_t>(o.raw_spacing[i]));
+  Request rest = request;  // the fields stand in the options
+  rest.all_fields = true, rest.fields.clear();
+  if (custom_reader) key.add(request_text(rest));
+  return key.key();
+}
+
+Key operation_key(const Operation& o, const ParamSet& params, const std::vector<int>& inputs, const std::vector<Step>& steps) {
+  KeyBuilder key;
+  key.add("operation").add(o.name).add(uint64_t(o.version)).add(uint64_t(params.schema.decls().size()));
+  for (const ParamDecl& d : params.schema.decls()) key.add(d.name).add(param_text(d));
+  key.add(uint64_t(inputs.size()));
+  for (const int i : inputs) key.add(steps[size_t(i)].key);
+  return key.key();
+}
+
+ParamSet params_for(const OperationNode& op, const Request& request) {
+  if (!op.follows_time || !request.time) return *op.params;
+  ParamSet params = make_params(*op.found, op.words);
+  const ParamDecl& time = *params.schema.find("time");
+  if (auto* open = std::get_if<std::optional<double>*>(&time.ref)) **open = *request.time;
+  else *std::get<double*>(time.ref) = *request.time;
+  return params;
+}
+
+}  // namespace
+
+Plan Planner::make(const Graph& graph, std::span<const Target> targets) {
+  const Graph::State& g = *graph.state_;
+  std::vector<NodeId> sinks;
+  for (const Target& t : targets) {
+    if (t.node < 0 || size_t(t.node) >= g.nodes.size()) fail_usage(fmt::format("there is no step {}", t.node + 1));
+    sinks.push_back(t.node);
+  }
+  if (sinks.empty()) return {};
+  if (const auto found = find_mistakes(g.nodes, g.options, sinks); !found.empty()) throw_mistakes(found);
+
+  // Up: what every node is asked for. A node has a larger number than its inputs, so going down is an order.
+  std::vector<std::vector<Request>> wanted(g.nodes.size());
+  for (const Target& t : targets) want(wanted[size_t(t.node)], t.request);
+  for (size_t i = g.nodes.size(); i-- > 0;)
+    if (auto* op = std::get_if<OperationNode>(&g.nodes[i].what))
+      for (size_t r = 0; r < wanted[i].size(); ++r)
+        for (const NodeId in : g.nodes[i].inputs) want(wanted[size_t(in)], upstream_request(*op->found, *op->params, wanted[i][r]));
+
+  // Down: steps and keys; nodes with equal keys become one step.
+  Plan plan;
+  std::map<Key, int> by_key;
+  std::vector<std::vector<int>> step_of(g.nodes.size());
+  auto find_step = [&](NodeId node, const Request& request) {
+    for (size_t r = 0; r < wanted[size_t(node)].size(); ++r)
+      if (can_merge(wanted[size_t(node)][r], request)) return step_of[size_t(node)][r];
+    fail_internal("a request was lost on its way");
+  };
+  for (size_t i = 0; i < g.nodes.size(); ++i) {
+    const Node& node = g.nodes[i];
+    for (const Request& request : wanted[i]) {
+      Step s;
+      s.node = NodeId(i);
+      s.request = request;
+      if (auto* read = std::get_if<ReadNode>(&node.what)) {
+        s.read = read_for(read->options, request);
+        s.key = read_key(read->path, s.read, request, bool(g.options.read), g.options.strict);
+      } else if (auto* op = std::get_if<OperationNode>(&node.what)) {
+        s.params = params_for(*op, request);
+        const Request up = upstream_request(*op->found, *op->params, request);
+        for (const NodeId in : node.inputs) s.inputs.push_back(find_step(in, up));
+        s.key = operation_key(*op->found, s.params, s.inputs, plan.steps);
+      } else {
+        s.key = std::get<DataNode>(node.what).key;
+      }
+      const auto [at, fresh] = by_key.emplace(s.key, int(plan.steps.size()));
+      if (fresh) {
+        for (const int in : s.inputs) ++plan.steps[size_t(in)].consumers;
+        plan.steps.push_back(std::move(s));
+      }
+      step_of[i].push_back(at->second);
+    }
+  }
+  for (const Target& t : targets) {
+    plan.targets.push_back(find_step(t.node, t.request));
+    ++plan.steps[size_t(plan.targets.back())].consumers;
+  }
+  return plan;
+}
+
+Key Graph::key(NodeId node, const Request& request) const {
+  const Target t{node, request};
+  const Plan plan = Planner::make(*this, {&t, 1});
+  return plan.steps[size_t(plan.targets[0])].key;
+}
+
+}  // namespace sg
