@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which faces of solid cells have no partner.
+#pragma once
+#include <vector>
+
+#include "base/context.h"
+#include "data/mesh.h"
+
+namespace sg {
+
+/// Marks of all faces of all solid cells, cell after cell: face f of `cell` is at first_face(cell) + f.
+struct FaceMarks {
+  static constexpr size_t cells_per_chunk = 4096;
+  std::vector<size_t> chunk_start;  ///< marks before each chunk of cells
+  std::vector<uint8_t> external;    ///< 1 = no other solid cell has this face
+};
+
+/// Faces with the same corners are one face, whatever the order of their nodes; one that two or more cells have is internal.
+/// `states` (CellState per cell, or empty): cells that are gone have no faces, duplicates count as neighbours.
+/// A hash join in cache-sized partitions: O(faces), parallel, exact for faces of up to four corners (larger ones compare their three
+/// smallest ids and a 32-bit hash of the rest). Throws Error(usage) above 2^31 faces or 2^32 points.
+FaceMarks match_faces(const UnstructuredMesh& mesh, const std::vector<uint8_t>& states, const Context& ctx);
+
+}  // namespace sg
