@@ -94,7 +94,7 @@ template <class Get>
 Array joined(std::vector<Piece>& pieces, int components, Get&& get, bool ids) {
   if (pieces.size() == 1) return get(pieces[0]);
   size_t total = 0;
-  ElementType type = ElementType::i32;
+  ElementType type = get(pieces[0]).type();
   for (Piece& p : pieces) {
     total += get(p).count();
     if (get(p).count()) type = get(p).type();
@@ -138,7 +138,11 @@ DatasetPtr assemble(const Dataset& input, const Field& field, const std::vector<
   std::vector<EdgePoint> list;
   std::span<const EdgePoint> edges = pieces[0].points.span();
   if (pieces.size() > 1) edges = list = joined_list<EdgePoint>(pieces, [](const Piece& p) -> const Block<EdgePoint>& { return p.points; });
-  carry_interpolated(out, input.fields(), edges);
+  for (const Field& f : input.fields()) {
+    if (f.association != Association::point) continue;
+    const bool made = job.values && f.array.raw() == job.samples.raw();  // the vertices had its numbers in hand
+    out.add({f.name, f.association, made ? joined(pieces, 1, [](Piece& p) { return p.values; }, false) : interpolate(f.array, edges), f.unit, f.role});
+  }
   if (wants_normals) {
     float* none = nullptr;
     for (Piece& p : pieces)
@@ -201,8 +205,9 @@ DatasetPtr contour(const DatasetPtr& input, const ContourParams& params, Context
   for (double v : values)
     if (!std::isfinite(v)) fail_usage(fmt::format("{} is no isovalue", v), "contour values", "give finite numbers");
 
-  Job job{*input, choose_samples(field, component), params.normals, false, choose_origin(input->bounds()), context};
+  Job job{*input, choose_samples(field, component), params.normals, false, false, choose_origin(input->bounds()), context};
   for (const Field& f : input->fields()) job.cells = job.cells || f.association == Association::cell;
+  job.values = is_lattice(input->mesh()) && input->point_count() > 0 && job.samples.raw() == field.array.raw() && field.components() == 1;
   std::vector<Piece> pieces;
   if (is_lattice(input->mesh()) && input->point_count() > 0) {
     LatticeContour lattice(job);
