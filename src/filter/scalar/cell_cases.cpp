@@ -82,13 +82,16 @@ std::vector<std::vector<uint8_t>> CaseTable::loops(uint32_t pattern, uint32_t jo
   return r;
 }
 
-// The cheapest triangulation of a closed loop (dynamic programming over its chords): no chord along a face, then short ones.
+// The cheapest triangulation of a closed loop (dynamic programming over its chords): no chord along a face, or else from entry to
+// entry, then short ones.
 void CaseTable::fill(const std::vector<uint8_t>& loop) {
   const size_t n = loop.size();
   auto middle = [&](uint8_t e, size_t c) { return 0.5 * (double(shape_.place[shape_.edges[e][0]][c]) + double(shape_.place[shape_.edges[e][1]][c])); };
   auto chord = [&](size_t a, size_t b) {
     if (b - a == 1 || b - a == n - 1) return 0.0;
-    double d = share_face(loop[a], loop[b]) ? 1e6 : 0.0;
+    const uint32_t face = shared_face(loop[a], loop[b]);
+    const bool entries = face == shared_face(loop[a], loop[a + 1]) && face == shared_face(loop[b], loop[(b + 1) % n]);
+    double d = face == 0 ? 0.0 : entries ? 1e3 : 1e6;
     for (size_t c = 0; c < 3; ++c) d += std::pow(middle(loop[a], c) - middle(loop[b], c), 2);
     return d;
   };

@@ -5,8 +5,10 @@
 // the segments of all faces close to loops, which are filled with triangles. On a face of four corners that alternate, one bit
 // says whether the inside corners are joined across the face (the asymptotic decider of Nielson and Hamann 1991); both cells
 // at a face compute the same bit from the same four values, so their segments agree and the surface has no holes.
-// No diagonal of a loop runs along a face of the cell: a triangle edge belongs to one face or to the inside of one cell, so every
-// edge has exactly two triangles and no triangle appears twice.
+// Diagonals of a loop avoid the faces of the cell, since the cell behind the face might have the same one. A few loops (none of
+// fewer than 8 edges) cannot be filled so without an extra point; they may join the two edges where segments of the loop enter the
+// face. What one cell sees as entries are exits for the other, so again no edge has more than two triangles and no triangle
+// appears twice.
 //
 // Triangles are wound counterclockwise seen from the side of the smaller values (normals point along minus the gradient).
 #pragma once
@@ -47,7 +49,7 @@ class CaseTable {
   const uint8_t* triangle_edges() const { return edges_.data(); }
   /// Closed loops before they are filled: edges, each loop ended by 255.
   std::vector<std::vector<uint8_t>> loops(uint32_t pattern, uint32_t joined) const;
-  /// Diagonals on faces that could not be avoided, over all cases; 0 for every shape of this library (tested).
+  /// Diagonals that break this rule, over all cases; 0 for every shape of this library (tested).
   int bad_diagonals() const { return bad_; }
 
  private:
@@ -57,7 +59,7 @@ class CaseTable {
     return r;
   }
   void fill(const std::vector<uint8_t>& loop);
-  bool share_face(uint8_t a, uint8_t b) const { return (edge_faces_[a] & edge_faces_[b]) != 0; }
+  uint32_t shared_face(uint8_t a, uint8_t b) const { return edge_faces_[a] & edge_faces_[b]; }
 
   CellShape shape_;
   std::vector<uint32_t> edge_faces_;
