@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filter/scalar/contour.h"
+
+#include <cmath>
+
+#include "base/parallel.h"
+#include "base/text.h"
+#include "filter/scalar/contour_parts.h"
+
+namespace sg {
+
+void describe(Schema& s, ContourParams& p) {
+  s("field", p.field, "Point field to contour; default: the active scalar.");
+  s("values", p.values, "Isovalues, one surface each; default: the middle of the range.").unit("@field");
+  s("normals", p.normals, "Unit normals from the field's gradient.");
+  s("component", p.component, "Of a field with several: 0, 1, ..., x, y, z, or magnitude.");
+}
+
+namespace {
+
+using namespace contouring;
+
+const Field& choose_field(const Dataset& input, const FieldName& name) {
+  if (!name.empty()) {
+    const Field& f = input.fields().require(name.name);
+    if (const Field* point = input.fields().find(name.name, Association::point)) return *point;
+    if (f.association == Association::cell)
+      fail_usage(fmt::format("field '{}' lies on the cells; a contour needs values at the points", name.name), "contour", "average it to the points first");
+    fail_usage(fmt::format("field '{}' lies on the whole mesh; a contour needs values at the points", name.name), "contour");
+  }
+  const Field* f = input.fields().active(1);
+  if (f && f->association == Association::point) return *f;
+  for (const Field& p : input.fields())
+    if (p.association == Association::point && p.components() == 1) return p;
+  for (const Field& p : input.fields())
+    if (p.association == Association::point) return p;  // a vector: the next check says what to do
+  if (f) fail_usage(fmt::format("the mesh has no point field to contour, only the cell field '{}'", f->name), "contour", "average it to the points first");
+  fail_usage("the mesh has no point field to contour", "contour");
+}
+
+// 0, 1, ... or -1 for the magnitude.
+int choose_component(const Field& f, const std::string& word) {
+  const int n = f.components();
+  const std::string choices = fmt::format("set component=magnitude, or component=0 to {}", n - 1);
+  if (word.empty()) {
+    if (n > 1) fail_usage(fmt::format("field '{}' has {} components; a contour needs one number per point", f.name, n), "contour", choices);
+    return 0;
+  }
+  if (equal_ignoring_case(word, "magnitude")) return n > 1 ? -1 : 0;
+  int64_t c = -1;
+  if (const auto number = parse_int(word)) c = *number;
+  else if (word.size() == 1) c = int64_t(std::string("xyz").find(to_lower(word)[0]));
+  if (c < 0 || c >= n) fail_usage(fmt::format("field '{}' has no component '{}'", f.name, word), "contour component", n > 1 ? choices : "it has one component: leave component out");
+  return int(c);
+}
+
+// One packed component in a type that the kernels read as it is.
+Array choose_samples(const Field& f, int component) {
+  const ElementType t = f.array.type();
+  if (component < 0) return scalar_of(f, -1, t == ElementType::f64 || element_size(t) >= 4 ? t == ElementType::f32 ? ElementType::f32 : ElementType::f64 : ElementType::f32);
+  const Array a = f.array.component(component);
+  switch (t) {
+    case ElementType::u32:
+    case ElementType::i32:
+    case ElementType::u64:
+    case ElementType::i64: return a.converted(ElementType::f64);
+    default: return a.made_packed();
+  }
+}
+
+// Zero where single precision serves near the data, else the middle of the box.
+Vec3 choose_origin(const Box3& box) {
+  if (box.empty()) return {};
+  double far = 0;
+  for (int a = 0; a < 3; ++a) far = std::max({far, std::abs(box.lo[a]), std::abs(box.hi[a])});
+  return far <= 4 * box.diagonal() ? Vec3() : box.center();
+}
+
+void check_mesh(const Dataset& input) {
+  if (input.point_count() > size_t(UINT32_MAX)) fail_usage("the mesh has more than 2^32 points", "contour", "contour a part of it at a time");
+  if (is_lattice(input.mesh())) {
+    int axes = 0;
+    for (size_t n : lattice_dims(input.mesh())) axes += n > 1;
+    if (axes < 2 && input.point_count() > 0)
+      fail_usage(fmt::format("a grid with {} axis of more than one point has no contour", axes), "contour", "give it a grid of two or three axes");
+  } else if (!input.as<UnstructuredMesh>() && !input.as<SurfaceMesh>()) {
+    const bool amr = input.as<AmrGrid>();
+    fail_usage(fmt::format("a mesh of kind '{}' cannot be contoured", input.kind()), "contour",
+               amr ? "resample it to a uniform grid, or turn its leaf cells into an unstructured mesh" : "resample the points to a grid first");
+  }
+}
+
+template <class Get>
+Array joined(std::vector<Piece>& pieces, int components, Get&& get, bool ids) {
+  if (pieces.size() == 1) return get(pieces[0]);
+  size_t total = 0;
+  ElementType type = get(pieces[0]).type();
+  for (Piece& p : pieces) {
+    total += get(p).count();
+    if (get(p).count()) type = get(p).type();
+  }
+  std::byte* out = nullptr;
+  Array r = Array::make_raw(type, total, components, &out);
+  int32_t before = 0;
+  for (Piece& p : pieces) {
+    const Array a = get(p);
+    std::memcpy(out, a.raw(), a.bytes());
+    if (ids)
+      for (size_t i = 0; i < a.count(); ++i) reinterpret_cast<int32_t*>(out)[i] += before;
+    out += a.bytes();
+    before += int32_t(p.points.count);
+  }
+  return r;
+}
+
+template <class T, class Get>
+std::vector<T> joined_list(const std::vector<Piece>& pieces, Get&& get) {
+  std::vector<T> r;
+  for (const Piece& p : pieces) r.insert(r.end(), get(p).data, get(p).data + get(p).count);
+  return r;
+}
+
+DatasetPtr assemble(const Dataset& input, const Field& field, const std::vector<double>& values, std::vector<Piece> pieces, const Job& job, bool wants_normals) {
+  size_t total = 0;
+  for (const Piece& p : pieces) total += p.points.count;
+  if (total > size_t(INT32_MAX)) fail_usage("the surfaces have more than 2^31 points", "contour", "ask for fewer values at a time");
+  SurfaceMesh mesh;
+  mesh.points.xyz = joined(pieces, 3, [](Piece& p) { return p.xyz; }, false);
+  mesh.points.origin = job.origin;
+  mesh.lines.connectivity = joined(pieces, 1, [](Piece& p) { return p.lines; }, true);
+  mesh.polygons.connectivity = joined(pieces, 1, [](Piece& p) { return p.triangles; }, true);
+  if (mesh.lines.connectivity.count()) mesh.lines.fixed = 2;
+  else mesh.lines = {};
+  mesh.polygons.fixed = 3;
+  if (mesh.polygons.connectivity.empty()) mesh.polygons.connectivity = Array::from_vector(std::vector<int32_t>());
+
+  FieldSet out;
+  std::vector<EdgePoint> list;
+  std::span<const EdgePoint> edges = pieces[0].points.span();
+  if (pieces.size() > 1) edges = list = joined_list<EdgePoint>(pieces, [](const Piece& p) -> const Block<EdgePoint>& { return p.points; });
+  for (const Field& f : input.fields()) {
+    if (f.association != Association::point) continue;
+    const bool made = job.values && f.array.raw() == job.samples.raw();  // the vertices had its numbers in hand
+    out.add({f.name, f.association, made ? joined(pieces, 1, [](Piece& p) { return p.values; }, false) : interpolate(f.array, edges), f.unit, f.role});
+  }
+  if (wants_normals) {
+    float* none = nullptr;
+    for (Piece& p : pieces)
+      if (p.normals.empty()) p.normals = Array::make<float>(p.points.count, 3, &none), std::fill(none, none + 3 * p.points.count, 0.0f);
+    out.add({"Normals", Association::point, joined(pieces, 3, [](Piece& p) { return p.normals; }, false), "", Role::normals});
+  }
+  if (job.cells) {
+    auto cells = joined_list<uint32_t>(pieces, [](const Piece& p) -> const Block<uint32_t>& { return p.line_cells; });
+    const auto triangles = joined_list<uint32_t>(pieces, [](const Piece& p) -> const Block<uint32_t>& { return p.triangle_cells; });
+    cells.insert(cells.end(), triangles.begin(), triangles.end());
+    carry_gathered(out, input.fields(), Association::cell, std::span<const uint32_t>(cells), Association::cell);
+  }
+  if (values.size() > 1) {
+    std::vector<double> which;
+    for (size_t i = 0; i < pieces.size(); ++i) which.insert(which.end(), pieces[i].lines.count() / 2, values[i]);
+    for (size_t i = 0; i < pieces.size(); ++i) which.insert(which.end(), pieces[i].triangles.count() / 3, values[i]);
+    out.add({"contour value", Association::cell, Array::from_vector(std::move(which)), field.unit, Role::none});
+  }
+  carry_whole(out, input.fields());
+  DatasetParts parts;
+  parts.mesh = std::move(mesh);
+  parts.fields = std::move(out);
+  parts.notes = input.notes();
+  parts.time = input.time();
+  return make_dataset(std::move(parts));
+}
+
+// Has the mesh solids (or, failing that, faces) to cut?
+int mesh_dimension(const Dataset& input) {
+  if (is_lattice(input.mesh())) {
+    int axes = 0;
+    for (size_t n : lattice_dims(input.mesh())) axes += n > 1;
+    return axes;
+  }
+  int dimension = 0;
+  bool thin = false;
+  for (const auto& [name, count] : cell_type_counts(input.mesh()))
+    for (int t = 0; t < 256; ++t)
+      if (const CellTypeInfo* info = cell_type_info(uint8_t(t)); info && info->name == name && count) {
+        dimension = std::max(dimension, info->dimension);
+        thin = thin || info->dimension < 2;
+      }
+  if (dimension < 2 && input.cell_count() > 0)
+    fail_usage("the mesh has only points and lines; a contour needs faces or solids", "contour");
+  return dimension;
+}
+
+}  // namespace
+
+DatasetPtr contour(const DatasetPtr& input, const ContourParams& params, Context& context) {
+  check_mesh(*input);
+  const Field& field = choose_field(*input, params.field);
+  const int component = choose_component(field, params.component);
+  const int dimension = mesh_dimension(*input);
+  std::vector<double> values = params.values;
+  if (values.empty()) {
+    const Range range = input->range(field, component);
+    values.push_back(range.empty() ? 0.0 : range.lo + 0.5 * (range.hi - range.lo));
+  }
+  for (double v : values)
+    if (!std::isfinite(v)) fail_usage(fmt::format("{} is no isovalue", v), "contour values", "give finite numbers");
+
+  Job job{*input, choose_samples(field, component), params.normals, false, false, choose_origin(input->bounds()), context};
+  for (const Field& f : input->fields()) job.cells = job.cells || f.association == Association::cell;
+  job.values = is_lattice(input->mesh()) && input->point_count() > 0 && job.samples.raw() == field.array.raw() && field.components() == 1;
+  std::vector<Piece> pieces;
+  if (is_lattice(input->mesh()) && input->point_count() > 0) {
+    LatticeContour lattice(job);
+    for (double v : values) pieces.push_back(lattice.run(v));
+  } else if (is_lattice(input->mesh())) {
+    Piece none;
+    float* p = nullptr;
+    none.xyz = Array::make<float>(0, 3, &p);
+    pieces.assign(values.size(), none);
+  } else {
+    for (double v : values) pieces.push_back(contour_cells(job, v));
+  }
+  for (size_t i = 0; i < pieces.size(); ++i) {
+    if (pieces[i].lines.count() + pieces[i].triangles.count() > 0) continue;
+    const Range range = input->range(field, component);  // not before: it is a pass over all samples
+    context.info(range.empty() ? fmt::format("contour: field '{}' has no values", field.name)
+                                           : fmt::format("contour: nothing at {} = {}; the field runs from {} to {}", field.name, short_number(values[i]), short_number(range.lo), short_number(range.hi)));
+  }
+  return assemble(*input, field, values, std::move(pieces), job, params.normals && dimension == 3);
+}
+
+}  // namespace sg

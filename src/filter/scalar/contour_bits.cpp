@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// Samples to bits: one streaming pass, written so that compilers vectorise it.
+#include <cmath>
+#include <type_traits>
+
+#include "base/parallel.h"
+#include "filter/scalar/contour_parts.h"
+
+namespace sg::contouring {
+
+namespace {
+
+#if defined(__x86_64__) && !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
+#define SG_CLONES __attribute__((target_clones("default", "avx2", "arch=x86-64-v4")))
+#else
+#define SG_CLONES
+#endif
+
+// 64 flags of 0 or 1 to bits: eight bytes at a time, gathered in the top byte by one multiplication.
+inline uint64_t pack64(const uint8_t* flags) {
+  uint64_t r = 0;
+  for (int b = 0; b < 8; ++b) {
+    uint64_t x;
+    std::memcpy(&x, flags + 8 * b, 8);
+    r |= (x * 0x0102040810204080ull) >> 56 << (8 * b);
+  }
+  return r;
+}
+
+#define SG_AT_LEAST(T)                                                                     \
+  SG_CLONES void at_least(const T* p, size_t words, T least, uint64_t* bits) {             \
+    for (size_t w = 0; w < words; ++w, p += 64) {                                          \
+      uint8_t flags[64];                                                                   \
+      for (size_t i = 0; i < 64; ++i) flags[i] = p[i] >= least;                            \
+      bits[w] = pack64(flags);                                                             \
+    }                                                                                      \
+  }
+SG_AT_LEAST(uint8_t)
+SG_AT_LEAST(int8_t)
+SG_AT_LEAST(uint16_t)
+SG_AT_LEAST(int16_t)
+SG_AT_LEAST(float)
+SG_AT_LEAST(double)
+
+#define SG_ANY_NAN(T)                                       \
+  SG_CLONES bool any_nan(const T* p, size_t n) {            \
+    int odd = 0;                                            \
+    for (size_t i = 0; i < n; ++i) odd |= p[i] != p[i];     \
+    return odd != 0;                                        \
+  }
+SG_ANY_NAN(float)
+SG_ANY_NAN(double)
+
+// The smallest T for which x >= value holds exactly when x >= it; `none` when there is no such number.
+template <class T>
+T threshold(double value, bool& none) {
+  none = false;
+  if constexpr (std::is_floating_point_v<T>) {
+    T t = T(value);
+    if (double(t) < value) t = std::nextafter(t, std::numeric_limits<T>::infinity());
+    return t;
+  } else {
+    const double up = std::ceil(value);
+    none = up > double(std::numeric_limits<T>::max());
+    return up < double(std::numeric_limits<T>::min()) ? std::numeric_limits<T>::min() : none ? T(0) : T(up);
+  }
+}
+
+template <class T>
+bool classify_rows(const T* p, size_t nx, size_t begin, size_t end, double value, uint64_t* bits, size_t words) {
+  bool none = false, nan = false;
+  const T least = threshold<T>(value, none);
+  for (size_t r = begin; r < end; ++r) {
+    const T* row = p + r * nx;
+    uint64_t* out = bits + r * words;
+    if (none) {
+      std::fill(out, out + words, 0);
+      continue;
+    }
+    const size_t whole = nx / 64, rest = nx % 64;
+    at_least(row, whole, least, out);
+    if (rest) {
+      T tail[64];
+      for (size_t i = 0; i < 64; ++i) tail[i] = row[64 * whole + std::min(i, rest - 1)];
+      at_least(tail, 1, least, out + whole);
+      out[whole] &= ~uint64_t(0) >> (64 - rest);
+    }
+    if constexpr (std::is_floating_point_v<T>) nan = nan || any_nan(row, nx);
+  }
+  return nan;
+}
+
+template <class F>
+decltype(auto) native(const Array& a, F&& f) {
+  switch (a.type()) {
+    case ElementType::u8: return f(a.view<uint8_t>().data);
+    case ElementType::i8: return f(a.view<int8_t>().data);
+    case ElementType::u16: return f(a.view<uint16_t>().data);
+    case ElementType::i16: return f(a.view<int16_t>().data);
+    case ElementType::f32: return f(a.view<float>().data);
+    default: return f(a.view<double>().data);
+  }
+}
+
+size_t row_grain(size_t nx) { return std::max<size_t>(1, 65536 / std::max<size_t>(nx, 1)); }
+
+}  // namespace
+
+bool classify(const Array& samples, size_t nx, size_t rows, double value, uint64_t* bits, size_t words, Context& context) {
+  return native(samples, [&](const auto* p) {
+    return parallel_reduce(rows, row_grain(nx), false, [&](size_t begin, size_t end) { return classify_rows(p, nx, begin, end, value, bits, words); },
+                           [](bool a, bool b) { return a || b; }, &context);
+  });
+}
+
+void find_missing(const Array& samples, size_t nx, size_t rows, uint64_t* bits, size_t words, Context& context) {
+  const Sample f(samples);
+  parallel_for(rows, row_grain(nx), [&](size_t begin, size_t end) {
+    for (size_t r = begin; r < end; ++r)
+      for (size_t i = 0; i < nx; ++i) bits[r * words + i / 64] |= uint64_t(std::isnan(f(r * nx + i))) << (i % 64);
+  }, &context);
+}
+
+}  // namespace sg::contouring

@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: Apache-2.0
+// Contours of unstructured and surface meshes, cell by cell. A cut edge is known by its two point numbers, so that cells of
+// different kinds share it; the numbers are sorted afterwards to count each edge once.
+#include <bit>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "filter/field/gradient_cells.h"
+#include "filter/scalar/cell_cases.h"
+#include "filter/scalar/contour_parts.h"
+
+namespace sg::contouring {
+
+namespace {
+
+uint64_t edge_key(int64_t a, int64_t b) { return a < b ? uint64_t(a) << 32 | uint64_t(b) : uint64_t(b) << 32 | uint64_t(a); }
+
+struct Found {
+  std::vector<uint64_t> lines, triangles;
+  std::vector<uint32_t> line_cells, triangle_cells;
+};
+
+struct Finder {
+  const Job& job;
+  const Points& points;
+  double value;
+  Sample f{job.samples};
+  View<uint8_t> point_ghost = job.input.point_ghost().empty() ? View<uint8_t>{} : job.input.point_ghost().view<uint8_t>();
+  View<uint8_t> cell_ghost = job.input.cell_ghost().empty() ? View<uint8_t>{} : job.input.cell_ghost().view<uint8_t>();
+
+  bool skipped(size_t cell) const { return cell_ghost.count && (cell_ghost[cell] & (ghost_duplicate | ghost_refined_cell | ghost_hidden_cell)); }
+  bool bad(int64_t p) const { return std::isnan(f(size_t(p))) || (point_ghost.count && (point_ghost[size_t(p)] & ghost_hidden_point)); }
+
+  // Positive when the faces, as listed, turn outwards.
+  double volume(const CellShape& shape, const CellsView& cells, size_t cell) const {
+    const Vec3 base = points.at(size_t(cells.point(cell, 0)));
+    auto at = [&](uint8_t c) { return points.at(size_t(cells.point(cell, c))) - base; };
+    double v = 0;
+    for (const auto& face : shape.faces)
+      for (size_t k = 1; k + 1 < face.size(); ++k) v += dot(at(face[0]), cross(at(face[k]), at(face[k + 1])));
+    return v;
+  }
+
+  void solid(const CaseTable& table, const CellsView& cells, size_t cell, Found& out) const {
+    const CellShape& shape = table.shape();
+    uint32_t pattern = 0;
+    for (int c = 0; c < shape.corners; ++c) pattern |= uint32_t(f(size_t(cells.point(cell, size_t(c)))) >= value) << c;
+    if (pattern == 0 || pattern == (1u << shape.corners) - 1) return;
+    for (int c = 0; c < shape.corners; ++c)
+      if (bad(cells.point(cell, size_t(c)))) return;
+    uint32_t joined = 0;
+    for (uint32_t m = table.ambiguous(pattern); m; m &= m - 1) {
+      const auto& face = shape.faces[size_t(std::countr_zero(m))];
+      double v[4];
+      for (size_t c = 0; c < 4; ++c) v[c] = f(size_t(cells.point(cell, face[c]))) - value;
+      joined |= uint32_t(joined_inside(v[0], v[1], v[2], v[3])) << std::countr_zero(m);
+    }
+    const auto edges = table.triangles(pattern, joined);
+    const bool flip = volume(shape, cells, cell) < 0;
+    for (size_t t = 0; t < edges.size(); t += 3) {
+      for (size_t k = 0; k < 3; ++k) {
+        const auto& e = shape.edges[edges[t + (flip ? (3 - k) % 3 : k)]];
+        out.triangles.push_back(edge_key(cells.point(cell, e[0]), cells.point(cell, e[1])));
+      }
+      out.triangle_cells.push_back(uint32_t(cell));
+    }
+  }
+
+  // A polygon: a line from where the boundary leaves the inside to where it came in, so that the inside lies on the left.
+  void polygon(std::span<const int64_t> p, size_t number, Found& out) const {
+    const size_t n = p.size();
+    bool any = false, every = true;
+    for (int64_t q : p) {
+      const bool in = f(size_t(q)) >= value;
+      any = any || in, every = every && in;
+    }
+    if (!any || every) return;
+    for (int64_t q : p)
+      if (bad(q)) return;
+    auto in = [&](size_t k) { return f(size_t(p[k % n])) >= value; };
+    size_t start = 0;
+    while (in(start) || !in(start + 1)) ++start;
+    uint64_t first_entry = 0, entry = 0, exit = 0;
+    const bool four = n == 4 && in(0) == in(2) && in(1) == in(3);
+    const bool join = four && joined_inside(f(size_t(p[0])) - value, f(size_t(p[1])) - value, f(size_t(p[2])) - value, f(size_t(p[3])) - value);
+    auto line = [&](uint64_t a, uint64_t b) {
+      out.lines.push_back(a), out.lines.push_back(b);
+      out.line_cells.push_back(uint32_t(number));
+    };
+    for (size_t s = 0; s < n; ++s) {
+      const size_t k = start + s;
+      const uint64_t key = edge_key(p[k % n], p[(k + 1) % n]);
+      if (!in(k) && in(k + 1)) {
+        entry = key;
+        if (s == 0) first_entry = key;
+        else if (join) line(exit, entry);
+      } else if (in(k) && !in(k + 1)) {
+        exit = key;
+        if (!join) line(exit, entry);
+      }
+    }
+    if (join) line(exit, first_entry);
+  }
+};
+
+template <class Each>
+Found find(size_t n, const Context& context, Each&& each) {
+  constexpr size_t grain = 4096;
+  std::vector<Found> parts((n + grain - 1) / grain);
+  parallel_for(n, grain, [&](size_t begin, size_t end) {
+    for (size_t c = begin; c < end; ++c) each(c, parts[begin / grain]);
+  }, &context);
+  Found all;
+  auto join = [&](auto member) {
+    size_t size = 0;
+    for (const Found& p : parts) size += (p.*member).size();
+    (all.*member).reserve(size);
+    for (const Found& p : parts) (all.*member).insert((all.*member).end(), (p.*member).begin(), (p.*member).end());
+  };
+  join(&Found::lines), join(&Found::triangles), join(&Found::line_cells), join(&Found::triangle_cells);
+  return all;
+}
+
+[[noreturn]] void unsupported(const UnstructuredMesh& m, size_t cell) {
+  fail_usage(fmt::format("cell {} is a {}; only linear cells can be contoured", cell, cell_type_info(m.type(cell)).name), "contour",
+             "split the mesh into linear cells first");
+}
+
+Found find_cells(const Finder& finder, const UnstructuredMesh& m) {
+  const CellsView cells = cells_view(m.cells);
+  return find(cells.count, finder.job.context, [&](size_t c, Found& out) {
+    if (finder.skipped(c)) return;
+    const CellType type = m.type(c);
+    if (const CaseTable* table = cell_cases(type)) return finder.solid(*table, cells, c, out);
+    const CellTypeInfo& info = cell_type_info(type);
+    if (info.dimension < 2) return;
+    const size_t n = cells.size(c), b = cells.begin(c);
+    auto p = [&](size_t k) { return cells.connectivity[b + k]; };
+    if (type == CellType::pixel) {
+      const int64_t around[4] = {p(0), p(1), p(3), p(2)};
+      finder.polygon(around, c, out);
+    } else if (type == CellType::triangle_strip) {
+      for (size_t k = 0; k + 2 < n; ++k) {
+        const int64_t around[3] = {p(k), p(k + 1 + k % 2), p(k + 2 - k % 2)};
+        finder.polygon(around, c, out);
+      }
+    } else if (type == CellType::triangle || type == CellType::quad || type == CellType::polygon) {
+      std::vector<int64_t> around(n);
+      for (size_t k = 0; k < n; ++k) around[k] = p(k);
+      finder.polygon(around, c, out);
+    } else {
+      unsupported(m, c);
+    }
+  });
+}
+
+Found find_cells(const Finder& finder, const SurfaceMesh& m) {
+  const CellsView polygons = cells_view(m.polygons), strips = cells_view(m.strips);
+  const size_t before = m.vertices.size() + m.lines.size();
+  return find(polygons.count + strips.count, finder.job.context, [&](size_t c, Found& out) {
+    if (finder.skipped(before + c)) return;
+    const bool strip = c >= polygons.count;
+    const CellsView& cells = strip ? strips : polygons;
+    const size_t cell = strip ? c - polygons.count : c, n = cells.size(cell);
+    std::vector<int64_t> p(n);
+    for (size_t k = 0; k < n; ++k) p[k] = cells.point(cell, k);
+    if (!strip) return finder.polygon(p, before + c, out);
+    for (size_t k = 0; k + 2 < n; ++k) {
+      const int64_t around[3] = {p[k], p[k + 1 + k % 2], p[k + 2 - k % 2]};
+      finder.polygon(around, before + c, out);
+    }
+  });
+}
+
+// Distinct edges in order of their point numbers, by buckets of the lower one.
+class EdgeNumbers {
+ public:
+  EdgeNumbers(size_t points, const Found& found) : start_(points + 1, 0) {
+    for (const auto* keys : {&found.lines, &found.triangles})
+      for (uint64_t k : *keys) ++start_[k >> 32];
+    exclusive_scan(start_);
+    std::vector<uint32_t> other(start_.back());
+    std::vector<size_t> next(start_.begin(), start_.end() - 1);
+    for (const auto* keys : {&found.lines, &found.triangles})
+      for (uint64_t k : *keys) other[next[k >> 32]++] = uint32_t(k);
+    std::vector<size_t> count(points + 1, 0);
+    parallel_for(points, 1 << 14, [&](size_t begin, size_t end) {
+      for (size_t p = begin; p < end; ++p) {
+        const auto b = other.begin() + ptrdiff_t(start_[p]), e = other.begin() + ptrdiff_t(start_[p + 1]);
+        std::sort(b, e);
+        count[p] = size_t(std::unique(b, e) - b);
+      }
+    });
+    std::vector<size_t> first = count;
+    exclusive_scan(first);
+    other_.resize(first.back());
+    parallel_for(points, 1 << 14, [&](size_t begin, size_t end) {
+      for (size_t p = begin; p < end; ++p) std::copy_n(other.begin() + ptrdiff_t(start_[p]), count[p], other_.begin() + ptrdiff_t(first[p]));
+    });
+    start_ = std::move(first);
+  }
+  size_t size() const { return other_.size(); }
+  int32_t operator()(uint64_t key) const {
+    size_t i = start_[key >> 32];
+    while (other_[i] != uint32_t(key)) ++i;
+    return int32_t(i);
+  }
+  template <class F>
+  void each(F&& f) const {  // f(vertex, a, b), in parallel
+    parallel_for(start_.size() - 1, 1 << 14, [&](size_t begin, size_t end) {
+      for (size_t p = begin; p < end; ++p)
+        for (size_t i = start_[p]; i < start_[p + 1]; ++i) f(i, uint32_t(p), other_[i]);
+    });
+  }
+
+ private:
+  std::vector<size_t> start_;
+  std::vector<uint32_t> other_;
+};
+
+Array make_normals(const Job& job, const Block<EdgePoint>& edges) {
+  std::vector<uint32_t> points;
+  std::vector<uint32_t> slot(job.input.point_count(), UINT32_MAX);
+  for (size_t i = 0; i < edges.count; ++i)
+    for (uint32_t p : {edges.data[i].a, edges.data[i].b})
+      if (slot[p] == UINT32_MAX) {
+        slot[p] = uint32_t(points.size());
+        points.push_back(p);
+      }
+  std::vector<double> g(points.size() * 3);
+  least_squares_gradients(job.input, points, job.samples.converted(ElementType::f64), g.data(), job.context);
+  float* out = nullptr;
+  Array normals = Array::make<float>(edges.count, 3, &out);
+  for (size_t i = 0; i < edges.count; ++i) {
+    const EdgePoint e = edges.data[i];
+    const double *a = &g[3 * slot[e.a]], *b = &g[3 * slot[e.b]], t = double(e.t);
+    const Vec3 n = Vec3(a[0], a[1], a[2]) * (1 - t) + Vec3(b[0], b[1], b[2]) * t;
+    const double size = length(n);
+    for (int c = 0; c < 3; ++c) out[3 * i + size_t(c)] = size > 0 && std::isfinite(size) ? float(-n[c] / size) : 0.0f;
+  }
+  return normals;
+}
+
+Block<uint32_t> cell_block(const std::vector<uint32_t>& v) {
+  Block<uint32_t> b;
+  b.allocate(v.size());
+  std::copy(v.begin(), v.end(), b.data);
+  return b;
+}
+
+}  // namespace
+
+Piece contour_cells(const Job& job, double value) {
+  const auto* mesh = job.input.as<UnstructuredMesh>();
+  const Points& points = mesh ? mesh->points : job.input.as<SurfaceMesh>()->points;
+  const Finder finder{job, points, value};
+  const Found found = mesh ? find_cells(finder, *mesh) : find_cells(finder, *job.input.as<SurfaceMesh>());
+  const EdgeNumbers numbers(points.count(), found);
+  if (numbers.size() > size_t(INT32_MAX)) fail_usage("the surface has more than 2^31 points", "contour", "contour a part of the mesh at a time");
+
+  Piece piece;
+  float* xyz = nullptr;
+  piece.xyz = Array::make<float>(numbers.size(), 3, &xyz);
+  piece.points.allocate(numbers.size());
+  numbers.each([&](size_t v, uint32_t a, uint32_t b) {
+    const double t = crossing(value, finder.f(a), finder.f(b));
+    piece.points.data[v] = {a, b, float(t)};
+    const Vec3 from = points.at(a) - job.origin, to = points.at(b) - job.origin;
+    const Vec3 x = from + (to - from) * t;
+    for (int c = 0; c < 3; ++c) xyz[3 * v + size_t(c)] = float(x[c]);
+  });
+  auto connect = [&](const std::vector<uint64_t>& keys) {
+    int32_t* out = nullptr;
+    Array a = Array::make<int32_t>(keys.size(), 1, &out);
+    parallel_for(keys.size(), 1 << 15, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) out[i] = numbers(keys[i]);
+    });
+    return a;
+  };
+  piece.lines = connect(found.lines);
+  piece.triangles = connect(found.triangles);
+  piece.line_cells = cell_block(found.line_cells);
+  piece.triangle_cells = cell_block(found.triangle_cells);
+  if (job.normals && !found.triangles.empty()) piece.normals = make_normals(job, piece.points);
+  return piece;
+}
+
+}  // namespace sg::contouring

@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: Apache-2.0
+// Marching cubes and squares on lattices, by rows of bits. One bit per sample says inside or outside; cut edges and crossed cells
+// are then exclusive ors of rows, 64 at a time, so that everything away from the surface costs next to nothing. Rows are counted,
+// the counts are summed, and all rows are written at the same time, as in the flying edges of Schroeder, Maynard, Geveci 2015.
+#include <bit>
+
+#include "base/parallel.h"
+#include "filter/scalar/cell_cases.h"
+#include "filter/scalar/contour_parts.h"
+
+namespace sg::contouring {
+
+struct LatticeContour::Cuts {
+  double value = 0;
+  std::vector<uint64_t> inside;
+  std::vector<uint64_t> cut[3];
+  std::vector<RowStart> rows;
+  size_t vertices = 0, cells = 0;
+};
+
+namespace {
+
+// One word of a row of bits, and the same shifted so that bit i is that of point i+1.
+struct Pair {
+  uint64_t m = 0, s = 0;
+  Pair() = default;
+  Pair(const uint64_t* row, size_t w, size_t words) : m(row[w]), s(row[w] >> 1 | (w + 1 < words ? row[w + 1] << 63 : 0)) {}
+  uint32_t corners(int b) const { return uint32_t(m >> b & 1) | uint32_t(s >> b & 1) << 1; }
+};
+
+// Bits of the edges (and cells) along x that exist in word w: point i and i+1 < n.
+uint64_t inner_bits(size_t w, size_t n) {
+  const size_t from = 64 * w, last = n - 1;
+  return from >= last ? 0 : last - from >= 64 ? ~uint64_t(0) : ~uint64_t(0) >> (64 - (last - from));
+}
+
+constexpr ptrdiff_t corner_offset(int c, const LatticeFrame& f) {
+  return (c & 1) + (c >> 1 & 1) * f.stride[1] + (c >> 2) * f.stride[2];
+}
+
+uint32_t joined_faces(uint32_t ambiguous, size_t p, double value, const LatticeFrame& frame, const Sample& f) {
+  const auto& faces = lattice_cases().shape().faces;
+  uint32_t joined = 0;
+  for (uint32_t m = ambiguous; m; m &= m - 1) {
+    const int face = std::countr_zero(m);
+    double v[4];
+    for (size_t c = 0; c < 4; ++c) v[c] = f(size_t(ptrdiff_t(p) + corner_offset(faces[size_t(face)][c], frame))) - value;
+    joined |= uint32_t(joined_inside(v[0], v[1], v[2], v[3])) << face;
+  }
+  return joined;
+}
+
+// Lines of a square: corners 0 (0,0), 1 (1,0), 2 (0,1), 3 (1,1); edges 0 below, 1 above (along x), 2 left, 3 right. Pairs of edges,
+// the inside on the left. Patterns 6 and 9 have two ways: inside corners apart, then joined.
+struct Square {
+  uint8_t lines, edge[4];
+};
+constexpr Square squares[18] = {
+    {0, {}}, {1, {0, 2}}, {1, {3, 0}}, {1, {3, 2}}, {1, {2, 1}}, {1, {0, 1}}, {2, {3, 0, 2, 1}}, {1, {3, 1}},
+    {1, {1, 3}}, {2, {0, 2, 1, 3}}, {1, {1, 0}}, {1, {1, 2}}, {1, {2, 3}}, {1, {0, 3}}, {1, {2, 0}}, {0, {}},
+    {2, {2, 0, 3, 1}}, {2, {0, 3, 1, 2}}};
+
+Square square_of(uint32_t pattern, size_t p, double value, const LatticeFrame& frame, const Sample& f) {
+  if (pattern != 6 && pattern != 9) return squares[pattern];
+  const size_t up = size_t(frame.stride[1]);
+  const bool joined = joined_inside(f(p) - value, f(p + 1) - value, f(p + up + 1) - value, f(p + up) - value);
+  return squares[joined ? pattern == 6 ? 16 : 17 : pattern];
+}
+
+}  // namespace
+
+LatticeContour::LatticeContour(const Job& job) : job_(job), lattice_(job.input.mesh()), frame_(lattice_.view()), sample_(job.samples) {
+  words_ = (frame_.dims[0] + 63) / 64;
+  flip_ = !frame_.right_handed();
+  const size_t nx = frame_.dims[0], rows = frame_.dims[1] * frame_.dims[2];
+  if (const Array& ghost = job.input.point_ghost(); !ghost.empty()) {
+    const auto g = ghost.view<uint8_t>();
+    std::vector<uint64_t> bad(rows * words_);
+    for (size_t r = 0; r < rows; ++r)
+      for (size_t i = 0; i < nx; ++i) bad[r * words_ + i / 64] |= uint64_t((g[r * nx + i] & ghost_hidden_point) != 0) << (i % 64);
+    skip_points(bad);
+  }
+  if (const Array& ghost = job.input.cell_ghost(); !ghost.empty()) {
+    const auto g = ghost.view<uint8_t>();
+    skip_.resize(rows * words_);
+    const size_t cx = nx - 1, cy = frame_.dims[1] - 1;
+    for (size_t c = 0; c < g.count; ++c) {
+      if (!(g[c] & (ghost_duplicate | ghost_refined_cell | ghost_hidden_cell))) continue;
+      const size_t i = c % cx, j = c / cx % cy, k = c / cx / cy;
+      skip_[(j + frame_.dims[1] * k) * words_ + i / 64] |= uint64_t(1) << (i % 64);
+    }
+  }
+}
+
+// A cell is left out when one of its corners is bad.
+void LatticeContour::skip_points(const std::vector<uint64_t>& bad) {
+  const size_t ny = frame_.dims[1], nz = frame_.dims[2];
+  skip_.resize(ny * nz * words_);
+  for (size_t k = 0; k < nz; ++k)
+    for (size_t j = 0; j < ny; ++j)
+      for (size_t w = 0; w < words_; ++w) {
+        uint64_t any = 0;
+        for (size_t dk = 0; dk < 2; ++dk)
+          for (size_t dj = 0; dj < 2; ++dj) {
+            if (j + dj >= ny || k + dk >= nz) continue;
+            const Pair p(bad.data() + (j + dj + ny * (k + dk)) * words_, w, words_);
+            any |= p.m | p.s;
+          }
+        skip_[(j + ny * k) * words_ + w] |= any;
+      }
+}
+
+Piece LatticeContour::run(double value) {
+  const size_t nx = frame_.dims[0], rows = frame_.dims[1] * frame_.dims[2];
+  Cuts cuts;
+  cuts.value = value;
+  cuts.inside.resize(rows * words_);
+  const bool nan = classify(job_.samples, nx, rows, value, cuts.inside.data(), words_, job_.context);
+  if (nan && !missing_known_) {
+    std::vector<uint64_t> bad(rows * words_);
+    find_missing(job_.samples, nx, rows, bad.data(), words_, job_.context);
+    skip_points(bad);
+    missing_known_ = true;
+  }
+  find_cuts(cuts);
+  if (cuts.vertices > size_t(INT32_MAX)) fail_usage("the surface has more than 2^31 points", "contour", "contour a part of the grid at a time");
+  return generate(cuts);
+}
+
+void LatticeContour::find_cuts(Cuts& cuts) const {
+  const size_t ny = frame_.dims[1], nz = frame_.dims[2], rows = ny * nz;
+  for (int a = 0; a < frame_.axes; ++a) cuts.cut[a].resize(rows * words_);
+  cuts.rows.resize(rows);
+  parallel_for(rows, std::max<size_t>(1, 512 / words_), [&](size_t begin, size_t end) {
+    for (size_t r = begin; r < end; ++r) count_row(cuts, r % ny, r / ny);
+  }, &job_.context);
+  for (RowStart& row : cuts.rows) {
+    cuts.vertices += std::exchange(row.vertex, cuts.vertices);
+    cuts.cells += std::exchange(row.cell, cuts.cells);
+  }
+}
+
+// An edge is cut when its ends differ and a good cell lies at it; a cell is crossed when its corners differ.
+void LatticeContour::count_row(Cuts& cuts, size_t j, size_t k) const {
+  const size_t nx = frame_.dims[0], ny = frame_.dims[1], nz = frame_.dims[2], r = j + ny * k;
+  const uint64_t* inside = cuts.inside.data();
+  const bool up = j + 1 < ny, back = k + 1 < nz;
+  const bool solid = frame_.axes == 3;
+  const bool cells = up && (back || !solid);
+  const CaseTable& table = lattice_cases();
+  RowStart& row = cuts.rows[r];
+  // Good cells of the row (dj, dk) before this one, 0 outside the grid; `spread` adds those to the left, for edges across x.
+  auto good = [&](size_t dj, size_t dk, size_t w, bool spread) -> uint64_t {
+    if (j < dj || k < dk || j - dj + 1 >= ny || (solid && k - dk + 1 >= nz) || (!solid && dk)) return 0;
+    const uint64_t* s = skip_.data() + (j - dj + ny * (k - dk)) * words_;
+    const uint64_t here = ~s[w] & inner_bits(w, nx);
+    return spread ? here | here << 1 | (w ? (~s[w - 1] & inner_bits(w - 1, nx)) >> 63 : 0) : here;
+  };
+  for (size_t w = 0; w < words_; ++w) {
+    const Pair a(inside + r * words_, w, words_);
+    const uint64_t inner = inner_bits(w, nx);
+    const Pair b = up ? Pair(inside + (r + 1) * words_, w, words_) : a;
+    const Pair c = back ? Pair(inside + (r + ny) * words_, w, words_) : a;
+    uint64_t cut[3] = {(a.m ^ a.s) & inner, a.m ^ b.m, a.m ^ c.m};
+    if (!skip_.empty()) {
+      cut[0] &= good(0, 0, w, false) | good(1, 0, w, false) | good(0, 1, w, false) | good(1, 1, w, false);
+      cut[1] &= good(0, 0, w, true) | good(0, 1, w, true);
+      cut[2] &= good(0, 0, w, true) | good(1, 0, w, true);
+    }
+    for (int l = 0; l < frame_.axes; ++l) {
+      cuts.cut[l][r * words_ + w] = cut[l];
+      const uint32_t n = uint32_t(std::popcount(cut[l]));
+      row.cut[l] += n;
+      row.vertex += n;
+    }
+    if (!cells) continue;
+    const Pair d = back ? Pair(inside + (r + ny + 1) * words_, w, words_) : b;
+    uint64_t active = ((a.m | a.s | b.m | b.s | c.m | c.s | d.m | d.s) & ~(a.m & a.s & b.m & b.s & c.m & c.s & d.m & d.s)) & inner;
+    if (!skip_.empty()) active &= ~skip_[r * words_ + w];
+    for (; active; active &= active - 1) {
+      const int i = std::countr_zero(active);
+      const uint32_t low = a.corners(i) | b.corners(i) << 2;
+      const size_t p = r * nx + 64 * w + size_t(i);
+      if (!solid) {
+        row.cell += square_of(low, p, cuts.value, frame_, sample_).lines;
+        continue;
+      }
+      const uint32_t pattern = low | c.corners(i) << 4 | d.corners(i) << 6;
+      if (const uint32_t ambiguous = table.ambiguous(pattern)) [[unlikely]] {
+        row.cell += table.triangles(pattern, joined_faces(ambiguous, p, cuts.value, frame_, sample_)).size() / 3;
+      } else {
+        const auto t = table.plain(pattern);
+        row.cell += (t[1] - t[0]) / 3;
+      }
+    }
+  }
+}
+
+Piece LatticeContour::generate(const Cuts& cuts) const {
+  const size_t ny = frame_.dims[1], rows = cuts.rows.size();
+  const int corners = frame_.axes;  // of a line or triangle
+  Piece piece;
+  float *xyz = nullptr, *normals = nullptr;
+  piece.xyz = Array::make<float>(cuts.vertices, 3, &xyz);
+  if (job_.normals && corners == 3) piece.normals = Array::make<float>(cuts.vertices, 3, &normals);
+  piece.points.allocate(cuts.vertices);
+  std::byte* values = nullptr;
+  if (job_.values) piece.values = Array::make_raw(job_.samples.type(), cuts.vertices, 1, &values);
+  make_vertices({frame_, job_.samples, cuts.value, job_.origin, words_, cuts.cut, cuts.rows, xyz, normals, piece.points.data, values, job_.context});
+
+  int32_t* out = nullptr;
+  (corners == 3 ? piece.triangles : piece.lines) = Array::make<int32_t>(cuts.cells * size_t(corners), 1, &out);
+  Block<uint32_t>& from = corners == 3 ? piece.triangle_cells : piece.line_cells;
+  if (job_.cells) from.allocate(cuts.cells);
+  parallel_for(rows, std::max<size_t>(1, 512 / words_), [&](size_t begin, size_t end) {
+    for (size_t r = begin; r < end; ++r) {
+      const size_t first = cuts.rows[r].cell;
+      if ((r + 1 < rows ? cuts.rows[r + 1].cell : cuts.cells) == first) continue;
+      uint32_t* cells = job_.cells ? from.data + first : nullptr;
+      if (corners == 3) triangles_of_row(cuts, r % ny, r / ny, out + 3 * first, cells);
+      else lines_of_row(cuts, r, out + 2 * first, cells);
+    }
+  }, &job_.context);
+  return piece;
+}
+
+// Walks the crossed cells of a row with one counter per row of edges: an edge's number is the number of cut edges before it, and
+// every cut edge of these rows belongs to a crossed cell that is visited.
+void LatticeContour::triangles_of_row(const Cuts& cuts, size_t j, size_t k, int32_t* out, uint32_t* cells) const {
+  const size_t nx = frame_.dims[0], ny = frame_.dims[1];
+  const size_t row[4] = {j + ny * k, j + 1 + ny * k, j + ny * (k + 1), j + 1 + ny * (k + 1)};
+  const CaseTable& table = lattice_cases();
+  const uint8_t* all = table.triangle_edges();
+  const size_t cell_row = (nx - 1) * (j + (ny - 1) * k);
+  auto start = [&](size_t r, int axis) {
+    const RowStart& s = cuts.rows[r];
+    return uint32_t(s.vertex) + (axis > 0 ? s.cut[0] : 0) + (axis > 1 ? s.cut[1] : 0);
+  };
+  uint32_t at[8] = {start(row[0], 0), start(row[1], 0), start(row[2], 0), start(row[3], 0),
+                    start(row[0], 1), start(row[2], 1), start(row[0], 2), start(row[1], 2)};
+  const uint64_t* cut[8] = {&cuts.cut[0][row[0] * words_], &cuts.cut[0][row[1] * words_], &cuts.cut[0][row[2] * words_], &cuts.cut[0][row[3] * words_],
+                            &cuts.cut[1][row[0] * words_], &cuts.cut[1][row[2] * words_], &cuts.cut[2][row[0] * words_], &cuts.cut[2][row[1] * words_]};
+  const int second = flip_ ? 2 : 1, third = flip_ ? 1 : 2;
+  for (size_t w = 0; w < words_; ++w) {
+    Pair q[4];
+    uint64_t any = 0, every = ~uint64_t(0);
+    for (int s = 0; s < 4; ++s) {
+      q[s] = Pair(&cuts.inside[row[s] * words_], w, words_);
+      any |= q[s].m | q[s].s;
+      every &= q[s].m & q[s].s;
+    }
+    uint64_t active = any & ~every & inner_bits(w, nx);
+    if (!active) continue;
+    const uint64_t skip = skip_.empty() ? 0 : skip_[row[0] * words_ + w];
+    uint64_t c[8];
+    for (int s = 0; s < 8; ++s) c[s] = cut[s][w];
+    for (; active; active &= active - 1) {
+      const int i = std::countr_zero(active);
+      uint32_t step[8], edge[12];
+      for (int s = 0; s < 8; ++s) step[s] = uint32_t(c[s] >> i & 1);
+      if (!(skip >> i & 1)) {
+        for (int s = 0; s < 4; ++s) edge[s] = at[s];
+        for (int s = 4; s < 8; ++s) edge[2 * s - 4] = at[s], edge[2 * s - 3] = at[s] + step[s];
+        const uint32_t pattern = q[0].corners(i) | q[1].corners(i) << 2 | q[2].corners(i) << 4 | q[3].corners(i) << 6;
+        const uint8_t *e, *stop;
+        if (const uint32_t ambiguous = table.ambiguous(pattern)) [[unlikely]] {
+          const auto t = table.triangles(pattern, joined_faces(ambiguous, row[0] * nx + 64 * w + size_t(i), cuts.value, frame_, sample_));
+          e = t.data(), stop = e + t.size();
+        } else {
+          const auto t = table.plain(pattern);
+          e = all + t[0], stop = all + t[1];
+        }
+        for (; e < stop; e += 3, out += 3) {
+          out[0] = int32_t(edge[e[0]]);
+          out[second] = int32_t(edge[e[1]]);
+          out[third] = int32_t(edge[e[2]]);
+          if (cells) *cells++ = uint32_t(cell_row + 64 * w + size_t(i));
+        }
+      }
+      for (int s = 0; s < 8; ++s) at[s] += step[s];
+    }
+  }
+}
+
+void LatticeContour::lines_of_row(const Cuts& cuts, size_t j, int32_t* out, uint32_t* cells) const {
+  const size_t nx = frame_.dims[0];
+  uint32_t at[3] = {uint32_t(cuts.rows[j].vertex), uint32_t(cuts.rows[j + 1].vertex), uint32_t(cuts.rows[j].vertex) + cuts.rows[j].cut[0]};
+  for (size_t w = 0; w < words_; ++w) {
+    const Pair a(&cuts.inside[j * words_], w, words_), b(&cuts.inside[(j + 1) * words_], w, words_);
+    const uint64_t skip = skip_.empty() ? 0 : skip_[j * words_ + w];
+    for (uint64_t active = ((a.m | a.s | b.m | b.s) & ~(a.m & a.s & b.m & b.s)) & inner_bits(w, nx); active; active &= active - 1) {
+      const int i = std::countr_zero(active);
+      const uint32_t step[3] = {uint32_t(cuts.cut[0][j * words_ + w] >> i & 1), uint32_t(cuts.cut[0][(j + 1) * words_ + w] >> i & 1),
+                                uint32_t(cuts.cut[1][j * words_ + w] >> i & 1)};
+      const uint32_t edge[4] = {at[0], at[1], at[2], at[2] + step[2]};
+      if (!(skip >> i & 1)) {
+        const size_t p = j * nx + 64 * w + size_t(i);
+        const Square s = square_of(a.corners(i) | b.corners(i) << 2, p, cuts.value, frame_, sample_);
+        for (int l = 0; l < s.lines; ++l) {
+          *out++ = int32_t(edge[s.edge[2 * l]]);
+          *out++ = int32_t(edge[s.edge[2 * l + 1]]);
+          if (cells) *cells++ = uint32_t(p - j);
+        }
+      }
+      for (int s = 0; s < 3; ++s) at[s] += step[s];
+    }
+  }
+}
+
+}  // namespace sg::contouring

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the contour kernels hand to each other. Inside filter/scalar only.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "base/context.h"
+#include "data/dataset.h"
+#include "data/field_ops.h"
+#include "filter/field/lattice_frame.h"
+
+namespace sg::contouring {
+
+/// Uninitialised numbers: results are written once, in parallel.
+template <class T>
+struct Block {
+  Array bytes;
+  T* data = nullptr;
+  size_t count = 0;
+  void allocate(size_t n) {
+    std::byte* p = nullptr;
+    bytes = Array::make_raw(ElementType::u8, n * sizeof(T), 1, &p);
+    data = reinterpret_cast<T*>(p), count = n;
+  }
+  std::span<const T> span() const { return {data, count}; }
+};
+
+/// One isovalue's surface.
+struct Piece {
+  Array xyz;      ///< f32, relative to Job::origin
+  Array normals;  ///< f32, or empty
+  Array values;   ///< the samples interpolated, in their own type; empty: not made
+  Block<EdgePoint> points;
+  Array lines, triangles;              ///< i32 connectivity, 2 and 3 per cell
+  Block<uint32_t> line_cells, triangle_cells;  ///< source cell of each; empty when not asked for
+};
+
+/// The question, for all values.
+struct Job {
+  const Dataset& input;
+  Array samples;   ///< u8, i8, u16, i16, f32 or f64; one component, packed
+  bool normals = true;
+  bool cells = true;  ///< record source cells
+  bool values = false;  ///< interpolate the samples, too, where that is cheap
+  Vec3 origin;     ///< of the result's points
+  Context& context;
+};
+
+/// A sample as double, for the few places that need one at a time.
+class Sample {
+ public:
+  explicit Sample(const Array& a) : data_(a.raw()), type_(a.type()) {}
+  double operator()(size_t i) const {
+    switch (type_) {
+      case ElementType::u8: return double(reinterpret_cast<const uint8_t*>(data_)[i]);
+      case ElementType::i8: return double(reinterpret_cast<const int8_t*>(data_)[i]);
+      case ElementType::u16: return double(reinterpret_cast<const uint16_t*>(data_)[i]);
+      case ElementType::i16: return double(reinterpret_cast<const int16_t*>(data_)[i]);
+      case ElementType::f32: return double(reinterpret_cast<const float*>(data_)[i]);
+      default: return reinterpret_cast<const double*>(data_)[i];
+    }
+  }
+
+ private:
+  const std::byte* data_;
+  ElementType type_;
+};
+
+/// Where the value lies between two samples of different sides; an infinite sample counts as far away.
+inline double crossing(double value, double a, double b) {
+  const double t = (value - a) / (b - a);
+  return t >= 0 && t <= 1 ? t : 0.5;
+}
+
+/// Kernels on lattices of two or three axes; make one for all values.
+class LatticeContour {
+ public:
+  explicit LatticeContour(const Job& job);
+  Piece run(double value);
+
+ private:
+  struct Cuts;
+  void skip_points(const std::vector<uint64_t>& bad);
+  void find_cuts(Cuts& cuts) const;
+  void count_row(Cuts& cuts, size_t j, size_t k) const;
+  Piece generate(const Cuts& cuts) const;
+  void triangles_of_row(const Cuts& cuts, size_t j, size_t k, int32_t* out, uint32_t* cells) const;
+  void lines_of_row(const Cuts& cuts, size_t j, int32_t* out, uint32_t* cells) const;
+
+  const Job& job_;
+  Lattice lattice_;
+  LatticeFrame frame_;
+  Sample sample_;
+  size_t words_ = 0;  ///< 64-bit words per row of bits
+  bool missing_known_ = false, flip_ = false;
+  std::vector<uint64_t> skip_;  ///< bit per cell that must not be looked at, in rows like the points; empty when all are good
+};
+
+/// Where the edges of a row of points are cut, and where their results go.
+struct RowStart {
+  size_t vertex = 0, cell = 0;     ///< first of the row, after the prefix sum; before it, counts
+  uint32_t cut[3]{};               ///< cut edges along each axis; results lie in that order
+};
+
+/// Fills positions, normals and edge points of all cut edges. `cut[a]` has a bit per edge along axis a.
+struct VertexJob {
+  const LatticeFrame& frame;
+  const Array& samples;
+  double value;
+  Vec3 origin;
+  size_t words;
+  const std::vector<uint64_t>* cut;  ///< 3
+  const std::vector<RowStart>& rows;
+  float* xyz;
+  float* normals;  ///< null: none
+  EdgePoint* points;
+  std::byte* values;  ///< interpolated samples in their own type; null: none
+  Context& context;
+  template <class T>
+  T* values_at() const { return reinterpret_cast<T*>(values); }
+};
+void make_vertices(const VertexJob& job);
+
+/// Unstructured and surface meshes.
+Piece contour_cells(const Job& job, double value);
+
+/// Sets bit i of row r for samples >= value. Returns true when a sample was NaN.
+bool classify(const Array& samples, size_t nx, size_t rows, double value, uint64_t* bits, size_t words, Context& context);
+/// Sets the bit of samples that are NaN.
+void find_missing(const Array& samples, size_t nx, size_t rows, uint64_t* bits, size_t words, Context& context);
+
+}  // namespace sg::contouring

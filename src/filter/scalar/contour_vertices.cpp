@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// One point per cut lattice edge: position, normal, and where it lies between which samples.
+#include <bit>
+#include <cmath>
+#include <type_traits>
+
+#include "base/parallel.h"
+#include "filter/scalar/contour_parts.h"
+
+namespace sg::contouring {
+
+namespace {
+
+template <class T>
+struct Maker {
+  const VertexJob& job;
+  const LatticeFrame& frame;
+  const T* f;
+
+  Vec3 scale, first, step;  // axis-parallel uniform grids: half the inverse spacing, the first point, the spacing
+  bool plain = false;
+
+  Maker(const VertexJob& j, const T* samples) : job(j), frame(j.frame), f(samples) {
+    const Mat3& m = frame.to_world;
+    plain = frame.axes == 3 && frame.view.mode == LatticeView::Mode::affine && m.m[0][1] == 0 && m.m[0][2] == 0 && m.m[1][0] == 0 && m.m[1][2] == 0 && m.m[2][0] == 0 && m.m[2][1] == 0;
+    if (!plain) return;
+    scale = Vec3(m.m[0][0], m.m[1][1], m.m[2][2]) * 0.5;
+    first = frame.view.origin - job.origin;
+    step = {frame.view.step[0].x, frame.view.step[1].y, frame.view.step[2].z};
+  }
+
+  Vec3 gradient(size_t p, const size_t at[3]) const {
+    Vec3 d;
+    for (int l = 0; l < 3; ++l) {
+      const AxisStencil& s = frame.stencil[l][at[l]];
+      const T* q = f + p;
+      d[l] = s.w[0] * double(q[s.o[0]]) + s.w[1] * double(q[s.o[1]]) + s.w[2] * double(q[s.o[2]]);
+    }
+    const Mat3 m = frame.view.mode == LatticeView::Mode::listed ? frame.metric(p, at) : frame.to_world;
+    const Vec3 g = m * d;
+    if (std::isfinite(dot(g, g))) [[likely]] return g;
+    for (int l = 0; l < 3; ++l) d[l] = careful_derivative(frame.stencil[l][at[l]], p, [&](size_t i) { return double(f[i]); });
+    return m * d;
+  }
+
+  // Central differences away from the border of an axis-parallel grid: most points of most contours.
+  Vec3 inner_gradient(const T* q) const {
+    const ptrdiff_t up = frame.stride[1], back = frame.stride[2];
+    return scale * Vec3(double(q[1]) - double(q[-1]), double(q[up]) - double(q[-up]), double(q[back]) - double(q[-back]));
+  }
+  bool is_inner(size_t i, size_t j, size_t k) const {
+    return i >= 1 && i + 2 < frame.dims[0] && j >= 1 && j + 2 < frame.dims[1] && k >= 1 && k + 2 < frame.dims[2];
+  }
+
+  template <int axis>
+  void edge(size_t v, size_t i, size_t j, size_t k) const {
+    const size_t p = frame.id(i, j, k), q = p + size_t(frame.stride[axis]);
+    const double va = double(f[p]), vb = double(f[q]);
+    const double t = crossing(job.value, va, vb);
+    job.points[v] = {uint32_t(p), uint32_t(q), float(t)};
+    if (job.values) job.values_at<T>()[v] = blended(va, vb, double(float(t)));
+    const size_t a[3] = {i, j, k}, b[3] = {i + (axis == 0), j + (axis == 1), k + (axis == 2)};
+    Vec3 x;
+    if (plain) {
+      x = first + step * Vec3(double(i) + (axis == 0 ? t : 0.0), double(j) + (axis == 1 ? t : 0.0), double(k) + (axis == 2 ? t : 0.0));
+    } else {
+      const Vec3 from = frame.position(i, j, k) - job.origin, to = frame.position(b[0], b[1], b[2]) - job.origin;
+      x = from + (to - from) * t;
+    }
+    job.xyz[3 * v] = float(x.x), job.xyz[3 * v + 1] = float(x.y), job.xyz[3 * v + 2] = float(x.z);
+    if (!job.normals) return;
+    Vec3 g;
+    bool done = false;
+    if (plain && is_inner(i, j, k)) {
+      g = inner_gradient(f + p) * (1 - t) + inner_gradient(f + q) * t;
+      done = std::isfinite(dot(g, g));
+    }
+    if (!done) g = gradient(p, a) * (1 - t) + gradient(q, b) * t;
+    const double square = dot(g, g);
+    const Vec3 n = square > 0 && std::isfinite(square) ? g * (-1 / std::sqrt(square)) : Vec3();
+    job.normals[3 * v] = float(n.x), job.normals[3 * v + 1] = float(n.y), job.normals[3 * v + 2] = float(n.z);
+  }
+
+  // As data/field_ops interpolates.
+  static T blended(double a, double b, double t) {
+    const double v = a * (1 - t) + b * t;
+    if constexpr (std::is_floating_point_v<T>) return T(v);
+    else return T(std::nearbyint(v));
+  }
+
+  template <int axis>
+  void edges_along(size_t v, size_t j, size_t k, size_t r) const {
+    if (job.rows[r].cut[axis] == 0) return;
+    const uint64_t* cut = job.cut[axis].data() + r * job.words;
+    for (size_t w = 0; w < job.words; ++w)
+      for (uint64_t m = cut[w]; m; m &= m - 1) edge<axis>(v++, 64 * w + size_t(std::countr_zero(m)), j, k);
+  }
+
+  void row(size_t j, size_t k) const {
+    const size_t r = j + frame.dims[1] * k;
+    const RowStart& row = job.rows[r];
+    edges_along<0>(row.vertex, j, k, r);
+    edges_along<1>(row.vertex + row.cut[0], j, k, r);
+    if (frame.axes == 3) edges_along<2>(row.vertex + row.cut[0] + row.cut[1], j, k, r);
+  }
+};
+
+template <class T>
+void run(const VertexJob& job) {
+  const size_t ny = job.frame.dims[1];
+  const Maker<T> maker(job, job.samples.view<T>().data);
+  parallel_for(job.rows.size(), std::max<size_t>(1, 512 / job.words), [&](size_t begin, size_t end) {
+    for (size_t r = begin; r < end; ++r) maker.row(r % ny, r / ny);
+  }, &job.context);
+}
+
+}  // namespace
+
+void make_vertices(const VertexJob& job) {
+  switch (job.samples.type()) {
+    case ElementType::u8: return run<uint8_t>(job);
+    case ElementType::i8: return run<int8_t>(job);
+    case ElementType::u16: return run<uint16_t>(job);
+    case ElementType::i16: return run<int16_t>(job);
+    case ElementType::f32: return run<float>(job);
+    default: return run<double>(job);
+  }
+}
+
+}  // namespace sg::contouring
