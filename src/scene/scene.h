@@ -92,5 +92,7 @@ struct Scene {
 
 /// Bounds of everything in the scene.
 Box3 scene_bounds(const Scene& scene);
+/// The lights that renderers use: the scene's own, or the default two.
+std::vector<Light> lights_of(const Scene& scene);
 
 }  // namespace sg

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: Apache-2.0
+// VolumeItem -> Volume: checks, geometry, samples, index.
+#include "base/error.h"
+#include "base/parallel.h"
+#include "data/field_ops.h"
+#include "data/lattice.h"
+#include "render/volume/volume_internal.h"
+
+namespace sg::volume {
+
+namespace {
+
+constexpr uint8_t not_drawn = ghost_duplicate | ghost_refined_cell | ghost_hidden_cell;
+
+const Field& field_of(const VolumeItem& item) {
+  const FieldSet& fields = item.data->fields();
+  const Field* f = item.field.empty() ? fields.active() : nullptr;
+  if (!f && item.field.empty()) fail_usage("the dataset has no scalar field to look through", "volume", "name one with field=");
+  if (!f) f = &fields.require(item.field, item.association);
+  if (f->association == Association::whole) fail_usage(fmt::format("field '{}' belongs to the whole dataset", f->name), "volume", "a volume needs a point or cell field");
+  if (item.component >= f->components())
+    fail_usage(fmt::format("field '{}' has {} components, not component {}", f->name, f->components(), item.component), "volume");
+  return *f;
+}
+
+void check(const VolumeItem& item) {
+  if (!item.data) fail_usage("a volume item has no dataset", "volume");
+  if (!item.data->as<UniformGrid>() && !item.data->as<RectilinearGrid>())
+    fail_usage(fmt::format("a {} mesh cannot be looked through as a volume", item.data->kind()), "volume", "resample it to a grid first or render its surface");
+  if (!(item.step >= 0) || !std::isfinite(item.step)) fail_usage(fmt::format("the step {} is no length", item.step), "volume", "give a length above 0, or 0 for half a cell");
+  if (!(item.unit_distance >= 0) || !std::isfinite(item.unit_distance))
+    fail_usage(fmt::format("the unit distance {} is no length", item.unit_distance), "volume", "give a length above 0, or 0 for 1/100 of the diagonal");
+}
+
+/// Geometry of one axis: where the samples lie relative to the points.
+struct AxisPlan {
+  size_t points, samples;
+  bool cells;  // samples are the middles of cells (also the one point of an axis: the middle of a slab)
+};
+
+void uniform_geometry(const UniformGrid& g, const AxisPlan plan[3], Volume& v, double& smallest) {
+  Mat3 m;
+  smallest = HUGE_VAL;
+  for (int a = 0; a < 3; ++a)
+    if (plan[a].points > 1) smallest = std::min(smallest, length(g.direction.column(a)) * std::abs(g.spacing[a]));
+  if (smallest == HUGE_VAL) smallest = 1;
+  for (int a = 0; a < 3; ++a) {
+    Vec3 edge = g.direction.column(a) * g.spacing[a];
+    if (plan[a].points == 1 && length(edge) == 0) edge = normalize(g.direction.column(a)) * smallest;
+    smallest = plan[a].points == 1 ? std::min(smallest, length(edge)) : smallest;
+    for (int r = 0; r < 3; ++r) m.m[r][a] = edge[r];
+    v.lo[a] = plan[a].cells ? -0.5 : 0;
+    v.hi[a] = plan[a].points == 1 ? 0.5 : plan[a].cells ? double(plan[a].points) - 1.5 : double(plan[a].points) - 1;
+  }
+  v.origin = g.origin;
+  const double det = determinant(m);
+  if (det == 0 || !std::isfinite(det)) {
+    v.hi = v.lo - Vec3{1, 1, 1};  // no extent: an empty box
+    return;
+  }
+  // Cells: sample 0 lies half an edge after the first point.
+  for (int a = 0; a < 3; ++a)
+    if (plan[a].cells && plan[a].points > 1) v.origin += m.column(a) * 0.5;
+  v.to_q = inverse(m);
+}
+
+void rectilinear_geometry(const RectilinearGrid& g, const AxisPlan plan[3], Volume& v, double& smallest) {
+  const Array* arrays[3] = {&g.x, &g.y, &g.z};
+  smallest = HUGE_VAL;
+  for (const Array* a : arrays)
+    for (size_t i = 0; i + 1 < a->count(); ++i)
+      if (const double d = std::abs(a->get(i + 1) - a->get(i)); d > 0) smallest = std::min(smallest, d);
+  if (smallest == HUGE_VAL) smallest = 1;
+  v.affine = false;
+  v.to_q = Mat3{};
+  for (int a = 0; a < 3; ++a) {
+    const size_t n = plan[a].points;
+    const double first = arrays[a]->get(0), sign = n > 1 && arrays[a]->get(n - 1) < first ? -1 : 1;
+    v.to_q.m[a][a] = sign, v.origin[a] = first;
+    auto at = [&](size_t i) { return sign * (arrays[a]->get(i) - first); };
+    std::vector<double>& c = v.coordinates[a];
+    if (n == 1) {
+      v.lo[a] = -0.5 * smallest, v.hi[a] = 0.5 * smallest;
+      c = {v.lo[a], v.hi[a]};
+    } else {
+      v.lo[a] = 0, v.hi[a] = at(n - 1);
+      for (size_t i = 0; i < plan[a].samples; ++i) c.push_back(plan[a].cells ? 0.5 * (at(i) + at(i + 1)) : at(i));
+      if (c.size() == 1) c = {v.lo[a], v.hi[a]};
+    }
+    // Slices of equal width, four per cell, each with the cell in which it begins.
+    const size_t slices = std::min<size_t>(4 * c.size(), 1 << 20);
+    const double extent = c.back() - c.front();
+    v.slices_per_q[a] = extent > 0 ? double(slices) / extent : 0;
+    v.first_cell[a].resize(slices + 1);
+    uint32_t cell = 0;
+    for (size_t s = 0; s <= slices; ++s) {
+      const double q = c.front() + extent * double(s) / double(slices);
+      while (cell + 2 < c.size() && c[cell + 1] <= q) ++cell;
+      v.first_cell[a][s] = cell;
+    }
+  }
+}
+
+/// Repeats the only layer of an axis, so that every axis has two samples.
+template <class T>
+Array doubled(const T* in, std::array<size_t, 3> from, std::array<size_t, 3> to) {
+  T* out = nullptr;
+  Array r = Array::make<T>(to[0] * to[1] * to[2], 1, &out);
+  for (size_t k = 0; k < to[2]; ++k)
+    for (size_t j = 0; j < to[1]; ++j)
+      for (size_t i = 0; i < to[0]; ++i)
+        out[i + to[0] * (j + to[1] * k)] = in[std::min(i, from[0] - 1) + from[0] * (std::min(j, from[1] - 1) + from[1] * std::min(k, from[2] - 1))];
+  return r;
+}
+
+/// NaN where `ghost` has one of `bits`.
+Array without_ghosts(const Array& values, const Array& ghost, uint8_t bits) {
+  const Array f = values.converted(ElementType::f32);
+  const View<float> in = f.view<float>();
+  const View<uint8_t> g = ghost.view<uint8_t>();
+  float* out = nullptr;
+  Array r = Array::make<float>(values.count(), 1, &out);
+  parallel_for(values.count(), 65536, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) out[i] = g[i] & bits ? NAN : in[i];
+  });
+  return r;
+}
+
+bool any_ghost(const Array& ghost, uint8_t bits) {
+  if (ghost.empty()) return false;
+  const View<uint8_t> g = ghost.view<uint8_t>();
+  for (size_t i = 0; i < g.count; ++i)
+    if (g[i] & bits) return true;
+  return false;
+}
+
+/// Wide types as f32 relative to the middle of their range, so that small differences of large values survive.
+Array narrowed(const Array& wide, Range range, float& base) {
+  base = range.empty() ? 0 : float(0.5 * range.lo + 0.5 * range.hi);
+  float* out = nullptr;
+  Array r = Array::make<float>(wide.count(), 1, &out);
+  dispatch(wide, [&](auto v) {
+    parallel_for(v.count, 65536, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) out[i] = float(double(v[i]) - double(base));
+    });
+  });
+  return r;
+}
+
+bool native(ElementType t) {
+  return t == ElementType::u8 || t == ElementType::i8 || t == ElementType::u16 || t == ElementType::i16 || t == ElementType::f32;
+}
+
+void take_samples(const VolumeItem& item, const Field& field, std::array<size_t, 3> dims, Volume& v) {
+  const Dataset& d = *item.data;
+  const bool cells = field.association == Association::cell;
+  const bool magnitude = item.component < 0 && field.components() > 1;
+  Array a = magnitude ? scalar_of(field, -1, is_float(field.array.type()) && element_size(field.array.type()) == 8 ? ElementType::f64 : ElementType::f32)
+                      : field.array.component(std::max(item.component, 0));
+  if (!native(a.type())) {
+    const bool linear = item.color.kind == ScaleKind::linear && item.color.labels.empty();
+    a = linear ? narrowed(a, d.range(field, item.component), v.base) : a.converted(ElementType::f32);
+  }
+  a = a.made_packed();
+  const Array& ghost = cells ? d.cell_ghost() : d.point_ghost();
+  const uint8_t bits = cells ? not_drawn : uint8_t(ghost_hidden_point);
+  if (any_ghost(ghost, bits)) a = without_ghosts(a, ghost, bits);
+  if (!cells && any_ghost(d.cell_ghost(), not_drawn)) {
+    const View<uint8_t> g = d.cell_ghost().view<uint8_t>();
+    v.hidden.resize(g.count);
+    for (size_t i = 0; i < g.count; ++i) v.hidden[i] = g[i] & not_drawn;
+  }
+  v.voxels.dims = dims;
+  for (size_t& n : v.voxels.dims) n = std::max<size_t>(n, 2);
+  if (v.voxels.dims != dims)
+    a = dispatch(a, [&](auto view) { return doubled(view.data, dims, v.voxels.dims); });
+  v.voxels.array = a;
+}
+
+void build_index(Volume& v) {
+  v.bricks = minmax_bricks(v.voxels.array, v.voxels.dims);
+  for (int a = 0; a < 3; ++a) {
+    const size_t n = v.bricks.dims[size_t(a)], samples = v.voxels.dims[size_t(a)];
+    v.border[a].resize(n + 1);
+    for (size_t i = 0; i <= n; ++i) {
+      const size_t s = std::min(i * MinMaxBricks::edge, samples - 1);
+      v.border[a][i] = v.affine ? double(s) : v.coordinates[a][s];
+    }
+    // Beyond the outermost samples values are clamped: those half cells belong to the outermost bricks.
+    v.border[a].front() = -HUGE_VAL, v.border[a].back() = HUGE_VAL;
+    // Places are floats in u: some units in the last place of the largest.
+    v.margin[a] = v.affine ? std::max(1e-3, 4e-7 * double(samples)) : 1e-7 * (v.hi[a] - v.lo[a]);
+  }
+}
+
+}  // namespace
+
+float Volume::u(int a, double q) const {
+  if (affine) return float(std::clamp(q, 0.0, double(voxels.dims[size_t(a)] - 1)));
+  const std::vector<double>& c = coordinates[a];
+  if (!(q > c.front())) return 0;
+  if (q >= c.back()) return float(c.size() - 1);
+  size_t i = first_cell[a][size_t((q - c.front()) * slices_per_q[a])];
+  while (i > 0 && c[i] > q) --i;
+  while (i + 2 < c.size() && c[i + 1] <= q) ++i;
+  const double edge = c[i + 1] - c[i];
+  return float(double(i) + (edge > 0 ? (q - c[i]) / edge : 0));
+}
+
+double Volume::cell_length(int a, double q) const {
+  if (affine) return 1;
+  const std::vector<double>& c = coordinates[a];
+  const size_t i = std::min(size_t(u(a, q)), c.size() - 2);
+  return c[i + 1] - c[i];
+}
+
+Volume prepare(const VolumeItem& item, uint32_t id, const Knobs& knobs) {
+  check(item);
+  const Field& field = field_of(item);
+  const Mesh& mesh = item.data->mesh();
+  const bool cells = field.association == Association::cell;
+  const std::array<size_t, 3> points = lattice_dims(mesh);
+  Volume v;
+  v.id = id, v.mode = item.mode, v.shaded = item.shaded, v.dual = cells;
+  v.nearest = !item.color.labels.empty();
+  AxisPlan plan[3];
+  std::array<size_t, 3> samples{};
+  for (size_t a = 0; a < 3; ++a) {
+    samples[a] = cells ? std::max<size_t>(points[a], 2) - 1 : points[a];
+    plan[a] = {points[a], samples[a], cells || points[a] == 1};
+    if (points[a] == 0) v.hi = {-1, -1, -1};
+  }
+  if (v.hi.x < v.lo.x) return v;
+  double smallest = 1;
+  if (auto* u = item.data->as<UniformGrid>()) uniform_geometry(*u, plan, v, smallest);
+  else rectilinear_geometry(*item.data->as<RectilinearGrid>(), plan, v, smallest);
+  if (!(v.hi.x > v.lo.x && v.hi.y > v.lo.y && v.hi.z > v.lo.z)) return v;
+  take_samples(item, field, samples, v);
+  build_index(v);
+
+  // Lengths: step and the length to which opacity refers.
+  const double diagonal = std::max(item.data->bounds().diagonal(), smallest);
+  v.step = item.step > 0 ? item.step : 0.5 * smallest;
+  const double unit = item.unit_distance > 0 ? item.unit_distance : 0.01 * diagonal;
+  if (diagonal / v.step > 1e7)
+    fail_usage(fmt::format("a step of {} takes {:.0f} samples through a volume of size {}", v.step, diagonal / v.step, diagonal), "volume", "give a longer step");
+
+  double lo = HUGE_VAL, hi = -HUGE_VAL;
+  for (const MinMaxBricks::Range& r : v.bricks.ranges) {
+    if (std::isfinite(r.lo)) lo = std::min(lo, double(r.lo));
+    if (std::isfinite(r.hi)) hi = std::max(hi, double(r.hi));
+  }
+  v.gradient_scale = float(lo < hi ? 0.002 * (hi - lo) : 1);
+  v.transfer.emplace_back(item.color, item.opacity, unit, v.step, lo + double(v.base), hi + double(v.base), double(v.base));
+  std::vector<uint8_t> clear(v.bricks.size());
+  for (size_t i = 0; i < clear.size(); ++i) clear[i] = v.transfer[0].clear(v.bricks.ranges[i].lo, v.bricks.ranges[i].hi);
+  v.distance = empty_distance(clear, v.bricks.dims);
+  v.sample = knobs.simd ? best_sampler(v.voxels) : scalar_sampler(v.voxels);
+  return v;
+}
+
+}  // namespace sg::volume

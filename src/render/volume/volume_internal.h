@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// The parts of the volume ray caster, for its own files and its tests.
+//
+// A volume has three spaces: world; "q", in which the sides of the cells are planes of constant coordinate (index space for
+// uniform grids, world coordinates per axis for rectilinear ones); and "u", sample indices, where sample i lies at u = i.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "data/array.h"
+#include "index/minmax_bricks.h"
+#include "render/composite/over.h"
+#include "render/volume/transfer.h"
+#include "scene/scene.h"
+
+namespace sg::volume {
+
+/// Switches for tests and benchmarks; the picture must not depend on them (but `stop_below` by less than 1/255).
+struct Knobs {
+  bool skip_empty = true;         ///< pass over empty bricks
+  float stop_below = 1.0f / 4096; ///< a ray ends when less than this share of the light passes
+  bool simd = true;               ///< false: the scalar reference
+};
+void composite_volumes(const Scene& scene, const Projection& projection, const FragmentLists& fragments, Frame& frame, Context& context, const Knobs& knobs);
+
+/// Samples of a run are evaluated together; arrays have room for all of them.
+constexpr int run_length = 16;
+
+/// Packed samples in their own type (u8, i8, u16, i16 or f32; others are converted), at least two per axis.
+struct Voxels {
+  Array array;
+  std::array<size_t, 3> dims{};
+};
+
+/// Trilinear values at run_length places in u (clamped to the lattice); NaN where a corner is NaN.
+using SampleRun = void (*)(const Voxels& voxels, const float* ux, const float* uy, const float* uz, float* values);
+/// The scalar reference, and the best for this machine; both give the same bits.
+SampleRun scalar_sampler(const Voxels& voxels);
+SampleRun best_sampler(const Voxels& voxels);
+
+/// A light and the half vector towards the viewer, as seen along one ray.
+struct LitRay {
+  struct One {
+    Vec3f light, half;
+    float intensity;
+  };
+  std::vector<One> lights;
+  Vec3f direction;  ///< of the ray
+  Material material;
+};
+
+struct Volume {
+  uint32_t id = 0;  ///< item number + 1
+  VolumeItem::Mode mode = VolumeItem::Mode::composite;
+  bool shaded = false;
+  bool nearest = false;    ///< labels: no value between two samples
+  bool dual = false;       ///< samples are cells: a cell without a value takes no share of its neighbours' half
+  Voxels voxels;
+  float base = 0;          ///< value = stored + base
+  double step = 1;         ///< world length
+  std::vector<Transfer> transfer;  ///< one
+  SampleRun sample = nullptr;
+
+  // world -> q
+  Vec3 origin;
+  Mat3 to_q;
+  Vec3 lo, hi;                    ///< box in q
+  bool affine = true;             ///< q = u; else u from `coordinates`
+  std::vector<double> coordinates[3];  ///< q of each sample, ascending
+  std::vector<uint32_t> first_cell[3]; ///< cell in which a slice of the axis begins
+  double slices_per_q[3] = {};
+
+  MinMaxBricks bricks;
+  std::vector<uint8_t> distance;   ///< in bricks to the next that draws something (composite)
+  std::vector<double> border[3];   ///< q of the brick sides, dims+1
+  Vec3 margin;                     ///< q: rounding errors of places are smaller
+  std::vector<uint8_t> hidden;     ///< per cell of the lattice: draws nothing; may be empty
+  float gradient_scale = 1;        ///< stored-value change per q (smallest cell) that counts as a surface
+
+  Vec3 q(Vec3 world) const { return to_q * (world - origin); }
+  /// Sample index of a place in q along one axis, clamped.
+  float u(int axis, double q) const;
+  /// q-length of a cell there.
+  double cell_length(int axis, double q) const;
+};
+
+/// Reads the item, checks it, converts and indexes its field. Throws Error(usage) for what cannot be shown as a volume.
+/// Nothing to draw (a grid without extent) gives an empty box.
+Volume prepare(const VolumeItem& item, uint32_t id, const Knobs& knobs);
+
+/// One ray in the q space of a volume: q = start + t * along, t the world length from the ray's origin.
+struct Course {
+  Vec3 start, along;
+  double enter = 0, leave = -1;  ///< inside the box, and within the limits asked for
+};
+Course course(const Volume& volume, Vec3 origin, Vec3 direction, double from, double to);
+
+struct RayState {
+  Gathered sum;
+  double surface = -1;  ///< t at which half of the light was gone; -1 = nowhere yet
+  uint32_t surface_id = 0;
+};
+
+/// Integrates [from, to] of one volume or, in common steps (the shortest of theirs), of several that overlap there. Samples lie in the
+/// middle of their steps; the last step has what length is left. Stops when less than knobs.stop_below of the light passes.
+void march(const Volume& volume, const Course& course, double from, double to, const LitRay& lit, const Knobs& knobs, RayState& state);
+void march_together(const Volume* const* volumes, const Course* const* courses, size_t count, double from, double to, const LitRay& lit, const Knobs& knobs, RayState& state);
+
+/// The largest value along the course, exactly that of the trilinear field.
+struct Maximum {
+  float value;  ///< stored
+  double t;
+  bool found;
+};
+Maximum maximum_along(const Volume& volume, const Course& course, const Knobs& knobs);
+
+}  // namespace sg::volume
