@@ -133,9 +133,9 @@ void LegacyReader::header() {
     text_.fail("is no legacy VTK file", "the first line should be '# vtk DataFile Version 3.0'");
   const std::string_view title = trim(text_.line());
   if (!title.empty() && title.size() <= 1024) parts_.notes.emplace_back("title", std::string(title));
-  const std::string_view encoding = trim(text_.line());
+  const std::string_view encoding = text_.need_word("ASCII or BINARY");
   if (equal_ignoring_case(encoding, "BINARY")) text_.binary = true;
-  else if (!equal_ignoring_case(encoding, "ASCII")) text_.fail(fmt::format("'{}' where ASCII or BINARY should stand", encoding.substr(0, 40)), "the third line tells the encoding");
+  else if (!equal_ignoring_case(encoding, "ASCII")) text_.fail(fmt::format("'{}' where ASCII or BINARY should stand", encoding.substr(0, 40)), "the word behind the title line tells the encoding");
 }
 
 void LegacyReader::dataset() {
