@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/vtk_xml.h"
+
+#include <charconv>
+
+#include "base/text.h"
+
+namespace sg::vtk {
+
+namespace {
+
+// Lines before a byte; for errors only.
+size_t line_of(std::string_view text, size_t byte) {
+  return size_t(std::count(text.begin(), text.begin() + ptrdiff_t(std::min(byte, text.size())), '\n')) + 1;
+}
+
+constexpr std::string_view appended_tag = "<AppendedData";
+
+}  // namespace
+
+XmlFile::XmlFile(const std::string& path) : file_(path) {
+  parse();
+  read_root();
+}
+
+void XmlFile::parse() {
+  const std::string_view all = file_.text();
+  constexpr unsigned options = pugi::parse_cdata | pugi::parse_escapes | pugi::parse_wconv_attribute;
+  const size_t tag = all.find(appended_tag);
+  pugi::xml_parse_result result;
+  if (tag == std::string_view::npos) {
+    result = document_.load_buffer(all.data(), all.size(), options, pugi::encoding_utf8);
+  } else {
+    // The bytes behind '_' may be anything, so the XML parser sees the file only up to there.
+    const size_t open_end = all.find('>', tag);
+    if (open_end == std::string_view::npos) fail_data("ends inside <AppendedData>", path(), "the file is truncated");
+    const size_t from = std::min(open_end + 1, all.size());
+    const size_t underscore = all.find_first_not_of(" \t\r\n", from);
+    if (underscore == std::string_view::npos || all[underscore] != '_')
+      fail_data("appended data do not begin with '_'", fmt::format("{}: byte {}", path(), std::min(underscore, all.size())), "the file is truncated or damaged");
+    const size_t close = all.rfind("</AppendedData");
+    const size_t root_close = close == std::string_view::npos ? close : all.find("</VTKFile", close);
+    if (close < underscore || root_close == std::string_view::npos || all.find('>', root_close) == std::string_view::npos)
+      fail_data("appended data have no end tag", fmt::format("{}: byte {}", path(), all.size()), "the file is truncated");
+    appended_ = all.substr(underscore + 1, close - underscore - 1);
+    have_appended_ = true;
+    std::string head(all.substr(0, open_end));
+    if (head.back() != '/') head += '/';
+    head += "></VTKFile>";
+    result = document_.load_buffer(head.data(), head.size(), options, pugi::encoding_utf8);
+  }
+  if (!result) {
+    const auto byte = size_t(std::max<ptrdiff_t>(result.offset, 0));
+    fail_data(fmt::format("is no well-formed XML: {}", result.description()), fmt::format("{}: line {}, byte {}", path(), line_of(all, byte), byte),
+              "the file is truncated or damaged");
+  }
+}
+
+void XmlFile::read_root() {
+  const pugi::xml_node root = document_.child("VTKFile");
+  if (!root) fail_data("has no element VTKFile", path(), "a VTK XML file begins with <VTKFile type=\"...\">");
+  type_ = root.attribute("type").value();
+  const std::string_view order = root.attribute("byte_order").value();
+  big_endian_ = order == "BigEndian";
+  if (!order.empty() && !big_endian_ && order != "LittleEndian") fail(fmt::format("has the byte order '{}'", order), root, "LittleEndian or BigEndian");
+  const std::string_view header = root.attribute("header_type").value();
+  wide_header_ = header == "UInt64";
+  if (!header.empty() && !wide_header_ && header != "UInt32") fail(fmt::format("has the header type '{}'", header), root, "UInt32 or UInt64");
+  if (const std::string_view compressor = root.attribute("compressor").value(); !compressor.empty()) {
+    for (const Codec c : {Codec::zlib, Codec::lz4, Codec::lzma})
+      if (compressor == codec_name(c)) codec_ = c;
+    if (codec_ == Codec::none)
+      fail(fmt::format("has the unknown compressor '{}'", compressor), root, "vtkZLibDataCompressor, vtkLZ4DataCompressor or vtkLZMADataCompressor");
+  }
+  dataset_ = root.child(type_.c_str());
+  if (type_.empty() || !dataset_) fail(fmt::format("has no element of its type '{}'", type_), root);
+  if (have_appended_) {
+    const std::string_view encoding = root.child("AppendedData").attribute("encoding").value();
+    appended_base64_ = encoding == "base64" || encoding.empty();  // base64 is what the format takes for granted
+    if (!appended_base64_ && encoding != "raw") fail(fmt::format("has the encoding '{}'", encoding), root.child("AppendedData"), "raw or base64");
+  }
+}
+
+std::string XmlFile::describe(pugi::xml_node element) {
+  const std::string_view name = element.attribute("Name").value();
+  if (!name.empty()) return fmt::format("{} '{}'", element.name(), name);
+  return fmt::format("{} of {}", element.name(), element.parent().name());
+}
+
+void XmlFile::fail(std::string problem, pugi::xml_node element, std::string hint) const {
+  fail_data(std::move(problem), fmt::format("{}: {}", path(), describe(element)), std::move(hint));
+}
+
+bool XmlFile::is_numeric(pugi::xml_node element) {
+  return std::string_view(element.name()) == "DataArray" && std::string_view(element.attribute("type").value()) != "String";
+}
+
+void parse_longs(const XmlFile& file, pugi::xml_node element, const char* attribute, long long* out, size_t n) {
+  const std::string_view text = element.attribute(attribute).value();
+  const auto list = words(text);
+  bool good = list.size() == n;
+  for (size_t i = 0; good && i < n; ++i) {
+    const std::string_view w = list[i].starts_with('+') ? list[i].substr(1) : list[i];
+    const auto r = std::from_chars(w.data(), w.data() + w.size(), out[i]);
+    good = r.ec == std::errc{} && r.ptr == w.data() + w.size();
+  }
+  if (!good) file.fail(fmt::format("{}=\"{}\" is not {} whole numbers", attribute, text.substr(0, 80), n), element);
+}
+
+bool parse_doubles(const XmlFile& file, pugi::xml_node element, const char* attribute, double* out, size_t n) {
+  const pugi::xml_attribute a = element.attribute(attribute);
+  if (!a) return false;
+  const auto list = words(a.value());
+  bool good = list.size() == n;
+  for (size_t i = 0; good && i < n; ++i) {
+    const auto v = parse_double(list[i]);
+    good = v.has_value();
+    if (v) out[i] = *v;
+  }
+  if (!good) file.fail(fmt::format("{}=\"{}\" is not {} numbers", attribute, std::string_view(a.value()).substr(0, 80), n), element);
+  return true;
+}
+
+uint64_t parse_count(const XmlFile& file, pugi::xml_node element, const char* attribute) {
+  const pugi::xml_attribute a = element.attribute(attribute);
+  if (!a) return 0;
+  std::string_view w = trim(a.value());
+  if (w.starts_with('+')) w.remove_prefix(1);
+  uint64_t v = 0;
+  const auto r = std::from_chars(w.data(), w.data() + w.size(), v);
+  if (r.ec != std::errc{} || r.ptr != w.data() + w.size()) file.fail(fmt::format("{}=\"{}\" is no count", attribute, std::string_view(a.value()).substr(0, 80)), element, "a whole number, not negative");
+  return v;
+}
+
+}  // namespace sg::vtk

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// An open VTK XML file: its elements, and the arrays that they describe in any encoding.
+#pragma once
+#include <optional>
+#include <pugixml.hpp>
+#include <string>
+#include <string_view>
+
+#include "base/file.h"
+#include "data/array.h"
+#include "io/vtk_codec.h"
+
+namespace sg::vtk {
+
+class XmlFile {
+ public:
+  /// Parses the elements; appended bytes are left where they are. Throws Error(data) with byte and line.
+  explicit XmlFile(const std::string& path);
+
+  /// The dataset element ("ImageData", "UnstructuredGrid", ...), of the type that the root announces.
+  pugi::xml_node dataset() const { return dataset_; }
+  std::string_view type() const { return type_; }
+  const std::string& path() const { return file_.path(); }
+
+  /// The numbers of a DataArray. With `tuples` there must be at least as many (more are dropped), without all there are.
+  /// Little-endian uncompressed appended bytes are not copied when they lie on multiples of the element size.
+  Array array(pugi::xml_node element, std::optional<uint64_t> tuples) const;
+  /// A DataArray of a type that is read; strings are not.
+  static bool is_numeric(pugi::xml_node element);
+  /// "DataArray 'T'" for errors.
+  static std::string describe(pugi::xml_node element);
+  [[noreturn]] void fail(std::string problem, pugi::xml_node element, std::string hint = {}) const;
+
+ private:
+  struct Wanted;
+  struct Source;
+  void parse();
+  void read_root();
+  Source source(pugi::xml_node element) const;
+  Array plain(const Wanted& want, const Source& source) const;
+  Array compressed(const Wanted& want, const Source& source) const;
+  Array text(const Wanted& want) const;
+  uint64_t word(const std::byte* p) const;
+  size_t word_bytes() const { return wide_header_ ? 8 : 4; }
+  uint64_t bytes_to_read(const Wanted& want, uint64_t available) const;
+  Array finished(const Wanted& want, Buffer buffer, size_t offset, size_t bytes) const;
+
+  MappedFile file_;
+  pugi::xml_document document_;
+  pugi::xml_node dataset_;
+  std::string type_;
+  std::string_view appended_;
+  bool have_appended_ = false, appended_base64_ = false;
+  bool big_endian_ = false, wide_header_ = false;
+  Codec codec_ = Codec::none;
+};
+
+/// Whole numbers of an attribute ("WholeExtent"), n of them or an Error.
+void parse_longs(const XmlFile& file, pugi::xml_node element, const char* attribute, long long* out, size_t n);
+/// Numbers of an attribute, or false when it is missing.
+bool parse_doubles(const XmlFile& file, pugi::xml_node element, const char* attribute, double* out, size_t n);
+/// A count attribute: 0 when missing.
+uint64_t parse_count(const XmlFile& file, pugi::xml_node element, const char* attribute);
+
+}  // namespace sg::vtk

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// The elements of a VTK XML file as they are written, and their arrays in the chosen encoding.
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/file.h"
+#include "data/array.h"
+#include "io/io.h"
+#include "io/vtk_codec.h"
+
+namespace sg::vtk {
+
+/// Attributes in order; values are escaped.
+using XmlAttributes = std::vector<std::pair<std::string_view, std::string>>;
+
+/// Writes elements and arrays one after the other; appended bytes follow in finish(). The bytes of the file do not depend
+/// on the number of threads. Appended uncompressed arrays begin at multiples of 64 bytes of the file.
+class XmlWriter {
+ public:
+  /// Throws Error(usage) for an unknown encoding or compression.
+  XmlWriter(const std::string& path, const WriteOptions& options, Context& context);
+
+  void begin(std::string_view element, const XmlAttributes& attributes = {});
+  void end();
+  void array(std::string_view name, const Array& array, bool with_tuples = false);
+  /// Closes all elements, writes the appended bytes and puts the file in its place.
+  void finish();
+
+ private:
+  struct Block {
+    std::vector<std::byte> header, bytes;  // compressed
+    Array plain;                           // or the array itself
+    uint64_t offset = 0, size = 0;
+  };
+  Block compressed(const Array& packed) const;
+  void write_base64(const std::byte* data, size_t n);
+  void inline_binary(const Array& packed);
+  void open(std::string_view element, const XmlAttributes& attributes, bool empty);
+  void flush();
+  void check() const { context_.check(); }
+
+  AtomicFile file_;
+  Context& context_;
+  enum class Encoding { ascii, base64, appended } encoding_ = Encoding::appended;
+  Codec codec_ = Codec::none;
+  std::string text_;
+  std::vector<std::string> open_;
+  std::vector<Block> blocks_;
+  uint64_t appended_ = 0;
+};
+
+}  // namespace sg::vtk
