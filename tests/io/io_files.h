@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// Helpers of the file tests: texts written to a temporary file and read back, and damage done to them.
+#pragma once
+#include <string>
+
+#include "base/file.h"
+#include "base/parallel.h"
+#include "data/dataset.h"
+#include "io/io.h"
+#include "support/test.h"
+
+namespace sg::test {
+
+/// Writes `bytes` into the temporary folder under `name` and returns the path.
+inline std::string temp_file(const std::string& name, std::string_view bytes) {
+  const std::string path = temp_folder() + name;
+  write_file(path, bytes);
+  return path;
+}
+
+inline DatasetPtr read_file(const std::string& path, const ReadOptions& options = {}) {
+  Context context;
+  return std::get<DatasetPtr>(read_data(path, options, context));
+}
+inline DatasetPtr read_text(const std::string& name, std::string_view bytes, const ReadOptions& options = {}) { return read_file(temp_file(name, bytes), options); }
+
+/// The message of the error that reading gives.
+inline std::string refusal(const std::string& name, std::string_view bytes, const ReadOptions& options = {}) {
+  return error_of([&] { read_text(name, bytes, options); });
+}
+inline bool contains(const std::string& text, std::string_view part) { return text.find(part) != std::string::npos; }
+
+/// Reads the first k/64 of the bytes for k = 1..63 and the file with each 1/64th byte changed: every time an Error or a valid
+/// dataset. Returns how many of the 63 cut files were refused.
+inline int cut_and_damage(const std::string& name, const std::string& bytes) {
+  int refused = 0;
+  Context context;
+  for (size_t k = 1; k < 64; ++k) {
+    const std::string path = temp_file(name, std::string_view(bytes).substr(0, bytes.size() * k / 64));
+    try {
+      read_data(path, {}, context);
+    } catch (const Error& e) {
+      CHECK(e.kind() == ErrorKind::data);
+      ++refused;
+    }
+  }
+  for (size_t k = 0; k < 64; ++k)
+    for (const char with : {'\xff', '9', '\0'}) {
+      std::string damaged = bytes;
+      damaged[bytes.size() * k / 64] = with;
+      const std::string path = temp_file(name, damaged);
+      try {
+        read_data(path, {}, context);
+      } catch (const Error& e) {
+        CHECK((e.kind() == ErrorKind::data || e.kind() == ErrorKind::usage));
+      }
+    }
+  return refused;
+}
+
+/// Calls make() with 1 and with 4 threads.
+template <class F>
+auto with_threads(int n, F&& make) {
+  set_thread_count(n);
+  auto r = make();
+  set_thread_count(0);
+  return r;
+}
+
+/// Same type, shape and bytes.
+inline bool same_array(const Array& a, const Array& b) {
+  const Array x = a.made_packed(), y = b.made_packed();
+  return x.type() == y.type() && x.count() == y.count() && x.components() == y.components() && (x.bytes() == 0 || std::memcmp(x.raw(), y.raw(), x.bytes()) == 0);
+}
+
+}  // namespace sg::test
