@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Field: a named array on the points, the cells or the whole of a dataset.
 #pragma once
+#include <cmath>
 #include <string>
 #include <string_view>
 #include <vector>

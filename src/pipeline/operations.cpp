@@ -3,6 +3,11 @@
 #include "pipeline/operation_table.h"
 
 // Headers of the operations, sorted.
+#include "filter/field/gradient.h"
+#include "filter/mesh/faces.h"
+#include "filter/mesh/threshold.h"
+#include "filter/scalar/contour.h"
+#include "filter/segment/label_surface.h"
 
 namespace sg {
 
