@@ -70,7 +70,9 @@ void annotate(Image& image, const Annotation& a, const Projection& projection) {
   const Rect triad = triad_place(image.width, image.height, p.font);
   const bool room_for_triad = a.triad && triad.width < 0.45 * image.width && triad.height < 0.45 * image.height;
   if (room_for_triad) taken.push_back(triad);
+  overlay.keep_clear(taken);
   draw_box_axes(overlay, a, projection, p.font, taken);
+  overlay.keep_clear({});
   if (room_for_triad) draw_triad(overlay, a, projection, p.font);
   for (size_t i = 0; i < p.legends.size(); ++i) draw_legend(image, overlay, a.legends[i], p.legends[i]);
   overlay.put_on(image);

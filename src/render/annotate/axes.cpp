@@ -27,7 +27,7 @@ Rect beside(Vec2 at, Vec2 outward, TextExtent e) {
 }
 
 bool is_free(const Rect& r, const Overlay& o, const std::vector<Rect>& taken) {
-  if (r.x < 3 || r.y < 3 || r.right() > o.width() - 3 || r.bottom() > o.height() - 3) return false;
+  if (r.x < 2 || r.y < 2 || r.right() > o.width() - 2 || r.bottom() > o.height() - 2) return false;
   return std::none_of(taken.begin(), taken.end(), [&](const Rect& t) { return t.overlaps(r); });
 }
 
@@ -155,9 +155,17 @@ void draw_box_axes(Overlay& o, const Annotation& annotation, const Projection& p
     o.line({from.x, from.y}, {to.x, to.y}, line_width, 0.9);
     for (const PlacedTick& t : d.ticks) {
       o.line(t.at, t.at + d.axis.outward * (0.5 * font), line_width, 0.9);
-      if (!is_free(t.rect, o, taken)) continue;
-      o.text(t.text, t.rect.x, t.rect.y, style, true);
-      taken.push_back(t.rect.grown(0.1 * font));
+      // A number that meets another axis' at a corner moves a little further out, or aside.
+      const auto write_at = [&](Vec2 move) {
+        const Rect rect{t.rect.x + move.x * font, t.rect.y + move.y * font, t.rect.width, t.rect.height};
+        if (!is_free(rect.grown(0.3 * font), o, taken)) return false;
+        o.text(t.text, rect.x, rect.y, style, true);
+        taken.push_back(rect);
+        return true;
+      };
+      const Vec2 n = d.axis.outward;
+      for (Vec2 move : {Vec2{}, n * 0.4, n * 0.8, n * 1.2, Vec2{-0.7, 0.1}, Vec2{0.7, 0.1}, Vec2{-1.4, 0.3}, Vec2{1.4, 0.3}, n * 1.7})
+        if (write_at(move)) break;
     }
   }
 }

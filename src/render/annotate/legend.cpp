@@ -17,8 +17,10 @@ constexpr double triangle = 1.0;
 constexpr double widest_title = 10, widest_name = 12;
 
 std::string title_of(const ColorScale& s) {
-  if (s.unit.empty()) return s.title;
-  return s.title.empty() ? "[" + s.unit + "]" : s.title + " [" + s.unit + "]";
+  std::string title;
+  for (char c : s.title) title += c == '_' ? std::string("_\u200b") : std::string(1, c);  // names may break after an underscore
+  if (s.unit.empty()) return title;
+  return title.empty() ? "[" + s.unit + "]" : title + " [" + s.unit + "]";
 }
 
 std::string name_of_label(const ColorScale& s, size_t i) {
@@ -44,7 +46,8 @@ std::vector<LegendLayout::Tick> ticks_of(const ColorScale& s, const Rect& bar, d
   const double largest = std::max(std::abs(s.lo), std::abs(s.hi)), range = std::abs(s.hi - s.lo);
   const int digits = range > 0 && s.kind == ScaleKind::linear ? std::clamp(int(std::ceil(std::log10(largest / range))) + 3, 3, 15) : 3;
   for (double end : {s.lo, s.hi}) {
-    const std::string text = short_number(end, digits);
+    const std::string exact = exact_number(end),
+                      text = exact.size() <= std::max<size_t>(6, longest + 1) ? exact : short_number(end, digits);
     if (text.size() <= longest + 3) offer(end, text);
   }
   return ticks;
@@ -149,7 +152,7 @@ void draw_bar(Image& image, Overlay& overlay, const ColorScale& s, const LegendL
   const double half = 0.5 * overlay.measure("0", style).height;
   for (const auto& t : l.ticks) {
     overlay.line({right, t.row + 0.5}, {right + 0.35 * f, t.row + 0.5}, std::max(1.0, 0.07 * f), 0.9);
-    overlay.text(t.text, right + label_gap * f, t.row + 0.5 - half, style);
+    overlay.text(t.text, right + label_gap * f, t.row + 0.5 - half, style, true);
   }
 }
 
@@ -165,7 +168,7 @@ void draw_rows(Image& image, Overlay& overlay, const ColorScale& s, const Legend
       fill(image, r, s.color(s.labels[i]));
       overlay.frame({r.x - 0.5, r.y - 0.5, r.width + 1, r.height + 1}, 0.35);
     }
-    overlay.text(l.rows[i], l.bar.right() + 0.6 * l.font, y + 0.5 * (l.row_height - text_height), style);
+    overlay.text(l.rows[i], l.bar.right() + 0.6 * l.font, y + 0.5 * (l.row_height - text_height), style, true);
   }
 }
 
@@ -195,7 +198,7 @@ void draw_legend(Image& image, Overlay& overlay, const ColorScale& s, const Lege
     if (l.title_upwards)
       overlay.text_upwards(l.title, l.column.right() - l.title_size.height, l.column.y + 0.5 * (l.column.height - l.title_size.width),
                            l.title_style);
-    else overlay.text(l.title, l.column.x, l.column.y, l.title_style);
+    else overlay.text(l.title, l.column.x, l.column.y, l.title_style, true);
   }
   if (s.labels.empty()) draw_bar(image, overlay, s, l);
   else draw_rows(image, overlay, s, l);
@@ -205,7 +208,7 @@ void draw_legend(Image& image, Overlay& overlay, const ColorScale& s, const Lege
     const Rect r{l.bar.x, std::round(l.nan_y), l.bar.width, std::floor(0.8 * height)};
     fill(image, r, s.color(std::numeric_limits<double>::quiet_NaN()));
     overlay.frame({r.x - 0.5, r.y - 0.5, r.width + 1, r.height + 1}, 0.35);
-    overlay.text("NaN", l.bar.right() + label_gap * l.font, r.y + 0.5 * (r.height - height), style);
+    overlay.text("NaN", l.bar.right() + label_gap * l.font, r.y + 0.5 * (r.height - height), style, true);
   }
 }
 

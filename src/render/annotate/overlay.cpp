@@ -55,7 +55,6 @@ std::string typeset_number(const std::string& text) {
 struct Overlay::Parts {
   Surface surface;
   Cairo cr;
-  std::unique_ptr<PangoFontMap, Unref<PangoFontMap>> fonts;
   std::unique_ptr<PangoContext, Unref<PangoContext>> context;
 
   Layout layout(const std::string& text, const TextStyle& style) const {
@@ -67,6 +66,10 @@ struct Overlay::Parts {
     char* valid = g_utf8_make_valid(text.data(), gssize(text.size()));
     pango_layout_set_text(layout.get(), valid, -1);
     g_free(valid);
+    PangoAttrList* attributes = pango_attr_list_new();
+    pango_attr_list_insert(attributes, pango_attr_insert_hyphens_new(FALSE));  // a broken field name must not gain a letter
+    pango_layout_set_attributes(layout.get(), attributes);
+    pango_attr_list_unref(attributes);
     if (style.wrap > 0) {
       pango_layout_set_width(layout.get(), int(style.wrap * PANGO_SCALE));
       if (style.ellipsize) pango_layout_set_ellipsize(layout.get(), PANGO_ELLIPSIZE_END), pango_layout_set_height(layout.get(), -1);
@@ -84,10 +87,10 @@ Overlay::Overlay(int width, int height, bool dark_background)
   if (cairo_surface_status(p.surface.get()) != CAIRO_STATUS_SUCCESS)
     fail_usage(fmt::format("a picture of {} x {} pixels cannot be written on", width, height), "annotate", "at most 32767 each way");
   p.cr.reset(cairo_create(p.surface.get()));
-  p.fonts.reset(pango_cairo_font_map_new());
-  require_a_font(p.fonts.get());
-  pango_cairo_font_map_set_resolution(PANGO_CAIRO_FONT_MAP(p.fonts.get()), 96);
-  p.context.reset(pango_font_map_create_context(p.fonts.get()));
+  PangoFontMap* fonts = pango_cairo_font_map_get_default();  // kept by Pango, one per thread: loading fonts is slow
+  require_a_font(fonts);
+  p.context.reset(pango_font_map_create_context(fonts));
+  pango_cairo_context_set_resolution(p.context.get(), 96);
   // Nothing that depends on the machine: no hinting, no subpixel order, no rounding to pixels.
   cairo_font_options_t* options = cairo_font_options_create();
   cairo_font_options_set_antialias(options, CAIRO_ANTIALIAS_GRAY);
@@ -141,13 +144,25 @@ void Overlay::colored_text(const std::string& text, double x, double y, const Te
   show(text, style, true, color);
 }
 
+void Overlay::keep_clear(const std::vector<Rect>& rects) {
+  cairo_t* cr = parts_->cr.get();
+  cairo_reset_clip(cr);
+  for (const Rect& r : rects) {
+    cairo_set_fill_rule(cr, CAIRO_FILL_RULE_EVEN_ODD);
+    cairo_rectangle(cr, 0, 0, width_, height_);
+    cairo_rectangle(cr, r.x, r.y, r.width, r.height);
+    cairo_clip(cr);
+  }
+  cairo_set_fill_rule(cr, CAIRO_FILL_RULE_WINDING);
+}
+
 void Overlay::text_upwards(const std::string& text, double x, double y, const TextStyle& style) {
   cairo_t* cr = parts_->cr.get();
   cairo_save(cr);
   cairo_translate(cr, x, y + measure(text, style).width);
   cairo_rotate(cr, -1.57079632679489662);
   cairo_move_to(cr, 0, 0);
-  show(text, style, false, ink());
+  show(text, style, true, ink());
   cairo_restore(cr);
 }
 

@@ -56,6 +56,9 @@ class Overlay {
   /// Turned by 90 degrees, read upwards; (x, y) is the top left corner of the turned box (width and height swapped).
   void text_upwards(const std::string& text, double x, double y, const TextStyle& style);
 
+  /// Nothing is drawn within these rectangles until the next call; an empty list lifts that.
+  void keep_clear(const std::vector<Rect>& rects);
+
   void line(Vec2 from, Vec2 to, double width, double alpha = 1);
   void frame(const Rect& rect, double alpha);
   void polygon(const std::vector<Vec2>& points, Vec3f color, bool outlined);
