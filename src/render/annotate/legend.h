@@ -33,7 +33,8 @@ struct LegendLayout {
   double font = 15;
 };
 
-/// Legends that fit in `area` (below the title), placed from its right edge.
+/// Legends that fit in `area` (below the title), placed from its right edge; letters shrink until they do, and a thumbnail too
+/// small for legible ones gets none.
 std::vector<LegendLayout> layout_legends(const Overlay& overlay, const std::vector<ColorScale>& scales, const Rect& area, double font,
                                          bool nan);
 /// Sum of the columns, with the margins to picture and border; 0 for none.

@@ -25,13 +25,13 @@ using Layout = std::unique_ptr<PangoLayout, Unref<PangoLayout>>;
 
 void use(cairo_t* cr, Vec3f c, double alpha = 1) { cairo_set_source_rgba(cr, double(c.x), double(c.y), double(c.z), alpha); }
 
-void require_a_font(PangoFontMap* map) {
-  PangoFontFamily** families = nullptr;
-  int count = 0;
-  pango_font_map_list_families(map, &families, &count);
-  g_free(families);
-  if (count == 0)
+void require_a_font(PangoContext* context) {
+  PangoFontDescription* wanted = pango_font_description_from_string("DejaVu Sans 10");
+  PangoFont* font = pango_context_load_font(context, wanted);
+  pango_font_description_free(wanted);
+  if (!font)
     fail_internal("no font is installed, so nothing can be written on pictures; install the package fonts-dejavu-core", "annotate");
+  g_object_unref(font);
 }
 
 }  // namespace
@@ -88,8 +88,8 @@ Overlay::Overlay(int width, int height, bool dark_background)
     fail_usage(fmt::format("a picture of {} x {} pixels cannot be written on", width, height), "annotate", "at most 32767 each way");
   p.cr.reset(cairo_create(p.surface.get()));
   PangoFontMap* fonts = pango_cairo_font_map_get_default();  // kept by Pango, one per thread: loading fonts is slow
-  require_a_font(fonts);
   p.context.reset(pango_font_map_create_context(fonts));
+  require_a_font(p.context.get());
   pango_cairo_context_set_resolution(p.context.get(), 96);
   // Nothing that depends on the machine: no hinting, no subpixel order, no rounding to pixels.
   cairo_font_options_t* options = cairo_font_options_create();
@@ -119,18 +119,16 @@ void Overlay::show(const std::string& text, const TextStyle& style, bool halo, V
   pango_layout_get_extents(layout.get(), nullptr, &logical);
   // With a wrap width, Pango aligns within that width; move the lines' own box to the corner.
   cairo_rel_move_to(cr, -double(logical.x) / PANGO_SCALE, 0);
+  // As outlines: cached glyph pictures would be set to whole pixels, and small text would look uneven.
+  pango_cairo_layout_path(cr, layout.get());
   if (halo) {
-    double x, y;
-    cairo_get_current_point(cr, &x, &y);
-    pango_cairo_layout_path(cr, layout.get());
     use(cr, rim(), 0.75);
     cairo_set_line_width(cr, std::max(2.0, 0.2 * style.size));
     cairo_set_line_join(cr, CAIRO_LINE_JOIN_ROUND);
-    cairo_stroke(cr);
-    cairo_move_to(cr, x, y);
+    cairo_stroke_preserve(cr);
   }
   use(cr, color);
-  pango_cairo_show_layout(cr, layout.get());
+  cairo_fill(cr);
   cairo_new_path(cr);
 }
 
