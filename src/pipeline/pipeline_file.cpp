@@ -189,7 +189,12 @@ class FileParser {
         continue;
       }
       unique_keys(value, fmt::format("picture {}: ", key.text));
-      for (const auto& [k, v] : value.pairs) add_word(key.text + "." + k.text, v, k.line, "picture", file.picture);
+      for (const auto& [k, v] : value.pairs) {
+        if (k.text.find('.') != k.text.npos) mistake(k.line, fmt::format("picture {}: '{}' is no name", key.text, k.text));
+        for (const auto& [flat, other] : picture.pairs)
+          if (flat.text == key.text + "." + k.text) mistake(flat.line, fmt::format("picture: the key '{}' stands twice", flat.text));
+        add_word(key.text + "." + k.text, v, k.line, "picture", file.picture);
+      }
     }
   }
 
@@ -235,20 +240,35 @@ std::string pair_text(const std::string& word, size_t skip = 0) {
   return yaml_scalar(key) + (eq == word.npos ? ":" : ": " + value_text(word.substr(eq + 1)));
 }
 
-std::string words_text(const std::vector<std::string>& words) {
+std::string key_of(const std::string& word) { return word.substr(0, word.find('=')); }
+
+// Of words with the same key the last counts, as in set_params.
+std::vector<std::string> last_words(const std::vector<std::string>& words) {
+  std::vector<std::string> r;
+  for (size_t i = 0; i < words.size(); ++i) {
+    const bool again = std::any_of(words.begin() + ptrdiff_t(i) + 1, words.end(), [&](const std::string& w) { return key_of(w) == key_of(words[i]); });
+    if (!again) r.push_back(words[i]);
+  }
+  return r;
+}
+
+std::string words_text(const std::vector<std::string>& all) {
   std::string r;
-  for (const std::string& w : words) r += (r.empty() ? "" : ", ") + pair_text(w);
+  for (const std::string& w : last_words(all)) r += (r.empty() ? "" : ", ") + pair_text(w);
   return r.empty() ? "" : "{" + r + "}";
 }
 
-std::string picture_text(const std::vector<std::string>& words) {
+std::string picture_text(const std::vector<std::string>& all) {
+  const std::vector<std::string> words = last_words(all);
   auto map_of = [](const std::string& word) {
-    const std::string key = word.substr(0, word.find('='));
+    const std::string key = key_of(word);
     const size_t dot = key.find('.');
-    return dot == key.npos || dot == 0 || dot + 1 == key.size() ? std::string() : key.substr(0, dot);
+    return dot == key.npos || dot == 0 || dot + 1 == key.size() || key.find('.', dot + 1) != key.npos ? std::string() : key.substr(0, dot);
   };
   std::string r;
-  std::vector<std::string> written;  // maps; each may stand once, words of it further down are written flat
+  std::vector<std::string> written;  // names that stand already; further words of such a map are written flat
+  for (const std::string& w : words)
+    if (map_of(w).empty()) written.push_back(key_of(w));
   for (size_t i = 0; i < words.size();) {
     r += r.empty() ? "" : ", ";
     const std::string map = map_of(words[i]);
