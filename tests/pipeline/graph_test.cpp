@@ -160,6 +160,28 @@ TEST_CASE("graph: the request reaches the reader with only the fields that are n
   CHECK(asked(some, Request::only({"p"})).fields == std::vector<std::string>{"T", "q"});
 }
 
+TEST_CASE("graph: a field that the user chose must be in the file, one that a filter makes need not") {
+  GraphOptions o = options(0);
+  o.read = [](const std::string&, const ReadOptions& r, const Request&, Context&) -> Data {
+    std::vector<std::string> have;
+    for (const char* name : {"T", "p"})
+      if (r.fields.empty() || std::find(r.fields.begin(), r.fields.end(), name) != r.fields.end()) have.push_back(name);
+    return test::line_of(4, have);
+  };
+  Graph g(o);
+  Context context;
+  ReadOptions chosen;
+  chosen.fields = {"T", "presure"};
+  const NodeId bad = g.add_read(some_file(), chosen), good = g.add_read(some_file());
+  CHECK(test::error_of([&] { g.evaluate(bad, {}, context); }).find("graph.raw: there is no field 'presure' in the file (while reading (step 1))") != std::string::npos);
+  CHECK(first(g.evaluate(bad, Request::only({"T"}), context)) == 0);  // not needed, so not looked for
+  CHECK(first(g.evaluate(g.add_operation("scale", {"field=T"}, {good}), Request::only({"T_gradient"}), context)) == 0);
+  o.field_names = [](const std::string&, const ReadOptions&) { return std::optional(std::vector<std::string>{"T", "pressure"}); };
+  Graph named(o);
+  const NodeId again = named.add_read(some_file(), chosen);
+  CHECK(test::error_of([&] { named.evaluate(again, {}, context); }).find("did you mean 'pressure'?") != std::string::npos);
+}
+
 TEST_CASE("graph: branches that need different fields share one read with the fields of both") {
   Reads reads;
   Graph g(options(0, &reads));
