@@ -14,7 +14,8 @@ using Kind = YamlNode::Kind;
 
 class FileParser {
  public:
-  FileParser(const std::string& origin, const PipelineVocabulary& vocabulary) : origin_(origin.empty() ? "pipeline" : origin), vocabulary_(vocabulary) {}
+  FileParser(const std::string& origin, const PipelineVocabulary& vocabulary)
+      : origin_(origin.empty() ? "pipeline" : origin), vocabulary_(vocabulary) {}
 
   PipelineFile parse(const YamlNode& root) {
     PipelineFile file;
@@ -77,7 +78,8 @@ class FileParser {
     std::string text;
     for (const YamlNode& item : value.items) {
       if (item.kind != Kind::scalar) return mistake(item.line, fmt::format("{} {}: the items of a list must be values", of, key)), false;
-      if (item.text.find(',') != item.text.npos) return mistake(item.line, fmt::format("{} {}: '{}': an item of a list has no comma", of, key, item.text)), false;
+      if (item.text.find(',') != item.text.npos)
+        return mistake(item.line, fmt::format("{} {}: '{}': an item of a list has no comma", of, key, item.text)), false;
       text += (text.empty() && &item == &value.items.front() ? "" : ",") + item.text;
     }
     words.push_back(key + "=" + text);
@@ -98,14 +100,15 @@ class FileParser {
   }
 
   // The one key of `body` that is not `other` ("from", "of"); null after a mistake.
-  const std::pair<YamlNode, YamlNode>* one_besides(const YamlNode& body, const std::string& other, const std::string& of, const std::string& what) {
+  const std::pair<YamlNode, YamlNode>* one_besides(const YamlNode& body, const std::string& other, const std::string& of,
+                                                   const std::string& what) {
     const std::pair<YamlNode, YamlNode>* found = nullptr;
     for (const auto& pair : body.pairs) {
       if (pair.first.text == other) continue;
       if (found) {
         const std::string near = nearest_name(pair.first.text, std::span(&other, 1));
-        mistake(pair.first.line, fmt::format("{}: has '{}' beside '{}', but {} and '{}' are all it may have{}", of, pair.first.text, found->first.text, what, other,
-                                             near.empty() ? "" : "; did you mean '" + near + "'?"));
+        mistake(pair.first.line, fmt::format("{}: has '{}' beside '{}', but {} and '{}' are all it may have{}", of, pair.first.text,
+                                             found->first.text, what, other, near.empty() ? "" : "; did you mean '" + near + "'?"));
         return nullptr;
       }
       found = &pair;
@@ -175,7 +178,8 @@ class FileParser {
   }
 
   void check_known(const std::string& name, int line, const std::string& what, const std::vector<std::string>& known) {
-    if (!known.empty() && std::find(known.begin(), known.end(), name) == known.end()) mistake(line, fmt::format("{} '{}'; {}", what, name, unknown_name_hint(name, known)));
+    if (!known.empty() && std::find(known.begin(), known.end(), name) == known.end())
+      mistake(line, fmt::format("{} '{}'; {}", what, name, unknown_name_hint(name, known)));
   }
 
   void parse_picture(const YamlNode& picture, PipelineFile& file) {
@@ -246,7 +250,8 @@ std::string key_of(const std::string& word) { return word.substr(0, word.find('=
 std::vector<std::string> last_words(const std::vector<std::string>& words) {
   std::vector<std::string> r;
   for (size_t i = 0; i < words.size(); ++i) {
-    const bool again = std::any_of(words.begin() + ptrdiff_t(i) + 1, words.end(), [&](const std::string& w) { return key_of(w) == key_of(words[i]); });
+    const bool again =
+        std::any_of(words.begin() + ptrdiff_t(i) + 1, words.end(), [&](const std::string& w) { return key_of(w) == key_of(words[i]); });
     if (!again) r.push_back(words[i]);
   }
   return r;
@@ -278,7 +283,8 @@ std::string picture_text(const std::vector<std::string>& all) {
     }
     written.push_back(map);
     r += yaml_scalar(map) + ": {";
-    for (bool first = true; i < words.size() && map_of(words[i]) == map; ++i, first = false) r += (first ? "" : ", ") + pair_text(words[i], map.size() + 1);
+    for (bool first = true; i < words.size() && map_of(words[i]) == map; ++i, first = false)
+      r += (first ? "" : ", ") + pair_text(words[i], map.size() + 1);
     r += "}";
   }
   return r;
@@ -303,7 +309,8 @@ std::string emit_pipeline(const PipelineFile& file) {
   if (!file.show.empty()) r += "show:\n";
   for (const PipelineFile::Show& s : file.show) {
     const std::string words = words_text(s.words);
-    r += fmt::format("  - {{{}:{}{}{}}}\n", yaml_scalar(s.kind), words.empty() ? "" : " ", words, s.of.empty() ? "" : ", of: " + yaml_scalar(s.of));
+    r += fmt::format("  - {{{}:{}{}{}}}\n", yaml_scalar(s.kind), words.empty() ? "" : " ", words,
+                     s.of.empty() ? "" : ", of: " + yaml_scalar(s.of));
   }
   if (!file.picture.empty()) r += "picture: {" + picture_text(file.picture) + "}\n";
   return r;

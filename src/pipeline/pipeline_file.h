@@ -44,7 +44,9 @@ struct PipelineFile {
   int picture_line = 0;
   std::string origin;  ///< file name, for messages and relative paths; "" = none
 
-  friend bool operator==(const PipelineFile& a, const PipelineFile& b) { return a.steps == b.steps && a.show == b.show && a.picture == b.picture; }
+  friend bool operator==(const PipelineFile& a, const PipelineFile& b) {
+    return a.steps == b.steps && a.show == b.show && a.picture == b.picture;
+  }
 };
 
 /// The words that may stand in a file, for "did you mean". An empty list lets everything pass.

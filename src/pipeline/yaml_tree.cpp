@@ -45,7 +45,9 @@ class TreeBuilder : public YAML::EventHandler {
   void OnMapEnd() override { close(); }
 
  private:
-  [[noreturn]] void fail(const YAML::Mark& mark, const std::string& what) const { fail_usage(what, fmt::format("{}:{}", origin_, mark.line + 1)); }
+  [[noreturn]] void fail(const YAML::Mark& mark, const std::string& what) const {
+    fail_usage(what, fmt::format("{}:{}", origin_, mark.line + 1));
+  }
   void check_tag(const YAML::Mark& mark, const std::string& tag) const {
     if (!tag.empty() && tag != "?" && tag != "!") fail(mark, "tags (" + tag + ") are not allowed");
   }
@@ -125,7 +127,8 @@ void check_utf8(std::string_view text, const std::string& origin) {
 
 YamlNode parse_yaml(std::string_view text, const std::string& origin) {
   const std::string name = origin.empty() ? "pipeline" : origin;
-  if (text.size() > most_bytes) fail_usage(fmt::format("has {}; a pipeline file has at most {}", human_bytes(text.size()), human_bytes(most_bytes)), name);
+  if (text.size() > most_bytes)
+    fail_usage(fmt::format("has {}; a pipeline file has at most {}", human_bytes(text.size()), human_bytes(most_bytes)), name);
   check_utf8(text, name);
   TreeBuilder builder(name);
   try {

@@ -8,7 +8,8 @@ using namespace sg;
 
 TEST_CASE("error: the message holds where, problem, hint and the chain of what was being done") {
   try {
-    with_context("running 'contour' (step 2)", [] { with_context("reading 'a.vti'", [] { fail_data("ends early", "a.vti:3", "copy it again"); }); });
+    with_context("running 'contour' (step 2)",
+                 [] { with_context("reading 'a.vti'", [] { fail_data("ends early", "a.vti:3", "copy it again"); }); });
     FAIL("no error");
   } catch (const Error& e) {
     CHECK(std::string(e.what()) == "a.vti:3: ends early; copy it again (while reading 'a.vti', while running 'contour' (step 2))");

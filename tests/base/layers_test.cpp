@@ -28,7 +28,8 @@ std::string check(const std::string& root, bool& passed) {
 /// A checkout with one good file, and one more file.
 std::string checkout_with(const std::string& name, const std::string& file, const std::string& text) {
   const std::string root = test::temp_folder() + name;
-  for (const char* folder : {"", "/src", "/src/base", "/src/data", "/src/filter", "/src/filter/flow", "/src/oddities", "/tests"}) ::mkdir((root + folder).c_str(), 0755);
+  for (const char* folder : {"", "/src", "/src/base", "/src/data", "/src/filter", "/src/filter/flow", "/src/oddities", "/tests"})
+    ::mkdir((root + folder).c_str(), 0755);
   write_file(root + "/src/base/error.h", "// SPDX-License-Identifier: Apache-2.0\n#include <string>\n");
   write_file(root + "/src/filter/flow/a.h", "// SPDX-License-Identifier: Apache-2.0\n#include \"base/error.h\"\n");
   write_file(root + "/" + file, text);
@@ -71,7 +72,9 @@ TEST_CASE("check_layers: each violation is found and named with its line" * doct
   bool passed = true;
   CHECK(check(checkout_with("layers_long", "src/data/x.cpp", longer), passed).find("has 701 lines, more than 700") != std::string::npos);
   CHECK_FALSE(passed);
-  CHECK(check(checkout_with("layers_spdx", "tests/x.cpp", "int x;\n"), passed).find("tests/x.cpp:1: the first line must be the SPDX line") != std::string::npos);
+  CHECK(
+      check(checkout_with("layers_spdx", "tests/x.cpp", "int x;\n"), passed).find("tests/x.cpp:1: the first line must be the SPDX line") !=
+      std::string::npos);
   CHECK_FALSE(passed);
   check("/nowhere", passed);
   CHECK_FALSE(passed);

@@ -51,11 +51,14 @@ TEST_CASE("parallel_reduce: the same bytes for 1 and 8 threads") {
   std::vector<float> v(100'003);
   for (size_t i = 0; i < v.size(); ++i) v[i] = float(random_unit(1, i)) * 1e3f - 7;
   auto sum = [&] {
-    return parallel_reduce(v.size(), 1000, 0.0f, [&](size_t b, size_t e) {
-      float s = 0;
-      for (size_t i = b; i < e; ++i) s += v[i];
-      return s;
-    }, [](float a, float b) { return a + b; });
+    return parallel_reduce(
+        v.size(), 1000, 0.0f,
+        [&](size_t b, size_t e) {
+          float s = 0;
+          for (size_t i = b; i < e; ++i) s += v[i];
+          return s;
+        },
+        [](float a, float b) { return a + b; });
   };
   std::vector<float> results;
   for (const int threads : {1, 2, 3, 8}) {
@@ -64,8 +67,11 @@ TEST_CASE("parallel_reduce: the same bytes for 1 and 8 threads") {
   }
   for (const float r : results) CHECK(std::memcmp(&r, &results[0], 4) == 0);
   CHECK(results[0] == doctest::Approx(493 * 100'003.0).epsilon(0.01));
-  CHECK(parallel_reduce(0, 10, 42, [](size_t, size_t) { return 1; }, [](int a, int b) { return a + b; }) == 42);
-  const std::string order = parallel_reduce(26, 1, std::string("<"), [](size_t b, size_t) { return std::string(1, char('a' + b)); }, [](std::string a, const std::string& b) { return a + b; });
+  CHECK(parallel_reduce(
+            0, 10, 42, [](size_t, size_t) { return 1; }, [](int a, int b) { return a + b; }) == 42);
+  const std::string order = parallel_reduce(
+      26, 1, std::string("<"), [](size_t b, size_t) { return std::string(1, char('a' + b)); },
+      [](std::string a, const std::string& b) { return a + b; });
   CHECK(order == "<abcdefghijklmnopqrstuvwxyz");
 }
 
@@ -80,10 +86,13 @@ TEST_CASE("parallel_for: an exception of a chunk comes out, cancelling stops the
     Context context;
     std::atomic<int> ran{0};
     const auto work = [&] {
-      parallel_for(10'000, 1, [&](size_t, size_t) {
-        ++ran;
-        context.cancel();
-      }, &context);
+      parallel_for(
+          10'000, 1,
+          [&](size_t, size_t) {
+            ++ran;
+            context.cancel();
+          },
+          &context);
     };
     CHECK(test::error_of(work) == "cancelled");
     CHECK(ran < 10'000);

@@ -84,9 +84,51 @@ TEST_CASE("pipeline file: emitting gives stable text that reads back to the same
 
 TEST_CASE("pipeline file: any words survive the way out and back") {
   PipelineFile f;
-  const Words odd{"", "null", "~", "true", "a: b", "#x", "[1,2]", "{a}", "1,2,", ",1", "1, 2", " lead", "trail ", "\"q\"", "'", "\\n", "new\nline", "tab\t",
-                  "&a", "*a", "!t", "---", "...", "- x", "-", "?", "a=b", "50%", "C:\\x", "\x01\x7f", "\xc3\xa9\xc2\x85", "\xe2\x80\xa8", "\xef\xbb\xbf", "\xf0\x9f\x94\xad",
-                  "0.1,1e-300,inf", "1e400,2", "<<", "=", "@x", "`x", "|", ">", "%x", "null,1", std::string("a\0b", 3)};
+  const Words odd{"",
+                  "null",
+                  "~",
+                  "true",
+                  "a: b",
+                  "#x",
+                  "[1,2]",
+                  "{a}",
+                  "1,2,",
+                  ",1",
+                  "1, 2",
+                  " lead",
+                  "trail ",
+                  "\"q\"",
+                  "'",
+                  "\\n",
+                  "new\nline",
+                  "tab\t",
+                  "&a",
+                  "*a",
+                  "!t",
+                  "---",
+                  "...",
+                  "- x",
+                  "-",
+                  "?",
+                  "a=b",
+                  "50%",
+                  "C:\\x",
+                  "\x01\x7f",
+                  "\xc3\xa9\xc2\x85",
+                  "\xe2\x80\xa8",
+                  "\xef\xbb\xbf",
+                  "\xf0\x9f\x94\xad",
+                  "0.1,1e-300,inf",
+                  "1e400,2",
+                  "<<",
+                  "=",
+                  "@x",
+                  "`x",
+                  "|",
+                  ">",
+                  "%x",
+                  "null,1",
+                  std::string("a\0b", 3)};
   for (size_t i = 0; i < odd.size(); ++i) {
     PipelineFile::Step s{"s" + std::to_string(i), "scale", {"key=" + odd[i], "bare"}, {}, 0};
     if (!odd[i].empty()) s.from = {odd[i], "x"}, s.name = odd[i];
@@ -111,7 +153,8 @@ TEST_CASE("pipeline file: doubles written exactly come back as the same doubles"
     const uint64_t bits = random_bits(7, i);
     std::memcpy(&v, &bits, 8);
     if (!std::isfinite(v)) continue;
-    f.steps.push_back({"s" + std::to_string(i), "scale", {"by=" + exact_number(v), "list=" + exact_number(v) + "," + exact_number(-v)}, {}, 0});
+    f.steps.push_back(
+        {"s" + std::to_string(i), "scale", {"by=" + exact_number(v), "list=" + exact_number(v) + "," + exact_number(-v)}, {}, 0});
   }
   const PipelineFile back = parse_pipeline(emit_pipeline(f));
   CHECK(back == f);
@@ -133,40 +176,56 @@ TEST_CASE("pipeline file: of words with one key the last is written") {
   const PipelineFile back = parse_pipeline(emit_pipeline(f));
   CHECK(back.steps[0].words == Words{"mode=plain", "by=2"});
   CHECK(back.picture == Words{"size=2", "camera.a=3"});
-  CHECK(has(error_of("sightglass: 1\nsteps: {a: {ramp: }}\npicture: {camera: {a: 1},\n camera.a: 2}"), "p.yaml:4: picture: the key 'camera.a' stands twice"));
+  CHECK(has(error_of("sightglass: 1\nsteps: {a: {ramp: }}\npicture: {camera: {a: 1},\n camera.a: 2}"),
+            "p.yaml:4: picture: the key 'camera.a' stands twice"));
   CHECK(has(error_of("sightglass: 1\nsteps: {a: {ramp: }}\npicture: {camera: {a.b: 1}}"), "p.yaml:3: picture camera: 'a.b' is no name"));
 }
 
 TEST_CASE("pipeline file: every mistake of form is told with its line, all at once") {
   const std::string text = error_of(
-      "sightglass: 2\n"                                          // 1
-      "stpes: {}\n"                                              // 2
-      "steps:\n"                                                 // 3
-      "  a: read\n"                                              // 4
-      "  b: {contour: {values: [1]}, form: a}\n"                 // 5
-      "  c: {}\n"                                                // 6
-      "  d: {contour: [1]}\n"                                    // 7
-      "  e: {contour: {values: {x: 1}}}\n"                       // 8
-      "  f: {contour: {values: [[1]]}}\n"                        // 9
-      "  g: {contour: {words: ['a,b']}}\n"                       // 10
-      "  h: {contour: , from: {x: 1}}\n"                         // 11
-      "  i: {read: [1]}\n"                                       // 12
-      "  i: {read: x}\n"                                         // 13
-      "  j: {contour: {a: 1, a: 2}}\n"                           // 14
-      "  k: {contour: {a=b: 1}}\n"                               // 15
-      "show:\n"                                                  // 16
-      "  - {surfcae: , of: a}\n"                                 // 17
-      "  - {of: a}\n"                                            // 18
-      "  - {surface: , of: [a]}\n"                               // 19
-      "  - [surface]\n"                                          // 20
-      "picture: {sise: 1x1, camera: {a: {b: 1}}}\n");            // 21
-  for (const char* part : {"20 mistakes:", "p.yaml:1: sightglass: '2' is no version", "p.yaml:2: unknown key 'stpes'; did you mean 'steps'?", "p.yaml:4: step 'a': must be a map",
-                           "p.yaml:5: step 'b': has 'form' beside 'contour'", "did you mean 'from'?", "p.yaml:6: step 'c': has no one operation", "p.yaml:7: contour: must be a map of parameters",
-                           "p.yaml:8: contour values: must be a value or a list, not a map", "p.yaml:9: contour values: the items of a list must be values",
-                           "p.yaml:10: contour words: 'a,b': an item of a list has no comma", "p.yaml:11: step 'h': from: must be the name", "p.yaml:12: step 'i': read: needs the name of a file",
-                           "p.yaml:13: steps: the key 'i' stands twice", "p.yaml:14: contour: the key 'a' stands twice", "p.yaml:15: contour: 'a=b' is no name",
-                           "p.yaml:17: show: unknown kind 'surfcae'; did you mean 'surface'?", "p.yaml:18: show: has no one kind", "p.yaml:19: show: of: must be the name of a step",
-                           "p.yaml:20: show: each item is a kind", "p.yaml:21: picture: unknown key 'sise'; did you mean 'size'?", "p.yaml:21: picture camera.a: must be a value or a list"})
+      "sightglass: 2\n"                                // 1
+      "stpes: {}\n"                                    // 2
+      "steps:\n"                                       // 3
+      "  a: read\n"                                    // 4
+      "  b: {contour: {values: [1]}, form: a}\n"       // 5
+      "  c: {}\n"                                      // 6
+      "  d: {contour: [1]}\n"                          // 7
+      "  e: {contour: {values: {x: 1}}}\n"             // 8
+      "  f: {contour: {values: [[1]]}}\n"              // 9
+      "  g: {contour: {words: ['a,b']}}\n"             // 10
+      "  h: {contour: , from: {x: 1}}\n"               // 11
+      "  i: {read: [1]}\n"                             // 12
+      "  i: {read: x}\n"                               // 13
+      "  j: {contour: {a: 1, a: 2}}\n"                 // 14
+      "  k: {contour: {a=b: 1}}\n"                     // 15
+      "show:\n"                                        // 16
+      "  - {surfcae: , of: a}\n"                       // 17
+      "  - {of: a}\n"                                  // 18
+      "  - {surface: , of: [a]}\n"                     // 19
+      "  - [surface]\n"                                // 20
+      "picture: {sise: 1x1, camera: {a: {b: 1}}}\n");  // 21
+  for (const char* part : {"20 mistakes:",
+                           "p.yaml:1: sightglass: '2' is no version",
+                           "p.yaml:2: unknown key 'stpes'; did you mean 'steps'?",
+                           "p.yaml:4: step 'a': must be a map",
+                           "p.yaml:5: step 'b': has 'form' beside 'contour'",
+                           "did you mean 'from'?",
+                           "p.yaml:6: step 'c': has no one operation",
+                           "p.yaml:7: contour: must be a map of parameters",
+                           "p.yaml:8: contour values: must be a value or a list, not a map",
+                           "p.yaml:9: contour values: the items of a list must be values",
+                           "p.yaml:10: contour words: 'a,b': an item of a list has no comma",
+                           "p.yaml:11: step 'h': from: must be the name",
+                           "p.yaml:12: step 'i': read: needs the name of a file",
+                           "p.yaml:13: steps: the key 'i' stands twice",
+                           "p.yaml:14: contour: the key 'a' stands twice",
+                           "p.yaml:15: contour: 'a=b' is no name",
+                           "p.yaml:17: show: unknown kind 'surfcae'; did you mean 'surface'?",
+                           "p.yaml:18: show: has no one kind",
+                           "p.yaml:19: show: of: must be the name of a step",
+                           "p.yaml:20: show: each item is a kind",
+                           "p.yaml:21: picture: unknown key 'sise'; did you mean 'size'?",
+                           "p.yaml:21: picture camera.a: must be a value or a list"})
     CHECK_MESSAGE(text.find(part) != std::string::npos, part << " in " << text);
 }
 
@@ -274,11 +333,15 @@ TEST_CASE("pipeline file: mistakes in operations and names are told with their l
       "  - {surface: , of: z}\n";
   const std::string text = test::error_of([&] { build_graph(parse_pipeline(yaml, "/p.yaml"), test_options()); });
   for (const char* part :
-       {"15 mistakes:", "/p.yaml:3: step 'a': scale: takes 1 input, not 0", "/p.yaml:4: step 'b': ramp n: '0' is not in range", "/p.yaml:5: step 'c': unknown operation 'scael'; did you mean 'scale'?",
-        "/p.yaml:6: step 'd': there is no step 'bb'; did you mean 'b'?", "/p.yaml:6: step 'd': scale: unknown parameter 'bye'; did you mean 'by'?", "did you mean 'fancy'?",
-        "/p.yaml:7: step 'e': its input 'f' comes later; move that step up", "/p.yaml:8: step 'f': its input 'f' comes from itself", "/p.yaml:9: step 'g': /absent.vti: no such file",
-        "/p.yaml:9: step 'g': read takes no input", "/p.yaml:10: step 'h': read dims: needs three numbers, not 2", "/p.yaml:11: step 'i': read type: 'u7' is no type", "/p.yaml:12: step 'j': read path: no file is named",
-        "/p.yaml:13: step 'k': read type: a raw brick needs the type", "/p.yaml:14: step 'l': ramp: is a source and takes no input", "/p.yaml:16: show surface: there is no step 'z'"})
+       {"15 mistakes:", "/p.yaml:3: step 'a': scale: takes 1 input, not 0", "/p.yaml:4: step 'b': ramp n: '0' is not in range",
+        "/p.yaml:5: step 'c': unknown operation 'scael'; did you mean 'scale'?",
+        "/p.yaml:6: step 'd': there is no step 'bb'; did you mean 'b'?",
+        "/p.yaml:6: step 'd': scale: unknown parameter 'bye'; did you mean 'by'?", "did you mean 'fancy'?",
+        "/p.yaml:7: step 'e': its input 'f' comes later; move that step up", "/p.yaml:8: step 'f': its input 'f' comes from itself",
+        "/p.yaml:9: step 'g': /absent.vti: no such file", "/p.yaml:9: step 'g': read takes no input",
+        "/p.yaml:10: step 'h': read dims: needs three numbers, not 2", "/p.yaml:11: step 'i': read type: 'u7' is no type",
+        "/p.yaml:12: step 'j': read path: no file is named", "/p.yaml:13: step 'k': read type: a raw brick needs the type",
+        "/p.yaml:14: step 'l': ramp: is a source and takes no input", "/p.yaml:16: show surface: there is no step 'z'"})
     CHECK_MESSAGE(text.find(part) != std::string::npos, part << " in " << text);
   CHECK(test::all_runs() == 0);
 }

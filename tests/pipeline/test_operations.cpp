@@ -149,7 +149,9 @@ DatasetPtr line_of(size_t n, const std::vector<std::string>& fields) {
   return make_dataset(g, set);
 }
 
-double value_at(const Data& data, size_t i, const std::string& field) { return single_dataset(data, "test")->fields().require(field).array.get(i); }
+double value_at(const Data& data, size_t i, const std::string& field) {
+  return single_dataset(data, "test")->fields().require(field).array.get(i);
+}
 double first(const Data& data, const std::string& field) { return value_at(data, 0, field); }
 
 }  // namespace sg::test
