@@ -154,8 +154,10 @@ void throw_mistakes(const std::vector<Mistake>& mistakes) {
   for (const Mistake& m : mistakes)
     if (m.kind == ErrorKind::usage) kind = ErrorKind::usage;
   if (mistakes.size() == 1) throw Error(kind, mistakes[0].text);
+  constexpr size_t shown = 50;
   std::string text = fmt::format("{} mistakes:", mistakes.size());
-  for (const Mistake& m : mistakes) text += "\n  " + m.text;
+  for (size_t i = 0; i < std::min(shown, mistakes.size()); ++i) text += "\n  " + mistakes[i].text;
+  if (mistakes.size() > shown) text += fmt::format("\n  ... and {} more", mistakes.size() - shown);
   throw Error(kind, text);
 }
 

@@ -4,6 +4,7 @@
 
 #include "base/file.h"
 #include "base/text.h"
+#include "pipeline/graph_state.h"
 #include "pipeline/yaml_tree.h"
 
 namespace sg {
@@ -40,15 +41,13 @@ class FileParser {
   }
 
  private:
-  void mistake(int line, const std::string& text) { mistakes_.emplace_back(line, fmt::format("{}:{}: {}", origin_, line, text)); }
+  void mistake(int line, const std::string& text) {
+    mistakes_.push_back({line, ErrorKind::usage, fmt::format("{}:{}: {}", origin_, line, text)});
+  }
 
   void finish() {
-    if (mistakes_.empty()) return;
-    std::stable_sort(mistakes_.begin(), mistakes_.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-    if (mistakes_.size() == 1) fail_usage(mistakes_[0].second);
-    std::string text = fmt::format("{} mistakes:", mistakes_.size());
-    for (const auto& m : mistakes_) text += "\n  " + m.second;
-    fail_usage(text);
+    std::stable_sort(mistakes_.begin(), mistakes_.end(), [](const Mistake& a, const Mistake& b) { return a.node < b.node; });
+    if (!mistakes_.empty()) throw_mistakes(mistakes_);
   }
 
   void unique_keys(const YamlNode& map, const std::string& of) {
@@ -107,7 +106,7 @@ class FileParser {
       if (pair.first.text == other) continue;
       if (found) {
         const std::string near = nearest_name(pair.first.text, std::span(&other, 1));
-        mistake(pair.first.line, fmt::format("{}: has '{}' beside '{}', but {} and '{}' are all it may have{}", of, pair.first.text,
+        mistake(pair.first.line, fmt::format("{}: has '{}' beside '{}', but one {} and '{}' are all it may have{}", of, pair.first.text,
                                              found->first.text, what, other, near.empty() ? "" : "; did you mean '" + near + "'?"));
         return nullptr;
       }
@@ -128,7 +127,7 @@ class FileParser {
         continue;
       }
       unique_keys(body, of + ": ");
-      const auto* op = one_besides(body, "from", of, "one operation");
+      const auto* op = one_besides(body, "from", of, "operation");
       if (!op) continue;
       step.operation = op->first.text;
       if (step.operation == "read" && op->second.kind == Kind::scalar) step.words = {"path=" + op->second.text};
@@ -159,7 +158,7 @@ class FileParser {
         show.kind = body.text;
       } else if (body.kind == Kind::map) {
         unique_keys(body, "show: ");
-        const auto* kind = one_besides(body, "of", "show", "one kind");
+        const auto* kind = one_besides(body, "of", "show", "kind");
         if (!kind) continue;
         show.kind = kind->first.text;
         show.words = parse_words(kind->second, show.kind);
@@ -204,7 +203,7 @@ class FileParser {
 
   std::string origin_;
   const PipelineVocabulary& vocabulary_;
-  std::vector<std::pair<int, std::string>> mistakes_;
+  std::vector<Mistake> mistakes_;  // with the line in the place of the node
 };
 
 }  // namespace

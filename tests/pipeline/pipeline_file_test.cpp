@@ -210,7 +210,7 @@ TEST_CASE("pipeline file: every mistake of form is told with its line, all at on
                            "p.yaml:4: step 'a': must be a map",
                            "p.yaml:5: step 'b': has 'form' beside 'contour'",
                            "did you mean 'from'?",
-                           "p.yaml:6: step 'c': has no one operation",
+                           "p.yaml:6: step 'c': has no operation",
                            "p.yaml:7: contour: must be a map of parameters",
                            "p.yaml:8: contour values: must be a value or a list, not a map",
                            "p.yaml:9: contour values: the items of a list must be values",
@@ -221,7 +221,7 @@ TEST_CASE("pipeline file: every mistake of form is told with its line, all at on
                            "p.yaml:14: contour: the key 'a' stands twice",
                            "p.yaml:15: contour: 'a=b' is no name",
                            "p.yaml:17: show: unknown kind 'surfcae'; did you mean 'surface'?",
-                           "p.yaml:18: show: has no one kind",
+                           "p.yaml:18: show: has no kind",
                            "p.yaml:19: show: of: must be the name of a step",
                            "p.yaml:20: show: each item is a kind",
                            "p.yaml:21: picture: unknown key 'sise'; did you mean 'size'?",
@@ -351,6 +351,14 @@ TEST_CASE("pipeline file: names that are used twice are refused when built from 
   f.steps = {{"a", "ramp", {}, {}, 3}, {"a", "ramp", {}, {}, 4}};
   CHECK(has(test::error_of([&] { build_graph(f, test_options()); }), "pipeline:4: there are two steps 'a'"));
   CHECK(has(test::error_of([&] { build_graph({}, test_options()); }), "there are no steps"));
+}
+
+TEST_CASE("pipeline file: of very many mistakes the first are told") {
+  PipelineFile f;
+  for (int i = 0; i < 3000; ++i) f.steps.push_back({"s" + std::to_string(i), i ? "scael" : "ramp", {}, {}, i + 1});
+  const std::string text = test::error_of([&] { build_graph(f, test_options()); });
+  CHECK(has(text, "2999 mistakes:"));
+  CHECK(text.ends_with("... and 2949 more"));
 }
 
 TEST_CASE("pipeline file: a missing file is an error of data") {
