@@ -27,21 +27,23 @@ struct Setter {
   std::string where;
   std::string_view text;
 
-  [[noreturn]] void fail(const std::string& wanted) const {
-    fail_usage(fmt::format("'{}' is not {}", text, wanted), where);
+  [[noreturn]] void fail(const std::string& wanted) const { fail(wanted, text); }
+  // `part` is the item of a list that is wrong.
+  [[noreturn]] void fail(const std::string& wanted, std::string_view part) const {
+    fail_usage(part == text ? fmt::format("'{}' is not {}", text, wanted) : fmt::format("'{}' in '{}' is not {}", part, text, wanted), where);
   }
   double number(std::string_view t) const {
     const auto v = parse_double(t);
-    if (!v) fail(fmt::format("a number{}", decl.unit_.empty() || decl.unit_[0] == '@' ? "" : " in " + decl.unit_));
+    if (!v) fail(fmt::format("a number{}", decl.unit_.empty() || decl.unit_[0] == '@' ? "" : " in " + decl.unit_), trim(t));
     if (!(*v >= decl.lo && *v <= decl.hi) || (decl.lo_open && *v == decl.lo) || (decl.hi_open && *v == decl.hi))
-      fail("in range: it must be " + (range_text(decl).empty() ? std::string("a number, not NaN") : range_text(decl)));
+      fail("in range: it must be " + (range_text(decl).empty() ? std::string("a number, not NaN") : range_text(decl)), trim(t));
     return *v;
   }
   int64_t integer(std::string_view t) const {
     const auto v = parse_int(t);
-    if (!v) fail("a whole number");
+    if (!v) fail("a whole number", trim(t));
     const double d = double(*v);
-    if (d < decl.lo || d > decl.hi || (decl.lo_open && d == decl.lo) || (decl.hi_open && d == decl.hi)) fail("in range: it must be " + range_text(decl));
+    if (d < decl.lo || d > decl.hi || (decl.lo_open && d == decl.lo) || (decl.hi_open && d == decl.hi)) fail("in range: it must be " + range_text(decl), trim(t));
     return *v;
   }
   std::string word(std::string_view t) const {

@@ -83,10 +83,12 @@ WeakData weakened(const Data& data) {
 }
 
 std::optional<Data> locked(const WeakData& weak) {
-  return std::visit([](const auto& w) -> std::optional<Data> {
-    if (auto p = w.lock()) return Data(p);
-    return std::nullopt;
-  }, weak);
+  return std::visit(
+      [](const auto& w) -> std::optional<Data> {
+        if (auto p = w.lock()) return Data(p);
+        return std::nullopt;
+      },
+      weak);
 }
 
 }  // namespace

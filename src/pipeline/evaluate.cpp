@@ -75,9 +75,24 @@ class Evaluation {
   }
 
   Data read_file(const ReadNode& read, const Step& s, Context& context) {
-    if (g_.options.read) return g_.options.read(read.path, s.read, s.request, context);
-    if (s.request.pieces > 1) fail_usage("files are read whole, not in pieces", read.path);
-    return read_data(read.path, s.read, context);
+    if (!g_.options.read && s.request.pieces > 1) fail_usage("files are read whole, not in pieces", read.path);
+    Data data = g_.options.read ? g_.options.read(read.path, s.read, s.request, context) : read_data(read.path, s.read, context);
+    if (!s.read.header_only) check_chosen_fields(read, s, data);
+    return data;
+  }
+
+  // Readers pass over names that a file does not have, since a request may ask for fields that a filter makes. But a name
+  // that the user put into the options must be there.
+  void check_chosen_fields(const ReadNode& read, const Step& s, const Data& data) {
+    for (const std::string& name : read.options.fields) {
+      if (std::find(s.read.fields.begin(), s.read.fields.end(), name) == s.read.fields.end()) continue;
+      bool found = false, any = false;
+      for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) { any = true, found = found || d->fields().find(name); });
+      if (found || !any) continue;
+      std::vector<std::string> have;
+      if (g_.options.field_names) have = g_.options.field_names(read.path, ReadOptions()).value_or(have);
+      fail_usage(fmt::format("there is no field '{}' in the file", name), read.path, have.empty() ? "" : unknown_name_hint(name, have));
+    }
   }
 
   // One consumer less; with the last one the result goes, and when it was never needed, its claim on its inputs too.

@@ -38,7 +38,14 @@ std::vector<PlannedStep> Graph::plan(std::span<const Target> targets) const {
   std::vector<PlannedStep> out;
   for (const Step& s : plan.steps) {
     const Node& node = state_->nodes[size_t(s.node)];
-    PlannedStep p{s.node, node.name.empty() ? std::to_string(s.node + 1) : node.name, step_does(node), s.key, s.request, PlannedStep::State::not_needed, 0, 0};
+    PlannedStep p{s.node,
+                  node.name.empty() ? std::to_string(s.node + 1) : node.name,
+                  step_does(node),
+                  s.key,
+                  s.request,
+                  PlannedStep::State::not_needed,
+                  0,
+                  0};
     const auto cached = state_->cache->peek(s.key);
     if (cached) p.bytes = *cached;
     else {
@@ -70,16 +77,20 @@ std::string Graph::explain(std::span<const Target> targets) const {
   const std::vector<PlannedStep> steps = plan(targets);
   size_t name_width = 4, does_width = 4;
   for (const PlannedStep& s : steps) name_width = std::max(name_width, s.name.size()), does_width = std::max(does_width, s.does.size());
-  std::string r = fmt::format("{:<{}}  {:<{}}  {:<8}  {:<10}  {:>12}  {:>8}  {}\n", "step", name_width, "does", does_width, "key", "state", "result", "time", "needs");
+  std::string r = fmt::format("{:<{}}  {:<{}}  {:<8}  {:<10}  {:>12}  {:>8}  {}\n", "step", name_width, "does", does_width, "key", "state",
+                              "result", "time", "needs");
   double seconds = 0;
   size_t running = 0;
   for (const PlannedStep& s : steps) {
     const bool runs = s.state == PlannedStep::State::run, cached = s.state == PlannedStep::State::cached;
     seconds += s.seconds;
     running += runs;
-    r += fmt::format("{:<{}}  {:<{}}  {:<8}  {:<10}  {:>12}  {:>8}  {}\n", s.name, name_width, s.does, does_width, key_text(s.key).substr(0, 8),
-                     runs ? "run" : cached ? "cached" : "not needed", (cached ? "" : "~") + human_bytes(s.bytes), runs ? "~" + seconds_text(s.seconds) : "-",
-                     request_text(s.request));
+    r += fmt::format("{:<{}}  {:<{}}  {:<8}  {:<10}  {:>12}  {:>8}  {}\n", s.name, name_width, s.does, does_width,
+                     key_text(s.key).substr(0, 8),
+                     runs     ? "run"
+                     : cached ? "cached"
+                              : "not needed",
+                     (cached ? "" : "~") + human_bytes(s.bytes), runs ? "~" + seconds_text(s.seconds) : "-", request_text(s.request));
   }
   return r + fmt::format("{} of {} steps run, in about {}\n", running, steps.size(), seconds_text(seconds));
 }

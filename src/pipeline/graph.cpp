@@ -61,12 +61,14 @@ NodeId Graph::add_operation(std::string operation, std::vector<std::string> word
   if (op.found && node.inputs.size() == inputs.size()) {
     const int n = int(inputs.size()), lo = op.found->min_inputs, hi = op.found->max_inputs;
     if (lo == 0 && hi == 0 && n > 0) mistake(fmt::format("{}: is a source and takes no input", op.operation));
-    else if (n < lo || (hi >= 0 && n > hi)) mistake(fmt::format("{}: takes {}{} input{}, not {}", op.operation, hi < 0 ? "at least " : "", lo, lo == 1 ? "" : "s", n));
+    else if (n < lo || (hi >= 0 && n > hi))
+      mistake(fmt::format("{}: takes {}{} input{}, not {}", op.operation, hi < 0 ? "at least " : "", lo, lo == 1 ? "" : "s", n));
   }
   if (op.params && op.found->kind == OperationKind::source) {
     const ParamDecl* time = op.params->schema.find("time");
     const bool settable = time && (std::holds_alternative<double*>(time->ref) || std::holds_alternative<std::optional<double>*>(time->ref));
-    op.follows_time = settable && std::none_of(op.words.begin(), op.words.end(), [](const std::string& w) { return trim(w.substr(0, w.find('='))) == "time"; });
+    op.follows_time = settable && std::none_of(op.words.begin(), op.words.end(),
+                                               [](const std::string& w) { return trim(w.substr(0, w.find('='))) == "time"; });
   }
   node.what = std::move(op);
   state_->nodes.push_back(std::move(node));
@@ -74,7 +76,9 @@ NodeId Graph::add_operation(std::string operation, std::vector<std::string> word
   return id;
 }
 
-std::string step_label(const Node& node, NodeId id) { return node.name.empty() ? fmt::format("step {}", id + 1) : fmt::format("step '{}'", node.name); }
+std::string step_label(const Node& node, NodeId id) {
+  return node.name.empty() ? fmt::format("step {}", id + 1) : fmt::format("step '{}'", node.name);
+}
 
 std::string step_does(const Node& node) {
   if (auto* read = std::get_if<ReadNode>(&node.what)) return fmt::format("read '{}'", file_name_of(read->path));
@@ -117,7 +121,9 @@ void check_fields(const std::vector<Node>& nodes, NodeId id, const GraphOptions&
   for (const ParamDecl& d : op->params->schema.decls()) {
     auto* field = std::get_if<FieldName*>(&d.ref);
     if (!field || (*field)->empty() || std::find(have.begin(), have.end(), (*field)->name) != have.end()) continue;
-    out.push_back({id, ErrorKind::usage, fmt::format("{}: {} {}: field '{}' not found; {}", step_label(node, id), op->operation, d.name, (*field)->name, unknown_name_hint((*field)->name, have))});
+    out.push_back({id, ErrorKind::usage,
+                   fmt::format("{}: {} {}: field '{}' not found; {}", step_label(node, id), op->operation, d.name, (*field)->name,
+                               unknown_name_hint((*field)->name, have))});
   }
 }
 
@@ -148,8 +154,10 @@ void throw_mistakes(const std::vector<Mistake>& mistakes) {
   for (const Mistake& m : mistakes)
     if (m.kind == ErrorKind::usage) kind = ErrorKind::usage;
   if (mistakes.size() == 1) throw Error(kind, mistakes[0].text);
+  constexpr size_t shown = 50;
   std::string text = fmt::format("{} mistakes:", mistakes.size());
-  for (const Mistake& m : mistakes) text += "\n  " + m.text;
+  for (size_t i = 0; i < std::min(shown, mistakes.size()); ++i) text += "\n  " + mistakes[i].text;
+  if (mistakes.size() > shown) text += fmt::format("\n  ... and {} more", mistakes.size() - shown);
   throw Error(kind, text);
 }
 

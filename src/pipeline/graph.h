@@ -22,11 +22,11 @@ using NodeId = int;
 
 struct GraphOptions {
   std::span<const Operation> operations = sg::operations();
-  std::shared_ptr<Cache> cache;                      ///< shared with other graphs; null = one of its own
-  uint64_t cache_limit = uint64_t(512) << 20;        ///< bytes, of its own cache
-  bool strict = false;                               ///< keys of files cover their content, not only path, size and time of change
+  std::shared_ptr<Cache> cache;                ///< shared with other graphs; null = one of its own
+  uint64_t cache_limit = uint64_t(512) << 20;  ///< bytes, of its own cache
+  bool strict = false;                         ///< keys of files cover their content, not only path, size and time of change
   /// Reads a file; null = read_data, which knows no time, region or piece. ReadOptions::fields already holds what the
-  /// request needs.
+  /// request needs; it may hold names of fields that a filter makes, so a reader passes over those that the file lacks.
   std::function<Data(const std::string& path, const ReadOptions& options, const Request& request, Context& context)> read;
   /// Names of the fields in a file, when they are cheap to find out; lets validate() check field names. May be null.
   std::function<std::optional<std::vector<std::string>>(const std::string& path, const ReadOptions& options)> field_names;
@@ -51,8 +51,8 @@ struct PlannedStep {
   Key key;
   Request request;
   State state = State::run;
-  uint64_t bytes = 0;   ///< of the result: exact when cached, else expected
-  double seconds = 0;   ///< expected; 0 unless the step runs
+  uint64_t bytes = 0;  ///< of the result: exact when cached, else expected
+  double seconds = 0;  ///< expected; 0 unless the step runs
 };
 
 /// Adding is for one thread; evaluate and explain are for any number of threads, but not from inside a parallel loop.

@@ -71,7 +71,8 @@ std::vector<FileState> file_and_parts(const std::string& path) {
     if (i < text.size() && !separates(text[i])) continue;
     const std::string_view word = text.substr(begin, i - begin);
     begin = i + 1;
-    if (word.size() < 3 || word.size() > 1024 || word.find('.') == word.npos || parse_double(word) || word.find('\0') != word.npos) continue;
+    if (word.size() < 3 || word.size() > 1024 || word.find('.') == word.npos || parse_double(word) || word.find('\0') != word.npos)
+      continue;
     FileState part = file_state(path_beside(path, word));
     if (part.exists) files.push_back(std::move(part));
   }

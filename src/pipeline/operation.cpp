@@ -25,7 +25,8 @@ ParamSet make_params(const Operation& operation, const std::vector<std::string>&
 Data run_operation(const Operation& operation, const std::vector<Data>& inputs, const std::vector<std::string>& words, Context& context) {
   const int n = int(inputs.size());
   if (n < operation.min_inputs || (operation.max_inputs >= 0 && n > operation.max_inputs))
-    fail_usage(fmt::format("takes {} input{}, not {}", operation.min_inputs, operation.min_inputs == 1 ? "" : "s", n), std::string(operation.name));
+    fail_usage(fmt::format("takes {} input{}, not {}", operation.min_inputs, operation.min_inputs == 1 ? "" : "s", n),
+               std::string(operation.name));
   return operation.run(inputs, make_params(operation, words), context);
 }
 
@@ -62,7 +63,9 @@ Request named_or_all(const ParamSet& params, Request request, std::optional<doub
 
 Request detail::request_carried(const ParamSet& params, const Request& wanted) { return named_or_all(params, wanted, wanted.time); }
 
-Request detail::request_named(const ParamSet& params, const Request& wanted) { return named_or_all(params, Request::only({}), wanted.time); }
+Request detail::request_named(const ParamSet& params, const Request& wanted) {
+  return named_or_all(params, Request::only({}), wanted.time);
+}
 
 std::string ops_help(std::string_view name, std::span<const Operation> table) {
   if (!name.empty()) {
@@ -93,9 +96,9 @@ std::string ops_json(std::span<const Operation> table) {
   std::string r = "{\"operations\":[";
   for (size_t i = 0; i < table.size(); ++i) {
     const Operation& o = table[i];
-    r += fmt::format("{}{{\"name\":{},\"kind\":\"{}\",\"family\":{},\"sentence\":{},\"version\":{},\"inputs\":[{},{}],\"params\":{}}}", i ? ",\n" : "\n",
-                     json_string(o.name), o.kind == OperationKind::source ? "source" : "filter", json_string(o.family), json_string(o.sentence),
-                     o.version, o.min_inputs, o.max_inputs, params_json(o.make_params().schema));
+    r += fmt::format("{}{{\"name\":{},\"kind\":\"{}\",\"family\":{},\"sentence\":{},\"version\":{},\"inputs\":[{},{}],\"params\":{}}}",
+                     i ? ",\n" : "\n", json_string(o.name), o.kind == OperationKind::source ? "source" : "filter", json_string(o.family),
+                     json_string(o.sentence), o.version, o.min_inputs, o.max_inputs, params_json(o.make_params().schema));
   }
   return r + "\n]}\n";
 }

@@ -35,8 +35,8 @@ struct Estimate {
 struct Operation {
   std::string_view name, family, sentence;
   OperationKind kind = OperationKind::filter;
-  int version = 1;                      ///< raised when the same parameters give other numbers than before: part of the key
-  int min_inputs = 1, max_inputs = 1;   ///< max_inputs -1 = any number
+  int version = 1;                     ///< raised when the same parameters give other numbers than before: part of the key
+  int min_inputs = 1, max_inputs = 1;  ///< max_inputs -1 = any number
   ParamSet (*make_params)() = nullptr;
   Data (*run)(const std::vector<Data>& inputs, const ParamSet& params, Context& context) = nullptr;
   /// What it needs of its inputs to answer `wanted`; null = everything, at the same time.

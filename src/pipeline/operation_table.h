@@ -9,7 +9,8 @@
 //   R f(const DatasetPtr&, const DatasetPtr&, const P&, Context&)  two inputs: each part of the first, with the second
 //   R f(const Data&, const P&, Context&)                           sees collections whole
 //   R f(const std::vector<Data>&, const P&, Context&)              any number of inputs
-// Behind the sentence come hooks: version<2>, carries_fields, needs_only_named_fields, or any callable that changes an Operation&.
+// Behind the sentence come hooks: op_version<2>, op_inputs<1, -1>, carries_fields, needs_only_named_fields, or any callable that changes an
+// Operation&.
 #pragma once
 #include <type_traits>
 
@@ -82,30 +83,29 @@ Request request_named(const ParamSet& params, const Request& wanted);
 
 /// Hook: the numbers changed N-1 times.
 template <int N>
-constexpr auto version = [](Operation& o) { o.version = N; };
+constexpr auto op_version = [](Operation& o) { o.version = N; };
 /// Hook: the result has the fields of the input, and beside them the operation reads only those its parameters name.
 constexpr auto carries_fields = [](Operation& o) { o.request = detail::request_carried; };
 /// Hook: the result has no field of the input; the operation reads only those its parameters name.
 constexpr auto needs_only_named_fields = [](Operation& o) { o.request = detail::request_named; };
 /// Hook: how many inputs a filter over a list takes; MAX -1 = any number.
 template <int MIN, int MAX>
-constexpr auto inputs = [](Operation& o) { o.min_inputs = MIN, o.max_inputs = MAX; };
+constexpr auto op_inputs = [](Operation& o) { o.min_inputs = MIN, o.max_inputs = MAX; };
 
 }  // namespace sg
 
 // A lambda around the name lets `function` be overloaded.
-#define SG_CALL(function) [](auto&&... a) -> decltype(function(static_cast<decltype(a)>(a)...)) { return function(static_cast<decltype(a)>(a)...); }
+#define SG_CALL(function) \
+  [](auto&&... a) -> decltype(function(static_cast<decltype(a)>(a)...)) { return function(static_cast<decltype(a)>(a)...); }
 
-#define SG_FILTER(name, Params, function, family, sentence, ...)                                                            \
-  ::sg::detail::make_filter<Params>(                                                                                        \
-      #name, family, sentence, SG_CALL(function),                                                                           \
-      [](const std::vector<::sg::Data>& in, const ::sg::ParamSet& p, ::sg::Context& c) -> ::sg::Data {                      \
-        return ::sg::detail::run_filter<Params>(SG_CALL(function), #name, in, p, c);                                        \
-      } __VA_OPT__(, ) __VA_ARGS__)
+#define SG_FILTER(name, Params, function, family, sentence, ...)                                                                     \
+  ::sg::detail::make_filter<Params>(#name, family, sentence, SG_CALL(function),                                                      \
+                                    [](const std::vector<::sg::Data>& in, const ::sg::ParamSet& p, ::sg::Context& c) -> ::sg::Data { \
+                                      return ::sg::detail::run_filter<Params>(SG_CALL(function), #name, in, p, c);                   \
+                                    } __VA_OPT__(, ) __VA_ARGS__)
 
-#define SG_SOURCE(name, Params, function, sentence, ...)                                                                    \
-  ::sg::detail::make_source<Params>(                                                                                        \
-      #name, sentence,                                                                                                      \
-      [](const std::vector<::sg::Data>&, const ::sg::ParamSet& p, ::sg::Context& c) -> ::sg::Data {                         \
-        return function(::sg::detail::values_of<Params>(p), c);                                                             \
-      } __VA_OPT__(, ) __VA_ARGS__)
+#define SG_SOURCE(name, Params, function, sentence, ...)                                                                          \
+  ::sg::detail::make_source<Params>(#name, sentence,                                                                              \
+                                    [](const std::vector<::sg::Data>&, const ::sg::ParamSet& p, ::sg::Context& c) -> ::sg::Data { \
+                                      return function(::sg::detail::values_of<Params>(p), c);                                     \
+                                    } __VA_OPT__(, ) __VA_ARGS__)

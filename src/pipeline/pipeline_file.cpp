@@ -4,6 +4,7 @@
 
 #include "base/file.h"
 #include "base/text.h"
+#include "pipeline/graph_state.h"
 #include "pipeline/yaml_tree.h"
 
 namespace sg {
@@ -14,7 +15,8 @@ using Kind = YamlNode::Kind;
 
 class FileParser {
  public:
-  FileParser(const std::string& origin, const PipelineVocabulary& vocabulary) : origin_(origin.empty() ? "pipeline" : origin), vocabulary_(vocabulary) {}
+  FileParser(const std::string& origin, const PipelineVocabulary& vocabulary)
+      : origin_(origin.empty() ? "pipeline" : origin), vocabulary_(vocabulary) {}
 
   PipelineFile parse(const YamlNode& root) {
     PipelineFile file;
@@ -39,15 +41,13 @@ class FileParser {
   }
 
  private:
-  void mistake(int line, const std::string& text) { mistakes_.emplace_back(line, fmt::format("{}:{}: {}", origin_, line, text)); }
+  void mistake(int line, const std::string& text) {
+    mistakes_.push_back({line, ErrorKind::usage, fmt::format("{}:{}: {}", origin_, line, text)});
+  }
 
   void finish() {
-    if (mistakes_.empty()) return;
-    std::stable_sort(mistakes_.begin(), mistakes_.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-    if (mistakes_.size() == 1) fail_usage(mistakes_[0].second);
-    std::string text = fmt::format("{} mistakes:", mistakes_.size());
-    for (const auto& m : mistakes_) text += "\n  " + m.second;
-    fail_usage(text);
+    std::stable_sort(mistakes_.begin(), mistakes_.end(), [](const Mistake& a, const Mistake& b) { return a.node < b.node; });
+    if (!mistakes_.empty()) throw_mistakes(mistakes_);
   }
 
   void unique_keys(const YamlNode& map, const std::string& of) {
@@ -77,7 +77,8 @@ class FileParser {
     std::string text;
     for (const YamlNode& item : value.items) {
       if (item.kind != Kind::scalar) return mistake(item.line, fmt::format("{} {}: the items of a list must be values", of, key)), false;
-      if (item.text.find(',') != item.text.npos) return mistake(item.line, fmt::format("{} {}: '{}': an item of a list has no comma", of, key, item.text)), false;
+      if (item.text.find(',') != item.text.npos)
+        return mistake(item.line, fmt::format("{} {}: '{}': an item of a list has no comma", of, key, item.text)), false;
       text += (text.empty() && &item == &value.items.front() ? "" : ",") + item.text;
     }
     words.push_back(key + "=" + text);
@@ -98,14 +99,15 @@ class FileParser {
   }
 
   // The one key of `body` that is not `other` ("from", "of"); null after a mistake.
-  const std::pair<YamlNode, YamlNode>* one_besides(const YamlNode& body, const std::string& other, const std::string& of, const std::string& what) {
+  const std::pair<YamlNode, YamlNode>* one_besides(const YamlNode& body, const std::string& other, const std::string& of,
+                                                   const std::string& what) {
     const std::pair<YamlNode, YamlNode>* found = nullptr;
     for (const auto& pair : body.pairs) {
       if (pair.first.text == other) continue;
       if (found) {
         const std::string near = nearest_name(pair.first.text, std::span(&other, 1));
-        mistake(pair.first.line, fmt::format("{}: has '{}' beside '{}', but {} and '{}' are all it may have{}", of, pair.first.text, found->first.text, what, other,
-                                             near.empty() ? "" : "; did you mean '" + near + "'?"));
+        mistake(pair.first.line, fmt::format("{}: has '{}' beside '{}', but one {} and '{}' are all it may have{}", of, pair.first.text,
+                                             found->first.text, what, other, near.empty() ? "" : "; did you mean '" + near + "'?"));
         return nullptr;
       }
       found = &pair;
@@ -125,7 +127,7 @@ class FileParser {
         continue;
       }
       unique_keys(body, of + ": ");
-      const auto* op = one_besides(body, "from", of, "one operation");
+      const auto* op = one_besides(body, "from", of, "operation");
       if (!op) continue;
       step.operation = op->first.text;
       if (step.operation == "read" && op->second.kind == Kind::scalar) step.words = {"path=" + op->second.text};
@@ -156,7 +158,7 @@ class FileParser {
         show.kind = body.text;
       } else if (body.kind == Kind::map) {
         unique_keys(body, "show: ");
-        const auto* kind = one_besides(body, "of", "show", "one kind");
+        const auto* kind = one_besides(body, "of", "show", "kind");
         if (!kind) continue;
         show.kind = kind->first.text;
         show.words = parse_words(kind->second, show.kind);
@@ -175,7 +177,8 @@ class FileParser {
   }
 
   void check_known(const std::string& name, int line, const std::string& what, const std::vector<std::string>& known) {
-    if (!known.empty() && std::find(known.begin(), known.end(), name) == known.end()) mistake(line, fmt::format("{} '{}'; {}", what, name, unknown_name_hint(name, known)));
+    if (!known.empty() && std::find(known.begin(), known.end(), name) == known.end())
+      mistake(line, fmt::format("{} '{}'; {}", what, name, unknown_name_hint(name, known)));
   }
 
   void parse_picture(const YamlNode& picture, PipelineFile& file) {
@@ -189,13 +192,18 @@ class FileParser {
         continue;
       }
       unique_keys(value, fmt::format("picture {}: ", key.text));
-      for (const auto& [k, v] : value.pairs) add_word(key.text + "." + k.text, v, k.line, "picture", file.picture);
+      for (const auto& [k, v] : value.pairs) {
+        if (k.text.find('.') != k.text.npos) mistake(k.line, fmt::format("picture {}: '{}' is no name", key.text, k.text));
+        for (const auto& [flat, other] : picture.pairs)
+          if (flat.text == key.text + "." + k.text) mistake(flat.line, fmt::format("picture: the key '{}' stands twice", flat.text));
+        add_word(key.text + "." + k.text, v, k.line, "picture", file.picture);
+      }
     }
   }
 
   std::string origin_;
   const PipelineVocabulary& vocabulary_;
-  std::vector<std::pair<int, std::string>> mistakes_;
+  std::vector<Mistake> mistakes_;  // with the line in the place of the node
 };
 
 }  // namespace
@@ -235,20 +243,36 @@ std::string pair_text(const std::string& word, size_t skip = 0) {
   return yaml_scalar(key) + (eq == word.npos ? ":" : ": " + value_text(word.substr(eq + 1)));
 }
 
-std::string words_text(const std::vector<std::string>& words) {
+std::string key_of(const std::string& word) { return word.substr(0, word.find('=')); }
+
+// Of words with the same key the last counts, as in set_params.
+std::vector<std::string> last_words(const std::vector<std::string>& words) {
+  std::vector<std::string> r;
+  for (size_t i = 0; i < words.size(); ++i) {
+    const bool again =
+        std::any_of(words.begin() + ptrdiff_t(i) + 1, words.end(), [&](const std::string& w) { return key_of(w) == key_of(words[i]); });
+    if (!again) r.push_back(words[i]);
+  }
+  return r;
+}
+
+std::string words_text(const std::vector<std::string>& all) {
   std::string r;
-  for (const std::string& w : words) r += (r.empty() ? "" : ", ") + pair_text(w);
+  for (const std::string& w : last_words(all)) r += (r.empty() ? "" : ", ") + pair_text(w);
   return r.empty() ? "" : "{" + r + "}";
 }
 
-std::string picture_text(const std::vector<std::string>& words) {
+std::string picture_text(const std::vector<std::string>& all) {
+  const std::vector<std::string> words = last_words(all);
   auto map_of = [](const std::string& word) {
-    const std::string key = word.substr(0, word.find('='));
+    const std::string key = key_of(word);
     const size_t dot = key.find('.');
-    return dot == key.npos || dot == 0 || dot + 1 == key.size() ? std::string() : key.substr(0, dot);
+    return dot == key.npos || dot == 0 || dot + 1 == key.size() || key.find('.', dot + 1) != key.npos ? std::string() : key.substr(0, dot);
   };
   std::string r;
-  std::vector<std::string> written;  // maps; each may stand once, words of it further down are written flat
+  std::vector<std::string> written;  // names that stand already; further words of such a map are written flat
+  for (const std::string& w : words)
+    if (map_of(w).empty()) written.push_back(key_of(w));
   for (size_t i = 0; i < words.size();) {
     r += r.empty() ? "" : ", ";
     const std::string map = map_of(words[i]);
@@ -258,7 +282,8 @@ std::string picture_text(const std::vector<std::string>& words) {
     }
     written.push_back(map);
     r += yaml_scalar(map) + ": {";
-    for (bool first = true; i < words.size() && map_of(words[i]) == map; ++i, first = false) r += (first ? "" : ", ") + pair_text(words[i], map.size() + 1);
+    for (bool first = true; i < words.size() && map_of(words[i]) == map; ++i, first = false)
+      r += (first ? "" : ", ") + pair_text(words[i], map.size() + 1);
     r += "}";
   }
   return r;
@@ -283,7 +308,8 @@ std::string emit_pipeline(const PipelineFile& file) {
   if (!file.show.empty()) r += "show:\n";
   for (const PipelineFile::Show& s : file.show) {
     const std::string words = words_text(s.words);
-    r += fmt::format("  - {{{}:{}{}{}}}\n", yaml_scalar(s.kind), words.empty() ? "" : " ", words, s.of.empty() ? "" : ", of: " + yaml_scalar(s.of));
+    r += fmt::format("  - {{{}:{}{}{}}}\n", yaml_scalar(s.kind), words.empty() ? "" : " ", words,
+                     s.of.empty() ? "" : ", of: " + yaml_scalar(s.of));
   }
   if (!file.picture.empty()) r += "picture: {" + picture_text(file.picture) + "}\n";
   return r;

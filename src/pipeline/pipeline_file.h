@@ -44,7 +44,9 @@ struct PipelineFile {
   int picture_line = 0;
   std::string origin;  ///< file name, for messages and relative paths; "" = none
 
-  friend bool operator==(const PipelineFile& a, const PipelineFile& b) { return a.steps == b.steps && a.show == b.show && a.picture == b.picture; }
+  friend bool operator==(const PipelineFile& a, const PipelineFile& b) {
+    return a.steps == b.steps && a.show == b.show && a.picture == b.picture;
+  }
 };
 
 /// The words that may stand in a file, for "did you mean". An empty list lets everything pass.
@@ -59,8 +61,8 @@ PipelineFile parse_pipeline(std::string_view text, const std::string& origin = {
 /// From a file; its folder is where relative paths begin.
 PipelineFile read_pipeline(const std::string& path, const PipelineVocabulary& vocabulary = {});
 
-/// Text that parse_pipeline reads back to an equal PipelineFile; the same bytes for equal files. Throws Error(usage) for text
-/// that is not UTF-8.
+/// Text that parse_pipeline reads back to an equal PipelineFile; the same bytes for equal files. Of several words with one key
+/// only the last, which is the one that counts, is written. Throws Error(usage) for text that is not UTF-8.
 std::string emit_pipeline(const PipelineFile& file);
 
 /// The words below a map of the picture, without its name: ("camera") -> "direction=1,0.5,0.3".

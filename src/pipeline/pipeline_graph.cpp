@@ -14,7 +14,8 @@ namespace {
 
 class GraphBuilder {
  public:
-  GraphBuilder(const PipelineFile& file, GraphOptions options) : file_(file), options_(options), built_{Graph(std::move(options)), {}, {}, -1} {}
+  GraphBuilder(const PipelineFile& file, GraphOptions options)
+      : file_(file), options_(options), built_{Graph(std::move(options)), {}, {}, -1} {}
 
   PipelineGraph build() {
     for (const PipelineFile::Step& step : file_.steps) all_names_.push_back(step.name);
@@ -24,7 +25,8 @@ class GraphBuilder {
       NodeId node = built_.last;
       if (!show.of.empty()) {
         const auto at = nodes_.find(show.of);
-        if (at == nodes_.end()) mistake(show.line, fmt::format("show {}: there is no step '{}'; {}", show.kind, show.of, unknown_name_hint(show.of, all_names_)));
+        if (at == nodes_.end())
+          mistake(show.line, fmt::format("show {}: there is no step '{}'; {}", show.kind, show.of, unknown_name_hint(show.of, all_names_)));
         else node = at->second;
       }
       built_.show.push_back(node);
@@ -76,7 +78,9 @@ class GraphBuilder {
         continue;
       }
       const bool later = std::find(all_names_.begin(), all_names_.end(), name) != all_names_.end();
-      if (later) mistake(step.line, fmt::format("step '{}': its input '{}' comes {}", step.name, name, name == step.name ? "from itself" : "later; move that step up"));
+      if (later)
+        mistake(step.line, fmt::format("step '{}': its input '{}' comes {}", step.name, name,
+                                       name == step.name ? "from itself" : "later; move that step up"));
       else mistake(step.line, fmt::format("step '{}': there is no step '{}'; {}", step.name, name, unknown_name_hint(name, all_names_)));
       if (built_.last >= 0) inputs.push_back(built_.last);  // keeps the number of inputs, so that one mistake is told once
     }

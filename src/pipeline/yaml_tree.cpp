@@ -45,7 +45,9 @@ class TreeBuilder : public YAML::EventHandler {
   void OnMapEnd() override { close(); }
 
  private:
-  [[noreturn]] void fail(const YAML::Mark& mark, const std::string& what) const { fail_usage(what, fmt::format("{}:{}", origin_, mark.line + 1)); }
+  [[noreturn]] void fail(const YAML::Mark& mark, const std::string& what) const {
+    fail_usage(what, fmt::format("{}:{}", origin_, mark.line + 1));
+  }
   void check_tag(const YAML::Mark& mark, const std::string& tag) const {
     if (!tag.empty() && tag != "?" && tag != "!") fail(mark, "tags (" + tag + ") are not allowed");
   }
@@ -95,26 +97,6 @@ class TreeBuilder : public YAML::EventHandler {
   size_t nodes_ = 0;
 };
 
-}  // namespace
-
-YamlNode parse_yaml(std::string_view text, const std::string& origin) {
-  const std::string name = origin.empty() ? "pipeline" : origin;
-  if (text.size() > most_bytes) fail_usage(fmt::format("has {}; a pipeline file has at most {}", human_bytes(text.size()), human_bytes(most_bytes)), name);
-  TreeBuilder builder(name);
-  try {
-    std::istringstream stream{std::string(text)};
-    YAML::Parser parser(stream);
-    if (!parser.HandleNextDocument(builder)) return {};
-    TreeBuilder second(name);
-    if (parser.HandleNextDocument(second)) fail_usage("holds more than one document", name, "remove what follows '---'");
-  } catch (const YAML::Exception& e) {
-    fail_usage(e.msg, fmt::format("{}:{}", name, e.mark.line + 1));
-  }
-  return std::move(builder.root);
-}
-
-namespace {
-
 // Length of the UTF-8 sequence at s[i] and its code point; 0 when it is none.
 size_t decode(std::string_view s, size_t i, uint32_t& code) {
   const auto byte = [&](size_t k) { return uint32_t(static_cast<unsigned char>(s[k])); };
@@ -129,6 +111,39 @@ size_t decode(std::string_view s, size_t i, uint32_t& code) {
   constexpr uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
   return code < least[n] || code > 0x10ffff || (code >= 0xd800 && code < 0xe000) ? 0 : n;
 }
+
+void check_utf8(std::string_view text, const std::string& origin) {
+  int line = 1;
+  uint32_t code = 0;
+  for (size_t i = 0; i < text.size();) {
+    const size_t n = decode(text, i, code);
+    if (n == 0) fail_usage("is not UTF-8 text", fmt::format("{}:{}", origin, line));
+    line += code == '\n';
+    i += n;
+  }
+}
+
+}  // namespace
+
+YamlNode parse_yaml(std::string_view text, const std::string& origin) {
+  const std::string name = origin.empty() ? "pipeline" : origin;
+  if (text.size() > most_bytes)
+    fail_usage(fmt::format("has {}; a pipeline file has at most {}", human_bytes(text.size()), human_bytes(most_bytes)), name);
+  check_utf8(text, name);
+  TreeBuilder builder(name);
+  try {
+    std::istringstream stream{std::string(text)};
+    YAML::Parser parser(stream);
+    if (!parser.HandleNextDocument(builder)) return {};
+    TreeBuilder second(name);
+    if (parser.HandleNextDocument(second)) fail_usage("holds more than one document", name, "remove what follows '---'");
+  } catch (const YAML::Exception& e) {
+    fail_usage(e.msg, fmt::format("{}:{}", name, e.mark.line + 1));
+  }
+  return std::move(builder.root);
+}
+
+namespace {
 
 bool plain(const std::string& s) {
   if (s.empty() || s == "null" || s == "Null" || s == "NULL") return false;

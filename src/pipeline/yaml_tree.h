@@ -11,13 +11,14 @@ namespace sg {
 struct YamlNode {
   enum class Kind { null, scalar, list, map };
   Kind kind = Kind::null;
-  std::string text;             ///< scalar
-  int line = 0;                 ///< from 1
-  std::vector<YamlNode> items;  ///< list
+  std::string text;                                  ///< scalar
+  int line = 0;                                      ///< from 1
+  std::vector<YamlNode> items;                       ///< list
   std::vector<std::pair<YamlNode, YamlNode>> pairs;  ///< map, in file order; keys are scalars
 };
 
-/// One document. Throws Error(usage) "origin:line: ..." for bad syntax, anchors, aliases, tags, keys that are no words, and sizes beyond the limits.
+/// One document. Throws Error(usage) "origin:line: ..." for bad syntax, anchors, aliases, tags, keys that are no words, and sizes beyond
+/// the limits.
 YamlNode parse_yaml(std::string_view text, const std::string& origin);
 /// `s` as a scalar that parse_yaml reads back to `s`, quoted when it needs to be; safe inside [] and {}.
 std::string yaml_scalar(const std::string& s);

@@ -76,7 +76,8 @@ TEST_CASE("graph: two nodes with equal keys are one, and a diamond's top runs on
   const NodeId r1 = g.add_operation("ramp", {"n=4"}), r2 = g.add_operation("ramp", {"n=4"}, {}, "again");
   const NodeId left = g.add_operation("scale", {"by=2"}, {r1}), right = g.add_operation("scale", {"by=5"}, {r2});
   const NodeId twin = g.add_operation("scale", {"by=2.0"}, {r2});
-  const NodeId sum = g.add_operation("add", {}, {left, right}), same = g.add_operation("add", {}, {left, twin}), top = g.add_operation("add", {}, {sum, same});
+  const NodeId sum = g.add_operation("add", {}, {left, right}), same = g.add_operation("add", {}, {left, twin}),
+               top = g.add_operation("add", {}, {sum, same});
   CHECK(value_at(g.evaluate(top, {}, context), 1) == 2 + 5 + 2 + 2);
   CHECK(runs("ramp") == 1);
   CHECK(runs("scale") == 2);
@@ -86,7 +87,8 @@ TEST_CASE("graph: two nodes with equal keys are one, and a diamond's top runs on
 TEST_CASE("graph: several sinks share one evaluation") {
   Graph g(options(0));
   Context context;
-  const NodeId ramp = g.add_operation("ramp"), a = g.add_operation("scale", {"by=2"}, {ramp}), b = g.add_operation("scale", {"by=3"}, {ramp});
+  const NodeId ramp = g.add_operation("ramp"), a = g.add_operation("scale", {"by=2"}, {ramp}),
+               b = g.add_operation("scale", {"by=3"}, {ramp});
   const std::vector<Target> targets{{a, {}}, {b, {}}, {ramp, {}}, {a, {}}};
   const std::vector<Data> out = g.evaluate(targets, context);
   REQUIRE(out.size() == 4);
@@ -103,7 +105,8 @@ TEST_CASE("graph: with limit 0 intermediates die with their last consumer") {
   Graph g(options(0, &reads));
   Context context;
   const NodeId read = g.add_read(some_file());
-  const NodeId a = g.add_operation("scale", {"by=2"}, {read}), b = g.add_operation("scale", {"by=3"}, {a}), c = g.add_operation("scale", {"by=4"}, {b});
+  const NodeId a = g.add_operation("scale", {"by=2"}, {read}), b = g.add_operation("scale", {"by=3"}, {a}),
+               c = g.add_operation("scale", {"by=4"}, {b});
   std::vector<bool> alive;
   test::on_run = [&](const std::string&, Context&) { alive.push_back(!reads.last.expired()); };
   const Data d = g.evaluate(c, {}, context);
@@ -158,6 +161,30 @@ TEST_CASE("graph: the request reaches the reader with only the fields that are n
   CHECK(asked(some, {}).fields == std::vector<std::string>{"T", "q"});
   CHECK(asked(some, Request::only({"p", "q"})).fields == std::vector<std::string>{"q"});
   CHECK(asked(some, Request::only({"p"})).fields == std::vector<std::string>{"T", "q"});
+}
+
+TEST_CASE("graph: a field that the user chose must be in the file, one that a filter makes need not") {
+  GraphOptions o = options(0);
+  o.read = [](const std::string&, const ReadOptions& r, const Request&, Context&) -> Data {
+    std::vector<std::string> have;
+    for (const char* name : {"T", "p"})
+      if (r.fields.empty() || std::find(r.fields.begin(), r.fields.end(), name) != r.fields.end()) have.push_back(name);
+    return test::line_of(4, have);
+  };
+  Graph g(o);
+  Context context;
+  ReadOptions chosen;
+  chosen.fields = {"T", "presure"};
+  const NodeId bad = g.add_read(some_file(), chosen), good = g.add_read(some_file());
+  CHECK(test::error_of([&] {
+          g.evaluate(bad, {}, context);
+        }).find("graph.raw: there is no field 'presure' in the file (while reading (step 1))") != std::string::npos);
+  CHECK(first(g.evaluate(bad, Request::only({"T"}), context)) == 0);  // not needed, so not looked for
+  CHECK(first(g.evaluate(g.add_operation("scale", {"field=T"}, {good}), Request::only({"T_gradient"}), context)) == 0);
+  o.field_names = [](const std::string&, const ReadOptions&) { return std::optional(std::vector<std::string>{"T", "pressure"}); };
+  Graph named(o);
+  const NodeId again = named.add_read(some_file(), chosen);
+  CHECK(test::error_of([&] { named.evaluate(again, {}, context); }).find("did you mean 'pressure'?") != std::string::npos);
 }
 
 TEST_CASE("graph: branches that need different fields share one read with the fields of both") {
@@ -216,14 +243,17 @@ TEST_CASE("graph: all mistakes are told together before anything runs") {
   Context context;
   const NodeId ramp = g.add_operation("ramp", {"n=0", "strat=1"}), given = g.add_data(test::line_of(4, {"temperature"}), "", "input");
   const NodeId a = g.add_operation("sclae", {}, {ramp}), b = g.add_operation("scale", {"mode=fnacy", "by=1e9"}, {a}, "big");
-  const NodeId c = g.add_operation("scale", {"field=temprature"}, {given}), d = g.add_operation("scale", {"field=P"}, {g.add_read(some_file())});
+  const NodeId c = g.add_operation("scale", {"field=temprature"}, {given}),
+               d = g.add_operation("scale", {"field=P"}, {g.add_read(some_file())});
   const NodeId e = g.add_read(test::temp_folder() + "absent.vti"), f = g.add_operation("add", {}, {b});
   const NodeId all = g.add_operation("join", {}, {a, b, c, d, e, f});
   const std::string text = test::error_of([&] { g.evaluate(all, {}, context); });
-  for (const char* part : {"7 mistakes:", "step 1: ramp n: '0' is not in range", "did you mean 'start'?", "step 3: unknown operation 'sclae'; did you mean 'scale'?",
-                           "step 'big': scale mode: 'fnacy' is not one of the choices; did you mean 'fancy'?", "scale by: '1e9' is not in range: it must be from -1000 to 1000",
-                           "step 5: scale field: field 'temprature' not found; did you mean 'temperature'?", "scale field: field 'P' not found", "absent.vti: no such file",
-                           "add: takes 2 inputs, not 1"})
+  for (const char* part : {"7 mistakes:", "step 1: ramp n: '0' is not in range", "did you mean 'start'?",
+                           "step 3: unknown operation 'sclae'; did you mean 'scale'?",
+                           "step 'big': scale mode: 'fnacy' is not one of the choices; did you mean 'fancy'?",
+                           "scale by: '1e9' is not in range: it must be from -1000 to 1000",
+                           "step 5: scale field: field 'temprature' not found; did you mean 'temperature'?",
+                           "scale field: field 'P' not found", "absent.vti: no such file", "add: takes 2 inputs, not 1"})
     CHECK_MESSAGE(text.find(part) != std::string::npos, part << " in " << text);
   CHECK(test::all_runs() == 0);
   CHECK(test::error_of([&] { g.validate(); }) == text);
@@ -274,7 +304,8 @@ TEST_CASE("graph: an error names the step, and the part of a collection") {
   Context context;
   const NodeId ramp = g.add_operation("ramp", {}, {}, "line"), both = g.add_operation("join", {}, {ramp, ramp});
   const NodeId bad = g.add_operation("fail", {}, {both}), end = g.add_operation("scale", {}, {bad});
-  CHECK(test::error_of([&] { g.evaluate(end, {}, context); }) == "fail: cannot do that (while in part 'part0', while running 'fail' (step 3))");
+  CHECK(test::error_of([&] { g.evaluate(end, {}, context); }) ==
+        "fail: cannot do that (while in part 'part0', while running 'fail' (step 3))");
   CHECK(runs("scale") == 0);
 }
 

@@ -30,27 +30,30 @@ TEST_CASE("operations: help of one operation is made from its declaration") {
 
 TEST_CASE("operations: the overview lists families in the order of the table") {
   const std::string help = ops_help("", test::operations());
-  CHECK(help.starts_with("source\n  ramp     A line of points with a rising field.\n  moment   A line at a moment.\n\nscalar\n  scale    Multiplies"));
+  CHECK(help.starts_with(
+      "source\n  ramp     A line of points with a rising field.\n  moment   A line at a moment.\n\nscalar\n  scale    Multiplies"));
   CHECK(help.find("\nparts\n") < help.find("\nstats\n"));
 }
 
 TEST_CASE("operations: JSON holds name, family, sentence, inputs and the schema of the parameters") {
   const std::string json = ops_json(test::operations().subspan(0, 3));
-  CHECK(json ==
-        "{\"operations\":[\n"
-        "{\"name\":\"ramp\",\"kind\":\"source\",\"family\":\"source\",\"sentence\":\"A line of points with a rising field.\",\"version\":1,\"inputs\":[0,0],"
-        "\"params\":{\"type\":\"object\",\"additionalProperties\":false,\"properties\":{"
-        "\"n\":{\"type\":\"integer\",\"exclusiveMinimum\":0,\"default\":8,\"description\":\"Number of points.\"},"
-        "\"start\":{\"type\":\"number\",\"unit\":\"m\",\"default\":0,\"description\":\"First value.\"}}}},\n"
-        "{\"name\":\"moment\",\"kind\":\"source\",\"family\":\"source\",\"sentence\":\"A line at a moment.\",\"version\":1,\"inputs\":[0,0],"
-        "\"params\":{\"type\":\"object\",\"additionalProperties\":false,\"properties\":{"
-        "\"time\":{\"type\":\"number\",\"description\":\"Moment; default: the one asked for.\"}}}},\n"
-        "{\"name\":\"scale\",\"kind\":\"filter\",\"family\":\"scalar\",\"sentence\":\"Multiplies a field.\",\"version\":3,\"inputs\":[1,1],"
-        "\"params\":{\"type\":\"object\",\"additionalProperties\":false,\"properties\":{"
-        "\"field\":{\"type\":\"string\",\"format\":\"field\",\"description\":\"Field to scale; default: the active scalar.\"},"
-        "\"by\":{\"type\":\"number\",\"minimum\":-1000,\"maximum\":1000,\"unit\":\"@field\",\"default\":2,\"description\":\"Factor.\"},"
-        "\"mode\":{\"type\":\"string\",\"enum\":[\"plain\",\"fancy\"],\"default\":\"plain\",\"description\":\"How.\"}}}}\n"
-        "]}\n");
+  CHECK(
+      json ==
+      "{\"operations\":[\n"
+      "{\"name\":\"ramp\",\"kind\":\"source\",\"family\":\"source\",\"sentence\":\"A line of points with a rising "
+      "field.\",\"version\":1,\"inputs\":[0,0],"
+      "\"params\":{\"type\":\"object\",\"additionalProperties\":false,\"properties\":{"
+      "\"n\":{\"type\":\"integer\",\"exclusiveMinimum\":0,\"default\":8,\"description\":\"Number of points.\"},"
+      "\"start\":{\"type\":\"number\",\"unit\":\"m\",\"default\":0,\"description\":\"First value.\"}}}},\n"
+      "{\"name\":\"moment\",\"kind\":\"source\",\"family\":\"source\",\"sentence\":\"A line at a moment.\",\"version\":1,\"inputs\":[0,0],"
+      "\"params\":{\"type\":\"object\",\"additionalProperties\":false,\"properties\":{"
+      "\"time\":{\"type\":\"number\",\"description\":\"Moment; default: the one asked for.\"}}}},\n"
+      "{\"name\":\"scale\",\"kind\":\"filter\",\"family\":\"scalar\",\"sentence\":\"Multiplies a field.\",\"version\":3,\"inputs\":[1,1],"
+      "\"params\":{\"type\":\"object\",\"additionalProperties\":false,\"properties\":{"
+      "\"field\":{\"type\":\"string\",\"format\":\"field\",\"description\":\"Field to scale; default: the active scalar.\"},"
+      "\"by\":{\"type\":\"number\",\"minimum\":-1000,\"maximum\":1000,\"unit\":\"@field\",\"default\":2,\"description\":\"Factor.\"},"
+      "\"mode\":{\"type\":\"string\",\"enum\":[\"plain\",\"fancy\"],\"default\":\"plain\",\"description\":\"How.\"}}}}\n"
+      "]}\n");
 }
 
 TEST_CASE("operations: every operation of this build has a sentence, a family, a name of its own and describable parameters") {
@@ -69,7 +72,9 @@ TEST_CASE("operations: every operation of this build has a sentence, a family, a
 }
 
 TEST_CASE("operations: an unknown name gets the nearest one") {
-  CHECK(test::error_of([] { find_operation("scael", test::operations()); }).find("unknown operation 'scael'; did you mean 'scale'? has: ramp, moment") == 0);
+  CHECK(test::error_of([] {
+          find_operation("scael", test::operations());
+        }).find("unknown operation 'scael'; did you mean 'scale'? has: ramp, moment") == 0);
   CHECK(&find_operation("add", test::operations()) == &test::operations()[4]);
 }
 

@@ -20,8 +20,10 @@ SG_STUB_READER(read_raw)
 SG_STUB_READER(read_ply)
 SG_STUB_READER(read_stl)
 SG_STUB_READER(read_obj)
-#define SG_STUB_WRITER(name) \
-  SG_STUB void name(const std::string& path, const Data&, const WriteOptions&, Context&) { fail_data("no writer in this test program", path); }
+#define SG_STUB_WRITER(name)                                                               \
+  SG_STUB void name(const std::string& path, const Data&, const WriteOptions&, Context&) { \
+    fail_data("no writer in this test program", path);                                     \
+  }
 SG_STUB_WRITER(write_vtk_xml)
 SG_STUB_WRITER(write_nrrd)
 SG_STUB_WRITER(write_ply)

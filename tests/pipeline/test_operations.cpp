@@ -125,10 +125,10 @@ std::span<const Operation> operations() {
   static constexpr Operation table[] = {
       SG_SOURCE(ramp, RampParams, ramp, "A line of points with a rising field."),
       SG_SOURCE(moment, MomentParams, moment, "A line at a moment."),
-      SG_FILTER(scale, ScaleParams, scale, "scalar", "Multiplies a field.", carries_fields, version<3>),
+      SG_FILTER(scale, ScaleParams, scale, "scalar", "Multiplies a field.", carries_fields, op_version<3>),
       SG_FILTER(pick, ScaleParams, scale, "scalar", "Scales and needs nothing else.", needs_only_named_fields),
       SG_FILTER(add, NoParams, add, "scalar", "Adds the fields of two lines."),
-      SG_FILTER(join, NoParams, join, "parts", "Makes one collection.", inputs<1, -1>),
+      SG_FILTER(join, NoParams, join, "parts", "Makes one collection.", op_inputs<1, -1>),
       SG_FILTER(whole, NoParams, whole, "parts", "Passes everything on."),
       SG_FILTER(drop, NoParams, drop, "parts", "Drops short lines."),
       SG_FILTER(fail, NoParams, fail, "parts", "Fails."),
@@ -149,7 +149,9 @@ DatasetPtr line_of(size_t n, const std::vector<std::string>& fields) {
   return make_dataset(g, set);
 }
 
-double value_at(const Data& data, size_t i, const std::string& field) { return single_dataset(data, "test")->fields().require(field).array.get(i); }
+double value_at(const Data& data, size_t i, const std::string& field) {
+  return single_dataset(data, "test")->fields().require(field).array.get(i);
+}
 double first(const Data& data, const std::string& field) { return value_at(data, 0, field); }
 
 }  // namespace sg::test
