@@ -144,7 +144,6 @@ class AmrWalk {
     const std::array<int64_t, 3> points{int64_t(n[0] + 1), int64_t(n[1] + 1), int64_t(n[2] + 1)};
     const Vec3 s = grid_.levels[l].spacing;
     const bool mirrored = s.x * s.y * s.z < 0;
-    const std::vector<size_t> earlier = earlier_overlaps(l, p);
     size_t local = 0;
     for (int64_t k = 0; k < int64_t(n[2]); ++k)
       for (int64_t j = 0; j < int64_t(n[1]); ++j)
@@ -152,7 +151,6 @@ class AmrWalk {
           const size_t id = patch.cell_offset + local;
           if (!states_.empty() && states_[id] != cell_visible) continue;
           const std::array<long long, 3> at{patch.lo[0] + i, patch.lo[1] + j, patch.lo[2] + k};
-          if (!earlier.empty() && has_earlier_twin(l, earlier, at)) continue;
           if (grid_.dimension == 2) {
             add_side(out, points, {i, j, 0}, int64_t(patch.point_offset), 4, true, int64_t(id));
             continue;
@@ -172,7 +170,7 @@ class AmrWalk {
   }
 
  private:
-  // A cell that fills its place: seen here, refined (finer cells fill it), or another piece's. Hidden cells leave a hole.
+  // A cell that fills its place: seen here or in another patch, refined (finer cells fill it). Hidden cells leave a hole.
   bool present(size_t id) const {
     if (states_.empty() || states_[id] != cell_gone) return true;
     return !ghost_.empty() && (ghost_.view<uint8_t>()[id] & (ghost_refined_cell | ghost_hidden_cell)) == ghost_refined_cell;
@@ -186,28 +184,6 @@ class AmrWalk {
       for (size_t a = 0; a < 3; ++a) c[a] = floor_div(c[a], std::max(grid_.levels[l].ratio[a], 1));
     }
   }
-  // Patches of a level may overlap: the first patch that shows a cell draws it.
-  std::vector<size_t> earlier_overlaps(size_t l, size_t p) const {
-    const auto& patches = grid_.levels[l].patches;
-    std::vector<size_t> r;
-    for (size_t q = 0; q < p; ++q) {
-      bool overlap = true;
-      for (size_t a = 0; a < 3; ++a) overlap = overlap && patches[q].lo[a] <= patches[p].hi[a] && patches[p].lo[a] <= patches[q].hi[a];
-      if (overlap) r.push_back(q);
-    }
-    return r;
-  }
-  bool has_earlier_twin(size_t l, const std::vector<size_t>& earlier, const std::array<long long, 3>& c) const {
-    for (size_t q : earlier) {
-      const AmrGrid::Patch& o = grid_.levels[l].patches[q];
-      if (c[0] < o.lo[0] || c[0] > o.hi[0] || c[1] < o.lo[1] || c[1] > o.hi[1] || c[2] < o.lo[2] || c[2] > o.hi[2]) continue;
-      const auto n = o.cells();
-      const size_t local = size_t(c[0] - o.lo[0]) + n[0] * (size_t(c[1] - o.lo[1]) + n[1] * size_t(c[2] - o.lo[2]));
-      if (states_.empty() || states_[o.cell_offset + local] == cell_visible) return true;
-    }
-    return false;
-  }
-
   const AmrGrid& grid_;
   const std::vector<uint8_t>& states_;
   const Array& ghost_;
