@@ -81,10 +81,13 @@ std::vector<double> distances(size_t n, Plane& plane, const std::function<Vec3(s
 bool straddles(const CellsView& v, size_t cell, const std::vector<double>& d) {
   const size_t begin = v.begin(cell), end = v.end(cell);
   if (begin == end) return false;
-  const bool front = d[size_t(v.connectivity[begin])] >= 0;
-  for (size_t i = begin + 1; i < end; ++i)
-    if ((d[size_t(v.connectivity[i])] >= 0) != front) return true;
-  return false;
+  bool front = false, behind = false;
+  for (size_t i = begin; i < end; ++i) {
+    const double x = d[size_t(v.connectivity[i])];
+    if (x != x) return false;  // a corner without a position
+    front |= x >= 0, behind |= x < 0;
+  }
+  return front && behind;
 }
 
 struct Listed {
@@ -240,14 +243,15 @@ class LatticeCut {
   void cut_cell(PlaneCutter& cutter, size_t i, size_t j, size_t k, size_t cell) const {
     static const LinearTopology& voxel = *linear_topology(CellType::voxel);
     int64_t ids[8];
-    bool front[8], mixed = false;
+    bool front = false, behind = false;
     for (size_t c = 0; c < 8; ++c) {
       const size_t x = i + (c & 1), y = j + (c >> 1 & 1), z = k + (c >> 2);
       ids[c] = int64_t(v_.id(x, y, z));
-      front[c] = distance(x, y, z) >= 0;
-      mixed = mixed || front[c] != front[0];
+      const double d = distance(x, y, z);
+      if (d != d) return;  // a corner without a position
+      front |= d >= 0, behind |= d < 0;
     }
-    if (!mixed) return;
+    if (!front || !behind) return;
     cutter.begin_solid();
     for (size_t f = 0; f < 6; ++f) {
       int64_t face[4];
