@@ -41,8 +41,14 @@ TEST_CASE("fields: magnitude has the unit of its vector, NaN stays NaN") {
   CHECK(std::isnan(m.array.get(1)));
   CHECK(m.unit == "m/s");
   CHECK(magnitude(sample(), {.field = {"v"}, .name = "speed"}, ctx)->fields().find("speed") != nullptr);
-  CHECK(error_of([] { Context c; magnitude(sample(), {.field = {"T"}}, c); }).find("one component") != std::string::npos);
-  CHECK(error_of([] { Context c; magnitude(select(sample(), {.keep = {"T"}}, c), {}, c); }).find("no vector field") != std::string::npos);
+  CHECK(error_of([] {
+          Context c;
+          magnitude(sample(), {.field = {"T"}}, c);
+        }).find("one component") != std::string::npos);
+  CHECK(error_of([] {
+          Context c;
+          magnitude(select(sample(), {.keep = {"T"}}, c), {}, c);
+        }).find("no vector field") != std::string::npos);
 }
 
 TEST_CASE("fields: scale replaces or adds, and drops a unit that would be wrong") {
@@ -61,8 +67,14 @@ TEST_CASE("fields: scale replaces or adds, and drops a unit that would be wrong"
   const Field id = scale_field(sample(), {.field = {"id"}}, ctx)->fields().require("id");
   CHECK(id.array.type() == ElementType::f32);
   CHECK(id.association == Association::cell);
-  CHECK(error_of([] { Context x; scale_field(sample(), {.field = {"Q"}}, x); }).find("not found") != std::string::npos);
-  CHECK(error_of([] { Context x; scale_field(sample(), {.factor = INFINITY}, x); }).find("finite") != std::string::npos);
+  CHECK(error_of([] {
+          Context x;
+          scale_field(sample(), {.field = {"Q"}}, x);
+        }).find("not found") != std::string::npos);
+  CHECK(error_of([] {
+          Context x;
+          scale_field(sample(), {.factor = INFINITY}, x);
+        }).find("finite") != std::string::npos);
 }
 
 TEST_CASE("fields: component shares the bytes and is named after its axis") {

@@ -69,7 +69,8 @@ void check_cut(const DatasetPtr& box, const Plane& p, double tolerance = 1e-12) 
 }  // namespace
 
 TEST_CASE("slice: planes through a box of any cells have the exact area, and the polygons fit together") {
-  const CellType types[] = {CellType::tetra, CellType::hexahedron, CellType::voxel, CellType::wedge, CellType::pyramid, CellType::polyhedron, CellType::quadratic_tetra, CellType::lagrange_hexahedron};
+  const CellType types[] = {CellType::tetra,   CellType::hexahedron, CellType::voxel,           CellType::wedge,
+                            CellType::pyramid, CellType::polyhedron, CellType::quadratic_tetra, CellType::lagrange_hexahedron};
   for (const Plane& p : planes) {
     CAPTURE(p.normal.x);
     CAPTURE(p.area);
@@ -90,7 +91,8 @@ TEST_CASE("slice: prisms of five and six sides") {
     std::vector<double> xyz;
     std::vector<int64_t> ids;
     for (int k = 0; k < 2; ++k)
-      for (int i = 0; i < n; ++i) xyz.insert(xyz.end(), {std::cos(2 * M_PI * i / n), std::sin(2 * M_PI * i / n), double(k)}), ids.push_back(int64_t(ids.size()));
+      for (int i = 0; i < n; ++i)
+        xyz.insert(xyz.end(), {std::cos(2 * M_PI * i / n), std::sin(2 * M_PI * i / n), double(k)}), ids.push_back(int64_t(ids.size()));
     m.points.xyz = Array::from_vector(xyz, 3);
     m.cells = {Array::from_vector(ids), {}, 2 * n};
     m.single_type = n == 5 ? CellType::pentagonal_prism : CellType::hexagonal_prism;
@@ -98,7 +100,8 @@ TEST_CASE("slice: prisms of five and six sides") {
     const double base = 0.5 * n * std::sin(2 * M_PI / n);
     CHECK(measure(surface(slice(d, {}, ctx))).area == doctest::Approx(base).epsilon(1e-14));
     // A slanted plane that stays between top and bottom: area / cosine.
-    CHECK(measure(surface(slice(d, {.origin = Vec3(0, 0, 0.5), .normal = {0.3, 0.2, 1}}, ctx))).area == doctest::Approx(base * std::sqrt(1.13)).epsilon(1e-13));
+    CHECK(measure(surface(slice(d, {.origin = Vec3(0, 0, 0.5), .normal = {0.3, 0.2, 1}}, ctx))).area ==
+          doctest::Approx(base * std::sqrt(1.13)).epsilon(1e-13));
   }
 }
 
@@ -189,7 +192,8 @@ TEST_CASE("slice: flat cells give lines, curves give vertices") {
   const DatasetPtr flat = slice(uniform_box(4, 4, 0), {.origin = Vec3(0.3, 0.3, 0), .normal = {1, 1, 0}}, ctx);
   double total = 0;
   const CellsView v = cells_view(surface(flat).lines);
-  for (size_t c = 0; c < v.count; ++c) total += length(surface(flat).points.at(size_t(v.point(c, 1))) - surface(flat).points.at(size_t(v.point(c, 0))));
+  for (size_t c = 0; c < v.count; ++c)
+    total += length(surface(flat).points.at(size_t(v.point(c, 1))) - surface(flat).points.at(size_t(v.point(c, 0))));
   CHECK(total == doctest::Approx(0.6 * std::sqrt(2.0)));
   CHECK(linear_error(*flat, surface(flat).points) < 1e-6);
   CHECK(flat->fields().require("original_cell").array.count() == flat->cell_count());

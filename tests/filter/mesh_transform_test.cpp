@@ -5,6 +5,8 @@
 
 #include "data/lattice.h"
 #include "filter/mesh/faces.h"
+#include "filter/mesh/slice.h"
+#include "filter/mesh/threshold.h"
 #include "filter/mesh_meshes.h"
 #include "support/test.h"
 
@@ -126,7 +128,8 @@ TEST_CASE("transform: AMR grids move and scale, and say no to rotation") {
   g.levels.resize(1);
   g.levels[0].patches = {{{0, 0, 0}, {1, 1, 1}, 0, 0}};
   const DatasetPtr amr = make_dataset(g);
-  CHECK(measure(*faces(transform(amr, {.scale = {1, 2, -1}, .translate = {3, 0, 0}}, ctx), {}, ctx)->as<SurfaceMesh>()).volume == doctest::Approx(16));
+  CHECK(measure(*faces(transform(amr, {.scale = {1, 2, -1}, .translate = {3, 0, 0}}, ctx), {}, ctx)->as<SurfaceMesh>()).volume ==
+        doctest::Approx(16));
   CHECK(error_of([&] { transform(amr, {.angle = 10}, ctx); }).find("take faces") != std::string::npos);
 }
 
@@ -137,4 +140,29 @@ TEST_CASE("transform: mistakes say what would be right") {
   CHECK(error_of([&] { transform(box, {.axis = {0, 0, 0}, .angle = 1}, ctx); }).find("axis is zero") != std::string::npos);
   CHECK(error_of([&] { transform(box, {.matrix = {1, 2}}, ctx); }).find("has 2 numbers") != std::string::npos);
   CHECK(error_of([&] { transform(box, {.matrix = std::vector<double>(16, 1.0)}, ctx); }).find("last row") != std::string::npos);
+}
+
+TEST_CASE("mesh operations: parameters are set from text and have help") {
+  SliceParams slice_params;
+  Schema s = schema_of(slice_params);
+  set_params(s, {"axis=y", "position=0.25", "origin=1,2,3"}, "slice");
+  CHECK(slice_params.axis == "y");
+  CHECK(slice_params.position == 0.25);
+  CHECK(slice_params.origin->z == 3);
+  CHECK(error_of([&] { set_params(s, {"axis=q"}, "slice"); }).find("slice") != std::string::npos);
+  ThresholdParams t;
+  Schema ts = schema_of(t);
+  set_params(ts, {"field=T", "min=3", "all_points=false", "invert"}, "threshold");
+  CHECK(t.field.name == "T");
+  CHECK(t.min == 3);
+  CHECK(!t.max);
+  CHECK(t.invert);
+  TransformParams m;
+  Schema ms = schema_of(m);
+  set_params(ms, {"scale=1,2,3", "angle=90", "matrix=1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1"}, "transform");
+  CHECK(m.matrix.size() == 16);
+  FacesParams f;
+  Schema fs = schema_of(f);
+  for (const Schema* each : {&s, &ts, &ms, &fs})
+    for (const ParamDecl& d : each->decls()) CHECK(d.doc.back() == '.');
 }

@@ -49,7 +49,9 @@ DatasetPtr select(const DatasetPtr& in, const SelectParams& p, Context&) {
   for (const auto* list : {&p.keep, &p.drop})
     for (const std::string& n : *list)
       if (!in->fields().find(n)) fail_usage(fmt::format("field '{}' not found", n), "select", unknown_name_hint(n, names));
-  auto listed = [](const std::vector<std::string>& list, const std::string& n) { return std::find(list.begin(), list.end(), n) != list.end(); };
+  auto listed = [](const std::vector<std::string>& list, const std::string& n) {
+    return std::find(list.begin(), list.end(), n) != list.end();
+  };
   DatasetParts out = in->parts();
   out.fields = {};
   for (const Field& f : in->fields())
@@ -59,28 +61,37 @@ DatasetPtr select(const DatasetPtr& in, const SelectParams& p, Context&) {
 
 DatasetPtr magnitude(const DatasetPtr& in, const MagnitudeParams& p, Context&) {
   const Field& f = chosen(*in, p.field, {3, 2}, "magnitude", "vector");
-  if (f.components() == 1) fail_usage(fmt::format("field '{}' has one component, so it has no direction to leave out", f.name), "magnitude", "use it as it is");
-  return with_field(in, {p.name.empty() ? f.name + "_magnitude" : p.name, f.association, scalar_of(f, -1, float_type(f.array.type())), f.unit, Role::none});
+  if (f.components() == 1)
+    fail_usage(fmt::format("field '{}' has one component, so it has no direction to leave out", f.name), "magnitude", "use it as it is");
+  return with_field(in, {p.name.empty() ? f.name + "_magnitude" : p.name, f.association, scalar_of(f, -1, float_type(f.array.type())),
+                         f.unit, Role::none});
 }
 
 DatasetPtr scale_field(const DatasetPtr& in, const ScaleFieldParams& p, Context& ctx) {
   const Field& f = chosen(*in, p.field, {1, 0}, "scale", "scalar");
   if (!std::isfinite(p.factor) || !std::isfinite(p.offset)) fail_usage("factor and offset must be finite", "scale");
   const bool unchanged = p.factor == 1 && p.offset == 0;
-  if (!unchanged && p.unit.empty() && !f.unit.empty()) ctx.info(fmt::format("scale: '{}' loses its unit {}; give unit=... to name the new one", f.name, f.unit));
+  if (!unchanged && p.unit.empty() && !f.unit.empty())
+    ctx.info(fmt::format("scale: '{}' loses its unit {}; give unit=... to name the new one", f.name, f.unit));
   const bool wide = float_type(f.array.type()) == ElementType::f64;
   Array a = wide ? scaled<double>(f.array, p.factor, p.offset) : scaled<float>(f.array, p.factor, p.offset);
   // Scaled normals, ids or labels are no longer that; scalars and vectors are (an offset moves a vector's tip, not its kind).
   const Role role = f.role == Role::scalars || f.role == Role::vectors ? f.role : Role::none;
-  return with_field(in, {p.name.empty() ? f.name : p.name, f.association, std::move(a), !p.unit.empty() ? p.unit : unchanged ? f.unit : "", role});
+  return with_field(in, {p.name.empty() ? f.name : p.name, f.association, std::move(a),
+                         !p.unit.empty() ? p.unit
+                         : unchanged     ? f.unit
+                                         : "",
+                         role});
 }
 
 DatasetPtr component(const DatasetPtr& in, const ComponentParams& p, Context&) {
   const Field& f = chosen(*in, p.field, {3, 2}, "component", "vector");
   if (p.component < 0 || p.component >= f.components())
-    fail_usage(fmt::format("field '{}' has {} components, not component {}", f.name, f.components(), p.component), "component", fmt::format("0 to {}", f.components() - 1));
+    fail_usage(fmt::format("field '{}' has {} components, not component {}", f.name, f.components(), p.component), "component",
+               fmt::format("0 to {}", f.components() - 1));
   const std::string suffix = f.components() <= 3 ? std::string(1, "xyz"[p.component]) : std::to_string(p.component);
-  return with_field(in, {p.name.empty() ? f.name + "_" + suffix : p.name, f.association, f.array.component(p.component), f.unit, Role::none});
+  return with_field(in,
+                    {p.name.empty() ? f.name + "_" + suffix : p.name, f.association, f.array.component(p.component), f.unit, Role::none});
 }
 
 }  // namespace sg

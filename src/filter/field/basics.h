@@ -40,7 +40,8 @@ inline void describe(Schema& s, ScaleFieldParams& p) {
   s("factor", p.factor, "Multiplies each number.");
   s("offset", p.offset, "Is added afterwards.");
   s("name", p.name, "Name of the result; default: the field's own, which it replaces.");
-  s("unit", p.unit, "Unit of the result, e.g. degC after offset=-273.15; default: the field's own when factor is 1 and offset 0, else none.");
+  s("unit", p.unit,
+    "Unit of the result, e.g. degC after offset=-273.15; default: the field's own when factor is 1 and offset 0, else none.");
 }
 /// field * factor + offset, computed in double: f64 for 64-bit fields, else f32. The unit is dropped when the numbers change and no new
 /// one is given, because a scaled number with the old unit would be wrong.

@@ -43,7 +43,8 @@ class Matcher {
   Matcher(const UnstructuredMesh& mesh, const std::vector<uint8_t>& states, const Context& ctx)
       : mesh_(mesh), states_(states), ctx_(ctx), cells_(cells_view(mesh.cells)), polyhedra_(cells_view(mesh.faces)) {
     for (size_t t = 0; t < 256; ++t)
-      if (const CellTypeInfo* info = cell_type_info(uint8_t(t)); info && info->dimension == 3) table_[t] = linear_topology(linear_type(CellType(t)));
+      if (const CellTypeInfo* info = cell_type_info(uint8_t(t)); info && info->dimension == 3)
+        table_[t] = linear_topology(linear_type(CellType(t)));
     if (!mesh.types.empty()) types_ = mesh.types.view<uint8_t>().data;
     if (!mesh.polyhedron_faces.empty()) polyhedron_faces_ = mesh.polyhedron_faces.view<int64_t>().data;
   }
@@ -103,12 +104,15 @@ class Matcher {
   // f(chunk, walk), where walk(g) calls g(slot, hash, mark, corners_of) for each face of the chunk's cells.
   template <class F>
   void for_each_chunk(const FaceMarks& marks, F f) const {
-    parallel_for(cells_.count, FaceMarks::cells_per_chunk, [&](size_t begin, size_t end) {
-      const size_t chunk = begin / FaceMarks::cells_per_chunk;
-      const auto mark = uint32_t(marks.chunk_start[chunk]);
-      if (cells_.connectivity.wide) f(chunk, [&](auto&& g) { walk<int64_t>(begin, end, mark, g); });
-      else f(chunk, [&](auto&& g) { walk<int32_t>(begin, end, mark, g); });
-    }, &ctx_);
+    parallel_for(
+        cells_.count, FaceMarks::cells_per_chunk,
+        [&](size_t begin, size_t end) {
+          const size_t chunk = begin / FaceMarks::cells_per_chunk;
+          const auto mark = uint32_t(marks.chunk_start[chunk]);
+          if (cells_.connectivity.wide) f(chunk, [&](auto&& g) { walk<int64_t>(begin, end, mark, g); });
+          else f(chunk, [&](auto&& g) { walk<int32_t>(begin, end, mark, g); });
+        },
+        &ctx_);
   }
 
   template <class Id, class G>
@@ -179,7 +183,8 @@ class Matcher {
       std::vector<uint32_t> next(c.partition_start);
       for (uint32_t f = 0; f < c.faces.size(); ++f) c.order[next[partition_of(c.faces[f])]++] = f;
     });
-    parallel_for(partitions, 1, [&](size_t p, size_t) { join(p, marks); }, &ctx_);
+    parallel_for(
+        partitions, 1, [&](size_t p, size_t) { join(p, marks); }, &ctx_);
   }
 
   struct Entry {
@@ -230,6 +235,8 @@ class Matcher {
 
 }  // namespace
 
-FaceMarks match_faces(const UnstructuredMesh& mesh, const std::vector<uint8_t>& states, const Context& ctx) { return Matcher(mesh, states, ctx).run(); }
+FaceMarks match_faces(const UnstructuredMesh& mesh, const std::vector<uint8_t>& states, const Context& ctx) {
+  return Matcher(mesh, states, ctx).run();
+}
 
 }  // namespace sg

@@ -13,7 +13,8 @@ constexpr int64_t off[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0
 // Corners of the sides x- x+ y- y+ z- z+ of a lattice cell, outward for a right-handed lattice.
 constexpr int side_corner[6][4] = {{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4}, {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}};
 
-void add_side(SurfaceChunk& out, const std::array<int64_t, 3>& points, const std::array<int64_t, 3>& cell, int64_t first_point, int side, bool mirrored, int64_t id) {
+void add_side(SurfaceChunk& out, const std::array<int64_t, 3>& points, const std::array<int64_t, 3>& cell, int64_t first_point, int side,
+              bool mirrored, int64_t id) {
   int64_t quad[4];
   for (int c = 0; c < 4; ++c) {
     const int64_t* o = off[side_corner[side][mirrored ? 3 - c : c]];
@@ -66,34 +67,37 @@ std::vector<SurfaceChunk> lattice_faces(const Mesh& mesh, const std::vector<uint
   const bool all_mirrored = solid && !listed && is_mirrored(v, 0, 0, 0);
   const size_t rows = cells[1] * cells[2], grain = std::max<size_t>(1, 16384 / cells[0]);
   std::vector<SurfaceChunk> chunks((rows + grain - 1) / grain);
-  parallel_for(rows, grain, [&](size_t begin, size_t end) {
-    SurfaceChunk& out = chunks[begin / grain];
-    auto state = [&](int64_t id) { return states.empty() ? uint8_t(cell_visible) : states[size_t(id)]; };
-    auto cell = [&](int64_t i, int64_t j, int64_t k, bool inner_sides) {
-      const int64_t id = i + n[0] * (j + n[1] * k);
-      if (state(id) != cell_visible) return;
-      if (!solid) return add_flat_cell(out, v.dims, i, j, k, id);
-      const int64_t at[3] = {i, j, k}, stride[3] = {1, n[0], n[0] * n[1]};
-      int mirrored = listed ? -1 : int(all_mirrored);
-      for (int side = 0; side < 6; ++side) {
-        const int axis = side / 2;
-        const bool rim = side % 2 ? at[axis] == n[axis] - 1 : at[axis] == 0;
-        if (!rim && (!inner_sides || state(id + (side % 2 ? stride[axis] : -stride[axis])) != cell_gone)) continue;
-        if (mirrored < 0) mirrored = is_mirrored(v, i, j, k);
-        add_side(out, points, {i, j, k}, 0, side, mirrored, id);
-      }
-    };
-    for (size_t row = begin; row < end; ++row) {
-      const auto j = int64_t(row) % n[1], k = int64_t(row) / n[1];
-      const bool rim = j == 0 || j == n[1] - 1 || k == 0 || k == n[2] - 1;
-      if (!solid || rim || !states.empty()) {
-        for (int64_t i = 0; i < n[0]; ++i) cell(i, j, k, !states.empty());
-      } else {  // inside, only the ends of a row can be seen
-        cell(0, j, k, false);
-        if (n[0] > 1) cell(n[0] - 1, j, k, false);
-      }
-    }
-  }, &ctx);
+  parallel_for(
+      rows, grain,
+      [&](size_t begin, size_t end) {
+        SurfaceChunk& out = chunks[begin / grain];
+        auto state = [&](int64_t id) { return states.empty() ? uint8_t(cell_visible) : states[size_t(id)]; };
+        auto cell = [&](int64_t i, int64_t j, int64_t k, bool inner_sides) {
+          const int64_t id = i + n[0] * (j + n[1] * k);
+          if (state(id) != cell_visible) return;
+          if (!solid) return add_flat_cell(out, v.dims, i, j, k, id);
+          const int64_t at[3] = {i, j, k}, stride[3] = {1, n[0], n[0] * n[1]};
+          int mirrored = listed ? -1 : int(all_mirrored);
+          for (int side = 0; side < 6; ++side) {
+            const int axis = side / 2;
+            const bool rim = side % 2 ? at[axis] == n[axis] - 1 : at[axis] == 0;
+            if (!rim && (!inner_sides || state(id + (side % 2 ? stride[axis] : -stride[axis])) != cell_gone)) continue;
+            if (mirrored < 0) mirrored = is_mirrored(v, i, j, k);
+            add_side(out, points, {i, j, k}, 0, side, mirrored, id);
+          }
+        };
+        for (size_t row = begin; row < end; ++row) {
+          const auto j = int64_t(row) % n[1], k = int64_t(row) / n[1];
+          const bool rim = j == 0 || j == n[1] - 1 || k == 0 || k == n[2] - 1;
+          if (!solid || rim || !states.empty()) {
+            for (int64_t i = 0; i < n[0]; ++i) cell(i, j, k, !states.empty());
+          } else {  // inside, only the ends of a row can be seen
+            cell(0, j, k, false);
+            if (n[0] > 1) cell(n[0] - 1, j, k, false);
+          }
+        }
+      },
+      &ctx);
   return chunks;
 }
 
@@ -105,7 +109,8 @@ namespace {
 class LevelIndex {
  public:
   explicit LevelIndex(const AmrGrid::Level& level) : level_(level) {
-    for (size_t p = 0; p < level.patches.size(); ++p) order_.push_back(p), widest_ = std::max(widest_, level.patches[p].hi[0] - level.patches[p].lo[0]);
+    for (size_t p = 0; p < level.patches.size(); ++p)
+      order_.push_back(p), widest_ = std::max(widest_, level.patches[p].hi[0] - level.patches[p].lo[0]);
     std::sort(order_.begin(), order_.end(), [&](size_t a, size_t b) { return level.patches[a].lo[0] < level.patches[b].lo[0]; });
   }
   // Calls f(patch number, cell number in the patch) for each patch that holds the cell, until f returns true.
@@ -198,7 +203,8 @@ std::vector<SurfaceChunk> amr_faces(const Dataset& in, const AmrGrid& grid, cons
     for (size_t p = 0; p < grid.levels[l].patches.size(); ++p) patches.emplace_back(l, p);
   const AmrWalk walk(grid, states, in.cell_ghost());
   std::vector<SurfaceChunk> chunks(patches.size());
-  parallel_for(patches.size(), 1, [&](size_t i, size_t) { walk.patch(patches[i].first, patches[i].second, chunks[i]); }, &ctx);
+  parallel_for(
+      patches.size(), 1, [&](size_t i, size_t) { walk.patch(patches[i].first, patches[i].second, chunks[i]); }, &ctx);
   return chunks;
 }
 

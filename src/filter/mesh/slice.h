@@ -27,7 +27,8 @@ inline void describe(Schema& s, SliceParams& p) {
 /// only. Ghost cells are left out. A face that lies in the plane belongs to the cell behind it; a plane that only touches the mesh
 /// from behind takes the cell in front. Point fields are interpolated along edges, cell fields gathered, 'original_cell' added.
 /// A plane that misses gives an empty surface with all fields, and a note. Throws Error(usage) for a zero normal, a position
-/// without an axis, an axis with an origin or normal, a PointCloud, 2^32 points or more. O(cells); uniform and rectilinear: O(cut cells + rows).
+/// without an axis, an axis with an origin or normal, a PointCloud, 2^32 points or more. O(cells); uniform and rectilinear: O(cut cells +
+/// rows).
 DatasetPtr slice(const DatasetPtr& in, const SliceParams& p, Context& ctx);
 
 }  // namespace sg

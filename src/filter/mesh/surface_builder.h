@@ -40,9 +40,9 @@ struct SurfaceChunk {
 };
 
 struct AssembledSurface {
-  SurfaceMesh mesh;                 ///< without its points
-  std::vector<int64_t> points;      ///< input point of each point, ascending
-  std::vector<int64_t> cells;       ///< input cell of each cell: vertices, lines, polygons
+  SurfaceMesh mesh;             ///< without its points
+  std::vector<int64_t> points;  ///< input point of each point, ascending
+  std::vector<int64_t> cells;   ///< input cell of each cell: vertices, lines, polygons
 };
 /// Joins the chunks, keeps the used ones of `point_count` points, and renumbers.
 AssembledSurface assemble(const std::vector<SurfaceChunk>& chunks, size_t point_count);

@@ -39,7 +39,8 @@ void sine_cosine(double degrees, double& s, double& c) {
 Affine affine_of(const TransformParams& p) {
   Affine r;
   if (!p.matrix.empty()) {
-    if (p.matrix.size() != 16) fail_usage(fmt::format("the matrix has {} numbers", p.matrix.size()), "transform matrix", "give 16, rows first");
+    if (p.matrix.size() != 16)
+      fail_usage(fmt::format("the matrix has {} numbers", p.matrix.size()), "transform matrix", "give 16, rows first");
     if (p.matrix[12] != 0 || p.matrix[13] != 0 || p.matrix[14] != 0 || p.matrix[15] != 1)
       fail_usage("the last row of the matrix is not 0,0,0,1", "transform matrix", "perspective belongs to the camera");
     for (size_t i = 0; i < 3; ++i) {
@@ -172,7 +173,8 @@ struct Mover {
     return r;
   }
   Mesh operator()(const AmrGrid& g) const {
-    if (!t.diagonal()) fail_usage("an AMR grid cannot be rotated or sheared", "transform", "turn the camera, or take faces, a slice or a contour first");
+    if (!t.diagonal())
+      fail_usage("an AMR grid cannot be rotated or sheared", "transform", "turn the camera, or take faces, a slice or a contour first");
     AmrGrid r = g;
     r.origin = t(g.origin);
     for (auto& level : r.levels)
@@ -187,7 +189,10 @@ struct Mover {
   }
 };
 
-bool turns(const Field& f) { return f.components() == 3 && (f.role == Role::vectors || f.role == Role::normals) && is_float(f.array.type()) && f.association != Association::whole; }
+bool turns(const Field& f) {
+  return f.components() == 3 && (f.role == Role::vectors || f.role == Role::normals) && is_float(f.array.type()) &&
+         f.association != Association::whole;
+}
 
 Array turned(const Field& f, const Affine& t) {
   const bool normals = f.role == Role::normals;
@@ -235,7 +240,8 @@ DatasetPtr transform(const DatasetPtr& in, const TransformParams& p, Context& ct
   DatasetParts out = in->parts();
   out.mesh = std::visit(Mover{t, in->mesh()}, in->mesh());
   if (out.mesh.index() != in->mesh().index()) ctx.info(fmt::format("transform: the {} grid becomes {}", in->kind(), mesh_kind(out.mesh)));
-  if (auto* s = std::get_if<SurfaceMesh>(&out.mesh); s && determinant(t.linear) < 0 && s->polygons.size() > 0) s->polygons = reversed(s->polygons);
+  if (auto* s = std::get_if<SurfaceMesh>(&out.mesh); s && determinant(t.linear) < 0 && s->polygons.size() > 0)
+    s->polygons = reversed(s->polygons);
   if (p.vectors)
     for (const Field& f : in->fields())
       if (turns(f)) out.fields.add({f.name, f.association, turned(f, t), f.unit, f.role});
