@@ -99,6 +99,12 @@ void face_outline(CellType type, size_t nodes, std::vector<uint32_t>& ring);
 /// Triangles of a simple polygon, also a non-convex one, by ear clipping; n-2 triangles, oriented like the polygon.
 void triangulate_polygon(std::span<const Vec3> at, std::vector<uint32_t>& triangles);
 
+/// Whether the triangles a b c and a c d of a quad face the same side; else its other diagonal is the right one.
+inline bool first_diagonal_fits(Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+  const Vec3 across = c - a;
+  return !(dot(cross(b - a, across), cross(across, d - a)) < 0);
+}
+
 /// Twice the vector area of a polygon (Newell): its direction is the normal, half its length the area.
 Vec3 polygon_vector_area(std::span<const Vec3> at);
 

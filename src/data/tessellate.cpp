@@ -17,9 +17,8 @@ void add(std::vector<uint32_t>& out, uint32_t a, uint32_t b, uint32_t c) { out.i
 
 // Split along the diagonal that keeps both triangles on the quad's side; of two that do, along 0-2.
 void split_quad(std::span<const Vec3> at, uint32_t a, uint32_t b, uint32_t c, uint32_t d, std::vector<uint32_t>& out) {
-  const Vec3 n1 = cross(at[b] - at[a], at[c] - at[a]), n2 = cross(at[c] - at[a], at[d] - at[a]);
-  if (dot(n1, n2) < 0) add(out, a, b, d), add(out, b, c, d);
-  else add(out, a, b, c), add(out, a, c, d);
+  if (first_diagonal_fits(at[a], at[b], at[c], at[d])) add(out, a, b, c), add(out, a, c, d);
+  else add(out, a, b, d), add(out, b, c, d);
 }
 
 struct Ear {

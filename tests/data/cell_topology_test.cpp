@@ -139,9 +139,17 @@ TEST_CASE("cell topology: faces of quadratic solids pass through their own nodes
     size_t nodes;
   };
   using enum CellType;
-  for (const Case& c : {Case{quadratic_tetra, 10}, {quadratic_hexahedron, 20}, {quadratic_wedge, 15}, {quadratic_pyramid, 13}, {triquadratic_hexahedron, 27},
-                        {biquadratic_quadratic_hexahedron, 24}, {quadratic_linear_wedge, 12}, {biquadratic_quadratic_wedge, 18}, {triquadratic_pyramid, 19},
-                        {lagrange_tetra, 15}, {lagrange_wedge, 21}}) {
+  for (const Case& c : {Case{quadratic_tetra, 10},
+                        {quadratic_hexahedron, 20},
+                        {quadratic_wedge, 15},
+                        {quadratic_pyramid, 13},
+                        {triquadratic_hexahedron, 27},
+                        {biquadratic_quadratic_hexahedron, 24},
+                        {quadratic_linear_wedge, 12},
+                        {biquadratic_quadratic_wedge, 18},
+                        {triquadratic_pyramid, 19},
+                        {lagrange_tetra, 15},
+                        {lagrange_wedge, 21}}) {
     CAPTURE(cell_type_info(c.type).name);
     Reference base{CellType::empty, {}, 0};
     for (const Reference& r : references())
@@ -169,8 +177,8 @@ TEST_CASE("cell topology: faces of quadratic solids pass through their own nodes
 }
 
 TEST_CASE("cell topology: Lagrange and Bezier solids of order 1 to 5 are closed with the right volume") {
-  for (CellType type : {CellType::lagrange_tetra, CellType::lagrange_hexahedron, CellType::lagrange_wedge, CellType::bezier_tetra, CellType::bezier_hexahedron,
-                        CellType::bezier_wedge})
+  for (CellType type : {CellType::lagrange_tetra, CellType::lagrange_hexahedron, CellType::lagrange_wedge, CellType::bezier_tetra,
+                        CellType::bezier_hexahedron, CellType::bezier_wedge})
     for (int n = 1; n <= 5; ++n) {
       CAPTURE(cell_type_info(type).name);
       CAPTURE(n);
@@ -179,7 +187,10 @@ TEST_CASE("cell topology: Lagrange and Bezier solids of order 1 to 5 are closed 
       const CellFaces& faces = cell_faces(type, at.size());
       CHECK(closed(faces, at));
       const CellType shape = linear_type(type);
-      CHECK(enclosed(faces, at) == doctest::Approx(shape == CellType::hexahedron ? 1 : shape == CellType::wedge ? 0.5 : 1.0 / 6).epsilon(1e-13));
+      CHECK(enclosed(faces, at) == doctest::Approx(shape == CellType::hexahedron ? 1
+                                                   : shape == CellType::wedge    ? 0.5
+                                                                                 : 1.0 / 6)
+                                       .epsilon(1e-13));
     }
   CHECK(high_order_of(CellType::lagrange_hexahedron, 28) == 0);
   CHECK(cell_faces(CellType::lagrange_hexahedron, 28).face(0).size() == 4);
@@ -274,6 +285,7 @@ TEST_CASE("cell topology: outlines and curves run through all their nodes in ord
 
 TEST_CASE("cell topology: a solid is no 2D cell") {
   std::vector<uint32_t> t;
-  CHECK(test::error_of([&] { tessellate_face(CellType::tetra, std::vector<Vec3>(4), t); }).find("Tetra is not a 2D cell") != std::string::npos);
+  CHECK(test::error_of([&] { tessellate_face(CellType::tetra, std::vector<Vec3>(4), t); }).find("Tetra is not a 2D cell") !=
+        std::string::npos);
   CHECK(test::error_of([] { lattice_node(CellType::lagrange_pyramid, 2, 0); }).find("no node lattice") != std::string::npos);
 }

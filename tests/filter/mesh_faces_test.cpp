@@ -12,11 +12,25 @@ using namespace sg::test;
 
 namespace {
 
-const CellType solids[] = {CellType::tetra, CellType::hexahedron, CellType::voxel, CellType::wedge, CellType::pyramid, CellType::polyhedron,
-                           CellType::quadratic_tetra, CellType::quadratic_hexahedron, CellType::quadratic_wedge, CellType::triquadratic_hexahedron,
-                           CellType::biquadratic_quadratic_hexahedron, CellType::quadratic_linear_wedge, CellType::biquadratic_quadratic_wedge,
-                           CellType::lagrange_tetra, CellType::lagrange_hexahedron, CellType::lagrange_wedge, CellType::bezier_tetra,
-                           CellType::bezier_hexahedron, CellType::bezier_wedge};
+const CellType solids[] = {CellType::tetra,
+                           CellType::hexahedron,
+                           CellType::voxel,
+                           CellType::wedge,
+                           CellType::pyramid,
+                           CellType::polyhedron,
+                           CellType::quadratic_tetra,
+                           CellType::quadratic_hexahedron,
+                           CellType::quadratic_wedge,
+                           CellType::triquadratic_hexahedron,
+                           CellType::biquadratic_quadratic_hexahedron,
+                           CellType::quadratic_linear_wedge,
+                           CellType::biquadratic_quadratic_wedge,
+                           CellType::lagrange_tetra,
+                           CellType::lagrange_hexahedron,
+                           CellType::lagrange_wedge,
+                           CellType::bezier_tetra,
+                           CellType::bezier_hexahedron,
+                           CellType::bezier_wedge};
 
 DatasetPtr ghosted(const DatasetPtr& in, size_t cell, uint8_t bits) {
   DatasetParts p = in->parts();
@@ -67,7 +81,8 @@ TEST_CASE("faces: a box of any solid cells has the box's surface, closed and out
 
 TEST_CASE("faces: counts of polygons are exact for linear cells") {
   Context ctx;
-  const std::pair<CellType, size_t> want[] = {{CellType::tetra, 6 * 2 * 16}, {CellType::hexahedron, 6 * 16}, {CellType::wedge, 16 * 4 + 2 * 32}, {CellType::pyramid, 6 * 16}};
+  const std::pair<CellType, size_t> want[] = {
+      {CellType::tetra, 6 * 2 * 16}, {CellType::hexahedron, 6 * 16}, {CellType::wedge, 16 * 4 + 2 * 32}, {CellType::pyramid, 6 * 16}};
   for (auto [type, n] : want) CHECK(faces(solid_box(type, 4), {}, ctx)->cell_count() == n);
   const DatasetPtr skin = faces(solid_box(CellType::hexahedron, 4), {}, ctx);
   CHECK(skin->as<SurfaceMesh>()->polygons.fixed == 4);
@@ -166,7 +181,9 @@ TEST_CASE("faces: cells of lower dimension pass, mixed with solids") {
   std::vector<double> xyz;
   for (int i = 0; i < 20; ++i) xyz.insert(xyz.end(), {double(i % 4), double(i / 4), i * 0.1});
   m.points.xyz = Array::from_vector(xyz, 3);
-  const std::vector<std::vector<int64_t>> cells = {{0, 1, 2, 7}, {3}, {4, 5}, {4, 5, 6, 8}, {9, 10, 11}, {9, 10, 11, 12}, {13, 14, 15, 16}, {0, 1, 2}, {17, 18, 19, 0, 1}, {2, 4, 3}, {}};
+  const std::vector<std::vector<int64_t>> cells = {
+      {0, 1, 2, 7},       {3},       {4, 5}, {4, 5, 6, 8}, {9, 10, 11}, {9, 10, 11, 12}, {13, 14, 15, 16}, {0, 1, 2},
+      {17, 18, 19, 0, 1}, {2, 4, 3}, {}};
   const std::vector<uint8_t> types = {10, 1, 3, 4, 5, 8, 6, 2, 7, 21, 0};
   std::vector<int64_t> ids, offsets{0};
   for (const auto& c : cells) ids.insert(ids.end(), c.begin(), c.end()), offsets.push_back(int64_t(ids.size()));
@@ -220,7 +237,8 @@ TEST_CASE("faces: an AMR grid shows each leaf once and no walls between levels")
   CHECK(facts.area == doctest::Approx(6));  // walls between levels or patches would add to it
   CHECK(facts.volume == doctest::Approx(1));
   CHECK(length(facts.vector_area) < 1e-12);
-  for (size_t i = 0; i < skin->cell_count(); ++i) REQUIRE(skin->fields().require("c").array.get(i) == skin->fields().require("original_cell").array.get(i));
+  for (size_t i = 0; i < skin->cell_count(); ++i)
+    REQUIRE(skin->fields().require("c").array.get(i) == skin->fields().require("original_cell").array.get(i));
 
   g.dimension = 2;
   g.levels.resize(1);

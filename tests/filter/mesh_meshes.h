@@ -66,7 +66,8 @@ inline DatasetPtr solid_box(CellType type, int n, int order = 1) {
       parts.push_back({v[0], v[1], v[2], v[3]});
     } while (std::next_permutation(p, p + 3));
   } else if (shape == CellType::wedge) {
-    parts = {{{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 0, 2}, {2, 0, 2}, {2, 2, 2}}, {{0, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 0, 2}, {2, 2, 2}, {0, 2, 2}}};
+    parts = {{{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 0, 2}, {2, 0, 2}, {2, 2, 2}},
+             {{0, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 0, 2}, {2, 2, 2}, {0, 2, 2}}};
   } else if (shape == CellType::pyramid) {
     for (size_t f = 0; f < 6; ++f) {
       const I3 corner[8] = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 0, 2}, {2, 0, 2}, {2, 2, 2}, {0, 2, 2}};
@@ -181,14 +182,16 @@ inline double linear_error(const Dataset& d, const Points& points) {
 
 /// Do two datasets hold the same surface, byte for byte?
 inline bool same_bytes(const Array& a, const Array& b) {
-  return a.count() == b.count() && a.type() == b.type() && a.components() == b.components() && (a.bytes() == 0 || std::memcmp(a.raw(), b.raw(), a.bytes()) == 0);
+  return a.count() == b.count() && a.type() == b.type() && a.components() == b.components() &&
+         (a.bytes() == 0 || std::memcmp(a.raw(), b.raw(), a.bytes()) == 0);
 }
 inline bool same_surface(const Dataset& a, const Dataset& b) {
   const auto &m = *a.as<SurfaceMesh>(), &n = *b.as<SurfaceMesh>();
   bool same = same_bytes(m.points.xyz, n.points.xyz) && a.fields().size() == b.fields().size();
   for (auto part : {&SurfaceMesh::vertices, &SurfaceMesh::lines, &SurfaceMesh::polygons})
     same = same && same_bytes((m.*part).connectivity, (n.*part).connectivity) && same_bytes((m.*part).offsets, (n.*part).offsets);
-  for (size_t i = 0; same && i < a.fields().size(); ++i) same = a.fields()[i].name == b.fields()[i].name && same_bytes(a.fields()[i].array, b.fields()[i].array);
+  for (size_t i = 0; same && i < a.fields().size(); ++i)
+    same = a.fields()[i].name == b.fields()[i].name && same_bytes(a.fields()[i].array, b.fields()[i].array);
   return same;
 }
 

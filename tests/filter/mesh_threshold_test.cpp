@@ -21,7 +21,8 @@ double volume_of(const DatasetPtr& d) {
 
 TEST_CASE("threshold: a slab of any mesh has the slab's volume, and the inverse has the rest") {
   Context ctx;
-  const CellType types[] = {CellType::tetra, CellType::hexahedron, CellType::voxel, CellType::wedge, CellType::pyramid, CellType::polyhedron, CellType::lagrange_tetra};
+  const CellType types[] = {CellType::tetra,   CellType::hexahedron, CellType::voxel,         CellType::wedge,
+                            CellType::pyramid, CellType::polyhedron, CellType::lagrange_tetra};
   std::vector<DatasetPtr> boxes{uniform_box(4, 4, 4)};
   for (CellType t : types) boxes.push_back(solid_box(t, 4, 2));
   for (const DatasetPtr& box : boxes) {

@@ -18,7 +18,8 @@ constexpr size_t grain = 1 << 13;
 
 // Chosen lists of a CellArray, their ids in a new numbering.
 template <class Number>
-CellArray chosen_lists(const CellsView& v, size_t count, const std::function<size_t(size_t)>& cell_of, const Number& number, std::string_view who) {
+CellArray chosen_lists(const CellsView& v, size_t count, const std::function<size_t(size_t)>& cell_of, const Number& number,
+                       std::string_view who) {
   CellArray r;
   if (count == 0) return r;
   std::vector<size_t> start((count + grain - 1) / grain);
@@ -54,7 +55,8 @@ void mark_points(IdSet& used, const CellsView& v, std::span<const int64_t> cells
   });
 }
 
-void extract_unstructured(const UnstructuredMesh& m, std::span<const int64_t> cells, DatasetParts& out, std::vector<int64_t>& points, std::string_view who) {
+void extract_unstructured(const UnstructuredMesh& m, std::span<const int64_t> cells, DatasetParts& out, std::vector<int64_t>& points,
+                          std::string_view who) {
   const CellsView v = cells_view(m.cells), faces = cells_view(m.faces);
   const bool polyhedra = !m.polyhedron_faces.empty();
   const int64_t* first_face = polyhedra ? m.polyhedron_faces.view<int64_t>().data : nullptr;
@@ -73,17 +75,20 @@ void extract_unstructured(const UnstructuredMesh& m, std::span<const int64_t> ce
   auto number = [&](int64_t id) { return int32_t(used.rank(size_t(id))); };
   UnstructuredMesh r;
   r.points = gather_points(m.points, points);
-  r.cells = chosen_lists(v, cells.size(), [&](size_t i) { return size_t(cells[i]); }, number, who);
+  r.cells = chosen_lists(
+      v, cells.size(), [&](size_t i) { return size_t(cells[i]); }, number, who);
   r.single_type = m.single_type;
   if (!m.types.empty()) r.types = gather(m.types, cells);
   if (!kept_faces.empty()) {
-    r.faces = chosen_lists(faces, kept_faces.size(), [&](size_t i) { return size_t(kept_faces[i]); }, number, who);
+    r.faces = chosen_lists(
+        faces, kept_faces.size(), [&](size_t i) { return size_t(kept_faces[i]); }, number, who);
     r.polyhedron_faces = Array::from_vector(std::move(face_start));
   }
   out.mesh = std::move(r);
 }
 
-void extract_surface(const SurfaceMesh& m, std::span<const int64_t> cells, DatasetParts& out, std::vector<int64_t>& points, std::string_view who) {
+void extract_surface(const SurfaceMesh& m, std::span<const int64_t> cells, DatasetParts& out, std::vector<int64_t>& points,
+                     std::string_view who) {
   const CellArray* parts[4] = {&m.vertices, &m.lines, &m.polygons, &m.strips};
   SurfaceMesh r;
   CellArray* results[4] = {&r.vertices, &r.lines, &r.polygons, &r.strips};
@@ -101,7 +106,8 @@ void extract_surface(const SurfaceMesh& m, std::span<const int64_t> cells, Datas
   points = used.members();
   auto number = [&](int64_t id) { return int32_t(used.rank(size_t(id))); };
   for (int k = 0; k < 4; ++k)
-    *results[k] = chosen_lists(cells_view(*parts[k]), of_part[k].size(), [&, k](size_t i) { return size_t(of_part[k][i] - first[k]); }, number, who);
+    *results[k] = chosen_lists(
+        cells_view(*parts[k]), of_part[k].size(), [&, k](size_t i) { return size_t(of_part[k][i] - first[k]); }, number, who);
   r.points = gather_points(m.points, points);
   out.mesh = std::move(r);
 }
@@ -124,14 +130,16 @@ class BoxCells {
       homes_.push_back({0, 0, {std::max<size_t>(d[0], 2) - 1, std::max<size_t>(d[1], 2) - 1, std::max<size_t>(d[2], 2) - 1}, d});
       axes_ = int(d[0] > 1) + int(d[1] > 1) + int(d[2] > 1);
       const bool box = !std::holds_alternative<CurvilinearGrid>(mesh);
-      const CellType types[] = {CellType::vertex, CellType::line, box ? CellType::pixel : CellType::quad, box ? CellType::voxel : CellType::hexahedron};
+      const CellType types[] = {CellType::vertex, CellType::line, box ? CellType::pixel : CellType::quad,
+                                box ? CellType::voxel : CellType::hexahedron};
       type_ = types[axes_];
     }
   }
   CellType type() const { return type_; }
   size_t corners() const { return size_t(1) << axes_; }
   void read(size_t cell, int64_t* ids) const {
-    const Home& h = *(std::upper_bound(homes_.begin(), homes_.end(), cell, [](size_t c, const Home& home) { return c < home.first_cell; }) - 1);
+    const Home& h =
+        *(std::upper_bound(homes_.begin(), homes_.end(), cell, [](size_t c, const Home& home) { return c < home.first_cell; }) - 1);
     const size_t local = cell - h.first_cell;
     const size_t at[3] = {local % h.cells[0], local / h.cells[0] % h.cells[1], local / (h.cells[0] * h.cells[1])};
     size_t stride[3] = {1, h.points[0], h.points[0] * h.points[1]}, step[3], n = 0;
@@ -159,10 +167,12 @@ class BoxCells {
   CellType type_ = CellType::voxel;
 };
 
-void extract_boxes(const Dataset& in, std::span<const int64_t> cells, DatasetParts& out, std::vector<int64_t>& points, std::string_view who) {
+void extract_boxes(const Dataset& in, std::span<const int64_t> cells, DatasetParts& out, std::vector<int64_t>& points,
+                   std::string_view who) {
   const BoxCells box(in.mesh());
   const size_t corners = box.corners();
-  if (cells.size() * corners > size_t(INT32_MAX)) fail_usage("the result has more than 2^31 corners", std::string(who), "take a part of the mesh first");
+  if (cells.size() * corners > size_t(INT32_MAX))
+    fail_usage("the result has more than 2^31 corners", std::string(who), "take a part of the mesh first");
   IdSet used(in.point_count());
   parallel_for(cells.size(), grain, [&](size_t begin, size_t end) {
     int64_t ids[8];

@@ -12,47 +12,39 @@ namespace sg {
 
 namespace {
 
-struct Entry {
-  uint32_t a, b, c, d;  // the three smallest corners; the fourth, or all_three, or a hash of the rest
-  uint32_t mark;        // place in FaceMarks; the top bit says that a partner was found
+uint64_t mix(uint64_t x) {
+  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
+  x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
+  return x ^ (x >> 31);
+}
+/// One round is enough here: the sum over the corners is mixed again.
+uint64_t point_hash(uint32_t id) {
+  const uint64_t x = (uint64_t(id) + 1) * 0x9E3779B97F4A7C15u;
+  return (x ^ (x >> 32)) * 0xD6E8FEB86659FD93u;
+}
+
+constexpr size_t slots_per_point = 4;
+
+// A face that may have no partner: its sorted corners, in a pool, and its mark.
+struct Candidate {
+  uint64_t hash;
+  uint32_t mark, first, corners;
+  bool partner = false;
 };
-constexpr uint32_t all_three = UINT32_MAX, partner = uint32_t(1) << 31, vacant = UINT32_MAX;
-
-uint64_t hash_of(uint32_t a, uint32_t b, uint32_t c) {
-  const uint64_t x = (uint64_t(a) * 0x9E3779B97F4A7C15u) ^ (uint64_t(b) * 0xC2B2AE3D27D4EB4Fu) ^ (uint64_t(c) * 0x165667B19E3779F9u);
-  return (x ^ (x >> 29)) * 0xBF58476D1CE4E5B9u;
-}
-
-void order(uint32_t& a, uint32_t& b) {
-  const uint32_t lo = a < b ? a : b;
-  b = a < b ? b : a;
-  a = lo;
-}
-
-void set_key3(Entry& e, uint32_t a, uint32_t b, uint32_t c) {
-  order(a, b), order(b, c), order(a, b);
-  e.a = a, e.b = b, e.c = c, e.d = all_three;
-}
-void set_key4(Entry& e, uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
-  order(a, b), order(c, d), order(a, c), order(b, d), order(b, c);
-  e.a = a, e.b = b, e.c = c, e.d = d;
-}
-void set_key(Entry& e, std::vector<uint32_t>& corners) {
-  if (corners.size() == 3) return set_key3(e, corners[0], corners[1], corners[2]);
-  if (corners.size() == 4) return set_key4(e, corners[0], corners[1], corners[2], corners[3]);
-  std::sort(corners.begin(), corners.end());
-  corners.resize(std::max<size_t>(corners.size(), 3), 0);  // a polyhedron's face of two points is nobody's partner but its twin's
-  uint32_t rest = uint32_t(corners.size());
-  for (size_t i = 3; i < corners.size(); ++i) rest = (rest ^ corners[i]) * 0x9E3779B1u + (rest >> 15);
-  e.a = corners[0], e.b = corners[1], e.c = corners[2], e.d = rest;
-}
+struct Candidates {
+  std::vector<Candidate> faces;
+  std::vector<uint32_t> pool;
+  std::vector<uint32_t> partition_start;
+  std::vector<uint32_t> order;  // by partition
+};
 
 class Matcher {
  public:
   Matcher(const UnstructuredMesh& mesh, const std::vector<uint8_t>& states, const Context& ctx)
       : mesh_(mesh), states_(states), ctx_(ctx), cells_(cells_view(mesh.cells)), polyhedra_(cells_view(mesh.faces)) {
     for (size_t t = 0; t < 256; ++t)
-      if (const CellTypeInfo* info = cell_type_info(uint8_t(t)); info && info->dimension == 3) table_[t] = linear_topology(linear_type(CellType(t)));
+      if (const CellTypeInfo* info = cell_type_info(uint8_t(t)); info && info->dimension == 3)
+        table_[t] = linear_topology(linear_type(CellType(t)));
     if (!mesh.types.empty()) types_ = mesh.types.view<uint8_t>().data;
     if (!mesh.polyhedron_faces.empty()) polyhedron_faces_ = mesh.polyhedron_faces.view<int64_t>().data;
   }
@@ -61,18 +53,27 @@ class Matcher {
     FaceMarks marks;
     count(marks);
     if (marks.external.empty()) return marks;
-    while (partitions_ < 1024 && marks.external.size() / partitions_ > 12000) partitions_ *= 2;
-    shift_ = 64 - std::countr_zero(partitions_);
     std::byte* memory = nullptr;
-    const Buffer owner = Buffer::allocate(marks.external.size() * sizeof(Entry), &memory);
-    entries_ = reinterpret_cast<Entry*>(memory);
-    const size_t chunks = marks.chunk_start.size();
-    segment_.resize(chunks * (partitions_ + 1));
-    parallel_for(cells_.count, FaceMarks::cells_per_chunk, [&](size_t begin, size_t end) {
-      const size_t chunk = begin / FaceMarks::cells_per_chunk;
-      cells_.connectivity.wide ? scatter<int64_t>(chunk, begin, end, marks) : scatter<int32_t>(chunk, begin, end, marks);
-    }, &ctx_);
-    parallel_for(partitions_, 1, [&](size_t p, size_t) { join(p, chunks, marks); }, &ctx_);
+    const size_t slots = slots_per_point * mesh_.points.count();
+    const Buffer owner = Buffer::allocate(slots * sizeof(uint64_t), &memory);
+    slots_ = reinterpret_cast<uint64_t*>(memory);
+    parallel_for(slots, 1 << 18, [&](size_t begin, size_t end) { std::fill(slots_ + begin, slots_ + end, 0); });
+    // XOR does not depend on the order of the threads.
+    for_each_chunk(marks, [&](size_t, auto walk) {
+      walk([&](size_t slot, uint64_t hash, uint32_t, auto&&) { __atomic_fetch_xor(&slots_[slot], hash, __ATOMIC_RELAXED); });
+    });
+    found_.resize(marks.chunk_start.size());
+    for_each_chunk(marks, [&](size_t chunk, auto walk) {
+      Candidates& to = found_[chunk];
+      walk([&](size_t slot, uint64_t hash, uint32_t mark, auto&& corners_of) {
+        if (slots_[slot] == 0) return;
+        const auto first = uint32_t(to.pool.size());
+        corners_of([&](uint32_t id) { to.pool.push_back(id); });
+        std::sort(to.pool.begin() + first, to.pool.end());
+        to.faces.push_back({hash, mark, first, uint32_t(to.pool.size()) - first});
+      });
+    });
+    match_candidates(marks);
     return marks;
   }
 
@@ -95,98 +96,129 @@ class Matcher {
       marks.chunk_start[begin / FaceMarks::cells_per_chunk] = n;
     });
     const size_t total = exclusive_scan(marks.chunk_start);
-    if (total >= partner || mesh_.points.count() >= UINT32_MAX)
+    if (total > size_t(INT32_MAX) || mesh_.points.count() >= UINT32_MAX)
       fail_usage("the mesh has more than 2^31 faces or 2^32 points", "faces", "draw it in pieces");
     marks.external.resize(total);
   }
 
-  // Entries of a chunk of cells, sorted by partition into the chunk's own part of the buffer.
-  template <class Id>
-  void scatter(size_t chunk, size_t begin, size_t end, FaceMarks& marks) const {
-    thread_local std::vector<Entry> found;
-    thread_local std::vector<uint16_t> partition;
-    thread_local std::vector<uint32_t> corners, next;
-    const size_t base = marks.chunk_start[chunk];
-    const size_t all = (chunk + 1 < marks.chunk_start.size() ? marks.chunk_start[chunk + 1] : marks.external.size()) - base;
-    found.resize(all);
-    partition.resize(all);
+  // f(chunk, walk), where walk(g) calls g(slot, hash, mark, corners_of) for each face of the chunk's cells.
+  template <class F>
+  void for_each_chunk(const FaceMarks& marks, F f) const {
+    parallel_for(
+        cells_.count, FaceMarks::cells_per_chunk,
+        [&](size_t begin, size_t end) {
+          const size_t chunk = begin / FaceMarks::cells_per_chunk;
+          const auto mark = uint32_t(marks.chunk_start[chunk]);
+          if (cells_.connectivity.wide) f(chunk, [&](auto&& g) { walk<int64_t>(begin, end, mark, g); });
+          else f(chunk, [&](auto&& g) { walk<int32_t>(begin, end, mark, g); });
+        },
+        &ctx_);
+  }
+
+  template <class Id, class G>
+  void walk(size_t begin, size_t end, uint32_t mark, G&& g) const {
     const Id* ids = static_cast<const Id*>(cells_.connectivity.data);
-    size_t n = 0;
-    auto mark = uint32_t(base);
+    uint32_t v[12];
+    uint64_t h[12];
+    auto load = [&](const Id* from, int n) {
+      for (int i = 0; i < n; ++i) v[i] = uint32_t(from[i]), h[i] = point_hash(v[i]);
+    };
+    auto give = [&](uint32_t lowest, uint64_t sum, auto&& corners_of) {
+      const uint64_t hash = mix(sum);
+      g(lowest * slots_per_point + (hash >> 62), hash, mark++, corners_of);
+    };
     for (size_t c = begin; c < end; ++c) {
       if (gone(c)) {
         mark += uint32_t(faces_of(c));
         continue;
       }
       const LinearTopology* t = table_[type(c)];
-      const Id* v = ids + cells_.begin(c);
       if (t == tetra_) {
-        const auto a = uint32_t(v[0]), b = uint32_t(v[1]), e = uint32_t(v[2]), f = uint32_t(v[3]);
-        set_key3(found[n], a, b, f), set_key3(found[n + 1], b, e, f), set_key3(found[n + 2], e, a, f), set_key3(found[n + 3], a, e, b);
-        for (int k = 0; k < 4; ++k) found[n++].mark = mark++;
+        load(ids + cells_.begin(c), 4);
+        auto face = [&](int a, int b, int d) {
+          give(std::min(std::min(v[a], v[b]), v[d]), h[a] + h[b] + h[d], [&](auto&& add) { add(v[a]), add(v[b]), add(v[d]); });
+        };
+        face(0, 1, 3), face(1, 2, 3), face(2, 0, 3), face(0, 2, 1);
       } else if (t) {
-        const uint8_t* local = t->face_corners.data();
+        load(ids + cells_.begin(c), t->corners);
         for (size_t f = 0; f < t->face_count(); ++f) {
-          const auto first = t->face_begin[f], last = t->face_begin[f + 1];
-          Entry& e = found[n++];
-          if (last - first == 4) {
-            set_key4(e, uint32_t(v[local[first]]), uint32_t(v[local[first + 1]]), uint32_t(v[local[first + 2]]), uint32_t(v[local[first + 3]]));
-          } else if (last - first == 3) {
-            set_key3(e, uint32_t(v[local[first]]), uint32_t(v[local[first + 1]]), uint32_t(v[local[first + 2]]));
-          } else {
-            corners.clear();
-            for (auto i = first; i < last; ++i) corners.push_back(uint32_t(v[local[i]]));
-            set_key(e, corners);
-          }
-          e.mark = mark++;
+          const auto face = t->face(f);
+          uint32_t lowest = UINT32_MAX;
+          uint64_t sum = 0;
+          for (uint8_t l : face) lowest = std::min(lowest, v[l]), sum += h[l];
+          give(lowest, sum, [&](auto&& add) {
+            for (uint8_t l : face) add(v[l]);
+          });
         }
       } else if (type(c) == uint8_t(CellType::polyhedron)) {
         for (auto f = size_t(polyhedron_faces_[c]); f < size_t(polyhedron_faces_[c + 1]); ++f) {
-          corners.clear();
-          for (size_t i = polyhedra_.begin(f); i < polyhedra_.end(f); ++i) corners.push_back(uint32_t(polyhedra_.connectivity[i]));
-          set_key(found[n], corners);
-          found[n++].mark = mark++;
+          uint32_t lowest = polyhedra_.size(f) ? UINT32_MAX : 0;
+          uint64_t sum = 0;
+          for (size_t i = polyhedra_.begin(f); i < polyhedra_.end(f); ++i) {
+            const auto id = uint32_t(polyhedra_.connectivity[i]);
+            lowest = std::min(lowest, id), sum += point_hash(id);
+          }
+          give(lowest, sum, [&](auto&& add) {
+            for (size_t i = polyhedra_.begin(f); i < polyhedra_.end(f); ++i) add(uint32_t(polyhedra_.connectivity[i]));
+          });
         }
       }
     }
-    uint32_t* segment = const_cast<uint32_t*>(segment_.data()) + chunk * (partitions_ + 1);
-    next.assign(partitions_ + 1, 0);
-    for (size_t i = 0; i < n; ++i) {
-      partition[i] = uint16_t(partitions_ == 1 ? 0 : hash_of(found[i].a, found[i].b, found[i].c) >> shift_);
-      ++next[partition[i] + 1];
-    }
-    for (size_t p = 0; p < partitions_; ++p) next[p + 1] += next[p];
-    std::copy(next.begin(), next.end(), segment);
-    for (size_t i = 0; i < n; ++i) entries_[base + next[partition[i]]++] = found[i];
   }
 
-  // Open addressing over one partition: the first of equal faces stays in the table, later ones mark it.
-  void join(size_t p, size_t chunks, FaceMarks& marks) const {
-    thread_local std::vector<uint32_t> table;
+  // Partitions of a few thousand candidates each, so that their hash tables stay in the cache.
+  void match_candidates(FaceMarks& marks) {
     size_t total = 0;
-    for (size_t c = 0; c < chunks; ++c) total += segment_[c * (partitions_ + 1) + p + 1] - segment_[c * (partitions_ + 1) + p];
+    for (const Candidates& c : found_) total += c.faces.size();
+    size_t partitions = 2;
+    while (partitions < 4096 && total / partitions > 4000) partitions *= 2;
+    const int shift = 62 - std::countr_zero(partitions);  // the top two bits chose the slot
+    auto partition_of = [&](const Candidate& c) { return size_t(c.hash << 2 >> 2 >> shift); };
+    parallel_for(found_.size(), 1, [&](size_t i, size_t) {
+      Candidates& c = found_[i];
+      c.partition_start.assign(partitions + 1, 0);
+      for (const Candidate& f : c.faces) ++c.partition_start[partition_of(f) + 1];
+      for (size_t p = 0; p < partitions; ++p) c.partition_start[p + 1] += c.partition_start[p];
+      c.order.resize(c.faces.size());
+      std::vector<uint32_t> next(c.partition_start);
+      for (uint32_t f = 0; f < c.faces.size(); ++f) c.order[next[partition_of(c.faces[f])]++] = f;
+    });
+    parallel_for(
+        partitions, 1, [&](size_t p, size_t) { join(p, marks); }, &ctx_);
+  }
+
+  struct Entry {
+    Candidates* home = nullptr;
+    uint32_t face = 0;
+  };
+
+  // Open addressing over one partition: the first of equal faces stays in the table, later ones mark it.
+  void join(size_t p, FaceMarks& marks) {
+    size_t total = 0;
+    for (const Candidates& c : found_) total += c.partition_start[p + 1] - c.partition_start[p];
     if (total == 0) return;
     const size_t mask = std::bit_ceil(2 * total) - 1;
-    table.assign(mask + 1, vacant);
-    for (size_t c = 0; c < chunks; ++c) {
-      const uint32_t* s = segment_.data() + c * (partitions_ + 1) + p;
-      for (uint32_t i = s[0]; i < s[1]; ++i) {
-        const Entry& e = entries_[marks.chunk_start[c] + i];
-        for (size_t at = hash_of(e.a, e.b, e.c) & mask;; at = (at + 1) & mask) {
-          if (table[at] == vacant) {
-            table[at] = uint32_t(marks.chunk_start[c] + i);
+    std::vector<Entry> table(mask + 1);
+    for (Candidates& c : found_)
+      for (uint32_t i = c.partition_start[p]; i < c.partition_start[p + 1]; ++i) {
+        const Candidate& face = c.faces[c.order[i]];
+        const auto corners = std::span(c.pool).subspan(face.first, face.corners);
+        for (size_t at = face.hash & mask;; at = (at + 1) & mask) {
+          Entry& entry = table[at];
+          if (!entry.home) {
+            entry = {&c, c.order[i]};
             break;
           }
-          Entry& have = entries_[table[at]];
-          if (have.a == e.a && have.b == e.b && have.c == e.c && have.d == e.d) {
-            have.mark |= partner;
+          Candidate& have = entry.home->faces[entry.face];
+          if (have.hash != face.hash || have.corners != face.corners) continue;
+          if (std::equal(corners.begin(), corners.end(), entry.home->pool.begin() + have.first)) {
+            have.partner = true;
             break;
           }
         }
       }
-    }
-    for (size_t at = 0; at <= mask; ++at)
-      if (table[at] != vacant && !(entries_[table[at]].mark & partner)) marks.external[entries_[table[at]].mark] = 1;
+    for (const Entry& e : table)
+      if (e.home && !e.home->faces[e.face].partner) marks.external[e.home->faces[e.face].mark] = 1;
   }
 
   const UnstructuredMesh& mesh_;
@@ -197,14 +229,14 @@ class Matcher {
   const int64_t* polyhedron_faces_ = nullptr;
   const LinearTopology* table_[256] = {};
   const LinearTopology* tetra_ = linear_topology(CellType::tetra);
-  size_t partitions_ = 1;
-  int shift_ = 0;
-  Entry* entries_ = nullptr;
-  std::vector<uint32_t> segment_;  // per chunk: first entry of each partition, from the chunk's first
+  uint64_t* slots_ = nullptr;
+  std::vector<Candidates> found_;
 };
 
 }  // namespace
 
-FaceMarks match_faces(const UnstructuredMesh& mesh, const std::vector<uint8_t>& states, const Context& ctx) { return Matcher(mesh, states, ctx).run(); }
+FaceMarks match_faces(const UnstructuredMesh& mesh, const std::vector<uint8_t>& states, const Context& ctx) {
+  return Matcher(mesh, states, ctx).run();
+}
 
 }  // namespace sg

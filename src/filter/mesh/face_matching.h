@@ -17,8 +17,9 @@ struct FaceMarks {
 
 /// Faces with the same corners are one face, whatever the order of their nodes; one that two or more cells have is internal.
 /// `states` (CellState per cell, or empty): cells that are gone have no faces, duplicates count as neighbours.
-/// A hash join in cache-sized partitions: O(faces), parallel, exact for faces of up to four corners (larger ones compare their three
-/// smallest ids and a 32-bit hash of the rest). Throws Error(usage) above 2^31 faces or 2^32 points.
+/// Two steps: the 64-bit hashes of all faces are XORed into a few slots per point, where partners cancel; then the faces of slots
+/// that are not zero (those near the surface) are matched exactly. Unequal faces that cancel would need equal hashes: 2^-64 per pair.
+/// O(faces), parallel, 32 bytes of scratch per point. Throws Error(usage) above 2^31 faces or 2^32 points.
 FaceMarks match_faces(const UnstructuredMesh& mesh, const std::vector<uint8_t>& states, const Context& ctx);
 
 }  // namespace sg

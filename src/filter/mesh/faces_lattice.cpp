@@ -13,7 +13,8 @@ constexpr int64_t off[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0
 // Corners of the sides x- x+ y- y+ z- z+ of a lattice cell, outward for a right-handed lattice.
 constexpr int side_corner[6][4] = {{0, 4, 7, 3}, {1, 2, 6, 5}, {0, 1, 5, 4}, {3, 7, 6, 2}, {0, 3, 2, 1}, {4, 5, 6, 7}};
 
-void add_side(SurfaceChunk& out, const std::array<int64_t, 3>& points, const std::array<int64_t, 3>& cell, int64_t first_point, int side, bool mirrored, int64_t id) {
+void add_side(SurfaceChunk& out, const std::array<int64_t, 3>& points, const std::array<int64_t, 3>& cell, int64_t first_point, int side,
+              bool mirrored, int64_t id) {
   int64_t quad[4];
   for (int c = 0; c < 4; ++c) {
     const int64_t* o = off[side_corner[side][mirrored ? 3 - c : c]];
@@ -66,34 +67,37 @@ std::vector<SurfaceChunk> lattice_faces(const Mesh& mesh, const std::vector<uint
   const bool all_mirrored = solid && !listed && is_mirrored(v, 0, 0, 0);
   const size_t rows = cells[1] * cells[2], grain = std::max<size_t>(1, 16384 / cells[0]);
   std::vector<SurfaceChunk> chunks((rows + grain - 1) / grain);
-  parallel_for(rows, grain, [&](size_t begin, size_t end) {
-    SurfaceChunk& out = chunks[begin / grain];
-    auto state = [&](int64_t id) { return states.empty() ? uint8_t(cell_visible) : states[size_t(id)]; };
-    auto cell = [&](int64_t i, int64_t j, int64_t k, bool inner_sides) {
-      const int64_t id = i + n[0] * (j + n[1] * k);
-      if (state(id) != cell_visible) return;
-      if (!solid) return add_flat_cell(out, v.dims, i, j, k, id);
-      const int64_t at[3] = {i, j, k}, stride[3] = {1, n[0], n[0] * n[1]};
-      int mirrored = listed ? -1 : int(all_mirrored);
-      for (int side = 0; side < 6; ++side) {
-        const int axis = side / 2;
-        const bool rim = side % 2 ? at[axis] == n[axis] - 1 : at[axis] == 0;
-        if (!rim && (!inner_sides || state(id + (side % 2 ? stride[axis] : -stride[axis])) != cell_gone)) continue;
-        if (mirrored < 0) mirrored = is_mirrored(v, i, j, k);
-        add_side(out, points, {i, j, k}, 0, side, mirrored, id);
-      }
-    };
-    for (size_t row = begin; row < end; ++row) {
-      const auto j = int64_t(row) % n[1], k = int64_t(row) / n[1];
-      const bool rim = j == 0 || j == n[1] - 1 || k == 0 || k == n[2] - 1;
-      if (!solid || rim || !states.empty()) {
-        for (int64_t i = 0; i < n[0]; ++i) cell(i, j, k, !states.empty());
-      } else {  // inside, only the ends of a row can be seen
-        cell(0, j, k, false);
-        if (n[0] > 1) cell(n[0] - 1, j, k, false);
-      }
-    }
-  }, &ctx);
+  parallel_for(
+      rows, grain,
+      [&](size_t begin, size_t end) {
+        SurfaceChunk& out = chunks[begin / grain];
+        auto state = [&](int64_t id) { return states.empty() ? uint8_t(cell_visible) : states[size_t(id)]; };
+        auto cell = [&](int64_t i, int64_t j, int64_t k, bool inner_sides) {
+          const int64_t id = i + n[0] * (j + n[1] * k);
+          if (state(id) != cell_visible) return;
+          if (!solid) return add_flat_cell(out, v.dims, i, j, k, id);
+          const int64_t at[3] = {i, j, k}, stride[3] = {1, n[0], n[0] * n[1]};
+          int mirrored = listed ? -1 : int(all_mirrored);
+          for (int side = 0; side < 6; ++side) {
+            const int axis = side / 2;
+            const bool rim = side % 2 ? at[axis] == n[axis] - 1 : at[axis] == 0;
+            if (!rim && (!inner_sides || state(id + (side % 2 ? stride[axis] : -stride[axis])) != cell_gone)) continue;
+            if (mirrored < 0) mirrored = is_mirrored(v, i, j, k);
+            add_side(out, points, {i, j, k}, 0, side, mirrored, id);
+          }
+        };
+        for (size_t row = begin; row < end; ++row) {
+          const auto j = int64_t(row) % n[1], k = int64_t(row) / n[1];
+          const bool rim = j == 0 || j == n[1] - 1 || k == 0 || k == n[2] - 1;
+          if (!solid || rim || !states.empty()) {
+            for (int64_t i = 0; i < n[0]; ++i) cell(i, j, k, !states.empty());
+          } else {  // inside, only the ends of a row can be seen
+            cell(0, j, k, false);
+            if (n[0] > 1) cell(n[0] - 1, j, k, false);
+          }
+        }
+      },
+      &ctx);
   return chunks;
 }
 
@@ -105,7 +109,8 @@ namespace {
 class LevelIndex {
  public:
   explicit LevelIndex(const AmrGrid::Level& level) : level_(level) {
-    for (size_t p = 0; p < level.patches.size(); ++p) order_.push_back(p), widest_ = std::max(widest_, level.patches[p].hi[0] - level.patches[p].lo[0]);
+    for (size_t p = 0; p < level.patches.size(); ++p)
+      order_.push_back(p), widest_ = std::max(widest_, level.patches[p].hi[0] - level.patches[p].lo[0]);
     std::sort(order_.begin(), order_.end(), [&](size_t a, size_t b) { return level.patches[a].lo[0] < level.patches[b].lo[0]; });
   }
   // Calls f(patch number, cell number in the patch) for each patch that holds the cell, until f returns true.
@@ -144,7 +149,6 @@ class AmrWalk {
     const std::array<int64_t, 3> points{int64_t(n[0] + 1), int64_t(n[1] + 1), int64_t(n[2] + 1)};
     const Vec3 s = grid_.levels[l].spacing;
     const bool mirrored = s.x * s.y * s.z < 0;
-    const std::vector<size_t> earlier = earlier_overlaps(l, p);
     size_t local = 0;
     for (int64_t k = 0; k < int64_t(n[2]); ++k)
       for (int64_t j = 0; j < int64_t(n[1]); ++j)
@@ -152,7 +156,6 @@ class AmrWalk {
           const size_t id = patch.cell_offset + local;
           if (!states_.empty() && states_[id] != cell_visible) continue;
           const std::array<long long, 3> at{patch.lo[0] + i, patch.lo[1] + j, patch.lo[2] + k};
-          if (!earlier.empty() && has_earlier_twin(l, earlier, at)) continue;
           if (grid_.dimension == 2) {
             add_side(out, points, {i, j, 0}, int64_t(patch.point_offset), 4, true, int64_t(id));
             continue;
@@ -172,7 +175,7 @@ class AmrWalk {
   }
 
  private:
-  // A cell that fills its place: seen here, refined (finer cells fill it), or another piece's. Hidden cells leave a hole.
+  // A cell that fills its place: seen here or in another patch, refined (finer cells fill it). Hidden cells leave a hole.
   bool present(size_t id) const {
     if (states_.empty() || states_[id] != cell_gone) return true;
     return !ghost_.empty() && (ghost_.view<uint8_t>()[id] & (ghost_refined_cell | ghost_hidden_cell)) == ghost_refined_cell;
@@ -186,28 +189,6 @@ class AmrWalk {
       for (size_t a = 0; a < 3; ++a) c[a] = floor_div(c[a], std::max(grid_.levels[l].ratio[a], 1));
     }
   }
-  // Patches of a level may overlap: the first patch that shows a cell draws it.
-  std::vector<size_t> earlier_overlaps(size_t l, size_t p) const {
-    const auto& patches = grid_.levels[l].patches;
-    std::vector<size_t> r;
-    for (size_t q = 0; q < p; ++q) {
-      bool overlap = true;
-      for (size_t a = 0; a < 3; ++a) overlap = overlap && patches[q].lo[a] <= patches[p].hi[a] && patches[p].lo[a] <= patches[q].hi[a];
-      if (overlap) r.push_back(q);
-    }
-    return r;
-  }
-  bool has_earlier_twin(size_t l, const std::vector<size_t>& earlier, const std::array<long long, 3>& c) const {
-    for (size_t q : earlier) {
-      const AmrGrid::Patch& o = grid_.levels[l].patches[q];
-      if (c[0] < o.lo[0] || c[0] > o.hi[0] || c[1] < o.lo[1] || c[1] > o.hi[1] || c[2] < o.lo[2] || c[2] > o.hi[2]) continue;
-      const auto n = o.cells();
-      const size_t local = size_t(c[0] - o.lo[0]) + n[0] * (size_t(c[1] - o.lo[1]) + n[1] * size_t(c[2] - o.lo[2]));
-      if (states_.empty() || states_[o.cell_offset + local] == cell_visible) return true;
-    }
-    return false;
-  }
-
   const AmrGrid& grid_;
   const std::vector<uint8_t>& states_;
   const Array& ghost_;
@@ -222,7 +203,8 @@ std::vector<SurfaceChunk> amr_faces(const Dataset& in, const AmrGrid& grid, cons
     for (size_t p = 0; p < grid.levels[l].patches.size(); ++p) patches.emplace_back(l, p);
   const AmrWalk walk(grid, states, in.cell_ghost());
   std::vector<SurfaceChunk> chunks(patches.size());
-  parallel_for(patches.size(), 1, [&](size_t i, size_t) { walk.patch(patches[i].first, patches[i].second, chunks[i]); }, &ctx);
+  parallel_for(
+      patches.size(), 1, [&](size_t i, size_t) { walk.patch(patches[i].first, patches[i].second, chunks[i]); }, &ctx);
   return chunks;
 }
 

@@ -12,7 +12,8 @@ namespace {
 // Adds the cells of one chunk to the surface.
 class ChunkWalk {
  public:
-  ChunkWalk(const UnstructuredMesh& mesh, const PointReader& at, SurfaceChunk& out) : mesh_(mesh), cells_(cells_view(mesh.cells)), at_(at), reader_(mesh), out_(out) {}
+  ChunkWalk(const UnstructuredMesh& mesh, const PointReader& at, SurfaceChunk& out)
+      : mesh_(mesh), cells_(cells_view(mesh.cells)), at_(at), reader_(mesh), out_(out) {}
 
   // Faces of a solid cell whose mark is set; outward, whatever the orientation of the cell.
   void solid(size_t cell, const uint8_t* external, size_t n) {
@@ -87,7 +88,8 @@ class ChunkWalk {
 
   // A 2D cell with the nodes ids_: linear ones as they are, curved ones and strips as triangles.
   void add_face(CellType type, size_t cell, bool mirrored) {
-    if (type == CellType::triangle || type == CellType::quad || type == CellType::polygon) return ids_.size() >= 3 ? add_polygon(cell, mirrored) : void();
+    if (type == CellType::triangle || type == CellType::quad || type == CellType::polygon)
+      return ids_.size() >= 3 ? add_polygon(cell, mirrored) : void();
     if (type == CellType::pixel) {
       std::swap(ids_[2], ids_[3]);
       return add_polygon(cell, mirrored);
@@ -119,22 +121,25 @@ std::vector<SurfaceChunk> unstructured_faces(const UnstructuredMesh& mesh, const
   const PointReader at(mesh.points);
   const size_t cells = mesh.cells.size();
   std::vector<SurfaceChunk> chunks(marks.chunk_start.size());
-  parallel_for(cells, FaceMarks::cells_per_chunk, [&](size_t begin, size_t end) {
-    const size_t chunk = begin / FaceMarks::cells_per_chunk;
-    ChunkWalk walk(mesh, at, chunks[chunk]);
-    const uint8_t* external = marks.external.data() + marks.chunk_start[chunk];
-    CellFaceReader reader(mesh);
-    for (size_t c = begin; c < end; ++c) {
-      const bool visible = states.empty() || states[c] == cell_visible;
-      if (cell_type_info(mesh.type(c)).dimension == 3) {
-        const size_t n = reader.open(c);
-        if (visible) walk.solid(c, external, n);
-        external += n;
-      } else if (visible) {
-        walk.other(c);
-      }
-    }
-  }, &ctx);
+  parallel_for(
+      cells, FaceMarks::cells_per_chunk,
+      [&](size_t begin, size_t end) {
+        const size_t chunk = begin / FaceMarks::cells_per_chunk;
+        ChunkWalk walk(mesh, at, chunks[chunk]);
+        const uint8_t* external = marks.external.data() + marks.chunk_start[chunk];
+        CellFaceReader reader(mesh);
+        for (size_t c = begin; c < end; ++c) {
+          const bool visible = states.empty() || states[c] == cell_visible;
+          if (cell_type_info(mesh.type(c)).dimension == 3) {
+            const size_t n = reader.open(c);
+            if (visible) walk.solid(c, external, n);
+            external += n;
+          } else if (visible) {
+            walk.other(c);
+          }
+        }
+      },
+      &ctx);
   return chunks;
 }
 

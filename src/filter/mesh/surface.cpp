@@ -59,16 +59,28 @@ Triangles triangles_of(const SurfaceMesh& mesh) {
       const CellsView& v = strip ? strips : polygons;
       const size_t cell = strip ? c - polygons.count : c, first = v.begin(cell), n = v.end(cell) - first;
       if (n < 3) continue;
-      local.clear();
-      if (n == 3) {
-        local = {0, 1, 2};
-      } else {
-        corner.clear();
-        for (size_t k = 0; k < n; ++k) corner.push_back(at[size_t(v.connectivity[first + k])]);
-        tessellate_face(strip ? CellType::triangle_strip : CellType::polygon, corner, local);
+      const auto cell_id = uint32_t(strip ? first_strip + cell : first_polygon + cell);
+      if (n <= 4 && !strip) {  // nearly all cells of nearly all surfaces
+        uint32_t v4[4] = {};
+        for (size_t k = 0; k < n; ++k) v4[k] = uint32_t(v.connectivity[first + k]);
+        r.cells[t] = cell_id;
+        uint32_t* to = &r.indices[3 * t++];
+        if (n == 3) {
+          to[0] = v4[0], to[1] = v4[1], to[2] = v4[2];
+          continue;
+        }
+        const bool other = !first_diagonal_fits(at[v4[0]], at[v4[1]], at[v4[2]], at[v4[3]]);
+        const uint32_t split[2][6] = {{v4[0], v4[1], v4[2], v4[0], v4[2], v4[3]}, {v4[0], v4[1], v4[3], v4[1], v4[2], v4[3]}};
+        std::copy(split[other], split[other] + 6, to);
+        r.cells[t++] = cell_id;
+        continue;
       }
+      local.clear();
+      corner.clear();
+      for (size_t k = 0; k < n; ++k) corner.push_back(at[size_t(v.connectivity[first + k])]);
+      tessellate_face(strip ? CellType::triangle_strip : CellType::polygon, corner, local);
       for (size_t k = 0; k < local.size(); ++k) r.indices[3 * t + k] = uint32_t(v.connectivity[first + local[k]]);
-      for (size_t k = 0; k < local.size() / 3; ++k) r.cells[t + k] = uint32_t(strip ? first_strip + cell : first_polygon + cell);
+      for (size_t k = 0; k < local.size() / 3; ++k) r.cells[t + k] = cell_id;
       t += local.size() / 3;
     }
   });

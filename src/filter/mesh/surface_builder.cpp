@@ -172,6 +172,33 @@ class CellPoints {
   std::vector<CellsView> lists_;
 };
 
+// Patches of a level may overlap: the first patch that shows a cell keeps it.
+void mark_twins(const AmrGrid& grid, size_t cells, std::vector<uint8_t>& states) {
+  for (const auto& level : grid.levels)
+    for (size_t p = 1; p < level.patches.size(); ++p)
+      for (size_t q = 0; q < p; ++q) {
+        const auto &a = level.patches[p], &b = level.patches[q];
+        long long lo[3], hi[3];
+        bool overlap = true;
+        for (size_t x = 0; x < 3; ++x) {
+          lo[x] = std::max(a.lo[x], b.lo[x]), hi[x] = std::min(a.hi[x], b.hi[x]);
+          overlap = overlap && lo[x] <= hi[x];
+        }
+        if (!overlap) continue;
+        states.resize(cells);
+        auto number = [](const AmrGrid::Patch& h, long long i, long long j, long long k) {
+          const auto n = h.cells();
+          return h.cell_offset + size_t(i - h.lo[0]) + n[0] * (size_t(j - h.lo[1]) + n[1] * size_t(k - h.lo[2]));
+        };
+        for (long long k = lo[2]; k <= hi[2]; ++k)
+          for (long long j = lo[1]; j <= hi[1]; ++j)
+            for (long long i = lo[0]; i <= hi[0]; ++i) {
+              uint8_t& state = states[number(a, i, j, k)];
+              if (state == cell_visible && states[number(b, i, j, k)] != cell_gone) state = cell_duplicate;
+            }
+      }
+}
+
 }  // namespace
 
 std::vector<uint8_t> cell_states(const Dataset& in) {
@@ -198,6 +225,7 @@ std::vector<uint8_t> cell_states(const Dataset& in) {
       });
     }
   }
+  if (auto* g = in.as<AmrGrid>()) mark_twins(*g, n, states);
   if (std::all_of(states.begin(), states.end(), [](uint8_t s) { return s == cell_visible; })) states.clear();
   return states;
 }

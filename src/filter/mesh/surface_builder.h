@@ -40,9 +40,9 @@ struct SurfaceChunk {
 };
 
 struct AssembledSurface {
-  SurfaceMesh mesh;                 ///< without its points
-  std::vector<int64_t> points;      ///< input point of each point, ascending
-  std::vector<int64_t> cells;       ///< input cell of each cell: vertices, lines, polygons
+  SurfaceMesh mesh;             ///< without its points
+  std::vector<int64_t> points;  ///< input point of each point, ascending
+  std::vector<int64_t> cells;   ///< input cell of each cell: vertices, lines, polygons
 };
 /// Joins the chunks, keeps the used ones of `point_count` points, and renumbers.
 AssembledSurface assemble(const std::vector<SurfaceChunk>& chunks, size_t point_count);
@@ -62,10 +62,10 @@ Points points_of(const Mesh& mesh, std::span<const int64_t> ids);
 /// What to do with each cell.
 enum CellState : uint8_t {
   cell_visible = 0,
-  cell_duplicate = 1,  ///< another piece has it: not drawn, but still a neighbour
+  cell_duplicate = 1,  ///< another piece or an earlier patch has it: not drawn, but still a neighbour
   cell_gone = 2        ///< hidden or refined, or touches a hidden point: as if it were not there
 };
-/// One CellState per cell from the ghost arrays; empty when all are visible. For lattices, unstructured meshes, surfaces, AMR.
+/// One CellState per cell from the ghost arrays (AMR: and where patches of a level overlap); empty when all are visible.
 std::vector<uint8_t> cell_states(const Dataset& in);
 
 /// An i64 cell or point field of ids (role labels, so that it is no default for colouring).

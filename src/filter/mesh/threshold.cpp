@@ -58,8 +58,8 @@ void cells_of_lists(const CellsView& v, size_t first, bool all, const std::vecto
   });
 }
 
-void cells_of_box(std::array<size_t, 3> cells, std::array<size_t, 3> points, size_t first_cell, size_t first_point, bool all, const std::vector<uint8_t>& ok,
-                  std::vector<uint8_t>& keep) {
+void cells_of_box(std::array<size_t, 3> cells, std::array<size_t, 3> points, size_t first_cell, size_t first_point, bool all,
+                  const std::vector<uint8_t>& ok, std::vector<uint8_t>& keep) {
   parallel_for(cells[1] * cells[2], std::max<size_t>(1, grain / cells[0]), [&](size_t begin, size_t end) {
     for (size_t row = begin; row < end; ++row)
       for (size_t i = 0; i < cells[0]; ++i) {
@@ -105,7 +105,8 @@ const Field& chosen_field(const Dataset& in, const ThresholdParams& p) {
   } else {
     field = with_context("threshold", [&] { return &in.fields().require(p.field.name); });
   }
-  if (field->association == Association::whole) fail_usage(fmt::format("field '{}' belongs to the whole mesh, not to points or cells", field->name), "threshold");
+  if (field->association == Association::whole)
+    fail_usage(fmt::format("field '{}' belongs to the whole mesh, not to points or cells", field->name), "threshold");
   return *field;
 }
 
@@ -113,7 +114,8 @@ const Field& chosen_field(const Dataset& in, const ThresholdParams& p) {
 
 DatasetPtr threshold(const DatasetPtr& in, const ThresholdParams& p, Context& ctx) {
   if (p.min && p.max && *p.min > *p.max)
-    fail_usage(fmt::format("min {} is above max {}", short_number(*p.min), short_number(*p.max)), "threshold", "swap them, or use invert=true");
+    fail_usage(fmt::format("min {} is above max {}", short_number(*p.min), short_number(*p.max)), "threshold",
+               "swap them, or use invert=true");
   const Field& field = chosen_field(*in, p);
   std::vector<uint8_t> keep = in_range(field, p);
   ctx.check();
@@ -125,7 +127,9 @@ DatasetPtr threshold(const DatasetPtr& in, const ThresholdParams& p, Context& ct
   std::vector<int64_t> cells;
   for (size_t c = 0; c < keep.size(); ++c)
     if (keep[c] && (states.empty() || states[c] == cell_visible)) cells.push_back(int64_t(c));
-  if (cells.empty()) ctx.info(fmt::format("threshold: no {} has '{}' in range", cloud ? "point" : "cell", field.name));
+  if (cells.empty())
+    ctx.info(fmt::format("threshold: nothing is left, '{}' runs from {} to {}", field.name, short_number(in->range(field).lo),
+                         short_number(in->range(field).hi)));
   return extract_cells(in, cells, "threshold");
 }
 
