@@ -2,6 +2,7 @@
 #include "io/vtk_cells.h"
 
 
+#include "base/bytes.h"
 #include "base/parallel.h"
 
 namespace sg::vtk {
@@ -38,21 +39,51 @@ Array as_coordinates(const Array& a) {
   return a.converted(element_size(a.type()) < 4 ? ElementType::f32 : ElementType::f64);
 }
 
+namespace {
+
+constexpr int most_points = 4096;  // of cells of one size; larger ones are worth their offsets
+
+template <class T>
+int uniform_size_of(const std::byte* p, size_t n) {
+  const T size = load<T>(p);
+  if (size <= 0 || size > most_points || size_t(size) > size_t(std::numeric_limits<T>::max()) / n) return 0;
+  const bool uniform = parallel_reduce(n, 1 << 16, true, [&](size_t begin, size_t end) {
+    T odd = 0, want = T(begin) * size;
+    for (size_t i = begin; i < end; ++i) odd |= load<T>(p + i * sizeof(T)) ^ (want += size);
+    return odd == 0;
+  }, [](bool a, bool b) { return a && b; });
+  return uniform ? int(size) : 0;
+}
+
+}  // namespace
+
+int uniform_size(const std::byte* p, ElementType type, size_t n) {
+  if (n == 0) return 0;
+  if (type == ElementType::i64) return uniform_size_of<int64_t>(p, n);
+  if (type == ElementType::i32) return uniform_size_of<int32_t>(p, n);
+  return 0;
+}
+
+CellArray cells_of_size(int size, size_t n, const Array& connectivity) {
+  CellArray cells;
+  cells.connectivity = as_indices(connectivity);
+  if (cells.connectivity.count() / size_t(size) < n)
+    fail_data(fmt::format("{} cells of {} points need more than {} point ids", n, size, cells.connectivity.count()));
+  cells.connectivity = cells.connectivity.slice(0, n * size_t(size));
+  cells.fixed = size;
+  return cells;
+}
+
 CellArray cells_from_ends(const Array& ends_in, const Array& connectivity) {
   const size_t n = ends_in.count();
   if (n == 0) return no_cells();
   const Array ends = as_indices(ends_in);
+  if (const int size = uniform_size(ends.raw(), ends.type(), n)) return cells_of_size(size, n, connectivity);
   CellArray cells;
   cells.connectivity = as_indices(connectivity);
   const size_t ids = cells.connectivity.count();
   with_indices(ends, [&](auto* end) {
     using T = std::remove_cvref_t<decltype(*end)>;
-    const T size = end[0];
-    if (size > 0 && size <= 4096 && size_t(size) <= ids / n && all_of(n, [&](size_t i) { return int64_t(end[i]) == int64_t(i + 1) * size; })) {
-      cells.fixed = int(size);
-      cells.connectivity = cells.connectivity.slice(0, n * size_t(size));
-      return;
-    }
     // For i == 0 the end before is the start of the list.
     if (!all_of(n, [&](size_t i) { return end[i] >= (i ? end[i - 1] : T(0)); })) fail_data("offsets of cells fall");
     if (size_t(end[n - 1]) > ids) fail_data(fmt::format("offsets of cells end at {} but there are {} point ids", end[n - 1], ids));
@@ -60,7 +91,7 @@ CellArray cells_from_ends(const Array& ends_in, const Array& connectivity) {
     cells.offsets = Array::make<T>(n + 1, 1, &out);
     out[0] = 0;
     std::memcpy(out + 1, end, n * sizeof(T));
-    if (ids > size_t(end[n - 1])) cells.connectivity = cells.connectivity.slice(0, size_t(end[n - 1]));
+    cells.connectivity = cells.connectivity.slice(0, size_t(end[n - 1]));
   });
   return cells;
 }
@@ -77,7 +108,7 @@ namespace {
 template <class T>
 CellArray split_records(const T* r, size_t count, size_t n) {
   CellArray cells;
-  const size_t k = r[0] > 0 && r[0] <= 4096 ? size_t(r[0]) : 0;
+  const size_t k = r[0] > 0 && r[0] <= most_points ? size_t(r[0]) : 0;
   T* ids = nullptr;
   if (k > 0 && n <= count / (k + 1) && count == n * (k + 1) && all_of(n, [&](size_t i) { return size_t(r[i * (k + 1)]) == k; })) {
     cells.connectivity = Array::make<T>(n * k, 1, &ids);

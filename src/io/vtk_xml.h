@@ -25,6 +25,9 @@ class XmlFile {
   /// The numbers of a DataArray. With `tuples` there must be at least as many (more are dropped), without all there are.
   /// Little-endian uncompressed appended bytes are not copied when they lie on multiples of the element size.
   Array array(pugi::xml_node element, std::optional<uint64_t> tuples) const;
+  /// Where `tuples` one-component numbers lie in the file as they are (uncompressed, raw, little-endian), on any byte; null when
+  /// they do not. For a look that needs no array.
+  const std::byte* in_place(pugi::xml_node element, uint64_t tuples, ElementType& type) const;
   /// A DataArray of a type that is read; strings are not.
   static bool is_numeric(pugi::xml_node element);
   /// "DataArray 'T'" for errors.

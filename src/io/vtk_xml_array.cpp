@@ -210,6 +210,20 @@ Array XmlFile::text(const Wanted& want) const {
   fail(fmt::format("'{}' is no {} number ({} of {})", words(t.substr(at, 40)).front(), element_name(want.type), end.parsed + 1, n), want.element);
 }
 
+const std::byte* XmlFile::in_place(pugi::xml_node element, uint64_t tuples, ElementType& type) const {
+  if (big_endian_ || codec_ != Codec::none || appended_base64_ || std::string_view(element.attribute("format").value()) != "appended") return nullptr;
+  if (!parse_element_type(element.attribute("type").value(), type) || (element.attribute("NumberOfComponents") && parse_count(*this, element, "NumberOfComponents") != 1))
+    return nullptr;
+  const Source s = source(element);
+  const size_t header = word_bytes();
+  if (s.bytes.size() < header) return nullptr;
+  const auto* p = reinterpret_cast<const std::byte*>(s.bytes.data());
+  uint64_t bytes = 0;
+  const uint64_t available = word(p);
+  if (available > s.bytes.size() - header || !multiply(tuples, element_size(type), bytes) || bytes > available) return nullptr;
+  return p + header;
+}
+
 Array XmlFile::array(pugi::xml_node element, std::optional<uint64_t> tuples) const {
   Wanted want;
   want.element = element;

@@ -150,8 +150,14 @@ void read_face_lists(const XmlRead& read, pugi::xml_node cells, UnstructuredMesh
 CellArray read_cells(const XmlRead& read, pugi::xml_node cells, uint64_t n) {
   if (n == 0) return {};
   const Array ids = read.file.array(need_array(read, cells, "connectivity"), std::nullopt);
-  const Array ends = read.file.array(need_array(read, cells, "offsets"), n);
-  return with_context(fmt::format("taking apart the cells of {}", cells.name()), [&] { return cells_from_ends(ends, ids); });
+  const pugi::xml_node offsets = need_array(read, cells, "offsets");
+  return with_context(fmt::format("taking apart the cells of {}", cells.name()), [&] {
+    // Cells of one size: one look at the offsets where they lie, and they need not become an array.
+    ElementType type{};
+    if (const std::byte* p = read.file.in_place(offsets, n, type))
+      if (const int size = uniform_size(p, type, n)) return cells_of_size(size, n, ids);
+    return cells_from_ends(read.file.array(offsets, n), ids);
+  });
 }
 
 UnstructuredMesh unstructured_piece(const XmlRead& read, pugi::xml_node piece, uint64_t points, uint64_t n) {
