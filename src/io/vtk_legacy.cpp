@@ -254,8 +254,9 @@ void LegacyReader::color_scalars() {
   if (!text_.binary) {  // as text they run from 0 to 1
     uint8_t* out = nullptr;
     const auto v = a.view<float>();
-    a = Array::make<uint8_t>(v.count, v.components, &out);
+    const Array bytes = Array::make<uint8_t>(v.count, v.components, &out);
     for (size_t i = 0; i < v.count * components; ++i) out[i] = uint8_t(std::clamp(255.0f * v.data[i] + 0.5f, 0.0f, 255.0f));
+    a = bytes;  // not before: v looks into the old numbers
   }
   add(std::move(name), association_, a, Role::colors);
 }

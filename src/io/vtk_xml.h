@@ -5,6 +5,7 @@
 #include <pugixml.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/file.h"
 #include "data/array.h"
@@ -38,6 +39,8 @@ class XmlFile {
   struct Wanted;
   struct Source;
   void parse();
+  void parse_elements(std::string_view head, std::string_view tail);
+  std::string_view text_of(pugi::xml_node element, std::string& joined) const;
   void read_root();
   Source source(pugi::xml_node element) const;
   Array plain(const Wanted& want, const Source& source) const;
@@ -52,6 +55,7 @@ class XmlFile {
   pugi::xml_document document_;
   pugi::xml_node dataset_;
   std::string type_;
+  std::vector<std::string_view> texts_;  // long texts of DataArrays, kept from the XML parser
   std::string_view appended_;
   bool have_appended_ = false, appended_base64_ = false;
   bool big_endian_ = false, wide_header_ = false;

@@ -31,28 +31,9 @@ struct XmlFile::Source {
 
 namespace {
 
-std::string_view trimmed_text(pugi::xml_node element, std::string& joined) {
-  // Comments and InformationKey elements may cut the text; nearly always there is one piece.
-  std::string_view one;
-  for (const pugi::xml_node& n : element.children()) {
-    if (n.type() != pugi::node_pcdata && n.type() != pugi::node_cdata) continue;
-    const std::string_view t = trim(n.value());
-    if (t.empty()) continue;
-    if (one.empty() && joined.empty()) {
-      one = t;
-      continue;
-    }
-    if (joined.empty()) joined = one;
-    joined += ' ';
-    joined += t;
-    one = joined;
-  }
-  return one;
-}
-
 bool has_blanks(std::string_view s) {
-  unsigned n = 0;
-  for (const char c : s) n |= unsigned(static_cast<unsigned char>(c) <= ' ');
+  unsigned char n = 0;
+  for (const char c : s) n |= static_cast<unsigned char>(static_cast<unsigned char>(c) <= ' ');
   return n != 0;
 }
 
@@ -64,7 +45,7 @@ XmlFile::Source XmlFile::source(pugi::xml_node element) const {
   Source s;
   if (std::string_view(element.attribute("format").value()) != "appended") {
     s.base64 = true;
-    s.bytes = trimmed_text(element, *s.joined);
+    s.bytes = text_of(element, *s.joined);
     if (has_blanks(s.bytes)) {
       std::string tight;
       for (const char c : s.bytes)
@@ -196,7 +177,7 @@ Array XmlFile::compressed(const Wanted& want, const Source& s) const {
 
 Array XmlFile::text(const Wanted& want) const {
   std::string joined;
-  const std::string_view t = trimmed_text(want.element, joined);
+  const std::string_view t = text_of(want.element, joined);
   uint64_t n = 0;
   if (!want.tuples) n = count_words(t) / size_t(want.components) * size_t(want.components);
   else if (!multiply(*want.tuples, uint64_t(want.components), n) || n > (t.size() + 1) / 2)

@@ -149,14 +149,16 @@ void read_face_lists(const XmlRead& read, pugi::xml_node cells, UnstructuredMesh
 
 CellArray read_cells(const XmlRead& read, pugi::xml_node cells, uint64_t n) {
   if (n == 0) return {};
-  const Array ids = read.file.array(need_array(read, cells, "connectivity"), std::nullopt);
-  const pugi::xml_node offsets = need_array(read, cells, "offsets");
+  const pugi::xml_node offsets = need_array(read, cells, "offsets"), connectivity = need_array(read, cells, "connectivity");
   return with_context(fmt::format("taking apart the cells of {}", cells.name()), [&] {
     // Cells of one size: one look at the offsets where they lie, and they need not become an array.
     ElementType type{};
     if (const std::byte* p = read.file.in_place(offsets, n, type))
-      if (const int size = uniform_size(p, type, n)) return cells_of_size(size, n, ids);
-    return cells_from_ends(read.file.array(offsets, n), ids);
+      if (const int size = uniform_size(p, type, n)) return cells_of_size(size, n, read.file.array(connectivity, n * uint64_t(size)));
+    const Array ends = as_indices(read.file.array(offsets, n));
+    const int64_t last = index_view(ends)[n - 1];
+    if (last < 0) read.file.fail(fmt::format("has the offset {}", last), offsets);
+    return cells_from_ends(ends, read.file.array(connectivity, uint64_t(last)));
   });
 }
 
