@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/vtk_cells.h"
 
-
 #include "base/bytes.h"
 #include "base/parallel.h"
 
@@ -11,11 +10,14 @@ namespace {
 
 template <class Holds>
 bool all_of(size_t n, Holds holds) {
-  return parallel_reduce(n, 1 << 17, true, [&](size_t begin, size_t end) {
-    bool good = true;
-    for (size_t i = begin; i < end; ++i) good &= holds(i);
-    return good;
-  }, [](bool a, bool b) { return a && b; });
+  return parallel_reduce(
+      n, 1 << 17, true,
+      [&](size_t begin, size_t end) {
+        bool good = true;
+        for (size_t i = begin; i < end; ++i) good &= holds(i);
+        return good;
+      },
+      [](bool a, bool b) { return a && b; });
 }
 
 // dispatch over the two index types
@@ -47,11 +49,14 @@ template <class T>
 int uniform_size_of(const std::byte* p, size_t n) {
   const T size = load<T>(p);
   if (size <= 0 || size > most_points || size_t(size) > size_t(std::numeric_limits<T>::max()) / n) return 0;
-  const bool uniform = parallel_reduce(n, 1 << 16, true, [&](size_t begin, size_t end) {
-    T odd = 0, want = T(begin) * size;
-    for (size_t i = begin; i < end; ++i) odd |= load<T>(p + i * sizeof(T)) ^ (want += size);
-    return odd == 0;
-  }, [](bool a, bool b) { return a && b; });
+  const bool uniform = parallel_reduce(
+      n, 1 << 16, true,
+      [&](size_t begin, size_t end) {
+        T odd = 0, want = T(begin) * size;
+        for (size_t i = begin; i < end; ++i) odd |= load<T>(p + i * sizeof(T)) ^ (want += size);
+        return odd == 0;
+      },
+      [](bool a, bool b) { return a && b; });
   return uniform ? int(size) : 0;
 }
 
@@ -126,7 +131,8 @@ CellArray split_records(const T* r, size_t count, size_t n) {
   for (size_t i = 0; i < n; ++i) {
     if (at >= count) fail_data(fmt::format("the cell list ends after {} of {} cells", i, n));
     const T size = r[at];
-    if (size < 0 || size_t(size) > count - at - 1) fail_data(fmt::format("cell {} has {} points but the list has only {} more numbers", i, size, count - at - 1));
+    if (size < 0 || size_t(size) > count - at - 1)
+      fail_data(fmt::format("cell {} has {} points but the list has only {} more numbers", i, size, count - at - 1));
     at += size_t(size) + 1;
     offsets[i + 1] = offsets[i] + size;  // at most count, which is a T in the file
   }
@@ -149,12 +155,14 @@ CellArray cells_from_records(const Array& records, size_t n) {
 }
 
 void set_types(UnstructuredMesh& mesh, const Array& types_in) {
-  const Array types = element_size(types_in.type()) == 1 && types_in.packed()
-                          ? Array(types_in.buffer(), ElementType::u8, types_in.count(), 1, size_t(types_in.raw() - types_in.buffer().data), 1, 1)
-                          : types_in.converted(ElementType::u8);
+  const Array types =
+      element_size(types_in.type()) == 1 && types_in.packed()
+          ? Array(types_in.buffer(), ElementType::u8, types_in.count(), 1, size_t(types_in.raw() - types_in.buffer().data), 1, 1)
+          : types_in.converted(ElementType::u8);
   if (types.count() == 0) return;
   const uint8_t* t = types.view<uint8_t>().data;
-  if (all_of(types.count(), [&](size_t i) { return t[i] == t[0]; }) && t[0] != uint8_t(CellType::polyhedron)) mesh.single_type = CellType(t[0]);
+  if (all_of(types.count(), [&](size_t i) { return t[i] == t[0]; }) && t[0] != uint8_t(CellType::polyhedron))
+    mesh.single_type = CellType(t[0]);
   else mesh.types = types;
 }
 
@@ -168,7 +176,8 @@ size_t FaceCollector::add(IndexView stream, size_t begin, size_t end) {
   size_t used = 1;
   for (int64_t f = 0; f < faces; ++f) {
     const int64_t size = take();
-    if (size < 0 || size_t(size) > end - begin - used) fail_data(fmt::format("a face of polyhedron {} has {} points", cell_faces_.size() - 1, size));
+    if (size < 0 || size_t(size) > end - begin - used)
+      fail_data(fmt::format("a face of polyhedron {} has {} points", cell_faces_.size() - 1, size));
     for (int64_t i = 0; i < size; ++i) ids_.push_back(take());
     offsets_.push_back(int64_t(ids_.size()));
     used += size_t(size) + 1;

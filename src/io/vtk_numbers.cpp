@@ -164,8 +164,9 @@ NumbersEnd parse_numbers(std::string_view text, ElementType type, size_t count, 
 }
 
 size_t count_words(std::string_view text) {
-  return parallel_reduce(text.size(), chunk_bytes, size_t(0), [&](size_t begin, size_t end) { return word_starts(text, begin, end); },
-                         [](size_t a, size_t b) { return a + b; });
+  return parallel_reduce(
+      text.size(), chunk_bytes, size_t(0), [&](size_t begin, size_t end) { return word_starts(text, begin, end); },
+      [](size_t a, size_t b) { return a + b; });
 }
 
 std::string format_numbers(const Array& a, size_t per_line) {

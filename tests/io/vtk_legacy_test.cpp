@@ -53,10 +53,12 @@ const std::string triangle = "DATASET UNSTRUCTURED_GRID\nPOINTS 3 float\n0 0 0 1
 }  // namespace
 
 TEST_CASE("vtk legacy: structured points with scalars, lookup table and ghost arrays") {
-  const DatasetPtr d = read_text(ascii + "DATASET STRUCTURED_POINTS\nDIMENSIONS 3 2 1\nASPECT_RATIO 0.5 1 2\nORIGIN 1 2 3\nPOINT_DATA 6\n"
-                                         "SCALARS my%20field unsigned_char 1\nLOOKUP_TABLE colors\n1 2 3\n4 5 255\nLOOKUP_TABLE colors 2\n0 0 0 1 1 1 1 1\n"
-                                         "FIELD FieldData 1\nvtkGhostType 1 6 unsigned_char\n0 0 1 0 2 0\n"
-                                         "CELL_DATA 2\nSCALARS vtkGhostLevels unsigned_char\nLOOKUP_TABLE default\n0 2\n");
+  const DatasetPtr d =
+      read_text(ascii +
+                "DATASET STRUCTURED_POINTS\nDIMENSIONS 3 2 1\nASPECT_RATIO 0.5 1 2\nORIGIN 1 2 3\nPOINT_DATA 6\n"
+                "SCALARS my%20field unsigned_char 1\nLOOKUP_TABLE colors\n1 2 3\n4 5 255\nLOOKUP_TABLE colors 2\n0 0 0 1 1 1 1 1\n"
+                "FIELD FieldData 1\nvtkGhostType 1 6 unsigned_char\n0 0 1 0 2 0\n"
+                "CELL_DATA 2\nSCALARS vtkGhostLevels unsigned_char\nLOOKUP_TABLE default\n0 2\n");
   const auto& g = *d->as<UniformGrid>();
   CHECK(g.dims == std::array<size_t, 3>{3, 2, 1});
   CHECK(g.origin == Vec3{1, 2, 3});
@@ -72,17 +74,22 @@ TEST_CASE("vtk legacy: structured points with scalars, lookup table and ghost ar
 }
 
 TEST_CASE("vtk legacy: structured and rectilinear grids") {
-  const DatasetPtr c = read_text(ascii + "DATASET STRUCTURED_GRID\nDIMENSIONS 2 2 1\nPOINTS 4 int\n0 0 0 1 0 0 0 1 0 1 1 5\nBLANKING 4 unsigned_char\n1 1 0 1\n");
+  const DatasetPtr c = read_text(
+      ascii + "DATASET STRUCTURED_GRID\nDIMENSIONS 2 2 1\nPOINTS 4 int\n0 0 0 1 0 0 0 1 0 1 1 5\nBLANKING 4 unsigned_char\n1 1 0 1\n");
   CHECK(c->as<CurvilinearGrid>()->points.at(3) == Vec3{1, 1, 5});
   CHECK(c->point_ghost().get(2) == ghost_hidden_point);
-  const DatasetPtr r = read_text(ascii + "DATASET RECTILINEAR_GRID\nDIMENSIONS 3 1 2\nX_COORDINATES 3 float\n0 1 4\nY_COORDINATES 1 double\n7\nZ_COORDINATES 2 short\n-1 1\n");
+  const DatasetPtr r = read_text(
+      ascii +
+      "DATASET RECTILINEAR_GRID\nDIMENSIONS 3 1 2\nX_COORDINATES 3 float\n0 1 4\nY_COORDINATES 1 double\n7\nZ_COORDINATES 2 short\n-1 1\n");
   CHECK(r->bounds().hi == Vec3{4, 7, 1});
   CHECK(r->as<RectilinearGrid>()->y.type() == ElementType::f64);
 }
 
 TEST_CASE("vtk legacy: polygonal data keep vertices, lines, polygons and strips apart") {
-  const DatasetPtr d = read_text(ascii + "DATASET POLYDATA\nPOINTS 5 double\n0 0 0 1 0 0 1 1 0 0 1 0 2 2 2\nVERTICES 1 2\n1 4\nLINES 2 5\n1 0 2 1 2\n"
-                                         "POLYGONS 2 9\n3 0 1 2 4 0 1 2 3\nTRIANGLE_STRIPS 1 5\n4 0 1 3 2\nCELL_DATA 6\nCOLOR_SCALARS c 2\n0 1 0.5 0.5 1 1 0 0 0 0 0 0.25\n");
+  const DatasetPtr d = read_text(
+      ascii +
+      "DATASET POLYDATA\nPOINTS 5 double\n0 0 0 1 0 0 1 1 0 0 1 0 2 2 2\nVERTICES 1 2\n1 4\nLINES 2 5\n1 0 2 1 2\n"
+      "POLYGONS 2 9\n3 0 1 2 4 0 1 2 3\nTRIANGLE_STRIPS 1 5\n4 0 1 3 2\nCELL_DATA 6\nCOLOR_SCALARS c 2\n0 1 0.5 0.5 1 1 0 0 0 0 0 0.25\n");
   const auto& m = *d->as<SurfaceMesh>();
   CHECK(m.vertices.size() == 1);
   CHECK(m.lines.size() == 2);
@@ -96,12 +103,16 @@ TEST_CASE("vtk legacy: polygonal data keep vertices, lines, polygons and strips 
 
 TEST_CASE("vtk legacy: each attribute has its components and role") {
   const std::string nine = "1 2 3 4 5 6 7 8 9\n";
-  const DatasetPtr d = read_text(ascii + triangle + "POINT_DATA 3\nSCALARS s float 2\nLOOKUP_TABLE default\n1 2 3 4 5 6\nVECTORS v double\n" + nine + "NORMALS n float\n" + nine +
-                                 "TEXTURE_COORDINATES t 2 float\n1 2 3 4 5 6\nTENSORS T float\n" + nine + nine + nine + "TENSORS6 T6 float\n" + nine + nine +
-                                 "GLOBAL_IDS g vtkIdType\n7 8 9\nMETADATA\nINFORMATION 0\n\nFIELD f 3\nb 1 3 bit\n1 0 1\nwords 1 2 string\nfirst%20word\nsecond\nx 3 3 long\n" + nine +
-                                 "CELL_DATA 1\nPEDIGREE_IDS p int\n4\nEDGE_FLAGS e int\n0\n");
-  const std::tuple<const char*, int, Role> want[] = {{"s", 2, Role::scalars}, {"v", 3, Role::vectors}, {"n", 3, Role::normals}, {"t", 2, Role::tcoords}, {"T", 9, Role::tensors},
-                                                     {"T6", 6, Role::tensors}, {"g", 1, Role::global_ids}, {"b", 1, Role::none}, {"x", 3, Role::none}, {"p", 1, Role::global_ids}};
+  const DatasetPtr d =
+      read_text(ascii + triangle + "POINT_DATA 3\nSCALARS s float 2\nLOOKUP_TABLE default\n1 2 3 4 5 6\nVECTORS v double\n" + nine +
+                "NORMALS n float\n" + nine + "TEXTURE_COORDINATES t 2 float\n1 2 3 4 5 6\nTENSORS T float\n" + nine + nine + nine +
+                "TENSORS6 T6 float\n" + nine + nine +
+                "GLOBAL_IDS g vtkIdType\n7 8 9\nMETADATA\nINFORMATION 0\n\nFIELD f 3\nb 1 3 bit\n1 0 1\nwords 1 2 "
+                "string\nfirst%20word\nsecond\nx 3 3 long\n" +
+                nine + "CELL_DATA 1\nPEDIGREE_IDS p int\n4\nEDGE_FLAGS e int\n0\n");
+  const std::tuple<const char*, int, Role> want[] = {
+      {"s", 2, Role::scalars},  {"v", 3, Role::vectors},    {"n", 3, Role::normals}, {"t", 2, Role::tcoords}, {"T", 9, Role::tensors},
+      {"T6", 6, Role::tensors}, {"g", 1, Role::global_ids}, {"b", 1, Role::none},    {"x", 3, Role::none},    {"p", 1, Role::global_ids}};
   for (const auto& [name, components, role] : want) {
     CAPTURE(name);
     const Field* f = d->fields().find(name);
@@ -114,11 +125,15 @@ TEST_CASE("vtk legacy: each attribute has its components and role") {
 }
 
 TEST_CASE("vtk legacy: big-endian bytes, bits, strings, ids and version 5 cell lists") {
-  const std::string text = binary + "DATASET UNSTRUCTURED_GRID\nFIELD FieldData 2\nTIME 1 1 double\n" + big_endian<double>({2.5}) + "\nnote 1 1 string\n\xC3" "abc\n" +
-                           "POINTS 5 float\n" + big_endian<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1}) + "\nMETADATA\nINFORMATION 0\n\n" +
-                           "CELLS 3 7\nOFFSETS vtktypeint64\n" + big_endian<int64_t>({0, 4, 7}) + "\nCONNECTIVITY vtktypeint64\n" + big_endian<int64_t>({0, 1, 2, 3, 4, 0, 1}) +
-                           "\nCELL_TYPES 2\n" + big_endian<int32_t>({10, 5}) + "\nPOINT_DATA 5\nFIELD FieldData 3\nb 1 5 bit\n\xA8\nids 1 5 vtkIdType\n" +
-                           big_endian<int32_t>({1, 2, 3, 4, -5}) + "\nu 1 5 unsigned_short\n" + big_endian<uint16_t>({1, 2, 3, 4, 65535}) + "\n";
+  const std::string text = binary + "DATASET UNSTRUCTURED_GRID\nFIELD FieldData 2\nTIME 1 1 double\n" + big_endian<double>({2.5}) +
+                           "\nnote 1 1 string\n\xC3"
+                           "abc\n" +
+                           "POINTS 5 float\n" + big_endian<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 1}) +
+                           "\nMETADATA\nINFORMATION 0\n\n" + "CELLS 3 7\nOFFSETS vtktypeint64\n" + big_endian<int64_t>({0, 4, 7}) +
+                           "\nCONNECTIVITY vtktypeint64\n" + big_endian<int64_t>({0, 1, 2, 3, 4, 0, 1}) + "\nCELL_TYPES 2\n" +
+                           big_endian<int32_t>({10, 5}) + "\nPOINT_DATA 5\nFIELD FieldData 3\nb 1 5 bit\n\xA8\nids 1 5 vtkIdType\n" +
+                           big_endian<int32_t>({1, 2, 3, 4, -5}) + "\nu 1 5 unsigned_short\n" + big_endian<uint16_t>({1, 2, 3, 4, 65535}) +
+                           "\n";
   const DatasetPtr d = read_text(text);
   const auto& m = *d->as<UnstructuredMesh>();
   CHECK(m.points.at(4) == Vec3{1, 1, 1});
@@ -132,12 +147,14 @@ TEST_CASE("vtk legacy: big-endian bytes, bits, strings, ids and version 5 cell l
   const size_t points = text.find("POINTS"), types = text.find("\nPOINT_DATA"), field = text.find("FIELD FieldData 3");
   for (size_t n = 27; n < text.size() - 1; ++n) {
     if ((n > points && n < types) || n > field + 6) CHECK(says(error_of(text.substr(0, n)), "x.vtk"));
-    else CHECK_NOTHROW(try { read_text(text.substr(0, n)); } catch (const Error&) {});
+    else CHECK_NOTHROW(try { read_text(text.substr(0, n)); } catch (const Error&){});
   }
 }
 
 TEST_CASE("vtk legacy: polyhedra are read from face streams") {
-  const DatasetPtr d = read_text(ascii + "DATASET UNSTRUCTURED_GRID\nPOINTS 5 float\n0 0 0 1 0 0 0 1 0 0 0 1 1 1 1\nCELLS 2 23\n17 4 3 0 1 2 3 0 1 3 3 1 2 3 3 0 2 3\n4 0 1 2 4\nCELL_TYPES 2\n42 10\n");
+  const DatasetPtr d = read_text(ascii +
+                                 "DATASET UNSTRUCTURED_GRID\nPOINTS 5 float\n0 0 0 1 0 0 0 1 0 0 0 1 1 1 1\nCELLS 2 23\n17 4 3 0 1 2 3 0 1 "
+                                 "3 3 1 2 3 3 0 2 3\n4 0 1 2 4\nCELL_TYPES 2\n42 10\n");
   const auto& m = *d->as<UnstructuredMesh>();
   CHECK(m.faces.size() == 4);
   CHECK(cells_view(m.cells).size(0) == 4);
@@ -157,13 +174,15 @@ TEST_CASE("vtk legacy: a text file cut anywhere before its last attribute gives 
     } else if (n > text.find("FIELD") + 8) {
       CHECK(says(error_of(text.substr(0, n)), "x.vtk: line"));
     } else {
-      CHECK_NOTHROW(try { read_text(text.substr(0, n)); } catch (const Error&) {});
+      CHECK_NOTHROW(try { read_text(text.substr(0, n)); } catch (const Error&){});
     }
   }
 }
 
 TEST_CASE("vtk legacy: files with any byte changed read or give an Error, and nothing worse") {
-  const std::string text = ascii + triangle + "POINT_DATA 3\nSCALARS a float\nLOOKUP_TABLE default\n1.5 2.5 3.5\nMETADATA\nINFORMATION 0\n\nFIELD f 1\nb 3 3 double\n1 2 3 4 5 6 7 8 9\n";
+  const std::string text = ascii + triangle +
+                           "POINT_DATA 3\nSCALARS a float\nLOOKUP_TABLE default\n1.5 2.5 3.5\nMETADATA\nINFORMATION 0\n\nFIELD f 1\nb 3 3 "
+                           "double\n1 2 3 4 5 6 7 8 9\n";
   size_t errors = 0, reads = 0;
   for (size_t i = 0; i < 3000; ++i) {
     std::string bent = text;
