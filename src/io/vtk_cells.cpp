@@ -208,15 +208,14 @@ void expand_polyhedra(UnstructuredMesh& mesh) {
       faces.add_none();
     } else {
       faces.add(cells.connectivity, begin, end);
-      const size_t first = ids.size();  // distinct points in order of first appearance
+      const auto first = ptrdiff_t(ids.size());  // the distinct points in ascending order, as VTK lists them
       size_t at = begin + 1;
       for (int64_t f = cells.connectivity[begin]; f > 0; --f) {
         const size_t stop = at + 1 + size_t(cells.connectivity[at]);
-        for (++at; at < stop; ++at) {
-          const int64_t id = cells.connectivity[at];
-          if (std::find(ids.begin() + ptrdiff_t(first), ids.end(), id) == ids.end()) ids.push_back(id);
-        }
+        for (++at; at < stop; ++at) ids.push_back(cells.connectivity[at]);
       }
+      std::sort(ids.begin() + first, ids.end());
+      ids.erase(std::unique(ids.begin() + first, ids.end()), ids.end());
     }
     offsets.push_back(int64_t(ids.size()));
   }

@@ -119,7 +119,9 @@ Array LegacyText::array(std::string_view type_name, size_t tuples, size_t compon
   if (equal_ignoring_case(type_name, "bit")) {
     a = bits(tuples, components, what);
   } else {
-    if (!parse_element_type(type_name, type))
+    std::string_view plain = type_name;  // "vtktypeuint64" is "uint64"
+    if (plain.size() > 7 && equal_ignoring_case(plain.substr(0, 7), "vtktype")) plain.remove_prefix(7);
+    if (!parse_element_type(plain, type))
       fail(fmt::format("{} has the unknown type '{}'", what, type_name.substr(0, 40)),
            "known are: bit, char, short, int, long, their unsigned forms, float, double, vtkIdType, vtktypeint64");
     if (!binary) {
