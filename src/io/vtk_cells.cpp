@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/vtk_cells.h"
 
-
+#include "base/bytes.h"
 #include "base/parallel.h"
 
 namespace sg::vtk {
@@ -10,11 +10,14 @@ namespace {
 
 template <class Holds>
 bool all_of(size_t n, Holds holds) {
-  return parallel_reduce(n, 1 << 17, true, [&](size_t begin, size_t end) {
-    bool good = true;
-    for (size_t i = begin; i < end; ++i) good &= holds(i);
-    return good;
-  }, [](bool a, bool b) { return a && b; });
+  return parallel_reduce(
+      n, 1 << 17, true,
+      [&](size_t begin, size_t end) {
+        bool good = true;
+        for (size_t i = begin; i < end; ++i) good &= holds(i);
+        return good;
+      },
+      [](bool a, bool b) { return a && b; });
 }
 
 // dispatch over the two index types
@@ -38,21 +41,54 @@ Array as_coordinates(const Array& a) {
   return a.converted(element_size(a.type()) < 4 ? ElementType::f32 : ElementType::f64);
 }
 
+namespace {
+
+constexpr int most_points = 4096;  // of cells of one size; larger ones are worth their offsets
+
+template <class T>
+int uniform_size_of(const std::byte* p, size_t n) {
+  const T size = load<T>(p);
+  if (size <= 0 || size > most_points || size_t(size) > size_t(std::numeric_limits<T>::max()) / n) return 0;
+  const bool uniform = parallel_reduce(
+      n, 1 << 16, true,
+      [&](size_t begin, size_t end) {
+        T odd = 0, want = T(begin) * size;
+        for (size_t i = begin; i < end; ++i) odd |= load<T>(p + i * sizeof(T)) ^ (want += size);
+        return odd == 0;
+      },
+      [](bool a, bool b) { return a && b; });
+  return uniform ? int(size) : 0;
+}
+
+}  // namespace
+
+int uniform_size(const std::byte* p, ElementType type, size_t n) {
+  if (n == 0) return 0;
+  if (type == ElementType::i64) return uniform_size_of<int64_t>(p, n);
+  if (type == ElementType::i32) return uniform_size_of<int32_t>(p, n);
+  return 0;
+}
+
+CellArray cells_of_size(int size, size_t n, const Array& connectivity) {
+  CellArray cells;
+  cells.connectivity = as_indices(connectivity);
+  if (cells.connectivity.count() / size_t(size) < n)
+    fail_data(fmt::format("{} cells of {} points need more than {} point ids", n, size, cells.connectivity.count()));
+  cells.connectivity = cells.connectivity.slice(0, n * size_t(size));
+  cells.fixed = size;
+  return cells;
+}
+
 CellArray cells_from_ends(const Array& ends_in, const Array& connectivity) {
   const size_t n = ends_in.count();
   if (n == 0) return no_cells();
   const Array ends = as_indices(ends_in);
+  if (const int size = uniform_size(ends.raw(), ends.type(), n)) return cells_of_size(size, n, connectivity);
   CellArray cells;
   cells.connectivity = as_indices(connectivity);
   const size_t ids = cells.connectivity.count();
   with_indices(ends, [&](auto* end) {
     using T = std::remove_cvref_t<decltype(*end)>;
-    const T size = end[0];
-    if (size > 0 && size <= 4096 && size_t(size) <= ids / n && all_of(n, [&](size_t i) { return int64_t(end[i]) == int64_t(i + 1) * size; })) {
-      cells.fixed = int(size);
-      cells.connectivity = cells.connectivity.slice(0, n * size_t(size));
-      return;
-    }
     // For i == 0 the end before is the start of the list.
     if (!all_of(n, [&](size_t i) { return end[i] >= (i ? end[i - 1] : T(0)); })) fail_data("offsets of cells fall");
     if (size_t(end[n - 1]) > ids) fail_data(fmt::format("offsets of cells end at {} but there are {} point ids", end[n - 1], ids));
@@ -60,7 +96,7 @@ CellArray cells_from_ends(const Array& ends_in, const Array& connectivity) {
     cells.offsets = Array::make<T>(n + 1, 1, &out);
     out[0] = 0;
     std::memcpy(out + 1, end, n * sizeof(T));
-    if (ids > size_t(end[n - 1])) cells.connectivity = cells.connectivity.slice(0, size_t(end[n - 1]));
+    cells.connectivity = cells.connectivity.slice(0, size_t(end[n - 1]));
   });
   return cells;
 }
@@ -77,7 +113,7 @@ namespace {
 template <class T>
 CellArray split_records(const T* r, size_t count, size_t n) {
   CellArray cells;
-  const size_t k = r[0] > 0 && r[0] <= 4096 ? size_t(r[0]) : 0;
+  const size_t k = r[0] > 0 && r[0] <= most_points ? size_t(r[0]) : 0;
   T* ids = nullptr;
   if (k > 0 && n <= count / (k + 1) && count == n * (k + 1) && all_of(n, [&](size_t i) { return size_t(r[i * (k + 1)]) == k; })) {
     cells.connectivity = Array::make<T>(n * k, 1, &ids);
@@ -95,7 +131,8 @@ CellArray split_records(const T* r, size_t count, size_t n) {
   for (size_t i = 0; i < n; ++i) {
     if (at >= count) fail_data(fmt::format("the cell list ends after {} of {} cells", i, n));
     const T size = r[at];
-    if (size < 0 || size_t(size) > count - at - 1) fail_data(fmt::format("cell {} has {} points but the list has only {} more numbers", i, size, count - at - 1));
+    if (size < 0 || size_t(size) > count - at - 1)
+      fail_data(fmt::format("cell {} has {} points but the list has only {} more numbers", i, size, count - at - 1));
     at += size_t(size) + 1;
     offsets[i + 1] = offsets[i] + size;  // at most count, which is a T in the file
   }
@@ -118,12 +155,14 @@ CellArray cells_from_records(const Array& records, size_t n) {
 }
 
 void set_types(UnstructuredMesh& mesh, const Array& types_in) {
-  const Array types = element_size(types_in.type()) == 1 && types_in.packed()
-                          ? Array(types_in.buffer(), ElementType::u8, types_in.count(), 1, size_t(types_in.raw() - types_in.buffer().data), 1, 1)
-                          : types_in.converted(ElementType::u8);
+  const Array types =
+      element_size(types_in.type()) == 1 && types_in.packed()
+          ? Array(types_in.buffer(), ElementType::u8, types_in.count(), 1, size_t(types_in.raw() - types_in.buffer().data), 1, 1)
+          : types_in.converted(ElementType::u8);
   if (types.count() == 0) return;
   const uint8_t* t = types.view<uint8_t>().data;
-  if (all_of(types.count(), [&](size_t i) { return t[i] == t[0]; }) && t[0] != uint8_t(CellType::polyhedron)) mesh.single_type = CellType(t[0]);
+  if (all_of(types.count(), [&](size_t i) { return t[i] == t[0]; }) && t[0] != uint8_t(CellType::polyhedron))
+    mesh.single_type = CellType(t[0]);
   else mesh.types = types;
 }
 
@@ -137,7 +176,8 @@ size_t FaceCollector::add(IndexView stream, size_t begin, size_t end) {
   size_t used = 1;
   for (int64_t f = 0; f < faces; ++f) {
     const int64_t size = take();
-    if (size < 0 || size_t(size) > end - begin - used) fail_data(fmt::format("a face of polyhedron {} has {} points", cell_faces_.size() - 1, size));
+    if (size < 0 || size_t(size) > end - begin - used)
+      fail_data(fmt::format("a face of polyhedron {} has {} points", cell_faces_.size() - 1, size));
     for (int64_t i = 0; i < size; ++i) ids_.push_back(take());
     offsets_.push_back(int64_t(ids_.size()));
     used += size_t(size) + 1;
@@ -168,15 +208,14 @@ void expand_polyhedra(UnstructuredMesh& mesh) {
       faces.add_none();
     } else {
       faces.add(cells.connectivity, begin, end);
-      const size_t first = ids.size();  // distinct points in order of first appearance
+      const auto first = ptrdiff_t(ids.size());  // the distinct points in ascending order, as VTK lists them
       size_t at = begin + 1;
       for (int64_t f = cells.connectivity[begin]; f > 0; --f) {
         const size_t stop = at + 1 + size_t(cells.connectivity[at]);
-        for (++at; at < stop; ++at) {
-          const int64_t id = cells.connectivity[at];
-          if (std::find(ids.begin() + ptrdiff_t(first), ids.end(), id) == ids.end()) ids.push_back(id);
-        }
+        for (++at; at < stop; ++at) ids.push_back(cells.connectivity[at]);
       }
+      std::sort(ids.begin() + first, ids.end());
+      ids.erase(std::unique(ids.begin() + first, ids.end()), ids.end());
     }
     offsets.push_back(int64_t(ids.size()));
   }

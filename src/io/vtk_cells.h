@@ -17,6 +17,10 @@ Array as_coordinates(const Array& a);
 /// Cells from the `n` numbers at which each cell's ids end; `fixed` is used when all cells have one size.
 /// Throws Error(data) when the ends run backwards or out of the ids.
 CellArray cells_from_ends(const Array& ends, const Array& connectivity);
+/// The size k of all cells when the n numbers at p, aligned or not, are k, 2k, 3k, ...; else 0.
+int uniform_size(const std::byte* p, ElementType type, size_t n);
+/// Cells of one size.
+CellArray cells_of_size(int size, size_t n, const Array& connectivity);
 /// The same from n+1 (or no) numbers at which each cell's ids begin.
 CellArray cells_from_starts(const Array& starts, const Array& connectivity);
 /// `n` records of a count and as many ids.

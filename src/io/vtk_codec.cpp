@@ -61,7 +61,8 @@ bool decompress_block(Codec codec, const std::byte* src, size_t n, std::byte* ds
       uint64_t memory = uint64_t(1) << 30;
       size_t in = 0, out = 0;
       return lzma_stream_buffer_decode(&memory, 0, nullptr, reinterpret_cast<const uint8_t*>(src), &in, n, reinterpret_cast<uint8_t*>(dst),
-                                       &out, bytes) == LZMA_OK && out == bytes;
+                                       &out, bytes) == LZMA_OK &&
+             out == bytes;
     }
   }
   if (n != bytes) return false;
@@ -80,7 +81,8 @@ std::vector<std::byte> compress_block(Codec codec, const std::byte* src, size_t 
     }
     case Codec::lz4: {
       out.resize(size_t(LZ4_compressBound(int(n))));
-      const int got = LZ4_compress_default(reinterpret_cast<const char*>(src), reinterpret_cast<char*>(out.data()), int(n), int(out.size()));
+      const int got =
+          LZ4_compress_default(reinterpret_cast<const char*>(src), reinterpret_cast<char*>(out.data()), int(n), int(out.size()));
       out.resize(size_t(std::max(got, 0)));
       break;
     }
@@ -122,7 +124,8 @@ constexpr Base64Table base64;
 bool decode_groups(const char* p, size_t groups, std::byte* out) {
   uint8_t bad = 0;
   for (size_t g = 0; g < groups; ++g, p += 4, out += 3) {
-    const uint8_t a = base64.value[uint8_t(p[0])], b = base64.value[uint8_t(p[1])], c = base64.value[uint8_t(p[2])], d = base64.value[uint8_t(p[3])];
+    const uint8_t a = base64.value[uint8_t(p[0])], b = base64.value[uint8_t(p[1])], c = base64.value[uint8_t(p[2])],
+                  d = base64.value[uint8_t(p[3])];
     bad |= uint8_t(a | b | c | d);
     out[0] = std::byte(a << 2 | b >> 4);
     out[1] = std::byte(uint8_t(b << 4 | c >> 2));

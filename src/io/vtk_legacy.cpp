@@ -135,14 +135,18 @@ void LegacyReader::header() {
   if (!title.empty() && title.size() <= 1024) parts_.notes.emplace_back("title", std::string(title));
   const std::string_view encoding = text_.need_word("ASCII or BINARY");
   if (equal_ignoring_case(encoding, "BINARY")) text_.binary = true;
-  else if (!equal_ignoring_case(encoding, "ASCII")) text_.fail(fmt::format("'{}' where ASCII or BINARY should stand", encoding.substr(0, 40)), "the word behind the title line tells the encoding");
+  else if (!equal_ignoring_case(encoding, "ASCII"))
+    text_.fail(fmt::format("'{}' where ASCII or BINARY should stand", encoding.substr(0, 40)),
+               "the word behind the title line tells the encoding");
 }
 
 void LegacyReader::dataset() {
   if (kind_ != Kind::none) text_.fail("a second DATASET");
   const std::string_view w = text_.need_word("the kind of the dataset");
-  constexpr std::pair<std::string_view, Kind> kinds[] = {{"structured_points", Kind::points}, {"structured_grid", Kind::curvilinear},
-                                                         {"rectilinear_grid", Kind::rectilinear}, {"unstructured_grid", Kind::unstructured},
+  constexpr std::pair<std::string_view, Kind> kinds[] = {{"structured_points", Kind::points},
+                                                         {"structured_grid", Kind::curvilinear},
+                                                         {"rectilinear_grid", Kind::rectilinear},
+                                                         {"unstructured_grid", Kind::unstructured},
                                                          {"polydata", Kind::surface}};
   for (const auto& [name, kind] : kinds)
     if (equal_ignoring_case(w, name)) kind_ = kind;
@@ -179,7 +183,8 @@ void LegacyReader::spacing() {
 }
 
 void LegacyReader::points() {
-  if (kind_ == Kind::none || kind_ == Kind::points || kind_ == Kind::rectilinear) text_.fail("POINTS does not belong to this kind of dataset");
+  if (kind_ == Kind::none || kind_ == Kind::points || kind_ == Kind::rectilinear)
+    text_.fail("POINTS does not belong to this kind of dataset");
   const size_t n = text_.count("the number of points");
   const std::string type(text_.need_word("the type of the points"));
   points_.xyz = as_coordinates(text_.array(type, n, 3, "POINTS"));
@@ -226,7 +231,9 @@ void LegacyReader::cell_types() {
 }
 
 void LegacyReader::add(std::string name, Association association, Array array, Role role) {
-  if (!is_ghost_name(name) && !options_.fields.empty() && std::find(options_.fields.begin(), options_.fields.end(), name) == options_.fields.end()) return;
+  if (!is_ghost_name(name) && !options_.fields.empty() &&
+      std::find(options_.fields.begin(), options_.fields.end(), name) == options_.fields.end())
+    return;
   parts_.fields.add({std::move(name), association, std::move(array), {}, role});
 }
 
@@ -254,8 +261,9 @@ void LegacyReader::color_scalars() {
   if (!text_.binary) {  // as text they run from 0 to 1
     uint8_t* out = nullptr;
     const auto v = a.view<float>();
-    a = Array::make<uint8_t>(v.count, v.components, &out);
+    const Array bytes = Array::make<uint8_t>(v.count, v.components, &out);
     for (size_t i = 0; i < v.count * components; ++i) out[i] = uint8_t(std::clamp(255.0f * v.data[i] + 0.5f, 0.0f, 255.0f));
+    a = bytes;  // not before: v looks into the old numbers
   }
   add(std::move(name), association_, a, Role::colors);
 }
@@ -327,14 +335,16 @@ Mesh LegacyReader::mesh() {
       need_dims();
       for (size_t a = 0; a < 3; ++a)
         if (axes_[a].count() != dims_[a])
-          text_.fail(fmt::format("{} {} coordinates for the dimension {}", axes_[a].count(), "xyz"[a], dims_[a]), "the file is truncated or the count is wrong");
+          text_.fail(fmt::format("{} {} coordinates for the dimension {}", axes_[a].count(), "xyz"[a], dims_[a]),
+                     "the file is truncated or the count is wrong");
       return RectilinearGrid{axes_[0], axes_[1], axes_[2], start_};
     case Kind::unstructured: {
       if (!have_points_) text_.fail("the dataset has no POINTS", "the file is truncated");
       if (!have_cells_ && points_.count() > 0) text_.fail("the dataset has no CELLS", "the file is truncated");
       UnstructuredMesh m;
       m.points = points_, m.cells = cells_;
-      if (types_.count() != cells_.size()) text_.fail(fmt::format("{} CELL_TYPES for {} CELLS", types_.count(), cells_.size()), "the file is truncated or the count is wrong");
+      if (types_.count() != cells_.size())
+        text_.fail(fmt::format("{} CELL_TYPES for {} CELLS", types_.count(), cells_.size()), "the file is truncated or the count is wrong");
       set_types(m, types_);
       if (!m.types.empty()) expand_polyhedra(m);
       return m;
@@ -344,7 +354,8 @@ Mesh LegacyReader::mesh() {
       surface_.points = points_;
       return surface_;
   }
-  text_.fail("the file has no mesh: it holds attributes without a DATASET", "a file with DATASET STRUCTURED_POINTS, POLYDATA, UNSTRUCTURED_GRID, ...");
+  text_.fail("the file has no mesh: it holds attributes without a DATASET",
+             "a file with DATASET STRUCTURED_POINTS, POLYDATA, UNSTRUCTURED_GRID, ...");
 }
 
 DatasetPtr LegacyReader::read() {
@@ -352,9 +363,11 @@ DatasetPtr LegacyReader::read() {
   for (std::string_view w = text_.word(); !w.empty(); w = text_.word()) {
     const std::string key = to_lower(w.substr(0, 40));
     const auto* k = std::find_if(std::begin(keywords), std::end(keywords), [&](const Keyword& x) { return x.name == key; });
-    if (k == std::end(keywords)) text_.fail(fmt::format("unknown keyword '{}'", w.substr(0, 40)), "the numbers before it may be too many for the count");
+    if (k == std::end(keywords))
+      text_.fail(fmt::format("unknown keyword '{}'", w.substr(0, 40)), "the numbers before it may be too many for the count");
     if (kind_ == Kind::none && k->read != &LegacyReader::dataset && k->read != &LegacyReader::field && k->read != &LegacyReader::metadata)
-      text_.fail(fmt::format("the file has no mesh: {} comes before any DATASET", w), "a file with DATASET STRUCTURED_POINTS, POLYDATA, UNSTRUCTURED_GRID, ...");
+      text_.fail(fmt::format("the file has no mesh: {} comes before any DATASET", w),
+                 "a file with DATASET STRUCTURED_POINTS, POLYDATA, UNSTRUCTURED_GRID, ...");
     context_.check();
     (this->*k->read)();
   }

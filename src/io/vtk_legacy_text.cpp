@@ -63,13 +63,15 @@ size_t LegacyText::count(std::string_view what) {
   const std::string_view w = need_word(what);
   size_t v = 0;
   const auto r = std::from_chars(w.data(), w.data() + w.size(), v);
-  if (r.ec != std::errc{} || r.ptr != w.data() + w.size()) fail(fmt::format("'{}' should be {}", w.substr(0, 40), what), "a whole number, not negative");
+  if (r.ec != std::errc{} || r.ptr != w.data() + w.size())
+    fail(fmt::format("'{}' should be {}", w.substr(0, 40), what), "a whole number, not negative");
   return v;
 }
 
 const std::byte* LegacyText::take(uint64_t bytes, std::string_view what) {
   if (bytes > all_.size() - at_)
-    fail(fmt::format("{} needs {} bytes but the file has only {} more", what, bytes, all_.size() - at_), "the file is truncated or the count is wrong");
+    fail(fmt::format("{} needs {} bytes but the file has only {} more", what, bytes, all_.size() - at_),
+         "the file is truncated or the count is wrong");
   const std::byte* p = file_.data() + at_;
   at_ += bytes;
   return p;
@@ -80,7 +82,8 @@ Array LegacyText::text_array(ElementType type, size_t tuples, size_t components,
   const size_t rest = all_.size() - at_;
   size_t n = 0;
   if (__builtin_mul_overflow(tuples, components, &n) || n > (rest + 1) / 2)
-    fail(fmt::format("{} has {} x {} numbers but the file has only {} more bytes", what, tuples, components, rest), "the file is truncated or the count is wrong");
+    fail(fmt::format("{} has {} x {} numbers but the file has only {} more bytes", what, tuples, components, rest),
+         "the file is truncated or the count is wrong");
   std::byte* out = nullptr;
   Array a = Array::make_raw(type, tuples, int(components), &out);
   const NumbersEnd end = parse_numbers(all_.substr(at_), type, n, out);
@@ -116,14 +119,18 @@ Array LegacyText::array(std::string_view type_name, size_t tuples, size_t compon
   if (equal_ignoring_case(type_name, "bit")) {
     a = bits(tuples, components, what);
   } else {
-    if (!parse_element_type(type_name, type))
-      fail(fmt::format("{} has the unknown type '{}'", what, type_name.substr(0, 40)), "known are: bit, char, short, int, long, their unsigned forms, float, double, vtkIdType, vtktypeint64");
+    std::string_view plain = type_name;  // "vtktypeuint64" is "uint64"
+    if (plain.size() > 7 && equal_ignoring_case(plain.substr(0, 7), "vtktype")) plain.remove_prefix(7);
+    if (!parse_element_type(plain, type))
+      fail(fmt::format("{} has the unknown type '{}'", what, type_name.substr(0, 40)),
+           "known are: bit, char, short, int, long, their unsigned forms, float, double, vtkIdType, vtktypeint64");
     if (!binary) {
       a = text_array(type, tuples, components, what);
     } else {
       if (ids) type = ElementType::i32;  // that is how they are written, whatever their size in memory
       uint64_t n = 0, bytes = 0;
-      if (!multiply(tuples, components, n) || !multiply(n, element_size(type), bytes)) fail(fmt::format("{} has {} x {} numbers", what, tuples, components));
+      if (!multiply(tuples, components, n) || !multiply(n, element_size(type), bytes))
+        fail(fmt::format("{} has {} x {} numbers", what, tuples, components));
       const std::byte* from = take(bytes, what);
       std::byte* out = nullptr;
       a = Array::make_raw(type, tuples, int(components), &out);

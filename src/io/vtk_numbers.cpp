@@ -18,11 +18,15 @@ inline bool blank(char c) { return static_cast<unsigned char>(c) <= ' '; }
 // Words that start in [begin, end) of the text.
 size_t word_starts(std::string_view text, size_t begin, size_t end) {
   size_t n = 0;
-  bool before = begin == 0 || blank(text[begin - 1]);
-  for (size_t i = begin; i < end; ++i) {
-    const bool now = blank(text[i]);
-    n += size_t(before & !now);
-    before = now;
+  if (begin == 0 && end > 0) n = !blank(text[begin++]);
+  // Sums of up to 128 neighbours fit a byte, which lets the compiler compare 16 or more characters at once.
+  for (size_t i = begin; i < end;) {
+    const char* p = text.data() + i;
+    const size_t m = std::min<size_t>(end - i, 128);
+    uint8_t starts = 0;
+    for (size_t j = 0; j < m; ++j) starts = uint8_t(starts + uint8_t(blank(p[ptrdiff_t(j) - 1]) & !blank(p[j])));
+    n += starts;
+    i += m;
   }
   return n;
 }
@@ -160,8 +164,9 @@ NumbersEnd parse_numbers(std::string_view text, ElementType type, size_t count, 
 }
 
 size_t count_words(std::string_view text) {
-  return parallel_reduce(text.size(), chunk_bytes, size_t(0), [&](size_t begin, size_t end) { return word_starts(text, begin, end); },
-                         [](size_t a, size_t b) { return a + b; });
+  return parallel_reduce(
+      text.size(), chunk_bytes, size_t(0), [&](size_t begin, size_t end) { return word_starts(text, begin, end); },
+      [](size_t a, size_t b) { return a + b; });
 }
 
 std::string format_numbers(const Array& a, size_t per_line) {

@@ -11,7 +11,7 @@ namespace sg::vtk {
 
 /// Where the numbers end, and the first word that is none.
 struct NumbersEnd {
-  size_t parsed = 0;         ///< numbers read, `count` when all is well
+  size_t parsed = 0;           ///< numbers read, `count` when all is well
   const char* next = nullptr;  ///< behind the last number read
   const char* bad = nullptr;   ///< a word that is no number of that type; null when the text ended too early
 };

@@ -5,6 +5,7 @@
 #include <pugixml.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/file.h"
 #include "data/array.h"
@@ -25,6 +26,9 @@ class XmlFile {
   /// The numbers of a DataArray. With `tuples` there must be at least as many (more are dropped), without all there are.
   /// Little-endian uncompressed appended bytes are not copied when they lie on multiples of the element size.
   Array array(pugi::xml_node element, std::optional<uint64_t> tuples) const;
+  /// Where `tuples` one-component numbers lie in the file as they are (uncompressed, raw, little-endian), on any byte; null when
+  /// they do not. For a look that needs no array.
+  const std::byte* in_place(pugi::xml_node element, uint64_t tuples, ElementType& type) const;
   /// A DataArray of a type that is read; strings are not.
   static bool is_numeric(pugi::xml_node element);
   /// "DataArray 'T'" for errors.
@@ -35,6 +39,8 @@ class XmlFile {
   struct Wanted;
   struct Source;
   void parse();
+  void parse_elements(std::string_view head, std::string_view tail);
+  std::string_view text_of(pugi::xml_node element, std::string& joined) const;
   void read_root();
   Source source(pugi::xml_node element) const;
   Array plain(const Wanted& want, const Source& source) const;
@@ -49,6 +55,7 @@ class XmlFile {
   pugi::xml_document document_;
   pugi::xml_node dataset_;
   std::string type_;
+  std::vector<std::string_view> texts_;  // long texts of DataArrays, kept from the XML parser
   std::string_view appended_;
   bool have_appended_ = false, appended_base64_ = false;
   bool big_endian_ = false, wide_header_ = false;

@@ -31,28 +31,9 @@ struct XmlFile::Source {
 
 namespace {
 
-std::string_view trimmed_text(pugi::xml_node element, std::string& joined) {
-  // Comments and InformationKey elements may cut the text; nearly always there is one piece.
-  std::string_view one;
-  for (const pugi::xml_node& n : element.children()) {
-    if (n.type() != pugi::node_pcdata && n.type() != pugi::node_cdata) continue;
-    const std::string_view t = trim(n.value());
-    if (t.empty()) continue;
-    if (one.empty() && joined.empty()) {
-      one = t;
-      continue;
-    }
-    if (joined.empty()) joined = one;
-    joined += ' ';
-    joined += t;
-    one = joined;
-  }
-  return one;
-}
-
 bool has_blanks(std::string_view s) {
-  unsigned n = 0;
-  for (const char c : s) n |= unsigned(static_cast<unsigned char>(c) <= ' ');
+  unsigned char n = 0;
+  for (const char c : s) n |= static_cast<unsigned char>(static_cast<unsigned char>(c) <= ' ');
   return n != 0;
 }
 
@@ -64,7 +45,7 @@ XmlFile::Source XmlFile::source(pugi::xml_node element) const {
   Source s;
   if (std::string_view(element.attribute("format").value()) != "appended") {
     s.base64 = true;
-    s.bytes = trimmed_text(element, *s.joined);
+    s.bytes = text_of(element, *s.joined);
     if (has_blanks(s.bytes)) {
       std::string tight;
       for (const char c : s.bytes)
@@ -77,7 +58,9 @@ XmlFile::Source XmlFile::source(pugi::xml_node element) const {
   if (!have_appended_) fail("is appended but the file has no AppendedData", element);
   if (!element.attribute("offset")) fail("is appended but has no offset", element);
   const uint64_t offset = parse_count(*this, element, "offset");
-  if (offset > appended_.size()) fail(fmt::format("begins at offset {} of {} appended bytes", offset, appended_.size()), element, "the file is truncated or the offset is wrong");
+  if (offset > appended_.size())
+    fail(fmt::format("begins at offset {} of {} appended bytes", offset, appended_.size()), element,
+         "the file is truncated or the offset is wrong");
   s.base64 = appended_base64_;
   s.bytes = appended_.substr(offset);
   return s;
@@ -90,7 +73,9 @@ uint64_t XmlFile::bytes_to_read(const Wanted& want, uint64_t available) const {
   uint64_t n = 0;
   if (!multiply(*want.tuples, tuple, n)) fail(fmt::format("has {} tuples, more than any memory", *want.tuples), want.element);
   if (want.bits) n = n / 8 + (n % 8 != 0);
-  if (n > available) fail(fmt::format("needs {} bytes for {} tuples but holds {}", n, *want.tuples, available), want.element, "the file is truncated or the count is wrong");
+  if (n > available)
+    fail(fmt::format("needs {} bytes for {} tuples but holds {}", n, *want.tuples, available), want.element,
+         "the file is truncated or the count is wrong");
   return n;
 }
 
@@ -124,7 +109,8 @@ Array XmlFile::plain(const Wanted& want, const Source& s) const {
     const auto* p = reinterpret_cast<const std::byte*>(s.bytes.data());
     const uint64_t available = word(p);
     if (available > s.bytes.size() - header)
-      fail(fmt::format("says it has {} bytes but the file has {}", available, s.bytes.size() - header), want.element, "the file is truncated or damaged");
+      fail(fmt::format("says it has {} bytes but the file has {}", available, s.bytes.size() - header), want.element,
+           "the file is truncated or damaged");
     const Buffer whole{file_.owner(), file_.data(), file_.size()};
     return finished(want, whole, size_t(p + header - file_.data()), bytes_to_read(want, available));
   }
@@ -132,12 +118,15 @@ Array XmlFile::plain(const Wanted& want, const Source& s) const {
   const size_t used = decode_base64(s.bytes, head, header);
   if (used == SIZE_MAX) fail("is no base64", want.element, "the file is truncated or damaged");
   const uint64_t available = word(head);
-  if (available > s.bytes.size() / 4 * 3) fail(fmt::format("says it has {} bytes but its text has {}", available, s.bytes.size()), want.element, "the file is truncated or damaged");
+  if (available > s.bytes.size() / 4 * 3)
+    fail(fmt::format("says it has {} bytes but its text has {}", available, s.bytes.size()), want.element,
+         "the file is truncated or damaged");
   const size_t bytes = bytes_to_read(want, available);
   // Size and numbers are one stream; decoded so that the numbers come to lie on a cache line.
   std::byte* out = nullptr;
   const Buffer b = Buffer::allocate(64 + bytes, &out);
-  if (decode_base64(s.bytes, out + 64 - header, header + bytes) == SIZE_MAX) fail("is no base64", want.element, "the file is truncated or damaged");
+  if (decode_base64(s.bytes, out + 64 - header, header + bytes) == SIZE_MAX)
+    fail("is no base64", want.element, "the file is truncated or damaged");
   return finished(want, b, 64, bytes);
 }
 
@@ -169,7 +158,8 @@ Array XmlFile::compressed(const Wanted& want, const Source& s) const {
   for (uint64_t i = 0; i < blocks; ++i) {
     const uint64_t size = word(&head[(3 + i) * w]), full = i + 1 == blocks && last > 0 ? last : block;
     uint64_t end = 0;
-    if (!add(starts[i], size, end) || end > most) damaged(fmt::format("has a compressed block {} of {} bytes in {}", i, size, most - starts[i]));
+    if (!add(starts[i], size, end) || end > most)
+      damaged(fmt::format("has a compressed block {} of {} bytes in {}", i, size, most - starts[i]));
     if (full > most_uncompressed(codec_, size)) damaged(fmt::format("says that {} bytes of block {} hold {}", size, i, full));
     starts[i + 1] = end;
   }
@@ -196,18 +186,37 @@ Array XmlFile::compressed(const Wanted& want, const Source& s) const {
 
 Array XmlFile::text(const Wanted& want) const {
   std::string joined;
-  const std::string_view t = trimmed_text(want.element, joined);
+  const std::string_view t = text_of(want.element, joined);
   uint64_t n = 0;
   if (!want.tuples) n = count_words(t) / size_t(want.components) * size_t(want.components);
   else if (!multiply(*want.tuples, uint64_t(want.components), n) || n > (t.size() + 1) / 2)
-    fail(fmt::format("has {} tuples of {} but only {} characters", *want.tuples, want.components, t.size()), want.element, "the file is truncated or the count is wrong");
+    fail(fmt::format("has {} tuples of {} but only {} characters", *want.tuples, want.components, t.size()), want.element,
+         "the file is truncated or the count is wrong");
   std::byte* out = nullptr;
   Array a = Array::make_raw(want.type, n / size_t(want.components), want.components, &out);
   const NumbersEnd end = parse_numbers(t, want.type, n, out);
   if (end.parsed == n) return a;
-  if (!end.bad) fail(fmt::format("ends after {} of {} numbers", end.parsed, n), want.element, "the file is truncated or the count is wrong");
+  if (!end.bad)
+    fail(fmt::format("ends after {} of {} numbers", end.parsed, n), want.element, "the file is truncated or the count is wrong");
   const auto at = size_t(end.bad - t.data());
-  fail(fmt::format("'{}' is no {} number ({} of {})", words(t.substr(at, 40)).front(), element_name(want.type), end.parsed + 1, n), want.element);
+  fail(fmt::format("'{}' is no {} number ({} of {})", words(t.substr(at, 40)).front(), element_name(want.type), end.parsed + 1, n),
+       want.element);
+}
+
+const std::byte* XmlFile::in_place(pugi::xml_node element, uint64_t tuples, ElementType& type) const {
+  if (big_endian_ || codec_ != Codec::none || appended_base64_ || std::string_view(element.attribute("format").value()) != "appended")
+    return nullptr;
+  if (!parse_element_type(element.attribute("type").value(), type) ||
+      (element.attribute("NumberOfComponents") && parse_count(*this, element, "NumberOfComponents") != 1))
+    return nullptr;
+  const Source s = source(element);
+  const size_t header = word_bytes();
+  if (s.bytes.size() < header) return nullptr;
+  const auto* p = reinterpret_cast<const std::byte*>(s.bytes.data());
+  uint64_t bytes = 0;
+  const uint64_t available = word(p);
+  if (available > s.bytes.size() - header || !multiply(tuples, element_size(type), bytes) || bytes > available) return nullptr;
+  return p + header;
 }
 
 Array XmlFile::array(pugi::xml_node element, std::optional<uint64_t> tuples) const {
@@ -216,7 +225,8 @@ Array XmlFile::array(pugi::xml_node element, std::optional<uint64_t> tuples) con
   want.tuples = tuples;
   const std::string_view type = element.attribute("type").value();
   if (type == "Bit") want.type = ElementType::u8, want.bits = true;
-  else if (!parse_element_type(type, want.type)) fail(fmt::format("has the unknown type '{}'", type), element, "Int8 ... UInt64, Float32 or Float64");
+  else if (!parse_element_type(type, want.type))
+    fail(fmt::format("has the unknown type '{}'", type), element, "Int8 ... UInt64, Float32 or Float64");
   const uint64_t components = element.attribute("NumberOfComponents") ? parse_count(*this, element, "NumberOfComponents") : 1;
   if (components > 1 << 20) fail(fmt::format("has {} components", components), element);
   want.components = int(std::max<uint64_t>(components, 1));

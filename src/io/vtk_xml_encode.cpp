@@ -46,13 +46,15 @@ uint64_t aligned(uint64_t n) { return (n + alignment - 1) / alignment * alignmen
 XmlWriter::XmlWriter(const std::string& path, const WriteOptions& options, Context& context) : file_(path), context_(context) {
   const std::vector<std::string> encodings{"ascii", "base64", "appended"}, compressions{"none", "zlib", "lz4", "lzma"};
   const auto e = std::find(encodings.begin(), encodings.end(), options.encoding);
-  if (e == encodings.end()) fail_usage(fmt::format("unknown encoding '{}'", options.encoding), path, unknown_name_hint(options.encoding, encodings));
+  if (e == encodings.end())
+    fail_usage(fmt::format("unknown encoding '{}'", options.encoding), path, unknown_name_hint(options.encoding, encodings));
   const auto c = std::find(compressions.begin(), compressions.end(), options.compression);
   if (c == compressions.end())
     fail_usage(fmt::format("unknown compression '{}'", options.compression), path, unknown_name_hint(options.compression, compressions));
   encoding_ = Encoding(e - encodings.begin());
   codec_ = Codec(c - compressions.begin());
-  if (encoding_ == Encoding::ascii && codec_ != Codec::none) fail_usage("text cannot be compressed", path, "encoding base64 or appended, or compression none");
+  if (encoding_ == Encoding::ascii && codec_ != Codec::none)
+    fail_usage("text cannot be compressed", path, "encoding base64 or appended, or compression none");
 }
 
 void XmlWriter::open(std::string_view element, const XmlAttributes& attributes, bool empty) {
@@ -85,10 +87,13 @@ void XmlWriter::end() {
 XmlWriter::Block XmlWriter::compressed(const Array& a) const {
   const size_t bytes = a.bytes(), n = (bytes + block_bytes - 1) / block_bytes;
   std::vector<std::vector<std::byte>> parts(n);
-  parallel_for(n, 1, [&](size_t i, size_t) {
-    const size_t begin = i * block_bytes;
-    parts[i] = compress_block(codec_, a.raw() + begin, std::min(block_bytes, bytes - begin));
-  }, &context_);
+  parallel_for(
+      n, 1,
+      [&](size_t i, size_t) {
+        const size_t begin = i * block_bytes;
+        parts[i] = compress_block(codec_, a.raw() + begin, std::min(block_bytes, bytes - begin));
+      },
+      &context_);
   Block b;
   put_word(b.header, n);
   put_word(b.header, block_bytes);
@@ -127,7 +132,8 @@ void XmlWriter::inline_binary(const Array& a) {
 void XmlWriter::array(std::string_view name, const Array& given, bool with_tuples) {
   check();
   const Array a = given.made_packed();
-  XmlAttributes attributes{{"type", std::string(vtk_type(a.type()))}, {"Name", std::string(name)}, {"NumberOfComponents", std::to_string(a.components())}};
+  XmlAttributes attributes{
+      {"type", std::string(vtk_type(a.type()))}, {"Name", std::string(name)}, {"NumberOfComponents", std::to_string(a.components())}};
   if (with_tuples) attributes.emplace_back("NumberOfTuples", std::to_string(a.count()));
   if (encoding_ == Encoding::appended) {
     Block b;

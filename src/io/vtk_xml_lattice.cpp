@@ -31,8 +31,10 @@ Extent parse_extent(const XmlFile& file, pugi::xml_node element, const char* att
   for (size_t a = 0; a < 3; ++a) {
     e.lo[a] = v[2 * a], e.hi[a] = v[2 * a + 1];
     constexpr long long most = 1ll << 60;
-    if (e.lo[a] < -most || e.hi[a] > most || e.hi[a] < e.lo[a] - 1) file.fail(fmt::format("{} runs from {} to {} along {}", attribute, e.lo[a], e.hi[a], "xyz"[a]), element);
-    if (!multiply(n, std::max<size_t>(e.points(a), 1), n) || n > uint64_t(1) << 62) file.fail(fmt::format("{} has more points than can be counted", attribute), element);
+    if (e.lo[a] < -most || e.hi[a] > most || e.hi[a] < e.lo[a] - 1)
+      file.fail(fmt::format("{} runs from {} to {} along {}", attribute, e.lo[a], e.hi[a], "xyz"[a]), element);
+    if (!multiply(n, std::max<size_t>(e.points(a), 1), n) || n > uint64_t(1) << 62)
+      file.fail(fmt::format("{} has more points than can be counted", attribute), element);
   }
   return e;
 }
@@ -75,7 +77,8 @@ Pieces read_pieces(const XmlRead& read) {
   if (n / 64 > sum) read.file.fail(fmt::format("has pieces of {} points in a box of {}", sum, n), dataset, "pieces that touch");
   for (const Piece& p : pieces.list) {
     pieces.fields.push_back(read_fields(read, p.element, "PointData", Association::point, product(p.extent.dims(false))));
-    for (const Field& f : read_fields(read, p.element, "CellData", Association::cell, product(p.extent.dims(true)))) pieces.fields.back().add(f);
+    for (const Field& f : read_fields(read, p.element, "CellData", Association::cell, product(p.extent.dims(true))))
+      pieces.fields.back().add(f);
   }
   return pieces;
 }

@@ -13,7 +13,8 @@ struct XmlRead {
 };
 
 /// The arrays of the PointData, CellData or FieldData of `parent`. Throws Error(data) for arrays shorter than `tuples`.
-FieldSet read_fields(const XmlRead& read, pugi::xml_node parent, const char* element, Association association, std::optional<uint64_t> tuples);
+FieldSet read_fields(const XmlRead& read, pugi::xml_node parent, const char* element, Association association,
+                     std::optional<uint64_t> tuples);
 
 /// The numeric array of that name below `parent`, or an empty node.
 pugi::xml_node find_array(pugi::xml_node parent, std::string_view name);

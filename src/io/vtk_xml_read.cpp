@@ -41,9 +41,9 @@ pugi::xml_node need_array(const XmlRead& read, pugi::xml_node parent, std::strin
 namespace {
 
 Role role_of(pugi::xml_node data, std::string_view name) {
-  constexpr std::pair<const char*, Role> roles[] = {{"Scalars", Role::scalars}, {"Vectors", Role::vectors}, {"Normals", Role::normals},
-                                                    {"TCoords", Role::tcoords}, {"Tensors", Role::tensors}, {"GlobalIds", Role::global_ids},
-                                                    {"PedigreeIds", Role::global_ids}};
+  constexpr std::pair<const char*, Role> roles[] = {
+      {"Scalars", Role::scalars}, {"Vectors", Role::vectors},      {"Normals", Role::normals},       {"TCoords", Role::tcoords},
+      {"Tensors", Role::tensors}, {"GlobalIds", Role::global_ids}, {"PedigreeIds", Role::global_ids}};
   for (const auto& [attribute, role] : roles)
     if (data.attribute(attribute) && name == data.attribute(attribute).value()) return role;
   return Role::none;
@@ -51,7 +51,8 @@ Role role_of(pugi::xml_node data, std::string_view name) {
 
 }  // namespace
 
-FieldSet read_fields(const XmlRead& read, pugi::xml_node parent, const char* element, Association association, std::optional<uint64_t> tuples) {
+FieldSet read_fields(const XmlRead& read, pugi::xml_node parent, const char* element, Association association,
+                     std::optional<uint64_t> tuples) {
   FieldSet fields;
   const auto& wanted = read.options.fields;
   for (const pugi::xml_node& data : parent.children(element))
@@ -111,7 +112,8 @@ void read_face_streams(const XmlRead& read, pugi::xml_node cells, UnstructuredMe
       continue;
     }
     if (size_t(end[c]) > stream.count() || size_t(end[c]) < begin)
-      fail_data(fmt::format("the faces of cell {} end at {} of {}", c, end[c], stream.count()), fmt::format("{}: DataArray 'faceoffsets'", read.file.path()));
+      fail_data(fmt::format("the faces of cell {} end at {} of {}", c, end[c], stream.count()),
+                fmt::format("{}: DataArray 'faceoffsets'", read.file.path()));
     faces.add(at, begin, size_t(end[c]));
     begin = size_t(end[c]);
   }
@@ -126,7 +128,8 @@ void read_face_lists(const XmlRead& read, pugi::xml_node cells, UnstructuredMesh
     return a.count() > 0 && index_view(a)[0] == 0 ? a.slice(1, a.count()) : a;
   };
   const CellArray all = cells_from_ends(ends("face_offsets"), list("face_connectivity"));
-  const Array of_cell = list("polyhedron_to_faces"), cell_ends = as_indices(read.file.array(need_array(read, cells, "polyhedron_offsets"), std::nullopt));
+  const Array of_cell = list("polyhedron_to_faces"),
+              cell_ends = as_indices(read.file.array(need_array(read, cells, "polyhedron_offsets"), std::nullopt));
   const size_t skip = cell_ends.count() == n + 1 ? 1 : 0;
   if (cell_ends.count() < n) read.file.fail(fmt::format("has polyhedron_offsets of {} cells, not {}", cell_ends.count(), n), cells);
   const CellsView faces = cells_view(all);
@@ -136,7 +139,8 @@ void read_face_lists(const XmlRead& read, pugi::xml_node cells, UnstructuredMesh
   for (size_t c = 0; c < n; ++c) {
     for (; int64_t(at) < end[c + skip]; ++at) {
       if (at >= of_cell.count() || face[at] < 0 || size_t(face[at]) >= faces.count)
-        fail_data(fmt::format("cell {} has a face that is not there", c), fmt::format("{}: DataArray 'polyhedron_to_faces'", read.file.path()));
+        fail_data(fmt::format("cell {} has a face that is not there", c),
+                  fmt::format("{}: DataArray 'polyhedron_to_faces'", read.file.path()));
       for (size_t k = 0; k < faces.size(size_t(face[at])); ++k) ids.push_back(faces.point(size_t(face[at]), k));
       offsets.push_back(int64_t(ids.size()));
     }
@@ -149,9 +153,17 @@ void read_face_lists(const XmlRead& read, pugi::xml_node cells, UnstructuredMesh
 
 CellArray read_cells(const XmlRead& read, pugi::xml_node cells, uint64_t n) {
   if (n == 0) return {};
-  const Array ids = read.file.array(need_array(read, cells, "connectivity"), std::nullopt);
-  const Array ends = read.file.array(need_array(read, cells, "offsets"), n);
-  return with_context(fmt::format("taking apart the cells of {}", cells.name()), [&] { return cells_from_ends(ends, ids); });
+  const pugi::xml_node offsets = need_array(read, cells, "offsets"), connectivity = need_array(read, cells, "connectivity");
+  return with_context(fmt::format("taking apart the cells of {}", cells.name()), [&] {
+    // Cells of one size: one look at the offsets where they lie, and they need not become an array.
+    ElementType type{};
+    if (const std::byte* p = read.file.in_place(offsets, n, type))
+      if (const int size = uniform_size(p, type, n)) return cells_of_size(size, n, read.file.array(connectivity, n * uint64_t(size)));
+    const Array ends = as_indices(read.file.array(offsets, n));
+    const int64_t last = index_view(ends)[n - 1];
+    if (last < 0) read.file.fail(fmt::format("has the offset {}", last), offsets);
+    return cells_from_ends(ends, read.file.array(connectivity, uint64_t(last)));
+  });
 }
 
 UnstructuredMesh unstructured_piece(const XmlRead& read, pugi::xml_node piece, uint64_t points, uint64_t n) {
@@ -285,7 +297,8 @@ void read_polydata(const XmlRead& read, DatasetParts& parts) {
     mesh.points.xyz = read_points(read, piece, points);
     for (const auto& kind : surface_lists) {
       const uint64_t n = parse_count(read.file, piece, kind.count);
-      if (n > 0 && !piece.child(kind.element)) read.file.fail(fmt::format("has no {}", kind.element), piece, "the file is truncated or not complete");
+      if (n > 0 && !piece.child(kind.element))
+        read.file.fail(fmt::format("has no {}", kind.element), piece, "the file is truncated or not complete");
       mesh.*kind.list = read_cells(read, piece.child(kind.element), n);
     }
     if (points == 0 && mesh.cell_count() == 0) continue;
@@ -325,11 +338,12 @@ void read_polydata(const XmlRead& read, DatasetParts& parts) {
 Data read_vtk_xml(const std::string& path, const ReadOptions& options, Context& context) {
   const vtk::XmlFile file(path);
   const vtk::XmlRead read{file, options, context};
-  constexpr std::pair<std::string_view, void (*)(const vtk::XmlRead&, DatasetParts&)> kinds[] = {{"ImageData", vtk::read_image},
-                                                                                               {"RectilinearGrid", vtk::read_rectilinear},
-                                                                                               {"StructuredGrid", vtk::read_curvilinear},
-                                                                                               {"UnstructuredGrid", vtk::read_unstructured},
-                                                                                               {"PolyData", vtk::read_polydata}};
+  constexpr std::pair<std::string_view, void (*)(const vtk::XmlRead&, DatasetParts&)> kinds[] = {
+      {"ImageData", vtk::read_image},
+      {"RectilinearGrid", vtk::read_rectilinear},
+      {"StructuredGrid", vtk::read_curvilinear},
+      {"UnstructuredGrid", vtk::read_unstructured},
+      {"PolyData", vtk::read_polydata}};
   for (const auto& [type, read_kind] : kinds) {
     if (file.type() != type) continue;
     DatasetParts parts;
@@ -342,7 +356,8 @@ Data read_vtk_xml(const std::string& path, const ReadOptions& options, Context& 
     vtk::take_ghosts(parts);
     return make_dataset(std::move(parts));
   }
-  fail_data(fmt::format("has the type '{}'", file.type()), path, "ImageData, RectilinearGrid, StructuredGrid, UnstructuredGrid or PolyData");
+  fail_data(fmt::format("has the type '{}'", file.type()), path,
+            "ImageData, RectilinearGrid, StructuredGrid, UnstructuredGrid or PolyData");
 }
 
 }  // namespace sg

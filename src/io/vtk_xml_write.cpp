@@ -142,8 +142,9 @@ SurfaceMesh as_surface(const Mesh& mesh) {
 
 // PointData or CellData, with the attributes that say what an array is for.
 void write_fields(XmlWriter& xml, const Dataset& d, Association association, const Array& ghost) {
-  constexpr std::pair<Role, std::string_view> roles[] = {{Role::scalars, "Scalars"}, {Role::vectors, "Vectors"}, {Role::normals, "Normals"},
-                                                         {Role::tcoords, "TCoords"}, {Role::tensors, "Tensors"}, {Role::global_ids, "GlobalIds"}};
+  constexpr std::pair<Role, std::string_view> roles[] = {{Role::scalars, "Scalars"}, {Role::vectors, "Vectors"},
+                                                         {Role::normals, "Normals"}, {Role::tcoords, "TCoords"},
+                                                         {Role::tensors, "Tensors"}, {Role::global_ids, "GlobalIds"}};
   XmlAttributes attributes;
   for (const auto& [role, attribute] : roles)
     for (const Field& f : d.fields())
@@ -182,7 +183,8 @@ Header header_of(const Dataset& d) {
     extent(zero ? u->extent_start : std::array<long long, 3>{0, 0, 0});
     std::string direction;
     for (int i = 0; i < 9; ++i) direction += (i ? " " : "") + exact_number(u->direction.m[i / 3][i % 3]);
-    h.dataset.insert(h.dataset.end(), {{"Origin", three(zero.value_or(u->origin))}, {"Spacing", three(u->spacing)}, {"Direction", direction}});
+    h.dataset.insert(h.dataset.end(),
+                     {{"Origin", three(zero.value_or(u->origin))}, {"Spacing", three(u->spacing)}, {"Direction", direction}});
   } else if (auto* r = d.as<RectilinearGrid>()) {
     extent(r->extent_start);
   } else if (auto* c = d.as<CurvilinearGrid>()) {
@@ -209,8 +211,11 @@ void write_geometry(XmlWriter& xml, const Dataset& d) {
 void write_dataset(const std::string& path, const Dataset& d, const WriteOptions& options, Context& context) {
   const KindRow row = kind_row(d.mesh());
   const std::string ext = extension_of(path);
-  if (row.extension.empty()) fail_usage(fmt::format("a mesh of kind {} cannot be written as VTK XML", d.kind()), path, "resample it to a uniform grid first");
-  if (ext != row.extension) fail_usage(fmt::format("a mesh of kind {} cannot be written to .{}", d.kind(), ext), path, fmt::format("name the file *.{}", row.extension));
+  if (row.extension.empty())
+    fail_usage(fmt::format("a mesh of kind {} cannot be written as VTK XML", d.kind()), path, "resample it to a uniform grid first");
+  if (ext != row.extension)
+    fail_usage(fmt::format("a mesh of kind {} cannot be written to .{}", d.kind(), ext), path,
+               fmt::format("name the file *.{}", row.extension));
   XmlWriter xml(path, options, context);
   const bool surface = row.extension == "vtp";
   Header h = header_of(d);

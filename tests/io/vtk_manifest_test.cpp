@@ -83,7 +83,8 @@ void check_dataset(const Dataset& d, const json& truth) {
     for (const auto& [name, n] : cell_type_counts(d.mesh())) ours[std::string(name)] = n;
     CHECK(ours == truth["cell_types"]);
   }
-  for (const auto& [key, association] : {std::pair("point_data", Association::point), {"cell_data", Association::cell}, {"field_data", Association::whole}})
+  for (const auto& [key, association] :
+       {std::pair("point_data", Association::point), {"cell_data", Association::cell}, {"field_data", Association::whole}})
     if (truth.contains(key)) check_fields(d, truth[key], association);
 }
 
@@ -109,7 +110,8 @@ TEST_CASE("vtk: every file of the data folder agrees with the truth recorded for
   CHECK(compared >= 90);
 }
 
-TEST_CASE("vtk: the pieces of parallel, AMR and multiblock sets read, with the truth of each where there is one" * doctest::skip(sg::test::no_data())) {
+TEST_CASE("vtk: the pieces of parallel, AMR and multiblock sets read, with the truth of each where there is one" *
+          doctest::skip(sg::test::no_data())) {
   size_t read = 0, compared = 0;
   for (const json& set : manifest()["datasets"]) {
     if (is_vtk_file(set["path"])) continue;
