@@ -162,9 +162,11 @@ std::vector<std::string> pattern_names(const std::string& pattern, int64_t first
   if (d >= pattern.size() || (pattern[d] != 'd' && pattern[d] != 'i' && pattern[d] != 'u') || width > 20 ||
       pattern.find('%', d) != std::string::npos)
     fail_data(fmt::format("'{}' is no pattern of file names", pattern), where, "like slice%03d.raw 1 93 1");
-  if (step == 0 || (step > 0) != (last >= first) || first < -1000000000 || last < -1000000000 || first > 1000000000 || last > 1000000000 ||
-      std::abs(last - first) / std::abs(step) >= 1000000)
-    if (first != last || step == 0) fail_data(fmt::format("files numbered {} to {} in steps of {}", first, last, step), where);
+  constexpr int64_t most = 1000000000;
+  bool good = step != 0;
+  for (const int64_t v : {first, last, step}) good = good && v >= -most && v <= most;
+  if (good && first != last) good = (step > 0) == (last > first) && (last - first) / step < 1000000;
+  if (!good) fail_data(fmt::format("files numbered {} to {} in steps of {}", first, last, step), where);
   std::vector<std::string> names;
   for (int64_t i = first; step > 0 ? i <= last : i >= last; i += step) {
     const std::string number = zero ? fmt::format("{:0{}}", i, width) : fmt::format("{:{}}", i, width);

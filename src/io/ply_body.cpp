@@ -184,7 +184,7 @@ size_t uniform_row(const PlyElement& e, const std::byte* p, size_t room, bool bi
       const size_t c = element_size(q.count_type);
       if (room - row < c) return 0;
       const int64_t have = load_index(p + row, q.count_type, big);
-      if (have < 0 || uint64_t(have) > room) return 0;
+      if (have < 0 || uint64_t(have) > room || have > INT32_MAX) return 0;
       n = size_t(have);
       row += c;
     }
@@ -237,7 +237,9 @@ size_t decode_binary(const MappedFile& file, const PlyHeader& h, PlyElement& e, 
   const size_t room = file.size() - begin;
   if (e.count == 0 || e.properties.empty()) return begin;
   std::vector<size_t> at, entries;
-  if (const size_t row = uniform_row(e, base, room, big, at, entries)) {
+  size_t row = uniform_row(e, base, room, big, at, entries);
+  if (row > 0 && e.wanted_list >= 0 && entries[size_t(e.wanted_list)] == 0) row = 0;  // cells without points need offsets
+  if (row > 0) {
     const bool lists = e.wanted_list >= 0;
     const auto l = size_t(std::max(e.wanted_list, 0));
     const size_t n = lists ? entries[l] : 0;

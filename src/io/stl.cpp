@@ -75,8 +75,9 @@ void parse_chunk(std::string_view text, size_t begin, size_t end_at, const std::
       out.loop_phase = phase;
     } else if (word_end > word) {
       // The name in "solid NAME" may be anything; other lines begin with one of these words.
+      static constexpr std::string_view words_of_stl[] = {"facet", "outer", "endfacet", "solid", "endsolid", "color"};
       bool known = false;
-      for (std::string_view w : {"facet", "outer", "endfacet", "solid", "endsolid", "color"}) known = known || word_is(word, word_end, w);
+      for (size_t i = 0; i < std::size(words_of_stl) && !known; ++i) known = word_is(word, word_end, words_of_stl[i]);
       if (!known) fail(word, fmt::format("'{}' is no word of STL", std::string_view(word, std::min<size_t>(40, size_t(word_end - word)))));
     }
     p = line < end ? line + 1 : end;

@@ -70,6 +70,8 @@ TEST_CASE("nrrd: data in several files by list and by pattern") {
   CHECK(contains(refusal("p.nhdr", head + "encoding: raw\nendian: little\ndata file: slice%s.raw 1 3 1\n"), "no pattern"));
   CHECK(contains(refusal("p.nhdr", head + "encoding: raw\nendian: little\ndata file: slice%d.raw 1 3 0\n"), "steps of 0"));
   CHECK(contains(refusal("p.nhdr", head + "encoding: raw\nendian: little\ndata file: slice%d.raw 0 2000000000000 1\n"), "files numbered"));
+  CHECK(contains(refusal("p.nhdr", head + "encoding: raw\nendian: little\ndata file: slice%d.raw 1 2 -9223372036854775808\n"),
+                 "files numbered"));
   CHECK(contains(refusal("p.nhdr", head + "encoding: raw\nendian: little\ndata file: nothere.raw\n"), "no such file"));
 }
 

@@ -170,6 +170,19 @@ TEST_CASE("ply: strips, edges, points alone, and fields on request") {
   CHECK(read_text("s.ply", header("ascii", points) + rows, o)->fields().size() == 0);
 }
 
+TEST_CASE("ply: faces without points are kept, so that face properties still fit") {
+  const std::string h =
+      "element vertex 1\nproperty float x\nproperty float y\nproperty float z\nelement face 2\nproperty list uchar int "
+      "vertex_indices\nproperty uchar a\n";
+  Bytes b;
+  b.put(0.f).put(0.f).put(0.f).put(uint8_t(0)).put(uint8_t(5)).put(uint8_t(0)).put(uint8_t(6));
+  for (const auto& d :
+       {read_text("e.ply", header("binary_little_endian", h) + b.s), read_text("e.ply", header("ascii", h) + "0 0 0\n0 5\n0 6\n")}) {
+    CHECK(d->cell_count() == 2);
+    CHECK(d->fields().require("a").array.get(1) == 6);
+  }
+}
+
 TEST_CASE("ply: numbers that are not finite are data") {
   const auto d =
       read_text("n.ply", header("ascii", "element vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float t\n") +
