@@ -29,8 +29,10 @@ std::span<const std::byte> raw_window(const BrickPart& p, size_t need, Context& 
   } else {
     if (need > s.size()) skip = 0;
     else if (const size_t after = size_t(-1 - p.skip); after <= s.size() - need) skip = s.size() - need - after;
-    else context.warn(fmt::format("{}: byte skip {} asks for {} bytes behind the data, there are {}; reading the last {} bytes", p.file.path(), p.skip, after,
-                                  s.size() - need, need)), skip = s.size() - need;
+    else
+      context.warn(fmt::format("{}: byte skip {} asks for {} bytes behind the data, there are {}; reading the last {} bytes", p.file.path(),
+                               p.skip, after, s.size() - need, need)),
+          skip = s.size() - need;
   }
   if (skip > s.size() || s.size() - skip < need)
     fail_data(fmt::format("too short: {} bytes are needed, there are {}", need, s.size() - std::min(skip, s.size())), p.file.path());
@@ -65,19 +67,22 @@ std::string_view text_of(const BrickPart& p) {
   return {reinterpret_cast<const char*>(s.data()), s.size()};
 }
 
+size_t lines_before(const BrickPart& p) { return line_number(p.file.text(), p.begin) - 1; }
+
 Codec codec_of(BrickEncoding e) { return e == BrickEncoding::zlib ? Codec::zlib : e == BrickEncoding::gzip ? Codec::gzip : Codec::bzip2; }
 
 void fill(const BrickLayout& l, const BrickPart& p, std::byte* out, size_t need, Context& context) {
   switch (l.encoding) {
     case BrickEncoding::raw: {
       const auto from = raw_window(p, need, context);
-      parallel_for(need, size_t(4) << 20, [&](size_t a, size_t b) { std::memcpy(out + a, from.data() + a, b - a); }, &context);
+      parallel_for(
+          need, size_t(4) << 20, [&](size_t a, size_t b) { std::memcpy(out + a, from.data() + a, b - a); }, &context);
       return;
     }
     case BrickEncoding::hex: return unpack_hex(text_of(p), out, need, p.file.path());
     case BrickEncoding::text: {
       const size_t n = need / element_size(l.type);
-      const Array a = parse_numbers(text_of(p), l.type, n, 1, p.file.path());
+      const Array a = parse_numbers(text_of(p), l.type, n, 1, p.file.path(), lines_before(p));
       std::memcpy(out, a.raw(), need);
       return;
     }
@@ -97,7 +102,8 @@ Array load_brick(const BrickLayout& l, const std::vector<BrickPart>& parts, Cont
   if (parts.empty()) fail_data("there is no data file");
   const size_t size = element_size(l.type);
   uint64_t need = 0;
-  if (!multiply(l.count, size_t(l.components) * size, need) || need > (uint64_t(1) << 60)) fail_data("the volume is larger than any memory");
+  if (!multiply(l.count, size_t(l.components) * size, need) || need > (uint64_t(1) << 60))
+    fail_data("the volume is larger than any memory");
   if (need % (parts.size() * size)) fail_data(fmt::format("{} bytes do not divide evenly among {} files", need, parts.size()));
   const size_t share = need / parts.size();
 
@@ -105,7 +111,8 @@ Array load_brick(const BrickLayout& l, const std::vector<BrickPart>& parts, Cont
   for (const BrickPart& p : parts) switch (l.encoding) {
       case BrickEncoding::raw: raw_window(p, share, context); break;
       case BrickEncoding::hex:
-        if (text_of(p).size() / 2 < share) fail_data(fmt::format("{} bytes of hexadecimal text cannot hold {} bytes", text_of(p).size(), share), p.file.path());
+        if (text_of(p).size() / 2 < share)
+          fail_data(fmt::format("{} bytes of hexadecimal text cannot hold {} bytes", text_of(p).size(), share), p.file.path());
         break;
       case BrickEncoding::text:
         if (text_of(p).size() / 2 + 1 < share / size)
@@ -117,15 +124,22 @@ Array load_brick(const BrickLayout& l, const std::vector<BrickPart>& parts, Cont
   const bool swap = l.big_endian && size > 1 && l.encoding != BrickEncoding::text;
   if (parts.size() == 1 && l.encoding == BrickEncoding::raw && !swap) {
     const auto bytes = raw_window(parts[0], share, context);
-    if (reinterpret_cast<uintptr_t>(bytes.data()) % size == 0) return Array({parts[0].file.owner(), bytes.data(), bytes.size()}, l.type, l.count, l.components);
+    if (reinterpret_cast<uintptr_t>(bytes.data()) % size == 0)
+      return Array({parts[0].file.owner(), bytes.data(), bytes.size()}, l.type, l.count, l.components);
   }
-  if (parts.size() == 1 && l.encoding == BrickEncoding::text) return parse_numbers(text_of(parts[0]), l.type, l.count, l.components, parts[0].file.path());
+  if (parts.size() == 1 && l.encoding == BrickEncoding::text)
+    return parse_numbers(text_of(parts[0]), l.type, l.count, l.components, parts[0].file.path(), lines_before(parts[0]));
   if (l.encoding == BrickEncoding::raw && need > (1 << 20))
-    context.info(fmt::format("{}: {} copied ({})", parts[0].file.path(), human_bytes(need), swap ? "big-endian" : parts.size() > 1 ? "several files" : "not aligned"));
+    context.info(fmt::format("{}: {} copied ({})", parts[0].file.path(), human_bytes(need),
+                             swap               ? "big-endian"
+                             : parts.size() > 1 ? "several files"
+                                                : "not aligned"));
   std::byte* out = nullptr;
   Array a = Array::make_raw(l.type, l.count, l.components, &out);
   if (parts.size() == 1) fill(l, parts[0], out, share, context);
-  else parallel_for(parts.size(), 1, [&](size_t i, size_t) { fill(l, parts[i], out + i * share, share, context); }, &context);
+  else
+    parallel_for(
+        parts.size(), 1, [&](size_t i, size_t) { fill(l, parts[i], out + i * share, share, context); }, &context);
   if (swap) swap_bytes(out, need / size, size);
   return a;
 }
@@ -133,7 +147,8 @@ Array load_brick(const BrickLayout& l, const std::vector<BrickPart>& parts, Cont
 size_t checked_product(const std::vector<size_t>& sizes, const std::string& where) {
   uint64_t n = 1;
   for (const size_t s : sizes)
-    if (s == 0 || !multiply(n, s, n) || n > (uint64_t(1) << 60)) fail_data(s == 0 ? "a size is 0" : "the sizes are too large to be counted", where);
+    if (s == 0 || !multiply(n, s, n) || n > (uint64_t(1) << 60))
+      fail_data(s == 0 ? "a size is 0" : "the sizes are too large to be counted", where);
   return n;
 }
 
@@ -144,11 +159,14 @@ std::vector<std::string> pattern_names(const std::string& pattern, int64_t first
   bool zero = false;
   if (d < pattern.size() && pattern[d] == '0') zero = true, ++d;
   while (d < pattern.size() && is_digit(pattern[d]) && width < 100) width = width * 10 + size_t(pattern[d++] - '0');
-  if (d >= pattern.size() || (pattern[d] != 'd' && pattern[d] != 'i' && pattern[d] != 'u') || width > 20 || pattern.find('%', d) != std::string::npos)
+  if (d >= pattern.size() || (pattern[d] != 'd' && pattern[d] != 'i' && pattern[d] != 'u') || width > 20 ||
+      pattern.find('%', d) != std::string::npos)
     fail_data(fmt::format("'{}' is no pattern of file names", pattern), where, "like slice%03d.raw 1 93 1");
-  if (step == 0 || (step > 0) != (last >= first) || first < -1000000000 || last < -1000000000 || first > 1000000000 || last > 1000000000 ||
-      std::abs(last - first) / std::abs(step) >= 1000000)
-    if (first != last || step == 0) fail_data(fmt::format("files numbered {} to {} in steps of {}", first, last, step), where);
+  constexpr int64_t most = 1000000000;
+  bool good = step != 0;
+  for (const int64_t v : {first, last, step}) good = good && v >= -most && v <= most;
+  if (good && first != last) good = (step > 0) == (last > first) && (last - first) / step < 1000000;
+  if (!good) fail_data(fmt::format("files numbered {} to {} in steps of {}", first, last, step), where);
   std::vector<std::string> names;
   for (int64_t i = first; step > 0 ? i <= last : i >= last; i += step) {
     const std::string number = zero ? fmt::format("{:0{}}", i, width) : fmt::format("{:{}}", i, width);

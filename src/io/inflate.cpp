@@ -32,8 +32,9 @@ Outcome unpack_deflate(Codec codec, std::span<const std::byte> in, std::byte* ou
   size_t at = 0;
   while (at < in.size()) {
     size_t used = 0, made = 0;
-    const auto r = codec == Codec::gzip ? libdeflate_gzip_decompress_ex(d.d, in.data() + at, in.size() - at, out + got, room - got, &used, &made)
-                                        : libdeflate_zlib_decompress_ex(d.d, in.data() + at, in.size() - at, out + got, room - got, &used, &made);
+    const auto r = codec == Codec::gzip
+                       ? libdeflate_gzip_decompress_ex(d.d, in.data() + at, in.size() - at, out + got, room - got, &used, &made)
+                       : libdeflate_zlib_decompress_ex(d.d, in.data() + at, in.size() - at, out + got, room - got, &used, &made);
     if (r == LIBDEFLATE_INSUFFICIENT_SPACE) return Outcome::full;
     if (r != LIBDEFLATE_SUCCESS) return at > 0 ? Outcome::complete : Outcome::damaged;  // rubbish after a member is padding
     got += made, at += used;

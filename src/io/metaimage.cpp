@@ -49,7 +49,8 @@ Header parse_header(const MappedFile& file) {
   const char *p = reinterpret_cast<const char*>(file.data()), *base = p, *end = p + file.size();
   for (size_t number = 1; p < end; ++number) {
     const char* e = line_end(p, end);
-    if (e - p > 65536) fail_data(fmt::format("line {} is longer than 64 KiB", number), h.path, "a MetaImage header has lines of 'Key = value'");
+    if (e - p > 65536)
+      fail_data(fmt::format("line {} is longer than 64 KiB", number), h.path, "a MetaImage header has lines of 'Key = value'");
     const std::string_view line = trim({p, size_t(e - p)});
     p = e < end ? e + 1 : end;
     if (line.empty() || line[0] == '#') continue;
@@ -62,7 +63,8 @@ Header parse_header(const MappedFile& file) {
       return h;
     }
   }
-  fail_data("the header has no ElementDataFile", h.path, "the last line of the header says where the data are: LOCAL, a file, LIST or a pattern");
+  fail_data("the header has no ElementDataFile", h.path,
+            "the last line of the header says where the data are: LOCAL, a file, LIST or a pattern");
 }
 
 bool parse_met_type(std::string_view name, ElementType& t) {
@@ -72,9 +74,10 @@ bool parse_met_type(std::string_view name, ElementType& t) {
   struct {
     std::string_view name;
     ElementType type;
-  } static constexpr table[] = {{"uchar", ElementType::u8},     {"char", ElementType::i8},        {"ushort", ElementType::u16},     {"short", ElementType::i16},
-                                {"uint", ElementType::u32},     {"int", ElementType::i32},        {"ulong_long", ElementType::u64}, {"long_long", ElementType::i64},
-                                {"ulong", ElementType::u32},    {"long", ElementType::i32},       {"float", ElementType::f32},      {"double", ElementType::f64},
+  } static constexpr table[] = {{"uchar", ElementType::u8},       {"char", ElementType::i8},       {"ushort", ElementType::u16},
+                                {"short", ElementType::i16},      {"uint", ElementType::u32},      {"int", ElementType::i32},
+                                {"ulong_long", ElementType::u64}, {"long_long", ElementType::i64}, {"ulong", ElementType::u32},
+                                {"long", ElementType::i32},       {"float", ElementType::f32},     {"double", ElementType::f64},
                                 {"ascii_char", ElementType::i8}};
   for (const auto& e : table)
     if (e.name == key) return t = e.type, true;
@@ -101,7 +104,9 @@ std::vector<BrickPart> find_parts(const Header& h, const MappedFile& file, size_
     int64_t n[3] = {1, int64_t(slices), 1};
     for (size_t i = 1; i < std::min<size_t>(w.size(), 4); ++i) {
       const auto v = parse_int(w[i]);
-      if (!v) fail_data(fmt::format("ElementDataFile: '{}' is no whole number", w[i]), h.path, "pattern first last step, like slice%03d.raw 1 93 1");
+      if (!v)
+        fail_data(fmt::format("ElementDataFile: '{}' is no whole number", w[i]), h.path,
+                  "pattern first last step, like slice%03d.raw 1 93 1");
       n[i - 1] = *v;
     }
     names = pattern_names(std::string(w[0]), n[0], n[1], n[2], h.path);
@@ -153,13 +158,15 @@ bool sniff_metaimage(std::span<const std::byte> head) {
   for (const char c : first.substr(0, eq))
     if (!is_blank(c) && !std::isalnum(static_cast<unsigned char>(c)) && c != '_') return false;
   const std::string lower = to_lower(text);
-  return lower.find("ndims") != std::string::npos && (lower.find("dimsize") != std::string::npos || lower.find("elementtype") != std::string::npos || lower.find("objecttype") == at);
+  return lower.find("ndims") != std::string::npos &&
+         (lower.find("dimsize") != std::string::npos || lower.find("elementtype") != std::string::npos || lower.find("objecttype") == at);
 }
 
 Data read_metaimage(const std::string& path, const ReadOptions& options, Context& context) {
   const MappedFile file(path);
   const Header h = parse_header(file);
-  if (const auto v = h.get({"ObjectType"}); !v.empty() && !equal_ignoring_case(v, "Image")) fail_data(fmt::format("is a MetaIO {}, not an Image", v), path);
+  if (const auto v = h.get({"ObjectType"}); !v.empty() && !equal_ignoring_case(v, "Image"))
+    fail_data(fmt::format("is a MetaIO {}, not an Image", v), path);
   const auto ndims = parse_int(h.get({"NDims"}));
   if (!ndims || *ndims < 1 || *ndims > 10) fail_data(fmt::format("NDims is '{}'", h.get({"NDims"})), path, "1 to 10");
   std::vector<size_t> sizes;
@@ -173,7 +180,8 @@ Data read_metaimage(const std::string& path, const ReadOptions& options, Context
 
   BrickLayout l;
   if (!parse_met_type(h.get({"ElementType"}), l.type))
-    fail_data(fmt::format("ElementType '{}' is unknown", h.get({"ElementType"})), path, "MET_UCHAR, MET_SHORT, MET_USHORT, MET_INT, MET_FLOAT, MET_DOUBLE, ...");
+    fail_data(fmt::format("ElementType '{}' is unknown", h.get({"ElementType"})), path,
+              "MET_UCHAR, MET_SHORT, MET_USHORT, MET_INT, MET_FLOAT, MET_DOUBLE, ...");
   int64_t channels = 1;
   if (const auto v = h.get({"ElementNumberOfChannels"}); !v.empty()) {
     const auto n = parse_int(v);
@@ -192,9 +200,21 @@ Data read_metaimage(const std::string& path, const ReadOptions& options, Context
   DatasetParts out;
   out.mesh = grid;
   for (const auto& [key, value] : h.lines) {
-    static constexpr std::string_view known[] = {"ObjectType", "NDims", "DimSize", "ElementType", "ElementDataFile", "ElementSpacing", "BinaryData", "HeaderSize",
-                                                 "CompressedData", "CompressedDataSize", "BinaryDataByteOrderMSB", "ElementByteOrderMSB", "ElementNumberOfChannels"};
-    if (std::none_of(std::begin(known), std::end(known), [&](std::string_view k) { return equal_ignoring_case(k, key); })) out.notes.emplace_back(key, value);
+    static constexpr std::string_view known[] = {"ObjectType",
+                                                 "NDims",
+                                                 "DimSize",
+                                                 "ElementType",
+                                                 "ElementDataFile",
+                                                 "ElementSpacing",
+                                                 "BinaryData",
+                                                 "HeaderSize",
+                                                 "CompressedData",
+                                                 "CompressedDataSize",
+                                                 "BinaryDataByteOrderMSB",
+                                                 "ElementByteOrderMSB",
+                                                 "ElementNumberOfChannels"};
+    if (std::none_of(std::begin(known), std::end(known), [&](std::string_view k) { return equal_ignoring_case(k, key); }))
+      out.notes.emplace_back(key, value);
   }
   if (options.header_only && (h.flag({"CompressedData"}) || !binary)) return make_dataset(std::move(out));
   std::vector<BrickPart> parts = find_parts(h, file, sizes.back());
@@ -212,12 +232,15 @@ Data read_metaimage(const std::string& path, const ReadOptions& options, Context
   Array a = load_brick(l, parts, context);
   if (steps > 1) {
     // Further volumes become components, one volume after the other in memory.
-    if (channels > 1) fail_data(fmt::format("{} axes and {} channels", sizes.size(), channels), path, "read are up to 3 axes with channels, or 4 axes");
+    if (channels > 1)
+      fail_data(fmt::format("{} axes and {} channels", sizes.size(), channels), path, "read are up to 3 axes with channels, or 4 axes");
     const auto size = ptrdiff_t(element_size(l.type));
     a = Array(a.buffer(), l.type, voxels, int(steps), size_t(a.raw() - a.buffer().data), size, size * ptrdiff_t(voxels));
     context.info(fmt::format("{}: the {} volumes of the fourth axis became components", path, steps));
   }
-  const Role role = channels >= 3 && channels <= 4 && l.type == ElementType::u8 ? Role::colors : channels == 3 ? Role::vectors : Role::scalars;
+  const Role role = channels >= 3 && channels <= 4 && l.type == ElementType::u8 ? Role::colors
+                    : channels == 3                                             ? Role::vectors
+                                                                                : Role::scalars;
   out.fields.add({"MetaImage", Association::point, std::move(a), "", role});
   return make_dataset(std::move(out));
 }

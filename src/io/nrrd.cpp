@@ -73,7 +73,8 @@ Array gather_components(const Array& stored, const NrrdHeader& h, size_t tuples,
       size_t rest = t, at = 0;
       for (size_t a = 0; a < n; ++a)
         if (h.axes[a].is_space) at += rest % h.axes[a].size * stride[a], rest /= h.axes[a].size;
-      for (size_t c = 0; c < of_component.size(); ++c) std::memcpy(out + (t * of_component.size() + c) * size, in + (at + of_component[c]) * size, size);
+      for (size_t c = 0; c < of_component.size(); ++c)
+        std::memcpy(out + (t * of_component.size() + c) * size, in + (at + of_component[c]) * size, size);
     }
   });
   return r;
@@ -123,8 +124,10 @@ void add_field(DatasetParts& out, const NrrdHeader& h, const Array& stored, size
 
   Role role = Role::scalars;
   const bool colour_kind = kind.find("color") != std::string::npos;
-  if ((components == 3 || components == 4) && (colour_kind || (stored.type() == ElementType::u8 && kind.empty() && leading))) role = Role::colors;
-  else if (components == 3 && (kind.find("vector") != std::string::npos || kind.find("gradient") != std::string::npos || kind == "list")) role = Role::vectors;
+  if ((components == 3 || components == 4) && (colour_kind || (stored.type() == ElementType::u8 && kind.empty() && leading)))
+    role = Role::colors;
+  else if (components == 3 && (kind.find("vector") != std::string::npos || kind.find("gradient") != std::string::npos || kind == "list"))
+    role = Role::vectors;
   else if (components == 3 && kind.find("normal") != std::string::npos) role = Role::normals;
   else if (components == 9 && kind == "3d-matrix") role = Role::tensors;
   const std::string name = h.encoding == BrickEncoding::raw ? "ImageFile" : "ImageScalars";
@@ -178,7 +181,8 @@ const Field& field_to_write(const Dataset& d, const std::string& path, Context& 
       ++n;
       if (!chosen || (f.role == Role::scalars && chosen->role != Role::scalars)) chosen = &f;
     }
-  if (!chosen) fail_usage("there is no point field to write", path, "a NRRD file holds one array of numbers at the points of a uniform grid");
+  if (!chosen)
+    fail_usage("there is no point field to write", path, "a NRRD file holds one array of numbers at the points of a uniform grid");
   if (n > 1) context.warn(fmt::format("{}: of {} point fields only '{}' is written; a NRRD file holds one", path, n, chosen->name));
   return *chosen;
 }
@@ -201,11 +205,13 @@ std::string header_text(const UniformGrid& g, const Field& f, bool gzip, const s
   std::string t = "NRRD0005\n# Complete NRRD file format specification at:\n# http://teem.sourceforge.net/nrrd/format.html\n";
   t += fmt::format("type: {}\ndimension: {}\n", nrrd_type(f.array.type()), n > 1 ? 4 : 3);
   std::string keys, space = "space dimension: 3\n";
-  static constexpr std::string_view fields[] = {"content", "space units", "measurement frame", "number", "min", "max", "labels", "units", "comment"};
+  static constexpr std::string_view fields[] = {"content", "space units", "measurement frame", "number", "min", "max", "labels",
+                                                "units",   "comment"};
   for (const auto& [key, value] : notes) {
     if (key == "space" && value.find("time") == std::string::npos) space = fmt::format("space: {}\n", value);
     else if (key == "content") t += fmt::format("content: {}\n", escaped(value));
-    else if (std::find(std::begin(fields), std::end(fields), key) == std::end(fields) && !key.empty() && key.find(':') == std::string::npos && key[0] != '#' && key != "space")
+    else if (std::find(std::begin(fields), std::end(fields), key) == std::end(fields) && !key.empty() &&
+             key.find(':') == std::string::npos && key[0] != '#' && key != "space")
       keys += fmt::format("{}:={}\n", escaped(key), escaped(value));
   }
   t += space;
@@ -228,8 +234,10 @@ std::string header_text(const UniformGrid& g, const Field& f, bool gzip, const s
 void write_nrrd(const std::string& path, const Data& data, const WriteOptions& options, Context& context) {
   const DatasetPtr d = single_dataset(data, "writing NRRD");
   const UniformGrid* grid = d->as<UniformGrid>();
-  if (!grid) fail_usage(fmt::format("a NRRD file holds a uniform grid, not a {} mesh", d->kind()), path, "sample it on a grid first: -f 'resample'");
-  if (options.compression != "none" && options.compression != "gzip") fail_usage(fmt::format("NRRD cannot be compressed with '{}'", options.compression), path, "none or gzip");
+  if (!grid)
+    fail_usage(fmt::format("a NRRD file holds a uniform grid, not a {} mesh", d->kind()), path, "sample it on a grid first: -f 'resample'");
+  if (options.compression != "none" && options.compression != "gzip")
+    fail_usage(fmt::format("NRRD cannot be compressed with '{}'", options.compression), path, "none or gzip");
   if (extension_of(path) == "nhdr") fail_usage("detached NRRD headers are read but not written", path, "name it .nrrd");
   const Field& f = field_to_write(*d, path, context);
   const Array a = f.array.made_packed();

@@ -16,7 +16,9 @@ struct Parser {
   int space_dimension = 0;
   bool has_type = false, has_encoding = false, has_endian = false;
 
-  [[noreturn]] void fail(const std::string& what, const std::string& hint = {}) const { fail_data(fmt::format("line {}: {}", line, what), h.path, hint); }
+  [[noreturn]] void fail(const std::string& what, const std::string& hint = {}) const {
+    fail_data(fmt::format("line {}: {}", line, what), h.path, hint);
+  }
 
   void need_axes(std::string_view field) const {
     if (h.axes.empty()) fail(fmt::format("'{}' before 'dimension'", field));
@@ -39,7 +41,8 @@ struct Parser {
   // "(a,b,c)" from the front of s.
   Vec3 vector(std::string_view field, std::string_view& s) const {
     const size_t close = s.find(')');
-    if (s.empty() || s[0] != '(' || close == std::string_view::npos) fail(fmt::format("'{}': '{}' is no vector like (1,0,0)", field, s.substr(0, 40)));
+    if (s.empty() || s[0] != '(' || close == std::string_view::npos)
+      fail(fmt::format("'{}': '{}' is no vector like (1,0,0)", field, s.substr(0, 40)));
     const auto parts = split(s.substr(1, close - 1), ',');
     if (parts.empty() || parts.size() > 4 || (space_dimension > 0 && parts.size() != size_t(space_dimension)))
       fail(fmt::format("'{}' has a vector of {} numbers in a space of {}", field, parts.size(), space_dimension));
@@ -193,11 +196,13 @@ void Parser::field(const std::string& name, std::string_view value) {
     h.notes.emplace_back(name, std::string(value));
   } else if (name == "sample units" || name == "sampleunits") {
     h.sample_units = std::string(trim(value));
-    if (h.sample_units.size() > 1 && h.sample_units.front() == '"' && h.sample_units.back() == '"') h.sample_units = h.sample_units.substr(1, h.sample_units.size() - 2);
-  } else if (name == "old min" || name == "oldmin" || name == "old max" || name == "oldmax" || name == "block size" || name == "blocksize" ||
-             name == "thicknesses") {
+    if (h.sample_units.size() > 1 && h.sample_units.front() == '"' && h.sample_units.back() == '"')
+      h.sample_units = h.sample_units.substr(1, h.sample_units.size() - 2);
+  } else if (name == "old min" || name == "oldmin" || name == "old max" || name == "oldmax" || name == "block size" ||
+             name == "blocksize" || name == "thicknesses") {
     // old min and max describe a quantisation that has been done; values are given as stored.
-  } else if (name == "content" || name == "measurement frame" || name == "space units" || name == "number" || name == "min" || name == "max") {
+  } else if (name == "content" || name == "measurement frame" || name == "space units" || name == "number" || name == "min" ||
+             name == "max") {
     h.notes.emplace_back(name, std::string(value));
   } else {
     fail(fmt::format("unknown field '{}'", name), "user keys are written with := instead of :");
@@ -263,7 +268,8 @@ NrrdHeader parse_nrrd_header(const MappedFile& file) {
     p = e < end ? e + 1 : end;
     while (!line.empty() && line.back() == '\r') line.remove_suffix(1);
     if (parser.line == 1) {
-      if (line.size() != 8 || !line.starts_with("NRRD000") || !is_digit(line[7])) parser.fail("the file does not begin with NRRD0001 to NRRD0005");
+      if (line.size() != 8 || !line.starts_with("NRRD000") || !is_digit(line[7]))
+        parser.fail("the file does not begin with NRRD0001 to NRRD0005");
       continue;
     }
     if (line.empty()) {
@@ -271,11 +277,13 @@ NrrdHeader parse_nrrd_header(const MappedFile& file) {
       break;
     }
     if (line[0] == '#') {
-      if (const auto c = trim(line.substr(1)); !c.empty() && !c.starts_with("Complete NRRD file format") && !c.starts_with("http")) comments += (comments.empty() ? "" : "\n") + std::string(c);
+      if (const auto c = trim(line.substr(1)); !c.empty() && !c.starts_with("Complete NRRD file format") && !c.starts_with("http"))
+        comments += (comments.empty() ? "" : "\n") + std::string(c);
       continue;
     }
     const size_t colon = line.find(':');
-    if (colon == std::string_view::npos || colon == 0) parser.fail(fmt::format("'{}' is neither 'field: value' nor 'key:=value'", line.substr(0, 60)));
+    if (colon == std::string_view::npos || colon == 0)
+      parser.fail(fmt::format("'{}' is neither 'field: value' nor 'key:=value'", line.substr(0, 60)));
     if (colon + 1 < line.size() && line[colon + 1] == '=') {
       h.notes.emplace_back(unescaped(line.substr(0, colon)), unescaped(trim(line.substr(colon + 2))));
       continue;
@@ -292,7 +300,9 @@ NrrdHeader parse_nrrd_header(const MappedFile& file) {
   for (const NrrdAxis& a : h.axes)
     if (a.size == 0) missing("sizes");
   if (!parser.has_encoding) missing("encoding");
-  if (h.data_files.empty() && !blank_line) fail_data("the file ends inside its header", h.path, "an empty line ends the header of an attached file; a detached one has a 'data file'");
+  if (h.data_files.empty() && !blank_line)
+    fail_data("the file ends inside its header", h.path,
+              "an empty line ends the header of an attached file; a detached one has a 'data file'");
   h.data_begin = size_t(p - base);
   return std::move(parser.h);
 }

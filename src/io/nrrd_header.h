@@ -14,7 +14,7 @@ namespace sg {
 
 struct NrrdAxis {
   size_t size = 0;
-  double spacing = std::nan("");       ///< NaN: not told
+  double spacing = std::nan("");  ///< NaN: not told
   double min = std::nan(""), max = std::nan("");
   bool has_direction = false, no_direction = false;  ///< a vector / the word "none" in `space directions`
   Vec3 direction;
@@ -33,9 +33,9 @@ struct NrrdHeader {
   bool has_origin = false;
   Vec3 origin;
   std::string sample_units;
-  std::vector<std::string> data_files;  ///< empty: attached
-  size_t subdim = 0;                    ///< of the data files; 0: all axes but the last
-  size_t data_begin = 0;                ///< attached: byte behind the header
+  std::vector<std::string> data_files;                     ///< empty: attached
+  size_t subdim = 0;                                       ///< of the data files; 0: all axes but the last
+  size_t data_begin = 0;                                   ///< attached: byte behind the header
   std::vector<std::pair<std::string, std::string>> notes;  ///< space, content, key:=value, comments, ...
 };
 

@@ -37,13 +37,16 @@ void parse(const MappedFile& file, ObjFile& o, Context& context) {
   const size_t n = o.borders.size() - 1;
   o.chunks.resize(n);
   std::vector<std::exception_ptr> errors(n);
-  parallel_for(n, 1, [&](size_t c, size_t) {
-    try {
-      parse_obj_chunk(o.text, o.borders[c], o.borders[c + 1], o.path, o.chunks[c]);
-    } catch (...) {
-      errors[c] = std::current_exception();
-    }
-  }, &context);
+  parallel_for(
+      n, 1,
+      [&](size_t c, size_t) {
+        try {
+          parse_obj_chunk(o.text, o.borders[c], o.borders[c + 1], o.path, o.chunks[c]);
+        } catch (...) {
+          errors[c] = std::current_exception();
+        }
+      },
+      &context);
   for (const auto& e : errors)
     if (e) std::rethrow_exception(e);  // the first in the file, whichever thread met which first
 
@@ -59,7 +62,8 @@ void parse(const MappedFile& file, ObjFile& o, Context& context) {
     o.cells[k] = count(o.first_cell[k], [k](const ObjChunk& c) { return c.cells[k].lengths.size(); });
     o.corners[k] = count(o.first_corner[k], [k](const ObjChunk& c) { return c.cells[k].v.size(); });
   }
-  if (o.v > size_t(INT32_MAX) || o.corners[0] + o.corners[1] + o.corners[2] > size_t(INT32_MAX)) fail_data("more than 2^31 vertices or corners", o.path);
+  if (o.v > size_t(INT32_MAX) || o.corners[0] + o.corners[1] + o.corners[2] > size_t(INT32_MAX))
+    fail_data("more than 2^31 vertices or corners", o.path);
 }
 
 // Makes the indices of one chunk absolute; fails for those out of range.
@@ -76,8 +80,9 @@ void resolve(ObjFile& o, size_t c, ObjCell kind, std::vector<int32_t>& ids, size
     }
     size_t cell = 0, corner = 0;
     while (cell < cells.lengths.size() && corner + cells.lengths[cell] <= i) corner += cells.lengths[cell++];
-    fail_data(fmt::format("line {}: {} {} does not exist", obj_cell_line(o.text, o.borders[c], o.borders[c + 1], kind, cell), what, absolute + 1), o.path,
-              total ? fmt::format("there are {}", total) : fmt::format("there is no {}", what));
+    fail_data(
+        fmt::format("line {}: {} {} does not exist", obj_cell_line(o.text, o.borders[c], o.borders[c + 1], kind, cell), what, absolute + 1),
+        o.path, total ? fmt::format("there are {}", total) : fmt::format("there is no {}", what));
   }
 }
 
@@ -86,21 +91,24 @@ void resolve_all(ObjFile& o, Context& context) {
   std::vector<uint8_t> t_used(o.chunks.size()), n_used(o.chunks.size());
   // Files exist whose corners name normals or texture coordinates although the file has none at all: those are left out.
   const bool drop_t = o.t == 0, drop_n = o.n == 0;
-  parallel_for(o.chunks.size(), 1, [&](size_t c, size_t) {
-    try {
-      for (size_t k = 0; k < kinds; ++k) {
-        ObjCells& cells = o.chunks[c].cells[k];
-        t_used[c] |= uint8_t(!cells.t.empty()), n_used[c] |= uint8_t(!cells.n.empty());
-        if (drop_t) cells.t.clear();
-        if (drop_n) cells.n.clear();
-        resolve(o, c, ObjCell(k), cells.v, o.first_v[c], o.v, "vertex");
-        resolve(o, c, ObjCell(k), cells.t, o.first_t[c], o.t, "texture coordinate");
-        resolve(o, c, ObjCell(k), cells.n, o.first_n[c], o.n, "normal");
-      }
-    } catch (...) {
-      errors[c] = std::current_exception();
-    }
-  }, &context);
+  parallel_for(
+      o.chunks.size(), 1,
+      [&](size_t c, size_t) {
+        try {
+          for (size_t k = 0; k < kinds; ++k) {
+            ObjCells& cells = o.chunks[c].cells[k];
+            t_used[c] |= uint8_t(!cells.t.empty()), n_used[c] |= uint8_t(!cells.n.empty());
+            if (drop_t) cells.t.clear();
+            if (drop_n) cells.n.clear();
+            resolve(o, c, ObjCell(k), cells.v, o.first_v[c], o.v, "vertex");
+            resolve(o, c, ObjCell(k), cells.t, o.first_t[c], o.t, "texture coordinate");
+            resolve(o, c, ObjCell(k), cells.n, o.first_n[c], o.n, "normal");
+          }
+        } catch (...) {
+          errors[c] = std::current_exception();
+        }
+      },
+      &context);
   for (const auto& e : errors)
     if (e) std::rethrow_exception(e);
   o.has_t = std::find(t_used.begin(), t_used.end(), 1) != t_used.end();
@@ -114,14 +122,17 @@ void resolve_all(ObjFile& o, Context& context) {
 // Does every corner take the texture coordinate and normal of its vertex's own number?
 bool same_indices(const ObjFile& o) {
   if (!o.has_t && !o.has_n) return true;
-  return parallel_reduce(o.chunks.size(), 1, true, [&](size_t c, size_t) {
-    for (const ObjCells& cells : o.chunks[c].cells) {
-      for (const auto* ids : {&cells.t, &cells.n})
-        for (size_t i = 0; i < ids->size(); ++i)
-          if ((*ids)[i] != obj_none && (*ids)[i] != cells.v[i]) return false;
-    }
-    return true;
-  }, [](bool a, bool b) { return a && b; });
+  return parallel_reduce(
+      o.chunks.size(), 1, true,
+      [&](size_t c, size_t) {
+        for (const ObjCells& cells : o.chunks[c].cells) {
+          for (const auto* ids : {&cells.t, &cells.n})
+            for (size_t i = 0; i < ids->size(); ++i)
+              if ((*ids)[i] != obj_none && (*ids)[i] != cells.v[i]) return false;
+        }
+        return true;
+      },
+      [](bool a, bool b) { return a && b; });
 }
 
 // All elements of the chunks one after the other.
@@ -167,10 +178,13 @@ CellArray make_cells(const ObjFile& o, size_t k, bool expanded, size_t points_be
       if (!c.cells[k].lengths.empty()) return c.cells[k].lengths[0];
     return 0u;
   }();
-  const bool uniform = parallel_reduce(o.chunks.size(), 1, true, [&](size_t c, size_t) {
-    const auto& l = o.chunks[c].cells[k].lengths;
-    return std::all_of(l.begin(), l.end(), [&](uint32_t v) { return v == n; });
-  }, [](bool a, bool b) { return a && b; });
+  const bool uniform = parallel_reduce(
+      o.chunks.size(), 1, true,
+      [&](size_t c, size_t) {
+        const auto& l = o.chunks[c].cells[k].lengths;
+        return std::all_of(l.begin(), l.end(), [&](uint32_t v) { return v == n; });
+      },
+      [](bool a, bool b) { return a && b; });
   int32_t* offsets = nullptr;
   if (uniform) r.fixed = int(n);
   else r.offsets = Array::make<int32_t>(o.cells[k] + 1, 1, &offsets), offsets[o.cells[k]] = int32_t(o.corners[k]);
@@ -212,7 +226,8 @@ Labels find_labels(const ObjFile& o) {
       Run run;
       for (size_t k = 0; k < kinds; ++k) run.begin[k] = o.first_cell[k][c] + m.cells[k];
       if (m.material) {
-        const auto at = std::lower_bound(known.begin(), known.end(), m.name, [](const auto& a, std::string_view name) { return a.first < name; });
+        const auto at =
+            std::lower_bound(known.begin(), known.end(), m.name, [](const auto& a, std::string_view name) { return a.first < name; });
         if (at != known.end() && at->first == m.name) {
           material = at->second;
         } else {
@@ -270,7 +285,8 @@ void add_labels(const ObjFile& o, DatasetParts& parts) {
   if (material) {
     parts.fields.add({"MaterialIds", Association::cell, std::move(materials), "", Role::labels});
     std::string names;
-    for (size_t m = 0; m < l.materials.size(); ++m) names += fmt::format("{}{} {}", m ? "\n" : "", material_number(l, int32_t(m), without), l.materials[m]);
+    for (size_t m = 0; m < l.materials.size(); ++m)
+      names += fmt::format("{}{} {}", m ? "\n" : "", material_number(l, int32_t(m), without), l.materials[m]);
     parts.notes.emplace_back("MaterialNames", names);
   }
   parts.fields.add({"GroupIds", Association::cell, std::move(groups), "", Role::labels});
@@ -370,17 +386,22 @@ void write_obj(const std::string& path, const Data& data, const WriteOptions&, C
     const Vec3 p = mesh.points.at(i);
     if (wide) text += fmt::format("v {} {} {}", p.x, p.y, p.z);
     else text += fmt::format("v {} {} {}", float(p.x), float(p.y), float(p.z));
-    if (colors) text += fmt::format(" {:.4g} {:.4g} {:.4g}", colors->array.get(i, 0) / 255, colors->array.get(i, 1) / 255, colors->array.get(i, 2) / 255);
+    if (colors)
+      text +=
+          fmt::format(" {:.4g} {:.4g} {:.4g}", colors->array.get(i, 0) / 255, colors->array.get(i, 1) / 255, colors->array.get(i, 2) / 255);
     text += '\n';
     if (tcoords) text += fmt::format("vt {} {}\n", float(tcoords->array.get(i, 0)), float(tcoords->array.get(i, 1)));
-    if (normals) text += fmt::format("vn {} {} {}\n", float(normals->array.get(i, 0)), float(normals->array.get(i, 1)), float(normals->array.get(i, 2)));
+    if (normals)
+      text +=
+          fmt::format("vn {} {} {}\n", float(normals->array.get(i, 0)), float(normals->array.get(i, 1)), float(normals->array.get(i, 2)));
     flush(1 << 20);
   }
   const Field* group = d->fields().find("GroupIds", Association::cell);
   if (group && group->components() != 1) group = nullptr;
   double in_group = std::nan("");
   auto cell = [&](const char* word, const int64_t* ids, size_t n, bool corners, size_t number) {
-    if (group && group->array.get(number) != in_group) text += fmt::format("g group{}\n", exact_number(in_group = group->array.get(number)));
+    if (group && group->array.get(number) != in_group)
+      text += fmt::format("g group{}\n", exact_number(in_group = group->array.get(number)));
     text += word;
     for (size_t k = 0; k < n; ++k) {
       const int64_t id = ids[k] + 1;
@@ -406,7 +427,8 @@ void write_obj(const std::string& path, const Data& data, const WriteOptions&, C
   simple("l", mesh.lines);
   const PolygonList faces = surface_polygons(mesh);
   for (size_t f = 0; f < faces.source.size(); ++f)
-    if (const size_t n = faces.offsets[f + 1] - faces.offsets[f]; n >= 3) cell("f", faces.ids.data() + faces.offsets[f], n, true, faces.source[f]);
+    if (const size_t n = faces.offsets[f + 1] - faces.offsets[f]; n >= 3)
+      cell("f", faces.ids.data() + faces.offsets[f], n, true, faces.source[f]);
   file.write(text);
   file.commit();
 }

@@ -49,7 +49,8 @@ struct Parser {
       p = skip_blanks(p, end);
       if (p == end || *p == '#') break;
       const char* word = p;
-      if (!scan_number(p, end, v[n]) || (p < end && !is_blank(*p))) fail(fmt::format("'{}' is no number", std::string_view(word, std::min<size_t>(40, size_t(skip_word(word, end) - word)))));
+      if (!scan_number(p, end, v[n]) || (p < end && !is_blank(*p)))
+        fail(fmt::format("'{}' is no number", std::string_view(word, std::min<size_t>(40, size_t(skip_word(word, end) - word)))));
       ++n;
     }
     return n;
@@ -59,7 +60,8 @@ struct Parser {
     float v[8];
     const int n = numbers(p, end, v, 8);
     if (n < 3) fail(fmt::format("a vertex with {} numbers", n), "v x y z");
-    if (!(std::abs(v[0]) <= 3.4e38f && std::abs(v[1]) <= 3.4e38f && std::abs(v[2]) <= 3.4e38f)) fail(fmt::format("the position {} {} {} is not finite", v[0], v[1], v[2]));
+    if (!(std::abs(v[0]) <= 3.4e38f && std::abs(v[1]) <= 3.4e38f && std::abs(v[2]) <= 3.4e38f))
+      fail(fmt::format("the position {} {} {} is not finite", v[0], v[1], v[2]));
     out.xyz.insert(out.xyz.end(), v, v + 3);
     // x y z [w] or x y z r g b: a weight means nothing for polygons.
     if (n >= 6 || !out.colors.empty()) {
@@ -74,7 +76,8 @@ struct Parser {
   int32_t index(const char*& p, const char* end, size_t count, const char* what) const {
     int64_t i = 0;
     const char* word = p;
-    if (!scan_number(p, end, i)) fail(fmt::format("'{}' is no {} index", std::string_view(word, std::min<size_t>(40, size_t(skip_word(word, end) - word))), what));
+    if (!scan_number(p, end, i))
+      fail(fmt::format("'{}' is no {} index", std::string_view(word, std::min<size_t>(40, size_t(skip_word(word, end) - word))), what));
     if (i == 0) fail(fmt::format("{} index 0", what), "indices count from 1, or from -1 backwards");
     if (i > INT32_MAX || i < -int64_t(INT32_MAX / 4)) fail(fmt::format("{} index {} is out of range", what, i));
     return i > 0 ? int32_t(i - 1) : int32_t(obj_relative + int64_t(count) + i);
@@ -96,12 +99,20 @@ struct Parser {
           if (p < end && !is_blank(*p)) n = index(p, end, out.normals.size() / 3, "normal");
         }
       }
-      if (p < end && !is_blank(*p)) fail(fmt::format("'{}' follows an index", std::string_view(p, std::min<size_t>(40, size_t(skip_word(p, end) - p)))), "corners look like 1, 1/2, 1//3 or 1/2/3");
+      if (p < end && !is_blank(*p))
+        fail(fmt::format("'{}' follows an index", std::string_view(p, std::min<size_t>(40, size_t(skip_word(p, end) - p)))),
+             "corners look like 1, 1/2, 1//3 or 1/2/3");
       if (t != obj_none || !c.t.empty()) c.t.resize(c.v.size() - 1, obj_none), c.t.push_back(t);
       if (n != obj_none || !c.n.empty()) c.n.resize(c.v.size() - 1, obj_none), c.n.push_back(n);
     }
     const size_t have = c.v.size() - before, need = kind == ObjCell::polygon ? 3 : kind == ObjCell::line ? 2 : 1;
-    if (have < need) fail(fmt::format("a {} with {} corner{}", kind == ObjCell::polygon ? "face" : kind == ObjCell::line ? "line" : "point", have, have == 1 ? "" : "s"), fmt::format("it needs {} at least", need));
+    if (have < need)
+      fail(fmt::format("a {} with {} corner{}",
+                       kind == ObjCell::polygon ? "face"
+                       : kind == ObjCell::line  ? "line"
+                                                : "point",
+                       have, have == 1 ? "" : "s"),
+           fmt::format("it needs {} at least", need));
     c.lengths.push_back(uint32_t(have));
   }
 

@@ -17,8 +17,8 @@ inline constexpr int32_t obj_relative = INT32_MIN / 2;
 inline constexpr int32_t obj_relative_below = INT32_MIN / 4;
 
 struct ObjCells {
-  std::vector<uint32_t> lengths;        ///< corners of each cell
-  std::vector<int32_t> v, t, n;         ///< corners; t and n are empty when no corner of the chunk has any
+  std::vector<uint32_t> lengths;  ///< corners of each cell
+  std::vector<int32_t> v, t, n;   ///< corners; t and n are empty when no corner of the chunk has any
 };
 
 /// A "g" or "usemtl" statement and how many cells of each kind stand before it in the chunk.
@@ -33,7 +33,7 @@ struct ObjChunk {
   std::vector<float> colors;                 ///< 3 per vertex, NaN = none; empty when no vertex of the chunk has any
   ObjCells cells[3];                         ///< by ObjCell
   std::vector<ObjMark> marks;
-  std::vector<std::string_view> libraries;   ///< of "mtllib"
+  std::vector<std::string_view> libraries;  ///< of "mtllib"
 };
 
 /// Parses text[begin, end), whole lines. Throws Error(data) naming `where` and the line.

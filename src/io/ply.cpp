@@ -12,7 +12,8 @@
 namespace sg {
 
 bool sniff_ply(std::span<const std::byte> head) {
-  return head.size() >= 4 && std::memcmp(head.data(), "ply", 3) == 0 && (head[3] == std::byte('\n') || head[3] == std::byte('\r') || head[3] == std::byte(' '));
+  return head.size() >= 4 && std::memcmp(head.data(), "ply", 3) == 0 &&
+         (head[3] == std::byte('\n') || head[3] == std::byte('\r') || head[3] == std::byte(' '));
 }
 
 namespace {
@@ -44,7 +45,8 @@ struct Reader {
   DatasetParts parts;
 
   bool wanted(const std::string& name) const {
-    return !options.header_only && (options.fields.empty() || std::find(options.fields.begin(), options.fields.end(), name) != options.fields.end());
+    return !options.header_only &&
+           (options.fields.empty() || std::find(options.fields.begin(), options.fields.end(), name) != options.fields.end());
   }
 
   // Makes a field of each property (or group of them) and tells decode_ply to fill it. `used` properties are left out.
@@ -52,7 +54,8 @@ struct Reader {
     for (const Group& g : groups) {
       std::vector<size_t> found;
       for (std::string_view name : g.properties)
-        if (const int k = name.empty() ? -1 : e.find(name); k >= 0 && !used[size_t(k)] && !e.properties[size_t(k)].list) found.push_back(size_t(k));
+        if (const int k = name.empty() ? -1 : e.find(name); k >= 0 && !used[size_t(k)] && !e.properties[size_t(k)].list)
+          found.push_back(size_t(k));
       const size_t n = size_t(std::count_if(g.properties.begin(), g.properties.end(), [](std::string_view s) { return !s.empty(); }));
       if (found.size() != n) continue;
       ElementType type = e.properties[found[0]].type;
@@ -166,7 +169,8 @@ Data read_ply(const std::string& path, const ReadOptions& options, Context& cont
   const bool lines = edge && edge->count > 0 && (!face || face->count == 0) && !strip;
   if (lines) {
     for (const char* name : {"vertex1", "vertex2"})
-      if (edge->find(name) < 0 || edge->properties[size_t(edge->find(name))].list) fail_data(fmt::format("the edges have no '{}'", name), path);
+      if (edge->find(name) < 0 || edge->properties[size_t(edge->find(name))].list)
+        fail_data(fmt::format("the edges have no '{}'", name), path);
     mesh.lines.connectivity = Array::make_raw(ElementType::i32, edge->count * 2, 1, &ends);
     mesh.lines.fixed = 2;
     direct(edge->properties[size_t(edge->find("vertex1"))], ends, 8, ElementType::i32);
@@ -210,7 +214,8 @@ std::vector<Column> columns_of(const Dataset& d, Association association) {
       if (f.role == Role::normals && n == 3) column = std::string("n") + "xyz"[c];
       if (f.role == Role::colors && (n == 3 || n == 4)) column = std::array{"red", "green", "blue", "alpha"}[size_t(c)];
       if (f.role == Role::tcoords && n == 2) column = c ? "t" : "s";
-      const bool taken = column == "x" || column == "y" || column == "z" || std::any_of(r.begin(), r.end(), [&](const Column& o) { return o.name == column; });
+      const bool taken = column == "x" || column == "y" || column == "z" ||
+                         std::any_of(r.begin(), r.end(), [&](const Column& o) { return o.name == column; });
       r.push_back({taken ? column + "_" : column, a.component(c)});
     }
   }
@@ -239,7 +244,8 @@ void write_ply(const std::string& path, const Data& data, const WriteOptions& op
   size_t longest = 0;
   for (size_t c = 0; c + 1 < faces.offsets.size(); ++c) longest = std::max(longest, faces.offsets[c + 1] - faces.offsets[c]);
 
-  std::string text = fmt::format("ply\nformat {} 1.0\ncomment written by sightglass\nelement vertex {}\n", options.binary ? "binary_little_endian" : "ascii", d->point_count());
+  std::string text = fmt::format("ply\nformat {} 1.0\ncomment written by sightglass\nelement vertex {}\n",
+                                 options.binary ? "binary_little_endian" : "ascii", d->point_count());
   for (const char c : {'x', 'y', 'z'}) text += fmt::format("property {} {}\n", wide ? "double" : "float", c);
   for (const Column& c : of_points) text += fmt::format("property {} {}\n", ply_type(c.values.type()), c.name);
   text += fmt::format("element face {}\nproperty list {} int vertex_indices\n", faces.source.size(), longest < 256 ? "uchar" : "uint");

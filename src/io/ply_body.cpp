@@ -14,7 +14,9 @@ PlyHeader parse_ply_header(const MappedFile& file) {
   const char *base = reinterpret_cast<const char*>(file.data()), *p = base, *end = base + file.size();
   size_t number = 0;
   bool has_format = false;
-  auto fail = [&](const std::string& what, const std::string& hint = {}) { fail_data(fmt::format("line {}: {}", number, what), h.path, hint); };
+  auto fail = [&](const std::string& what, const std::string& hint = {}) {
+    fail_data(fmt::format("line {}: {}", number, what), h.path, hint);
+  };
   auto type_of = [&](std::string_view name) {
     ElementType t = ElementType::f32;
     if (!parse_element_type(name, t)) fail(fmt::format("unknown type '{}'", name), "char uchar short ushort int uint float double");
@@ -77,9 +79,11 @@ void check_ply_counts(const MappedFile& file, const PlyHeader& h) {
   uint64_t least = 0;
   for (const PlyElement& e : h.elements) {
     uint64_t row = 0, all = 0;
-    for (const PlyProperty& p : e.properties) row += h.encoding == PlyHeader::Encoding::ascii ? 2 : element_size(p.list ? p.count_type : p.type);
+    for (const PlyProperty& p : e.properties)
+      row += h.encoding == PlyHeader::Encoding::ascii ? 2 : element_size(p.list ? p.count_type : p.type);
     if (!multiply(row, e.count, all) || !add(least, all, least) || least > file.size() - h.body + 1)
-      fail_data(fmt::format("{} {} rows do not fit into the {} bytes after the header", e.count, e.name, file.size() - h.body), h.path, "the file is cut off or its counts are wrong");
+      fail_data(fmt::format("{} {} rows do not fit into the {} bytes after the header", e.count, e.name, file.size() - h.body), h.path,
+                "the file is cut off or its counts are wrong");
   }
 }
 
@@ -120,7 +124,10 @@ void store_double(std::byte* out, ElementType t, double v) {
     using T = decltype(zero);
     T x{};
     if constexpr (std::is_floating_point_v<T>) x = T(v);
-    else if (v == v) x = v <= double(std::numeric_limits<T>::min()) ? std::numeric_limits<T>::min() : v >= double(std::numeric_limits<T>::max()) ? std::numeric_limits<T>::max() : T(v);
+    else if (v == v)
+      x = v <= double(std::numeric_limits<T>::min())   ? std::numeric_limits<T>::min()
+          : v >= double(std::numeric_limits<T>::max()) ? std::numeric_limits<T>::max()
+                                                       : T(v);
     std::memcpy(out, &x, sizeof x);
   });
 }
@@ -177,7 +184,7 @@ size_t uniform_row(const PlyElement& e, const std::byte* p, size_t room, bool bi
       const size_t c = element_size(q.count_type);
       if (room - row < c) return 0;
       const int64_t have = load_index(p + row, q.count_type, big);
-      if (have < 0 || uint64_t(have) > room) return 0;
+      if (have < 0 || uint64_t(have) > room || have > INT32_MAX) return 0;
       n = size_t(have);
       row += c;
     }
@@ -190,16 +197,19 @@ size_t uniform_row(const PlyElement& e, const std::byte* p, size_t room, bool bi
   for (size_t k = 0; k < e.properties.size(); ++k) {
     const PlyProperty& q = e.properties[k];
     if (!q.list) continue;
-    const bool same = parallel_reduce(e.count, rows_per_chunk, true, [&](size_t begin, size_t end) {
-      bool ok = true;
-      if (q.count_type == ElementType::u8 || q.count_type == ElementType::i8) {
-        const auto want = std::byte(entries[k]);
-        for (size_t i = begin; i < end; ++i) ok &= p[i * row + at[k]] == want;
-      } else {
-        for (size_t i = begin; i < end && ok; ++i) ok = load_index(p + i * row + at[k], q.count_type, big) == int64_t(entries[k]);
-      }
-      return ok;
-    }, [](bool a, bool b) { return a && b; });
+    const bool same = parallel_reduce(
+        e.count, rows_per_chunk, true,
+        [&](size_t begin, size_t end) {
+          bool ok = true;
+          if (q.count_type == ElementType::u8 || q.count_type == ElementType::i8) {
+            const auto want = std::byte(entries[k]);
+            for (size_t i = begin; i < end; ++i) ok &= p[i * row + at[k]] == want;
+          } else {
+            for (size_t i = begin; i < end && ok; ++i) ok = load_index(p + i * row + at[k], q.count_type, big) == int64_t(entries[k]);
+          }
+          return ok;
+        },
+        [](bool a, bool b) { return a && b; });
     if (!same) return 0;
   }
   return row;
@@ -227,7 +237,9 @@ size_t decode_binary(const MappedFile& file, const PlyHeader& h, PlyElement& e, 
   const size_t room = file.size() - begin;
   if (e.count == 0 || e.properties.empty()) return begin;
   std::vector<size_t> at, entries;
-  if (const size_t row = uniform_row(e, base, room, big, at, entries)) {
+  size_t row = uniform_row(e, base, room, big, at, entries);
+  if (row > 0 && e.wanted_list >= 0 && entries[size_t(e.wanted_list)] == 0) row = 0;  // cells without points need offsets
+  if (row > 0) {
     const bool lists = e.wanted_list >= 0;
     const auto l = size_t(std::max(e.wanted_list, 0));
     const size_t n = lists ? entries[l] : 0;
@@ -236,18 +248,22 @@ size_t decode_binary(const MappedFile& file, const PlyHeader& h, PlyElement& e, 
       e.lists.ids = Array::make<int32_t>(e.count * n, 1, &ids);
       e.lists.fixed = int(n);
     }
-    parallel_for(e.count, rows_per_chunk, [&](size_t first, size_t last) {
-      for (size_t k = 0; k < e.properties.size(); ++k)
-        if (const PlyProperty& p = e.properties[k]; p.out) copy_column(p, base + first * row + at[k], row, p.out + first * p.out_stride, last - first, big);
-      if (!lists) return;
-      const PlyProperty& p = e.properties[l];
-      const std::byte* in = base + at[l] + element_size(p.count_type);
-      if (n == 3 && !big && element_size(p.type) == 4 && !is_float(p.type)) {
-        for (size_t i = first; i < last; ++i) std::memcpy(ids + i * 3, in + i * row, 12);
-      } else {
-        for (size_t i = first; i < last; ++i) copy_ids(p, in + i * row, ids + i * n, n, big);
-      }
-    }, &context);
+    parallel_for(
+        e.count, rows_per_chunk,
+        [&](size_t first, size_t last) {
+          for (size_t k = 0; k < e.properties.size(); ++k)
+            if (const PlyProperty& p = e.properties[k]; p.out)
+              copy_column(p, base + first * row + at[k], row, p.out + first * p.out_stride, last - first, big);
+          if (!lists) return;
+          const PlyProperty& p = e.properties[l];
+          const std::byte* in = base + at[l] + element_size(p.count_type);
+          if (n == 3 && !big && element_size(p.type) == 4 && !is_float(p.type)) {
+            for (size_t i = first; i < last; ++i) std::memcpy(ids + i * 3, in + i * row, 12);
+          } else {
+            for (size_t i = first; i < last; ++i) copy_ids(p, in + i * row, ids + i * n, n, big);
+          }
+        },
+        &context);
     return begin + row * e.count;
   }
   // Rows of different lengths: one serial walk finds where each begins.
@@ -279,19 +295,22 @@ size_t decode_binary(const MappedFile& file, const PlyHeader& h, PlyElement& e, 
     e.lists.offsets = make_offsets(lengths, total);
     e.lists.ids = Array::make<int32_t>(total, 1, &ids);
   }
-  parallel_for(e.count, rows_per_chunk, [&](size_t first, size_t last) {
-    for (size_t i = first; i < last; ++i) {
-      const std::byte* in = base + starts[i];
-      for (size_t k = 0; k < e.properties.size(); ++k) {
-        const PlyProperty& q = e.properties[k];
-        size_t n = 1;
-        if (q.list) n = size_t(load_index(in, q.count_type, big)), in += element_size(q.count_type);
-        if (q.out) copy_column(q, in, 0, q.out + i * q.out_stride, 1, big);
-        if (int(k) == e.wanted_list) copy_ids(q, in, ids + lengths[i], n, big);
-        in += n * element_size(q.type);
-      }
-    }
-  }, &context);
+  parallel_for(
+      e.count, rows_per_chunk,
+      [&](size_t first, size_t last) {
+        for (size_t i = first; i < last; ++i) {
+          const std::byte* in = base + starts[i];
+          for (size_t k = 0; k < e.properties.size(); ++k) {
+            const PlyProperty& q = e.properties[k];
+            size_t n = 1;
+            if (q.list) n = size_t(load_index(in, q.count_type, big)), in += element_size(q.count_type);
+            if (q.out) copy_column(q, in, 0, q.out + i * q.out_stride, 1, big);
+            if (int(k) == e.wanted_list) copy_ids(q, in, ids + lengths[i], n, big);
+            in += n * element_size(q.type);
+          }
+        }
+      },
+      &context);
   return begin + p;
 }
 
@@ -318,8 +337,8 @@ struct AsciiRows {
 
 struct AsciiReader {
   const PlyHeader& h;
-  std::string_view text;               ///< the whole file
-  std::vector<size_t> first_row;       ///< line (blank ones not counted) at which each element begins
+  std::string_view text;                     ///< the whole file
+  std::vector<size_t> first_row;             ///< line (blank ones not counted) at which each element begins
   std::vector<std::vector<size_t>> lengths;  ///< per element and row, where lists are wanted
 
   [[noreturn]] void fail(const char* at, const std::string& what) const {
@@ -340,7 +359,8 @@ struct AsciiReader {
         for (int64_t j = 0; j < n; ++j) {
           int64_t v = 0;
           double d = 0;
-          if (wanted ? !next_number(p, end, v) : !next_number(p, end, d)) fail(begin, fmt::format("{} {}: the list '{}' has not the {} numbers it promises", e.name, i, q.name, n));
+          if (wanted ? !next_number(p, end, v) : !next_number(p, end, d))
+            fail(begin, fmt::format("{} {}: the list '{}' has not the {} numbers it promises", e.name, i, q.name, n));
           if (wanted) out.ids[element].push_back(narrow(v));
         }
       } else if (q.out && q.out_type == ElementType::f32) {
@@ -369,11 +389,14 @@ void decode_ascii(const MappedFile& file, PlyHeader& h, size_t elements, Context
     }
   };
   std::vector<size_t> first_line(chunks);
-  parallel_for(chunks, 1, [&](size_t c, size_t) {
-    size_t n = 0;
-    for_lines(c, [&](const char*, const char*) { ++n; });
-    first_line[c] = n;
-  }, &context);
+  parallel_for(
+      chunks, 1,
+      [&](size_t c, size_t) {
+        size_t n = 0;
+        for_lines(c, [&](const char*, const char*) { ++n; });
+        first_line[c] = n;
+      },
+      &context);
   const size_t lines = exclusive_scan(first_line);
   AsciiReader r{h, text, {}, std::vector<std::vector<size_t>>(elements)};
   size_t rows = 0;
@@ -381,21 +404,26 @@ void decode_ascii(const MappedFile& file, PlyHeader& h, size_t elements, Context
     r.first_row.push_back(rows);
     const PlyElement& element = h.elements[e];
     if (!element.properties.empty()) rows += element.count;
-    if (rows > lines) fail_data(fmt::format("{} lines of numbers after the header, at least {} are promised", lines, rows), h.path, "the file is cut off or its counts are wrong");
+    if (rows > lines)
+      fail_data(fmt::format("{} lines of numbers after the header, at least {} are promised", lines, rows), h.path,
+                "the file is cut off or its counts are wrong");
     if (element.wanted_list >= 0) r.lengths[e].assign(element.count + 1, 0);
   }
   r.first_row.push_back(rows);
   std::vector<AsciiRows> parts(chunks);
-  parallel_for(chunks, 1, [&](size_t c, size_t) {
-    parts[c].ids.resize(elements);
-    size_t line = first_line[c], e = 0;
-    for_lines(c, [&](const char* p, const char* end) {
-      if (line >= rows) return;
-      while (line >= r.first_row[e + 1]) ++e;
-      r.row(e, line - r.first_row[e], p, end, parts[c]);
-      ++line;
-    });
-  }, &context);
+  parallel_for(
+      chunks, 1,
+      [&](size_t c, size_t) {
+        parts[c].ids.resize(elements);
+        size_t line = first_line[c], e = 0;
+        for_lines(c, [&](const char* p, const char* end) {
+          if (line >= rows) return;
+          while (line >= r.first_row[e + 1]) ++e;
+          r.row(e, line - r.first_row[e], p, end, parts[c]);
+          ++line;
+        });
+      },
+      &context);
   for (size_t e = 0; e < elements; ++e) {
     PlyElement& element = h.elements[e];
     if (element.wanted_list < 0) continue;

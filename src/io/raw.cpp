@@ -7,7 +7,8 @@
 namespace sg {
 
 Data read_raw(const std::string& path, const ReadOptions& o, Context& context) {
-  if (o.raw_dims[0] == 0) fail_usage("a raw brick does not say its size", path, "give --dims NX,NY,NZ and --type, for example --dims 256,256,94 --type i16");
+  if (o.raw_dims[0] == 0)
+    fail_usage("a raw brick does not say its size", path, "give --dims NX,NY,NZ and --type, for example --dims 256,256,94 --type i16");
   BrickLayout l;
   if (o.raw_type.empty()) fail_usage("a raw brick does not say its element type", path, "give --type u8, i16, u16, f32, ...");
   if (!parse_element_type(o.raw_type, l.type))
@@ -33,7 +34,9 @@ Data read_raw(const std::string& path, const ReadOptions& o, Context& context) {
     // A brick of another size than told is nearly always a wrong size or type: what would fit is said.
     std::string hint = fmt::format("{} bytes are {} numbers of {}", have, have / size, element_name(l.type));
     if (have > need && need > 0) hint += fmt::format("; with a header of {} bytes it would fit", o.raw_header + (have - need));
-    fail_data(fmt::format("{} needs {} bytes, there are {}{}", what, need, have, o.raw_header ? fmt::format(" after the header of {}", o.raw_header) : ""), path, hint);
+    fail_data(fmt::format("{} needs {} bytes, there are {}{}", what, need, have,
+                          o.raw_header ? fmt::format(" after the header of {}", o.raw_header) : ""),
+              path, hint);
   }
   DatasetParts parts;
   parts.mesh = grid;

@@ -15,7 +15,8 @@ namespace {
 
 constexpr size_t header_bytes = 84, triangle_bytes = 50;
 
-DatasetPtr surface_of(const std::byte* corners, size_t triangles, size_t stride, const std::string& path, std::vector<std::pair<std::string, std::string>> notes, Context& context) {
+DatasetPtr surface_of(const std::byte* corners, size_t triangles, size_t stride, const std::string& path,
+                      std::vector<std::pair<std::string, std::string>> notes, Context& context) {
   MergedPoints merged = merge_corners(corners, 3 * triangles, stride, path, context);
   SurfaceMesh mesh;
   mesh.points.xyz = std::move(merged.xyz);
@@ -52,7 +53,9 @@ bool word_is(const char* p, const char* e, std::string_view lower) {
 
 void parse_chunk(std::string_view text, size_t begin, size_t end_at, const std::string& path, AsciiChunk& out) {
   const char *p = text.data() + begin, *end = text.data() + end_at;
-  auto fail = [&](const char* at, const std::string& what) { fail_data(fmt::format("line {}: {}", line_number(text, size_t(at - text.data())), what), path); };
+  auto fail = [&](const char* at, const std::string& what) {
+    fail_data(fmt::format("line {}: {}", line_number(text, size_t(at - text.data())), what), path);
+  };
   out.xyz.reserve((end_at - begin) / 22);
   while (p < end) {
     const char* line = line_end(p, end);
@@ -72,8 +75,9 @@ void parse_chunk(std::string_view text, size_t begin, size_t end_at, const std::
       out.loop_phase = phase;
     } else if (word_end > word) {
       // The name in "solid NAME" may be anything; other lines begin with one of these words.
+      static constexpr std::string_view words_of_stl[] = {"facet", "outer", "endfacet", "solid", "endsolid", "color"};
       bool known = false;
-      for (std::string_view w : {"facet", "outer", "endfacet", "solid", "endsolid", "color"}) known = known || word_is(word, word_end, w);
+      for (size_t i = 0; i < std::size(words_of_stl) && !known; ++i) known = word_is(word, word_end, words_of_stl[i]);
       if (!known) fail(word, fmt::format("'{}' is no word of STL", std::string_view(word, std::min<size_t>(40, size_t(word_end - word)))));
     }
     p = line < end ? line + 1 : end;
@@ -84,7 +88,8 @@ DatasetPtr read_ascii(const MappedFile& file, Context& context) {
   const std::string_view text = file.text();
   const auto borders = text_chunks(text, 1 << 18);
   std::vector<AsciiChunk> chunks(borders.size() - 1);
-  parallel_for(chunks.size(), 1, [&](size_t c, size_t) { parse_chunk(text, borders[c], borders[c + 1], file.path(), chunks[c]); }, &context);
+  parallel_for(
+      chunks.size(), 1, [&](size_t c, size_t) { parse_chunk(text, borders[c], borders[c + 1], file.path(), chunks[c]); }, &context);
   std::vector<size_t> first(chunks.size());
   for (size_t c = 0; c < chunks.size(); ++c) first[c] = chunks[c].xyz.size();
   const size_t numbers = exclusive_scan(first);
@@ -93,7 +98,8 @@ DatasetPtr read_ascii(const MappedFile& file, Context& context) {
       fail_data(fmt::format("a facet near line {} has not three vertices", line_number(text, borders[c])), file.path());
   if (numbers % 9) fail_data(fmt::format("{} vertices do not make triangles; the file may be cut off", numbers / 3), file.path());
   const size_t tail = text.size() > 4096 ? text.size() - 4096 : 0;
-  if (to_lower(text.substr(tail)).find("endsolid") == std::string::npos) fail_data("the last line is not 'endsolid'; the file is cut off", file.path());
+  if (to_lower(text.substr(tail)).find("endsolid") == std::string::npos)
+    fail_data("the last line is not 'endsolid'; the file is cut off", file.path());
   std::byte* xyz = nullptr;
   const Buffer memory = Buffer::allocate(numbers * 4, &xyz);
   parallel_for(chunks.size(), 1, [&](size_t c, size_t) {
@@ -113,13 +119,18 @@ Data read_stl(const std::string& path, const ReadOptions&, Context& context) {
   const uint64_t count = size >= header_bytes ? load<uint32_t>(file.data() + 80) : 0;
   const bool exact = size >= header_bytes && size == header_bytes + triangle_bytes * count;
   if (!exact && looks_ascii(file.text())) return read_ascii(file, context);
-  if (size < header_bytes) fail_data(fmt::format("too short for STL: {} bytes", size), path, "a binary file has a header of 84 bytes, an ASCII one begins with 'solid'");
+  if (size < header_bytes)
+    fail_data(fmt::format("too short for STL: {} bytes", size), path,
+              "a binary file has a header of 84 bytes, an ASCII one begins with 'solid'");
   if (size < header_bytes + triangle_bytes * count)
-    fail_data(fmt::format("{} triangles need {} bytes, there are {}", count, header_bytes + triangle_bytes * count, size), path, "the file is cut off or no STL");
-  if (!exact) context.warn(fmt::format("{}: {} bytes follow the {} triangles; not read", path, size - header_bytes - triangle_bytes * count, count));
+    fail_data(fmt::format("{} triangles need {} bytes, there are {}", count, header_bytes + triangle_bytes * count, size), path,
+              "the file is cut off or no STL");
+  if (!exact)
+    context.warn(fmt::format("{}: {} bytes follow the {} triangles; not read", path, size - header_bytes - triangle_bytes * count, count));
   std::vector<std::pair<std::string, std::string>> notes;
   const std::string_view title = trim(file.text().substr(0, std::min<size_t>(80, file.text().find('\0'))));
-  if (!title.empty() && std::all_of(title.begin(), title.end(), [](char c) { return c >= ' ' && c < 127; })) notes.emplace_back("title", std::string(title));
+  if (!title.empty() && std::all_of(title.begin(), title.end(), [](char c) { return c >= ' ' && c < 127; }))
+    notes.emplace_back("title", std::string(title));
   return surface_of(file.data() + header_bytes + 12, count, triangle_bytes, path, std::move(notes), context);
 }
 
@@ -129,7 +140,8 @@ void write_stl(const std::string& path, const Data& data, const WriteOptions& op
   const std::vector<int64_t> ids = surface_triangles(mesh);
   const size_t n = ids.size() / 3;
   if (n > UINT32_MAX) fail_usage(fmt::format("{} triangles are more than an STL file can count", n), path);
-  if (!mesh.lines.connectivity.empty() || !mesh.vertices.connectivity.empty()) context.warn(path + ": lines and vertices are not written; STL holds triangles only");
+  if (!mesh.lines.connectivity.empty() || !mesh.vertices.connectivity.empty())
+    context.warn(path + ": lines and vertices are not written; STL holds triangles only");
   AtomicFile file(path);
   auto triangle = [&](size_t t, float v[12]) {
     Vec3 p[3];
@@ -163,13 +175,16 @@ void write_stl(const std::string& path, const Data& data, const WriteOptions& op
   for (size_t begin = 0; begin < n; begin += block) {
     const size_t end = std::min(n, begin + block);
     bytes.assign((end - begin) * triangle_bytes, std::byte(0));
-    parallel_for(end - begin, 4096, [&](size_t a, size_t b) {
-      for (size_t t = a; t < b; ++t) {
-        float v[12];
-        triangle(begin + t, v);
-        std::memcpy(bytes.data() + t * triangle_bytes, v, 48);
-      }
-    }, &context);
+    parallel_for(
+        end - begin, 4096,
+        [&](size_t a, size_t b) {
+          for (size_t t = a; t < b; ++t) {
+            float v[12];
+            triangle(begin + t, v);
+            std::memcpy(bytes.data() + t * triangle_bytes, v, 48);
+          }
+        },
+        &context);
     file.write(bytes.data(), bytes.size());
   }
   file.commit();

@@ -7,7 +7,9 @@ namespace sg {
 
 const SurfaceMesh& surface_to_write(const Dataset& dataset, std::string_view format, const std::string& path) {
   const auto* s = dataset.as<SurfaceMesh>();
-  if (!s) fail_usage(fmt::format("a {} file holds a surface, not a {} mesh", format, dataset.kind()), path, "extract its surface first: -f 'faces'");
+  if (!s)
+    fail_usage(fmt::format("a {} file holds a surface, not a {} mesh", format, dataset.kind()), path,
+               "extract its surface first: -f 'faces'");
   return *s;
 }
 
@@ -65,7 +67,7 @@ struct Distinct {
 
 // Replaces the corners [begin, end) by numbers of distinct ones; returns the first corner that is not finite, or `end`.
 size_t merge_chunk(const std::byte* corners, size_t begin, size_t end, size_t stride, int32_t* ids, Distinct& d) {
-  constexpr size_t slots = 65536;
+  constexpr size_t slots = 32768;  // more than corners in a chunk, so a free one is always found
   thread_local std::vector<uint32_t> table;
   table.assign(slots, 0);
   d.keys.clear(), d.hash.clear();
@@ -110,10 +112,13 @@ MergedPoints merge_corners(const std::byte* corners, size_t count, size_t stride
 
   // 1. Each chunk on its own: neighbouring triangles share most of their corners.
   std::vector<Distinct> distinct(chunks);
-  parallel_for(count, chunk_corners, [&](size_t begin, size_t end) {
-    const size_t bad = merge_chunk(corners, begin, end, stride, ids, distinct[begin / chunk_corners]);
-    if (bad != end) fail_data(fmt::format("triangle {} has a coordinate that is not a finite number", bad / 3), where);
-  }, &context);
+  parallel_for(
+      count, chunk_corners,
+      [&](size_t begin, size_t end) {
+        const size_t bad = merge_chunk(corners, begin, end, stride, ids, distinct[begin / chunk_corners]);
+        if (bad != end) fail_data(fmt::format("triangle {} has a coordinate that is not a finite number", bad / 3), where);
+      },
+      &context);
 
   // 2. The distinct corners of all chunks, sorted by hash into partitions; within one they keep their order.
   std::vector<size_t> first(chunks);

@@ -27,8 +27,8 @@ PolygonList surface_polygons(const SurfaceMesh& mesh);
 
 /// Distinct points in the order of their first use, and for every corner the number of its point.
 struct MergedPoints {
-  Array xyz;   ///< f32, 3 components
-  Array ids;   ///< i32, one per corner
+  Array xyz;  ///< f32, 3 components
+  Array ids;  ///< i32, one per corner
 };
 /// Merges corners whose coordinates are equal (-0 equals 0). Corner i begins at `corners + i / 3 * triangle_stride +
 /// i % 3 * 12` and is three little-endian floats, in any alignment. Parallel; the result depends on the corners alone.

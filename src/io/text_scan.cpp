@@ -91,14 +91,16 @@ bool scan_element(const char*& p, const char* end, T& v) {
       return true;
     }
     double d = 0;  // whole numbers written as "3.0" or "1e3"
-    if (!scan_number(p, end, d) || d != std::floor(d) || !(d >= double(std::numeric_limits<T>::min())) || !(d < double(std::numeric_limits<T>::max()))) return false;
+    if (!scan_number(p, end, d) || d != std::floor(d) || !(d >= double(std::numeric_limits<T>::min())) ||
+        !(d < double(std::numeric_limits<T>::max())))
+      return false;
     v = T(d);
     return true;
   }
 }
 
 template <class T>
-Array parse_typed(std::string_view text, size_t count, int components, const std::string& where) {
+Array parse_typed(std::string_view text, size_t count, int components, const std::string& where, size_t lines_before) {
   const size_t total = count * size_t(components);
   const std::vector<size_t> borders = text_chunks(text, 1 << 18, true);
   const size_t chunks = borders.size() - 1;
@@ -124,8 +126,9 @@ Array parse_typed(std::string_view text, size_t count, int components, const std
       if (p == end) break;
       const char* word = p;
       if (!scan_element(p, end, out[i]) || (p < end && !separates(*p)))
-        fail_data(fmt::format("line {}: '{}' is no {}", line_number(text, size_t(word - text.data())),
-                              std::string_view(word, std::min<size_t>(40, size_t(skip_word(word, end) - word))), element_name(element_type_of<T>())),
+        fail_data(fmt::format("line {}: '{}' is no {}", lines_before + line_number(text, size_t(word - text.data())),
+                              std::string_view(word, std::min<size_t>(40, size_t(skip_word(word, end) - word))),
+                              element_name(element_type_of<T>())),
                   where);
     }
   });
@@ -134,21 +137,21 @@ Array parse_typed(std::string_view text, size_t count, int components, const std
 
 }  // namespace
 
-Array parse_numbers(std::string_view text, ElementType type, size_t count, int components, const std::string& where) {
+Array parse_numbers(std::string_view text, ElementType type, size_t count, int components, const std::string& where, size_t lines_before) {
   size_t total = 0;
   if (__builtin_mul_overflow(count, size_t(components), &total) || total > text.size() / 2 + 1)
     fail_data(fmt::format("{} bytes of text cannot hold {} x {} numbers", text.size(), count, components), where);
   switch (type) {
-    case ElementType::u8: return parse_typed<uint8_t>(text, count, components, where);
-    case ElementType::i8: return parse_typed<int8_t>(text, count, components, where);
-    case ElementType::u16: return parse_typed<uint16_t>(text, count, components, where);
-    case ElementType::i16: return parse_typed<int16_t>(text, count, components, where);
-    case ElementType::u32: return parse_typed<uint32_t>(text, count, components, where);
-    case ElementType::i32: return parse_typed<int32_t>(text, count, components, where);
-    case ElementType::u64: return parse_typed<uint64_t>(text, count, components, where);
-    case ElementType::i64: return parse_typed<int64_t>(text, count, components, where);
-    case ElementType::f32: return parse_typed<float>(text, count, components, where);
-    case ElementType::f64: return parse_typed<double>(text, count, components, where);
+    case ElementType::u8: return parse_typed<uint8_t>(text, count, components, where, lines_before);
+    case ElementType::i8: return parse_typed<int8_t>(text, count, components, where, lines_before);
+    case ElementType::u16: return parse_typed<uint16_t>(text, count, components, where, lines_before);
+    case ElementType::i16: return parse_typed<int16_t>(text, count, components, where, lines_before);
+    case ElementType::u32: return parse_typed<uint32_t>(text, count, components, where, lines_before);
+    case ElementType::i32: return parse_typed<int32_t>(text, count, components, where, lines_before);
+    case ElementType::u64: return parse_typed<uint64_t>(text, count, components, where, lines_before);
+    case ElementType::i64: return parse_typed<int64_t>(text, count, components, where, lines_before);
+    case ElementType::f32: return parse_typed<float>(text, count, components, where, lines_before);
+    case ElementType::f64: return parse_typed<double>(text, count, components, where, lines_before);
   }
   fail_internal("parse_numbers: unknown element type");
 }

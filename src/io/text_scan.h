@@ -132,7 +132,9 @@ std::vector<size_t> text_chunks(std::string_view text, size_t grain, bool words 
 size_t line_number(std::string_view text, size_t at);
 
 /// The first `count` numbers of a text, blanks or commas between them, as packed tuples of `components`. Throws Error(data)
-/// naming `where` when there are fewer, a word is no number, or a number does not fit the type.
-Array parse_numbers(std::string_view text, ElementType type, size_t count, int components, const std::string& where);
+/// naming `where` when there are fewer, a word is no number, or a number does not fit the type; `lines_before` the text are
+/// counted in line numbers.
+Array parse_numbers(std::string_view text, ElementType type, size_t count, int components, const std::string& where,
+                    size_t lines_before = 0);
 
 }  // namespace sg

@@ -22,7 +22,9 @@ inline DatasetPtr read_file(const std::string& path, const ReadOptions& options 
   Context context;
   return std::get<DatasetPtr>(read_data(path, options, context));
 }
-inline DatasetPtr read_text(const std::string& name, std::string_view bytes, const ReadOptions& options = {}) { return read_file(temp_file(name, bytes), options); }
+inline DatasetPtr read_text(const std::string& name, std::string_view bytes, const ReadOptions& options = {}) {
+  return read_file(temp_file(name, bytes), options);
+}
 
 /// The message of the error that reading gives.
 inline std::string refusal(const std::string& name, std::string_view bytes, const ReadOptions& options = {}) {
@@ -70,7 +72,8 @@ auto with_threads(int n, F&& make) {
 /// Same type, shape and bytes.
 inline bool same_array(const Array& a, const Array& b) {
   const Array x = a.made_packed(), y = b.made_packed();
-  return x.type() == y.type() && x.count() == y.count() && x.components() == y.components() && (x.bytes() == 0 || std::memcmp(x.raw(), y.raw(), x.bytes()) == 0);
+  return x.type() == y.type() && x.count() == y.count() && x.components() == y.components() &&
+         (x.bytes() == 0 || std::memcmp(x.raw(), y.raw(), x.bytes()) == 0);
 }
 
 }  // namespace sg::test
