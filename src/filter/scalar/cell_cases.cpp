@@ -125,7 +125,7 @@ const CaseTable& lattice_cases() {
     for (uint8_t c : {0, 2, 4, 6}) s.edges.push_back({c, uint8_t(c + 1)});
     for (uint8_t c : {0, 1, 4, 5}) s.edges.push_back({c, uint8_t(c + 2)});
     for (uint8_t c : {0, 1, 2, 3}) s.edges.push_back({c, uint8_t(c + 4)});
-    for (int c = 0; c < 8; ++c) s.place.push_back({float(c & 1), float(c >> 1 & 1), float(c >> 2)});
+    for (int c = 0; c < 8; ++c) s.place.push_back({float(c & 1), float(c >> 1 & 1), float(c >> 2)}), s.mirror.push_back(uint8_t(c ^ 4));
     return s;
   }());
   return table;
@@ -149,6 +149,7 @@ CellShape prism(int n) {
   for (int c = 0; c < 2 * n; ++c) {
     const double angle = 2 * M_PI * double(c % n) / n;
     s.place.push_back({float(std::cos(angle)), float(std::sin(angle)), float(c / n)});
+    s.mirror.push_back(uint8_t((c + n) % (2 * n)));
   }
   return s;
 }
@@ -158,11 +159,11 @@ CellShape prism(int n) {
 const CaseTable* cell_cases(CellType type) {
   switch (type) {
     case CellType::tetra: {
-      static const CaseTable t({4, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}, {}, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}});
+      static const CaseTable t({4, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}, {}, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {1, 0, 2, 3}});
       return &t;
     }
     case CellType::pyramid: {
-      static const CaseTable t({5, {{0, 3, 2, 1}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}}, {}, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {.5f, .5f, 1}}});
+      static const CaseTable t({5, {{0, 3, 2, 1}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}}, {}, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {.5f, .5f, 1}}, {0, 3, 2, 1, 4}});
       return &t;
     }
     case CellType::wedge: {

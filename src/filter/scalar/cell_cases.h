@@ -27,6 +27,7 @@ struct CellShape {
   std::vector<std::vector<uint8_t>> faces;       ///< corners, counterclockwise seen from outside
   std::vector<std::array<uint8_t, 2>> edges;     ///< empty: in order of first appearance in the faces
   std::vector<std::array<float, 3>> place;       ///< corner positions of a regular cell: shorter diagonals are preferred
+  std::vector<uint8_t> mirror;                   ///< an order of the corners that turns the cell inside out
 
   void find_edges();
 };
@@ -74,7 +75,8 @@ class CaseTable {
 const CaseTable& lattice_cases();
 
 /// The table of a linear solid (tetra, pyramid, wedge, hexahedron, voxel, the two prisms) with its file's corner order; null for
-/// all other types. Files disagree on which way wedges turn, so users must look at the sign of a cell's volume. Made on first use.
+/// all other types. Files disagree on which way
+/// wedges turn, so users must look at the sign of a cell's volume and take mirrored cells in the order `mirror`. Made on first use.
 const CaseTable* cell_cases(CellType type);
 
 /// Does the bilinear function on a face with alternating signs join its corners >= 0? Values minus the isovalue, in order around.

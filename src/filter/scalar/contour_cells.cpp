@@ -31,7 +31,7 @@ struct Finder {
   bool skipped(size_t cell) const { return cell_ghost.count && (cell_ghost[cell] & (ghost_duplicate | ghost_refined_cell | ghost_hidden_cell)); }
   bool bad(int64_t p) const { return std::isnan(f(size_t(p))) || (point_ghost.count && (point_ghost[size_t(p)] & ghost_hidden_point)); }
 
-  // Positive when the faces, as listed, turn outwards.
+  // Six times the volume when the faces, as listed, turn outwards; negative for a mirrored cell.
   double volume(const CellShape& shape, const CellsView& cells, size_t cell) const {
     const Vec3 base = points.at(size_t(cells.point(cell, 0)));
     auto at = [&](uint8_t c) { return points.at(size_t(cells.point(cell, c))) - base; };
@@ -43,27 +43,32 @@ struct Finder {
 
   void solid(const CaseTable& table, const CellsView& cells, size_t cell, Found& out) const {
     const CellShape& shape = table.shape();
+    std::array<int64_t, 16> p;
+    uint32_t any = 0, every = 1;
+    for (size_t c = 0; c < size_t(shape.corners); ++c) {
+      p[c] = cells.point(cell, c);
+      const uint32_t in = f(size_t(p[c])) >= value;
+      any |= in, every &= in;
+    }
+    if (!any || every) return;
+    // The rules for segments and diagonals look at cells from outside, so mirrored ones are turned into proper ones.
+    if (volume(shape, cells, cell) < 0)
+      for (size_t c = 0; c < size_t(shape.corners); ++c) p[c] = cells.point(cell, shape.mirror[c]);
     uint32_t pattern = 0;
-    for (int c = 0; c < shape.corners; ++c) pattern |= uint32_t(f(size_t(cells.point(cell, size_t(c)))) >= value) << c;
-    if (pattern == 0 || pattern == (1u << shape.corners) - 1) return;
-    for (int c = 0; c < shape.corners; ++c)
-      if (bad(cells.point(cell, size_t(c)))) return;
+    for (int c = 0; c < shape.corners; ++c) {
+      if (bad(p[size_t(c)])) return;
+      pattern |= uint32_t(f(size_t(p[size_t(c)])) >= value) << c;
+    }
     uint32_t joined = 0;
     for (uint32_t m = table.ambiguous(pattern); m; m &= m - 1) {
       const auto& face = shape.faces[size_t(std::countr_zero(m))];
       double v[4];
-      for (size_t c = 0; c < 4; ++c) v[c] = f(size_t(cells.point(cell, face[c]))) - value;
+      for (size_t c = 0; c < 4; ++c) v[c] = f(size_t(p[face[c]])) - value;
       joined |= uint32_t(joined_inside(v[0], v[1], v[2], v[3])) << std::countr_zero(m);
     }
     const auto edges = table.triangles(pattern, joined);
-    const bool flip = volume(shape, cells, cell) < 0;
-    for (size_t t = 0; t < edges.size(); t += 3) {
-      for (size_t k = 0; k < 3; ++k) {
-        const auto& e = shape.edges[edges[t + (flip ? (3 - k) % 3 : k)]];
-        out.triangles.push_back(edge_key(cells.point(cell, e[0]), cells.point(cell, e[1])));
-      }
-      out.triangle_cells.push_back(uint32_t(cell));
-    }
+    for (uint8_t e : edges) out.triangles.push_back(edge_key(p[shape.edges[e][0]], p[shape.edges[e][1]]));
+    out.triangle_cells.insert(out.triangle_cells.end(), edges.size() / 3, uint32_t(cell));
   }
 
   // A polygon: a line from where the boundary leaves the inside to where it came in, so that the inside lies on the left.
