@@ -13,10 +13,21 @@ struct CellsOf {
   std::vector<double> xyz;
   std::vector<int32_t> ids, offsets{0};
   std::vector<uint8_t> types;
+  std::vector<std::vector<int>> faces;
+  std::vector<int64_t> of_cell{0};
+  void polyhedron(const std::vector<int>& p, const std::vector<std::vector<int>>& local) {
+    cell(CellType::polyhedron, p);
+    for (const auto& f : local) {
+      auto& face = faces.emplace_back();
+      for (int k : f) face.push_back(p[size_t(k)]);
+    }
+    of_cell.back() = int64_t(faces.size());
+  }
   void cell(CellType t, const std::vector<int>& p) {
     ids.insert(ids.end(), p.begin(), p.end());
     offsets.push_back(int32_t(ids.size()));
     types.push_back(uint8_t(t));
+    of_cell.push_back(int64_t(faces.size()));
   }
   int point(Vec3 p) {
     xyz.insert(xyz.end(), {p.x, p.y, p.z});
@@ -42,8 +53,10 @@ DatasetPtr solid_mesh(const std::string& kind, int n, double r, F&& f, double be
       for (int i = 0; i < n; ++i) {
         const int a = i + s * (j + s * k);
         const int c[8] = {a, a + 1, a + 1 + s, a + s, a + s * s, a + 1 + s * s, a + 1 + s + s * s, a + s + s * s};
-        const std::string what = kind == "mixed" ? (i + j + k) % 2 ? "pyramid" : "hexahedron" : kind;
+        const std::string what = kind == "mixed" ? (i + j + k) % 2 ? "pyramid" : i % 2 ? "polyhedron" : "hexahedron" : kind;
         if (what == "hexahedron") m.cell(CellType::hexahedron, {c[0], c[1], c[2], c[3], c[4], c[5], c[6], c[7]});
+        if (what == "polyhedron")  // some faces turned inwards, as files do
+          m.polyhedron({c[0], c[1], c[2], c[3], c[4], c[5], c[6], c[7]}, {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 4, 5, 1}, {3, 7, 6, 2}, {0, 4, 7, 3}, {1, 2, 6, 5}});
         if (what == "voxel") m.cell(CellType::voxel, {c[0], c[1], c[3], c[2], c[4], c[5], c[7], c[6]});
         if (what == "wedge") {
           m.cell(CellType::wedge, {c[0], c[1], c[2], c[4], c[5], c[6]});
@@ -66,13 +79,23 @@ DatasetPtr solid_mesh(const std::string& kind, int n, double r, F&& f, double be
   mesh.cells.connectivity = Array::from_vector(std::move(m.ids));
   mesh.cells.offsets = Array::from_vector(std::move(m.offsets));
   mesh.types = Array::from_vector(std::move(m.types));
+  if (!m.faces.empty()) {
+    std::vector<int64_t> face_ids, face_offsets{0};
+    for (const auto& face : m.faces) {
+      face_ids.insert(face_ids.end(), face.begin(), face.end());
+      face_offsets.push_back(int64_t(face_ids.size()));
+    }
+    mesh.faces.connectivity = Array::from_vector(std::move(face_ids));
+    mesh.faces.offsets = Array::from_vector(std::move(face_offsets));
+    mesh.polyhedron_faces = Array::from_vector(std::move(m.of_cell));
+  }
   FieldSet fields;
   fields.add({"f", Association::point, Array::from_vector(std::move(v)), "", Role::scalars});
   return make_dataset(std::move(mesh), std::move(fields));
 }
 
 inline const std::vector<std::string>& solid_kinds() {
-  static const std::vector<std::string> kinds{"hexahedron", "voxel", "tetra", "wedge", "pyramid", "mixed"};
+  static const std::vector<std::string> kinds{"hexahedron", "voxel", "tetra", "wedge", "pyramid", "polyhedron", "mixed"};
   return kinds;
 }
 
