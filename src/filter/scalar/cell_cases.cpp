@@ -82,39 +82,49 @@ std::vector<std::vector<uint8_t>> CaseTable::loops(uint32_t pattern, uint32_t jo
   return r;
 }
 
-// The cheapest triangulation of a closed loop (dynamic programming over its chords): no chord along a face, or else from entry to
-// entry, then short ones.
-void CaseTable::fill(const std::vector<uint8_t>& loop) {
-  const size_t n = loop.size();
-  auto middle = [&](uint8_t e, size_t c) { return 0.5 * (double(shape_.place[shape_.edges[e][0]][c]) + double(shape_.place[shape_.edges[e][1]][c])); };
-  auto chord = [&](size_t a, size_t b) {
-    if (b - a == 1 || b - a == n - 1) return 0.0;
-    const uint32_t face = shared_face(loop[a], loop[b]);
-    const bool entries = face == shared_face(loop[a], loop[a + 1]) && face == shared_face(loop[b], loop[(b + 1) % n]);
-    double d = face == 0 ? 0.0 : entries ? 1e3 : 1e6;
-    for (size_t c = 0; c < 3; ++c) d += std::pow(middle(loop[a], c) - middle(loop[b], c), 2);
-    return d;
-  };
-  std::vector<std::vector<double>> cost(n, std::vector<double>(n, 0.0));
-  std::vector<std::vector<size_t>> apex(n, std::vector<size_t>(n, 0));
+// Dynamic programming over the diagonals: the best filling of the places a..b for all a < b, short spans first.
+std::vector<std::array<uint32_t, 3>> fill_loop(size_t n, const std::function<double(size_t, size_t)>& cost) {
+  auto diagonal = [&](size_t a, size_t b) { return b - a == 1 || b - a == n - 1 ? 0.0 : cost(a, b); };
+  std::vector<double> best(n * n, 0.0);
+  std::vector<size_t> apex(n * n, 0);
   for (size_t span = 2; span < n; ++span)
     for (size_t a = 0; a + span < n; ++a) {
       const size_t b = a + span;
-      cost[a][b] = HUGE_VAL;
+      double& least = best[a * n + b];
+      least = HUGE_VAL;
       for (size_t m = a + 1; m < b; ++m) {
-        const double c = cost[a][m] + cost[m][b] + chord(a, m) + chord(m, b);
-        if (c < cost[a][b] - 1e-9) cost[a][b] = c, apex[a][b] = m;
+        const double c = best[a * n + m] + best[m * n + b] + diagonal(a, m) + diagonal(m, b);
+        if (c < least - 1e-9) least = c, apex[a * n + b] = m;
       }
     }
-  if (cost[0][n - 1] >= 1e6) bad_ += int(cost[0][n - 1] / 1e6);
+  std::vector<std::array<uint32_t, 3>> r;
   auto emit = [&](auto&& self, size_t a, size_t b) -> void {
     if (b - a < 2) return;
-    const size_t m = apex[a][b];
-    edges_.insert(edges_.end(), {loop[a], loop[m], loop[b]});
+    const size_t m = apex[a * n + b];
+    r.push_back({uint32_t(a), uint32_t(m), uint32_t(b)});
     self(self, a, m);
     self(self, m, b);
   };
-  emit(emit, 0, n - 1);
+  if (n >= 3) emit(emit, 0, n - 1);
+  return r;
+}
+
+// No diagonal along a face, or else from entry to entry; then short ones.
+void CaseTable::fill(const std::vector<uint8_t>& loop) {
+  const size_t n = loop.size();
+  auto middle = [&](uint8_t e, size_t c) { return 0.5 * (double(shape_.place[shape_.edges[e][0]][c]) + double(shape_.place[shape_.edges[e][1]][c])); };
+  auto cost = [&](size_t a, size_t b) {
+    const uint32_t face = shared_face(loop[a], loop[b]);
+    const bool entries = face == shared_face(loop[a], loop[a + 1]) && face == shared_face(loop[b], loop[(b + 1) % n]);
+    double d = face == 0 ? 0.0 : face_penalty(entries);
+    for (size_t c = 0; c < 3; ++c) d += std::pow(middle(loop[a], c) - middle(loop[b], c), 2);
+    return d;
+  };
+  for (const auto& t : fill_loop(n, cost)) {
+    edges_.insert(edges_.end(), {loop[t[0]], loop[t[1]], loop[t[2]]});
+    for (auto [a, b] : {std::pair{t[0], t[1]}, {t[1], t[2]}, {t[0], t[2]}})
+      if (b - a > 1 && b - a < n - 1 && cost(a, b) >= face_penalty(false)) ++bad_;
+  }
 }
 
 const CaseTable& lattice_cases() {
@@ -125,7 +135,7 @@ const CaseTable& lattice_cases() {
     for (uint8_t c : {0, 2, 4, 6}) s.edges.push_back({c, uint8_t(c + 1)});
     for (uint8_t c : {0, 1, 4, 5}) s.edges.push_back({c, uint8_t(c + 2)});
     for (uint8_t c : {0, 1, 2, 3}) s.edges.push_back({c, uint8_t(c + 4)});
-    for (int c = 0; c < 8; ++c) s.place.push_back({float(c & 1), float(c >> 1 & 1), float(c >> 2)});
+    for (int c = 0; c < 8; ++c) s.place.push_back({float(c & 1), float(c >> 1 & 1), float(c >> 2)}), s.mirror.push_back(uint8_t(c ^ 4));
     return s;
   }());
   return table;
@@ -149,6 +159,7 @@ CellShape prism(int n) {
   for (int c = 0; c < 2 * n; ++c) {
     const double angle = 2 * M_PI * double(c % n) / n;
     s.place.push_back({float(std::cos(angle)), float(std::sin(angle)), float(c / n)});
+    s.mirror.push_back(uint8_t((c + n) % (2 * n)));
   }
   return s;
 }
@@ -158,11 +169,11 @@ CellShape prism(int n) {
 const CaseTable* cell_cases(CellType type) {
   switch (type) {
     case CellType::tetra: {
-      static const CaseTable t({4, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}, {}, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}});
+      static const CaseTable t({4, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}, {}, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {1, 0, 2, 3}});
       return &t;
     }
     case CellType::pyramid: {
-      static const CaseTable t({5, {{0, 3, 2, 1}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}}, {}, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {.5f, .5f, 1}}});
+      static const CaseTable t({5, {{0, 3, 2, 1}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}}, {}, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {.5f, .5f, 1}}, {0, 3, 2, 1, 4}});
       return &t;
     }
     case CellType::wedge: {

@@ -14,7 +14,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <memory>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -27,6 +27,7 @@ struct CellShape {
   std::vector<std::vector<uint8_t>> faces;       ///< corners, counterclockwise seen from outside
   std::vector<std::array<uint8_t, 2>> edges;     ///< empty: in order of first appearance in the faces
   std::vector<std::array<float, 3>> place;       ///< corner positions of a regular cell: shorter diagonals are preferred
+  std::vector<uint8_t> mirror;                   ///< an order of the corners that turns the cell inside out
 
   void find_edges();
 };
@@ -74,8 +75,15 @@ class CaseTable {
 const CaseTable& lattice_cases();
 
 /// The table of a linear solid (tetra, pyramid, wedge, hexahedron, voxel, the two prisms) with its file's corner order; null for
-/// all other types. Files disagree on which way wedges turn, so users must look at the sign of a cell's volume. Made on first use.
+/// all other types. Files disagree on which way
+/// wedges turn, so users must look at the sign of a cell's volume and take mirrored cells in the order `mirror`. Made on first use.
 const CaseTable* cell_cases(CellType type);
+
+/// The cheapest triangulation of a loop of n places: triangles as places in the loop, in its direction. cost(a, b), a < b, is that of
+/// the diagonal between two places that are no neighbours.
+std::vector<std::array<uint32_t, 3>> fill_loop(size_t n, const std::function<double(size_t, size_t)>& cost);
+/// What a diagonal that lies in a face adds to its squared length (in units of the cell's size), by the rule above.
+inline double face_penalty(bool from_entry_to_entry) { return from_entry_to_entry ? 1e3 : 1e6; }
 
 /// Does the bilinear function on a face with alternating signs join its corners >= 0? Values minus the isovalue, in order around.
 inline bool joined_inside(double a, double b, double c, double d) {
