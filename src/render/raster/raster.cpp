@@ -271,7 +271,7 @@ class Drawing {
 }  // namespace
 }  // namespace raster
 
-FragmentLists rasterize(const PreparedScene& scene, const Projection& projection, double pixel_scale, Frame& frame, Context& context) {
+FragmentLists rasterize_prepared(const PreparedScene& scene, const Projection& projection, double pixel_scale, Frame& frame, Context& context) {
   if (frame.width != projection.width || frame.height != projection.height)
     fail_usage(fmt::format("the frame is {}x{}, the projection {}x{}", frame.width, frame.height, projection.width, projection.height), "rasterize", "make both for the same size");
   if (!(pixel_scale > 0)) fail_usage(fmt::format("pixel scale {} is no size", pixel_scale), "rasterize", "it must be above 0");
@@ -279,7 +279,7 @@ FragmentLists rasterize(const PreparedScene& scene, const Projection& projection
 }
 
 FragmentLists rasterize(const Scene& scene, const Projection& projection, double pixel_scale, Frame& frame, Context& context) {
-  return rasterize(*prepare_scene(scene, context), projection, pixel_scale, frame, context);
+  return rasterize_prepared(*prepare_scene(scene, context), projection, pixel_scale, frame, context);
 }
 
 }  // namespace sg
