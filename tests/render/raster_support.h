@@ -83,7 +83,7 @@ struct Picture {
   size_t covered() const { return size_t(std::count_if(frame.ids.begin(), frame.ids.end(), [](uint32_t i) { return i > 0; })); }
 };
 
-inline Picture raster(const Scene& scene, const Camera& camera, int w, int h, double pixel_scale = 1) {
+inline Picture draw(const Scene& scene, const Camera& camera, int w, int h, double pixel_scale = 1) {
   Picture p;
   p.frame = Frame(w, h);
   Context context;

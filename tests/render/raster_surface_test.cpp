@@ -25,7 +25,7 @@ Camera slanted() {
 }  // namespace
 
 TEST_CASE("raster: an empty scene leaves the frame as it was") {
-  const Picture p = raster({}, front(), 40, 30);
+  const Picture p = draw({}, front(), 40, 30);
   CHECK(p.covered() == 0);
   CHECK(p.fragments.empty());
   for (float d : p.frame.depth) CHECK(d == infinite);
@@ -38,7 +38,7 @@ TEST_CASE("raster: values and depth on a slanted quad are those of the ray's hit
   s.items.push_back(q);
   const Camera c = slanted();
   const Projection projection = make_projection(c, 300, 200);
-  const Picture p = raster(s, c, 300, 200);
+  const Picture p = draw(s, c, 300, 200);
   CHECK(p.covered() > 5000);
   double worst_value = 0, worst_depth = 0;
   for (int y = 0; y < 200; ++y)
@@ -63,7 +63,7 @@ TEST_CASE("raster: the silhouette of a sphere has the area of its cone") {
   for (int k = 0; k < 3; ++k) {
     const int n = 100 << k;
     const double scale = make_projection(c, n, n).scale, r = scale * std::tan(std::asin(0.2));
-    errors[k] = std::abs(double(raster(s, c, n, n).covered()) / (pi * r * r) - 1), sizes[k] = 1.0 / n;
+    errors[k] = std::abs(double(draw(s, c, n, n).covered()) / (pi * r * r) - 1), sizes[k] = 1.0 / n;
   }
   (void)sizes;
   CHECK(errors[0] < 4e-3);
@@ -77,7 +77,7 @@ TEST_CASE("raster: a facing quad has the colour of the lighting formula") {
   s.items.push_back(q);
   s.lights = {{{0.3, 0.4, 1.2}, true, 0.7f}, {{-1, 0, 0.1}, true, 0.3f}, {{0, 0, -1}, true, 5.0f}};  // the last shines from behind
   const Camera c = front_parallel(4);
-  const Picture p = raster(s, c, 64, 64);
+  const Picture p = draw(s, c, 64, 64);
   double diffuse = 0, specular = 0;
   for (const Light& l : {s.lights[0], s.lights[1]}) {
     const double cosine = normalize(l.direction).z;  // normal and viewer are both z: the reflection's cosine is the same
@@ -89,7 +89,7 @@ TEST_CASE("raster: a facing quad has the colour of the lighting formula") {
   // The other side of the quad is lit alike.
   Camera back = c;
   back.position = {0, 0, -10};
-  const Picture b = raster(s, back, 64, 64);
+  const Picture b = draw(s, back, 64, 64);
   for (int k = 0; k < 3; ++k) CHECK(b.rgba(32, 32)[k] == p.rgba(32, 32)[k]);
 }
 
@@ -99,10 +99,10 @@ TEST_CASE("raster: a light fixed in the world does not turn with the camera") {
   q.material.specular = 0;
   s.items.push_back(q);
   s.lights = {{{0, 0, 1}, false, 0.5f}};
-  const float head_on = raster(s, front_parallel(4), 32, 32).rgba(16, 16)[0];
+  const float head_on = draw(s, front_parallel(4), 32, 32).rgba(16, 16)[0];
   Camera c = front_parallel(4);
   c.position = {5, 0, 5};
-  CHECK(raster(s, c, 32, 32).rgba(16, 16)[0] == doctest::Approx(double(head_on)));
+  CHECK(draw(s, c, 32, 32).rgba(16, 16)[0] == doctest::Approx(double(head_on)));
 }
 
 TEST_CASE("raster: computed normals are smooth on a sphere and split at a cube's edges") {
@@ -110,7 +110,7 @@ TEST_CASE("raster: computed normals are smooth on a sphere and split at a cube's
   SurfaceItem ball = item(sphere(60, 1));
   ball.material.specular = 0, ball.material.ambient = 0, ball.material.diffuse = 1, ball.color = {1, 1, 1};
   s.items = {ball}, s.lights = {{{0, 0, 1}, true, 1}};
-  const Picture p = raster(s, front_parallel(2.5), 250, 250);
+  const Picture p = draw(s, front_parallel(2.5), 250, 250);
   double worst = 0;
   for (int y = 0; y < 250; ++y)
     for (int x = 0; x < 250; ++x) {
@@ -128,14 +128,14 @@ TEST_CASE("raster: computed normals are smooth on a sphere and split at a cube's
   Camera c = front_parallel(5);
   c.position = {4, 0, 10};  // sees the faces +z and +x
   s.items = {cube};
-  const Picture smooth = raster(s, c, 100, 100);
+  const Picture smooth = draw(s, c, 100, 100);
   cube.flat = true, s.items = {cube};
-  const Picture flat = raster(s, c, 100, 100);
+  const Picture flat = draw(s, c, 100, 100);
   double differ = 0;
   for (size_t i = 0; i < smooth.frame.rgba.size(); ++i) differ = std::max(differ, std::abs(double(smooth.frame.rgba[i]) - double(flat.frame.rgba[i])));
   CHECK(differ < 1e-6);  // edges of 90 degrees are all split
   cube.flat = false, cube.feature_angle = 100, s.items = {cube};
-  CHECK_FALSE(same_bytes(raster(s, c, 100, 100).frame.rgba, flat.frame.rgba));
+  CHECK_FALSE(same_bytes(draw(s, c, 100, 100).frame.rgba, flat.frame.rgba));
 }
 
 TEST_CASE("raster: cell colours are flat, direct colours exact, NaN and out-of-range values take their own") {
@@ -147,20 +147,20 @@ TEST_CASE("raster: cell colours are flat, direct colours exact, NaN and out-of-r
   q.color_by = grey_by("cell", 0, 1), q.color_by->association = Association::cell, q.color_by->scale.nan = {1, 0, 1};
   Scene s;
   s.items = {q};
-  Picture p = raster(s, front_parallel(2), 64, 64);
+  Picture p = draw(s, front_parallel(2), 64, 64);
   CHECK(p.rgba(48, 40)[0] == doctest::Approx(0.25).epsilon(1e-3));  // lower right triangle
   CHECK(p.rgba(10, 20)[0] == 1);
   CHECK(p.rgba(10, 20)[1] == 0);
   q.color_by = FieldColor{}, q.color_by->field = "rgb", q.color_by->direct = true, s.items = {q};
-  p = raster(s, front_parallel(2), 64, 64);
+  p = draw(s, front_parallel(2), 64, 64);
   CHECK(p.rgba(20, 20)[0] == 1);
   CHECK(p.rgba(20, 20)[1] == 0);
   q.color_by = grey_by("wide", -1, 1), q.color_by->scale.below = Vec3f{0, 1, 0}, q.color_by->scale.above = Vec3f{0, 0, 1}, s.items = {q};
-  p = raster(s, front_parallel(2), 64, 64);
+  p = draw(s, front_parallel(2), 64, 64);
   CHECK(p.rgba(32, 60)[2] == 1);  // bottom: 5, above
   CHECK(p.rgba(32, 3)[1] == 1);   // top: -5, below
   q.color_by->scale.clamp = false, s.items = {q};
-  p = raster(s, front_parallel(2), 64, 64);
+  p = draw(s, front_parallel(2), 64, 64);
   CHECK(p.id(32, 60) == 0);  // out of range and not clamped: not there
   CHECK(p.id(32, 32) == 1);
   CHECK(p.id(32, 3) == 0);
@@ -172,7 +172,7 @@ TEST_CASE("raster: a logarithmic scale colours by value, not by blended colours"
   q.color_by = grey_by("v", 1, 100), q.color_by->scale.kind = ScaleKind::log;
   Scene s;
   s.items = {q};
-  const Picture p = raster(s, front_parallel(2), 64, 64);
+  const Picture p = draw(s, front_parallel(2), 64, 64);
   for (int x = 1; x < 63; ++x) CHECK(p.rgba(x, 30)[0] == doctest::Approx(std::log10(1 + 99 * (x + 0.5) / 64) / 2).epsilon(1e-3));
 }
 
@@ -184,7 +184,7 @@ TEST_CASE("raster: clipping at the near plane leaves what lies beyond it") {
   c.target = {0, 0, -1}, c.near_plane = 2;
   const int n = 200;
   const Projection projection = make_projection(c, n, n);
-  const Picture p = raster(s, c, n, n);
+  const Picture p = draw(s, c, n, n);
   size_t wrong = 0, inside = 0;
   for (int y = 0; y < n; ++y)
     for (int x = 0; x < n; ++x) {
@@ -208,7 +208,7 @@ TEST_CASE("raster: data at 1e7 looks like data at zero") {
   for (int k = 0; k < 3; ++k) c.position[k] = std::round(c.position[k] * 1024) / 1024, c.target[k] = std::round(c.target[k] * 1024) / 1024;
   d = c;
   d.position += shift, d.target += shift;
-  const Picture p = raster(a, c, 300, 200), q = raster(b, d, 300, 200);
+  const Picture p = draw(a, c, 300, 200), q = draw(b, d, 300, 200);
   CHECK(p.covered() > 8000);
   CHECK(same_bytes(p, q));
 }
@@ -225,7 +225,7 @@ TEST_CASE("raster: f64 positions at 1e7 do not jitter") {
   a.items = {item(small)}, b.items = {item(make_dataset(m))};
   Camera c = fit_camera(scene_bounds(a), {1, 2, 3}, {0, 0, 1}, 1.5), d = c;
   d.position += Vec3{1e7, 1e7, 1e7}, d.target += Vec3{1e7, 1e7, 1e7};
-  const Picture p = raster(a, c, 300, 200), q = raster(b, d, 300, 200);
+  const Picture p = draw(a, c, 300, 200), q = draw(b, d, 300, 200);
   double sum = 0;
   for (size_t i = 0; i < p.frame.rgba.size(); ++i) sum += std::abs(double(p.frame.rgba[i]) - double(q.frame.rgba[i]));
   CHECK(sum / double(p.frame.rgba.size()) < 1e-4);
@@ -241,20 +241,20 @@ TEST_CASE("raster: degenerate, huge and not-a-number triangles do no harm") {
                                   -big, -big, 0, big, -big, 0, 0, big, 0,
                                   -1e6f, -1e6f, -1, 1e6f, -1e6f, -1, 0, 1e6f, -1},
                                  {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17})));
-  const Picture p = raster(s, front(), 64, 64);
+  const Picture p = draw(s, front(), 64, 64);
   CHECK(p.covered() == 64 * 64);  // the last one covers all
   CHECK(p.depth(32, 32) == doctest::Approx(11).epsilon(1e-5));
   // Seen edge-on and from within its plane.
   Camera c = front();
   c.position = {3, 0, 0}, c.target = {0, 0, 0};
-  const Picture edge = raster(s, c, 64, 64);
+  const Picture edge = draw(s, c, 64, 64);
   for (float v : edge.frame.rgba) CHECK(std::isfinite(v));
 }
 
 TEST_CASE("raster: of two surfaces at the same place the first is seen; ids tell the items") {
   Scene s;
   s.items = {item(quad(1, 0)), item(quad(1, 0)), item(quad(0.5, 1))};
-  const Picture p = raster(s, front_parallel(4), 64, 64);
+  const Picture p = draw(s, front_parallel(4), 64, 64);
   CHECK(p.id(20, 20) == 1);
   CHECK(p.id(32, 32) == 3);
   CHECK(p.id(2, 2) == 0);
@@ -265,7 +265,7 @@ TEST_CASE("raster: of two surfaces at the same place the first is seen; ids tell
 TEST_CASE("raster: polygons, strips, 64-bit ids, strided positions and ghosts draw the same quad") {
   Scene s;
   s.items = {item(quad(1, 0))};
-  const Picture p = raster(s, front_parallel(4), 64, 64);
+  const Picture p = draw(s, front_parallel(4), 64, 64);
   const std::vector<float> corners = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
   SurfaceMesh polygon = triangle_mesh(corners, {});
   polygon.polygons = {Array::from_vector<int64_t>({0, 1, 2, 3}), Array::from_vector<int64_t>({0, 4}), 0};
@@ -274,7 +274,7 @@ TEST_CASE("raster: polygons, strips, 64-bit ids, strided positions and ghosts dr
   strip.strips = {Array::from_vector<int64_t>({0, 1, 3, 2}), Array::from_vector<int64_t>({0, 4}), 0};
   for (const SurfaceMesh& m : {polygon, strip}) {
     s.items = {item(make_dataset(m))};
-    const Picture q = raster(s, front_parallel(4), 64, 64);
+    const Picture q = draw(s, front_parallel(4), 64, 64);
     CHECK(q.frame.ids == p.frame.ids);
     CHECK(q.frame.rgba == p.frame.rgba);
   }
@@ -282,7 +282,7 @@ TEST_CASE("raster: polygons, strips, 64-bit ids, strided positions and ghosts dr
   parts.mesh = triangle_mesh(corners, {0, 1, 2, 0, 2, 3});
   parts.cell_ghost = Array::from_vector<uint8_t>({0, ghost_hidden_cell});
   s.items = {item(make_dataset(parts))};
-  const Picture half = raster(s, front_parallel(4), 64, 64);
+  const Picture half = draw(s, front_parallel(4), 64, 64);
   CHECK(half.covered() < p.covered() * 6 / 10);
   CHECK(half.covered() > p.covered() * 4 / 10);
 }
@@ -291,7 +291,7 @@ TEST_CASE("raster: mistakes are told") {
   Scene s;
   SurfaceItem q = item(quad(1, 0, point_field("temperature", {1, 2, 3, 4})));
   q.color_by = grey_by("tempe", 0, 1), s.items = {q};
-  auto error = [&] { return error_of([&] { raster(s, front(), 8, 8); }); };
+  auto error = [&] { return error_of([&] { draw(s, front(), 8, 8); }); };
   CHECK(error().find("temperature") != std::string::npos);
   q.color_by = grey_by("temperature", 0, 1), q.color_by->component = 2, s.items = {q};
   CHECK(error().find("component") != std::string::npos);
