@@ -64,10 +64,13 @@ Transfer::Transfer(const ColorScale& scale, const OpacityCurve& curve, double un
   const ColorTable colors = color_table(scale);
   steps_.resize(size_t(count_) + 3), media_.resize(size_t(count_) + 3), drawn_before_.resize(size_t(count_) + 4);
   const double entry = 1 / double(per_axis_);
+  const double beyond = std::max(1e-3 * (last - first), 1e-9 * std::max(std::abs(first), std::abs(last)));
   for (int i = 0; i < count_ + 3; ++i) {
     double value = double(value_on_axis(double(first_) + (double(i) - 0.5) * entry)) + base;
-    if (i == 0) value = std::nextafter(first, -HUGE_VAL);
-    if (i == count_ + 1) value = std::nextafter(last, HUGE_VAL);
+    // Beyond the ends opacity and colour are constant: one takes effect at once, the other where its rounding allows.
+    double shade_at = value;
+    if (i == 0) value = std::nextafter(first, -HUGE_VAL), shade_at = kind_ == ScaleKind::log ? 0.999 * first : first - beyond;
+    if (i == count_ + 1) value = std::nextafter(last, HUGE_VAL), shade_at = last + beyond;
     if (i > 0 && i <= count_) {
       value = std::clamp(value, first, last);
       if (!scale.labels.empty()) {  // the nearest label, if this entry is near enough to be meant
@@ -76,8 +79,9 @@ Transfer::Transfer(const ColorScale& scale, const OpacityCurve& curve, double un
           if (std::abs(l - value) < std::abs(best - value)) best = l;
         if (std::abs(best - value) <= std::max(0.5 * entry, 1e-3)) value = best;
       }
+      shade_at = value;
     }
-    const Vec4f color = i == count_ + 2 ? Vec4f{} : colors.at(scale.position(value));
+    const Vec4f color = i == count_ + 2 ? Vec4f{} : colors.at(scale.position(shade_at));
     const double opacity = i == count_ + 2 ? 0 : std::clamp(curve.at(value), 0.0, 1.0) * double(color.w);
     const double density = opacity < 1 ? minus_log_one_minus(opacity) / unit : 1e30;
     const double pass = exp_negative(density * step), alpha = 1 - pass;
@@ -89,8 +93,10 @@ Transfer::Transfer(const ColorScale& scale, const OpacityCurve& curve, double un
 
 bool Transfer::clear(float lo, float hi) const {
   if (!(lo <= hi)) return true;
-  // Interpolation may leave [lo, hi] by a rounding error: one entry more on each side.
-  const int a = std::max(index(lo) - 1, 0), b = std::min(index(hi) + 1, count_ + 1);
+  // Interpolation may leave [lo, hi] by rounding errors.
+  const float slack = 1e-6f * (std::abs(lo) + std::abs(hi));
+  if (!std::isfinite(slack)) return drawn_before_.back() == 0;
+  const int a = index(lo - slack), b = index(hi + slack);
   return drawn_before_[size_t(b) + 1] == drawn_before_[size_t(a)];
 }
 

@@ -37,7 +37,8 @@ class Transfer {
 
   int index(float stored) const {
     const float at = (axis(stored) - first_) * per_axis_;
-    if (!(at >= 0)) return stored == stored ? 0 : count_ + 2;
+    if (stored != stored) return count_ + 2;
+    if (!(at >= 0)) return 0;
     return at > float(count_) ? count_ + 1 : std::min(int(at), count_ - 1) + 1;
   }
   const Step* steps() const { return steps_.data(); }
