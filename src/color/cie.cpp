@@ -12,7 +12,7 @@ constexpr double pi = 3.14159265358979323846;
 constexpr double degree = pi / 180;
 
 constexpr Vec3 xyz_of(double x, double y) { return {x / y, 1, (1 - x - y) / y}; }
-constexpr Vec3 white = xyz_of(0.3127, 0.3290);  // D65
+constexpr Vec3 white{0.95047, 1, 1.08883};  // D65, 2 degrees (ASTM E308)
 
 /// Columns are the primaries' XYZ scaled so that R = G = B = 1 gives D65.
 struct Matrices {

@@ -12,7 +12,7 @@ Vec3 srgb_to_linear(Vec3 encoded);
 Vec3 linear_to_srgb(Vec3 linear);
 
 /// XYZ of linear sRGB, relative to Y = 1 of white. The matrix follows from the primaries (.64,.33), (.30,.60), (.15,.06)
-/// and D65 = (.3127,.3290).
+/// and D65 = (.95047, 1, 1.08883) (ASTM E308).
 Vec3 linear_to_xyz(Vec3 linear);
 Vec3 xyz_to_linear(Vec3 xyz);
 

@@ -27,7 +27,8 @@ TEST_CASE("image: the sRGB curve is the standard's") {
   CHECK(srgb_encode(0.0031308f) == doctest::Approx(0.040449936f));
   CHECK(srgb_encode(0.5f) == doctest::Approx(0.7353569f));
   CHECK(srgb_decode(0.5f) == doctest::Approx(0.2140411f));
-  for (int i = 0; i <= 1000; ++i) CHECK(srgb_decode(srgb_encode(float(i) / 1000)) == doctest::Approx(float(i) / 1000).epsilon(1e-5).scale(1e-3));
+  for (int i = 0; i <= 1000; ++i)
+    CHECK(srgb_decode(srgb_encode(float(i) / 1000)) == doctest::Approx(float(i) / 1000).epsilon(1e-5).scale(1e-3));
 }
 
 TEST_CASE("image: 8-bit codes equal the rounded formula for floats of every size") {
