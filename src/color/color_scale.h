@@ -16,20 +16,23 @@ struct ColorScale {
   Colormap map;
   double lo = 0, hi = 1;
   ScaleKind kind = ScaleKind::linear;
-  double linear_threshold = 0;         ///< symlog: linear within +-threshold (> 0)
-  std::optional<Vec3f> below, above;   ///< sRGB; empty = the end colour (clamped)
-  Vec3f nan{0.6f, 0.6f, 0.6f};         ///< sRGB
-  bool clamp = true;                   ///< false: values out of range are not drawn (transparent)
-  std::vector<double> labels;          ///< categorical: the values, in order; a value takes the colour of its place
+  double linear_threshold = 0;           ///< symlog: linear within +-threshold; 0 = a thousandth of the larger end
+  std::optional<Vec3f> below, above;     ///< sRGB; empty = the end colour (clamped)
+  Vec3f nan{0.6f, 0.6f, 0.6f};           ///< sRGB
+  bool clamp = true;                     ///< false: values out of range are not drawn (transparent)
+  std::vector<double> labels;            ///< categorical: the values, in order; a value takes the colour of its place
   std::vector<std::string> label_names;  ///< categorical: text per label, may be empty
   std::string title, unit;
 
   /// Position on the map, may lie outside [0,1] (below, above), NaN for NaN and, on a log scale, for values <= 0.
+  /// With labels: the middle of the label's band, NaN for a value that is none of them (up to rounding to float).
   double position(double value) const;
   /// The value drawn at a position (inverse of position).
   double value_at(double t) const;
   /// sRGB colour with alpha 1, or alpha 0 when out of range and not clamped.
   Vec4f color(double value) const;
+  /// The same from a position; NaN is the NaN colour.
+  Vec4f color_at(double position) const;
 };
 
 /// A table of colours in linear light for renderers: `size` samples over [0,1] of position plus below, above and nan.
@@ -43,6 +46,7 @@ struct ColorTable {
     return linear[size_t(position * double(linear.size() - 1) + 0.5)];
   }
 };
+/// At least `size` samples (more when labels need them). Throws Error(usage) for a log scale whose range is not positive.
 ColorTable color_table(const ColorScale& scale, int size = 4096);
 
 /// Piecewise-linear opacity over values: sorted (value, opacity) points; constant beyond the ends.
@@ -54,7 +58,8 @@ struct OpacityCurve {
   double most(double a, double b) const;
 };
 
-/// "0:0,0.3:0.1,1:0.8" over positions 0..1 or values (`values` true). Throws Error(usage).
+/// "0:0,0.3:0.1,1:0.8": positions, 0 at the value lo and 1 at hi (lo 0 and hi 1: values), and opacities in [0,1]; a single
+/// number is a constant opacity. Two points at one position make a step. Throws Error(usage).
 OpacityCurve parse_opacity(const std::string& text, double lo, double hi);
 
 struct TickLabel {

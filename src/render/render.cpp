@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/render.h"
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/parallel.h"
 #include "render/composite/background.h"

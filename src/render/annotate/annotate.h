@@ -12,15 +12,15 @@
 namespace sg {
 
 struct Annotation {
-  std::string title;                      ///< top centre; long titles wrap, then shrink, never crop
-  std::vector<ColorScale> legends;        ///< right side, side by side; each exactly the colours drawn, title, unit, ticks, below/above/NaN
-  std::optional<Box3> box;                ///< bounding box with numbered axes (the box lines themselves are scene lines)
+  std::string title;                ///< top centre; long titles wrap, then shrink, never crop
+  std::vector<ColorScale> legends;  ///< right side, side by side; each exactly the colours drawn, title, unit, ticks, below/above/NaN
+  std::optional<Box3> box;          ///< bounding box with numbered axes (the box lines themselves are scene lines)
   std::string axis_names[3] = {"x", "y", "z"};
   std::string length_unit;
-  bool triad = true;                      ///< orientation axes, lower left
-  bool show_nan_in_legend = false;        ///< NaN swatch (the data has NaN)
-  bool dark_background = false;           ///< light text
-  double scale = 1;                       ///< text size factor; 1 = good for 720 lines, grows with the picture's height by itself
+  bool triad = true;                ///< orientation axes, lower left
+  bool show_nan_in_legend = false;  ///< NaN swatch (the data has NaN)
+  bool dark_background = false;     ///< light text
+  double scale = 1;                 ///< text size factor; 1 = good for 720 lines, grows with the picture's height by itself
 };
 
 /// Pixels on the right that legends will take (0 without legends): the caller moves the picture's centre by half of it.

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "color/color_scale.h"
+
+#include "base/error.h"
+#include "base/text.h"
+#include "color/cie.h"
+
+namespace sg {
+namespace {
+
+constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
+
+double threshold_of(const ColorScale& s) {
+  if (s.linear_threshold > 0) return s.linear_threshold;
+  const double largest = std::max(std::abs(s.lo), std::abs(s.hi));
+  return largest > 0 ? 1e-3 * largest : 1;
+}
+
+/// v/threshold near zero, one more per decade beyond it; continuous at the threshold.
+double symlog(double v, double threshold) {
+  const double a = std::abs(v) / threshold;
+  return a <= 1 ? v / threshold : std::copysign(1 + std::log10(a), v);
+}
+double symlog_inverse(double y, double threshold) {
+  const double a = std::abs(y);
+  return a <= 1 ? y * threshold : std::copysign(threshold * std::pow(10.0, a - 1), y);
+}
+
+/// Maps of a range so small that one value fills it: the middle, or outside.
+double flat_position(double v, double lo) { return v == lo ? 0.5 : v < lo ? -1 : 2; }
+
+/// Halves first: hi - lo may overflow.
+double linear_position(double v, double lo, double hi) {
+  const double range = hi - lo;
+  return std::isfinite(range) ? (v - lo) / range : (0.5 * v - 0.5 * lo) / (0.5 * hi - 0.5 * lo);
+}
+
+/// Place of a label, or the number of labels. Data often holds labels as float, so rounding to float still matches.
+size_t label_place(const std::vector<double>& labels, double v) {
+  const auto same = [v](double l) { return l == v || float(l) == float(v); };
+  const size_t near = size_t(std::lower_bound(labels.begin(), labels.end(), v) - labels.begin());
+  for (size_t i : {near, near - 1})
+    if (i < labels.size() && labels[i] == v) return i;
+  for (size_t i = 0; i < labels.size(); ++i)
+    if (labels[i] == v) return i;
+  for (size_t i = 0; i < labels.size(); ++i)
+    if (same(labels[i])) return i;
+  return labels.size();
+}
+
+Vec4f opaque(Vec3f c) { return {c.x, c.y, c.z, 1}; }
+
+Vec4f to_linear(Vec4f c) {
+  return {float(srgb_to_linear(double(c.x))), float(srgb_to_linear(double(c.y))), float(srgb_to_linear(double(c.z))), c.w};
+}
+
+}  // namespace
+
+double ColorScale::position(double v) const {
+  if (v != v) return no_value;
+  if (!labels.empty()) {
+    const size_t i = label_place(labels, v);
+    return i < labels.size() ? (double(i) + 0.5) / double(labels.size()) : no_value;
+  }
+  if (kind == ScaleKind::log && !(v > 0 && lo > 0 && hi > 0)) return no_value;
+  if (lo == hi) return flat_position(v, lo);
+  double t;
+  if (kind == ScaleKind::log) {
+    t = linear_position(std::log(v), std::log(lo), std::log(hi));
+  } else if (kind == ScaleKind::symlog) {
+    const double c = threshold_of(*this);
+    t = linear_position(symlog(v, c), symlog(lo, c), symlog(hi, c));
+  } else {
+    return linear_position(v, lo, hi);
+  }
+  // Rounding of the logarithm must not push a value across an end of the range.
+  const bool inside = lo < hi ? v >= lo && v <= hi : v <= lo && v >= hi;
+  return inside ? std::clamp(t, 0.0, 1.0) : t;
+}
+
+double ColorScale::value_at(double t) const {
+  if (t != t) return no_value;
+  if (!labels.empty()) {
+    if (t < 0 || t > 1) return no_value;
+    return labels[std::min(labels.size() - 1, size_t(t * double(labels.size())))];
+  }
+  if (t == 0) return lo;
+  if (t == 1) return hi;
+  if (kind == ScaleKind::log) {
+    if (!(lo > 0 && hi > 0)) return no_value;
+    return std::exp(std::log(lo) * (1 - t) + std::log(hi) * t);
+  }
+  if (kind == ScaleKind::symlog) {
+    const double c = threshold_of(*this);
+    return symlog_inverse(symlog(lo, c) * (1 - t) + symlog(hi, c) * t, c);
+  }
+  return lo * (1 - t) + hi * t;
+}
+
+Vec4f ColorScale::color_at(double t) const {
+  if (t != t) return opaque(nan);
+  if (t < 0 || t > 1) {
+    if (!clamp) return {0, 0, 0, 0};
+    if (t < 0) return opaque(below ? *below : map.at(0));
+    return opaque(above ? *above : map.at(1));
+  }
+  if (labels.empty()) return opaque(map.at(t));
+  const size_t n = labels.size(), i = std::min(n - 1, size_t(t * double(n)));
+  if (map.categorical() && !map.colors.empty()) return opaque(map.colors[i % map.colors.size()]);
+  return opaque(map.at(n > 1 ? double(i) / double(n - 1) : 0.5));
+}
+
+Vec4f ColorScale::color(double value) const { return color_at(position(value)); }
+
+ColorTable color_table(const ColorScale& scale, int size) {
+  if (scale.kind == ScaleKind::log && scale.labels.empty() && !(scale.lo > 0 && scale.hi > 0))
+    fail_usage(fmt::format("a log colour scale cannot show the range {} to {}", short_number(scale.lo), short_number(scale.hi)),
+               "colour scale", "give a range above 0, or use a symlog scale");
+  const size_t n = std::max({size_t(std::max(size, 2)), 2 * scale.labels.size() + 1});
+  ColorTable table;
+  table.linear.resize(n);
+  for (size_t i = 0; i < n; ++i) table.linear[i] = to_linear(scale.color_at(double(i) / double(n - 1)));
+  table.below = to_linear(scale.color_at(-1));
+  table.above = to_linear(scale.color_at(2));
+  table.nan = to_linear(scale.color_at(no_value));
+  return table;
+}
+
+double OpacityCurve::at(double v) const {
+  if (points.empty() || v != v) return 0;
+  const auto after = std::upper_bound(points.begin(), points.end(), v, [](double x, const Vec2& p) { return x < p.x; });
+  if (after == points.begin()) return points.front().y;
+  if (after == points.end()) return points.back().y;
+  const Vec2 a = after[-1], b = *after;
+  return a.y + (b.y - a.y) * ((v - a.x) / (b.x - a.x));
+}
+
+double OpacityCurve::most(double a, double b) const {
+  if (b < a) std::swap(a, b);
+  double most = std::max(at(a), at(b));
+  const auto first = std::lower_bound(points.begin(), points.end(), a, [](const Vec2& p, double x) { return p.x < x; });
+  for (auto p = first; p != points.end() && p->x <= b; ++p) most = std::max(most, p->y);
+  return most;
+}
+
+OpacityCurve parse_opacity(const std::string& text, double lo, double hi) {
+  const char* form = "write position:opacity pairs, e.g. 0:0,0.3:0.1,1:0.8";
+  OpacityCurve curve;
+  curve.points.clear();
+  const auto parts = split(text, ',');
+  if (parts.empty()) fail_usage("the opacity curve is empty", "opacity", form);
+  for (std::string_view part : parts) {
+    const auto pair = split(part, ':');
+    const bool constant = parts.size() == 1 && pair.size() == 1;
+    const auto x = pair.size() == 2 ? parse_double(pair[0]) : std::optional<double>(constant ? 0.0 : no_value);
+    const auto y = pair.empty() ? std::nullopt : parse_double(pair.back());
+    if (!x || !y || !std::isfinite(*x)) fail_usage(fmt::format("'{}' is not a point of an opacity curve", part), "opacity", form);
+    if (!(*y >= 0 && *y <= 1)) fail_usage(fmt::format("opacity {} is not between 0 and 1", pair.back()), "opacity", form);
+    curve.points.push_back({*x == 1 ? hi : lo + *x * (hi - lo), *y});
+  }
+  std::stable_sort(curve.points.begin(), curve.points.end(), [](const Vec2& a, const Vec2& b) { return a.x < b.x; });
+  return curve;
+}
+
+}  // namespace sg

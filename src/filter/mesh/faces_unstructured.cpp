@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "base/error.h"
+#include "base/parallel.h"
+#include "data/cell_topology.h"
+#include "filter/mesh/face_matching.h"
+#include "filter/mesh/faces_impl.h"
+
+namespace sg::detail {
+
+namespace {
+
+// Adds the cells of one chunk to the surface.
+class ChunkWalk {
+ public:
+  ChunkWalk(const UnstructuredMesh& mesh, const PointReader& at, SurfaceChunk& out) : mesh_(mesh), cells_(cells_view(mesh.cells)), at_(at), reader_(mesh), out_(out) {}
+
+  // Faces of a solid cell whose mark is set; outward, whatever the orientation of the cell.
+  void solid(size_t cell, const uint8_t* external, size_t n) {
+    if (std::none_of(external, external + n, [](uint8_t e) { return e != 0; })) return;
+    reader_.open(cell);
+    const bool polyhedron = mesh_.type(cell) == CellType::polyhedron;
+    bool mirrored = false;
+    Vec3 middle;
+    if (polyhedron) {
+      for (size_t i = cells_.begin(cell); i < cells_.end(cell); ++i) middle += at_[size_t(cells_.connectivity[i])];
+      middle = middle / double(std::max<size_t>(cells_.size(cell), 1));
+    } else {
+      mirrored = volume(n) < 0;
+    }
+    for (size_t f = 0; f < n; ++f) {
+      if (!external[f]) continue;
+      const auto nodes = reader_.nodes(f);
+      ids_.assign(nodes.begin(), nodes.end());
+      if (polyhedron) {
+        load(ids_);
+        mirrored = dot(polygon_vector_area(corner_), corner_.empty() ? Vec3() : corner_[0] - middle) < 0;
+      }
+      add_face(reader_.face_type(f), cell, mirrored);
+    }
+  }
+
+  void other(size_t cell) {
+    const CellType type = mesh_.type(cell);
+    ids_.clear();
+    for (size_t i = cells_.begin(cell); i < cells_.end(cell); ++i) ids_.push_back(cells_.connectivity[i]);
+    if (ids_.empty()) return;
+    switch (cell_type_info(type).dimension) {
+      case 0: return out_.vertices.add(ids_, int64_t(cell));
+      case 1:
+        curve_order(type, ids_.size(), local_);
+        line_.clear();
+        for (uint32_t i : local_) line_.push_back(ids_[i]);
+        return out_.lines.add(line_, int64_t(cell));
+      case 2: return add_face(type, cell, false);
+      default: break;
+    }
+  }
+
+ private:
+  void load(const std::vector<int64_t>& ids) {
+    corner_.clear();
+    for (int64_t id : ids) corner_.push_back(at_[size_t(id)]);
+  }
+
+  // Six times the signed volume that the linear faces enclose, from the first corner.
+  double volume(size_t faces) {
+    double sum = 0;
+    Vec3 base;
+    for (size_t f = 0; f < faces; ++f) {
+      const auto c = reader_.corners(f);
+      const Vec3 a = at_[size_t(c[0])];
+      if (f == 0) base = a;
+      Vec3 b = at_[size_t(c[1])];
+      for (size_t i = 2; i < c.size(); ++i) {
+        const Vec3 d = at_[size_t(c[i])];
+        sum += dot(a - base, cross(b - base, d - base));
+        b = d;
+      }
+    }
+    return sum;
+  }
+
+  void add_polygon(size_t cell, bool mirrored) {
+    if (mirrored) std::reverse(ids_.begin(), ids_.end());
+    out_.polygons.add(ids_, int64_t(cell));
+  }
+
+  // A 2D cell with the nodes ids_: linear ones as they are, curved ones and strips as triangles.
+  void add_face(CellType type, size_t cell, bool mirrored) {
+    if (type == CellType::triangle || type == CellType::quad || type == CellType::polygon) return ids_.size() >= 3 ? add_polygon(cell, mirrored) : void();
+    if (type == CellType::pixel) {
+      std::swap(ids_[2], ids_[3]);
+      return add_polygon(cell, mirrored);
+    }
+    load(ids_);
+    local_.clear();
+    tessellate_face(type, corner_, local_);
+    for (size_t t = 0; t + 2 < local_.size(); t += 3) {
+      int64_t tri[3] = {ids_[local_[t]], ids_[local_[t + 1]], ids_[local_[t + 2]]};
+      if (mirrored) std::swap(tri[1], tri[2]);
+      out_.polygons.add(tri, int64_t(cell));
+    }
+  }
+
+  const UnstructuredMesh& mesh_;
+  CellsView cells_;
+  const PointReader& at_;
+  CellFaceReader reader_;
+  SurfaceChunk& out_;
+  std::vector<int64_t> ids_, line_;
+  std::vector<Vec3> corner_;
+  std::vector<uint32_t> local_;
+};
+
+}  // namespace
+
+std::vector<SurfaceChunk> unstructured_faces(const UnstructuredMesh& mesh, const std::vector<uint8_t>& states, const Context& ctx) {
+  const FaceMarks marks = match_faces(mesh, states, ctx);
+  const PointReader at(mesh.points);
+  const size_t cells = mesh.cells.size();
+  std::vector<SurfaceChunk> chunks(marks.chunk_start.size());
+  parallel_for(cells, FaceMarks::cells_per_chunk, [&](size_t begin, size_t end) {
+    const size_t chunk = begin / FaceMarks::cells_per_chunk;
+    ChunkWalk walk(mesh, at, chunks[chunk]);
+    const uint8_t* external = marks.external.data() + marks.chunk_start[chunk];
+    CellFaceReader reader(mesh);
+    for (size_t c = begin; c < end; ++c) {
+      const bool visible = states.empty() || states[c] == cell_visible;
+      if (cell_type_info(mesh.type(c)).dimension == 3) {
+        const size_t n = reader.open(c);
+        if (visible) walk.solid(c, external, n);
+        external += n;
+      } else if (visible) {
+        walk.other(c);
+      }
+    }
+  }, &ctx);
+  return chunks;
+}
+
+}  // namespace sg::detail

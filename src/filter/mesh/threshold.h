@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cells whose values lie in a range.
+#pragma once
+#include "base/context.h"
+#include "base/schema.h"
+#include "data/dataset.h"
+
+namespace sg {
+
+struct ThresholdParams {
+  FieldName field = {};
+  int component = -1;
+  std::optional<double> min = {}, max = {};
+  bool all_points = true;
+  bool invert = false;
+};
+
+inline void describe(Schema& s, ThresholdParams& p) {
+  s("field", p.field, "Point or cell field to compare; default: the active scalar.");
+  s("component", p.component, "Component of the field; -1: the magnitude of a field of several.").at_least(-1);
+  s("min", p.min, "Smallest value that is kept; default: no limit.").unit("@field");
+  s("max", p.max, "Largest value that is kept; default: no limit.").unit("@field");
+  s("all_points", p.all_points, "With a point field: a cell stays when all of its points are in range, not just one.");
+  s("invert", p.invert, "Keeps the cells that would go.");
+}
+
+/// Keeps the cells (of a PointCloud: the points) whose value lies in [min, max]. NaN is in no range; hidden, refined and duplicate
+/// cells never stay, inverted or not. A SurfaceMesh stays one, a PointCloud stays one, every other kind becomes an
+/// UnstructuredMesh. Only used points are kept; all fields are carried, polyhedra keep their faces.
+/// Throws Error(usage) for unknown fields, fields of the whole, an empty range (min > max). O(cells), parallel.
+DatasetPtr threshold(const DatasetPtr& in, const ThresholdParams& p, Context& ctx);
+
+}  // namespace sg

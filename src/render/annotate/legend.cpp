@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/annotate/legend.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/text.h"
+
+namespace sg {
+namespace {
+
+constexpr double margin = 1.1;  // all in font sizes
+constexpr double column_gap = 1.5;
+constexpr double bar_width = 1.3;
+constexpr double label_gap = 0.75;  // from the bar to its numbers
+constexpr double triangle = 1.0;
+constexpr double widest_title = 10, widest_name = 12;
+
+std::string title_of(const ColorScale& s) {
+  std::string title;
+  for (char c : s.title) title += c == '_' ? std::string("_\u200b") : std::string(1, c);  // names may break after an underscore
+  if (s.unit.empty()) return title;
+  return title.empty() ? "[" + s.unit + "]" : title + " [" + s.unit + "]";
+}
+
+std::string name_of_label(const ColorScale& s, size_t i) {
+  return i < s.label_names.size() && !s.label_names[i].empty() ? s.label_names[i] : short_number(s.labels[i], 8);
+}
+
+/// Round numbers that have room, then the ends of the range where they have room too.
+std::vector<LegendLayout::Tick> ticks_of(const ColorScale& s, const Rect& bar, double line_height) {
+  std::vector<LegendLayout::Tick> ticks;
+  const double last = bar.height - 1;
+  const auto offer = [&](double value, const std::string& text) {
+    const double t = s.position(value);
+    if (!(t >= 0 && t <= 1)) return;
+    const int row = int(bar.y + std::lround((1 - t) * last));
+    for (const auto& other : ticks)
+      if (std::abs(other.row - row) < 1.05 * line_height || other.text == typeset_number(text)) return;
+    ticks.push_back({value, typeset_number(text), row});
+  };
+  const int wanted = std::clamp(int(bar.height / (2.6 * line_height)), 2, 9);
+  size_t longest = 0;
+  for (const TickLabel& t : nice_ticks(s.lo, s.hi, wanted, s.kind, s.linear_threshold))
+    longest = std::max(longest, t.text.size()), offer(t.value, t.text);
+  const double largest = std::max(std::abs(s.lo), std::abs(s.hi)), range = std::abs(s.hi - s.lo);
+  const int digits = range > 0 && s.kind == ScaleKind::linear ? std::clamp(int(std::ceil(std::log10(largest / range))) + 3, 3, 15) : 3;
+  for (double end : {s.lo, s.hi}) {
+    const std::string exact = exact_number(end),
+                      text = exact.size() <= std::max<size_t>(6, longest + 1) ? exact : short_number(end, digits);
+    if (text.size() <= longest + 3) offer(end, text);
+  }
+  return ticks;
+}
+
+TextStyle sized(double font) {
+  TextStyle style;
+  style.size = font;
+  return style;
+}
+
+/// One column with its right edge at area.right().
+LegendLayout layout_one(const Overlay& o, const ColorScale& s, const Rect& area, double font, bool nan) {
+  LegendLayout l;
+  l.font = font;
+  l.title = title_of(s);
+  l.nan = nan;
+  const TextStyle style = sized(font);
+  const double line_height = o.measure("0", style).height;
+  const double nan_height = nan ? 1.9 * line_height : 0;
+  l.above = s.labels.empty() && s.above && s.clamp;
+  l.below = s.labels.empty() && s.below && s.clamp;
+
+  // The title stands above the bar in at most three lines, else it runs up beside the numbers.
+  l.title_style = sized(font);
+  l.title_style.wrap = widest_title * font;
+  l.title_style.break_words = false;
+  if (!l.title.empty()) l.title_size = o.measure(l.title, l.title_style);
+  l.title_upwards = l.title_size.lines > 3 || l.title_size.width > widest_title * font * 1.02;
+  const double height = std::min(area.height, std::max(0.66 * area.height, 15 * font));
+  if (l.title_upwards) {
+    // Then it wraps to the column's height, and shrinks when even that is too little.
+    l.title_style.break_words = true;
+    for (l.title_style.wrap = height; l.title_style.size > 5; l.title_style.size *= 0.9) {
+      l.title_size = o.measure(l.title, l.title_style);
+      if (l.title_size.lines <= 2) break;
+    }
+  }
+  const double title_height = l.title.empty() || l.title_upwards ? 0 : l.title_size.height + 0.7 * font;
+  const double top = std::round(area.y + 0.5 * (area.height - height));
+  double y = top + title_height, bottom = top + height - nan_height;
+
+  double labels = nan ? o.measure("NaN", style).width : 0;
+  if (!s.labels.empty()) {
+    l.row_height = std::ceil(1.15 * line_height);
+    const size_t room = size_t(std::max(1.0, std::floor((bottom - y) / l.row_height)));
+    l.swatches = s.labels.size() <= room ? s.labels.size() : room - 1;
+    TextStyle name = style;
+    name.wrap = widest_name * font, name.ellipsize = true;
+    for (size_t i = 0; i < l.swatches; ++i) l.rows.push_back(name_of_label(s, i));
+    if (l.swatches < s.labels.size()) l.rows.push_back(fmt::format("\u2026 {} more", s.labels.size() - l.swatches));
+    for (const std::string& row : l.rows) labels = std::max(labels, o.measure(row, name).width);
+    bottom = std::min(bottom, y + double(l.rows.size()) * l.row_height);
+  } else {
+    if (l.above) y += triangle * font + 2;
+    if (l.below) bottom -= triangle * font + 2;
+    y += 0.5 * line_height, bottom -= 0.5 * line_height;  // for the half of a number that stands beyond the bar
+  }
+  l.bar = {0, std::round(y), std::round(bar_width * font), std::max(2.0, std::round(bottom) - std::round(y))};
+  if (s.labels.empty()) {
+    l.ticks = ticks_of(s, l.bar, line_height);
+    for (const auto& t : l.ticks) labels = std::max(labels, o.measure(t.text, style).width);
+  }
+  l.label_width = std::ceil(labels);
+  double width = l.bar.width + label_gap * font + l.label_width;
+  if (l.title_upwards) width += 0.5 * font + l.title_size.height;
+  else width = std::max(width, l.title_size.width);
+  l.column = {area.right() - std::ceil(width), top, std::ceil(width), height};
+  l.bar.x = std::round(l.column.x);
+  l.nan_y = l.bar.bottom() + (l.below ? triangle * font + 2 : 0) + 0.75 * line_height;
+  return l;
+}
+
+void fill(Image& image, const Rect& r, Vec4f color) {
+  if (color.w == 0) return;
+  for (int y = std::max(0, int(r.y)); y < std::min(image.height, int(r.bottom())); ++y)
+    for (int x = std::max(0, int(r.x)); x < std::min(image.width, int(r.right())); ++x) {
+      uint8_t* p = image.at(x, y);
+      for (int c = 0; c < 3; ++c) p[c] = uint8_t(255 * color[c] + 0.5f);
+      if (image.channels == 4) p[3] = 255;
+    }
+}
+
+void draw_bar(Image& image, Overlay& overlay, const ColorScale& s, const LegendLayout& l) {
+  const int first = int(l.bar.y), n = int(l.bar.height);
+  for (int i = 0; i < n; ++i) {
+    double value = s.value_at(1 - double(i) / (n - 1));
+    // The row of a number shows exactly the colour of that number.
+    for (const auto& t : l.ticks)
+      if (t.row == first + i) value = t.value;
+    fill(image, {l.bar.x, double(first + i), l.bar.width, 1}, s.color(value));
+  }
+  overlay.frame({l.bar.x - 0.5, l.bar.y - 0.5, l.bar.width + 1, l.bar.height + 1}, 0.35);
+  const double f = l.font, middle = l.bar.x + 0.5 * l.bar.width, right = l.bar.right();
+  const auto rgb = [](Vec4f c) { return Vec3f{c.x, c.y, c.z}; };
+  if (l.above)
+    overlay.polygon({{l.bar.x, l.bar.y - 2}, {middle, l.bar.y - 2 - triangle * f}, {right, l.bar.y - 2}}, rgb(s.color_at(2)), true);
+  if (l.below)
+    overlay.polygon({{l.bar.x, l.bar.bottom() + 2}, {middle, l.bar.bottom() + 2 + triangle * f}, {right, l.bar.bottom() + 2}},
+                    rgb(s.color_at(-1)), true);
+  const TextStyle style = sized(f);
+  const double half = 0.5 * overlay.measure("0", style).height;
+  for (const auto& t : l.ticks) {
+    overlay.line({right, t.row + 0.5}, {right + 0.35 * f, t.row + 0.5}, std::max(1.0, 0.07 * f), 0.9);
+    overlay.text(t.text, right + label_gap * f, t.row + 0.5 - half, style, true);
+  }
+}
+
+void draw_rows(Image& image, Overlay& overlay, const ColorScale& s, const LegendLayout& l) {
+  TextStyle style = sized(l.font);
+  style.wrap = l.label_width + 1, style.ellipsize = true;
+  const double text_height = overlay.measure("0", style).height;
+  const double swatch = std::floor(std::min(0.8 * l.row_height, l.bar.width));
+  for (size_t i = 0; i < l.rows.size(); ++i) {
+    const double y = l.bar.y + double(i) * l.row_height;
+    if (i < l.swatches) {
+      const Rect r{l.bar.x, std::round(y + 0.5 * (l.row_height - swatch)), l.bar.width, swatch};
+      fill(image, r, s.color(s.labels[i]));
+      overlay.frame({r.x - 0.5, r.y - 0.5, r.width + 1, r.height + 1}, 0.35);
+    }
+    overlay.text(l.rows[i], l.bar.right() + 0.6 * l.font, y + 0.5 * (l.row_height - text_height), style, true);
+  }
+}
+
+}  // namespace
+
+std::vector<LegendLayout> layout_legends(const Overlay& overlay, const std::vector<ColorScale>& scales, const Rect& area, double font,
+                                         bool nan) {
+  std::vector<LegendLayout> legends;
+  for (double f = font;; f *= 0.88) {
+    legends.clear();
+    Rect rest{area.x, area.y + margin * f, area.width - margin * f, area.height - 2 * margin * f};
+    for (size_t i = scales.size(); i-- > 0;) {
+      legends.insert(legends.begin(), layout_one(overlay, scales[i], rest, f, nan));
+      rest.width = legends.front().column.x - column_gap * f - rest.x;
+    }
+    if (f < 5.5 || legends_width(legends) <= 0.6 * area.width) return legends;
+  }
+}
+
+double legends_width(const std::vector<LegendLayout>& legends) {
+  if (legends.empty()) return 0;
+  return legends.back().column.right() - legends.front().column.x + 2 * margin * legends.front().font;
+}
+
+void draw_legend(Image& image, Overlay& overlay, const ColorScale& s, const LegendLayout& l) {
+  if (!l.title.empty()) {
+    if (l.title_upwards)
+      overlay.text_upwards(l.title, l.column.right() - l.title_size.height, l.column.y + 0.5 * (l.column.height - l.title_size.width),
+                           l.title_style);
+    else overlay.text(l.title, l.column.x, l.column.y, l.title_style, true);
+  }
+  if (s.labels.empty()) draw_bar(image, overlay, s, l);
+  else draw_rows(image, overlay, s, l);
+  if (l.nan) {
+    const TextStyle style = sized(l.font);
+    const double height = overlay.measure("0", style).height;
+    const Rect r{l.bar.x, std::round(l.nan_y), l.bar.width, std::floor(0.8 * height)};
+    fill(image, r, s.color(std::numeric_limits<double>::quiet_NaN()));
+    overlay.frame({r.x - 0.5, r.y - 0.5, r.width + 1, r.height + 1}, 0.35);
+    overlay.text("NaN", l.bar.right() + label_gap * l.font, r.y + 0.5 * (r.height - height), style, true);
+  }
+}
+
+}  // namespace sg

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Legends: one column per colour scale, right side of the picture.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "color/color_scale.h"
+#include "render/annotate/overlay.h"
+
+namespace sg {
+
+/// Where a legend's parts lie; pixels. The bar covers rows [bar.y, bar.y + bar.height), whole numbers: the first is the high end
+/// and the last the low end of the scale.
+struct LegendLayout {
+  struct Tick {
+    double value;
+    std::string text;
+    int row;  ///< of the picture
+  };
+  Rect column;
+  std::string title;
+  TextStyle title_style;
+  TextExtent title_size;
+  bool title_upwards = false;
+  Rect bar;
+  bool above = false, below = false;  ///< triangles
+  std::vector<Tick> ticks;            ///< continuous scales
+  std::vector<std::string> rows;      ///< categorical scales: names, the last may say how many more there are
+  size_t swatches = 0;                ///< of the rows, those with a colour
+  double row_height = 0, label_width = 0;
+  double nan_y = 0;  ///< top of the NaN swatch
+  bool nan = false;
+  double font = 15;
+};
+
+/// Legends that fit in `area` (below the title), placed from its right edge.
+std::vector<LegendLayout> layout_legends(const Overlay& overlay, const std::vector<ColorScale>& scales, const Rect& area, double font,
+                                         bool nan);
+/// Sum of the columns, with the margins to picture and border; 0 for none.
+double legends_width(const std::vector<LegendLayout>& legends);
+/// Colours go straight to the image, so that they are exact; lines and letters to the overlay.
+void draw_legend(Image& image, Overlay& overlay, const ColorScale& scale, const LegendLayout& layout);
+
+}  // namespace sg

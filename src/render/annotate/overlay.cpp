@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/annotate/overlay.h"
+
+#include <pango/pangocairo.h>
+
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/text.h"
+
+namespace sg {
+namespace {
+
+template <class T, void (*free_it)(T*)>
+struct Free {
+  void operator()(T* p) const { free_it(p); }
+};
+template <class T>
+struct Unref {
+  void operator()(T* p) const { g_object_unref(p); }
+};
+using Surface = std::unique_ptr<cairo_surface_t, Free<cairo_surface_t, cairo_surface_destroy>>;
+using Cairo = std::unique_ptr<cairo_t, Free<cairo_t, cairo_destroy>>;
+using Layout = std::unique_ptr<PangoLayout, Unref<PangoLayout>>;
+
+void use(cairo_t* cr, Vec3f c, double alpha = 1) { cairo_set_source_rgba(cr, double(c.x), double(c.y), double(c.z), alpha); }
+
+void require_a_font(PangoFontMap* map) {
+  PangoFontFamily** families = nullptr;
+  int count = 0;
+  pango_font_map_list_families(map, &families, &count);
+  g_free(families);
+  if (count == 0)
+    fail_internal("no font is installed, so nothing can be written on pictures; install the package fonts-dejavu-core", "annotate");
+}
+
+}  // namespace
+
+std::string typeset_number(const std::string& text) {
+  static const char* raised[] = {"\u2070", "\u00b9", "\u00b2", "\u00b3", "\u2074", "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
+  const size_t e = text.find('e');
+  const std::string digits = text.substr(0, e);
+  std::string out;
+  for (char c : digits) out += c == '-' ? std::string("\u2212") : std::string(1, c);
+  if (e == std::string::npos) return out;
+  const auto exponent = parse_double(text.substr(e + (text[e + 1] == '+' ? 2 : 1)));
+  if (!exponent) return out + text.substr(e);
+  if (digits == "1") out = "10";
+  else if (digits == "-1") out = "\u221210";
+  else out += "\u00b710";
+  for (char c : fmt::format("{:.0f}", *exponent)) out += c == '-' ? "\u207b" : raised[c - '0'];
+  return out;
+}
+
+struct Overlay::Parts {
+  Surface surface;
+  Cairo cr;
+  std::unique_ptr<PangoContext, Unref<PangoContext>> context;
+
+  Layout layout(const std::string& text, const TextStyle& style) const {
+    Layout layout(pango_layout_new(context.get()));
+    PangoFontDescription* font = pango_font_description_from_string(style.bold ? "DejaVu Sans Bold" : "DejaVu Sans");
+    pango_font_description_set_absolute_size(font, style.size * PANGO_SCALE);
+    pango_layout_set_font_description(layout.get(), font);
+    pango_font_description_free(font);
+    char* valid = g_utf8_make_valid(text.data(), gssize(text.size()));
+    pango_layout_set_text(layout.get(), valid, -1);
+    g_free(valid);
+    PangoAttrList* attributes = pango_attr_list_new();
+    pango_attr_list_insert(attributes, pango_attr_insert_hyphens_new(FALSE));  // a broken field name must not gain a letter
+    pango_layout_set_attributes(layout.get(), attributes);
+    pango_attr_list_unref(attributes);
+    if (style.wrap > 0) {
+      pango_layout_set_width(layout.get(), int(style.wrap * PANGO_SCALE));
+      if (style.ellipsize) pango_layout_set_ellipsize(layout.get(), PANGO_ELLIPSIZE_END), pango_layout_set_height(layout.get(), -1);
+      else pango_layout_set_wrap(layout.get(), style.break_words ? PANGO_WRAP_WORD_CHAR : PANGO_WRAP_WORD);
+    }
+    if (style.centred) pango_layout_set_alignment(layout.get(), PANGO_ALIGN_CENTER);
+    return layout;
+  }
+};
+
+Overlay::Overlay(int width, int height, bool dark_background)
+    : width_(width), height_(height), dark_(dark_background), parts_(std::make_unique<Parts>()) {
+  Parts& p = *parts_;
+  p.surface.reset(cairo_image_surface_create(CAIRO_FORMAT_ARGB32, width, height));
+  if (cairo_surface_status(p.surface.get()) != CAIRO_STATUS_SUCCESS)
+    fail_usage(fmt::format("a picture of {} x {} pixels cannot be written on", width, height), "annotate", "at most 32767 each way");
+  p.cr.reset(cairo_create(p.surface.get()));
+  PangoFontMap* fonts = pango_cairo_font_map_get_default();  // kept by Pango, one per thread: loading fonts is slow
+  require_a_font(fonts);
+  p.context.reset(pango_font_map_create_context(fonts));
+  pango_cairo_context_set_resolution(p.context.get(), 96);
+  // Nothing that depends on the machine: no hinting, no subpixel order, no rounding to pixels.
+  cairo_font_options_t* options = cairo_font_options_create();
+  cairo_font_options_set_antialias(options, CAIRO_ANTIALIAS_GRAY);
+  cairo_font_options_set_hint_style(options, CAIRO_HINT_STYLE_NONE);
+  cairo_font_options_set_hint_metrics(options, CAIRO_HINT_METRICS_OFF);
+  pango_cairo_context_set_font_options(p.context.get(), options);
+  cairo_font_options_destroy(options);
+  pango_context_set_round_glyph_positions(p.context.get(), FALSE);
+  pango_context_set_language(p.context.get(), pango_language_from_string("en"));
+  pango_context_set_base_dir(p.context.get(), PANGO_DIRECTION_LTR);
+}
+
+Overlay::~Overlay() = default;
+
+TextExtent Overlay::measure(const std::string& text, const TextStyle& style) const {
+  const Layout layout = parts_->layout(text, style);
+  PangoRectangle logical;
+  pango_layout_get_extents(layout.get(), nullptr, &logical);
+  return {double(logical.width) / PANGO_SCALE, double(logical.height) / PANGO_SCALE, pango_layout_get_line_count(layout.get())};
+}
+
+void Overlay::show(const std::string& text, const TextStyle& style, bool halo, Vec3f color) {
+  cairo_t* cr = parts_->cr.get();
+  const Layout layout = parts_->layout(text, style);
+  PangoRectangle logical;
+  pango_layout_get_extents(layout.get(), nullptr, &logical);
+  // With a wrap width, Pango aligns within that width; move the lines' own box to the corner.
+  cairo_rel_move_to(cr, -double(logical.x) / PANGO_SCALE, 0);
+  if (halo) {
+    double x, y;
+    cairo_get_current_point(cr, &x, &y);
+    pango_cairo_layout_path(cr, layout.get());
+    use(cr, rim(), 0.75);
+    cairo_set_line_width(cr, std::max(2.0, 0.2 * style.size));
+    cairo_set_line_join(cr, CAIRO_LINE_JOIN_ROUND);
+    cairo_stroke(cr);
+    cairo_move_to(cr, x, y);
+  }
+  use(cr, color);
+  pango_cairo_show_layout(cr, layout.get());
+  cairo_new_path(cr);
+}
+
+void Overlay::text(const std::string& text, double x, double y, const TextStyle& style, bool halo) {
+  cairo_move_to(parts_->cr.get(), x, y);
+  show(text, style, halo, ink());
+}
+
+void Overlay::colored_text(const std::string& text, double x, double y, const TextStyle& style, Vec3f color) {
+  cairo_move_to(parts_->cr.get(), x, y);
+  show(text, style, true, color);
+}
+
+void Overlay::keep_clear(const std::vector<Rect>& rects) {
+  cairo_t* cr = parts_->cr.get();
+  cairo_reset_clip(cr);
+  for (const Rect& r : rects) {
+    cairo_set_fill_rule(cr, CAIRO_FILL_RULE_EVEN_ODD);
+    cairo_rectangle(cr, 0, 0, width_, height_);
+    cairo_rectangle(cr, r.x, r.y, r.width, r.height);
+    cairo_clip(cr);
+  }
+  cairo_set_fill_rule(cr, CAIRO_FILL_RULE_WINDING);
+}
+
+void Overlay::text_upwards(const std::string& text, double x, double y, const TextStyle& style) {
+  cairo_t* cr = parts_->cr.get();
+  cairo_save(cr);
+  cairo_translate(cr, x, y + measure(text, style).width);
+  cairo_rotate(cr, -1.57079632679489662);
+  cairo_move_to(cr, 0, 0);
+  show(text, style, true, ink());
+  cairo_restore(cr);
+}
+
+void Overlay::line(Vec2 from, Vec2 to, double width, double alpha) {
+  cairo_t* cr = parts_->cr.get();
+  use(cr, ink(), alpha);
+  cairo_set_line_width(cr, width);
+  cairo_move_to(cr, from.x, from.y);
+  cairo_line_to(cr, to.x, to.y);
+  cairo_stroke(cr);
+}
+
+void Overlay::colored_line(Vec2 from, Vec2 to, double width, Vec3f color) {
+  cairo_t* cr = parts_->cr.get();
+  cairo_set_line_cap(cr, CAIRO_LINE_CAP_ROUND);
+  for (const auto& [w, c, alpha] : {std::tuple{width + 2, rim(), 0.6}, std::tuple{width, color, 1.0}}) {
+    use(cr, c, alpha);
+    cairo_set_line_width(cr, w);
+    cairo_move_to(cr, from.x, from.y);
+    cairo_line_to(cr, to.x, to.y);
+    cairo_stroke(cr);
+  }
+  cairo_set_line_cap(cr, CAIRO_LINE_CAP_BUTT);
+}
+
+void Overlay::frame(const Rect& r, double alpha) {
+  cairo_t* cr = parts_->cr.get();
+  use(cr, ink(), alpha);
+  cairo_set_line_width(cr, 1);
+  cairo_rectangle(cr, r.x, r.y, r.width, r.height);
+  cairo_stroke(cr);
+}
+
+void Overlay::polygon(const std::vector<Vec2>& points, Vec3f color, bool outlined) {
+  cairo_t* cr = parts_->cr.get();
+  for (const Vec2& p : points) cairo_line_to(cr, p.x, p.y);
+  cairo_close_path(cr);
+  use(cr, color);
+  outlined ? cairo_fill_preserve(cr) : cairo_fill(cr);
+  if (!outlined) return;
+  use(cr, ink(), 0.6);
+  cairo_set_line_width(cr, 1);
+  cairo_set_line_join(cr, CAIRO_LINE_JOIN_ROUND);
+  cairo_stroke(cr);
+}
+
+void Overlay::put_on(Image& image) const {
+  cairo_surface_t* surface = parts_->surface.get();
+  cairo_surface_flush(surface);
+  const uint8_t* data = cairo_image_surface_get_data(surface);
+  const size_t stride = size_t(cairo_image_surface_get_stride(surface));
+  const bool alpha = image.channels % 2 == 0;
+  const int colors = image.channels - alpha;
+  for (int y = 0; y < height_; ++y)
+    for (int x = 0; x < width_; ++x) {
+      uint32_t argb;
+      std::memcpy(&argb, data + size_t(y) * stride + 4 * size_t(x), 4);
+      const uint32_t a = argb >> 24;
+      if (a == 0) continue;
+      uint8_t* p = image.at(x, y);
+      // Both as premultiplied 0..255*255; the image's own alpha counts for what lies below.
+      const uint32_t below = (255 - a) * (alpha ? p[colors] : 255u), total = 255 * a + below;
+      for (int c = 0; c < colors; ++c) {
+        const uint32_t over = colors == 1 ? argb & 255 : argb >> (16 - 8 * c) & 255;
+        p[c] = uint8_t(std::min<uint32_t>(255, (255 * 255 * over + below * p[c] + total / 2) / total));
+      }
+      if (alpha) p[colors] = uint8_t((total + 127) / 255);
+    }
+}
+
+}  // namespace sg

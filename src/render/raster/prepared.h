@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the rasterizer draws from: flat arrays per item. Internal to raster/.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "render/raster/raster.h"
+
+namespace sg {
+
+namespace raster {
+
+/// Three point numbers per triangle over packed f32 positions relative to a double origin.
+struct TriangleSet {
+  Array positions;  ///< f32 x 3, packed
+  Vec3 origin;
+  Array triangles;  ///< u32 or i32 x 3, packed
+  Array cells;      ///< u32 cell of the dataset per triangle; empty: first_cell + triangle
+  uint32_t first_cell = 0;
+  size_t count = 0;
+
+  const float* xyz() const { return reinterpret_cast<const float*>(positions.raw()); }
+  const uint32_t* indices() const { return reinterpret_cast<const uint32_t*>(triangles.raw()); }
+  const uint32_t* cell_list() const { return cells.empty() ? nullptr : reinterpret_cast<const uint32_t*>(cells.raw()); }
+  uint32_t cell(size_t triangle) const { return cells.empty() ? first_cell + uint32_t(triangle) : cell_list()[triangle]; }
+};
+
+/// Normals per point, and corners that use others where an edge splits them.
+struct NormalSet {
+  Array normals;  ///< f32 x 3, packed; empty = face normals
+  Array corners;  ///< u32 x 3 per triangle into `normals`; empty = the triangles' own point numbers
+};
+
+/// Two point numbers per line segment; `group` joins the segments of one polyline.
+struct SegmentSet {
+  std::vector<uint32_t> points, cells, groups;
+  size_t count() const { return cells.size(); }
+};
+
+/// Colour of anything: one colour, a number per point or cell through a table, or linear RGBA per point or cell.
+struct ColorSource {
+  enum class Kind { constant, scalar, direct } kind = Kind::constant;
+  Vec4f constant{1, 1, 1, 1};  ///< linear
+  bool per_cell = false;
+  Array values;                ///< f32, packed: 1 component (value - offset) or 4 (linear RGBA, straight alpha)
+  double offset = 0;
+  std::shared_ptr<const ColorScale> scale;
+  std::vector<Vec4f> table;    ///< n colours of positions 0..1, then below, above, NaN
+  bool linear = false;         ///< position = (stored - first) * slope
+  bool nearest = false;        ///< labels are not blended: a pixel takes the value of the nearest corner
+  float first = 0, slope = 1;
+  bool translucent = false;    ///< some alpha may be below 1
+
+  const float* data() const { return reinterpret_cast<const float*>(values.raw()); }
+  /// Colour of a stored value (scalar kind).
+  const Vec4f& of(float stored) const;
+};
+
+struct PreparedItem {
+  enum class Kind { surface, lines, points } kind = Kind::surface;
+  DatasetPtr data;
+  uint32_t id = 0;  ///< item number + 1
+  ColorSource color;
+  float opacity = 1;
+  uint32_t first_primitive = 0, primitives = 0;  ///< numbers of this item's primitives in the picture
+  // surfaces
+  TriangleSet triangles;
+  NormalSet normals;
+  Material material;
+  bool translucent = false;
+  // lines
+  SegmentSet segments;
+  double width = 1;  ///< pixels; also the points' size
+  bool shaded = false;
+  // lines and points
+  std::vector<uint32_t> points;  ///< those that are drawn
+  Array positions;               ///< f32 x 3 packed
+  Vec3 origin;
+};
+
+TriangleSet triangulate(const DatasetPtr& data, bool& any_polygon);
+NormalSet smooth_normals(const TriangleSet& triangles, double feature_angle);
+SegmentSet line_segments(const Dataset& data, const SurfaceMesh& mesh);
+/// Every edge of the polygons and strips once, in order of its points.
+SegmentSet polygon_edges(const Dataset& data, const SurfaceMesh& mesh);
+ColorSource color_source(const DatasetPtr& data, const std::optional<FieldColor>& color, Vec3f constant, const char* where);
+/// Packed f32 positions and their origin; f64 arrays are copied relative to their middle.
+void packed_positions(const Points& points, const Dataset& data, Array& xyz, Vec3& origin);
+
+/// Remembers what was derived from a dataset until the dataset is gone. `make` must not keep a DatasetPtr.
+std::shared_ptr<const void> remembered(const DatasetPtr& data, const std::string& key, std::shared_ptr<const void> (*make)(void*), void* argument);
+template <class T, class F>
+std::shared_ptr<const T> derived(const DatasetPtr& data, const std::string& key, F&& f) {
+  auto make = [](void* p) -> std::shared_ptr<const void> { return std::make_shared<const T>((*static_cast<std::remove_reference_t<F>*>(p))()); };
+  return std::static_pointer_cast<const T>(remembered(data, key, make, &f));
+}
+
+float linear_light(float srgb);
+inline Vec3f linear_light(Vec3f c) { return {linear_light(c.x), linear_light(c.y), linear_light(c.z)}; }
+
+}  // namespace raster
+
+class PreparedScene {
+ public:
+  std::vector<raster::PreparedItem> items;  ///< in scene order; edges of a surface are an item of their own
+  std::vector<Light> lights;
+};
+
+}  // namespace sg

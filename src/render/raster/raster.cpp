@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/raster/raster.h"
+
+#include <fmt/core.h>
+
+#include <cstring>
+#include <mutex>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "render/raster/bins.h"
+#include "render/raster/marks.h"
+#include "render/raster/shade.h"
+
+namespace sg {
+
+namespace raster {
+namespace {
+
+constexpr uint32_t no_primitive = 0xFFFFFFFFu, no_item = no_primitive;
+constexpr size_t triangle_chunk = 1 << 14;
+constexpr int small_triangle = 16;  ///< pixels; below this size a triangle is drawn at once
+
+/// The visibility buffer. One is kept between frames: fresh pages cost more than drawing a million triangles.
+class KeyPlane {
+ public:
+  explicit KeyPlane(size_t pixels) {
+    {
+      std::lock_guard lock(mutex());
+      std::swap(buffer_, spare());
+    }
+    if (buffer_.size < pixels * sizeof(uint64_t)) {
+      std::byte* p = nullptr;
+      buffer_ = Buffer::allocate(pixels * sizeof(uint64_t), &p);
+    }
+  }
+  ~KeyPlane() {
+    if (buffer_.size > size_t(128) << 20) return;
+    std::lock_guard lock(mutex());
+    if (spare().size < buffer_.size) std::swap(buffer_, spare());
+  }
+  KeyPlane(const KeyPlane&) = delete;
+  KeyPlane& operator=(const KeyPlane&) = delete;
+  uint64_t* data() { return const_cast<uint64_t*>(reinterpret_cast<const uint64_t*>(buffer_.data)); }
+
+ private:
+  static std::mutex& mutex() {
+    static std::mutex m;
+    return m;
+  }
+  static Buffer& spare() {
+    static Buffer b;
+    return b;
+  }
+  Buffer buffer_;
+};
+
+struct TilePixelFragment {
+  uint32_t pixel;  ///< in the tile
+  Fragment fragment;
+};
+
+class Drawing {
+ public:
+  Drawing(const PreparedScene& scene, const Projection& projection, double pixel_scale, Frame& frame, Context& context)
+      : scene_(scene), projection_(projection), pixel_scale_(pixel_scale), frame_(frame), context_(context), grid_(frame.width, frame.height),
+        lights_(world_lights(scene.lights, projection)), keys_(frame.pixels()) {}
+
+  FragmentLists run() {
+    const uint64_t empty = empty_key(float(projection_.far_plane));
+    parallel_for(frame_.pixels(), 1 << 16, [&](size_t begin, size_t end) { std::fill(keys_.data() + begin, keys_.data() + end, empty); }, &context_);
+    size_t opaque_items = 0;
+    for (const PreparedItem& item : scene_.items) {
+      views_.push_back(eye_view(projection_, item.kind == PreparedItem::Kind::surface ? item.triangles.origin : item.origin));
+      if (item.kind == PreparedItem::Kind::surface) {
+        if (!item.translucent) only_ = opaque_items++ ? no_item : uint32_t(&item - scene_.items.data());
+        draw_surface(item, views_.back(), item.translucent ? translucent_ : opaque_);
+      } else {
+        const std::vector<MarkRecord> m = mark_records(item, uint32_t(&item - scene_.items.data()), projection_, pixel_scale_);
+        marks_.insert(marks_.end(), m.begin(), m.end());
+      }
+    }
+    auto triangle_box = [&](const std::vector<TriangleRecord>& r) { return [&](size_t i) { return pixel_box(r[i], frame_.width, frame_.height); }; };
+    opaque_bins_ = bin(opaque_.size(), grid_, triangle_box(opaque_));
+    translucent_bins_ = bin(translucent_.size(), grid_, triangle_box(translucent_));
+    mark_bins_ = bin(marks_.size(), grid_, [&](size_t i) { return mark_box(marks_[i], frame_.width, frame_.height); });
+    fragments_.resize(grid_.count());
+    parallel_for(grid_.count(), 1, [&](size_t tile, size_t) { draw_tile(tile); }, &context_);
+    return collect();
+  }
+
+ private:
+  void draw_surface(const PreparedItem& item, const EyeView& view, std::vector<TriangleRecord>& large) {
+    const TriangleSet& t = item.triangles;
+    const TriangleJob job{view, t.xyz(), t.indices(), item.first_primitive, item.translucent ? 0 : small_triangle, keys_.data()};
+    const size_t chunks = (t.count + triangle_chunk - 1) / triangle_chunk;
+    std::vector<std::vector<TriangleRecord>> parts(chunks);
+    parallel_for(t.count, triangle_chunk, [&](size_t begin, size_t end) { draw_triangles(job, begin, end, parts[begin / triangle_chunk]); }, &context_);
+    std::vector<size_t> start(chunks);
+    for (size_t i = 0; i < chunks; ++i) start[i] = parts[i].size();
+    const size_t before = large.size(), more = exclusive_scan(start);
+    large.resize(before + more);
+    parallel_for(chunks, 16, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) std::copy(parts[i].begin(), parts[i].end(), large.begin() + ptrdiff_t(before + start[i]));
+    });
+  }
+
+  uint32_t item_of(uint32_t primitive) const {
+    auto it = std::upper_bound(scene_.items.begin(), scene_.items.end(), primitive, [](uint32_t p, const PreparedItem& i) { return p < i.first_primitive; });
+    do --it;
+    while (it->primitives == 0);
+    return uint32_t(it - scene_.items.begin());
+  }
+
+  void draw_tile(size_t tile) {
+    const PixelBox box = grid_.box(tile);
+    opaque_bins_.each(tile, [&](uint32_t i) {
+      PixelBox b = pixel_box(opaque_[i], frame_.width, frame_.height);
+      b = {std::max(b.x0, box.x0), std::max(b.y0, box.y0), std::min(b.x1, box.x1), std::min(b.y1, box.y1)};
+      draw_record(opaque_[i], b, projection_.parallel, keys_.data(), frame_.width);
+    });
+    shade_opaque(box);
+    if (!translucent_bins_.any(tile) && !mark_bins_.any(tile)) return;
+    std::vector<Cover> covers;
+    cover_translucent(tile, box, covers);
+    MarkTile marks(box, projection_, keys_.data());
+    mark_bins_.each(tile, [&](uint32_t i) { marks.draw(marks_[i], covers); });
+    for (Cover& c : covers)
+      if (scene_.items[c.item].kind != PreparedItem::Kind::surface) color_mark(scene_.items[c.item], lights_, projection_, c);
+    resolve(tile, box, covers);
+  }
+
+  struct Seen {
+    uint32_t item, pixel, primitive;
+  };
+
+  /// Calls f(item, batch, first) for runs of at most shade_batch pixels of one item; `of(i)` tells what is seen.
+  template <class Of, class F>
+  void shade_runs(size_t n, const PixelBox& box, Of&& of, F&& f) {
+    ShadeBatch batch;
+    batch.tile_x = box.x0, batch.tile_y = box.y0;
+    for (size_t i = 0; i < n;) {
+      const size_t first = i;
+      const uint32_t number = of(i).item;
+      const PreparedItem& item = scene_.items[number];
+      for (batch.n = 0; i < n && batch.n < shade_batch; ++i, ++batch.n) {
+        const Seen s = of(i);
+        if (s.item != number) break;
+        batch.pixel[batch.n] = s.pixel, batch.triangle[batch.n] = s.primitive - item.first_primitive;
+      }
+      shade(shade_job(item, views_[number], lights_), batch);
+      f(item, batch, first);
+    }
+  }
+
+  void store_opaque(const PreparedItem& item, const ShadeBatch& b, const PixelBox& box) {
+    const size_t width = size_t(frame_.width), first = size_t(box.y0) * width + size_t(box.x0), n = b.n;
+    float *rgba = frame_.rgba.data() + 4 * first, *depth = frame_.depth.data() + first;
+    uint32_t *ids = frame_.ids.data() + first, id = item.id;
+    for (size_t i = 0; i < n; ++i) {
+      const size_t p = b.pixel[i] / tile_size * width + b.pixel[i] % tile_size;
+      const float light = b.light[i], gloss = b.gloss[i];
+      const float q[4] = {b.rgba[0][i] * light + gloss, b.rgba[1][i] * light + gloss, b.rgba[2][i] * light + gloss, 1.0f};
+      std::memcpy(rgba + 4 * p, q, sizeof q);
+      depth[p] = b.depth[i], ids[p] = id;
+    }
+  }
+
+  /// Where one item alone is seen, the usual case: pixels go from the keys into the batch without a list between.
+  void shade_single(uint32_t number, const PixelBox& box) {
+    const PreparedItem& item = scene_.items[number];
+    const ShadeJob job = shade_job(item, views_[number], lights_);
+    ShadeBatch batch;
+    batch.tile_x = box.x0, batch.tile_y = box.y0;
+    for (int y = box.y0; y <= box.y1; ++y) {
+      const uint64_t* row = keys_.data() + size_t(y) * size_t(frame_.width);
+      size_t n = batch.n;
+      for (int x = box.x0; x <= box.x1; ++x) {
+        const uint32_t primitive = uint32_t(row[x]);
+        batch.pixel[n] = uint32_t((y - box.y0) * tile_size + (x - box.x0)), batch.triangle[n] = primitive - item.first_primitive;
+        n += primitive != no_primitive;
+      }
+      batch.n = n;
+      if (n + tile_size < shade_batch && y < box.y1) continue;
+      shade(job, batch);
+      store_opaque(item, batch, box);
+      batch.n = 0;
+    }
+  }
+
+  void shade_opaque(const PixelBox& box) {
+    if (only_ != no_item) return shade_single(only_, box);
+    uint32_t lowest = no_primitive, highest = 0;
+    for (int y = box.y0; y <= box.y1; ++y)
+      for (int x = box.x0; x <= box.x1; ++x) {
+        const uint32_t primitive = uint32_t(keys_.data()[size_t(y) * size_t(frame_.width) + size_t(x)]);
+        lowest = std::min(lowest, primitive), highest = std::max(highest, primitive + 1);  // no_primitive + 1 is 0
+      }
+    if (highest == 0) return;
+    const uint32_t first = item_of(lowest);
+    if (first == item_of(highest - 1)) return shade_single(first, box);
+    std::vector<Seen> seen;
+    uint32_t item = 0, from = 1, to = 0;  // the range of primitives of the item that was seen last
+    for (int y = box.y0; y <= box.y1; ++y)
+      for (int x = box.x0; x <= box.x1; ++x) {
+        const uint32_t primitive = uint32_t(keys_.data()[size_t(y) * size_t(frame_.width) + size_t(x)]);
+        if (primitive == no_primitive) continue;
+        if (primitive < from || primitive >= to) {
+          item = item_of(primitive);
+          from = scene_.items[item].first_primitive, to = from + scene_.items[item].primitives;
+        }
+        seen.push_back({item, uint32_t((y - box.y0) * tile_size + (x - box.x0)), primitive});
+      }
+    std::stable_sort(seen.begin(), seen.end(), [](const Seen& a, const Seen& b) { return a.item < b.item; });
+    shade_runs(seen.size(), box, [&](size_t i) { return seen[i]; }, [&](const PreparedItem& it, const ShadeBatch& b, size_t) { store_opaque(it, b, box); });
+  }
+
+  size_t pixel_of(const PixelBox& box, uint32_t in_tile) const {
+    return (size_t(box.y0) + in_tile / tile_size) * size_t(frame_.width) + size_t(box.x0) + in_tile % tile_size;
+  }
+
+  void cover_translucent(size_t tile, const PixelBox& box, std::vector<Cover>& covers) {
+    translucent_bins_.each(tile, [&](uint32_t i) {
+      const TriangleRecord& t = translucent_[i];
+      PixelBox b = pixel_box(t, frame_.width, frame_.height);
+      b = {std::max(b.x0, box.x0), std::max(b.y0, box.y0), std::min(b.x1, box.x1), std::min(b.y1, box.y1)};
+      const WPlane plane = w_plane(t);
+      const uint32_t item = item_of(t.primitive);
+      for_each_span(t, b, [&](int y, int x0, int x1) {
+        alignas(64) float depth[tile_size + 64];
+        span_depths(plane, projection_.parallel, x0, y, x1 - x0 + 1, depth);
+        for (int x = x0; x <= x1; ++x) {
+          const float z = depth[x - x0];
+          if (!(z < key_depth(keys_.data()[size_t(y) * size_t(frame_.width) + size_t(x)]))) continue;
+          covers.push_back({uint32_t((y - box.y0) * tile_size + (x - box.x0)), z, z, t.primitive, item, 1, 0, 0, {0, 0, 0}});
+        }
+      });
+    });
+    std::stable_sort(covers.begin(), covers.end(), [](const Cover& a, const Cover& b) { return a.item < b.item; });
+    shade_runs(covers.size(), box, [&](size_t i) { return Seen{covers[i].item, covers[i].pixel, covers[i].primitive}; },
+               [&](const PreparedItem& it, const ShadeBatch& b, size_t first) {
+                 for (size_t i = 0; i < b.n; ++i) {
+                   Cover& c = covers[first + i];
+                   c.order = c.depth = b.depth[i], c.alpha = b.rgba[3][i] * it.opacity;
+                   for (size_t k = 0; k < 3; ++k) c.rgb[k] = b.rgba[k][i] * b.light[i] + b.gloss[i];
+                 }
+               });
+  }
+
+  /// Sorts what covers each pixel; the first that hides all behind it becomes the opaque pixel, those before it fragments.
+  void resolve(size_t tile, const PixelBox& box, std::vector<Cover>& covers) {
+    std::sort(covers.begin(), covers.end(), [](const Cover& a, const Cover& b) {
+      if (a.pixel != b.pixel) return a.pixel < b.pixel;
+      if (a.order != b.order) return a.order < b.order;
+      return a.primitive < b.primitive;
+    });
+    std::vector<TilePixelFragment>& out = fragments_[tile];
+    uint32_t done = 0xFFFFFFFFu;
+    for (const Cover& c : covers) {
+      if (c.pixel == done || !(c.alpha > 0)) continue;
+      const uint32_t id = scene_.items[c.item].id;
+      if (c.alpha >= 1) {
+        const size_t p = pixel_of(box, c.pixel);
+        for (size_t k = 0; k < 3; ++k) frame_.rgba[4 * p + k] = c.rgb[k];
+        frame_.rgba[4 * p + 3] = 1, frame_.depth[p] = c.depth, frame_.ids[p] = id;
+        done = c.pixel;
+      } else {
+        out.push_back({c.pixel, {c.order, {c.rgb[0] * c.alpha, c.rgb[1] * c.alpha, c.rgb[2] * c.alpha, c.alpha}, id}});
+      }
+    }
+  }
+
+  FragmentLists collect() {
+    FragmentLists lists;
+    size_t total = 0;
+    for (const auto& t : fragments_) total += t.size();
+    if (total == 0) return lists;
+    if (total >= UINT32_MAX) fail_usage(fmt::format("{} translucent fragments are more than a picture holds", total), "render", "make the picture smaller or the surfaces opaque");
+    lists.start.assign(frame_.pixels() + 1, 0);
+    lists.fragments.resize(total);
+    parallel_for(grid_.count(), 8, [&](size_t begin, size_t end) {
+      for (size_t t = begin; t < end; ++t)
+        for (const TilePixelFragment& f : fragments_[t]) ++lists.start[pixel_of(grid_.box(t), f.pixel) + 1];
+    });
+    for (size_t p = 0; p < frame_.pixels(); ++p) lists.start[p + 1] += lists.start[p];
+    parallel_for(grid_.count(), 8, [&](size_t begin, size_t end) {
+      for (size_t t = begin; t < end; ++t) {
+        size_t nth = 0;
+        for (size_t i = 0; i < fragments_[t].size(); ++i) {
+          nth = i && fragments_[t][i].pixel == fragments_[t][i - 1].pixel ? nth + 1 : 0;
+          lists.fragments[lists.start[pixel_of(grid_.box(t), fragments_[t][i].pixel)] + nth] = fragments_[t][i].fragment;
+        }
+      }
+    });
+    return lists;
+  }
+
+  const PreparedScene& scene_;
+  const Projection& projection_;
+  const double pixel_scale_;
+  Frame& frame_;
+  Context& context_;
+  const TileGrid grid_;
+  const std::vector<WorldLight> lights_;
+  KeyPlane keys_;
+  std::vector<EyeView> views_;
+  uint32_t only_ = no_item;  ///< the one opaque surface, if there is just one
+  std::vector<TriangleRecord> opaque_, translucent_;
+  std::vector<MarkRecord> marks_;
+  Bins opaque_bins_, translucent_bins_, mark_bins_;
+  std::vector<std::vector<TilePixelFragment>> fragments_;
+};
+
+}  // namespace
+}  // namespace raster
+
+FragmentLists rasterize_prepared(const PreparedScene& scene, const Projection& projection, double pixel_scale, Frame& frame, Context& context) {
+  if (frame.width != projection.width || frame.height != projection.height)
+    fail_usage(fmt::format("the frame is {}x{}, the projection {}x{}", frame.width, frame.height, projection.width, projection.height), "rasterize", "make both for the same size");
+  if (!(pixel_scale > 0)) fail_usage(fmt::format("pixel scale {} is no size", pixel_scale), "rasterize", "it must be above 0");
+  return raster::Drawing(scene, projection, pixel_scale, frame, context).run();
+}
+
+FragmentLists rasterize(const Scene& scene, const Projection& projection, double pixel_scale, Frame& frame, Context& context) {
+  return rasterize_prepared(*prepare_scene(scene, context), projection, pixel_scale, frame, context);
+}
+
+}  // namespace sg
