@@ -112,8 +112,8 @@ TEST_CASE("volume: the last voxels of tiny arrays of small integers are read rig
     alignas(64) float x[16], y[16], z[16], fast[16], slow[16];
     for (int i = 0; i < 16; ++i) x[i] = float(i & 1), y[i] = float(i >> 1 & 1), z[i] = float(i >> 2 & 1);
     x[8] = 0.5f, y[9] = 0.25f, x[10] = -3, x[11] = 9;
-    volume::best_sampler(voxels)(voxels, x, y, z, fast);
-    volume::scalar_sampler(voxels)(voxels, x, y, z, slow);
+    volume::best_kernels(voxels).sample(voxels, x, y, z, fast);
+    volume::scalar_kernels(voxels).sample(voxels, x, y, z, slow);
     CHECK(std::memcmp(fast, slow, sizeof fast) == 0);
     for (int i = 0; i < 8; ++i) CHECK(fast[i] == float(i + 1));
     CHECK(fast[8] == 1.5f);

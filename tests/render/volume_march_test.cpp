@@ -2,7 +2,7 @@
 // Skipping, termination, threads, maxima, gradients, transfer tables and picking.
 #include "volume_support.h"
 
-#include "render/volume/shade.h"
+#include "render/volume/runs.h"
 
 using namespace sg;
 using namespace sg::test;

@@ -46,6 +46,7 @@ bool make_record(const PreparedItem& item, const Projection& p, size_t i, MarkRe
   Vec3 a = eye_point(item, p, line ? item.segments.points[2 * i] : item.points[i]);
   Vec3 b = line ? eye_point(item, p, item.segments.points[2 * i + 1]) : a;
   if (!finite(a) || !finite(b) || !clip_depth(p, a, b, m.from, m.to)) return false;
+  if (!line) m.from = m.to = 0;
   place(p, a, m.ax, m.ay, m.aw), place(p, b, m.bx, m.by, m.bw);
   m.primitive = item.first_primitive + uint32_t(i), m.group = line ? item.segments.groups[i] : uint32_t(i);
   return finite({m.ax, m.ay, m.aw}) && finite({m.bx, m.by, m.bw}) && !mark_box(m, p.width, p.height).empty();
@@ -77,7 +78,7 @@ std::vector<MarkRecord> mark_records(const PreparedItem& item, uint32_t number, 
 void MarkTile::draw(const MarkRecord& m, std::vector<Cover>& out) {
   if (last_.empty()) last_.resize(tile_pixels);
   const double half = m.half, r = half + 0.5, dx = m.bx - m.ax, dy = m.by - m.ay, length2 = dx * dx + dy * dy;
-  const bool line = length2 > 0 || m.from != m.to;
+  const bool line = m.from != m.to;
   const Projection& p = projection_;
   // On a slope the surface beside a line comes nearer than the line itself: marks are drawn as if that much nearer.
   const double nearer = 2 * (half + 1) / p.scale;

@@ -10,7 +10,7 @@ namespace sg::raster {
 /// A capsule from a to b, or a disc when both are the same; `w` is 1/z (perspective) or z (parallel).
 struct MarkRecord {
   double ax, ay, aw, bx, by, bw;
-  float from, to;      ///< places of a and b on the segment, after near clipping
+  float from, to;      ///< places of a and b on the segment, after near clipping; equal for dots
   float half;          ///< half the width, pixels
   uint32_t primitive;
   uint32_t item;       ///< of the prepared scene

@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <cstring>
 #include <mutex>
 
 #include "base/error.h"
@@ -16,8 +17,9 @@ namespace sg {
 namespace raster {
 namespace {
 
+constexpr uint32_t no_primitive = 0xFFFFFFFFu, no_item = no_primitive;
 constexpr size_t triangle_chunk = 1 << 14;
-constexpr int small_triangle = 8;  ///< pixels; up to this size a triangle is drawn at once
+constexpr int small_triangle = 16;  ///< pixels; below this size a triangle is drawn at once
 
 /// The visibility buffer. One is kept between frames: fresh pages cost more than drawing a million triangles.
 class KeyPlane {
@@ -67,10 +69,13 @@ class Drawing {
   FragmentLists run() {
     const uint64_t empty = empty_key(float(projection_.far_plane));
     parallel_for(frame_.pixels(), 1 << 16, [&](size_t begin, size_t end) { std::fill(keys_.data() + begin, keys_.data() + end, empty); }, &context_);
+    size_t opaque_items = 0;
     for (const PreparedItem& item : scene_.items) {
       views_.push_back(eye_view(projection_, item.kind == PreparedItem::Kind::surface ? item.triangles.origin : item.origin));
-      if (item.kind == PreparedItem::Kind::surface) draw_surface(item, views_.back(), item.translucent ? translucent_ : opaque_);
-      else {
+      if (item.kind == PreparedItem::Kind::surface) {
+        if (!item.translucent) only_ = opaque_items++ ? no_item : uint32_t(&item - scene_.items.data());
+        draw_surface(item, views_.back(), item.translucent ? translucent_ : opaque_);
+      } else {
         const std::vector<MarkRecord> m = mark_records(item, uint32_t(&item - scene_.items.data()), projection_, pixel_scale_);
         marks_.insert(marks_.end(), m.begin(), m.end());
       }
@@ -148,29 +153,66 @@ class Drawing {
     }
   }
 
+  void store_opaque(const PreparedItem& item, const ShadeBatch& b, const PixelBox& box) {
+    const size_t width = size_t(frame_.width), first = size_t(box.y0) * width + size_t(box.x0), n = b.n;
+    float *rgba = frame_.rgba.data() + 4 * first, *depth = frame_.depth.data() + first;
+    uint32_t *ids = frame_.ids.data() + first, id = item.id;
+    for (size_t i = 0; i < n; ++i) {
+      const size_t p = b.pixel[i] / tile_size * width + b.pixel[i] % tile_size;
+      const float light = b.light[i], gloss = b.gloss[i];
+      const float q[4] = {b.rgba[0][i] * light + gloss, b.rgba[1][i] * light + gloss, b.rgba[2][i] * light + gloss, 1.0f};
+      std::memcpy(rgba + 4 * p, q, sizeof q);
+      depth[p] = b.depth[i], ids[p] = id;
+    }
+  }
+
+  /// Where one item alone is seen, the usual case: pixels go from the keys into the batch without a list between.
+  void shade_single(uint32_t number, const PixelBox& box) {
+    const PreparedItem& item = scene_.items[number];
+    const ShadeJob job = shade_job(item, views_[number], lights_);
+    ShadeBatch batch;
+    batch.tile_x = box.x0, batch.tile_y = box.y0;
+    for (int y = box.y0; y <= box.y1; ++y) {
+      const uint64_t* row = keys_.data() + size_t(y) * size_t(frame_.width);
+      size_t n = batch.n;
+      for (int x = box.x0; x <= box.x1; ++x) {
+        const uint32_t primitive = uint32_t(row[x]);
+        batch.pixel[n] = uint32_t((y - box.y0) * tile_size + (x - box.x0)), batch.triangle[n] = primitive - item.first_primitive;
+        n += primitive != no_primitive;
+      }
+      batch.n = n;
+      if (n + tile_size < shade_batch && y < box.y1) continue;
+      shade(job, batch);
+      store_opaque(item, batch, box);
+      batch.n = 0;
+    }
+  }
+
   void shade_opaque(const PixelBox& box) {
-    Seen seen[tile_pixels];
-    size_t n = 0;
-    bool mixed = false;
+    if (only_ != no_item) return shade_single(only_, box);
+    uint32_t lowest = no_primitive, highest = 0;
+    for (int y = box.y0; y <= box.y1; ++y)
+      for (int x = box.x0; x <= box.x1; ++x) {
+        const uint32_t primitive = uint32_t(keys_.data()[size_t(y) * size_t(frame_.width) + size_t(x)]);
+        lowest = std::min(lowest, primitive), highest = std::max(highest, primitive + 1);  // no_primitive + 1 is 0
+      }
+    if (highest == 0) return;
+    const uint32_t first = item_of(lowest);
+    if (first == item_of(highest - 1)) return shade_single(first, box);
+    std::vector<Seen> seen;
     uint32_t item = 0, from = 1, to = 0;  // the range of primitives of the item that was seen last
     for (int y = box.y0; y <= box.y1; ++y)
       for (int x = box.x0; x <= box.x1; ++x) {
         const uint32_t primitive = uint32_t(keys_.data()[size_t(y) * size_t(frame_.width) + size_t(x)]);
-        if (primitive == 0xFFFFFFFFu) continue;
+        if (primitive == no_primitive) continue;
         if (primitive < from || primitive >= to) {
-          item = item_of(primitive), mixed = mixed || n > 0;
+          item = item_of(primitive);
           from = scene_.items[item].first_primitive, to = from + scene_.items[item].primitives;
         }
-        seen[n++] = {item, uint32_t((y - box.y0) * tile_size + (x - box.x0)), primitive};
+        seen.push_back({item, uint32_t((y - box.y0) * tile_size + (x - box.x0)), primitive});
       }
-    if (mixed) std::stable_sort(seen, seen + n, [](const Seen& a, const Seen& b) { return a.item < b.item; });
-    shade_runs(n, box, [&](size_t i) { return seen[i]; }, [&](const PreparedItem& it, const ShadeBatch& b, size_t) {
-      for (size_t i = 0; i < b.n; ++i) {
-        const size_t p = pixel_of(box, b.pixel[i]);
-        for (size_t k = 0; k < 3; ++k) frame_.rgba[4 * p + k] = b.rgba[k][i] * b.light[i] + b.gloss[i];
-        frame_.rgba[4 * p + 3] = 1, frame_.depth[p] = b.depth[i], frame_.ids[p] = it.id;
-      }
-    });
+    std::stable_sort(seen.begin(), seen.end(), [](const Seen& a, const Seen& b) { return a.item < b.item; });
+    shade_runs(seen.size(), box, [&](size_t i) { return seen[i]; }, [&](const PreparedItem& it, const ShadeBatch& b, size_t) { store_opaque(it, b, box); });
   }
 
   size_t pixel_of(const PixelBox& box, uint32_t in_tile) const {
@@ -262,6 +304,7 @@ class Drawing {
   const std::vector<WorldLight> lights_;
   KeyPlane keys_;
   std::vector<EyeView> views_;
+  uint32_t only_ = no_item;  ///< the one opaque surface, if there is just one
   std::vector<TriangleRecord> opaque_, translucent_;
   std::vector<MarkRecord> marks_;
   Bins opaque_bins_, translucent_bins_, mark_bins_;
@@ -271,7 +314,7 @@ class Drawing {
 }  // namespace
 }  // namespace raster
 
-FragmentLists rasterize(const PreparedScene& scene, const Projection& projection, double pixel_scale, Frame& frame, Context& context) {
+FragmentLists rasterize_prepared(const PreparedScene& scene, const Projection& projection, double pixel_scale, Frame& frame, Context& context) {
   if (frame.width != projection.width || frame.height != projection.height)
     fail_usage(fmt::format("the frame is {}x{}, the projection {}x{}", frame.width, frame.height, projection.width, projection.height), "rasterize", "make both for the same size");
   if (!(pixel_scale > 0)) fail_usage(fmt::format("pixel scale {} is no size", pixel_scale), "rasterize", "it must be above 0");
@@ -279,7 +322,7 @@ FragmentLists rasterize(const PreparedScene& scene, const Projection& projection
 }
 
 FragmentLists rasterize(const Scene& scene, const Projection& projection, double pixel_scale, Frame& frame, Context& context) {
-  return rasterize(*prepare_scene(scene, context), projection, pixel_scale, frame, context);
+  return rasterize_prepared(*prepare_scene(scene, context), projection, pixel_scale, frame, context);
 }
 
 }  // namespace sg

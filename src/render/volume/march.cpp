@@ -2,7 +2,7 @@
 // Integration along a ray. A run of 16 samples is evaluated at once (places, values, table entries), then composited one by one
 // from near to far, so that the result depends neither on the width of the machine's vectors nor on what was passed over.
 #include "render/volume/volume_internal.h"
-#include "render/volume/shade.h"
+#include "render/volume/runs.h"
 
 namespace sg::volume {
 
@@ -63,6 +63,7 @@ struct Stretch {
 
   /// Values and table entries of the samples s .. s+run_length.
   void evaluate(int s, Run& run) const {
+    if (v.direct) return v.kernels.entries(v.voxels, v.transfer[0].linear_table(), first_u, by_u, s, run);
     places(s, run);
     finish_values(v, run);
     const Transfer& transfer = v.transfer[0];
@@ -112,7 +113,7 @@ void composite_shaded(const Volume& v, const Stretch& stretch, int s, const Run&
   Gradients g;
   gradients(v, run, seen, n_seen, [&](int axis, int n) { return stretch.first[axis] + double(s + n) * stretch.by[axis]; }, g);
   Shading shading;
-  shade(v, lit, g, n_seen, shading);
+  v.kernels.shade(v.shade_plan, lit, g, shading);
   for (int m = 0; m < n_seen; ++m) {
     const Transfer::Step& step = v.transfer[0].steps()[run.entry[seen[m]]];
     const float flash = shading.specular[m] * (1 - step.pass), w = weight[m], d = shading.diffuse[m];
@@ -134,7 +135,7 @@ void composite_odd(const Volume& v, const Stretch& stretch, double length, const
     Gradients g;
     gradients(v, run, seen, 1, [&](int axis, int) { return stretch.first[axis]; }, g);
     Shading shading;
-    shade(v, lit, g, 1, shading);
+    v.kernels.shade(v.shade_plan, lit, g, shading);
     diffuse = shading.diffuse[0], flash = shading.specular[0];
   }
   sum.behind((m.r * diffuse + flash) * alpha, (m.g * diffuse + flash) * alpha, (m.b * diffuse + flash) * alpha, alpha);
@@ -202,7 +203,7 @@ void march_together(const Volume* const* volumes, const Course* const* courses, 
         Gradients g;
         gradients(v, run, seen, 1, [&](int axis, int) { return here.first[axis]; }, g);
         Shading shading;
-        shade(v, lit, g, 1, shading);
+        v.kernels.shade(v.shade_plan, lit, g, shading);
         diffuse = shading.diffuse[0], flash = shading.specular[0];
       }
       const double d = double(m.density);

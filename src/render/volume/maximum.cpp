@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The maximum of the trilinear field along a ray. Within a cell the field along a ray is a cubic, so its maximum is found
 // exactly; cells and bricks whose largest corner is not above the best so far are passed over.
-#include "render/volume/shade.h"
+#include "render/volume/runs.h"
 
 namespace sg::volume {
 
@@ -46,18 +46,35 @@ class Search {
     };
     long first[3];
     for (int a = 0; a < 3; ++a) first[a] = std::clamp<long>(cell_at(a, c_.enter), 0, long(v_.voxels.dims[size_t(a)]) - 2) >> MinMaxBricks::shift;
+    // The brick with the largest value first: most others then lie below what is found there.
+    std::vector<Crossed>& crossed = crossed_;
+    crossed.clear();
     for (Walk walk(c_, c_.enter, c_.leave, first, side);;) {
       bool inside = true;
       for (int a = 0; a < 3; ++a) inside = inside && walk.box[a] >= 0 && walk.box[a] < long(v_.bricks.dims[size_t(a)]);
       if (!inside) break;
       const MinMaxBricks::Range r = v_.bricks.ranges[v_.bricks.id(size_t(walk.box[0]), size_t(walk.box[1]), size_t(walk.box[2]))];
-      if (!skip_ || (!r.empty() && (!best_.found || r.hi > best_.value))) brick(walk.box, walk.t, walk.leave());
+      if (!r.empty()) crossed.push_back({r.hi, {walk.box[0], walk.box[1], walk.box[2]}, walk.t, walk.leave()});
       if (!walk.advance()) break;
+    }
+    while (!crossed.empty()) {
+      const auto top = std::max_element(crossed.begin(), crossed.end(), [](const Crossed& a, const Crossed& b) { return a.hi < b.hi; });
+      if (skip_ && (top->hi < floor_ || (best_.found && top->hi <= best_.value))) break;
+      const Crossed now = *top;
+      *top = crossed.back();
+      crossed.pop_back();
+      brick(now.box, now.t, now.leave);
     }
     return best_;
   }
 
  private:
+  struct Crossed {
+    float hi;
+    long box[3];
+    double t, leave;
+  };
+
   double sample_q(int a, long i) const { return v_.affine ? double(i) : v_.coordinates[a][size_t(i)]; }
 
   /// Cell of the place at t; -1 and samples-1 are the halves beyond the outermost samples, where values are clamped.
@@ -82,6 +99,7 @@ class Search {
       if (hi[a] == cells - 1) hi[a] = cells;
       first[a] = std::clamp(cell_at(a, from), lo[a], hi[a]);
     }
+    if (skip_) raise_floor(from, to);
     Walk walk(c_, from, to, first, side);
     do {
       for (int a = 0; a < 3; ++a)
@@ -90,42 +108,53 @@ class Search {
     } while (walk.advance());
   }
 
+  /// Some samples on the way say what the maximum is at least, short of rounding errors: cells below that are not looked at.
+  void raise_floor(double from, double to) {
+    Run run;
+    for (int n = 0; n < run_length; ++n) {
+      const double t = from + (to - from) * ((n + 0.5) / run_length);
+      run.ux[n] = v_.u(0, c_.start.x + t * c_.along.x), run.uy[n] = v_.u(1, c_.start.y + t * c_.along.y), run.uz[n] = v_.u(2, c_.start.z + t * c_.along.z);
+    }
+    finish_values(v_, run);
+    for (int n = 0; n < run_length; ++n) {
+      const float least = run.value[n] - 1e-5f * std::abs(run.value[n]);
+      if (least > floor_ && least < HUGE_VALF) floor_ = least;
+    }
+  }
+
   void offer(double value, double t) {
     if (!best_.found || value > double(best_.value)) best_ = {float(value), t, true};
   }
 
   void cell(const long box[3], double from, double to) {
-    // The corners, and the ray's fraction of each edge at both ends; constant in the clamped halves.
     size_t at[3];
-    double f0[3], df[3];
-    for (int a = 0; a < 3; ++a) {
-      const long cells = long(v_.voxels.dims[size_t(a)]) - 1;
-      at[a] = size_t(std::clamp(box[a], 0l, cells - 1));
-      f0[a] = box[a] < 0 ? 0 : 1, df[a] = 0;
-      if (box[a] >= 0 && box[a] < cells) {
-        const double q0 = sample_q(a, box[a]), edge = sample_q(a, box[a] + 1) - q0;
-        f0[a] = edge > 0 ? std::clamp((c_.start[a] + from * c_.along[a] - q0) / edge, 0.0, 1.0) : 0;
-        df[a] = edge > 0 ? std::clamp((c_.start[a] + to * c_.along[a] - q0) / edge, 0.0, 1.0) - f0[a] : 0;
-      }
-    }
+    for (size_t a = 0; a < 3; ++a) at[a] = size_t(std::clamp(box[a], 0l, long(v_.voxels.dims[a]) - 2));
     const size_t nx = v_.voxels.dims[0], ny = v_.voxels.dims[1];
     if (!v_.hidden.empty() && v_.hidden[at[0] + (nx - 1) * (at[1] + (ny - 1) * at[2])]) return;
     const T* p = data_ + at[0] + nx * (at[1] + ny * at[2]);
     const size_t offset[4] = {0, nx, nx * ny, nx * ny + nx};
-    double corner[8];
     T top = p[0];
     bool nan = false;
-    for (int i = 0; i < 4; ++i) {
-      const T a = p[offset[i]], b = p[offset[i] + 1];
-      corner[2 * i] = double(a), corner[2 * i + 1] = double(b);
-      nan = nan || a != a || b != b;
+    for (const size_t o : offset) {
+      const T a = p[o], b = p[o + 1];
+      if constexpr (std::is_floating_point_v<T>) nan = nan || a != a || b != b;
       top = std::max({top, a, b});
     }
     if (nan) {
       if (v_.dual) beside_nan(from, to);
       return;
     }
-    if (skip_ && best_.found && !(float(top) > best_.value)) return;
+    if (skip_ && (float(top) < floor_ || (best_.found && float(top) <= best_.value))) return;
+    // The ray's fraction of each edge at both ends; constant in the clamped halves.
+    double f0[3], df[3], corner[8];
+    for (int i = 0; i < 8; ++i) corner[i] = double(p[offset[i / 2] + size_t(i % 2)]);
+    for (int a = 0; a < 3; ++a) {
+      f0[a] = box[a] < 0 ? 0 : 1, df[a] = 0;
+      if (box[a] < 0 || box[a] > long(v_.voxels.dims[size_t(a)]) - 2) continue;
+      const double q0 = sample_q(a, box[a]), edge = sample_q(a, box[a] + 1) - q0;
+      f0[a] = edge > 0 ? std::clamp((c_.start[a] + from * c_.along[a] - q0) / edge, 0.0, 1.0) : 0;
+      df[a] = edge > 0 ? std::clamp((c_.start[a] + to * c_.along[a] - q0) / edge, 0.0, 1.0) - f0[a] : 0;
+    }
     const auto value = [&](double s) {
       const double x = f0[0] + s * df[0], y = f0[1] + s * df[1], z = f0[2] + s * df[2];
       double along_x[4], along_y[2];
@@ -161,6 +190,8 @@ class Search {
   const bool skip_;
   const T* data_;
   Maximum best_{0, 0, false};
+  float floor_ = -HUGE_VALF;
+  std::vector<Crossed> crossed_;
 };
 
 }  // namespace

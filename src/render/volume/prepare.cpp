@@ -250,12 +250,16 @@ Volume prepare(const VolumeItem& item, uint32_t id, const Knobs& knobs) {
     if (std::isfinite(r.lo)) lo = std::min(lo, double(r.lo));
     if (std::isfinite(r.hi)) hi = std::max(hi, double(r.hi));
   }
-  v.gradient_scale = float(lo < hi ? 0.002 * (hi - lo) : 1);
   v.transfer.emplace_back(item.color, item.opacity, unit, v.step, lo + double(v.base), hi + double(v.base), double(v.base));
   std::vector<uint8_t> clear(v.bricks.size());
   for (size_t i = 0; i < clear.size(); ++i) clear[i] = v.transfer[0].clear(v.bricks.ranges[i].lo, v.bricks.ranges[i].hi);
   v.distance = empty_distance(clear, v.bricks.dims);
-  v.sample = knobs.simd ? best_sampler(v.voxels) : scalar_sampler(v.voxels);
+  v.kernels = knobs.simd ? best_kernels(v.voxels) : scalar_kernels(v.voxels);
+  v.direct = v.affine && !v.nearest && v.hidden.empty() && v.transfer[0].linear() && !(v.dual && v.voxels.array.type() == ElementType::f32);
+  // A gradient in q becomes one in the world by the transpose of world -> q.
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c) v.shade_plan.to_world[r][c] = float(v.to_q.m[c][r]);
+  v.shade_plan.per_scale = float(lo < hi ? 1 / (0.002 * (hi - lo)) : 1);
   return v;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "color/color_scale.h"
+#include "render/volume/kernels.h"
 
 namespace sg::volume {
 
@@ -41,6 +42,9 @@ class Transfer {
     if (!(at >= 0)) return 0;
     return at > float(count_) ? count_ + 1 : std::min(int(at), count_ - 1) + 1;
   }
+  /// The table as kernels read it, when its axis is linear in the value.
+  bool linear() const { return kind_ == ScaleKind::linear; }
+  LinearTable linear_table() const { return {first_, per_axis_, count_}; }
   const Step* steps() const { return steps_.data(); }
   const Medium& medium(int index) const { return media_[size_t(index)]; }
   /// Does every value in [lo, hi] (stored) draw nothing?

@@ -8,9 +8,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "data/array.h"
 #include "index/minmax_bricks.h"
 #include "render/composite/over.h"
+#include "render/volume/kernels.h"
 #include "render/volume/transfer.h"
 #include "scene/scene.h"
 
@@ -24,32 +24,6 @@ struct Knobs {
 };
 void composite_volumes(const Scene& scene, const Projection& projection, const FragmentLists& fragments, Frame& frame, Context& context, const Knobs& knobs);
 
-/// Samples of a run are evaluated together; arrays have room for all of them.
-constexpr int run_length = 16;
-
-/// Packed samples in their own type (u8, i8, u16, i16 or f32; others are converted), at least two per axis.
-struct Voxels {
-  Array array;
-  std::array<size_t, 3> dims{};
-};
-
-/// Trilinear values at run_length places in u (clamped to the lattice); NaN where a corner is NaN.
-using SampleRun = void (*)(const Voxels& voxels, const float* ux, const float* uy, const float* uz, float* values);
-/// The scalar reference, and the best for this machine; both give the same bits.
-SampleRun scalar_sampler(const Voxels& voxels);
-SampleRun best_sampler(const Voxels& voxels);
-
-/// A light and the half vector towards the viewer, as seen along one ray.
-struct LitRay {
-  struct One {
-    Vec3f light, half;
-    float intensity;
-  };
-  std::vector<One> lights;
-  Vec3f direction;  ///< of the ray
-  Material material;
-};
-
 struct Volume {
   uint32_t id = 0;  ///< item number + 1
   VolumeItem::Mode mode = VolumeItem::Mode::composite;
@@ -60,7 +34,9 @@ struct Volume {
   float base = 0;          ///< value = stored + base
   double step = 1;         ///< world length
   std::vector<Transfer> transfer;  ///< one
-  SampleRun sample = nullptr;
+  Kernels kernels{};
+  bool direct = false;     ///< affine, a linear table, no holes to look after: kernels.entries does all
+  ShadePlan shade_plan{};
 
   // world -> q
   Vec3 origin;
@@ -76,7 +52,6 @@ struct Volume {
   std::vector<double> border[3];   ///< q of the brick sides, dims+1
   Vec3 margin;                     ///< q: rounding errors of places are smaller
   std::vector<uint8_t> hidden;     ///< per cell of the lattice: draws nothing; may be empty
-  float gradient_scale = 1;        ///< stored-value change per q (smallest cell) that counts as a surface
 
   Vec3 q(Vec3 world) const { return to_q * (world - origin); }
   /// Sample index of a place in q along one axis, clamped.

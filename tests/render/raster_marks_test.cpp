@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lines and dots: covered area, joints, depth, colour.
+#include "raster_support.h"
+
+using namespace sg;
+using namespace sg::test;
+
+namespace {
+
+LinesItem line(std::vector<float> xyz, double width, FieldSet fields = {}) {
+  SurfaceMesh m;
+  std::vector<int32_t> ids;
+  for (size_t i = 0; i < xyz.size() / 3; ++i) ids.push_back(int32_t(i));
+  const int n = int(ids.size());
+  m.points.xyz = Array::from_vector(std::move(xyz), 3);
+  m.lines = {Array::from_vector(std::move(ids)), Array::from_vector<int32_t>({0, n}), 0};
+  LinesItem l;
+  l.data = make_dataset(m, std::move(fields)), l.width = width, l.color = {1, 1, 1};
+  return l;
+}
+
+/// Sum of the alpha of everything in the picture, in pixels.
+double ink(const Picture& p) {
+  double sum = 0;
+  for (size_t i = 0; i < p.frame.pixels(); ++i) {
+    double rest = 1;
+    if (!p.fragments.empty())
+      for (uint32_t k = p.fragments.start[i]; k < p.fragments.start[i + 1]; ++k) rest *= 1 - double(p.fragments.fragments[k].rgba[3]);
+    sum += 1 - rest * (1 - double(p.frame.rgba[4 * i + 3]));
+  }
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("raster lines: the covered area is length times width plus the round caps, for any width and direction") {
+  for (const double width : {0.4, 0.8, 1.0, 1.5, 3.0, 8.0})
+    for (int k = 0; k < 12; ++k) {
+      const double angle = 0.1 + k * 0.53, half = 60;  // pixels; 200 pixels are 200 world units
+      Scene s;
+      s.items = {line({float(-half * std::cos(angle)), float(-half * std::sin(angle)), 0, float(half * std::cos(angle)), float(half * std::sin(angle)), 0}, width)};
+      const double area = ink(draw(s, front_parallel(200), 200, 200)), wanted = 2 * half * width + pi * width * width / 4;
+      CHECK(area == doctest::Approx(wanted).epsilon(0.012));
+    }
+}
+
+TEST_CASE("raster lines: a polyline of many pieces covers what one line covers, and turns without gaps") {
+  Scene a, b;
+  std::vector<float> pieces;
+  for (int i = 0; i <= 300; ++i) pieces.push_back(-60 + 0.4f * float(i)), pieces.push_back(-20 + 0.15f * float(i)), pieces.push_back(0);
+  a.items = {line({-60, -20, 0, 60, 25, 0}, 2.5)}, b.items = {line(pieces, 2.5)};
+  const Picture p = draw(a, front_parallel(200), 200, 200), q = draw(b, front_parallel(200), 200, 200);
+  CHECK(ink(q) == doctest::Approx(ink(p)).epsilon(2e-3));
+  double worst = 0;
+  for (size_t i = 0; i < p.frame.pixels(); ++i) {
+    auto alpha = [&](const Picture& x) {
+      double rest = 1 - double(x.frame.rgba[4 * i + 3]);
+      for (uint32_t k = x.fragments.start[i]; k < x.fragments.start[i + 1]; ++k) rest *= 1 - double(x.fragments.fragments[k].rgba[3]);
+      return 1 - rest;
+    };
+    worst = std::max(worst, std::abs(alpha(p) - alpha(q)));
+  }
+  CHECK(worst < 0.02);
+  // A closed circle of 64 chords: its length times its width.
+  std::vector<float> circle;
+  for (int i = 0; i <= 64; ++i) circle.push_back(float(70 * std::cos(2 * pi * i / 64))), circle.push_back(float(70 * std::sin(2 * pi * i / 64))), circle.push_back(0);
+  a.items = {line(circle, 3)};
+  CHECK(ink(draw(a, front_parallel(200), 200, 200)) == doctest::Approx(64 * 140 * std::sin(pi / 64) * 3).epsilon(0.01));
+}
+
+TEST_CASE("raster lines: width grows with the pixel scale") {
+  Scene s;
+  s.items = {line({-50, 0, 0, 50, 0, 0}, 2)};
+  CHECK(ink(draw(s, front_parallel(200), 200, 200, 3)) == doctest::Approx(100 * 6 + pi * 9).epsilon(0.01));
+}
+
+TEST_CASE("raster lines: hidden behind a surface, seen in front of it and lying on it") {
+  const Camera c = front_parallel(200);
+  Scene s;
+  s.items = {item(quad(90, 0)), line({-50, 0, -20, 50, 0, -20}, 3)};
+  Picture p = draw(s, c, 200, 200);
+  CHECK(p.fragments.empty());
+  CHECK(p.id(100, 100) == 1);
+  s.items = {item(quad(90, 0)), line({-50, 0, 3, 50, 0, 3}, 3)};
+  p = draw(s, c, 200, 200);
+  CHECK(p.id(100, 100) == 2);
+  CHECK(p.depth(100, 100) == doctest::Approx(7));
+  // On a plane that is seen at a slant of 70 degrees, along its steepest direction and across it.
+  const float z = 80 * float(std::tan(70 * pi / 180));
+  Scene slanted;
+  slanted.items = {item(surface({-80, -80, -z, 80, -80, -z, 80, 80, z, -80, 80, z}, {0, 1, 2, 0, 2, 3})), line({-60, 0, 0, 60, 0, 0}, 2), line({0, -60, -z * 0.75f, 0, 60, z * 0.75f}, 2)};
+  Camera far = front_parallel(200, 500);
+  p = draw(slanted, far, 200, 200);
+  Scene alone;
+  alone.items = {slanted.items[1], slanted.items[2]};
+  const Picture q = draw(alone, far, 200, 200);
+  size_t wrong = 0;
+  for (size_t i = 0; i < p.frame.pixels(); ++i) wrong += (q.frame.ids[i] > 0) != (p.frame.ids[i] > 1);
+  CHECK(wrong == 0);
+  CHECK(q.covered() > 100);
+}
+
+TEST_CASE("raster lines: what is behind the near plane is cut off, colours follow the line in perspective") {
+  FieldSet f;
+  f.add({"z", Association::point, Array::from_vector<float>({-100, 100}), "", Role::none});
+  Scene s;
+  LinesItem l = line({-1, -1, -100, -1, -1, 100}, 4, f);
+  l.color_by = grey_by("z", -100, 0), s.items = {l};
+  Camera c = front(0, 60);
+  c.target = {0, 0, -1}, c.near_plane = 1;
+  const Projection projection = make_projection(c, 400, 400);
+  const Picture p = draw(s, c, 400, 400);
+  const double near_row = projection.to_pixel({-1, -1, -1}).y;
+  size_t seen = 0;
+  for (int y = 0; y < 400; ++y)
+    for (int x = 0; x < 400; ++x) {
+      if (!p.id(x, y)) continue;
+      ++seen;
+      CHECK(y < near_row + 3);
+      // Row -> depth: y = 200 + scale / depth.
+      const double depth = projection.scale / (y + 0.5 - 200);
+      if (depth > 2 && depth < 20) CHECK(p.rgba(x, y)[0] == doctest::Approx(1 - depth / 100).epsilon(0.01 + 2 * depth / projection.scale));
+    }
+  CHECK(seen > 300);
+}
+
+TEST_CASE("raster points: area, shading and hidden points") {
+  PointCloud cloud;
+  cloud.points.xyz = Array::from_vector<float>({0.3f, 0.4f, 0, NAN, 0, 0, 50, 50, 0}, 3);
+  DatasetParts parts;
+  parts.mesh = cloud, parts.point_ghost = Array::from_vector<uint8_t>({0, 0, ghost_hidden_point});
+  PointsItem dots;
+  dots.data = make_dataset(parts), dots.size = 20, dots.color = {1, 1, 1}, dots.shaded = false;
+  Scene s;
+  s.items = {dots};
+  Picture p = draw(s, front_parallel(200), 200, 200);
+  CHECK(ink(p) == doctest::Approx(pi * 100).epsilon(0.005));
+  CHECK(p.rgba(100, 100)[0] == 1);
+  CHECK(p.id(150, 50) == 0);
+  dots.shaded = true, s.items = {dots};
+  s.lights = {{{0, 0, 1}, true, 1}};
+  p = draw(s, front_parallel(200), 200, 200);
+  CHECK(p.rgba(100, 99)[1] > 0.95f);
+  CHECK(p.rgba(107, 99)[1] < 0.85f * p.rgba(100, 99)[1]);
+  // The vertices of a surface mesh are its dots when there are any.
+  SurfaceMesh m = triangle_mesh({-50, 0, 0, 50, 0, 0}, {});
+  m.polygons = {}, m.vertices = {Array::from_vector<int32_t>({1}), {}, 1};
+  dots.data = make_dataset(m), s.items = {dots};
+  p = draw(s, front_parallel(200), 200, 200);
+  CHECK(p.id(150, 100) == 1);
+  CHECK(p.id(50, 100) == 0);
+  // A lattice has points too.
+  UniformGrid g;
+  g.dims = {3, 2, 1}, g.origin = {-50, -20, 0}, g.spacing = {50, 40, 1}, dots.data = make_dataset(g), s.items = {dots};
+  p = draw(s, front_parallel(200), 200, 200);
+  for (int x : {50, 100, 150})
+    for (int y : {80, 120}) CHECK(p.id(x, y) == 1);
+}
+
+TEST_CASE("raster edges: every edge once, over the surface, diagonals of polygons left out") {
+  SurfaceMesh m = triangle_mesh({-60, -60, 0, 0, -60, 0, 60, -60, 0, -60, 60, 0, 0, 60, 0, 60, 60, 0}, {});
+  m.polygons = {Array::from_vector<int32_t>({0, 1, 4, 3, 1, 2, 5, 4}), {}, 4};
+  SurfaceItem q = item(make_dataset(m), {1, 1, 1}, false);
+  q.edges = true, q.edge_color = {1, 0, 0};
+  Scene s;
+  s.items = {q};
+  const Picture p = draw(s, front_parallel(200), 200, 200, 2);
+  auto red = [&](int x, int y) { return p.rgba(x, y)[0] == 1 && p.rgba(x, y)[1] == 0; };
+  CHECK(red(100, 100));
+  CHECK(red(40, 100));
+  CHECK(red(70, 40));
+  CHECK_FALSE(red(70, 100));  // a diagonal would pass here
+  CHECK(p.rgba(70, 100)[1] == 1);
+  CHECK(p.id(100, 100) == 1);
+}
+
+TEST_CASE("raster marks: mistakes are told") {
+  Scene s;
+  s.items = {LinesItem{}};
+  CHECK(error_of([&] { draw(s, front(), 8, 8); }).find("lines: the item has no data") != std::string::npos);
+  s.items = {PointsItem{}};
+  CHECK(error_of([&] { draw(s, front(), 8, 8); }).find("points: the item has no data") != std::string::npos);
+  LinesItem l;
+  PointCloud cloud;
+  cloud.points.xyz = Array::from_vector<float>({0, 0, 0}, 3);
+  l.data = make_dataset(cloud), s.items = {l};
+  CHECK(error_of([&] { draw(s, front(), 8, 8); }).find("points mesh") != std::string::npos);
+  PointsItem p;
+  p.data = l.data, p.color_by = FieldColor{}, p.color_by->field = "v", p.color_by->association = Association::cell, s.items = {p};
+  CHECK(error_of([&] { draw(s, front(), 8, 8); }).find("cell field 'v'") != std::string::npos);
+}
