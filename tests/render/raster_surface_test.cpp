@@ -287,6 +287,31 @@ TEST_CASE("raster: polygons, strips, 64-bit ids, strided positions and ghosts dr
   CHECK(half.covered() > p.covered() * 4 / 10);
 }
 
+TEST_CASE("raster: other meshes show their outer faces, concave polygons their own shape") {
+  UniformGrid g;
+  g.dims = {3, 3, 3}, g.origin = {-1, -1, -1};
+  FieldSet f;
+  f.add({"cell", Association::cell, Array::from_vector<float>({0, 0, 0, 0, 0.5f, 0.5f, 0.5f, 0.5f}), "", Role::none});
+  SurfaceItem q = item(make_dataset(g, f), {}, false);
+  q.color_by = grey_by("cell", 0, 1), q.color_by->association = Association::cell;
+  Scene s;
+  s.items = {q};
+  const Picture p = draw(s, front_parallel(4), 64, 64);
+  CHECK(p.covered() == 32 * 32);
+  CHECK(p.depth(32, 32) == doctest::Approx(9));
+  CHECK(p.rgba(20, 40)[0] == doctest::Approx(0.5).epsilon(1e-3));
+  SurfaceMesh m = triangle_mesh({0, 0, 0, 1.5f, 1.5f, 0, 0, 0.5f, 0, -1.5f, 1.5f, 0}, {});  // an arrow head
+  m.polygons = {Array::from_vector<int32_t>({0, 1, 2, 3}), {}, 4};
+  for (int turn = 0; turn < 4; ++turn) {
+    std::vector<int32_t> ids;
+    for (int k = 0; k < 4; ++k) ids.push_back((k + turn) % 4);
+    m.polygons.connectivity = Array::from_vector(ids), s.items = {item(make_dataset(m))};
+    const Picture a = draw(s, front_parallel(4), 64, 64);
+    CHECK(double(a.covered()) == doctest::Approx(0.75 * 256).epsilon(0.1));
+    CHECK(a.id(32, 10) == 0);  // the notch
+  }
+}
+
 TEST_CASE("raster: mistakes are told") {
   Scene s;
   SurfaceItem q = item(quad(1, 0, point_field("temperature", {1, 2, 3, 4})));
@@ -299,8 +324,6 @@ TEST_CASE("raster: mistakes are told") {
   CHECK(error().find("normals") != std::string::npos);
   q = {}, s.items = {q};
   CHECK(error().find("no data") != std::string::npos);
-  q.data = make_dataset(UniformGrid{}), s.items = {q};
-  CHECK(error().find("surface") != std::string::npos);
   Frame f(4, 4);
   Context context;
   CHECK(error_of([&] { rasterize({}, make_projection(front(), 8, 8), 1, f, context); }).find("4x4") != std::string::npos);

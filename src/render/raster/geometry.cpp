@@ -2,11 +2,11 @@
 // From cells to triangles and segments.
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <mutex>
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "filter/mesh/surface.h"
 #include "render/raster/prepared.h"
 
 namespace sg::raster {
@@ -37,43 +37,42 @@ struct Derived {
   Array triangles, cells;
 };
 
-/// Fans of the polygons, then the triangles of the strips with every second one turned round.
-Derived fans(const SurfaceMesh& mesh, const Dataset& data) {
+/// All triangles but those of hidden cells.
+Derived visible_triangles(const SurfaceMesh& mesh, const Dataset& data) {
+  Triangles t = triangles_of(mesh);
   const Array ghosts = packed_ghosts(data);
   const uint8_t* ghost = bytes_of(ghosts);
-  const CellsView polygons = cells_view(mesh.polygons), strips = cells_view(mesh.strips);
-  const size_t before = mesh.vertices.size() + mesh.lines.size(), n = polygons.count + strips.count;
-  auto triangles_of_cell = [&](size_t c) -> size_t {
-    if (hidden(ghost, before + c)) return 0;
-    const size_t k = c < polygons.count ? polygons.size(c) : strips.size(c - polygons.count);
-    return k < 3 ? 0 : k - 2;
-  };
-  const size_t chunks = (n + grain - 1) / grain;
-  std::vector<size_t> first(chunks);
-  parallel_for(n, grain, [&](size_t begin, size_t end) {
-    size_t sum = 0;
-    for (size_t c = begin; c < end; ++c) sum += triangles_of_cell(c);
-    first[begin / grain] = sum;
-  });
-  const size_t total = exclusive_scan(first);
-  Derived d;
-  uint32_t *t = nullptr, *cell = nullptr;
-  d.triangles = Array::make<uint32_t>(total, 3, &t), d.cells = Array::make<uint32_t>(total, 1, &cell);
-  parallel_for(n, grain, [&](size_t begin, size_t end) {
-    size_t at = first[begin / grain];
-    for (size_t c = begin; c < end; ++c) {
-      const size_t k = triangles_of_cell(c);
-      const bool strip = c >= polygons.count;
-      const CellsView& v = strip ? strips : polygons;
-      const size_t p = strip ? c - polygons.count : c;
-      for (size_t i = 0; i < k; ++i, ++at) {
-        cell[at] = uint32_t(before + c);
-        const size_t a = strip ? i : 0, b = i + 1 + (strip && i % 2), e = i + 2 - (strip && i % 2);
-        t[3 * at] = uint32_t(v.point(p, a)), t[3 * at + 1] = uint32_t(v.point(p, b)), t[3 * at + 2] = uint32_t(v.point(p, e));
-      }
+  if (ghost) {
+    Triangles kept;
+    for (size_t i = 0; i < t.count(); ++i) {
+      if (hidden(ghost, t.cell(i))) continue;
+      kept.indices.insert(kept.indices.end(), t.indices.begin() + ptrdiff_t(3 * i), t.indices.begin() + ptrdiff_t(3 * i + 3));
+      kept.cells.push_back(t.cell(i));
     }
-  });
-  return d;
+    t = std::move(kept);
+  }
+  return {Array::from_vector(std::move(t.indices), 3), Array::from_vector(std::move(t.cells))};
+}
+
+/// The mesh without its hidden polygons and strips.
+SurfaceMesh visible_polygons(const SurfaceMesh& mesh, const Dataset& data) {
+  const Array ghosts = packed_ghosts(data);
+  const uint8_t* ghost = bytes_of(ghosts);
+  if (!ghost) return mesh;
+  size_t cell = mesh.vertices.size() + mesh.lines.size();
+  auto kept = [&](const CellArray& cells) {
+    const CellsView v = cells_view(cells);
+    std::vector<int64_t> ids, offsets{0};
+    for (size_t c = 0; c < v.count; ++c, ++cell) {
+      if (hidden(ghost, cell)) continue;
+      for (size_t k = 0; k < v.size(c); ++k) ids.push_back(v.point(c, k));
+      offsets.push_back(int64_t(ids.size()));
+    }
+    return CellArray{Array::from_vector(std::move(ids)), Array::from_vector(std::move(offsets)), 0};
+  };
+  SurfaceMesh out;
+  out.points = mesh.points, out.polygons = kept(mesh.polygons), out.strips = kept(mesh.strips);
+  return out;
 }
 
 }  // namespace
@@ -140,8 +139,8 @@ TriangleSet triangulate(const DatasetPtr& data, bool& any_polygon) {
     s.first_cell = uint32_t(mesh.vertices.size() + mesh.lines.size());
     return s;
   }
-  const auto d = derived<Derived>(data, "triangles", [&] { return fans(mesh, *data); });
-  s.triangles = d->triangles, s.cells = d->cells, s.count = d->cells.count();
+  const auto d = derived<Derived>(data, "triangles", [&] { return visible_triangles(mesh, *data); });
+  s.triangles = d->triangles, s.cells = d->cells, s.count = d->triangles.count();
   return s;
 }
 
@@ -163,34 +162,8 @@ SegmentSet line_segments(const Dataset& data, const SurfaceMesh& mesh) {
 }
 
 SegmentSet polygon_edges(const Dataset& data, const SurfaceMesh& mesh) {
-  const Array ghosts = packed_ghosts(data);
-  const uint8_t* ghost = bytes_of(ghosts);
-  const CellsView polygons = cells_view(mesh.polygons), strips = cells_view(mesh.strips);
-  const size_t before = mesh.vertices.size() + mesh.lines.size();
-  std::vector<std::pair<uint64_t, uint32_t>> edges;  // (low point, high point), first cell
-  auto add = [&](int64_t a, int64_t b, size_t cell) {
-    if (a != b) edges.push_back({uint64_t(std::min(a, b)) << 32 | uint64_t(std::max(a, b)), uint32_t(before + cell)});
-  };
-  for (size_t c = 0; c < polygons.count; ++c) {
-    if (hidden(ghost, before + c)) continue;
-    const size_t n = polygons.size(c);
-    for (size_t k = 0; k < n; ++k) add(polygons.point(c, k), polygons.point(c, k + 1 < n ? k + 1 : 0), c);
-  }
-  for (size_t c = 0; c < strips.count; ++c) {
-    if (hidden(ghost, before + polygons.count + c)) continue;
-    const size_t n = strips.size(c);
-    for (size_t k = 0; k + 1 < n; ++k) {
-      add(strips.point(c, k), strips.point(c, k + 1), polygons.count + c);
-      if (k + 2 < n) add(strips.point(c, k), strips.point(c, k + 2), polygons.count + c);
-    }
-  }
-  std::sort(edges.begin(), edges.end());
   SegmentSet s;
-  for (size_t i = 0; i < edges.size(); ++i) {
-    if (i && edges[i].first == edges[i - 1].first) continue;
-    s.points.push_back(uint32_t(edges[i].first >> 32)), s.points.push_back(uint32_t(edges[i].first));
-    s.cells.push_back(edges[i].second), s.groups.push_back(0);
-  }
+  s.points = edges_of(visible_polygons(mesh, data));
   return s;
 }
 

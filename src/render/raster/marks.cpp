@@ -48,7 +48,7 @@ bool make_record(const PreparedItem& item, const Projection& p, size_t i, MarkRe
   if (!finite(a) || !finite(b) || !clip_depth(p, a, b, m.from, m.to)) return false;
   if (!line) m.from = m.to = 0;
   place(p, a, m.ax, m.ay, m.aw), place(p, b, m.bx, m.by, m.bw);
-  m.primitive = item.first_primitive + uint32_t(i), m.group = line ? item.segments.groups[i] : uint32_t(i);
+  m.primitive = item.first_primitive + uint32_t(i), m.group = !line ? uint32_t(i) : item.segments.groups.empty() ? 0 : item.segments.groups[i];
   return finite({m.ax, m.ay, m.aw}) && finite({m.bx, m.by, m.bw}) && !mark_box(m, p.width, p.height).empty();
 }
 

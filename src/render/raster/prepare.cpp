@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "data/field_ops.h"
 #include "data/lattice.h"
+#include "filter/mesh/surface.h"
 #include "render/raster/prepared.h"
 
 namespace sg {
@@ -139,19 +140,22 @@ ColorSource color_source(const DatasetPtr& data, const std::optional<FieldColor>
 namespace {
 
 const SurfaceMesh& surface_mesh(const DatasetPtr& data, const char* what) {
-  if (!data) fail_usage("the item has no data", what);
   const SurfaceMesh* m = data->as<SurfaceMesh>();
-  if (!m) fail_usage(fmt::format("a {} mesh has no polygons or lines of its own", data->kind()), what, "take its surface first (operation 'surface')");
+  if (!m) fail_usage(fmt::format("a {} mesh has no lines of its own", data->kind()), what, "take its edges or streamlines first");
   return *m;
 }
 
 class Preparation {
  public:
-  Preparation(PreparedScene& out) : out_(out) {}
+  Preparation(PreparedScene& out, Context& context) : out_(out), context_(context) {}
 
-  void operator()(const SurfaceItem& s) {
+  void operator()(const SurfaceItem& given) {
+    if (!given.data) fail_usage("the item has no data", "surface");
+    if (!(given.opacity > 0)) return;
+    SurfaceItem s = given;
+    if (!s.data->as<SurfaceMesh>())  // any other mesh shows its outer faces
+      s.data = *derived<DatasetPtr>(given.data, "outer faces", [&] { return surface_of(given.data, context_); });
     const SurfaceMesh& mesh = surface_mesh(s.data, "surface");
-    if (!(s.opacity > 0)) return;
     PreparedItem p = start(PreparedItem::Kind::surface, s.data, s.opacity);
     bool any = false;
     p.triangles = triangulate(s.data, any);
@@ -171,6 +175,7 @@ class Preparation {
   }
 
   void operator()(const LinesItem& s) {
+    if (!s.data) fail_usage("the item has no data", "lines");
     const SurfaceMesh& mesh = surface_mesh(s.data, "lines");
     if (!(s.opacity > 0) || !(s.width > 0)) return;
     PreparedItem p = start(PreparedItem::Kind::lines, s.data, s.opacity);
@@ -262,6 +267,7 @@ class Preparation {
   }
 
   PreparedScene& out_;
+  Context& context_;
   uint32_t next_ = 0;
 };
 
@@ -270,7 +276,7 @@ class Preparation {
 
 PreparedScenePtr prepare_scene(const Scene& scene, Context& context) {
   auto out = std::make_shared<PreparedScene>();
-  raster::Preparation preparation(*out);
+  raster::Preparation preparation(*out, context);
   for (const Item& item : scene.items) {
     context.check();
     ++preparation.id;

@@ -32,10 +32,10 @@ struct NormalSet {
   Array corners;  ///< u32 x 3 per triangle into `normals`; empty = the triangles' own point numbers
 };
 
-/// Two point numbers per line segment; `group` joins the segments of one polyline.
+/// Two point numbers per line segment; `group` joins the segments of one polyline (empty: all of them).
 struct SegmentSet {
   std::vector<uint32_t> points, cells, groups;
-  size_t count() const { return cells.size(); }
+  size_t count() const { return points.size() / 2; }
 };
 
 /// Colour of anything: one colour, a number per point or cell through a table, or linear RGBA per point or cell.
