@@ -26,15 +26,15 @@ class Encoder {
   }
 
   uint8_t operator()(float x) const {
-    if (!(x > smallest)) return 0;  // NaN too; below 2^-13 the code is 0
-    if (x >= 1) return 255;
+    x = x > smallest ? x : smallest;  // the code is 0 there; NaN too
+    x = x < below_one ? x : below_one;
     const uint8_t code = base_[(std::bit_cast<uint32_t>(x) - first_bits) >> shift];
     return uint8_t(code + (x >= starts_[code + 1]));
   }
 
  private:
   static constexpr uint32_t shift = 15;
-  static constexpr float smallest = 0x1p-13f;
+  static constexpr float smallest = 0x1p-13f, below_one = 0x1.fffffep-1f;
   static constexpr uint32_t first_bits = uint32_t(127 - 13) << 23;
   static constexpr uint32_t buckets = 13u << (23 - shift);
 

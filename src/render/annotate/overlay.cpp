@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/parallel.h"
 #include "base/text.h"
 
 namespace sg {
@@ -124,8 +125,10 @@ void Overlay::show(const std::string& text, const TextStyle& style, bool halo, V
   if (halo) {
     use(cr, rim(), 0.75);
     cairo_set_line_width(cr, std::max(2.0, 0.2 * style.size));
-    cairo_set_line_join(cr, CAIRO_LINE_JOIN_ROUND);
+    cairo_set_line_join(cr, CAIRO_LINE_JOIN_BEVEL);
+    cairo_set_tolerance(cr, 0.3);
     cairo_stroke_preserve(cr);
+    cairo_set_tolerance(cr, 0.1);
   }
   use(cr, color);
   cairo_fill(cr);
@@ -214,21 +217,23 @@ void Overlay::put_on(Image& image) const {
   const size_t stride = size_t(cairo_image_surface_get_stride(surface));
   const bool alpha = image.channels % 2 == 0;
   const int colors = image.channels - alpha;
-  for (int y = 0; y < height_; ++y)
-    for (int x = 0; x < width_; ++x) {
-      uint32_t argb;
-      std::memcpy(&argb, data + size_t(y) * stride + 4 * size_t(x), 4);
-      const uint32_t a = argb >> 24;
-      if (a == 0) continue;
-      uint8_t* p = image.at(x, y);
-      // Both as premultiplied 0..255*255; the image's own alpha counts for what lies below.
-      const uint32_t below = (255 - a) * (alpha ? p[colors] : 255u), total = 255 * a + below;
-      for (int c = 0; c < colors; ++c) {
-        const uint32_t over = colors == 1 ? argb & 255 : argb >> (16 - 8 * c) & 255;
-        p[c] = uint8_t(std::min<uint32_t>(255, (255 * 255 * over + below * p[c] + total / 2) / total));
+  parallel_for(size_t(height_), 32, [&](size_t begin, size_t end) {
+    for (int y = int(begin); y < int(end); ++y)
+      for (int x = 0; x < width_; ++x) {
+        uint32_t argb;
+        std::memcpy(&argb, data + size_t(y) * stride + 4 * size_t(x), 4);
+        const uint32_t a = argb >> 24;
+        if (a == 0) continue;
+        uint8_t* p = image.at(x, y);
+        // Both as premultiplied 0..255*255; the image's own alpha counts for what lies below.
+        const uint32_t below = (255 - a) * (alpha ? p[colors] : 255u), total = 255 * a + below;
+        for (int c = 0; c < colors; ++c) {
+          const uint32_t over = colors == 1 ? argb & 255 : argb >> (16 - 8 * c) & 255;
+          p[c] = uint8_t(std::min<uint32_t>(255, (255 * 255 * over + below * p[c] + total / 2) / total));
+        }
+        if (alpha) p[colors] = uint8_t((total + 127) / 255);
       }
-      if (alpha) p[colors] = uint8_t((total + 127) / 255);
-    }
+  });
 }
 
 }  // namespace sg
