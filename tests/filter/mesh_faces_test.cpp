@@ -9,6 +9,7 @@
 
 using namespace sg;
 using namespace sg::test;
+using namespace sg::test::meshes;
 
 namespace {
 
@@ -299,4 +300,50 @@ TEST_CASE("surface: triangles name their cells, edges come once") {
   CHECK(plain.indices == std::vector<uint32_t>{0, 1, 2, 0, 2, 3});
   CHECK(triangles_of(SurfaceMesh{}).count() == 0);
   CHECK(edges_of(SurfaceMesh{}).empty());
+}
+
+TEST_CASE("faces: random cells that share faces any number of times agree with counting") {
+  Context ctx;
+  uint64_t seed = 7;
+  auto random = [&](int n) { return int((seed = seed * 6364136223846793005u + 1442695040888963407u) >> 33) % n; };
+  UnstructuredMesh m;
+  m.points.xyz = Array::from_vector(std::vector<double>(3 * 9), 3);
+  std::vector<int64_t> ids, offsets{0};
+  std::vector<uint8_t> types;
+  std::map<std::vector<int64_t>, int> count;
+  for (int c = 0; c < 60; ++c) {
+    const CellType type = c % 3 == 0 ? CellType::pyramid : c % 3 == 1 ? CellType::tetra : CellType::hexahedron;
+    std::vector<int64_t> p{0, 1, 2, 3, 4, 5, 6, 7, 8};
+    for (int i = 8; i > 0; --i) std::swap(p[size_t(i)], p[size_t(random(i + 1))]);
+    const LinearTopology& t = *linear_topology(type);
+    ids.insert(ids.end(), p.begin(), p.begin() + t.corners);
+    offsets.push_back(int64_t(ids.size()));
+    types.push_back(uint8_t(type));
+    for (size_t f = 0; f < t.face_count(); ++f) {
+      std::vector<int64_t> face;
+      for (uint8_t k : t.face(f)) face.push_back(p[k]);
+      std::sort(face.begin(), face.end());
+      ++count[face];
+    }
+  }
+  m.cells = {Array::from_vector(ids), Array::from_vector(offsets), 0};
+  m.types = Array::from_vector(types);
+  std::vector<std::vector<int64_t>> want, have;
+  int many = 0;
+  for (const auto& [face, n] : count) {
+    if (n == 1) want.push_back(face);
+    many += n > 2;
+  }
+  CHECK(many > 5);
+  const DatasetPtr skin = faces(make_dataset(m), {.original_point = true}, ctx);
+  const Array& point = skin->fields().require("original_point").array;
+  const CellsView v = cells_view(skin->as<SurfaceMesh>()->polygons);
+  for (size_t c = 0; c < v.count; ++c) {
+    std::vector<int64_t> face;
+    for (size_t k = 0; k < v.size(c); ++k) face.push_back(int64_t(point.get(size_t(v.point(c, k)))));
+    std::sort(face.begin(), face.end());
+    have.push_back(face);
+  }
+  std::sort(have.begin(), have.end());
+  CHECK(have == want);
 }

@@ -11,7 +11,7 @@
 #include "data/dataset.h"
 #include "filter/mesh/surface.h"
 
-namespace sg::test {
+namespace sg::test::meshes {
 
 /// f = x + 2y + 3z - 1.
 inline double linear(Vec3 p) { return p.x + 2 * p.y + 3 * p.z - 1; }
@@ -195,4 +195,4 @@ inline bool same_surface(const Dataset& a, const Dataset& b) {
   return same;
 }
 
-}  // namespace sg::test
+}  // namespace sg::test::meshes

@@ -12,6 +12,7 @@
 
 using namespace sg;
 using namespace sg::test;
+using namespace sg::test::meshes;
 
 namespace {
 

@@ -139,6 +139,13 @@ class Matcher {
           give(std::min(std::min(v[a], v[b]), v[d]), h[a] + h[b] + h[d], [&](auto&& add) { add(v[a]), add(v[b]), add(v[d]); });
         };
         face(0, 1, 3), face(1, 2, 3), face(2, 0, 3), face(0, 2, 1);
+      } else if (t == hexahedron_) {
+        load(ids + cells_.begin(c), 8);
+        auto face = [&](int a, int b, int d, int e) {
+          give(std::min(std::min(v[a], v[b]), std::min(v[d], v[e])), (h[a] + h[b]) + (h[d] + h[e]),
+               [&](auto&& add) { add(v[a]), add(v[b]), add(v[d]), add(v[e]); });
+        };
+        face(0, 4, 7, 3), face(1, 2, 6, 5), face(0, 1, 5, 4), face(3, 7, 6, 2), face(0, 3, 2, 1), face(4, 5, 6, 7);
       } else if (t) {
         load(ids + cells_.begin(c), t->corners);
         for (size_t f = 0; f < t->face_count(); ++f) {
@@ -228,7 +235,7 @@ class Matcher {
   const uint8_t* types_ = nullptr;
   const int64_t* polyhedron_faces_ = nullptr;
   const LinearTopology* table_[256] = {};
-  const LinearTopology* tetra_ = linear_topology(CellType::tetra);
+  const LinearTopology *tetra_ = linear_topology(CellType::tetra), *hexahedron_ = linear_topology(CellType::hexahedron);
   uint64_t* slots_ = nullptr;
   std::vector<Candidates> found_;
 };

@@ -40,12 +40,12 @@ class ChunkWalk {
     }
   }
 
-  void other(size_t cell) {
+  void other(size_t cell, int dimension) {
     const CellType type = mesh_.type(cell);
     ids_.clear();
     for (size_t i = cells_.begin(cell); i < cells_.end(cell); ++i) ids_.push_back(cells_.connectivity[i]);
     if (ids_.empty()) return;
-    switch (cell_type_info(type).dimension) {
+    switch (dimension) {
       case 0: return out_.vertices.add(ids_, int64_t(cell));
       case 1:
         curve_order(type, ids_.size(), local_);
@@ -120,6 +120,9 @@ std::vector<SurfaceChunk> unstructured_faces(const UnstructuredMesh& mesh, const
   const FaceMarks marks = match_faces(mesh, states, ctx);
   const PointReader at(mesh.points);
   const size_t cells = mesh.cells.size();
+  std::array<int, 256> dimension{};  // looked up once per type, not per cell
+  for (size_t t = 0; t < 256; ++t)
+    if (const CellTypeInfo* info = cell_type_info(uint8_t(t))) dimension[t] = info->dimension;
   std::vector<SurfaceChunk> chunks(marks.chunk_start.size());
   parallel_for(
       cells, FaceMarks::cells_per_chunk,
@@ -130,12 +133,12 @@ std::vector<SurfaceChunk> unstructured_faces(const UnstructuredMesh& mesh, const
         CellFaceReader reader(mesh);
         for (size_t c = begin; c < end; ++c) {
           const bool visible = states.empty() || states[c] == cell_visible;
-          if (cell_type_info(mesh.type(c)).dimension == 3) {
+          if (dimension[size_t(mesh.type(c))] == 3) {
             const size_t n = reader.open(c);
             if (visible) walk.solid(c, external, n);
             external += n;
           } else if (visible) {
-            walk.other(c);
+            walk.other(c, dimension[size_t(mesh.type(c))]);
           }
         }
       },
