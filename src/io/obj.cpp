@@ -289,7 +289,8 @@ void add_labels(const ObjFile& o, DatasetParts& parts) {
       names += fmt::format("{}{} {}", m ? "\n" : "", material_number(l, int32_t(m), without), l.materials[m]);
     parts.notes.emplace_back("MaterialNames", names);
   }
-  parts.fields.add({"GroupIds", Association::cell, std::move(groups), "", Role::labels});
+  // An id, not a value: no picture is coloured by it unless asked.
+  parts.fields.add({"GroupIds", Association::cell, std::move(groups), "", Role::global_ids});
   if (!l.groups.empty() && l.groups.size() <= 1000) {
     std::string names;
     for (size_t g = 0; g < l.groups.size(); ++g) names += fmt::format("{}{} {}", g ? "\n" : "", g, l.groups[g]);

@@ -60,6 +60,8 @@ TEST_CASE("obj: groups and materials become cell fields, and their names notes")
     CHECK(g.get(i) == groups[i]);
     CHECK(m.get(i) == materials[i]);
   }
+  CHECK(d->fields().active(1)->name == "MaterialIds");
+  CHECK(read_text("g.obj", square + "g a\nf 1 2 3\n")->fields().active(1) == nullptr);
   std::string text;
   for (const auto& [key, value] : d->notes()) text += key + "=" + value + ";";
   CHECK(text == "MaterialLibrary=m.mtl;MaterialNames=0 red\n2 blue;GroupNames=0 \n1 one\n2 two;");
