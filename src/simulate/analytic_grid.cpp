@@ -18,28 +18,37 @@ void describe_grid(Schema& s, GridParams& p) {
 UniformGrid analytic_grid(const GridParams& p, const Box3& own, const char* source, const Context& context) {
   Box3 box = own;
   if (!p.bounds.empty()) {
-    if (p.bounds.size() != 6) fail_usage(fmt::format("{} numbers are no box", p.bounds.size()), fmt::format("{} bounds", source), "give x0,x1,y0,y1,z0,z1");
+    if (p.bounds.size() != 6)
+      fail_usage(fmt::format("{} numbers are no box", p.bounds.size()), fmt::format("{} bounds", source), "give x0,x1,y0,y1,z0,z1");
     for (int a = 0; a < 3; ++a) {
       box.lo[a] = p.bounds[size_t(2 * a)], box.hi[a] = p.bounds[size_t(2 * a + 1)];
       if (!(box.lo[a] <= box.hi[a]) || !std::isfinite(box.hi[a] - box.lo[a]))
-        fail_usage(fmt::format("the box runs from {} to {} along {}", exact_number(box.lo[a]), exact_number(box.hi[a]), "xyz"[a]), fmt::format("{} bounds", source), "give finite numbers, the lower one first");
+        fail_usage(fmt::format("the box runs from {} to {} along {}", exact_number(box.lo[a]), exact_number(box.hi[a]), "xyz"[a]),
+                   fmt::format("{} bounds", source), "give finite numbers, the lower one first");
     }
   }
   UniformGrid g;
   g.origin = box.lo;
-  if (!p.dims.empty() && p.dims.size() != 3) fail_usage(fmt::format("{} numbers are no grid size", p.dims.size()), fmt::format("{} dims", source), "give three numbers like 64,64,32");
+  if (!p.dims.empty() && p.dims.size() != 3)
+    fail_usage(fmt::format("{} numbers are no grid size", p.dims.size()), fmt::format("{} dims", source),
+               "give three numbers like 64,64,32");
   const Vec3 size = box.size();
   const double longest = std::max({size.x, size.y, size.z});
   uint64_t points = 1;
   for (int a = 0; a < 3; ++a) {
-    int64_t n = size[a] == 0 ? 1 : p.dims.empty() ? std::max<int64_t>(2, std::llround(double(p.size - 1) * size[a] / longest) + 1) : p.dims[size_t(a)];
+    int64_t n = size[a] == 0     ? 1
+                : p.dims.empty() ? std::max<int64_t>(2, std::llround(double(p.size - 1) * size[a] / longest) + 1)
+                                 : p.dims[size_t(a)];
     if (n < 1) fail_usage(fmt::format("{} points along {}", n, "xyz"[a]), fmt::format("{} dims", source), "give at least 1");
     g.dims[size_t(a)] = size_t(n);
     g.spacing[a] = n > 1 ? size[a] / double(n - 1) : 1.0;
-    if (!multiply(points, uint64_t(n), points) || points > (uint64_t(1) << 40)) fail_usage("the grid has more points than memory could hold", source, "ask for a smaller size");
+    if (!multiply(points, uint64_t(n), points) || points > (uint64_t(1) << 40))
+      fail_usage("the grid has more points than memory could hold", source, "ask for a smaller size");
   }
   if (context.memory_limit && points * (p.type == "f64" ? 8 : 4) > context.memory_limit)
-    fail_usage(fmt::format("one field of {} needs more than the memory limit of {}", human_bytes(points * (p.type == "f64" ? 8 : 4)), human_bytes(context.memory_limit)), source, "ask for a smaller size");
+    fail_usage(fmt::format("one field of {} needs more than the memory limit of {}", human_bytes(points * (p.type == "f64" ? 8 : 4)),
+                           human_bytes(context.memory_limit)),
+               source, "ask for a smaller size");
   return g;
 }
 

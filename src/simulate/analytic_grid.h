@@ -14,9 +14,9 @@ namespace sg {
 
 /// A uniform grid of points over a box.
 struct GridParams {
-  int size = 64;                ///< points along the longest side; the others follow, so that the spacing is as equal as whole numbers allow
-  std::vector<int64_t> dims;    ///< points per axis; wins over size
-  std::vector<double> bounds;   ///< x0,x1,y0,y1,z0,z1; empty: the source's own
+  int size = 64;               ///< points along the longest side; the others follow, so that the spacing is as equal as whole numbers allow
+  std::vector<int64_t> dims;   ///< points per axis; wins over size
+  std::vector<double> bounds;  ///< x0,x1,y0,y1,z0,z1; empty: the source's own
   std::string type = "f32";
 };
 void describe_grid(Schema& s, GridParams& p);
@@ -27,23 +27,27 @@ UniformGrid analytic_grid(const GridParams& p, const Box3& own, const char* sour
 
 /// A point field of `components` numbers in the asked type; f(Vec3, double*) fills one tuple.
 template <class F>
-Field analytic_field(const UniformGrid& grid, const GridParams& p, std::string name, int components, std::string unit, Role role, const Context& context, F&& f) {
+Field analytic_field(const UniformGrid& grid, const GridParams& p, std::string name, int components, std::string unit, Role role,
+                     const Context& context, F&& f) {
   const size_t nx = grid.dims[0], ny = grid.dims[1], rows = ny * grid.dims[2], n = nx * rows;
   std::byte* out = nullptr;
   const bool wide = p.type == "f64";
   Array a = Array::make_raw(wide ? ElementType::f64 : ElementType::f32, n, components, &out);
-  parallel_for(rows, 16, [&](size_t begin, size_t end) {
-    double v[9];
-    for (size_t r = begin; r < end; ++r)
-      for (size_t i = 0; i < nx; ++i) {
-        f(grid.origin + grid.spacing * Vec3(double(i), double(r % ny), double(r / ny)), v);
-        for (int c = 0; c < components; ++c) {
-          const size_t at = (r * nx + i) * size_t(components) + size_t(c);
-          if (wide) reinterpret_cast<double*>(out)[at] = v[c];
-          else reinterpret_cast<float*>(out)[at] = float(v[c]);
-        }
-      }
-  }, &context);
+  parallel_for(
+      rows, 16,
+      [&](size_t begin, size_t end) {
+        double v[9];
+        for (size_t r = begin; r < end; ++r)
+          for (size_t i = 0; i < nx; ++i) {
+            f(grid.origin + grid.spacing * Vec3(double(i), double(r % ny), double(r / ny)), v);
+            for (int c = 0; c < components; ++c) {
+              const size_t at = (r * nx + i) * size_t(components) + size_t(c);
+              if (wide) reinterpret_cast<double*>(out)[at] = v[c];
+              else reinterpret_cast<float*>(out)[at] = float(v[c]);
+            }
+          }
+      },
+      &context);
   return {std::move(name), Association::point, std::move(a), std::move(unit), role};
 }
 

@@ -51,7 +51,8 @@ void describe(Schema& s, DoubleGyreParams& p) {
 Vec3 double_gyre_velocity(const DoubleGyreParams& p, Vec3 x, double time) {
   const double swing = p.epsilon * std::sin(2 * M_PI * time / p.period);
   const double f = swing * x.x * x.x + (1 - 2 * swing) * x.x, slope = 2 * swing * x.x + 1 - 2 * swing;
-  return {-M_PI * p.amplitude * std::sin(M_PI * f) * std::cos(M_PI * x.y), M_PI * p.amplitude * std::cos(M_PI * f) * std::sin(M_PI * x.y) * slope, 0};
+  return {-M_PI * p.amplitude * std::sin(M_PI * f) * std::cos(M_PI * x.y),
+          M_PI * p.amplitude * std::cos(M_PI * f) * std::sin(M_PI * x.y) * slope, 0};
 }
 DatasetPtr double_gyre(const DoubleGyreParams& p, Context& context) {
   const UniformGrid g = analytic_grid(p.grid, box_to({2, 1, 0}), "double_gyre", context);
@@ -81,7 +82,8 @@ DatasetPtr taylor_green(const TaylorGreenParams& p, Context& context) {
     v[1] = -u * std::sin(x.x) * std::cos(x.y);
     v[2] = 0;
   }));
-  fields.add(analytic_field(g, p.grid, "pressure", 1, "", Role::none, context, [&](Vec3 x, double* v) { *v = -u * u * (std::cos(2 * x.x) + std::cos(2 * x.y)) / 4; }));
+  fields.add(analytic_field(g, p.grid, "pressure", 1, "", Role::none, context,
+                            [&](Vec3 x, double* v) { *v = -u * u * (std::cos(2 * x.x) + std::cos(2 * x.y)) / 4; }));
   return at_time(g, std::move(fields), p.time);
 }
 

@@ -18,7 +18,8 @@ void point_load_stress(double load, double nu, Vec3 p, double* s) {
     return;
   }
   // Written with R+z in place of x^2+y^2 below the line, so that nothing is 0/0 on the axis.
-  const double R3 = R * R * R, R5 = R3 * R * R, k = load / (2 * M_PI), e = 1 - 2 * nu, c = 1 / (R * (R + z)), d = (2 * R + z) / (R3 * (R + z) * (R + z));
+  const double R3 = R * R * R, R5 = R3 * R * R, k = load / (2 * M_PI), e = 1 - 2 * nu, c = 1 / (R * (R + z)),
+               d = (2 * R + z) / (R3 * (R + z) * (R + z));
   const double xx = -3 * x * x * z / R5 + e * (z / R3 - c + x * x * d);
   const double yy = -3 * y * y * z / R5 + e * (z / R3 - c + y * y * d);
   const double zz = -3 * z * z * z / R5;
@@ -34,7 +35,8 @@ DatasetPtr point_load(const PointLoadParams& p, Context& context) {
   own.add(Vec3(1, 1, 2.1));
   const UniformGrid g = analytic_grid(p.grid, own, "point_load", context);
   FieldSet fields;
-  fields.add(analytic_field(g, p.grid, "stress", 9, "", Role::tensors, context, [&](Vec3 x, double* v) { point_load_stress(p.load, p.poisson, x, v); }));
+  fields.add(analytic_field(g, p.grid, "stress", 9, "", Role::tensors, context,
+                            [&](Vec3 x, double* v) { point_load_stress(p.load, p.poisson, x, v); }));
   fields.add(analytic_field(g, p.grid, "von Mises stress", 1, "", Role::none, context, [&](Vec3 x, double* v) {
     double s[9];
     point_load_stress(p.load, p.poisson, x, s);

@@ -15,7 +15,8 @@ Box3 around(Vec3 c, double r) {
 }
 
 template <class F>
-DatasetPtr scalar_source(const GridParams& grid, const Box3& own, const char* source, const char* field, const char* unit, const Context& context, F&& f) {
+DatasetPtr scalar_source(const GridParams& grid, const Box3& own, const char* source, const char* field, const char* unit,
+                         const Context& context, F&& f) {
   const UniformGrid g = analytic_grid(grid, own, source, context);
   FieldSet fields;
   fields.add(analytic_field(g, grid, field, 1, unit, Role::scalars, context, [&](Vec3 p, double* v) { *v = f(p); }));
@@ -53,7 +54,8 @@ void describe(Schema& s, GyroidParams& p) {
 }
 DatasetPtr gyroid(const GyroidParams& p, Context& context) {
   return scalar_source(p.grid, around({}, p.period), "gyroid", "gyroid", "", context, [k = 2 * M_PI / p.period](Vec3 x) {
-    const double sx = std::sin(k * x.x), cx = std::cos(k * x.x), sy = std::sin(k * x.y), cy = std::cos(k * x.y), sz = std::sin(k * x.z), cz = std::cos(k * x.z);
+    const double sx = std::sin(k * x.x), cx = std::cos(k * x.x), sy = std::sin(k * x.y), cy = std::cos(k * x.y), sz = std::sin(k * x.z),
+                 cz = std::cos(k * x.z);
     return sx * cy + sy * cz + sz * cx;
   });
 }
@@ -64,7 +66,8 @@ void describe(Schema& s, SphereParams& p) {
   s("radius", p.radius, "Radius of the sphere.").positive();
 }
 DatasetPtr sphere(const SphereParams& p, Context& context) {
-  return scalar_source(p.grid, around(p.center, 1.3 * p.radius), "sphere", "distance", "", context, [&](Vec3 x) { return length(x - p.center) - p.radius; });
+  return scalar_source(p.grid, around(p.center, 1.3 * p.radius), "sphere", "distance", "", context,
+                       [&](Vec3 x) { return length(x - p.center) - p.radius; });
 }
 
 void describe(Schema& s, TorusParams& p) {
@@ -126,7 +129,8 @@ DatasetPtr hydrogen(const HydrogenParams& p, Context& context) {
     const double psi = hydrogen_orbital(p.n, p.l, p.m, x);
     *v = psi * psi;
   }));
-  fields.add(analytic_field(g, p.grid, "wave function", 1, "1/a0^1.5", Role::none, context, [&](Vec3 x, double* v) { *v = hydrogen_orbital(p.n, p.l, p.m, x); }));
+  fields.add(analytic_field(g, p.grid, "wave function", 1, "1/a0^1.5", Role::none, context,
+                            [&](Vec3 x, double* v) { *v = hydrogen_orbital(p.n, p.l, p.m, x); }));
   return make_dataset(g, std::move(fields));
 }
 

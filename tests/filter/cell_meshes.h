@@ -56,7 +56,8 @@ DatasetPtr solid_mesh(const std::string& kind, int n, double r, F&& f, double be
         const std::string what = kind == "mixed" ? (i + j + k) % 2 ? "pyramid" : i % 2 ? "polyhedron" : "hexahedron" : kind;
         if (what == "hexahedron") m.cell(CellType::hexahedron, {c[0], c[1], c[2], c[3], c[4], c[5], c[6], c[7]});
         if (what == "polyhedron")  // some faces turned inwards, as files do
-          m.polyhedron({c[0], c[1], c[2], c[3], c[4], c[5], c[6], c[7]}, {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 4, 5, 1}, {3, 7, 6, 2}, {0, 4, 7, 3}, {1, 2, 6, 5}});
+          m.polyhedron({c[0], c[1], c[2], c[3], c[4], c[5], c[6], c[7]},
+                       {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 4, 5, 1}, {3, 7, 6, 2}, {0, 4, 7, 3}, {1, 2, 6, 5}});
         if (what == "voxel") m.cell(CellType::voxel, {c[0], c[1], c[3], c[2], c[4], c[5], c[7], c[6]});
         if (what == "wedge") {
           m.cell(CellType::wedge, {c[0], c[1], c[2], c[4], c[5], c[6]});

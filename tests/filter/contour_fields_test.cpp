@@ -32,14 +32,17 @@ TEST_CASE("contour: carries point fields along edges, cell fields from cells, an
   const Mesh& g = base->mesh();
   std::vector<int32_t> ids(cells);
   std::iota(ids.begin(), ids.end(), 0);
-  const auto d = with(base, {point_field<float>(g, {n, n, n}, [](Vec3 p) { return 2 * p.x - p.y + 3; }, "linear"), {"cell id", Association::cell, Array::from_vector(ids), "", Role::none},
+  const auto d = with(base, {point_field<float>(
+                                 g, {n, n, n}, [](Vec3 p) { return 2 * p.x - p.y + 3; }, "linear"),
+                             {"cell id", Association::cell, Array::from_vector(ids), "", Role::none},
                              {"title", Association::whole, Array::from_vector(std::vector<double>{7}), "m", Role::none}});
   const auto c = contour_at(d, 0);
   const Surface s(c);
   CHECK(c->time() == 2.5);
   const Field& linear = c->fields().require("linear", Association::point);
   CHECK(linear.array.type() == ElementType::f32);
-  for (size_t i = 0; i < s.points.size(); ++i) CHECK(linear.array.get(i) == doctest::Approx(2 * s.points[i].x - s.points[i].y + 3).epsilon(1e-5));
+  for (size_t i = 0; i < s.points.size(); ++i)
+    CHECK(linear.array.get(i) == doctest::Approx(2 * s.points[i].x - s.points[i].y + 3).epsilon(1e-5));
   const Field& value = c->fields().require("f", Association::point);
   for (size_t i = 0; i < s.points.size(); ++i) CHECK(std::abs(value.array.get(i)) < 1e-7);
   const Field& id = c->fields().require("cell id", Association::cell);
@@ -122,9 +125,11 @@ TEST_CASE("contour: ghost and blanked cells and hidden points are left out") {
   const size_t n = 14;
   const auto d = cube(n, 1.5, sphere);
   std::vector<uint8_t> cells(13 * 13 * 13), points(n * n * n);
-  for (size_t c = 0; c < cells.size(); ++c) cells[c] = c % 13 < 6 ? uint8_t(c % 3 == 0 ? ghost_duplicate : c % 3 == 1 ? ghost_hidden_cell : ghost_refined_cell) : 0;
+  for (size_t c = 0; c < cells.size(); ++c)
+    cells[c] = c % 13 < 6 ? uint8_t(c % 3 == 0 ? ghost_duplicate : c % 3 == 1 ? ghost_hidden_cell : ghost_refined_cell) : 0;
   for (size_t p = 0; p < points.size(); ++p) points[p] = p % n < 6 ? ghost_hidden_point : 0;
-  const Surface by_cells(contour_at(with(d, {}, Array::from_vector(cells)), 0)), by_points(contour_at(with(d, {}, {}, Array::from_vector(points)), 0));
+  const Surface by_cells(contour_at(with(d, {}, Array::from_vector(cells)), 0)),
+      by_points(contour_at(with(d, {}, {}, Array::from_vector(points)), 0));
   const double x = -1.5 + 3.0 / 13 * 6;
   CHECK(by_cells.points.size() > 100);
   for (Vec3 p : by_cells.points) CHECK(p.x > x - 1e-6);
@@ -154,8 +159,10 @@ TEST_CASE("contour: lines on a 2D grid stop at NaN and ghost cells") {
 }
 
 TEST_CASE("contour: nothing to see gives an empty mesh with its fields and a note") {
-  for (const auto& [d, value, note] : {std::tuple{cube(6, 1, sphere), 9.0, "the field runs from"}, {cube(6, 1, [](Vec3) { return 3.0; }), 3.5, "runs from 3 to 3"},
-                                       {cube(6, 1, [](Vec3) { return double(NAN); }), 0.0, "has no values"}, {solid_mesh("tetra", 3, 1, sphere), 9.0, "the field runs from"}}) {
+  for (const auto& [d, value, note] : {std::tuple{cube(6, 1, sphere), 9.0, "the field runs from"},
+                                       {cube(6, 1, [](Vec3) { return 3.0; }), 3.5, "runs from 3 to 3"},
+                                       {cube(6, 1, [](Vec3) { return double(NAN); }), 0.0, "has no values"},
+                                       {solid_mesh("tetra", 3, 1, sphere), 9.0, "the field runs from"}}) {
     std::string log;
     ContourParams p;
     p.values = {value};

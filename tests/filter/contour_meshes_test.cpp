@@ -40,7 +40,8 @@ void check_plane(const DatasetPtr& d, const DatasetPtr& s) {
   double off = 0, turned = 0;
   for (Vec3 p : surface.points) off = std::max(off, std::abs(plane(p)));
   const Field& n = s->fields().require("Normals", Association::point);
-  for (size_t i = 0; i < n.array.count(); ++i) turned = std::max(turned, length(Vec3(n.array.get(i, 0), n.array.get(i, 1), n.array.get(i, 2)) + direction));
+  for (size_t i = 0; i < n.array.count(); ++i)
+    turned = std::max(turned, length(Vec3(n.array.get(i, 0), n.array.get(i, 1), n.array.get(i, 2)) + direction));
   CHECK(off < 1e-6);
   CHECK(turned < 1e-6);
   CHECK(surface.faults(d->bounds()) == 0);
@@ -91,12 +92,16 @@ TEST_CASE("contour: a linear field gives a plane, exact and without cracks, on e
     const auto d = rectilinear({7, 9, 8}, plane, down);
     check_plane(d, contour_at(d, 0));
   }
-  const auto curved = mapped({9, 7, 8}, [](Vec3 p) {  // bent inside, the border stays in place
-    const double b = (1 - p.x * p.x) * (1 - p.y * p.y) * (1 - p.z * p.z);
-    return p + b * Vec3(.1, -.15, .2);
-  }, plane);
+  const auto curved = mapped(
+      {9, 7, 8},
+      [](Vec3 p) {  // bent inside, the border stays in place
+        const double b = (1 - p.x * p.x) * (1 - p.y * p.y) * (1 - p.z * p.z);
+        return p + b * Vec3(.1, -.15, .2);
+      },
+      plane);
   check_plane(curved, contour_at(curved, 0));
-  const auto mirrored = mapped({6, 7, 8}, [](Vec3 p) { return Vec3(-p.x, p.y, p.z); }, plane);
+  const auto mirrored = mapped(
+      {6, 7, 8}, [](Vec3 p) { return Vec3(-p.x, p.y, p.z); }, plane);
   check_plane(mirrored, contour_at(mirrored, 0));
   for (const auto& kind : solid_kinds()) {
     CAPTURE(kind);
@@ -119,7 +124,8 @@ TEST_CASE("contour: a sphere on a curvilinear grid has area and normals of order
   double h[4], area[4], normal[4];
   const size_t n[] = {13, 25, 49, 97};
   for (int i = 0; i < 4; ++i) {
-    const auto d = mapped({n[i], n[i], n[i]}, [](Vec3 p) { return p + 0.12 * Vec3(std::sin(2 * p.y), std::sin(2 * p.z), std::sin(2 * p.x)); }, sphere, 1.4);
+    const auto d = mapped(
+        {n[i], n[i], n[i]}, [](Vec3 p) { return p + 0.12 * Vec3(std::sin(2 * p.y), std::sin(2 * p.z), std::sin(2 * p.x)); }, sphere, 1.4);
     const auto c = contour_at(d, 0);
     const Surface s(c);
     h[i] = 1.0 / double(n[i] - 1);
@@ -150,7 +156,10 @@ TEST_CASE("contour: bent cells of every kind give a closed sphere") {
 TEST_CASE("contour: hexahedra and the lattice agree, also on random values, and mixed cells leave no holes") {
   auto noise = [](Vec3 p) {  // closed: negative at the border
     const bool border = std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) > 0.99;
-    return border ? -1.0 : random_unit(5, uint64_t(std::lround((p.x + 1) * 1000) + 4000 * std::lround((p.y + 1) * 1000) + 16000000 * std::lround((p.z + 1) * 1000))) - 0.5;
+    return border ? -1.0
+                  : random_unit(5, uint64_t(std::lround((p.x + 1) * 1000) + 4000 * std::lround((p.y + 1) * 1000) +
+                                            16000000 * std::lround((p.z + 1) * 1000))) -
+                        0.5;
   };
   const Surface lattice(contour_at(cube(9, 1, noise), 0));
   for (const auto& kind : solid_kinds()) {

@@ -124,7 +124,9 @@ struct Surface {
     auto on_border = [&](int a, int b) {
       for (int x = 0; x < 3; ++x)
         for (double side : {box.lo[x], box.hi[x]})
-          if (std::abs(points[size_t(a)][x] - side) < 1e-6 * box.diagonal() && std::abs(points[size_t(b)][x] - side) < 1e-6 * box.diagonal()) return true;
+          if (std::abs(points[size_t(a)][x] - side) < 1e-6 * box.diagonal() &&
+              std::abs(points[size_t(b)][x] - side) < 1e-6 * box.diagonal())
+            return true;
       return false;
     };
     const auto e = edges();
@@ -143,13 +145,14 @@ struct Surface {
 };
 
 inline bool same_bytes(const Array& a, const Array& b) {
-  return a.type() == b.type() && a.count() == b.count() && a.components() == b.components() && (a.bytes() == 0 || std::memcmp(a.raw(), b.raw(), a.bytes()) == 0);
+  return a.type() == b.type() && a.count() == b.count() && a.components() == b.components() &&
+         (a.bytes() == 0 || std::memcmp(a.raw(), b.raw(), a.bytes()) == 0);
 }
 
 inline bool same_surface(const DatasetPtr& a, const DatasetPtr& b) {
   const auto &x = *a->as<SurfaceMesh>(), &y = *b->as<SurfaceMesh>();
-  return x.points.origin == y.points.origin && same_bytes(x.points.xyz, y.points.xyz) && same_bytes(x.polygons.connectivity, y.polygons.connectivity) &&
-         same_bytes(x.lines.connectivity, y.lines.connectivity);
+  return x.points.origin == y.points.origin && same_bytes(x.points.xyz, y.points.xyz) &&
+         same_bytes(x.polygons.connectivity, y.polygons.connectivity) && same_bytes(x.lines.connectivity, y.lines.connectivity);
 }
 
 }  // namespace sg::test

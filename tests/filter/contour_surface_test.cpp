@@ -2,8 +2,8 @@
 // Isosurfaces of functions with known answers (correctness.md, I1 to I8, I11, I12).
 #include "base/parallel.h"
 #include "base/random.h"
-#include "filter/scalar/cell_cases.h"
 #include "filter/contour_support.h"
+#include "filter/scalar/cell_cases.h"
 
 using namespace sg;
 using namespace sg::test;
@@ -22,7 +22,8 @@ double angle_defects(const Surface& s) {
   double sum = 2 * M_PI * double(s.points.size());
   for (const auto& t : s.triangles)
     for (size_t k = 0; k < 3; ++k) {
-      const Vec3 a = s.points[size_t(t[(k + 1) % 3])] - s.points[size_t(t[k])], b = s.points[size_t(t[(k + 2) % 3])] - s.points[size_t(t[k])];
+      const Vec3 a = s.points[size_t(t[(k + 1) % 3])] - s.points[size_t(t[k])],
+                 b = s.points[size_t(t[(k + 2) % 3])] - s.points[size_t(t[k])];
       sum -= std::atan2(length(cross(a, b)), dot(a, b));
     }
   return sum;
@@ -88,7 +89,8 @@ TEST_CASE("contour: one point per cut edge, triangles = 2 (points - Euler number
     double r;
     size_t points, triangles;
   };
-  for (const Row& row : {Row{sphere, 17, 1.3, 726, 1448}, Row{sphere, 33, 1.3, 2886, 5768}, Row{torus, 33, 1.6, 2216, 4432}, Row{tangle, 41, 3, 6624, 13264}}) {
+  for (const Row& row : {Row{sphere, 17, 1.3, 726, 1448}, Row{sphere, 33, 1.3, 2886, 5768}, Row{torus, 33, 1.6, 2216, 4432},
+                         Row{tangle, 41, 3, 6624, 13264}}) {
     const auto d = contour_at(cube(row.n, row.r, row.f), 0);
     CHECK(d->point_count() == row.points);
     CHECK(d->cell_count() == row.triangles);
@@ -163,8 +165,13 @@ TEST_CASE("contour: random closed grids are watertight, manifold and oriented") 
 }
 
 TEST_CASE("contour: case tables close all loops, never run a diagonal along a face, and turn inside out with the signs") {
-  const CaseTable* tables[] = {&lattice_cases(), cell_cases(CellType::tetra), cell_cases(CellType::pyramid), cell_cases(CellType::wedge),
-                               cell_cases(CellType::hexahedron), cell_cases(CellType::pentagonal_prism), cell_cases(CellType::hexagonal_prism)};
+  const CaseTable* tables[] = {&lattice_cases(),
+                               cell_cases(CellType::tetra),
+                               cell_cases(CellType::pyramid),
+                               cell_cases(CellType::wedge),
+                               cell_cases(CellType::hexahedron),
+                               cell_cases(CellType::pentagonal_prism),
+                               cell_cases(CellType::hexagonal_prism)};
   for (const CaseTable* t : tables) {
     REQUIRE(t);
     CHECK(t->bad_diagonals() == 0);
@@ -187,7 +194,8 @@ TEST_CASE("contour: case tables close all loops, never run a diagonal along a fa
   Vec3 at[3];
   for (size_t k = 0; k < 3; ++k) {
     const auto& e = lattice_cases().shape().edges[t[k]];
-    for (int c = 0; c < 3; ++c) at[k][c] = 0.5 * double(lattice_cases().shape().place[e[0]][size_t(c)] + lattice_cases().shape().place[e[1]][size_t(c)]);
+    for (int c = 0; c < 3; ++c)
+      at[k][c] = 0.5 * double(lattice_cases().shape().place[e[0]][size_t(c)] + lattice_cases().shape().place[e[1]][size_t(c)]);
   }
   CHECK(dot(cross(at[1] - at[0], at[2] - at[0]), Vec3(1, 1, 1)) > 0);
 }
@@ -204,7 +212,8 @@ TEST_CASE("contour: 1 and 8 threads give the same bytes, and so do element types
   CHECK(same_surface(one, eight));
   CHECK(same_bytes(one->fields().require("Normals").array, eight->fields().require("Normals").array));
   CHECK(same_bytes(one->fields().require("f").array, eight->fields().require("f").array));
-  for (const auto& other : {cube<uint8_t>(70, 1, bumps), cube<uint16_t>(70, 1, bumps), cube<int16_t>(70, 1, bumps), cube<double>(70, 1, bumps), cube<int32_t>(70, 1, bumps), cube<uint64_t>(70, 1, bumps)}) {
+  for (const auto& other : {cube<uint8_t>(70, 1, bumps), cube<uint16_t>(70, 1, bumps), cube<int16_t>(70, 1, bumps),
+                            cube<double>(70, 1, bumps), cube<int32_t>(70, 1, bumps), cube<uint64_t>(70, 1, bumps)}) {
     const auto s = contour_at(other, 104.5);
     CHECK(same_surface(one, s));
     CHECK(same_bytes(one->fields().require("Normals").array, s->fields().require("Normals").array));

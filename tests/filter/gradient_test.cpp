@@ -12,7 +12,9 @@ namespace {
 const Vec3 slope(1.5, -2, 0.25);
 double linear(Vec3 p) { return dot(slope, p) + 4; }
 double wave(Vec3 p) { return std::sin(2 * p.x) * std::cos(p.y) + p.z * p.z * p.x; }
-Vec3 wave_gradient(Vec3 p) { return {2 * std::cos(2 * p.x) * std::cos(p.y) + p.z * p.z, -std::sin(2 * p.x) * std::sin(p.y), 2 * p.z * p.x}; }
+Vec3 wave_gradient(Vec3 p) {
+  return {2 * std::cos(2 * p.x) * std::cos(p.y) + p.z * p.z, -std::sin(2 * p.x) * std::sin(p.y), 2 * p.z * p.x};
+}
 
 DatasetPtr run(const DatasetPtr& d, const std::string& field = "", const std::string& as = "") {
   Context c;

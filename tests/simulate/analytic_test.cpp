@@ -18,7 +18,8 @@ struct Sampled {
   Lattice lattice;
   const Field& f;
   std::array<size_t, 3> n;
-  Sampled(DatasetPtr data, const char* field) : d(std::move(data)), lattice(d->mesh()), f(d->fields().require(field, Association::point)), n(lattice.view().dims) {}
+  Sampled(DatasetPtr data, const char* field)
+      : d(std::move(data)), lattice(d->mesh()), f(d->fields().require(field, Association::point)), n(lattice.view().dims) {}
   double at(size_t i, size_t j, size_t k, int c = 0) const { return f.array.get(lattice.view().id(i, j, k), c); }
   Vec3 place(size_t i, size_t j, size_t k) const { return lattice.view().position(i, j, k); }
   // Central difference along an axis; 0 along an axis of one point.
@@ -84,7 +85,8 @@ TEST_CASE("sources: parameters are described, read from words and checked") {
   DoubleGyreParams i;
   TaylorGreenParams j;
   PointLoadParams k;
-  for (const Schema& schema : {schema_of(a), schema_of(b), schema_of(e), schema_of(f), schema_of(g), schema_of(h), schema_of(i), schema_of(j), schema_of(k)}) {
+  for (const Schema& schema :
+       {schema_of(a), schema_of(b), schema_of(e), schema_of(f), schema_of(g), schema_of(h), schema_of(i), schema_of(j), schema_of(k)}) {
     CHECK(schema.find("size"));
     for (const ParamDecl& decl : schema.decls()) CHECK(decl.doc.back() == '.');
   }
@@ -128,7 +130,9 @@ TEST_CASE("gyroid: eigenfunction of the Laplacian, period") {
     for (size_t i = 1; i + 1 < s.n[0]; i += 3)
       for (size_t j = 1; j + 1 < s.n[0]; j += 2) {
         const size_t m = s.n[0] / 3;
-        const double lap = (s.at(i + 1, j, m) + s.at(i - 1, j, m) + s.at(i, j + 1, m) + s.at(i, j - 1, m) + s.at(i, j, m + 1) + s.at(i, j, m - 1) - 6 * s.at(i, j, m)) / (h * h);
+        const double lap = (s.at(i + 1, j, m) + s.at(i - 1, j, m) + s.at(i, j + 1, m) + s.at(i, j - 1, m) + s.at(i, j, m + 1) +
+                            s.at(i, j, m - 1) - 6 * s.at(i, j, m)) /
+                           (h * h);
         error[q] = std::max(error[q], std::abs(lap + 2 * k * k * s.at(i, j, m)));
       }
     CHECK(s.at(0, 3, 5) == doctest::Approx(s.at(s.n[0] - 1, 3, 5)).epsilon(1e-9));
@@ -247,7 +251,8 @@ TEST_CASE("double_gyre: the stream function's derivatives, closed walls") {
   CHECK(d->time() == 3.7);
   double e = 0;
   for (size_t j = 1; j + 1 < u.n[1]; j += 5)
-    for (size_t i = 1; i + 1 < u.n[0]; i += 5) e = std::max({e, std::abs(u.at(i, j, 0, 0) + psi.slope(i, j, 0, 0, 1)), std::abs(u.at(i, j, 0, 1) - psi.slope(i, j, 0, 0, 0))});
+    for (size_t i = 1; i + 1 < u.n[0]; i += 5)
+      e = std::max({e, std::abs(u.at(i, j, 0, 0) + psi.slope(i, j, 0, 0, 1)), std::abs(u.at(i, j, 0, 1) - psi.slope(i, j, 0, 0, 0))});
   CHECK(e < 1e-3);
   for (size_t i = 0; i < u.n[0]; ++i) CHECK(std::abs(u.at(i, 0, 0, 1)) + std::abs(u.at(i, u.n[1] - 1, 0, 1)) < 1e-12);
   for (size_t j = 0; j < u.n[1]; ++j) CHECK(std::abs(u.at(0, j, 0, 0)) + std::abs(u.at(u.n[0] - 1, j, 0, 0)) < 1e-12);
@@ -267,12 +272,14 @@ TEST_CASE("taylor_green: divergence 0 and the steady momentum balance with its p
       div = std::max(div, std::abs(u.slope(i, j, 0, 0, 0) + u.slope(i, j, 0, 1, 1)));
       // (u grad) u = -grad p; du/dt = -2 nu u is balanced by the viscous term. The other sign of p would fail here.
       for (int a = 0; a < 2; ++a)
-        momentum = std::max(momentum, std::abs(u.at(i, j, 0, 0) * u.slope(i, j, 0, a, 0) + u.at(i, j, 0, 1) * u.slope(i, j, 0, a, 1) + q.slope(i, j, 0, 0, a)));
+        momentum = std::max(momentum, std::abs(u.at(i, j, 0, 0) * u.slope(i, j, 0, a, 0) + u.at(i, j, 0, 1) * u.slope(i, j, 0, a, 1) +
+                                               q.slope(i, j, 0, 0, a)));
     }
   CHECK(div < 1e-12);
   CHECK(momentum < 2e-3);
   for (size_t j = 0; j + 1 < u.n[1]; ++j)
-    for (size_t i = 0; i + 1 < u.n[0]; ++i) energy += 0.5 * (u.at(i, j, 0, 0) * u.at(i, j, 0, 0) + u.at(i, j, 0, 1) * u.at(i, j, 0, 1)) / 128 / 128;
+    for (size_t i = 0; i + 1 < u.n[0]; ++i)
+      energy += 0.5 * (u.at(i, j, 0, 0) * u.at(i, j, 0, 0) + u.at(i, j, 0, 1) * u.at(i, j, 0, 1)) / 128 / 128;
   CHECK(energy == doctest::Approx(0.25 * std::exp(-4 * 0.05 * 2)).epsilon(1e-9));
 }
 

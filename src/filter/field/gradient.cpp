@@ -37,25 +37,28 @@ template <class T>
 void lattice_gradient(const LatticeFrame& frame, const View<T>& f, T* out, Context& context) {
   const size_t nx = frame.dims[0], ny = frame.dims[1], rows = ny * frame.dims[2], n = size_t(f.components);
   const bool listed = frame.view.mode == LatticeView::Mode::listed;
-  parallel_for(rows, std::max<size_t>(1, 4096 / nx), [&](size_t begin, size_t end) {
-    for (size_t r = begin; r < end; ++r)
-      for (size_t i = 0; i < nx; ++i) {
-        const size_t at[3] = {i, r % ny, r / ny}, p = i + nx * r;
-        const Mat3 m = listed ? frame.metric(p, at) : frame.to_world;
-        for (size_t c = 0; c < n; ++c) {
-          Vec3 d;
-          auto value = [&](size_t q) { return double(f.data[q * n + c]); };
-          for (int l = 0; l < frame.axes; ++l) {
-            const AxisStencil& s = frame.stencil[l][at[l]];
-            for (int k = 0; k < 3; ++k) d[l] += s.w[k] == 0 ? 0.0 : s.w[k] * value(size_t(ptrdiff_t(p) + s.o[k]));
+  parallel_for(
+      rows, std::max<size_t>(1, 4096 / nx),
+      [&](size_t begin, size_t end) {
+        for (size_t r = begin; r < end; ++r)
+          for (size_t i = 0; i < nx; ++i) {
+            const size_t at[3] = {i, r % ny, r / ny}, p = i + nx * r;
+            const Mat3 m = listed ? frame.metric(p, at) : frame.to_world;
+            for (size_t c = 0; c < n; ++c) {
+              Vec3 d;
+              auto value = [&](size_t q) { return double(f.data[q * n + c]); };
+              for (int l = 0; l < frame.axes; ++l) {
+                const AxisStencil& s = frame.stencil[l][at[l]];
+                for (int k = 0; k < 3; ++k) d[l] += s.w[k] == 0 ? 0.0 : s.w[k] * value(size_t(ptrdiff_t(p) + s.o[k]));
+              }
+              if (!std::isfinite(dot(d, d))) [[unlikely]]
+                for (int l = 0; l < frame.axes; ++l) d[l] = careful_derivative(frame.stencil[l][at[l]], p, value);
+              const Vec3 g = std::isnan(value(p)) ? Vec3(NAN, NAN, NAN) : m * d;
+              for (int a = 0; a < 3; ++a) out[(p * n + c) * 3 + size_t(a)] = T(g[a]);
+            }
           }
-          if (!std::isfinite(dot(d, d))) [[unlikely]]
-            for (int l = 0; l < frame.axes; ++l) d[l] = careful_derivative(frame.stencil[l][at[l]], p, value);
-          const Vec3 g = std::isnan(value(p)) ? Vec3(NAN, NAN, NAN) : m * d;
-          for (int a = 0; a < 3; ++a) out[(p * n + c) * 3 + size_t(a)] = T(g[a]);
-        }
-      }
-  }, &context);
+      },
+      &context);
 }
 
 template <class T>
@@ -99,7 +102,8 @@ Array cells_gradient(const Dataset& input, const Array& values, ElementType type
 }  // namespace
 
 DatasetPtr gradient(const DatasetPtr& input, const GradientParams& params, Context& context) {
-  if (input->as<PointCloud>()) fail_usage("a mesh of kind 'points' has no gradient: nothing connects its points", "gradient", "resample the points to a grid first");
+  if (input->as<PointCloud>())
+    fail_usage("a mesh of kind 'points' has no gradient: nothing connects its points", "gradient", "resample the points to a grid first");
   const Field& field = choose_field(*input, params.field);
   const ElementType t = field.array.type();
   const ElementType type = t == ElementType::f32 || element_size(t) < 4 ? ElementType::f32 : ElementType::f64;

@@ -119,7 +119,8 @@ Vec3 gradient_at(size_t p, std::span<const CellAt> cells, const CellLists& lists
 
 }  // namespace
 
-void least_squares_gradients(const Dataset& dataset, std::span<const uint32_t> wanted, const Array& values, double* out, const Context& context) {
+void least_squares_gradients(const Dataset& dataset, std::span<const uint32_t> wanted, const Array& values, double* out,
+                             const Context& context) {
   const CellLists lists(dataset.mesh());
   const Points& points = lists.mesh ? lists.mesh->points : std::get<SurfaceMesh>(dataset.mesh()).points;
   const Array& ghost = dataset.cell_ghost();
@@ -151,13 +152,18 @@ void least_squares_gradients(const Dataset& dataset, std::span<const uint32_t> w
   });
 
   const auto f = values.view<double>();
-  parallel_for(wanted.size(), 1024, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i)
-      for (int c = 0; c < f.components; ++c) {
-        const Vec3 g = std::isnan(f(wanted[i], c)) ? Vec3(NAN, NAN, NAN) : gradient_at(wanted[i], {at.data() + start[i], start[i + 1] - start[i]}, lists, points, f, c);
-        for (int a = 0; a < 3; ++a) out[(i * size_t(f.components) + size_t(c)) * 3 + size_t(a)] = g[a];
-      }
-  }, &context);
+  parallel_for(
+      wanted.size(), 1024,
+      [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i)
+          for (int c = 0; c < f.components; ++c) {
+            const Vec3 g = std::isnan(f(wanted[i], c))
+                               ? Vec3(NAN, NAN, NAN)
+                               : gradient_at(wanted[i], {at.data() + start[i], start[i + 1] - start[i]}, lists, points, f, c);
+            for (int a = 0; a < 3; ++a) out[(i * size_t(f.components) + size_t(c)) * 3 + size_t(a)] = g[a];
+          }
+      },
+      &context);
 }
 
 }  // namespace sg

@@ -13,6 +13,7 @@ namespace sg {
 /// functions. `values` is packed f64, one tuple per point of the mesh; out receives 3 numbers per component per listed point. Where
 /// all cells at a point are faces (or lines) the gradient along them is given. Points without neighbours, or with a NaN value, get
 /// NaN; neighbours that are NaN are left out. Unstructured and surface meshes only.
-void least_squares_gradients(const Dataset& dataset, std::span<const uint32_t> points, const Array& values, double* out, const Context& context);
+void least_squares_gradients(const Dataset& dataset, std::span<const uint32_t> points, const Array& values, double* out,
+                             const Context& context);
 
 }  // namespace sg

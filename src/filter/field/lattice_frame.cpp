@@ -50,7 +50,9 @@ Mat3 completed(Vec3 a[3]) {
       a[l] = normalize(cross(u, v));
     } else {
       const Vec3 w = gu ? u : gv ? v : Vec3(1, 0, 0);
-      const Vec3 other = std::abs(w.x) <= std::abs(w.y) && std::abs(w.x) <= std::abs(w.z) ? Vec3(1, 0, 0) : std::abs(w.y) <= std::abs(w.z) ? Vec3(0, 1, 0) : Vec3(0, 0, 1);
+      const Vec3 other = std::abs(w.x) <= std::abs(w.y) && std::abs(w.x) <= std::abs(w.z) ? Vec3(1, 0, 0)
+                         : std::abs(w.y) <= std::abs(w.z)                                 ? Vec3(0, 1, 0)
+                                                                                          : Vec3(0, 0, 1);
       a[l] = normalize(cross(w, other));
     }
     good[l] = true, ++n;

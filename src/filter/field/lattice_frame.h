@@ -15,7 +15,7 @@ namespace sg {
 struct AxisStencil {
   ptrdiff_t o[3]{};  ///< elements from the point itself
   double w[3]{};
-  double d[3]{};     ///< distance along the axis, in the unit of the derivative
+  double d[3]{};  ///< distance along the axis, in the unit of the derivative
 };
 
 /// The axes of a lattice that have more than one point, in order, then those with one. Dropping one-point axes leaves the
@@ -24,8 +24,8 @@ struct LatticeFrame {
   explicit LatticeFrame(const LatticeView& view);
 
   std::array<size_t, 3> dims{1, 1, 1};
-  int axes = 0;                         ///< axes with more than one point
-  std::array<int, 3> source{0, 1, 2};   ///< axis of the lattice
+  int axes = 0;                        ///< axes with more than one point
+  std::array<int, 3> source{0, 1, 2};  ///< axis of the lattice
   std::array<ptrdiff_t, 3> stride{1, 1, 1};
   std::vector<AxisStencil> stencil[3];  ///< separable: of the coordinate; otherwise of the index
   LatticeView view;
@@ -41,7 +41,9 @@ struct LatticeFrame {
   }
   /// Position of listed point p.
   Vec3 listed(size_t p) const {
-    if (view.xyz32) return {view.origin.x + double(view.xyz32[3 * p]), view.origin.y + double(view.xyz32[3 * p + 1]), view.origin.z + double(view.xyz32[3 * p + 2])};
+    if (view.xyz32)
+      return {view.origin.x + double(view.xyz32[3 * p]), view.origin.y + double(view.xyz32[3 * p + 1]),
+              view.origin.z + double(view.xyz32[3 * p + 2])};
     return {view.origin.x + view.xyz64[3 * p], view.origin.y + view.xyz64[3 * p + 1], view.origin.z + view.xyz64[3 * p + 2]};
   }
 

@@ -112,7 +112,9 @@ std::vector<std::array<uint32_t, 3>> fill_loop(size_t n, const std::function<dou
 // No diagonal along a face, or else from entry to entry; then short ones.
 void CaseTable::fill(const std::vector<uint8_t>& loop) {
   const size_t n = loop.size();
-  auto middle = [&](uint8_t e, size_t c) { return 0.5 * (double(shape_.place[shape_.edges[e][0]][c]) + double(shape_.place[shape_.edges[e][1]][c])); };
+  auto middle = [&](uint8_t e, size_t c) {
+    return 0.5 * (double(shape_.place[shape_.edges[e][0]][c]) + double(shape_.place[shape_.edges[e][1]][c]));
+  };
   auto cost = [&](size_t a, size_t b) {
     const uint32_t face = shared_face(loop[a], loop[b]);
     const bool entries = face == shared_face(loop[a], loop[a + 1]) && face == shared_face(loop[b], loop[(b + 1) % n]);
@@ -169,11 +171,16 @@ CellShape prism(int n) {
 const CaseTable* cell_cases(CellType type) {
   switch (type) {
     case CellType::tetra: {
-      static const CaseTable t({4, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}, {}, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {1, 0, 2, 3}});
+      static const CaseTable t(
+          {4, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}, {}, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {1, 0, 2, 3}});
       return &t;
     }
     case CellType::pyramid: {
-      static const CaseTable t({5, {{0, 3, 2, 1}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}}, {}, {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {.5f, .5f, 1}}, {0, 3, 2, 1, 4}});
+      static const CaseTable t({5,
+                                {{0, 3, 2, 1}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}},
+                                {},
+                                {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {.5f, .5f, 1}},
+                                {0, 3, 2, 1, 4}});
       return &t;
     }
     case CellType::wedge: {

@@ -24,10 +24,10 @@ namespace sg {
 
 struct CellShape {
   int corners = 0;
-  std::vector<std::vector<uint8_t>> faces;       ///< corners, counterclockwise seen from outside
-  std::vector<std::array<uint8_t, 2>> edges;     ///< empty: in order of first appearance in the faces
-  std::vector<std::array<float, 3>> place;       ///< corner positions of a regular cell: shorter diagonals are preferred
-  std::vector<uint8_t> mirror;                   ///< an order of the corners that turns the cell inside out
+  std::vector<std::vector<uint8_t>> faces;    ///< corners, counterclockwise seen from outside
+  std::vector<std::array<uint8_t, 2>> edges;  ///< empty: in order of first appearance in the faces
+  std::vector<std::array<float, 3>> place;    ///< corner positions of a regular cell: shorter diagonals are preferred
+  std::vector<uint8_t> mirror;                ///< an order of the corners that turns the cell inside out
 
   void find_edges();
 };
@@ -86,8 +86,6 @@ std::vector<std::array<uint32_t, 3>> fill_loop(size_t n, const std::function<dou
 inline double face_penalty(bool from_entry_to_entry) { return from_entry_to_entry ? 1e3 : 1e6; }
 
 /// Does the bilinear function on a face with alternating signs join its corners >= 0? Values minus the isovalue, in order around.
-inline bool joined_inside(double a, double b, double c, double d) {
-  return a >= 0 ? a * c >= b * d : b * d >= a * c;
-}
+inline bool joined_inside(double a, double b, double c, double d) { return a >= 0 ? a * c >= b * d : b * d >= a * c; }
 
 }  // namespace sg

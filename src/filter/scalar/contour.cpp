@@ -25,7 +25,8 @@ const Field& choose_field(const Dataset& input, const FieldName& name) {
     const Field& f = input.fields().require(name.name);
     if (const Field* point = input.fields().find(name.name, Association::point)) return *point;
     if (f.association == Association::cell)
-      fail_usage(fmt::format("field '{}' lies on the cells; a contour needs values at the points", name.name), "contour", "average it to the points first");
+      fail_usage(fmt::format("field '{}' lies on the cells; a contour needs values at the points", name.name), "contour",
+                 "average it to the points first");
     fail_usage(fmt::format("field '{}' lies on the whole mesh; a contour needs values at the points", name.name), "contour");
   }
   const Field* f = input.fields().active(1);
@@ -34,7 +35,9 @@ const Field& choose_field(const Dataset& input, const FieldName& name) {
     if (p.association == Association::point && p.components() == 1) return p;
   for (const Field& p : input.fields())
     if (p.association == Association::point) return p;  // a vector: the next check says what to do
-  if (f) fail_usage(fmt::format("the mesh has no point field to contour, only the cell field '{}'", f->name), "contour", "average it to the points first");
+  if (f)
+    fail_usage(fmt::format("the mesh has no point field to contour, only the cell field '{}'", f->name), "contour",
+               "average it to the points first");
   fail_usage("the mesh has no point field to contour", "contour");
 }
 
@@ -50,14 +53,19 @@ int choose_component(const Field& f, const std::string& word) {
   int64_t c = -1;
   if (const auto number = parse_int(word)) c = *number;
   else if (word.size() == 1) c = int64_t(std::string("xyz").find(to_lower(word)[0]));
-  if (c < 0 || c >= n) fail_usage(fmt::format("field '{}' has no component '{}'", f.name, word), "contour component", n > 1 ? choices : "it has one component: leave component out");
+  if (c < 0 || c >= n)
+    fail_usage(fmt::format("field '{}' has no component '{}'", f.name, word), "contour component",
+               n > 1 ? choices : "it has one component: leave component out");
   return int(c);
 }
 
 // One packed component in a type that the kernels read as it is.
 Array choose_samples(const Field& f, int component) {
   const ElementType t = f.array.type();
-  if (component < 0) return scalar_of(f, -1, t == ElementType::f64 || element_size(t) >= 4 ? t == ElementType::f32 ? ElementType::f32 : ElementType::f64 : ElementType::f32);
+  if (component < 0)
+    return scalar_of(
+        f, -1,
+        t == ElementType::f64 || element_size(t) >= 4 ? t == ElementType::f32 ? ElementType::f32 : ElementType::f64 : ElementType::f32);
   const Array a = f.array.component(component);
   switch (t) {
     case ElementType::u32:
@@ -77,16 +85,19 @@ Vec3 choose_origin(const Box3& box) {
 }
 
 void check_mesh(const Dataset& input) {
-  if (input.point_count() > size_t(UINT32_MAX)) fail_usage("the mesh has more than 2^32 points", "contour", "contour a part of it at a time");
+  if (input.point_count() > size_t(UINT32_MAX))
+    fail_usage("the mesh has more than 2^32 points", "contour", "contour a part of it at a time");
   if (is_lattice(input.mesh())) {
     int axes = 0;
     for (size_t n : lattice_dims(input.mesh())) axes += n > 1;
     if (axes < 2 && input.point_count() > 0)
-      fail_usage(fmt::format("a grid with {} axis of more than one point has no contour", axes), "contour", "give it a grid of two or three axes");
+      fail_usage(fmt::format("a grid with {} axis of more than one point has no contour", axes), "contour",
+                 "give it a grid of two or three axes");
   } else if (!input.as<UnstructuredMesh>() && !input.as<SurfaceMesh>()) {
     const bool amr = input.as<AmrGrid>();
-    fail_usage(fmt::format("a mesh of kind '{}' cannot be contoured", input.kind()), "contour",
-               amr ? "resample it to a uniform grid, or turn its leaf cells into an unstructured mesh" : "resample the points to a grid first");
+    fail_usage(
+        fmt::format("a mesh of kind '{}' cannot be contoured", input.kind()), "contour",
+        amr ? "resample it to a uniform grid, or turn its leaf cells into an unstructured mesh" : "resample the points to a grid first");
   }
 }
 
@@ -120,15 +131,19 @@ std::vector<T> joined_list(const std::vector<Piece>& pieces, Get&& get) {
   return r;
 }
 
-DatasetPtr assemble(const Dataset& input, const Field& field, const std::vector<double>& values, std::vector<Piece> pieces, const Job& job, bool wants_normals) {
+DatasetPtr assemble(const Dataset& input, const Field& field, const std::vector<double>& values, std::vector<Piece> pieces, const Job& job,
+                    bool wants_normals) {
   size_t total = 0;
   for (const Piece& p : pieces) total += p.points.count;
   if (total > size_t(INT32_MAX)) fail_usage("the surfaces have more than 2^31 points", "contour", "ask for fewer values at a time");
   SurfaceMesh mesh;
-  mesh.points.xyz = joined(pieces, 3, [](Piece& p) { return p.xyz; }, false);
+  mesh.points.xyz = joined(
+      pieces, 3, [](Piece& p) { return p.xyz; }, false);
   mesh.points.origin = job.origin;
-  mesh.lines.connectivity = joined(pieces, 1, [](Piece& p) { return p.lines; }, true);
-  mesh.polygons.connectivity = joined(pieces, 1, [](Piece& p) { return p.triangles; }, true);
+  mesh.lines.connectivity = joined(
+      pieces, 1, [](Piece& p) { return p.lines; }, true);
+  mesh.polygons.connectivity = joined(
+      pieces, 1, [](Piece& p) { return p.triangles; }, true);
   if (mesh.lines.connectivity.count()) mesh.lines.fixed = 2;
   else mesh.lines = {};
   mesh.polygons.fixed = 3;
@@ -141,13 +156,20 @@ DatasetPtr assemble(const Dataset& input, const Field& field, const std::vector<
   for (const Field& f : input.fields()) {
     if (f.association != Association::point) continue;
     const bool made = job.values && f.array.raw() == job.samples.raw();  // the vertices had its numbers in hand
-    out.add({f.name, f.association, made ? joined(pieces, 1, [](Piece& p) { return p.values; }, false) : interpolate(f.array, edges), f.unit, f.role});
+    out.add({f.name, f.association,
+             made ? joined(
+                        pieces, 1, [](Piece& p) { return p.values; }, false)
+                  : interpolate(f.array, edges),
+             f.unit, f.role});
   }
   if (wants_normals) {
     float* none = nullptr;
     for (Piece& p : pieces)
       if (p.normals.empty()) p.normals = Array::make<float>(p.points.count, 3, &none), std::fill(none, none + 3 * p.points.count, 0.0f);
-    out.add({"Normals", Association::point, joined(pieces, 3, [](Piece& p) { return p.normals; }, false), "", Role::normals});
+    out.add({"Normals", Association::point,
+             joined(
+                 pieces, 3, [](Piece& p) { return p.normals; }, false),
+             "", Role::normals});
   }
   if (job.cells) {
     auto cells = joined_list<uint32_t>(pieces, [](const Piece& p) -> const Block<uint32_t>& { return p.line_cells; });
@@ -185,8 +207,7 @@ int mesh_dimension(const Dataset& input) {
         dimension = std::max(dimension, info->dimension);
         thin = thin || info->dimension < 2;
       }
-  if (dimension < 2 && input.cell_count() > 0)
-    fail_usage("the mesh has only points and lines; a contour needs faces or solids", "contour");
+  if (dimension < 2 && input.cell_count() > 0) fail_usage("the mesh has only points and lines; a contour needs faces or solids", "contour");
   return dimension;
 }
 
@@ -224,7 +245,8 @@ DatasetPtr contour(const DatasetPtr& input, const ContourParams& params, Context
     if (pieces[i].lines.count() + pieces[i].triangles.count() > 0) continue;
     const Range range = input->range(field, component);  // not before: it is a pass over all samples
     context.info(range.empty() ? fmt::format("contour: field '{}' has no values", field.name)
-                                           : fmt::format("contour: nothing at {} = {}; the field runs from {} to {}", field.name, short_number(values[i]), short_number(range.lo), short_number(range.hi)));
+                               : fmt::format("contour: nothing at {} = {}; the field runs from {} to {}", field.name,
+                                             short_number(values[i]), short_number(range.lo), short_number(range.hi)));
   }
   return assemble(*input, field, values, std::move(pieces), job, params.normals && dimension == 3);
 }

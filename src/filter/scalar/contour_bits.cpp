@@ -27,13 +27,13 @@ inline uint64_t pack64(const uint8_t* flags) {
   return r;
 }
 
-#define SG_AT_LEAST(T)                                                                     \
-  SG_CLONES void at_least(const T* p, size_t words, T least, uint64_t* bits) {             \
-    for (size_t w = 0; w < words; ++w, p += 64) {                                          \
-      uint8_t flags[64];                                                                   \
-      for (size_t i = 0; i < 64; ++i) flags[i] = p[i] >= least;                            \
-      bits[w] = pack64(flags);                                                             \
-    }                                                                                      \
+#define SG_AT_LEAST(T)                                                         \
+  SG_CLONES void at_least(const T* p, size_t words, T least, uint64_t* bits) { \
+    for (size_t w = 0; w < words; ++w, p += 64) {                              \
+      uint8_t flags[64];                                                       \
+      for (size_t i = 0; i < 64; ++i) flags[i] = p[i] >= least;                \
+      bits[w] = pack64(flags);                                                 \
+    }                                                                          \
   }
 SG_AT_LEAST(uint8_t)
 SG_AT_LEAST(int8_t)
@@ -42,11 +42,11 @@ SG_AT_LEAST(int16_t)
 SG_AT_LEAST(float)
 SG_AT_LEAST(double)
 
-#define SG_ANY_NAN(T)                                       \
-  SG_CLONES bool any_nan(const T* p, size_t n) {            \
-    int odd = 0;                                            \
-    for (size_t i = 0; i < n; ++i) odd |= p[i] != p[i];     \
-    return odd != 0;                                        \
+#define SG_ANY_NAN(T)                                   \
+  SG_CLONES bool any_nan(const T* p, size_t n) {        \
+    int odd = 0;                                        \
+    for (size_t i = 0; i < n; ++i) odd |= p[i] != p[i]; \
+    return odd != 0;                                    \
   }
 SG_ANY_NAN(float)
 SG_ANY_NAN(double)
@@ -108,17 +108,21 @@ size_t row_grain(size_t nx) { return std::max<size_t>(1, 65536 / std::max<size_t
 
 bool classify(const Array& samples, size_t nx, size_t rows, double value, uint64_t* bits, size_t words, Context& context) {
   return native(samples, [&](const auto* p) {
-    return parallel_reduce(rows, row_grain(nx), false, [&](size_t begin, size_t end) { return classify_rows(p, nx, begin, end, value, bits, words); },
-                           [](bool a, bool b) { return a || b; }, &context);
+    return parallel_reduce(
+        rows, row_grain(nx), false, [&](size_t begin, size_t end) { return classify_rows(p, nx, begin, end, value, bits, words); },
+        [](bool a, bool b) { return a || b; }, &context);
   });
 }
 
 void find_missing(const Array& samples, size_t nx, size_t rows, uint64_t* bits, size_t words, Context& context) {
   const Sample f(samples);
-  parallel_for(rows, row_grain(nx), [&](size_t begin, size_t end) {
-    for (size_t r = begin; r < end; ++r)
-      for (size_t i = 0; i < nx; ++i) bits[r * words + i / 64] |= uint64_t(std::isnan(f(r * nx + i))) << (i % 64);
-  }, &context);
+  parallel_for(
+      rows, row_grain(nx),
+      [&](size_t begin, size_t end) {
+        for (size_t r = begin; r < end; ++r)
+          for (size_t i = 0; i < nx; ++i) bits[r * words + i / 64] |= uint64_t(std::isnan(f(r * nx + i))) << (i % 64);
+      },
+      &context);
 }
 
 }  // namespace sg::contouring

@@ -1,240 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 // Contours of unstructured and surface meshes, cell by cell. A cut edge is known by its two point numbers, so that cells of
 // different kinds share it; the numbers are sorted afterwards to count each edge once.
-#include <bit>
 #include <cmath>
-#include <map>
 
 #include "base/parallel.h"
 #include "filter/field/gradient_cells.h"
-#include "filter/scalar/cell_cases.h"
-#include "filter/scalar/contour_parts.h"
+#include "filter/scalar/contour_finder.h"
 
 namespace sg::contouring {
 
 namespace {
 
-uint64_t edge_key(int64_t a, int64_t b) { return a < b ? uint64_t(a) << 32 | uint64_t(b) : uint64_t(b) << 32 | uint64_t(a); }
-
-struct Found {
-  std::vector<uint64_t> lines, triangles;
-  std::vector<uint32_t> line_cells, triangle_cells;
-};
-
-struct Finder {
-  const Job& job;
-  const Points& points;
-  double value;
-  Sample f{job.samples};
-  View<uint8_t> point_ghost = job.input.point_ghost().empty() ? View<uint8_t>{} : job.input.point_ghost().view<uint8_t>();
-  View<uint8_t> cell_ghost = job.input.cell_ghost().empty() ? View<uint8_t>{} : job.input.cell_ghost().view<uint8_t>();
-
-  bool skipped(size_t cell) const { return cell_ghost.count && (cell_ghost[cell] & (ghost_duplicate | ghost_refined_cell | ghost_hidden_cell)); }
-  bool bad(int64_t p) const { return std::isnan(f(size_t(p))) || (point_ghost.count && (point_ghost[size_t(p)] & ghost_hidden_point)); }
-
-  // Six times the volume when the faces, as listed, turn outwards; negative for a mirrored cell.
-  double volume(const CellShape& shape, const CellsView& cells, size_t cell) const {
-    const Vec3 base = points.at(size_t(cells.point(cell, 0)));
-    auto at = [&](uint8_t c) { return points.at(size_t(cells.point(cell, c))) - base; };
-    double v = 0;
-    for (const auto& face : shape.faces)
-      for (size_t k = 1; k + 1 < face.size(); ++k) v += dot(at(face[0]), cross(at(face[k]), at(face[k + 1])));
-    return v;
-  }
-
-  void solid(const CaseTable& table, const CellsView& cells, size_t cell, Found& out) const {
-    const CellShape& shape = table.shape();
-    std::array<int64_t, 16> p;
-    uint32_t any = 0, every = 1;
-    for (size_t c = 0; c < size_t(shape.corners); ++c) {
-      p[c] = cells.point(cell, c);
-      const uint32_t in = f(size_t(p[c])) >= value;
-      any |= in, every &= in;
-    }
-    if (!any || every) return;
-    // The rules for segments and diagonals look at cells from outside, so mirrored ones are turned into proper ones.
-    if (volume(shape, cells, cell) < 0)
-      for (size_t c = 0; c < size_t(shape.corners); ++c) p[c] = cells.point(cell, shape.mirror[c]);
-    uint32_t pattern = 0;
-    for (int c = 0; c < shape.corners; ++c) {
-      if (bad(p[size_t(c)])) return;
-      pattern |= uint32_t(f(size_t(p[size_t(c)])) >= value) << c;
-    }
-    uint32_t joined = 0;
-    for (uint32_t m = table.ambiguous(pattern); m; m &= m - 1) {
-      const auto& face = shape.faces[size_t(std::countr_zero(m))];
-      double v[4];
-      for (size_t c = 0; c < 4; ++c) v[c] = f(size_t(p[face[c]])) - value;
-      joined |= uint32_t(joined_inside(v[0], v[1], v[2], v[3])) << std::countr_zero(m);
-    }
-    const auto edges = table.triangles(pattern, joined);
-    for (uint8_t e : edges) out.triangles.push_back(edge_key(p[shape.edges[e][0]], p[shape.edges[e][1]]));
-    out.triangle_cells.insert(out.triangle_cells.end(), edges.size() / 3, uint32_t(cell));
-  }
-
-  // A polygon: a line from where the boundary leaves the inside to where it came in, so that the inside lies on the left.
-  void polygon(std::span<const int64_t> p, size_t number, Found& out) const {
-    const size_t n = p.size();
-    bool any = false, every = true;
-    for (int64_t q : p) {
-      const bool in = f(size_t(q)) >= value;
-      any = any || in, every = every && in;
-    }
-    if (!any || every) return;
-    for (int64_t q : p)
-      if (bad(q)) return;
-    auto in = [&](size_t k) { return f(size_t(p[k % n])) >= value; };
-    size_t start = 0;
-    while (in(start) || !in(start + 1)) ++start;
-    uint64_t first_entry = 0, entry = 0, exit = 0;
-    const bool four = n == 4 && in(0) == in(2) && in(1) == in(3);
-    const bool join = four && joined_inside(f(size_t(p[0])) - value, f(size_t(p[1])) - value, f(size_t(p[2])) - value, f(size_t(p[3])) - value);
-    auto line = [&](uint64_t a, uint64_t b) {
-      out.lines.push_back(a), out.lines.push_back(b);
-      out.line_cells.push_back(uint32_t(number));
-    };
-    for (size_t s = 0; s < n; ++s) {
-      const size_t k = start + s;
-      const uint64_t key = edge_key(p[k % n], p[(k + 1) % n]);
-      if (!in(k) && in(k + 1)) {
-        entry = key;
-        if (s == 0) first_entry = key;
-        else if (join) line(exit, entry);
-      } else if (in(k) && !in(k + 1)) {
-        exit = key;
-        if (!join) line(exit, entry);
-      }
-    }
-    if (join) line(exit, first_entry);
-  }
-};
-
-// A polyhedron of any faces: the rules of cell_cases.h, worked out on the spot.
-class PolyhedronCut {
- public:
-  PolyhedronCut(const Finder& finder, const UnstructuredMesh& m, size_t cell) : finder_(finder), cell_(cell) {
-    const CellsView faces = cells_view(m.faces);
-    const auto of_cell = m.polyhedron_faces.view<int64_t>();
-    for (size_t f = size_t(of_cell[cell]); f < size_t(of_cell[cell + 1]); ++f) {
-      auto& face = faces_.emplace_back(faces.size(f));
-      for (size_t k = 0; k < face.size(); ++k) face[k] = faces.point(f, k);
-    }
-  }
-
-  void run(Found& out) {
-    turn_outwards();
-    for (size_t f = 0; f < faces_.size(); ++f) segments(f);
-    while (!next_.empty()) {
-      std::vector<uint64_t> loop;
-      for (auto at = next_.begin(); at != next_.end(); at = next_.find(loop.back())) {
-        if (loop.empty()) loop.push_back(at->first);
-        loop.push_back(at->second.first);
-        step_[at->first] = at->second;
-        next_.erase(at);
-      }
-      if (loop.size() < 4 || loop.front() != loop.back()) continue;  // faces that do not close: no surface rather than a wrong one
-      loop.pop_back();
-      fill(loop, out);
-    }
-  }
-
- private:
-  static uint64_t key(const std::vector<int64_t>& face, size_t k) { return edge_key(face[k], face[(k + 1) % face.size()]); }
-
-  // Files promise outward faces but do not all keep it: make neighbours agree, then look at the volume.
-  void turn_outwards() {
-    std::map<uint64_t, std::vector<size_t>> at_edge;
-    for (size_t f = 0; f < faces_.size(); ++f)
-      for (size_t k = 0; k < faces_[f].size(); ++k) at_edge[key(faces_[f], k)].push_back(f);
-    auto forward = [&](size_t f, uint64_t edge) {
-      for (size_t k = 0; k < faces_[f].size(); ++k)
-        if (key(faces_[f], k) == edge) return faces_[f][k] == int64_t(edge >> 32);
-      return false;
-    };
-    std::vector<char> seen(faces_.size());
-    for (size_t first = 0; first < faces_.size(); ++first) {
-      std::vector<size_t> todo;
-      if (!seen[first]) todo.push_back(first), seen[first] = 1;
-      while (!todo.empty()) {
-        const size_t f = todo.back();
-        todo.pop_back();
-        for (size_t k = 0; k < faces_[f].size(); ++k) {
-          const uint64_t edge = key(faces_[f], k);
-          for (size_t g : at_edge[edge]) {
-            if (seen[g]) continue;
-            if (forward(f, edge) == forward(g, edge)) std::reverse(faces_[g].begin(), faces_[g].end());
-            seen[g] = 1;
-            todo.push_back(g);
-          }
-        }
-      }
-    }
-    double volume = 0;
-    if (faces_.empty() || faces_[0].empty()) return;
-    const Vec3 base = finder_.points.at(size_t(faces_[0][0]));
-    auto place = [&](int64_t p) { return finder_.points.at(size_t(p)) - base; };
-    for (const auto& face : faces_)
-      for (size_t k = 1; k + 1 < face.size(); ++k) volume += dot(place(face[0]), cross(place(face[k]), place(face[k + 1])));
-    if (volume < 0)
-      for (auto& face : faces_) std::reverse(face.begin(), face.end());
-  }
-
-  void segments(size_t f) {
-    const auto& p = faces_[f];
-    const size_t n = p.size();
-    auto value = [&](size_t k) { return finder_.f(size_t(p[k % n])) - finder_.value; };
-    for (size_t k = 0; k < n; ++k) edge_faces_[key(p, k)].push_back(f);
-    std::vector<uint64_t> entry, exit;
-    size_t start = 0;
-    while (start < n && !(value(start) < 0 && value(start + 1) >= 0)) ++start;
-    if (start == n) return;
-    for (size_t s = 0; s < n; ++s) {
-      const size_t k = (start + s) % n;
-      const bool a = value(k) >= 0, b = value(k + 1) >= 0;
-      if (!a && b) entry.push_back(key(p, k));
-      if (a && !b) exit.push_back(key(p, k));
-    }
-    const bool join = n == 4 && entry.size() == 2 && joined_inside(value(0), value(1), value(2), value(3));
-    for (size_t r = 0; r < entry.size(); ++r) next_[entry[join ? (r + 1) % entry.size() : r]] = {exit[r], f};
-  }
-
-  void fill(const std::vector<uint64_t>& loop, Found& out) const {
-    const size_t n = loop.size();
-    std::vector<Vec3> middle;
-    Box3 box;
-    for (uint64_t e : loop) {
-      middle.push_back((finder_.points.at(e >> 32) + finder_.points.at(uint32_t(e))) * 0.5);
-      box.add(middle.back());
-    }
-    const double unit = 1 / std::max(dot(box.size(), box.size()), 1e-300);
-    auto cost = [&](size_t a, size_t b) {
-      const Vec3 d = middle[a] - middle[b];
-      double c = dot(d, d) * unit;
-      for (size_t f : edge_faces_.at(loop[a]))
-        for (size_t g : edge_faces_.at(loop[b]))
-          if (f == g) c += face_penalty(step_.at(loop[a]).second == f && step_.at(loop[b]).second == f);
-      return c;
-    };
-    for (const auto& t : fill_loop(n, cost)) {
-      for (uint32_t k : t) out.triangles.push_back(loop[k]);
-      out.triangle_cells.push_back(uint32_t(cell_));
-    }
-  }
-
-  const Finder& finder_;
-  size_t cell_;
-  std::vector<std::vector<int64_t>> faces_;
-  std::map<uint64_t, std::pair<uint64_t, size_t>> next_, step_;  // entry edge -> exit edge and the face between
-  std::map<uint64_t, std::vector<size_t>> edge_faces_;
-};
-
 template <class Each>
 Found find(size_t n, const Context& context, Each&& each) {
   constexpr size_t grain = 4096;
   std::vector<Found> parts((n + grain - 1) / grain);
-  parallel_for(n, grain, [&](size_t begin, size_t end) {
-    for (size_t c = begin; c < end; ++c) each(c, parts[begin / grain]);
-  }, &context);
+  parallel_for(
+      n, grain,
+      [&](size_t begin, size_t end) {
+        for (size_t c = begin; c < end; ++c) each(c, parts[begin / grain]);
+      },
+      &context);
   Found all;
   auto join = [&](auto member) {
     size_t size = 0;
@@ -279,7 +65,7 @@ Found find_cells(const Finder& finder, const UnstructuredMesh& m) {
         const bool in = finder.f(size_t(p(k))) >= finder.value;
         any = any || in, every = every && in, good = good && !finder.bad(p(k));
       }
-      if (any && !every && good) PolyhedronCut(finder, m, c).run(out);
+      if (any && !every && good) cut_polyhedron(finder, m, c, out);
     } else {
       unsupported(m, c);
     }
@@ -327,7 +113,8 @@ class EdgeNumbers {
     exclusive_scan(first);
     other_.resize(first.back());
     parallel_for(points, 1 << 14, [&](size_t begin, size_t end) {
-      for (size_t p = begin; p < end; ++p) std::copy_n(other.begin() + ptrdiff_t(start_[p]), count[p], other_.begin() + ptrdiff_t(first[p]));
+      for (size_t p = begin; p < end; ++p)
+        std::copy_n(other.begin() + ptrdiff_t(start_[p]), count[p], other_.begin() + ptrdiff_t(first[p]));
     });
     start_ = std::move(first);
   }
@@ -388,7 +175,8 @@ Piece contour_cells(const Job& job, double value) {
   const Finder finder{job, points, value};
   const Found found = mesh ? find_cells(finder, *mesh) : find_cells(finder, *job.input.as<SurfaceMesh>());
   const EdgeNumbers numbers(points.count(), found);
-  if (numbers.size() > size_t(INT32_MAX)) fail_usage("the surface has more than 2^31 points", "contour", "contour a part of the mesh at a time");
+  if (numbers.size() > size_t(INT32_MAX))
+    fail_usage("the surface has more than 2^31 points", "contour", "contour a part of the mesh at a time");
 
   Piece piece;
   float* xyz = nullptr;

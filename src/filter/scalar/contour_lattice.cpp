@@ -34,9 +34,7 @@ uint64_t inner_bits(size_t w, size_t n) {
   return from >= last ? 0 : last - from >= 64 ? ~uint64_t(0) : ~uint64_t(0) >> (64 - (last - from));
 }
 
-constexpr ptrdiff_t corner_offset(int c, const LatticeFrame& f) {
-  return (c & 1) + (c >> 1 & 1) * f.stride[1] + (c >> 2) * f.stride[2];
-}
+constexpr ptrdiff_t corner_offset(int c, const LatticeFrame& f) { return (c & 1) + (c >> 1 & 1) * f.stride[1] + (c >> 2) * f.stride[2]; }
 
 uint32_t joined_faces(uint32_t ambiguous, size_t p, double value, const LatticeFrame& frame, const Sample& f) {
   const auto& faces = lattice_cases().shape().faces;
@@ -55,10 +53,9 @@ uint32_t joined_faces(uint32_t ambiguous, size_t p, double value, const LatticeF
 struct Square {
   uint8_t lines, edge[4];
 };
-constexpr Square squares[18] = {
-    {0, {}}, {1, {0, 2}}, {1, {3, 0}}, {1, {3, 2}}, {1, {2, 1}}, {1, {0, 1}}, {2, {3, 0, 2, 1}}, {1, {3, 1}},
-    {1, {1, 3}}, {2, {0, 2, 1, 3}}, {1, {1, 0}}, {1, {1, 2}}, {1, {2, 3}}, {1, {0, 3}}, {1, {2, 0}}, {0, {}},
-    {2, {2, 0, 3, 1}}, {2, {0, 3, 1, 2}}};
+constexpr Square squares[18] = {{0, {}},           {1, {0, 2}}, {1, {3, 0}}, {1, {3, 2}},       {1, {2, 1}},       {1, {0, 1}},
+                                {2, {3, 0, 2, 1}}, {1, {3, 1}}, {1, {1, 3}}, {2, {0, 2, 1, 3}}, {1, {1, 0}},       {1, {1, 2}},
+                                {1, {2, 3}},       {1, {0, 3}}, {1, {2, 0}}, {0, {}},           {2, {2, 0, 3, 1}}, {2, {0, 3, 1, 2}}};
 
 Square square_of(uint32_t pattern, size_t p, double value, const LatticeFrame& frame, const Sample& f) {
   if (pattern != 6 && pattern != 9) return squares[pattern];
@@ -123,7 +120,8 @@ Piece LatticeContour::run(double value) {
     missing_known_ = true;
   }
   find_cuts(cuts);
-  if (cuts.vertices > size_t(INT32_MAX)) fail_usage("the surface has more than 2^31 points", "contour", "contour a part of the grid at a time");
+  if (cuts.vertices > size_t(INT32_MAX))
+    fail_usage("the surface has more than 2^31 points", "contour", "contour a part of the grid at a time");
   return generate(cuts);
 }
 
@@ -131,9 +129,12 @@ void LatticeContour::find_cuts(Cuts& cuts) const {
   const size_t ny = frame_.dims[1], nz = frame_.dims[2], rows = ny * nz;
   for (int a = 0; a < frame_.axes; ++a) cuts.cut[a].resize(rows * words_);
   cuts.rows.resize(rows);
-  parallel_for(rows, std::max<size_t>(1, 512 / words_), [&](size_t begin, size_t end) {
-    for (size_t r = begin; r < end; ++r) count_row(cuts, r % ny, r / ny);
-  }, &job_.context);
+  parallel_for(
+      rows, std::max<size_t>(1, 512 / words_),
+      [&](size_t begin, size_t end) {
+        for (size_t r = begin; r < end; ++r) count_row(cuts, r % ny, r / ny);
+      },
+      &job_.context);
   for (RowStart& row : cuts.rows) {
     cuts.vertices += std::exchange(row.vertex, cuts.vertices);
     cuts.cells += std::exchange(row.cell, cuts.cells);
@@ -206,21 +207,25 @@ Piece LatticeContour::generate(const Cuts& cuts) const {
   piece.points.allocate(cuts.vertices);
   std::byte* values = nullptr;
   if (job_.values) piece.values = Array::make_raw(job_.samples.type(), cuts.vertices, 1, &values);
-  make_vertices({frame_, job_.samples, cuts.value, job_.origin, words_, cuts.cut, cuts.rows, xyz, normals, piece.points.data, values, job_.context});
+  make_vertices(
+      {frame_, job_.samples, cuts.value, job_.origin, words_, cuts.cut, cuts.rows, xyz, normals, piece.points.data, values, job_.context});
 
   int32_t* out = nullptr;
   (corners == 3 ? piece.triangles : piece.lines) = Array::make<int32_t>(cuts.cells * size_t(corners), 1, &out);
   Block<uint32_t>& from = corners == 3 ? piece.triangle_cells : piece.line_cells;
   if (job_.cells) from.allocate(cuts.cells);
-  parallel_for(rows, std::max<size_t>(1, 512 / words_), [&](size_t begin, size_t end) {
-    for (size_t r = begin; r < end; ++r) {
-      const size_t first = cuts.rows[r].cell;
-      if ((r + 1 < rows ? cuts.rows[r + 1].cell : cuts.cells) == first) continue;
-      uint32_t* cells = job_.cells ? from.data + first : nullptr;
-      if (corners == 3) triangles_of_row(cuts, r % ny, r / ny, out + 3 * first, cells);
-      else lines_of_row(cuts, r, out + 2 * first, cells);
-    }
-  }, &job_.context);
+  parallel_for(
+      rows, std::max<size_t>(1, 512 / words_),
+      [&](size_t begin, size_t end) {
+        for (size_t r = begin; r < end; ++r) {
+          const size_t first = cuts.rows[r].cell;
+          if ((r + 1 < rows ? cuts.rows[r + 1].cell : cuts.cells) == first) continue;
+          uint32_t* cells = job_.cells ? from.data + first : nullptr;
+          if (corners == 3) triangles_of_row(cuts, r % ny, r / ny, out + 3 * first, cells);
+          else lines_of_row(cuts, r, out + 2 * first, cells);
+        }
+      },
+      &job_.context);
   return piece;
 }
 
@@ -238,8 +243,9 @@ void LatticeContour::triangles_of_row(const Cuts& cuts, size_t j, size_t k, int3
   };
   uint32_t at[8] = {start(row[0], 0), start(row[1], 0), start(row[2], 0), start(row[3], 0),
                     start(row[0], 1), start(row[2], 1), start(row[0], 2), start(row[1], 2)};
-  const uint64_t* cut[8] = {&cuts.cut[0][row[0] * words_], &cuts.cut[0][row[1] * words_], &cuts.cut[0][row[2] * words_], &cuts.cut[0][row[3] * words_],
-                            &cuts.cut[1][row[0] * words_], &cuts.cut[1][row[2] * words_], &cuts.cut[2][row[0] * words_], &cuts.cut[2][row[1] * words_]};
+  const uint64_t* cut[8] = {&cuts.cut[0][row[0] * words_], &cuts.cut[0][row[1] * words_], &cuts.cut[0][row[2] * words_],
+                            &cuts.cut[0][row[3] * words_], &cuts.cut[1][row[0] * words_], &cuts.cut[1][row[2] * words_],
+                            &cuts.cut[2][row[0] * words_], &cuts.cut[2][row[1] * words_]};
   const int second = flip_ ? 2 : 1, third = flip_ ? 1 : 2;
   for (size_t w = 0; w < words_; ++w) {
     Pair q[4];

@@ -33,18 +33,18 @@ struct Piece {
   Array normals;  ///< f32, or empty
   Array values;   ///< the samples interpolated, in their own type; empty: not made
   Block<EdgePoint> points;
-  Array lines, triangles;              ///< i32 connectivity, 2 and 3 per cell
+  Array lines, triangles;                      ///< i32 connectivity, 2 and 3 per cell
   Block<uint32_t> line_cells, triangle_cells;  ///< source cell of each; empty when not asked for
 };
 
 /// The question, for all values.
 struct Job {
   const Dataset& input;
-  Array samples;   ///< u8, i8, u16, i16, f32 or f64; one component, packed
+  Array samples;  ///< u8, i8, u16, i16, f32 or f64; one component, packed
   bool normals = true;
-  bool cells = true;  ///< record source cells
+  bool cells = true;    ///< record source cells
   bool values = false;  ///< interpolate the samples, too, where that is cheap
-  Vec3 origin;     ///< of the result's points
+  Vec3 origin;          ///< of the result's points
   Context& context;
 };
 
@@ -100,8 +100,8 @@ class LatticeContour {
 
 /// Where the edges of a row of points are cut, and where their results go.
 struct RowStart {
-  size_t vertex = 0, cell = 0;     ///< first of the row, after the prefix sum; before it, counts
-  uint32_t cut[3]{};               ///< cut edges along each axis; results lie in that order
+  size_t vertex = 0, cell = 0;  ///< first of the row, after the prefix sum; before it, counts
+  uint32_t cut[3]{};            ///< cut edges along each axis; results lie in that order
 };
 
 /// Fills positions, normals and edge points of all cut edges. `cut[a]` has a bit per edge along axis a.
@@ -119,7 +119,9 @@ struct VertexJob {
   std::byte* values;  ///< interpolated samples in their own type; null: none
   Context& context;
   template <class T>
-  T* values_at() const { return reinterpret_cast<T*>(values); }
+  T* values_at() const {
+    return reinterpret_cast<T*>(values);
+  }
 };
 void make_vertices(const VertexJob& job);
 

@@ -22,7 +22,8 @@ struct Maker {
 
   Maker(const VertexJob& j, const T* samples) : job(j), frame(j.frame), f(samples) {
     const Mat3& m = frame.to_world;
-    plain = frame.axes == 3 && frame.view.mode == LatticeView::Mode::affine && m.m[0][1] == 0 && m.m[0][2] == 0 && m.m[1][0] == 0 && m.m[1][2] == 0 && m.m[2][0] == 0 && m.m[2][1] == 0;
+    plain = frame.axes == 3 && frame.view.mode == LatticeView::Mode::affine && m.m[0][1] == 0 && m.m[0][2] == 0 && m.m[1][0] == 0 &&
+            m.m[1][2] == 0 && m.m[2][0] == 0 && m.m[2][1] == 0;
     if (!plain) return;
     scale = Vec3(m.m[0][0], m.m[1][1], m.m[2][2]) * 0.5;
     first = frame.view.origin - job.origin;
@@ -38,7 +39,8 @@ struct Maker {
     }
     const Mat3 m = frame.view.mode == LatticeView::Mode::listed ? frame.metric(p, at) : frame.to_world;
     const Vec3 g = m * d;
-    if (std::isfinite(dot(g, g))) [[likely]] return g;
+    if (std::isfinite(dot(g, g))) [[likely]]
+      return g;
     for (int l = 0; l < 3; ++l) d[l] = careful_derivative(frame.stencil[l][at[l]], p, [&](size_t i) { return double(f[i]); });
     return m * d;
   }
@@ -109,9 +111,12 @@ template <class T>
 void run(const VertexJob& job) {
   const size_t ny = job.frame.dims[1];
   const Maker<T> maker(job, job.samples.view<T>().data);
-  parallel_for(job.rows.size(), std::max<size_t>(1, 512 / job.words), [&](size_t begin, size_t end) {
-    for (size_t r = begin; r < end; ++r) maker.row(r % ny, r / ny);
-  }, &job.context);
+  parallel_for(
+      job.rows.size(), std::max<size_t>(1, 512 / job.words),
+      [&](size_t begin, size_t end) {
+        for (size_t r = begin; r < end; ++r) maker.row(r % ny, r / ny);
+      },
+      &job.context);
 }
 
 }  // namespace

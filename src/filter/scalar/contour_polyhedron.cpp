@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <map>
+
+#include "filter/scalar/contour_finder.h"
+
+namespace sg::contouring {
+
+namespace {
+
+// A polyhedron of any faces: the rules of cell_cases.h, worked out on the spot.
+class PolyhedronCut {
+ public:
+  PolyhedronCut(const Finder& finder, const UnstructuredMesh& m, size_t cell) : finder_(finder), cell_(cell) {
+    const CellsView faces = cells_view(m.faces);
+    const auto of_cell = m.polyhedron_faces.view<int64_t>();
+    for (size_t f = size_t(of_cell[cell]); f < size_t(of_cell[cell + 1]); ++f) {
+      auto& face = faces_.emplace_back(faces.size(f));
+      for (size_t k = 0; k < face.size(); ++k) face[k] = faces.point(f, k);
+    }
+  }
+
+  void run(Found& out) {
+    turn_outwards();
+    for (size_t f = 0; f < faces_.size(); ++f) segments(f);
+    while (!next_.empty()) {
+      std::vector<uint64_t> loop;
+      for (auto at = next_.begin(); at != next_.end(); at = next_.find(loop.back())) {
+        if (loop.empty()) loop.push_back(at->first);
+        loop.push_back(at->second.first);
+        step_[at->first] = at->second;
+        next_.erase(at);
+      }
+      if (loop.size() < 4 || loop.front() != loop.back()) continue;  // faces that do not close: no surface rather than a wrong one
+      loop.pop_back();
+      fill(loop, out);
+    }
+  }
+
+ private:
+  static uint64_t key(const std::vector<int64_t>& face, size_t k) { return edge_key(face[k], face[(k + 1) % face.size()]); }
+
+  // Files promise outward faces but do not all keep it: make neighbours agree, then look at the volume.
+  void turn_outwards() {
+    std::map<uint64_t, std::vector<size_t>> at_edge;
+    for (size_t f = 0; f < faces_.size(); ++f)
+      for (size_t k = 0; k < faces_[f].size(); ++k) at_edge[key(faces_[f], k)].push_back(f);
+    auto forward = [&](size_t f, uint64_t edge) {
+      for (size_t k = 0; k < faces_[f].size(); ++k)
+        if (key(faces_[f], k) == edge) return faces_[f][k] == int64_t(edge >> 32);
+      return false;
+    };
+    std::vector<char> seen(faces_.size());
+    for (size_t first = 0; first < faces_.size(); ++first) {
+      std::vector<size_t> todo;
+      if (!seen[first]) todo.push_back(first), seen[first] = 1;
+      while (!todo.empty()) {
+        const size_t f = todo.back();
+        todo.pop_back();
+        for (size_t k = 0; k < faces_[f].size(); ++k) {
+          const uint64_t edge = key(faces_[f], k);
+          for (size_t g : at_edge[edge]) {
+            if (seen[g]) continue;
+            if (forward(f, edge) == forward(g, edge)) std::reverse(faces_[g].begin(), faces_[g].end());
+            seen[g] = 1;
+            todo.push_back(g);
+          }
+        }
+      }
+    }
+    double volume = 0;
+    if (faces_.empty() || faces_[0].empty()) return;
+    const Vec3 base = finder_.points.at(size_t(faces_[0][0]));
+    auto place = [&](int64_t p) { return finder_.points.at(size_t(p)) - base; };
+    for (const auto& face : faces_)
+      for (size_t k = 1; k + 1 < face.size(); ++k) volume += dot(place(face[0]), cross(place(face[k]), place(face[k + 1])));
+    if (volume < 0)
+      for (auto& face : faces_) std::reverse(face.begin(), face.end());
+  }
+
+  void segments(size_t f) {
+    const auto& p = faces_[f];
+    const size_t n = p.size();
+    auto value = [&](size_t k) { return finder_.f(size_t(p[k % n])) - finder_.value; };
+    for (size_t k = 0; k < n; ++k) edge_faces_[key(p, k)].push_back(f);
+    std::vector<uint64_t> entry, exit;
+    size_t start = 0;
+    while (start < n && !(value(start) < 0 && value(start + 1) >= 0)) ++start;
+    if (start == n) return;
+    for (size_t s = 0; s < n; ++s) {
+      const size_t k = (start + s) % n;
+      const bool a = value(k) >= 0, b = value(k + 1) >= 0;
+      if (!a && b) entry.push_back(key(p, k));
+      if (a && !b) exit.push_back(key(p, k));
+    }
+    const bool join = n == 4 && entry.size() == 2 && joined_inside(value(0), value(1), value(2), value(3));
+    for (size_t r = 0; r < entry.size(); ++r) next_[entry[join ? (r + 1) % entry.size() : r]] = {exit[r], f};
+  }
+
+  void fill(const std::vector<uint64_t>& loop, Found& out) const {
+    const size_t n = loop.size();
+    std::vector<Vec3> middle;
+    Box3 box;
+    for (uint64_t e : loop) {
+      middle.push_back((finder_.points.at(e >> 32) + finder_.points.at(uint32_t(e))) * 0.5);
+      box.add(middle.back());
+    }
+    const double unit = 1 / std::max(dot(box.size(), box.size()), 1e-300);
+    auto cost = [&](size_t a, size_t b) {
+      const Vec3 d = middle[a] - middle[b];
+      double c = dot(d, d) * unit;
+      for (size_t f : edge_faces_.at(loop[a]))
+        for (size_t g : edge_faces_.at(loop[b]))
+          if (f == g) c += face_penalty(step_.at(loop[a]).second == f && step_.at(loop[b]).second == f);
+      return c;
+    };
+    for (const auto& t : fill_loop(n, cost)) {
+      for (uint32_t k : t) out.triangles.push_back(loop[k]);
+      out.triangle_cells.push_back(uint32_t(cell_));
+    }
+  }
+
+  const Finder& finder_;
+  size_t cell_;
+  std::vector<std::vector<int64_t>> faces_;
+  std::map<uint64_t, std::pair<uint64_t, size_t>> next_, step_;  // entry edge -> exit edge and the face between
+  std::map<uint64_t, std::vector<size_t>> edge_faces_;
+};
+
+}  // namespace
+
+void cut_polyhedron(const Finder& finder, const UnstructuredMesh& mesh, size_t cell, Found& out) {
+  PolyhedronCut(finder, mesh, cell).run(out);
+}
+
+}  // namespace sg::contouring
