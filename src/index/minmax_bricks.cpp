@@ -24,10 +24,12 @@ float round_up(T v) {
 // One row of cubes along x. Rows of samples are folded into one row of minima and one of maxima first: that loop is
 // elementwise and runs at memory speed. `v < lo ? v : lo` keeps lo when v is NaN.
 template <class T>
-void brick_row(const T* values, const std::array<size_t, 3>& dims, size_t y0, size_t z0, std::vector<T>& lo, std::vector<T>& hi, MinMaxBricks::Range* out, size_t bricks) {
+void brick_row(const T* values, const std::array<size_t, 3>& dims, size_t y0, size_t z0, std::vector<T>& lo, std::vector<T>& hi,
+               MinMaxBricks::Range* out, size_t bricks) {
   constexpr size_t edge = MinMaxBricks::edge;
   using Limits = std::numeric_limits<T>;
-  const T top = Limits::has_infinity ? Limits::infinity() : Limits::max(), bottom = Limits::has_infinity ? -Limits::infinity() : Limits::lowest();
+  const T top = Limits::has_infinity ? Limits::infinity() : Limits::max(),
+          bottom = Limits::has_infinity ? -Limits::infinity() : Limits::lowest();
   const size_t nx = dims[0], y1 = std::min(y0 + edge, dims[1] - 1), z1 = std::min(z0 + edge, dims[2] - 1);
   lo.assign(nx, top), hi.assign(nx, bottom);
   T *l = lo.data(), *h = hi.data();
@@ -53,7 +55,8 @@ void brick_row(const T* values, const std::array<size_t, 3>& dims, size_t y0, si
 
 MinMaxBricks minmax_bricks(const Array& values, std::array<size_t, 3> dims) {
   const size_t n = dims[0] * dims[1] * dims[2];
-  if (values.components() != 1 || !values.packed() || values.count() != n || n == 0) fail_internal("minmax_bricks: the array does not fit the lattice");
+  if (values.components() != 1 || !values.packed() || values.count() != n || n == 0)
+    fail_internal("minmax_bricks: the array does not fit the lattice");
   MinMaxBricks r;
   for (size_t a = 0; a < 3; ++a) r.dims[a] = (std::max<size_t>(dims[a], 2) - 2) / MinMaxBricks::edge + 1;
   r.ranges.resize(r.dims[0] * r.dims[1] * r.dims[2]);
@@ -62,7 +65,8 @@ MinMaxBricks minmax_bricks(const Array& values, std::array<size_t, 3> dims) {
     parallel_for(r.dims[1] * r.dims[2], 4, [&](size_t begin, size_t end) {
       std::vector<T> lo, hi;
       for (size_t row = begin; row < end; ++row)
-        brick_row(view.data, dims, (row % r.dims[1]) * MinMaxBricks::edge, (row / r.dims[1]) * MinMaxBricks::edge, lo, hi, &r.ranges[row * r.dims[0]], r.dims[0]);
+        brick_row(view.data, dims, (row % r.dims[1]) * MinMaxBricks::edge, (row / r.dims[1]) * MinMaxBricks::edge, lo, hi,
+                  &r.ranges[row * r.dims[0]], r.dims[0]);
     });
   });
   return r;

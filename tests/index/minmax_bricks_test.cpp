@@ -82,7 +82,9 @@ TEST_CASE("empty distance: equals the brute-force Chebyshev distance") {
   std::vector<uint8_t> empty(dims[0] * dims[1] * dims[2], 1);
   for (size_t i = 0; i < empty.size(); ++i) empty[i] = random_unit(5, i) > 0.02;
   const std::vector<uint8_t> d = empty_distance(empty, dims);
-  auto coordinate = [&](size_t id, size_t a) { return int(a == 0 ? id % dims[0] : a == 1 ? id / dims[0] % dims[1] : id / dims[0] / dims[1]); };
+  auto coordinate = [&](size_t id, size_t a) {
+    return int(a == 0 ? id % dims[0] : a == 1 ? id / dims[0] % dims[1] : id / dims[0] / dims[1]);
+  };
   int full = 0;
   for (size_t p = 0; p < empty.size(); ++p) {
     int best = 255;

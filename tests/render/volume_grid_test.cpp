@@ -64,7 +64,8 @@ TEST_CASE("volume: a rotated grid under a rotated camera and lights gives the pi
   UniformGrid g = base_grid();
   g.direction = turn, g.origin = turn * g.origin;
   const DatasetPtr turned = grid(g, [&](Vec3 p) { return bumpy(transpose(turn) * p); });
-  const Frame f = draw(scene_of({bumpy_item(turned)}), perspective_view(40, 40, 70, turn * Vec3{1.5, 1.1, 3}, {0, 0, 0}, turn * Vec3{0, 1, 0}));
+  const Frame f =
+      draw(scene_of({bumpy_item(turned)}), perspective_view(40, 40, 70, turn * Vec3{1.5, 1.1, 3}, {0, 0, 0}, turn * Vec3{0, 1, 0}));
   CHECK(largest_difference(bumpy_picture(grid(base_grid(), bumpy)), f) < 2e-3f);
 }
 
@@ -92,7 +93,8 @@ TEST_CASE("volume: every element type shows the same numbers the same, scalar an
   curve.points = {{40, 0}, {90, 0.9}};
   const Projection view = perspective_view(33, 33, 50, {1.5, 1.1, 3}, {0, 0, 0});
   Frame want;
-  for (const ElementType t : {ElementType::f32, ElementType::u8, ElementType::i8, ElementType::u16, ElementType::i16, ElementType::u32, ElementType::i32, ElementType::u64, ElementType::i64, ElementType::f64}) {
+  for (const ElementType t : {ElementType::f32, ElementType::u8, ElementType::i8, ElementType::u16, ElementType::i16, ElementType::u32,
+                              ElementType::i32, ElementType::u64, ElementType::i64, ElementType::f64}) {
     VolumeItem v = item(grid(g, field, t), grey(0, 120), curve);
     v.shaded = true;
     const Frame f = draw(scene_of({v}), view);
@@ -125,7 +127,8 @@ TEST_CASE("volume: the last voxels of tiny arrays of small integers are read rig
 TEST_CASE("volume: large values with small differences keep them") {
   UniformGrid g = cube(5, -1, 1);
   const double far = 1e9;
-  const DatasetPtr d = grid(g, [&](Vec3 p) { return far + p.x; }, ElementType::f64);
+  const DatasetPtr d = grid(
+      g, [&](Vec3 p) { return far + p.x; }, ElementType::f64);
   OpacityCurve curve;
   curve.points = {{far - 1, 0}, {far + 1, 0.8}};
   ColorScale scale = grey(far - 1, far + 1);
@@ -161,14 +164,16 @@ TEST_CASE("volume: a grid one point thick is a slab one cell thick") {
     Vec3 forward{0.0, 0.0, 0.0};
     forward[axis] = -1;
     const Vec3 up = axis == 1 ? Vec3{0, 0, 1} : Vec3{0, 1, 0};
-    const Frame f = draw(scene_of({item(grid(g, [](Vec3) { return 1.0; }), one_color({1, 1, 1}), constant_opacity(2))}), parallel_view(1, 1, 1, forward, up, {0.01, 0.02, 0.03}));
+    const Frame f = draw(scene_of({item(grid(g, [](Vec3) { return 1.0; }), one_color({1, 1, 1}), constant_opacity(2))}),
+                         parallel_view(1, 1, 1, forward, up, {0.01, 0.02, 0.03}));
     CHECK(f.rgba[3] == Approx(1 - std::exp(-0.5)).epsilon(1e-4));
   }
   RectilinearGrid r;
   r.x = Array::from_vector<double>({-1, 0.5, 1}), r.y = Array::from_vector<double>({-1, 1}), r.z = Array::from_vector<double>({3});
   FieldSet fields;
   fields.add({"f", Association::point, Array::from_vector<float>({1, 1, 1, 1, 1, 1}), "", Role::scalars});
-  CHECK(look(scene_of({item(make_dataset(r, fields), one_color({1, 1, 1}), constant_opacity(2))})).rgba[3] == Approx(1 - std::exp(-1.0)).epsilon(1e-4));
+  CHECK(look(scene_of({item(make_dataset(r, fields), one_color({1, 1, 1}), constant_opacity(2))})).rgba[3] ==
+        Approx(1 - std::exp(-1.0)).epsilon(1e-4));
 }
 
 TEST_CASE("volume: NaN voxels draw nothing, their cells are clear and the rest is untouched") {

@@ -91,7 +91,8 @@ TEST_CASE("volume: midpoint steps through a linear ramp of density converge with
   const double want = std::exp(-(0.25 * 0.75 + 0.25 * 3.75));
   for (int i = 0; i < 3; ++i) {
     h[i] = 0.21 / double(1 << i);
-    error[i] = std::abs(1 - double(look(scene_of({item(d, one_color({1, 1, 1}), density_is_value(0, 3, 20000), h[i])}), 0.4, 0.4).rgba[3]) - want);
+    error[i] =
+        std::abs(1 - double(look(scene_of({item(d, one_color({1, 1, 1}), density_is_value(0, 3, 20000), h[i])}), 0.4, 0.4).rgba[3]) - want);
   }
   INFO("errors " << error[0] << " " << error[1] << " " << error[2]);
   CHECK(observed_order(h, error, 3) > 1.4);  // the knot falls into a step now here, now there
@@ -116,7 +117,8 @@ TEST_CASE("volume: two overlapping homogeneous media add their densities and mix
   for (const double step : {0.0, 0.3, 0.01}) {
     const double ta = 0.7, tb = 1.9;
     // Seen from +z: a alone for z in (.5, 1), both in (-.25, .5), b alone in (-1, -.25).
-    const Scene scene = scene_of({item(at(-0.25, 1), one_color({1, 0, 0}), constant_opacity(ta), step), item(at(-1, 0.5), one_color({0, 1, 0}), constant_opacity(tb), step)});
+    const Scene scene = scene_of({item(at(-0.25, 1), one_color({1, 0, 0}), constant_opacity(ta), step),
+                                  item(at(-1, 0.5), one_color({0, 1, 0}), constant_opacity(tb), step)});
     const Frame f = look(scene);
     const double t1 = std::exp(-0.5 * ta), t2 = std::exp(-0.75 * (ta + tb)), t3 = std::exp(-0.75 * tb);
     INFO("step " << step);

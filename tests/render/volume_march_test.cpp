@@ -65,7 +65,8 @@ TEST_CASE("volume: skipping works for rectilinear grids, tiny steps and axis-par
   with.stop_below = without.stop_below = 0, without.skip_empty = false;
   for (const double step : {0.013, 0.0007}) {
     std::get<VolumeItem>(scene.items[0]).step = step;
-    for (const Projection& p : {perspective_view(12, 12, 20, {1.5, 1.1, 3}, {0, 0, 0}), parallel_view(9, 9, 4.5), parallel_view(9, 9, 4.5, {-1, 0, 0})})
+    for (const Projection& p :
+         {perspective_view(12, 12, 20, {1.5, 1.1, 3}, {0, 0, 0}), parallel_view(9, 9, 4.5), parallel_view(9, 9, 4.5, {-1, 0, 0})})
       CHECK(same_bytes(draw(scene, p, with), draw(scene, p, without)));
   }
 }
@@ -76,7 +77,8 @@ TEST_CASE("volume: early termination is not seen, even after encoding") {
   for (const bool shaded : {false, true}) {
     const Frame a = draw(blob_scene(shaded, 0.999), blob_view), b = draw(blob_scene(shaded, 0.999), blob_view, all);
     float most = 0;
-    for (size_t i = 0; i < a.rgba.size(); ++i) most = std::max(most, std::abs(srgb_encode(std::clamp(a.rgba[i], 0.0f, 1.0f)) - srgb_encode(std::clamp(b.rgba[i], 0.0f, 1.0f))));
+    for (size_t i = 0; i < a.rgba.size(); ++i)
+      most = std::max(most, std::abs(srgb_encode(std::clamp(a.rgba[i], 0.0f, 1.0f)) - srgb_encode(std::clamp(b.rgba[i], 0.0f, 1.0f))));
     CHECK(most < 1.0f / 255);
     CHECK_FALSE(same_bytes(a, b));  // it did happen
   }
@@ -130,7 +132,9 @@ TEST_CASE("volume: the maximum along axis-parallel rays through the samples is t
 }
 
 TEST_CASE("volume: the maximum along any ray is never below samples of the field, and is attained where it says") {
-  const DatasetPtr d = grid(cube(20, -1, 1), [](Vec3 p) { return random_unit(9, uint64_t(1e4 * (p.x + 1)) * 7919 + uint64_t(1e4 * (p.y + 1)) * 104729 + uint64_t(1e4 * (p.z + 1))); });
+  const DatasetPtr d = grid(cube(20, -1, 1), [](Vec3 p) {
+    return random_unit(9, uint64_t(1e4 * (p.x + 1)) * 7919 + uint64_t(1e4 * (p.y + 1)) * 104729 + uint64_t(1e4 * (p.z + 1)));
+  });
   UniformGrid g = cube(20, -1, 1);
   FieldSet cells;
   cells.add({"f", Association::cell, d->fields()[0].array.slice(0, 19 * 19 * 19), "", Role::none});
@@ -149,7 +153,8 @@ TEST_CASE("volume: the maximum along any ray is never below samples of the field
       const auto value_at = [&](double t) {
         volume::Run run;
         for (int n = 0; n < volume::run_length; ++n)
-          run.ux[n] = float(c.start.x + t * c.along.x), run.uy[n] = float(c.start.y + t * c.along.y), run.uz[n] = float(c.start.z + t * c.along.z);
+          run.ux[n] = float(c.start.x + t * c.along.x), run.uy[n] = float(c.start.y + t * c.along.y),
+          run.uz[n] = float(c.start.z + t * c.along.z);
         volume::finish_values(v, run);
         return run.value[0];
       };
@@ -210,7 +215,8 @@ TEST_CASE("volume: gradients by central differences converge with order 2 in uni
         volume::finish_values(v, run);
         const int which[1] = {0};
         volume::Gradients g;
-        volume::gradients(v, run, which, 1, [&](int axis, int) { return q[axis]; }, g);
+        volume::gradients(
+            v, run, which, 1, [&](int axis, int) { return q[axis]; }, g);
         const Vec3 world = transpose(v.to_q) * Vec3{double(g.x[0]), double(g.y[0]), double(g.z[0])};
         worst = std::max(worst, length(world - exact(p)));
       }
@@ -299,7 +305,8 @@ TEST_CASE("transfer: clear() is true just for ranges that draw nothing, at jumps
 TEST_CASE("transfer: labels are drawn in their own colours, without values between them") {
   UniformGrid g;
   g.dims = {2, 2, 2}, g.origin = {-1, -1, -1}, g.spacing = {2, 2, 2};
-  const DatasetPtr d = grid(g, [](Vec3 p) { return p.z > 0 ? 7.0 : 3.0; }, ElementType::u8);
+  const DatasetPtr d = grid(
+      g, [](Vec3 p) { return p.z > 0 ? 7.0 : 3.0; }, ElementType::u8);
   ColorScale scale;
   scale.map.kind = MapKind::categorical;
   scale.map.colors = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};

@@ -17,8 +17,7 @@ inline DatasetPtr grid(UniformGrid g, const std::function<double(Vec3)>& f, Elem
   std::vector<double> v;
   for (size_t k = 0; k < g.dims[2]; ++k)
     for (size_t j = 0; j < g.dims[1]; ++j)
-      for (size_t i = 0; i < g.dims[0]; ++i)
-        v.push_back(f(g.origin + g.direction * (g.spacing * Vec3(double(i), double(j), double(k)))));
+      for (size_t i = 0; i < g.dims[0]; ++i) v.push_back(f(g.origin + g.direction * (g.spacing * Vec3(double(i), double(j), double(k)))));
   FieldSet fields;
   fields.add({"f", Association::point, Array::from_vector(v).converted(type), "", Role::scalars});
   return make_dataset(g, fields);
@@ -74,7 +73,8 @@ inline VolumeItem item(DatasetPtr data, ColorScale color, OpacityCurve opacity, 
 }
 
 /// Parallel view along `forward` onto the point `target`, from a distance of 100.
-inline Projection parallel_view(int width, int height, double pixels_per_unit, Vec3 forward = {0, 0, -1}, Vec3 up = {0, 1, 0}, Vec3 target = {0, 0, 0}) {
+inline Projection parallel_view(int width, int height, double pixels_per_unit, Vec3 forward = {0, 0, -1}, Vec3 up = {0, 1, 0},
+                                Vec3 target = {0, 0, 0}) {
   Projection p;
   p.width = width, p.height = height, p.parallel = true;
   p.forward = normalize(forward), p.right = normalize(cross(p.forward, up)), p.up = cross(p.right, p.forward);
@@ -100,7 +100,8 @@ inline Scene scene_of(std::vector<Item> items) {
   return s;
 }
 /// The one pixel of a ray along -z through (x, y).
-inline Frame look(const Scene& scene, double x = 0.013, double y = 0.017, const volume::Knobs& knobs = {}, const FragmentLists& fragments = {}) {
+inline Frame look(const Scene& scene, double x = 0.013, double y = 0.017, const volume::Knobs& knobs = {},
+                  const FragmentLists& fragments = {}) {
   return draw(scene, parallel_view(1, 1, 1, {0, 0, -1}, {0, 1, 0}, {x, y, 0}), knobs, fragments);
 }
 inline float largest_difference(const Frame& a, const Frame& b) {
@@ -109,7 +110,8 @@ inline float largest_difference(const Frame& a, const Frame& b) {
   return most;
 }
 inline bool same_bytes(const Frame& a, const Frame& b) {
-  return std::memcmp(a.rgba.data(), b.rgba.data(), a.rgba.size() * 4) == 0 && std::memcmp(a.depth.data(), b.depth.data(), a.depth.size() * 4) == 0 && a.ids == b.ids;
+  return std::memcmp(a.rgba.data(), b.rgba.data(), a.rgba.size() * 4) == 0 &&
+         std::memcmp(a.depth.data(), b.depth.data(), a.depth.size() * 4) == 0 && a.ids == b.ids;
 }
 
 }  // namespace sg::test

@@ -99,7 +99,9 @@ void shade(const ShadePlan& plan, const LitRay& lit, const Gradients& g, Shading
 }
 
 template <class T>
-Kernels kernels_for() { return {sample<T>, entries<T>, gradients<T>, shade}; }
+Kernels kernels_for() {
+  return {sample<T>, entries<T>, gradients<T>, shade};
+}
 
 }  // namespace
 

@@ -28,7 +28,7 @@ struct Run {
 
 struct Gradients {
   alignas(64) float x[run_length], y[run_length], z[run_length];  ///< in q
-  alignas(64) float per_cell[run_length];                        ///< change of the value over the length of a cell
+  alignas(64) float per_cell[run_length];                         ///< change of the value over the length of a cell
 };
 
 /// Phong terms: a factor of the colour, and white on top of it.

@@ -53,9 +53,11 @@ HWY_ATTR inline Pair pair_small(const T* data, I offset, I last_load) {
   const I from = hn::Min(byte, last_load);
   const I skipped = hn::ShiftLeft<3>(hn::Sub(byte, from));
   const hn::RebindToUnsigned<DI> du;
-  const I word = hn::BitCast(di, hn::Shr(hn::BitCast(du, hn::GatherOffset(di, reinterpret_cast<const int32_t*>(data), from)), hn::BitCast(du, skipped)));
+  const I word = hn::BitCast(
+      di, hn::Shr(hn::BitCast(du, hn::GatherOffset(di, reinterpret_cast<const int32_t*>(data), from)), hn::BitCast(du, skipped)));
   if constexpr (std::is_signed_v<T>) {
-    const I a = hn::ShiftRight<32 - bits>(hn::ShiftLeft<32 - bits>(word)), b = hn::ShiftRight<32 - bits>(hn::ShiftLeft<32 - 2 * bits>(word));
+    const I a = hn::ShiftRight<32 - bits>(hn::ShiftLeft<32 - bits>(word)),
+            b = hn::ShiftRight<32 - bits>(hn::ShiftLeft<32 - 2 * bits>(word));
     return {hn::ConvertTo(d, a), hn::ConvertTo(d, b)};
   } else {
     const I mask = hn::Set(di, (1 << bits) - 1);
@@ -108,7 +110,9 @@ HWY_ATTR void sample(const Voxels& voxels, const float* ux, const float* uy, con
   const D d;
   const Source<T> source(voxels);
   for (size_t n = 0; n < size_t(run_length); n += hn::Lanes(d))
-    hn::Store(source.value(place(hn::Load(d, ux + n), source.top[0]), place(hn::Load(d, uy + n), source.top[1]), place(hn::Load(d, uz + n), source.top[2])), d, values + n);
+    hn::Store(source.value(place(hn::Load(d, ux + n), source.top[0]), place(hn::Load(d, uy + n), source.top[1]),
+                           place(hn::Load(d, uz + n), source.top[2])),
+              d, values + n);
 }
 
 template <class T>
@@ -119,7 +123,8 @@ HWY_ATTR void entries(const Voxels& voxels, const LinearTable& table, const floa
   const F count = hn::Set(d, float(table.count));
   for (size_t n = 0; n < size_t(run_length); n += hn::Lanes(d)) {
     const F f = hn::ConvertTo(d, hn::Iota(di, s + int(n)));
-    const F x = hn::Add(hn::Set(d, first[0]), hn::Mul(f, hn::Set(d, by[0]))), y = hn::Add(hn::Set(d, first[1]), hn::Mul(f, hn::Set(d, by[1])));
+    const F x = hn::Add(hn::Set(d, first[0]), hn::Mul(f, hn::Set(d, by[0]))),
+            y = hn::Add(hn::Set(d, first[1]), hn::Mul(f, hn::Set(d, by[1])));
     const F z = hn::Add(hn::Set(d, first[2]), hn::Mul(f, hn::Set(d, by[2])));
     const F v = source.value(place(x, source.top[0]), place(y, source.top[1]), place(z, source.top[2]));
     hn::Store(x, d, run.ux + n), hn::Store(y, d, run.uy + n), hn::Store(z, d, run.uz + n), hn::Store(v, d, run.value + n);
@@ -140,7 +145,8 @@ HWY_ATTR void gradients(const Voxels& voxels, const float* const u[3], const flo
   const F one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
   for (size_t n = 0; n < size_t(run_length); n += hn::Lanes(d)) {
     const F middle = hn::Load(d, centre + n);
-    const Place here[3] = {place(hn::Load(d, u[0] + n), source.top[0]), place(hn::Load(d, u[1] + n), source.top[1]), place(hn::Load(d, u[2] + n), source.top[2])};
+    const Place here[3] = {place(hn::Load(d, u[0] + n), source.top[0]), place(hn::Load(d, u[1] + n), source.top[1]),
+                           place(hn::Load(d, u[2] + n), source.top[2])};
     F square = hn::Zero(d);
     for (int a = 0; a < 3; ++a) {
       const F top = hn::Set(d, source.top[a]), at = hn::Max(hn::Zero(d), hn::Min(hn::Load(d, u[a] + n), top));
@@ -172,7 +178,8 @@ HWY_ATTR void shade(const ShadePlan& plan, const LitRay& lit, const Gradients& g
   const F zero = hn::Zero(d), one = hn::Set(d, 1.0f);
   for (size_t n = 0; n < size_t(run_length); n += hn::Lanes(d)) {
     const F gx = hn::Load(d, g.x + n), gy = hn::Load(d, g.y + n), gz = hn::Load(d, g.z + n);
-    const F x = dot3(gx, gy, gz, m[0][0], m[0][1], m[0][2]), y = dot3(gx, gy, gz, m[1][0], m[1][1], m[1][2]), z = dot3(gx, gy, gz, m[2][0], m[2][1], m[2][2]);
+    const F x = dot3(gx, gy, gz, m[0][0], m[0][1], m[0][2]), y = dot3(gx, gy, gz, m[1][0], m[1][1], m[1][2]),
+            z = dot3(gx, gy, gz, m[2][0], m[2][1], m[2][2]);
     const F square = hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
     const auto bent = hn::And(hn::Gt(square, zero), hn::Lt(square, hn::Set(d, 1e30f)));
     const F surface = hn::Min(hn::Mul(hn::Load(d, g.per_cell + n), hn::Set(d, plan.per_scale)), one);
@@ -195,7 +202,9 @@ HWY_ATTR void shade(const ShadePlan& plan, const LitRay& lit, const Gradients& g
 }
 
 template <class T>
-Kernels kernels_for() { return {sample<T>, entries<T>, gradients<T>, shade}; }
+Kernels kernels_for() {
+  return {sample<T>, entries<T>, gradients<T>, shade};
+}
 #endif
 
 Kernels kernels(const Voxels& voxels) {
@@ -221,7 +230,8 @@ namespace sg::volume {
 HWY_EXPORT(kernels);
 
 Kernels best_kernels(const Voxels& voxels) {
-  if (voxels.array.bytes() >= (size_t(1) << 31) || voxels.array.bytes() < 4 || voxels.array.count() >= (size_t(1) << 29)) return scalar_kernels(voxels);
+  if (voxels.array.bytes() >= (size_t(1) << 31) || voxels.array.bytes() < 4 || voxels.array.count() >= (size_t(1) << 29))
+    return scalar_kernels(voxels);
   return HWY_DYNAMIC_DISPATCH(kernels)(voxels);
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Integration along a ray. A run of 16 samples is evaluated at once (places, values, table entries), then composited one by one
 // from near to far, so that the result depends neither on the width of the machine's vectors nor on what was passed over.
-#include "render/volume/volume_internal.h"
 #include "render/volume/runs.h"
+#include "render/volume/volume_internal.h"
 
 namespace sg::volume {
 
@@ -13,9 +13,9 @@ using Four = float __attribute__((vector_size(16)));
 /// Sample s of a stretch lies at q = first + s * by; s = 0 is half a step after its start.
 struct Stretch {
   const Volume& v;
-  Vec3 first, by;       // q
+  Vec3 first, by;             // q
   float first_u[3], by_u[3];  // affine: the same as float
-  double per_by[3];     // 1/by
+  double per_by[3];           // 1/by
 
   Stretch(const Volume& volume, const Course& c, double t, double step) : v(volume), first(c.start + c.along * t), by(c.along * step) {
     for (int a = 0; a < 3; ++a) first_u[a] = float(first[a]), by_u[a] = float(by[a]), per_by[a] = by[a] != 0 ? 1 / by[a] : 0;
@@ -97,7 +97,8 @@ void composite_plain(const Volume& v, const Run& run, int count, Gathered& sum) 
   sum = {color[0], color[1], color[2], pass};
 }
 
-void composite_shaded(const Volume& v, const Stretch& stretch, int s, const Run& run, int count, const LitRay& lit, const Knobs& knobs, Gathered& sum) {
+void composite_shaded(const Volume& v, const Stretch& stretch, int s, const Run& run, int count, const LitRay& lit, const Knobs& knobs,
+                      Gathered& sum) {
   // Which samples are seen at all?
   int seen[run_length], n_seen = 0;
   float weight[run_length];
@@ -111,7 +112,8 @@ void composite_shaded(const Volume& v, const Stretch& stretch, int s, const Run&
   }
   if (n_seen == 0) return;
   Gradients g;
-  gradients(v, run, seen, n_seen, [&](int axis, int n) { return stretch.first[axis] + double(s + n) * stretch.by[axis]; }, g);
+  gradients(
+      v, run, seen, n_seen, [&](int axis, int n) { return stretch.first[axis] + double(s + n) * stretch.by[axis]; }, g);
   Shading shading;
   v.kernels.shade(v.shade_plan, lit, g, shading);
   for (int m = 0; m < n_seen; ++m) {
@@ -133,7 +135,8 @@ void composite_odd(const Volume& v, const Stretch& stretch, double length, const
   if (v.shaded) {
     const int seen[1] = {0};
     Gradients g;
-    gradients(v, run, seen, 1, [&](int axis, int) { return stretch.first[axis]; }, g);
+    gradients(
+        v, run, seen, 1, [&](int axis, int) { return stretch.first[axis]; }, g);
     Shading shading;
     v.kernels.shade(v.shade_plan, lit, g, shading);
     diffuse = shading.diffuse[0], flash = shading.specular[0];
@@ -165,7 +168,8 @@ void march(const Volume& v, const Course& c, double from, double to, const LitRa
     if (v.shaded) composite_shaded(v, stretch, s, run, count, lit, knobs, sum);
     else composite_plain(v, run, count, sum);
     if (sum.transmittance < 0.5f)
-      note_surface(state, v.id, before, count, from + (s + 0.5) * v.step, v.step, [&](int n) { return v.transfer[0].steps()[run.entry[n]].pass; });
+      note_surface(state, v.id, before, count, from + (s + 0.5) * v.step, v.step,
+                   [&](int n) { return v.transfer[0].steps()[run.entry[n]].pass; });
     if (sum.transmittance < knobs.stop_below) return;
     s += count;
   }
@@ -176,7 +180,8 @@ void march(const Volume& v, const Course& c, double from, double to, const LitRa
   if (sum.transmittance < 0.5f) note_surface(state, v.id, 0, 1, to - 0.5 * rest, rest, [](int) { return 0.0f; });
 }
 
-void march_together(const Volume* const* volumes, const Course* const* courses, size_t count, double from, double to, const LitRay& lit, const Knobs& knobs, RayState& state) {
+void march_together(const Volume* const* volumes, const Course* const* courses, size_t count, double from, double to, const LitRay& lit,
+                    const Knobs& knobs, RayState& state) {
   double step = HUGE_VAL, rest = 0;
   for (size_t i = 0; i < count; ++i) step = std::min(step, volumes[i]->step);
   const int steps = whole_steps(to - from, step, rest);
@@ -201,7 +206,8 @@ void march_together(const Volume* const* volumes, const Course* const* courses, 
       if (v.shaded) {
         const int seen[1] = {0};
         Gradients g;
-        gradients(v, run, seen, 1, [&](int axis, int) { return here.first[axis]; }, g);
+        gradients(
+            v, run, seen, 1, [&](int axis, int) { return here.first[axis]; }, g);
         Shading shading;
         v.kernels.shade(v.shade_plan, lit, g, shading);
         diffuse = shading.diffuse[0], flash = shading.specular[0];

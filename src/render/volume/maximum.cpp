@@ -10,17 +10,18 @@ namespace {
 /// Walks the boxes of a grid that a ray crosses between t and end; side(axis, i) is the q of the lower side of box i.
 template <class Side>
 struct Walk {
-  Vec3 start, along;
+  Vec3 start, along, per_along;
   long box[3];
   double t, end, next[3];
   const Side& side;
 
-  Walk(const Course& c, double from, double to, const long first[3], const Side& s) : start(c.start), along(c.along), t(from), end(to), side(s) {
-    for (int a = 0; a < 3; ++a) box[a] = first[a], next[a] = crossing(a);
+  Walk(const Course& c, double from, double to, const long first[3], const Side& s)
+      : start(c.start), along(c.along), t(from), end(to), side(s) {
+    for (int a = 0; a < 3; ++a) box[a] = first[a], per_along[a] = along[a] != 0 ? 1 / along[a] : 0, next[a] = crossing(a);
   }
   double crossing(int a) const {
     if (along[a] == 0) return HUGE_VAL;
-    const double at = (side(a, box[a] + (along[a] > 0)) - start[a]) / along[a];
+    const double at = (side(a, box[a] + (along[a] > 0)) - start[a]) * per_along[a];
     return std::max(at, t);
   }
   double leave() const { return std::min({next[0], next[1], next[2], end}); }
@@ -37,7 +38,8 @@ struct Walk {
 template <class T>
 class Search {
  public:
-  Search(const Volume& v, const Course& c, bool skip) : v_(v), c_(c), skip_(skip), data_(reinterpret_cast<const T*>(v.voxels.array.raw())) {}
+  Search(const Volume& v, const Course& c, bool skip)
+      : v_(v), c_(c), skip_(skip), data_(reinterpret_cast<const T*>(v.voxels.array.raw())) {}
 
   Maximum run() {
     const auto side = [this](int a, long i) {
@@ -45,7 +47,9 @@ class Search {
       return size_t(i) >= v_.bricks.dims[size_t(a)] ? HUGE_VAL : v_.border[a][size_t(i)];
     };
     long first[3];
-    for (int a = 0; a < 3; ++a) first[a] = std::clamp<long>(cell_at(a, c_.enter), 0, long(v_.voxels.dims[size_t(a)]) - 2) >> MinMaxBricks::shift;
+    for (int a = 0; a < 3; ++a)
+      first[a] = std::clamp<long>(cell_at(a, c_.enter), 0, long(v_.voxels.dims[size_t(a)]) - 2) >> MinMaxBricks::shift;
+    if (skip_) raise_floor(c_.enter, c_.leave);
     // The brick with the largest value first: most others then lie below what is found there.
     std::vector<Crossed>& crossed = crossed_;
     crossed.clear();
@@ -54,7 +58,7 @@ class Search {
       for (int a = 0; a < 3; ++a) inside = inside && walk.box[a] >= 0 && walk.box[a] < long(v_.bricks.dims[size_t(a)]);
       if (!inside) break;
       const MinMaxBricks::Range r = v_.bricks.ranges[v_.bricks.id(size_t(walk.box[0]), size_t(walk.box[1]), size_t(walk.box[2]))];
-      if (!r.empty()) crossed.push_back({r.hi, {walk.box[0], walk.box[1], walk.box[2]}, walk.t, walk.leave()});
+      if (!r.empty() && !(skip_ && r.hi < floor_)) crossed.push_back({r.hi, {walk.box[0], walk.box[1], walk.box[2]}, walk.t, walk.leave()});
       if (!walk.advance()) break;
     }
     while (!crossed.empty()) {
@@ -113,7 +117,8 @@ class Search {
     Run run;
     for (int n = 0; n < run_length; ++n) {
       const double t = from + (to - from) * ((n + 0.5) / run_length);
-      run.ux[n] = v_.u(0, c_.start.x + t * c_.along.x), run.uy[n] = v_.u(1, c_.start.y + t * c_.along.y), run.uz[n] = v_.u(2, c_.start.z + t * c_.along.z);
+      run.ux[n] = v_.u(0, c_.start.x + t * c_.along.x), run.uy[n] = v_.u(1, c_.start.y + t * c_.along.y),
+      run.uz[n] = v_.u(2, c_.start.z + t * c_.along.z);
     }
     finish_values(v_, run);
     for (int n = 0; n < run_length; ++n) {
@@ -165,7 +170,8 @@ class Search {
     // The cubic a s^3 + b s^2 + c s + f(0) through four places, and the zeros of its derivative.
     const double v0 = value(0), v1 = value(1.0 / 3), v2 = value(2.0 / 3), v3 = value(1);
     offer(v0, from), offer(v3, to);
-    const double a = 4.5 * (v3 - v0 + 3 * (v1 - v2)), b = 4.5 * (2 * v0 - 5 * v1 + 4 * v2 - v3), c = 0.5 * (-11 * v0 + 18 * v1 - 9 * v2 + 2 * v3);
+    const double a = 4.5 * (v3 - v0 + 3 * (v1 - v2)), b = 4.5 * (2 * v0 - 5 * v1 + 4 * v2 - v3),
+                 c = 0.5 * (-11 * v0 + 18 * v1 - 9 * v2 + 2 * v3);
     const double discriminant = b * b - 3 * a * c;
     if (!(discriminant > 0)) return;
     const double root = -(b + std::copysign(std::sqrt(discriminant), b));
@@ -178,7 +184,8 @@ class Search {
     Run run;
     for (int n = 0; n < run_length; ++n) {
       const double t = from + (to - from) * n / (run_length - 1);
-      run.ux[n] = v_.u(0, c_.start.x + t * c_.along.x), run.uy[n] = v_.u(1, c_.start.y + t * c_.along.y), run.uz[n] = v_.u(2, c_.start.z + t * c_.along.z);
+      run.ux[n] = v_.u(0, c_.start.x + t * c_.along.x), run.uy[n] = v_.u(1, c_.start.y + t * c_.along.y),
+      run.uz[n] = v_.u(2, c_.start.z + t * c_.along.z);
     }
     finish_values(v_, run);
     for (int n = 0; n < run_length; ++n)

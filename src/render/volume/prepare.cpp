@@ -17,7 +17,8 @@ const Field& field_of(const VolumeItem& item) {
   const Field* f = item.field.empty() ? fields.active() : nullptr;
   if (!f && item.field.empty()) fail_usage("the dataset has no scalar field to look through", "volume", "name one with field=");
   if (!f) f = &fields.require(item.field, item.association);
-  if (f->association == Association::whole) fail_usage(fmt::format("field '{}' belongs to the whole dataset", f->name), "volume", "a volume needs a point or cell field");
+  if (f->association == Association::whole)
+    fail_usage(fmt::format("field '{}' belongs to the whole dataset", f->name), "volume", "a volume needs a point or cell field");
   if (item.component >= f->components())
     fail_usage(fmt::format("field '{}' has {} components, not component {}", f->name, f->components(), item.component), "volume");
   return *f;
@@ -26,10 +27,13 @@ const Field& field_of(const VolumeItem& item) {
 void check(const VolumeItem& item) {
   if (!item.data) fail_usage("a volume item has no dataset", "volume");
   if (!item.data->as<UniformGrid>() && !item.data->as<RectilinearGrid>())
-    fail_usage(fmt::format("a {} mesh cannot be looked through as a volume", item.data->kind()), "volume", "resample it to a grid first or render its surface");
-  if (!(item.step >= 0) || !std::isfinite(item.step)) fail_usage(fmt::format("the step {} is no length", item.step), "volume", "give a length above 0, or 0 for half a cell");
+    fail_usage(fmt::format("a {} mesh cannot be looked through as a volume", item.data->kind()), "volume",
+               "resample it to a grid first or render its surface");
+  if (!(item.step >= 0) || !std::isfinite(item.step))
+    fail_usage(fmt::format("the step {} is no length", item.step), "volume", "give a length above 0, or 0 for half a cell");
   if (!(item.unit_distance >= 0) || !std::isfinite(item.unit_distance))
-    fail_usage(fmt::format("the unit distance {} is no length", item.unit_distance), "volume", "give a length above 0, or 0 for 1/100 of the diagonal");
+    fail_usage(fmt::format("the unit distance {} is no length", item.unit_distance), "volume",
+               "give a length above 0, or 0 for 1/100 of the diagonal");
 }
 
 /// Geometry of one axis: where the samples lie relative to the points.
@@ -109,7 +113,8 @@ Array doubled(const T* in, std::array<size_t, 3> from, std::array<size_t, 3> to)
   for (size_t k = 0; k < to[2]; ++k)
     for (size_t j = 0; j < to[1]; ++j)
       for (size_t i = 0; i < to[0]; ++i)
-        out[i + to[0] * (j + to[1] * k)] = in[std::min(i, from[0] - 1) + from[0] * (std::min(j, from[1] - 1) + from[1] * std::min(k, from[2] - 1))];
+        out[i + to[0] * (j + to[1] * k)] =
+            in[std::min(i, from[0] - 1) + from[0] * (std::min(j, from[1] - 1) + from[1] * std::min(k, from[2] - 1))];
   return r;
 }
 
@@ -155,8 +160,10 @@ void take_samples(const VolumeItem& item, const Field& field, std::array<size_t,
   const Dataset& d = *item.data;
   const bool cells = field.association == Association::cell;
   const bool magnitude = item.component < 0 && field.components() > 1;
-  Array a = magnitude ? scalar_of(field, -1, is_float(field.array.type()) && element_size(field.array.type()) == 8 ? ElementType::f64 : ElementType::f32)
-                      : field.array.component(std::max(item.component, 0));
+  Array a = magnitude
+                ? scalar_of(field, -1,
+                            is_float(field.array.type()) && element_size(field.array.type()) == 8 ? ElementType::f64 : ElementType::f32)
+                : field.array.component(std::max(item.component, 0));
   if (!native(a.type())) {
     const bool linear = item.color.kind == ScaleKind::linear && item.color.labels.empty();
     a = linear ? narrowed(a, d.range(field, item.component), v.base) : a.converted(ElementType::f32);
@@ -172,8 +179,7 @@ void take_samples(const VolumeItem& item, const Field& field, std::array<size_t,
   }
   v.voxels.dims = dims;
   for (size_t& n : v.voxels.dims) n = std::max<size_t>(n, 2);
-  if (v.voxels.dims != dims)
-    a = dispatch(a, [&](auto view) { return doubled(view.data, dims, v.voxels.dims); });
+  if (v.voxels.dims != dims) a = dispatch(a, [&](auto view) { return doubled(view.data, dims, v.voxels.dims); });
   v.voxels.array = a;
 }
 
@@ -243,7 +249,8 @@ Volume prepare(const VolumeItem& item, uint32_t id, const Knobs& knobs) {
   v.step = item.step > 0 ? item.step : 0.5 * smallest;
   const double unit = item.unit_distance > 0 ? item.unit_distance : 0.01 * diagonal;
   if (diagonal / v.step > 1e7)
-    fail_usage(fmt::format("a step of {} takes {:.0f} samples through a volume of size {}", v.step, diagonal / v.step, diagonal), "volume", "give a longer step");
+    fail_usage(fmt::format("a step of {} takes {:.0f} samples through a volume of size {}", v.step, diagonal / v.step, diagonal), "volume",
+               "give a longer step");
 
   double lo = HUGE_VAL, hi = -HUGE_VAL;
   for (const MinMaxBricks::Range& r : v.bricks.ranges) {

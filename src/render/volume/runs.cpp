@@ -35,7 +35,8 @@ float sample_around_nan(const Voxels& voxels, float x, float y, float z) {
 
 void finish_values(const Volume& v, Run& run) {
   if (v.nearest)
-    for (int n = 0; n < run_length; ++n) run.ux[n] = std::floor(run.ux[n] + 0.5f), run.uy[n] = std::floor(run.uy[n] + 0.5f), run.uz[n] = std::floor(run.uz[n] + 0.5f);
+    for (int n = 0; n < run_length; ++n)
+      run.ux[n] = std::floor(run.ux[n] + 0.5f), run.uy[n] = std::floor(run.uy[n] + 0.5f), run.uz[n] = std::floor(run.uz[n] + 0.5f);
   v.kernels.sample(v.voxels, run.ux, run.uy, run.uz, run.value);
   if (v.dual)
     for (int n = 0; n < run_length; ++n)

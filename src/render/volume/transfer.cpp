@@ -44,7 +44,8 @@ float Transfer::value_on_axis(double a) const {
   return float(std::copysign((power(std::abs(a)) - 1) / double(per_threshold_), a));
 }
 
-Transfer::Transfer(const ColorScale& scale, const OpacityCurve& curve, double unit, double step, double lo, double hi, double base) : kind_(scale.labels.empty() ? scale.kind : ScaleKind::linear) {
+Transfer::Transfer(const ColorScale& scale, const OpacityCurve& curve, double unit, double step, double lo, double hi, double base)
+    : kind_(scale.labels.empty() ? scale.kind : ScaleKind::linear) {
   // The part of the data's range in which colour or opacity can change.
   double first = std::min(scale.lo, scale.hi), last = std::max(scale.lo, scale.hi);
   for (const Vec2& p : curve.points)

@@ -17,8 +17,8 @@ struct Picture {
   const FragmentLists& fragments;
   Frame& frame;
   const Knobs& knobs;
-  std::vector<Volume> volumes;   // composite ones first
-  size_t composite = 0;          // how many those are
+  std::vector<Volume> volumes;  // composite ones first
+  size_t composite = 0;         // how many those are
   bool shaded = false;
   struct Lamp {
     Vec3 direction;  // world, unit
@@ -40,14 +40,16 @@ struct Scratch {
 void light(const Picture& picture, Vec3 direction, LitRay& lit) {
   lit.direction = Vec3f(direction);
   lit.lights.clear();
-  for (const Picture::Lamp& l : picture.lamps) lit.lights.push_back({Vec3f(l.direction), Vec3f(normalize(l.direction - direction)), l.intensity});
+  for (const Picture::Lamp& l : picture.lamps)
+    lit.lights.push_back({Vec3f(l.direction), Vec3f(normalize(l.direction - direction)), l.intensity});
 }
 
 /// Fragments of a pixel and the maxima of the volumes of that mode, from near to far.
 void gather_fragments(const Picture& picture, size_t pixel, double first_depth, double per_length, Scratch& s) {
   s.fragments.clear();
   if (!picture.fragments.empty())
-    s.fragments.assign(picture.fragments.fragments.begin() + picture.fragments.start[pixel], picture.fragments.fragments.begin() + picture.fragments.start[pixel + 1]);
+    s.fragments.assign(picture.fragments.fragments.begin() + picture.fragments.start[pixel],
+                       picture.fragments.fragments.begin() + picture.fragments.start[pixel + 1]);
   for (size_t i = picture.composite; i < picture.volumes.size(); ++i) {
     const Volume& v = picture.volumes[i];
     const Maximum m = maximum_along(v, s.courses[i], picture.knobs);
@@ -55,7 +57,10 @@ void gather_fragments(const Picture& picture, size_t pixel, double first_depth, 
     const Transfer::Medium& medium = v.transfer[0].medium(v.transfer[0].index(m.value));
     if (medium.density == 0) continue;
     const Fragment f{float(first_depth + m.t * per_length), {medium.r, medium.g, medium.b, 1}, v.id};
-    s.fragments.insert(std::upper_bound(s.fragments.begin(), s.fragments.end(), f, [](const Fragment& a, const Fragment& b) { return a.depth < b.depth || (a.depth == b.depth && a.id < b.id); }), f);
+    s.fragments.insert(
+        std::upper_bound(s.fragments.begin(), s.fragments.end(), f,
+                         [](const Fragment& a, const Fragment& b) { return a.depth < b.depth || (a.depth == b.depth && a.id < b.id); }),
+        f);
   }
 }
 
@@ -64,9 +69,11 @@ void between(const Picture& picture, double from, double to, Scratch& s, RayStat
   s.active.clear(), s.active_courses.clear();
   const double middle = 0.5 * (from + to);
   for (size_t i = 0; i < picture.composite; ++i)
-    if (s.courses[i].enter <= middle && middle < s.courses[i].leave) s.active.push_back(&picture.volumes[i]), s.active_courses.push_back(&s.courses[i]);
+    if (s.courses[i].enter <= middle && middle < s.courses[i].leave)
+      s.active.push_back(&picture.volumes[i]), s.active_courses.push_back(&s.courses[i]);
   if (s.active.size() == 1) march(*s.active[0], *s.active_courses[0], from, to, s.lit, picture.knobs, state);
-  else if (s.active.size() > 1) march_together(s.active.data(), s.active_courses.data(), s.active.size(), from, to, s.lit, picture.knobs, state);
+  else if (s.active.size() > 1)
+    march_together(s.active.data(), s.active_courses.data(), s.active.size(), from, to, s.lit, picture.knobs, state);
 }
 
 void pixel(const Picture& picture, int x, int y, Scratch& s) {
@@ -133,9 +140,11 @@ Course course(const Volume& v, Vec3 origin, Vec3 direction, double from, double 
   return c;
 }
 
-void composite_volumes(const Scene& scene, const Projection& projection, const FragmentLists& fragments, Frame& frame, Context& context, const Knobs& knobs) {
+void composite_volumes(const Scene& scene, const Projection& projection, const FragmentLists& fragments, Frame& frame, Context& context,
+                       const Knobs& knobs) {
   if (frame.width != projection.width || frame.height != projection.height)
-    fail_internal(fmt::format("a frame of {} x {} for a projection of {} x {}", frame.width, frame.height, projection.width, projection.height));
+    fail_internal(
+        fmt::format("a frame of {} x {} for a projection of {} x {}", frame.width, frame.height, projection.width, projection.height));
   check_fragments(fragments, frame);
   Picture picture{scene, projection, fragments, frame, knobs, {}, 0, false, {}};
   for (const auto mode : {VolumeItem::Mode::composite, VolumeItem::Mode::maximum}) {
@@ -149,18 +158,22 @@ void composite_volumes(const Scene& scene, const Projection& projection, const F
   }
   if (picture.volumes.empty()) return composite_fragments(fragments, frame, context);
   for (const Light& l : lights_of(scene)) {
-    const Vec3 d = l.follows_camera ? projection.right * l.direction.x + projection.up * l.direction.y - projection.forward * l.direction.z : l.direction;
+    const Vec3 d = l.follows_camera ? projection.right * l.direction.x + projection.up * l.direction.y - projection.forward * l.direction.z
+                                    : l.direction;
     picture.lamps.push_back({normalize(d), l.intensity});
   }
   const size_t across = size_t(frame.width + tile - 1) / tile, down = size_t(frame.height + tile - 1) / tile;
-  parallel_for(across * down, 1, [&](size_t begin, size_t end) {
-    Scratch scratch;
-    for (size_t t = begin; t < end; ++t) {
-      const int x0 = int(t % across) * tile, y0 = int(t / across) * tile;
-      for (int y = y0; y < std::min(y0 + tile, frame.height); ++y)
-        for (int x = x0; x < std::min(x0 + tile, frame.width); ++x) pixel(picture, x, y, scratch);
-    }
-  }, &context);
+  parallel_for(
+      across * down, 1,
+      [&](size_t begin, size_t end) {
+        Scratch scratch;
+        for (size_t t = begin; t < end; ++t) {
+          const int x0 = int(t % across) * tile, y0 = int(t / across) * tile;
+          for (int y = y0; y < std::min(y0 + tile, frame.height); ++y)
+            for (int x = x0; x < std::min(x0 + tile, frame.width); ++x) pixel(picture, x, y, scratch);
+        }
+      },
+      &context);
 }
 
 }  // namespace sg::volume

@@ -18,40 +18,41 @@ namespace sg::volume {
 
 /// Switches for tests and benchmarks; the picture must not depend on them (but `stop_below` by less than 1/255).
 struct Knobs {
-  bool skip_empty = true;         ///< pass over empty bricks
-  float stop_below = 1.0f / 4096; ///< a ray ends when less than this share of the light passes
-  bool simd = true;               ///< false: the scalar reference
+  bool skip_empty = true;          ///< pass over empty bricks
+  float stop_below = 1.0f / 4096;  ///< a ray ends when less than this share of the light passes
+  bool simd = true;                ///< false: the scalar reference
 };
-void composite_volumes(const Scene& scene, const Projection& projection, const FragmentLists& fragments, Frame& frame, Context& context, const Knobs& knobs);
+void composite_volumes(const Scene& scene, const Projection& projection, const FragmentLists& fragments, Frame& frame, Context& context,
+                       const Knobs& knobs);
 
 struct Volume {
   uint32_t id = 0;  ///< item number + 1
   VolumeItem::Mode mode = VolumeItem::Mode::composite;
   bool shaded = false;
-  bool nearest = false;    ///< labels: no value between two samples
-  bool dual = false;       ///< samples are cells: a cell without a value takes no share of its neighbours' half
+  bool nearest = false;  ///< labels: no value between two samples
+  bool dual = false;     ///< samples are cells: a cell without a value takes no share of its neighbours' half
   Voxels voxels;
-  float base = 0;          ///< value = stored + base
-  double step = 1;         ///< world length
+  float base = 0;                  ///< value = stored + base
+  double step = 1;                 ///< world length
   std::vector<Transfer> transfer;  ///< one
   Kernels kernels{};
-  bool direct = false;     ///< affine, a linear table, no holes to look after: kernels.entries does all
+  bool direct = false;  ///< affine, a linear table, no holes to look after: kernels.entries does all
   ShadePlan shade_plan{};
 
   // world -> q
   Vec3 origin;
   Mat3 to_q;
-  Vec3 lo, hi;                    ///< box in q
-  bool affine = true;             ///< q = u; else u from `coordinates`
-  std::vector<double> coordinates[3];  ///< q of each sample, ascending
-  std::vector<uint32_t> first_cell[3]; ///< cell in which a slice of the axis begins
+  Vec3 lo, hi;                          ///< box in q
+  bool affine = true;                   ///< q = u; else u from `coordinates`
+  std::vector<double> coordinates[3];   ///< q of each sample, ascending
+  std::vector<uint32_t> first_cell[3];  ///< cell in which a slice of the axis begins
   double slices_per_q[3] = {};
 
   MinMaxBricks bricks;
-  std::vector<uint8_t> distance;   ///< in bricks to the next that draws something (composite)
-  std::vector<double> border[3];   ///< q of the brick sides, dims+1
-  Vec3 margin;                     ///< q: rounding errors of places are smaller
-  std::vector<uint8_t> hidden;     ///< per cell of the lattice: draws nothing; may be empty
+  std::vector<uint8_t> distance;  ///< in bricks to the next that draws something (composite)
+  std::vector<double> border[3];  ///< q of the brick sides, dims+1
+  Vec3 margin;                    ///< q: rounding errors of places are smaller
+  std::vector<uint8_t> hidden;    ///< per cell of the lattice: draws nothing; may be empty
 
   Vec3 q(Vec3 world) const { return to_q * (world - origin); }
   /// Sample index of a place in q along one axis, clamped.
@@ -80,7 +81,8 @@ struct RayState {
 /// Integrates [from, to] of one volume or, in common steps (the shortest of theirs), of several that overlap there. Samples lie in the
 /// middle of their steps; the last step has what length is left. Stops when less than knobs.stop_below of the light passes.
 void march(const Volume& volume, const Course& course, double from, double to, const LitRay& lit, const Knobs& knobs, RayState& state);
-void march_together(const Volume* const* volumes, const Course* const* courses, size_t count, double from, double to, const LitRay& lit, const Knobs& knobs, RayState& state);
+void march_together(const Volume* const* volumes, const Course* const* courses, size_t count, double from, double to, const LitRay& lit,
+                    const Knobs& knobs, RayState& state);
 
 /// The largest value along the course, exactly that of the trilinear field.
 struct Maximum {
