@@ -45,8 +45,10 @@ Frame reduced(const Frame& fine, int n) {
 
 Frame render(const Scene& scene, const Camera& camera, const RenderOptions& options, Context& context) {
   if (options.width < 1 || options.height < 1 || options.width > 32768 || options.height > 32768)
-    fail_usage(fmt::format("picture size {}x{} is out of range", options.width, options.height), "render", "each side must be 1 to 32768 pixels");
-  if (options.samples < 0 || options.samples > 8) fail_usage(fmt::format("{} samples per pixel and axis", options.samples), "render", "give 1 to 8, or 0 for the default");
+    fail_usage(fmt::format("picture size {}x{} is out of range", options.width, options.height), "render",
+               "each side must be 1 to 32768 pixels");
+  if (options.samples < 0 || options.samples > 8)
+    fail_usage(fmt::format("{} samples per pixel and axis", options.samples), "render", "give 1 to 8, or 0 for the default");
   const int n = chosen_samples(scene, options.samples);
   Frame frame(options.width * n, options.height * n);
   const Projection projection = make_projection(camera, frame.width, frame.height);

@@ -54,7 +54,8 @@ double size_of(const Box3& b) {
 }  // namespace
 
 Projection make_projection(const Camera& c, int width, int height) {
-  if (width < 1 || height < 1) fail_usage(fmt::format("picture size {}x{} is empty", width, height), "camera", "width and height must be at least 1");
+  if (width < 1 || height < 1)
+    fail_usage(fmt::format("picture size {}x{} is empty", width, height), "camera", "width and height must be at least 1");
   if (!finite(c.position) || !finite(c.target) || !finite(c.up)) fail_usage("position, target and up must be finite numbers", "camera");
   if (!(length(c.target - c.position) > 0)) fail_usage("position and target are the same point", "camera", "move one of them");
   if (!c.parallel && !(c.view_angle > 0 && c.view_angle < 180))
@@ -62,7 +63,8 @@ Projection make_projection(const Camera& c, int width, int height) {
   if (c.parallel && !(c.parallel_height > 0 && std::isfinite(c.parallel_height)))
     fail_usage(fmt::format("parallel height {} is no length", c.parallel_height), "camera", "it must be above 0");
   if (!(c.far_plane > c.near_plane) || !(c.far_plane > 0))
-    fail_usage(fmt::format("near plane {} and far plane {} leave nothing between them", c.near_plane, c.far_plane), "camera", "far must be above near and above 0");
+    fail_usage(fmt::format("near plane {} and far plane {} leave nothing between them", c.near_plane, c.far_plane), "camera",
+               "far must be above near and above 0");
   Projection p;
   p.width = width, p.height = height, p.parallel = c.parallel;
   const Axes a = view_axes(c.target - c.position, c.up);
@@ -83,8 +85,10 @@ Projection::Ray Projection::ray(double px, double py) const {
 }
 
 Camera fit_camera(const Box3& given, Vec3 direction, Vec3 up, double aspect, double margin, double view_angle, bool parallel) {
-  if (!finite(direction) || !(length(direction) > 0)) fail_usage("the direction to look from is no direction", "camera", "give three numbers, not all zero");
-  if (!(aspect > 0) || !(margin >= 0 && margin < 0.5)) fail_usage(fmt::format("aspect {} and margin {} leave no room for the picture", aspect, margin), "camera");
+  if (!finite(direction) || !(length(direction) > 0))
+    fail_usage("the direction to look from is no direction", "camera", "give three numbers, not all zero");
+  if (!(aspect > 0) || !(margin >= 0 && margin < 0.5))
+    fail_usage(fmt::format("aspect {} and margin {} leave no room for the picture", aspect, margin), "camera");
   const Box3 box = usable(given);
   const Vec3 center = box.center();
   const double size = size_of(box);
@@ -106,7 +110,8 @@ Camera fit_camera(const Box3& given, Vec3 direction, Vec3 up, double aspect, dou
     fit_planes(c, box);
     return c;
   }
-  if (!(view_angle > 0 && view_angle < 180)) fail_usage(fmt::format("view angle {} is out of range", view_angle), "camera", "it must lie between 0 and 180 degrees");
+  if (!(view_angle > 0 && view_angle < 180))
+    fail_usage(fmt::format("view angle {} is out of range", view_angle), "camera", "it must lie between 0 and 180 degrees");
   // |x - shift| <= k (z + distance) for every corner: the smallest distance and its shift from the two extreme corners per axis.
   const double ky = std::tan(0.5 * view_angle * pi / 180) * room, kx = ky * aspect;
   double right = -HUGE_VAL, left = -HUGE_VAL, top = -HUGE_VAL, bottom = -HUGE_VAL, nearest = HUGE_VAL;

@@ -6,9 +6,11 @@ namespace sg {
 Box3 scene_bounds(const Scene& scene) {
   Box3 box;
   for (const Item& item : scene.items)
-    std::visit([&](const auto& i) {
-      if (i.data) box.add(i.data->bounds());
-    }, item);
+    std::visit(
+        [&](const auto& i) {
+          if (i.data) box.add(i.data->bounds());
+        },
+        item);
   return box;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which pixels a triangle owns: exactly one owner everywhere inside a mesh.
-#include "render/raster/kernels.h"
 #include "raster_support.h"
+#include "render/raster/kernels.h"
 
 using namespace sg;
 using namespace sg::raster;
@@ -21,7 +21,8 @@ Grid jittered(uint64_t seed, int n, bool coarse) {
     for (int i = 0; i <= n; ++i) {
       const uint64_t k = uint64_t(j) * 1000 + uint64_t(i);
       const bool rim = i == 0 || j == 0 || i == n || j == n;
-      double x = -40 + 280.0 * (i + (rim ? 0.0 : 0.4 * (random_unit(seed, 2 * k) - 0.5))) / n, y = -40 + 230.0 * (j + (rim ? 0.0 : 0.4 * (random_unit(seed, 2 * k + 1) - 0.5))) / n;
+      double x = -40 + 280.0 * (i + (rim ? 0.0 : 0.4 * (random_unit(seed, 2 * k) - 0.5))) / n,
+             y = -40 + 230.0 * (j + (rim ? 0.0 : 0.4 * (random_unit(seed, 2 * k + 1) - 0.5))) / n;
       if (coarse) x = std::round(2 * x) / 2, y = std::round(2 * y) / 2;
       for (double q : {x - 0.5 * width, 0.5 * height - y, random_unit(seed + 1, k) * 4 - 10}) g.xyz.push_back(float(q));
       if (i == n || j == n) continue;
@@ -64,7 +65,8 @@ TEST_CASE("raster coverage: spans are the pixels whose centres pass the edge tes
     TriangleRecord t{};
     const double size = i % 3 == 0 ? 20 : i % 3 == 1 ? 400 : 4e5;  // tiny, common, far beyond the picture
     for (uint64_t k = 0; k < 3; ++k) {
-      t.x[k] = int32_t((50 + size * (random_unit(11, 3 * i + k) - 0.5)) * subpixels), t.y[k] = int32_t((40 + size * (random_unit(12, 3 * i + k) - 0.5)) * subpixels);
+      t.x[k] = int32_t((50 + size * (random_unit(11, 3 * i + k) - 0.5)) * subpixels),
+      t.y[k] = int32_t((40 + size * (random_unit(12, 3 * i + k) - 0.5)) * subpixels);
       t.w[k] = 1;
     }
     if (!finish_record(t, 100, 80)) continue;

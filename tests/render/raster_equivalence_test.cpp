@@ -116,7 +116,8 @@ TEST_CASE("raster: vector shading agrees with the plain one") {
       x.tile_x = y.tile_x = int(at.x) / tile_size * tile_size, x.tile_y = y.tile_y = int(at.y) / tile_size * tile_size;
       x.pixel[0] = y.pixel[0] = uint32_t(int(at.y) % tile_size * tile_size + int(at.x) % tile_size), x.triangle[0] = y.triangle[0] = t;
       shade(job, x), shade_reference(job, y);
-      worst = std::max({worst, std::abs(double(x.light[0]) - double(y.light[0])), std::abs(double(x.gloss[0]) - double(y.gloss[0])), std::abs(double(x.depth[0]) - double(y.depth[0]))});
+      worst = std::max({worst, std::abs(double(x.light[0]) - double(y.light[0])), std::abs(double(x.gloss[0]) - double(y.gloss[0])),
+                        std::abs(double(x.depth[0]) - double(y.depth[0]))});
       for (int k = 0; k < 4; ++k) worst = std::max(worst, std::abs(double(x.rgba[k][0]) - double(y.rgba[k][0])));
       ++tested;
     }

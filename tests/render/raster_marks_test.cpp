@@ -38,7 +38,9 @@ TEST_CASE("raster lines: the covered area is length times width plus the round c
     for (int k = 0; k < 12; ++k) {
       const double angle = 0.1 + k * 0.53, half = 60;  // pixels; 200 pixels are 200 world units
       Scene s;
-      s.items = {line({float(-half * std::cos(angle)), float(-half * std::sin(angle)), 0, float(half * std::cos(angle)), float(half * std::sin(angle)), 0}, width)};
+      s.items = {line({float(-half * std::cos(angle)), float(-half * std::sin(angle)), 0, float(half * std::cos(angle)),
+                       float(half * std::sin(angle)), 0},
+                      width)};
       const double area = ink(draw(s, front_parallel(200), 200, 200)), wanted = 2 * half * width + pi * width * width / 4;
       CHECK(area == doctest::Approx(wanted).epsilon(0.012));
     }
@@ -63,7 +65,8 @@ TEST_CASE("raster lines: a polyline of many pieces covers what one line covers, 
   CHECK(worst < 0.02);
   // A closed circle of 64 chords: its length times its width.
   std::vector<float> circle;
-  for (int i = 0; i <= 64; ++i) circle.push_back(float(70 * std::cos(2 * pi * i / 64))), circle.push_back(float(70 * std::sin(2 * pi * i / 64))), circle.push_back(0);
+  for (int i = 0; i <= 64; ++i)
+    circle.push_back(float(70 * std::cos(2 * pi * i / 64))), circle.push_back(float(70 * std::sin(2 * pi * i / 64))), circle.push_back(0);
   a.items = {line(circle, 3)};
   CHECK(ink(draw(a, front_parallel(200), 200, 200)) == doctest::Approx(64 * 140 * std::sin(pi / 64) * 3).epsilon(0.01));
 }
@@ -88,7 +91,8 @@ TEST_CASE("raster lines: hidden behind a surface, seen in front of it and lying 
   // On a plane that is seen at a slant of 70 degrees, along its steepest direction and across it.
   const float z = 80 * float(std::tan(70 * pi / 180));
   Scene slanted;
-  slanted.items = {item(surface({-80, -80, -z, 80, -80, -z, 80, 80, z, -80, 80, z}, {0, 1, 2, 0, 2, 3})), line({-60, 0, 0, 60, 0, 0}, 2), line({0, -60, -z * 0.75f, 0, 60, z * 0.75f}, 2)};
+  slanted.items = {item(surface({-80, -80, -z, 80, -80, -z, 80, 80, z, -80, 80, z}, {0, 1, 2, 0, 2, 3})), line({-60, 0, 0, 60, 0, 0}, 2),
+                   line({0, -60, -z * 0.75f, 0, 60, z * 0.75f}, 2)};
   Camera far = front_parallel(200, 500);
   p = draw(slanted, far, 200, 200);
   Scene alone;
@@ -186,6 +190,11 @@ TEST_CASE("raster marks: mistakes are told") {
   l.data = make_dataset(cloud), s.items = {l};
   CHECK(error_of([&] { draw(s, front(), 8, 8); }).find("points mesh") != std::string::npos);
   PointsItem p;
+  AmrGrid amr;
+  amr.levels.resize(1);
+  amr.levels[0].patches.push_back({{0, 0, 0}, {1, 1, 1}, 0, 0});
+  p.data = make_dataset(amr), s.items = {p};
+  CHECK(error_of([&] { draw(s, front(), 8, 8); }).find("amr mesh cannot be drawn") != std::string::npos);
   p.data = l.data, p.color_by = FieldColor{}, p.color_by->field = "v", p.color_by->association = Association::cell, s.items = {p};
   CHECK(error_of([&] { draw(s, front(), 8, 8); }).find("cell field 'v'") != std::string::npos);
 }

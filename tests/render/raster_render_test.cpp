@@ -23,8 +23,8 @@ TEST_CASE("render: the background is flat, a gradient, or not there") {
   CHECK(f.rgba[3] == 1);
   s.background_top = Vec3f{1, 0, 0};
   f = picture(s, front(), {8, 5, 0});
-  CHECK(f.rgba[0] == 1);                                                      // top row
-  CHECK(f.rgba[4 * 39] == srgb_decode(0.5f));                                 // bottom row
+  CHECK(f.rgba[0] == 1);                                                    // top row
+  CHECK(f.rgba[4 * 39] == srgb_decode(0.5f));                               // bottom row
   CHECK(f.rgba[4 * 16 + 1] == doctest::Approx(double(srgb_decode(0.3f))));  // the middle of the gradient
   s.transparent = true;
   f = picture(s, front(), {8, 5, 0});
@@ -36,7 +36,8 @@ TEST_CASE("render: samples are averaged in linear light; depth and id are the ne
   // A white quad whose edge runs through the middle of pixel columns: 4 x 4 samples see half of it.
   Scene s;
   s.background = {0, 0, 0};
-  s.items = {item(surface({0.5f, -9, 0, 9, -9, 0, 9, 9, 0, 0.5f, 9, 0}, {0, 1, 2, 0, 2, 3}), {1, 1, 1}, false), item(quad(9, -1), {0, 0, 0}, false)};
+  s.items = {item(surface({0.5f, -9, 0, 9, -9, 0, 9, 9, 0, 0.5f, 9, 0}, {0, 1, 2, 0, 2, 3}), {1, 1, 1}, false),
+             item(quad(9, -1), {0, 0, 0}, false)};
   const Camera c = front_parallel(8);
   const Frame f = picture(s, c, {8, 8, 4});
   CHECK(f.rgba[4 * (3 * 8 + 4)] == doctest::Approx(0.5));

@@ -27,7 +27,9 @@ inline DatasetPtr surface(std::vector<float> xyz, std::vector<int32_t> triangles
 }
 
 /// A quad in the plane z, corners (-a,-a) .. (a,a).
-inline DatasetPtr quad(float a, float z, FieldSet fields = {}) { return surface({-a, -a, z, a, -a, z, a, a, z, -a, a, z}, {0, 1, 2, 0, 2, 3}, std::move(fields)); }
+inline DatasetPtr quad(float a, float z, FieldSet fields = {}) {
+  return surface({-a, -a, z, a, -a, z, a, a, z, -a, a, z}, {0, 1, 2, 0, 2, 3}, std::move(fields));
+}
 
 /// A bumpy torus of 2*n*m triangles with field "height"; `normals` adds analytic ones of the smooth torus.
 inline DatasetPtr torus(int n, int m, bool normals = false, Vec3 origin = {}, float bump = 0.03f) {
@@ -80,7 +82,9 @@ struct Picture {
   const float* rgba(int x, int y) const { return &frame.rgba[4 * (size_t(y) * size_t(frame.width) + size_t(x))]; }
   float depth(int x, int y) const { return frame.depth[size_t(y) * size_t(frame.width) + size_t(x)]; }
   uint32_t id(int x, int y) const { return frame.ids[size_t(y) * size_t(frame.width) + size_t(x)]; }
-  size_t covered() const { return size_t(std::count_if(frame.ids.begin(), frame.ids.end(), [](uint32_t i) { return i > 0; })); }
+  size_t covered() const {
+    return size_t(std::count_if(frame.ids.begin(), frame.ids.end(), [](uint32_t i) { return i > 0; }));
+  }
 };
 
 inline Picture draw(const Scene& scene, const Camera& camera, int w, int h, double pixel_scale = 1) {

@@ -84,7 +84,9 @@ TEST_CASE("raster: a facing quad has the colour of the lighting formula") {
     diffuse += double(l.intensity) * cosine, specular += double(l.intensity) * std::pow(cosine, 7.5);
   }
   const float srgb[3] = {0.5f, 0.6f, 0.7f};
-  for (int k = 0; k < 3; ++k) CHECK(p.rgba(32, 32)[k] == doctest::Approx(double(srgb_decode(srgb[k])) * (0.12 + 0.88 * diffuse) + double(0.3f) * specular).epsilon(2e-6));
+  for (int k = 0; k < 3; ++k)
+    CHECK(p.rgba(32, 32)[k] ==
+          doctest::Approx(double(srgb_decode(srgb[k])) * (0.12 + 0.88 * diffuse) + double(0.3f) * specular).epsilon(2e-6));
   CHECK(p.rgba(32, 32)[3] == 1);
   // The other side of the quad is lit alike.
   Camera back = c;
@@ -122,7 +124,8 @@ TEST_CASE("raster: computed normals are smooth on a sphere and split at a cube's
   std::vector<float> xyz;
   for (int i = 0; i < 8; ++i)
     for (int k = 0; k < 3; ++k) xyz.push_back(i >> k & 1 ? 1.0f : -1.0f);
-  const std::vector<int32_t> t = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4, 2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
+  const std::vector<int32_t> t = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
+                                  2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
   SurfaceItem cube = ball;
   cube.data = surface(xyz, t);
   Camera c = front_parallel(5);
@@ -132,7 +135,8 @@ TEST_CASE("raster: computed normals are smooth on a sphere and split at a cube's
   cube.flat = true, s.items = {cube};
   const Picture flat = draw(s, c, 100, 100);
   double differ = 0;
-  for (size_t i = 0; i < smooth.frame.rgba.size(); ++i) differ = std::max(differ, std::abs(double(smooth.frame.rgba[i]) - double(flat.frame.rgba[i])));
+  for (size_t i = 0; i < smooth.frame.rgba.size(); ++i)
+    differ = std::max(differ, std::abs(double(smooth.frame.rgba[i]) - double(flat.frame.rgba[i])));
   CHECK(differ < 1e-6);  // edges of 90 degrees are all split
   cube.flat = false, cube.feature_angle = 100, s.items = {cube};
   CHECK_FALSE(same_bytes(draw(s, c, 100, 100).frame.rgba, flat.frame.rgba));
@@ -234,12 +238,11 @@ TEST_CASE("raster: f64 positions at 1e7 do not jitter") {
 TEST_CASE("raster: degenerate, huge and not-a-number triangles do no harm") {
   const float big = 1e30f, nan = NAN, inf = INFINITY;
   Scene s;
-  s.items.push_back(item(surface({0, 0, 0, 1, 0, 0, 2, 0, 0,        // a line
-                                  0, 0, 0, 0, 0, 0, 0, 0, 0,        // a point
-                                  nan, 0, 0, 1, 0, 0, 0, 1, 0,      // no number
-                                  inf, 0, 0, 0, inf, 0, 0, 0, 0,    // no end
-                                  -big, -big, 0, big, -big, 0, 0, big, 0,
-                                  -1e6f, -1e6f, -1, 1e6f, -1e6f, -1, 0, 1e6f, -1},
+  s.items.push_back(item(surface({0,    0,    0, 1,   0,    0, 2, 0,   0,  // a line
+                                  0,    0,    0, 0,   0,    0, 0, 0,   0,  // a point
+                                  nan,  0,    0, 1,   0,    0, 0, 1,   0,  // no number
+                                  inf,  0,    0, 0,   inf,  0, 0, 0,   0,  // no end
+                                  -big, -big, 0, big, -big, 0, 0, big, 0, -1e6f, -1e6f, -1, 1e6f, -1e6f, -1, 0, 1e6f, -1},
                                  {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17})));
   const Picture p = draw(s, front(), 64, 64);
   CHECK(p.covered() == 64 * 64);  // the last one covers all

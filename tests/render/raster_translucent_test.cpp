@@ -89,7 +89,8 @@ TEST_CASE("raster: translucent fragments behind opaque surfaces are dropped, ins
 
 TEST_CASE("raster: alpha of direct colours makes fragments; opacity 0 draws nothing") {
   FieldSet f;
-  f.add({"rgba", Association::point, Array::from_vector<float>({1, 0, 0, 0.25f, 1, 0, 0, 0.25f, 1, 0, 0, 0.25f, 1, 0, 0, 0.25f}, 4), "", Role::colors});
+  f.add({"rgba", Association::point, Array::from_vector<float>({1, 0, 0, 0.25f, 1, 0, 0, 0.25f, 1, 0, 0, 0.25f, 1, 0, 0, 0.25f}, 4), "",
+         Role::colors});
   Scene s;
   SurfaceItem q = item(quad(1, 0, f), {}, false);
   q.color_by = FieldColor{}, q.color_by->field = "rgba", q.color_by->direct = true, q.opacity = 0.5;

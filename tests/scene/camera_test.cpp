@@ -80,13 +80,15 @@ TEST_CASE("fit_camera: a box fills the picture up to the margin from any side") 
       CHECK(s.bottom < 0.92 + 1e-9);
       CHECK(s.in_depth);
       // tight: both sides of one axis touch
-      const bool tight_x = std::abs(s.left - 0.08) < 1e-6 && std::abs(s.right - 0.92) < 1e-6, tight_y = std::abs(s.top - 0.08) < 1e-6 && std::abs(s.bottom - 0.92) < 1e-6;
+      const bool tight_x = std::abs(s.left - 0.08) < 1e-6 && std::abs(s.right - 0.92) < 1e-6,
+                 tight_y = std::abs(s.top - 0.08) < 1e-6 && std::abs(s.bottom - 0.92) < 1e-6;
       CHECK((tight_x || tight_y));
     }
 }
 
 TEST_CASE("fit_camera: flat, thin, single-point, far and empty boxes are seen") {
-  const Box3 boxes[] = {box_of({0, 0, 0}, {1, 2, 0}), box_of({0, 0, 0}, {0, 0, 5}), box_of({3, 3, 3}, {3, 3, 3}), box_of({1e7, 1e7, 0}, {1e7 + 1, 1e7 + 1, 1}), Box3{}};
+  const Box3 boxes[] = {box_of({0, 0, 0}, {1, 2, 0}), box_of({0, 0, 0}, {0, 0, 5}), box_of({3, 3, 3}, {3, 3, 3}),
+                        box_of({1e7, 1e7, 0}, {1e7 + 1, 1e7 + 1, 1}), Box3{}};
   const Vec3 directions[] = {{0, 0, 1}, {1, 0, 0}, {1, 1, 1}, {0, 0, -1}};
   for (const Box3& b : boxes)
     for (Vec3 d : directions)

@@ -91,7 +91,8 @@ PixelBox pixel_box(const TriangleRecord& t, int width, int height) {
   const int lx = std::min({t.x[0], t.x[1], t.x[2]}), hx = std::max({t.x[0], t.x[1], t.x[2]});
   const int ly = std::min({t.y[0], t.y[1], t.y[2]}), hy = std::max({t.y[0], t.y[1], t.y[2]});
   // The first and last pixel whose centre lies in the box.
-  return {std::max((lx + half - 1) >> 8, 0), std::max((ly + half - 1) >> 8, 0), std::min((hx - half) >> 8, width - 1), std::min((hy - half) >> 8, height - 1)};
+  return {std::max((lx + half - 1) >> 8, 0), std::max((ly + half - 1) >> 8, 0), std::min((hx - half) >> 8, width - 1),
+          std::min((hy - half) >> 8, height - 1)};
 }
 
 bool finish_record(TriangleRecord& t, int width, int height) {

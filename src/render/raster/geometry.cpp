@@ -21,16 +21,21 @@ struct Memory {
   std::shared_ptr<const void> value;
 };
 
-bool hidden(const uint8_t* ghost, size_t cell) { return ghost && (ghost[cell] & (ghost_duplicate | ghost_hidden_cell | ghost_refined_cell)); }
+bool hidden(const uint8_t* ghost, size_t cell) {
+  return ghost && (ghost[cell] & (ghost_duplicate | ghost_hidden_cell | ghost_refined_cell));
+}
 
-Array packed_ghosts(const Dataset& data) { return data.cell_ghost().empty() ? Array() : data.cell_ghost().converted(ElementType::u8).made_packed(); }
+Array packed_ghosts(const Dataset& data) {
+  return data.cell_ghost().empty() ? Array() : data.cell_ghost().converted(ElementType::u8).made_packed();
+}
 
 const uint8_t* bytes_of(const Array& a) { return a.empty() ? nullptr : reinterpret_cast<const uint8_t*>(a.raw()); }
 
 /// i32 triangles without ghosts are drawn from where they lie.
 bool in_place(const SurfaceMesh& mesh, const Dataset& data) {
   const CellArray& p = mesh.polygons;
-  return p.fixed == 3 && p.connectivity.type() == ElementType::i32 && p.connectivity.packed() && mesh.strips.size() == 0 && data.cell_ghost().empty();
+  return p.fixed == 3 && p.connectivity.type() == ElementType::i32 && p.connectivity.packed() && mesh.strips.size() == 0 &&
+         data.cell_ghost().empty();
 }
 
 struct Derived {
@@ -77,7 +82,8 @@ SurfaceMesh visible_polygons(const SurfaceMesh& mesh, const Dataset& data) {
 
 }  // namespace
 
-std::shared_ptr<const void> remembered(const DatasetPtr& data, const std::string& key, std::shared_ptr<const void> (*make)(void*), void* argument) {
+std::shared_ptr<const void> remembered(const DatasetPtr& data, const std::string& key, std::shared_ptr<const void> (*make)(void*),
+                                       void* argument) {
   static std::mutex mutex;
   static std::vector<Memory> memory;
   {
@@ -88,52 +94,41 @@ std::shared_ptr<const void> remembered(const DatasetPtr& data, const std::string
   }
   std::shared_ptr<const void> value = make(argument);
   std::lock_guard lock(mutex);
-  if (memory.size() >= 64) memory.erase(memory.begin());
+  if (memory.size() >= 1024) memory.erase(memory.begin());
   memory.push_back({data, key, value});
   return value;
 }
 
-void packed_positions(const Points& points, const Dataset& data, Array& xyz, Vec3& origin) {
-  if (points.xyz.type() == ElementType::f32) {
-    xyz = points.xyz.made_packed(), origin = points.origin;
-    return;
-  }
-  // The f32 numbers that are left must be small: they are taken from the middle of the data.
-  const Box3& box = data.bounds();
-  const Vec3 middle = box.empty() ? points.origin : box.center();
-  origin = middle;
-  float* out = nullptr;
-  xyz = Array::make<float>(points.count(), 3, &out);
-  const Vec3 shift = points.origin - middle;
-  dispatch(points.xyz, [&](auto v) {
-    parallel_for(v.count, grain, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i)
-        for (int c = 0; c < 3; ++c) out[3 * i + size_t(c)] = float(double(v(i, c)) + shift[c]);
+Positions packed_positions(const DatasetPtr& data, const Points& points) {
+  if (points.xyz.type() == ElementType::f32 && points.xyz.packed()) return {points.xyz, points.origin};
+  return *derived<Positions>(data, "positions", [&]() -> Positions {
+    if (points.xyz.type() == ElementType::f32) return {points.xyz.made_packed(), points.origin};
+    // The f32 numbers that are left must be small: they are taken from the middle of the data.
+    const Box3& box = data->bounds();
+    const Vec3 middle = box.empty() ? points.origin : box.center(), shift = points.origin - middle;
+    float* out = nullptr;
+    Positions p{Array::make<float>(points.count(), 3, &out), middle};
+    dispatch(points.xyz, [&](auto v) {
+      parallel_for(v.count, grain, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i)
+          for (int c = 0; c < 3; ++c) out[3 * i + size_t(c)] = float(double(v(i, c)) + shift[c]);
+      });
     });
+    return p;
   });
 }
 
 TriangleSet triangulate(const DatasetPtr& data, bool& any_polygon) {
   const SurfaceMesh& mesh = *data->as<SurfaceMesh>();
   any_polygon = mesh.polygons.size() + mesh.strips.size() > 0;
-  if (mesh.points.count() >= (size_t(1) << 29)) fail_usage(fmt::format("a surface of {} points is too large to draw", mesh.points.count()), "surface", "decimate it or draw its parts");
+  if (mesh.points.count() >= (size_t(1) << 29))
+    fail_usage(fmt::format("a surface of {} points is too large to draw", mesh.points.count()), "surface", "decimate it or draw its parts");
   TriangleSet s;
-  if (mesh.points.xyz.type() == ElementType::f32 && mesh.points.xyz.packed()) {
-    packed_positions(mesh.points, *data, s.positions, s.origin);
-  } else {
-    struct Moved {
-      Array xyz;
-      Vec3 origin;
-    };
-    const auto m = derived<Moved>(data, "positions", [&] {
-      Moved r;
-      packed_positions(mesh.points, *data, r.xyz, r.origin);
-      return r;
-    });
-    s.positions = m->xyz, s.origin = m->origin;
-  }
+  const Positions positions = packed_positions(data, mesh.points);
+  s.positions = positions.xyz, s.origin = positions.origin;
   if (mesh.polygons.connectivity.count() + mesh.strips.connectivity.count() >= (size_t(1) << 31))  // the kernels count in 32 bits
-    fail_usage(fmt::format("a surface of {} polygons is too large to draw", mesh.polygons.size()), "surface", "decimate it or draw its parts");
+    fail_usage(fmt::format("a surface of {} polygons is too large to draw", mesh.polygons.size()), "surface",
+               "decimate it or draw its parts");
   if (in_place(mesh, *data)) {
     s.triangles = mesh.polygons.connectivity, s.count = mesh.polygons.size();
     s.first_cell = uint32_t(mesh.vertices.size() + mesh.lines.size());

@@ -27,7 +27,8 @@ struct EyePoint {
 /// The same operations in the same order as the vector code, so that a clipped triangle meets its unclipped neighbours.
 inline EyePoint to_eye(const EyeView& v, const float* p) {
   const float dx = (p[0] - v.hi[0]) - v.lo[0], dy = (p[1] - v.hi[1]) - v.lo[1], dz = (p[2] - v.hi[2]) - v.lo[2];
-  return {dx * v.right[0] + dy * v.right[1] + dz * v.right[2], dx * v.up[0] + dy * v.up[1] + dz * v.up[2], dx * v.forward[0] + dy * v.forward[1] + dz * v.forward[2]};
+  return {dx * v.right[0] + dy * v.right[1] + dz * v.right[2], dx * v.up[0] + dy * v.up[1] + dz * v.up[2],
+          dx * v.forward[0] + dy * v.forward[1] + dz * v.forward[2]};
 }
 
 /// Pixel grid position and what is linear on the picture: 1/z in perspective, z in parallel.

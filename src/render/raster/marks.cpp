@@ -43,12 +43,14 @@ bool clip_depth(const Projection& p, Vec3& a, Vec3& b, float& from, float& to) {
 
 bool make_record(const PreparedItem& item, const Projection& p, size_t i, MarkRecord& m) {
   const bool line = item.kind == PreparedItem::Kind::lines;
-  Vec3 a = eye_point(item, p, line ? item.segments.points[2 * i] : item.points[i]);
-  Vec3 b = line ? eye_point(item, p, item.segments.points[2 * i + 1]) : a;
+  Vec3 a = eye_point(item, p, line ? item.segments->points[2 * i] : (*item.points)[i]);
+  Vec3 b = line ? eye_point(item, p, item.segments->points[2 * i + 1]) : a;
   if (!finite(a) || !finite(b) || !clip_depth(p, a, b, m.from, m.to)) return false;
   if (!line) m.from = m.to = 0;
   place(p, a, m.ax, m.ay, m.aw), place(p, b, m.bx, m.by, m.bw);
-  m.primitive = item.first_primitive + uint32_t(i), m.group = !line ? uint32_t(i) : item.segments.groups.empty() ? 0 : item.segments.groups[i];
+  m.primitive = item.first_primitive + uint32_t(i), m.group = !line                           ? uint32_t(i)
+                                                              : item.segments->groups.empty() ? 0
+                                                                                              : item.segments->groups[i];
   return finite({m.ax, m.ay, m.aw}) && finite({m.bx, m.by, m.bw}) && !mark_box(m, p.width, p.height).empty();
 }
 
@@ -131,9 +133,9 @@ void color_mark(const PreparedItem& item, const std::vector<WorldLight>& lights,
   Vec4f rgba = source.constant;
   if (source.kind != ColorSource::Kind::constant) {
     size_t a, b;
-    if (source.per_cell) a = b = item.segments.cells[i];
-    else if (line) a = item.segments.points[2 * size_t(i)], b = item.segments.points[2 * size_t(i) + 1];
-    else a = b = item.points[i];
+    if (source.per_cell) a = b = item.segments->cells[i];
+    else if (line) a = item.segments->points[2 * size_t(i)], b = item.segments->points[2 * size_t(i) + 1];
+    else a = b = (*item.points)[i];
     if (source.nearest) a = b = c.s < 0.5f ? a : b;
     auto at = [&](size_t stride, size_t k) {
       const float u = source.data()[a * stride + k], v = source.data()[b * stride + k];

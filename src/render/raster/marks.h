@@ -10,23 +10,23 @@ namespace sg::raster {
 /// A capsule from a to b, or a disc when both are the same; `w` is 1/z (perspective) or z (parallel).
 struct MarkRecord {
   double ax, ay, aw, bx, by, bw;
-  float from, to;      ///< places of a and b on the segment, after near clipping; equal for dots
-  float half;          ///< half the width, pixels
+  float from, to;  ///< places of a and b on the segment, after near clipping; equal for dots
+  float half;      ///< half the width, pixels
   uint32_t primitive;
-  uint32_t item;       ///< of the prepared scene
+  uint32_t item;  ///< of the prepared scene
   uint32_t group;
 };
 
 /// Part of a pixel covered by something; what the fragments are made from.
 struct Cover {
-  uint32_t pixel;      ///< in the tile
-  float order;         ///< depth it is sorted and hidden by
-  float depth;         ///< depth it has
+  uint32_t pixel;  ///< in the tile
+  float order;     ///< depth it is sorted and hidden by
+  float depth;     ///< depth it has
   uint32_t primitive;
   uint32_t item;
-  float alpha;         ///< coverage, later times opacity
-  float s, t;          ///< line: place on the segment; dot: offset from the centre in radii
-  float rgb[3];        ///< linear, not yet multiplied with alpha
+  float alpha;   ///< coverage, later times opacity
+  float s, t;    ///< line: place on the segment; dot: offset from the centre in radii
+  float rgb[3];  ///< linear, not yet multiplied with alpha
 };
 
 /// Lines and dots of an item on the picture, those outside left out; in order of their primitives.
@@ -39,7 +39,8 @@ inline double band_coverage(double distance, double half) {
   return c < 0 ? 0 : c > 1 ? 1 : c;
 }
 
-/// Covers the pixels of one tile that lie in front of `keys`, one mark after the other. Overlaps of one group at about the same depth count once.
+/// Covers the pixels of one tile that lie in front of `keys`, one mark after the other. Overlaps of one group at about the same depth count
+/// once.
 class MarkTile {
  public:
   MarkTile(const PixelBox& box, const Projection& projection, const uint64_t* keys) : box_(box), projection_(projection), keys_(keys) {}

@@ -66,7 +66,8 @@ NormalSet smooth_normals(const TriangleSet& set, double feature_angle) {
       mean[p] = normalize(sum);
       for (uint32_t a = from; a < to && !split[p]; ++a)
         for (uint32_t b = a + 1; b < to && b < a + 64; ++b)
-          if (weight[around.corner[a]] > 0 && weight[around.corner[b]] > 0 && dot(face[around.corner[a] / 3], face[around.corner[b] / 3]) < limit) {
+          if (weight[around.corner[a]] > 0 && weight[around.corner[b]] > 0 &&
+              dot(face[around.corner[a] / 3], face[around.corner[b] / 3]) < limit) {
             split[p] = 1;
             break;
           }

@@ -37,7 +37,8 @@ const Field& color_field(const Dataset& data, const FieldColor& c, const char* w
   if (c.association == Association::whole) fail_usage("colours come from points or cells, not from the whole", where);
   const Field& f = with_context("colouring", [&]() -> const Field& { return data.fields().require(c.field, c.association); });
   if (!c.direct && c.component >= f.components())
-    fail_usage(fmt::format("field '{}' has {} components, no component {}", f.name, f.components(), c.component), where, fmt::format("give 0 to {}", f.components() - 1));
+    fail_usage(fmt::format("field '{}' has {} components, no component {}", f.name, f.components(), c.component), where,
+               fmt::format("give 0 to {}", f.components() - 1));
   return f;
 }
 
@@ -48,17 +49,20 @@ Array direct_colors(const Field& f, bool& any_alpha) {
   const double unit = is_float(f.array.type()) ? 1.0 : f.array.type() == ElementType::u16 ? 1 / 65535.0 : 1 / 255.0;
   const int n = f.components();
   any_alpha = dispatch(f.array, [&](auto v) {
-    return parallel_reduce<bool>(v.count, grain, false, [&](size_t begin, size_t end) {
-      bool alpha = false;
-      for (size_t i = begin; i < end; ++i) {
-        auto part = [&](int c) { return float(double(v(i, c)) * unit); };
-        float* q = out + 4 * i;
-        for (int c = 0; c < 3; ++c) q[c] = linear_light(part(n >= 3 ? c : 0));
-        q[3] = n == 4 || n == 2 ? std::clamp(part(n - 1), 0.0f, 1.0f) : 1.0f;
-        if (!(q[3] >= 1)) alpha = true;
-      }
-      return alpha;
-    }, [](bool a, bool b) { return a || b; });
+    return parallel_reduce<bool>(
+        v.count, grain, false,
+        [&](size_t begin, size_t end) {
+          bool alpha = false;
+          for (size_t i = begin; i < end; ++i) {
+            auto part = [&](int c) { return float(double(v(i, c)) * unit); };
+            float* q = out + 4 * i;
+            for (int c = 0; c < 3; ++c) q[c] = linear_light(part(n >= 3 ? c : 0));
+            q[3] = n == 4 || n == 2 ? std::clamp(part(n - 1), 0.0f, 1.0f) : 1.0f;
+            if (!(q[3] >= 1)) alpha = true;
+          }
+          return alpha;
+        },
+        [](bool a, bool b) { return a || b; });
   });
   return colors;
 }
@@ -168,10 +172,10 @@ class Preparation {
     if (p.triangles.count > 0) push(std::move(p), p.triangles.count);
     if (!s.edges || !any) return;
     PreparedItem e = start(PreparedItem::Kind::lines, s.data, s.opacity);
-    e.segments = *derived<SegmentSet>(s.data, "edges", [&] { return polygon_edges(*s.data, mesh); });
+    e.segments = derived<SegmentSet>(s.data, "edges", [&] { return polygon_edges(*s.data, mesh); });
     e.color = color_source(s.data, std::nullopt, s.edge_color, "surface");
     e.positions = positions, e.origin = origin, e.width = 1;
-    push(std::move(e), e.segments.count());
+    push(std::move(e), e.segments->count());
   }
 
   void operator()(const LinesItem& s) {
@@ -179,23 +183,26 @@ class Preparation {
     const SurfaceMesh& mesh = surface_mesh(s.data, "lines");
     if (!(s.opacity > 0) || !(s.width > 0)) return;
     PreparedItem p = start(PreparedItem::Kind::lines, s.data, s.opacity);
-    p.segments = *derived<SegmentSet>(s.data, "segments", [&] { return line_segments(*s.data, mesh); });
+    p.segments = derived<SegmentSet>(s.data, "segments", [&] { return line_segments(*s.data, mesh); });
     p.color = color_source(s.data, s.color_by, s.color, "lines");
-    packed_positions(mesh.points, *s.data, p.positions, p.origin);
+    const Positions positions = packed_positions(s.data, mesh.points);
+    p.positions = positions.xyz, p.origin = positions.origin;
     p.width = s.width;
-    push(std::move(p), p.segments.count());
+    push(std::move(p), p.segments->count());
   }
 
   void operator()(const PointsItem& s) {
     if (!s.data) fail_usage("the item has no data", "points");
     if (!(s.opacity > 0) || !(s.size > 0)) return;
     PreparedItem p = start(PreparedItem::Kind::points, s.data, s.opacity);
-    if (s.color_by && s.color_by->association == Association::cell) fail_usage(fmt::format("points cannot take the colour of cell field '{}'", s.color_by->field), "points", "use a point field");
+    if (s.color_by && s.color_by->association == Association::cell)
+      fail_usage(fmt::format("points cannot take the colour of cell field '{}'", s.color_by->field), "points", "use a point field");
     p.color = color_source(s.data, s.color_by, s.color, "points");
     p.width = s.size, p.shaded = s.shaded;
-    positions_of(*s.data, p.positions, p.origin);
-    choose_points(*s.data, p.points);
-    push(std::move(p), p.points.size());
+    const Positions positions = positions_of(s.data);
+    p.positions = positions.xyz, p.origin = positions.origin;
+    p.points = derived<std::vector<uint32_t>>(s.data, "points", [&] { return chosen_points(*s.data); });
+    push(std::move(p), p.points->size());
   }
 
   void operator()(const VolumeItem&) {}
@@ -220,40 +227,47 @@ class Preparation {
     const Field* f = nullptr;
     if (!s.normals.empty()) {
       f = &fields.require(s.normals, Association::point);
-      if (f->components() != 3) fail_usage(fmt::format("field '{}' has {} components and cannot be normals", f->name, f->components()), "surface", "normals have 3");
+      if (f->components() != 3)
+        fail_usage(fmt::format("field '{}' has {} components and cannot be normals", f->name, f->components()), "surface",
+                   "normals have 3");
     } else {
       for (const Field& g : fields)
         if (g.role == Role::normals && g.association == Association::point && g.components() == 3 && !f) f = &g;
     }
     if (f && f->array.type() == ElementType::f32 && f->array.packed()) return {f->array, {}};
     if (f) return {*derived<Array>(s.data, "normals/" + f->name, [&] { return f->array.converted(ElementType::f32).made_packed(); }), {}};
-    return *derived<NormalSet>(s.data, fmt::format("smooth/{}", s.feature_angle), [&] { return smooth_normals(triangles, s.feature_angle); });
+    return *derived<NormalSet>(s.data, fmt::format("smooth/{}", s.feature_angle),
+                               [&] { return smooth_normals(triangles, s.feature_angle); });
   }
 
-  static void positions_of(const Dataset& data, Array& xyz, Vec3& origin) {
-    const Points* points = nullptr;
-    if (auto* m = data.as<SurfaceMesh>()) points = &m->points;
-    if (auto* m = data.as<PointCloud>()) points = &m->points;
-    if (auto* m = data.as<UnstructuredMesh>()) points = &m->points;
-    if (auto* m = data.as<CurvilinearGrid>()) points = &m->points;
-    if (points) return packed_positions(*points, data, xyz, origin);
-    if (!is_lattice(data.mesh())) fail_usage(fmt::format("the points of a {} mesh cannot be drawn", data.kind()), "points", "draw its surface or resample it");
+  static Positions positions_of(const DatasetPtr& data) {
+    if (auto* m = data->as<SurfaceMesh>()) return packed_positions(data, m->points);
+    if (auto* m = data->as<PointCloud>()) return packed_positions(data, m->points);
+    if (auto* m = data->as<UnstructuredMesh>()) return packed_positions(data, m->points);
+    if (auto* m = data->as<CurvilinearGrid>()) return packed_positions(data, m->points);
+    if (!is_lattice(data->mesh()))
+      fail_usage(fmt::format("the points of a {} mesh cannot be drawn", data->kind()), "points", "draw its surface or resample it");
+    return *derived<Positions>(data, "positions", [&] { return lattice_positions(*data); });
+  }
+
+  static Positions lattice_positions(const Dataset& data) {
     const Lattice lattice(data.mesh());
     const LatticeView& v = lattice.view();
-    origin = data.bounds().center();
     float* out = nullptr;
-    xyz = Array::make<float>(v.points(), 3, &out);
+    Positions r{Array::make<float>(v.points(), 3, &out), data.bounds().center()};
     parallel_for(v.dims[1] * v.dims[2], 16, [&](size_t begin, size_t end) {
       for (size_t row = begin; row < end; ++row)
         for (size_t i = 0; i < v.dims[0]; ++i) {
-          const Vec3 p = v.position(i, row % v.dims[1], row / v.dims[1]) - origin;
+          const Vec3 p = v.position(i, row % v.dims[1], row / v.dims[1]) - r.origin;
           float* q = out + 3 * v.id(i, row % v.dims[1], row / v.dims[1]);
           q[0] = float(p.x), q[1] = float(p.y), q[2] = float(p.z);
         }
     });
+    return r;
   }
 
-  static void choose_points(const Dataset& data, std::vector<uint32_t>& points) {
+  static std::vector<uint32_t> chosen_points(const Dataset& data) {
+    std::vector<uint32_t> points;
     if (auto* m = data.as<SurfaceMesh>(); m && m->vertices.size() > 0) {
       const CellsView v = cells_view(m->vertices);
       for (size_t c = 0; c < v.count; ++c)
@@ -263,7 +277,9 @@ class Preparation {
       points.resize(data.point_count());
       for (size_t i = 0; i < points.size(); ++i) points[i] = uint32_t(i);
     }
-    if (const Array& ghost = data.point_ghost(); !ghost.empty()) std::erase_if(points, [&](uint32_t p) { return int(ghost.get(p)) & ghost_hidden_point; });
+    if (const Array& ghost = data.point_ghost(); !ghost.empty())
+      std::erase_if(points, [&](uint32_t p) { return int(ghost.get(p)) & ghost_hidden_point; });
+    return points;
   }
 
   PreparedScene& out_;

@@ -43,14 +43,14 @@ struct ColorSource {
   enum class Kind { constant, scalar, direct } kind = Kind::constant;
   Vec4f constant{1, 1, 1, 1};  ///< linear
   bool per_cell = false;
-  Array values;                ///< f32, packed: 1 component (value - offset) or 4 (linear RGBA, straight alpha)
+  Array values;  ///< f32, packed: 1 component (value - offset) or 4 (linear RGBA, straight alpha)
   double offset = 0;
   std::shared_ptr<const ColorScale> scale;
-  std::vector<Vec4f> table;    ///< n colours of positions 0..1, then below, above, NaN
-  bool linear = false;         ///< position = (stored - first) * slope
-  bool nearest = false;        ///< labels are not blended: a pixel takes the value of the nearest corner
+  std::vector<Vec4f> table;  ///< n colours of positions 0..1, then below, above, NaN
+  bool linear = false;       ///< position = (stored - first) * slope
+  bool nearest = false;      ///< labels are not blended: a pixel takes the value of the nearest corner
   float first = 0, slope = 1;
-  bool translucent = false;    ///< some alpha may be below 1
+  bool translucent = false;  ///< some alpha may be below 1
 
   const float* data() const { return reinterpret_cast<const float*>(values.raw()); }
   /// Colour of a stored value (scalar kind).
@@ -70,12 +70,12 @@ struct PreparedItem {
   Material material;
   bool translucent = false;
   // lines
-  SegmentSet segments;
+  std::shared_ptr<const SegmentSet> segments;
   double width = 1;  ///< pixels; also the points' size
   bool shaded = false;
   // lines and points
-  std::vector<uint32_t> points;  ///< those that are drawn
-  Array positions;               ///< f32 x 3 packed
+  std::shared_ptr<const std::vector<uint32_t>> points;  ///< numbers of the dots that are drawn
+  Array positions;                                      ///< f32 x 3 packed
   Vec3 origin;
 };
 
@@ -85,14 +85,21 @@ SegmentSet line_segments(const Dataset& data, const SurfaceMesh& mesh);
 /// Every edge of the polygons and strips once, in order of its points.
 SegmentSet polygon_edges(const Dataset& data, const SurfaceMesh& mesh);
 ColorSource color_source(const DatasetPtr& data, const std::optional<FieldColor>& color, Vec3f constant, const char* where);
-/// Packed f32 positions and their origin; f64 arrays are copied relative to their middle.
-void packed_positions(const Points& points, const Dataset& data, Array& xyz, Vec3& origin);
+/// Packed f32 positions and their origin; other layouts are copied, f64 ones relative to the middle of the data.
+struct Positions {
+  Array xyz;
+  Vec3 origin;
+};
+Positions packed_positions(const DatasetPtr& data, const Points& points);
 
 /// Remembers what was derived from a dataset until the dataset is gone. `make` must not keep a DatasetPtr.
-std::shared_ptr<const void> remembered(const DatasetPtr& data, const std::string& key, std::shared_ptr<const void> (*make)(void*), void* argument);
+std::shared_ptr<const void> remembered(const DatasetPtr& data, const std::string& key, std::shared_ptr<const void> (*make)(void*),
+                                       void* argument);
 template <class T, class F>
 std::shared_ptr<const T> derived(const DatasetPtr& data, const std::string& key, F&& f) {
-  auto make = [](void* p) -> std::shared_ptr<const void> { return std::make_shared<const T>((*static_cast<std::remove_reference_t<F>*>(p))()); };
+  auto make = [](void* p) -> std::shared_ptr<const void> {
+    return std::make_shared<const T>((*static_cast<std::remove_reference_t<F>*>(p))());
+  };
   return std::static_pointer_cast<const T>(remembered(data, key, make, &f));
 }
 

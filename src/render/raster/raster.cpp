@@ -63,12 +63,19 @@ struct TilePixelFragment {
 class Drawing {
  public:
   Drawing(const PreparedScene& scene, const Projection& projection, double pixel_scale, Frame& frame, Context& context)
-      : scene_(scene), projection_(projection), pixel_scale_(pixel_scale), frame_(frame), context_(context), grid_(frame.width, frame.height),
-        lights_(world_lights(scene.lights, projection)), keys_(frame.pixels()) {}
+      : scene_(scene),
+        projection_(projection),
+        pixel_scale_(pixel_scale),
+        frame_(frame),
+        context_(context),
+        grid_(frame.width, frame.height),
+        lights_(world_lights(scene.lights, projection)),
+        keys_(frame.pixels()) {}
 
   FragmentLists run() {
     const uint64_t empty = empty_key(float(projection_.far_plane));
-    parallel_for(frame_.pixels(), 1 << 16, [&](size_t begin, size_t end) { std::fill(keys_.data() + begin, keys_.data() + end, empty); }, &context_);
+    parallel_for(
+        frame_.pixels(), 1 << 16, [&](size_t begin, size_t end) { std::fill(keys_.data() + begin, keys_.data() + end, empty); }, &context_);
     size_t opaque_items = 0;
     for (const PreparedItem& item : scene_.items) {
       views_.push_back(eye_view(projection_, item.kind == PreparedItem::Kind::surface ? item.triangles.origin : item.origin));
@@ -80,12 +87,15 @@ class Drawing {
         marks_.insert(marks_.end(), m.begin(), m.end());
       }
     }
-    auto triangle_box = [&](const std::vector<TriangleRecord>& r) { return [&](size_t i) { return pixel_box(r[i], frame_.width, frame_.height); }; };
+    auto triangle_box = [&](const std::vector<TriangleRecord>& r) {
+      return [&](size_t i) { return pixel_box(r[i], frame_.width, frame_.height); };
+    };
     opaque_bins_ = bin(opaque_.size(), grid_, triangle_box(opaque_));
     translucent_bins_ = bin(translucent_.size(), grid_, triangle_box(translucent_));
     mark_bins_ = bin(marks_.size(), grid_, [&](size_t i) { return mark_box(marks_[i], frame_.width, frame_.height); });
     fragments_.resize(grid_.count());
-    parallel_for(grid_.count(), 1, [&](size_t tile, size_t) { draw_tile(tile); }, &context_);
+    parallel_for(
+        grid_.count(), 1, [&](size_t tile, size_t) { draw_tile(tile); }, &context_);
     return collect();
   }
 
@@ -95,7 +105,9 @@ class Drawing {
     const TriangleJob job{view, t.xyz(), t.indices(), item.first_primitive, item.translucent ? 0 : small_triangle, keys_.data()};
     const size_t chunks = (t.count + triangle_chunk - 1) / triangle_chunk;
     std::vector<std::vector<TriangleRecord>> parts(chunks);
-    parallel_for(t.count, triangle_chunk, [&](size_t begin, size_t end) { draw_triangles(job, begin, end, parts[begin / triangle_chunk]); }, &context_);
+    parallel_for(
+        t.count, triangle_chunk, [&](size_t begin, size_t end) { draw_triangles(job, begin, end, parts[begin / triangle_chunk]); },
+        &context_);
     std::vector<size_t> start(chunks);
     for (size_t i = 0; i < chunks; ++i) start[i] = parts[i].size();
     const size_t before = large.size(), more = exclusive_scan(start);
@@ -106,7 +118,8 @@ class Drawing {
   }
 
   uint32_t item_of(uint32_t primitive) const {
-    auto it = std::upper_bound(scene_.items.begin(), scene_.items.end(), primitive, [](uint32_t p, const PreparedItem& i) { return p < i.first_primitive; });
+    auto it = std::upper_bound(scene_.items.begin(), scene_.items.end(), primitive,
+                               [](uint32_t p, const PreparedItem& i) { return p < i.first_primitive; });
     do --it;
     while (it->primitives == 0);
     return uint32_t(it - scene_.items.begin());
@@ -212,7 +225,9 @@ class Drawing {
         seen.push_back({item, uint32_t((y - box.y0) * tile_size + (x - box.x0)), primitive});
       }
     std::stable_sort(seen.begin(), seen.end(), [](const Seen& a, const Seen& b) { return a.item < b.item; });
-    shade_runs(seen.size(), box, [&](size_t i) { return seen[i]; }, [&](const PreparedItem& it, const ShadeBatch& b, size_t) { store_opaque(it, b, box); });
+    shade_runs(
+        seen.size(), box, [&](size_t i) { return seen[i]; },
+        [&](const PreparedItem& it, const ShadeBatch& b, size_t) { store_opaque(it, b, box); });
   }
 
   size_t pixel_of(const PixelBox& box, uint32_t in_tile) const {
@@ -237,14 +252,18 @@ class Drawing {
       });
     });
     std::stable_sort(covers.begin(), covers.end(), [](const Cover& a, const Cover& b) { return a.item < b.item; });
-    shade_runs(covers.size(), box, [&](size_t i) { return Seen{covers[i].item, covers[i].pixel, covers[i].primitive}; },
-               [&](const PreparedItem& it, const ShadeBatch& b, size_t first) {
-                 for (size_t i = 0; i < b.n; ++i) {
-                   Cover& c = covers[first + i];
-                   c.order = c.depth = b.depth[i], c.alpha = b.rgba[3][i] * it.opacity;
-                   for (size_t k = 0; k < 3; ++k) c.rgb[k] = b.rgba[k][i] * b.light[i] + b.gloss[i];
-                 }
-               });
+    shade_runs(
+        covers.size(), box,
+        [&](size_t i) {
+          return Seen{covers[i].item, covers[i].pixel, covers[i].primitive};
+        },
+        [&](const PreparedItem& it, const ShadeBatch& b, size_t first) {
+          for (size_t i = 0; i < b.n; ++i) {
+            Cover& c = covers[first + i];
+            c.order = c.depth = b.depth[i], c.alpha = b.rgba[3][i] * it.opacity;
+            for (size_t k = 0; k < 3; ++k) c.rgb[k] = b.rgba[k][i] * b.light[i] + b.gloss[i];
+          }
+        });
   }
 
   /// Sorts what covers each pixel; the first that hides all behind it becomes the opaque pixel, those before it fragments.
@@ -275,7 +294,9 @@ class Drawing {
     size_t total = 0;
     for (const auto& t : fragments_) total += t.size();
     if (total == 0) return lists;
-    if (total >= UINT32_MAX) fail_usage(fmt::format("{} translucent fragments are more than a picture holds", total), "render", "make the picture smaller or the surfaces opaque");
+    if (total >= UINT32_MAX)
+      fail_usage(fmt::format("{} translucent fragments are more than a picture holds", total), "render",
+                 "make the picture smaller or the surfaces opaque");
     lists.start.assign(frame_.pixels() + 1, 0);
     lists.fragments.resize(total);
     parallel_for(grid_.count(), 8, [&](size_t begin, size_t end) {
@@ -314,9 +335,11 @@ class Drawing {
 }  // namespace
 }  // namespace raster
 
-FragmentLists rasterize_prepared(const PreparedScene& scene, const Projection& projection, double pixel_scale, Frame& frame, Context& context) {
+FragmentLists rasterize_prepared(const PreparedScene& scene, const Projection& projection, double pixel_scale, Frame& frame,
+                                 Context& context) {
   if (frame.width != projection.width || frame.height != projection.height)
-    fail_usage(fmt::format("the frame is {}x{}, the projection {}x{}", frame.width, frame.height, projection.width, projection.height), "rasterize", "make both for the same size");
+    fail_usage(fmt::format("the frame is {}x{}, the projection {}x{}", frame.width, frame.height, projection.width, projection.height),
+               "rasterize", "make both for the same size");
   if (!(pixel_scale > 0)) fail_usage(fmt::format("pixel scale {} is no size", pixel_scale), "rasterize", "it must be above 0");
   return raster::Drawing(scene, projection, pixel_scale, frame, context).run();
 }

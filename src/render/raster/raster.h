@@ -28,6 +28,7 @@ PreparedScenePtr prepare_scene(const Scene& scene, Context& context);
 /// cleared (rgba 0, depth infinity, ids 0) and gets opaque colour (alpha 1), depth and ids; the result lists what is translucent and
 /// not hidden by an opaque surface. `pixel_scale`: pixels of this frame per pixel of the final picture (supersampling), for widths.
 FragmentLists rasterize(const Scene& scene, const Projection& projection, double pixel_scale, Frame& frame, Context& context);
-FragmentLists rasterize_prepared(const PreparedScene& scene, const Projection& projection, double pixel_scale, Frame& frame, Context& context);
+FragmentLists rasterize_prepared(const PreparedScene& scene, const Projection& projection, double pixel_scale, Frame& frame,
+                                 Context& context);
 
 }  // namespace sg

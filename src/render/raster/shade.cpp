@@ -48,7 +48,8 @@ void shade_reference(const ShadeJob& job, ShadeBatch& b) {
   auto three = [](const float* a) { return Vec3(a[0], a[1], a[2]); };
   for (size_t i = 0; i < b.n; ++i) {
     const uint32_t triangle = b.triangle[i], *t = job.triangles + 3 * size_t(triangle), *c = job.corners + 3 * size_t(triangle);
-    const double x = (double(b.tile_x) + b.pixel[i] % tile_size + 0.5 - v.center_x) / v.scale, y = (v.center_y - (double(b.tile_y) + b.pixel[i] / tile_size + 0.5)) / v.scale;
+    const double x = (double(b.tile_x) + b.pixel[i] % tile_size + 0.5 - v.center_x) / v.scale,
+                 y = (v.center_y - (double(b.tile_y) + b.pixel[i] / tile_size + 0.5)) / v.scale;
     const Vec3 eye = three(v.hi) + three(v.lo), side = three(v.right) * x + three(v.up) * y, forward = three(v.forward);
     const Vec3 ray = v.parallel ? forward : forward + side, start = v.parallel ? eye + side : eye;
     const Vec3 p0 = point(job.xyz, t[0]), p1 = point(job.xyz, t[1]), p2 = point(job.xyz, t[2]);
@@ -56,7 +57,8 @@ void shade_reference(const ShadeJob& job, ShadeBatch& b) {
     const Vec3 plane = cross(p1 - p0, p2 - p0);
     const double s = dot(p0 - start, plane) / dot(ray, plane), area = dot(plane, plane);
     const Vec3 hit = start + ray * s;
-    double w[3] = {dot(cross(p1 - hit, p2 - hit), plane) / area, dot(cross(p2 - hit, p0 - hit), plane) / area, dot(cross(p0 - hit, p1 - hit), plane) / area};
+    double w[3] = {dot(cross(p1 - hit, p2 - hit), plane) / area, dot(cross(p2 - hit, p0 - hit), plane) / area,
+                   dot(cross(p0 - hit, p1 - hit), plane) / area};
     double sum = 0;
     for (double& k : w) k = std::isfinite(k) ? std::max(k, 0.0) : 1.0 / 3, sum += k;
     for (double& k : w) k /= sum;

@@ -23,7 +23,7 @@ struct ShadeJob {
   const float* normals;     ///< null: face normals
   const uint32_t* corners;  ///< normal numbers, three per triangle
   const ColorSource* color;
-  const uint32_t* cells;    ///< null: first_cell + triangle
+  const uint32_t* cells;  ///< null: first_cell + triangle
   uint32_t first_cell;
   Material material;
   const WorldLight* lights;
@@ -48,6 +48,7 @@ void shade(const ShadeJob& job, ShadeBatch& batch);
 void shade_reference(const ShadeJob& job, ShadeBatch& batch);
 
 /// Ambient and diffuse light, and the specular term, of a unit normal seen along `to_viewer`.
-void light_point(const Material& material, const WorldLight* lights, size_t count, Vec3f normal, Vec3f to_viewer, float& light, float& gloss);
+void light_point(const Material& material, const WorldLight* lights, size_t count, Vec3f normal, Vec3f to_viewer, float& light,
+                 float& gloss);
 
 }  // namespace sg::raster

@@ -122,7 +122,8 @@ HWY_INLINE void light_up(const ShadeJob& job, const Hit& h, const I* corner, F& 
   face = select3(hn::Lt(dot3(face, view), zero), V3{zero - face.x, zero - face.y, zero - face.z}, face);
   V3 n = face;
   if (job.normals) {
-    const V3 mixed = gather3(job.normals, corner[0]) * h.w[0] + gather3(job.normals, corner[1]) * h.w[1] + gather3(job.normals, corner[2]) * h.w[2];
+    const V3 mixed =
+        gather3(job.normals, corner[0]) * h.w[0] + gather3(job.normals, corner[1]) * h.w[1] + gather3(job.normals, corner[2]) * h.w[2];
     n = unit(mixed, face);
     n = select3(hn::Lt(dot3(n, face), zero), V3{zero - n.x, zero - n.y, zero - n.z}, n);  // lit on the side that is seen
   }
@@ -165,7 +166,8 @@ HWY_INLINE void color(const ShadeJob& job, const Hit& h, I triangle, const I* po
   const float* values = c.data();
   I cell = triangle;
   if (c.per_cell)
-    cell = job.cells ? hn::GatherIndex(di, reinterpret_cast<const int32_t*>(job.cells), triangle) : triangle + hn::Set(di, int32_t(job.first_cell));
+    cell = job.cells ? hn::GatherIndex(di, reinterpret_cast<const int32_t*>(job.cells), triangle)
+                     : triangle + hn::Set(di, int32_t(job.first_cell));
   if (c.kind == ColorSource::Kind::direct) {
     for (int k = 0; k < 4; ++k) {
       auto value = [&](I at) { return hn::GatherIndex(d, values + k, hn::ShiftLeft<2>(at)); };
@@ -180,7 +182,8 @@ HWY_INLINE void color(const ShadeJob& job, const Hit& h, I triangle, const I* po
     best = hn::IfThenElse(hn::RebindMask(di, hn::Gt(h.w[2], hn::Max(h.w[0], h.w[1]))), point[2], best);
     value = hn::GatherIndex(d, values, best);
   } else {
-    value = hn::GatherIndex(d, values, point[0]) * h.w[0] + hn::GatherIndex(d, values, point[1]) * h.w[1] + hn::GatherIndex(d, values, point[2]) * h.w[2];
+    value = hn::GatherIndex(d, values, point[0]) * h.w[0] + hn::GatherIndex(d, values, point[1]) * h.w[1] +
+            hn::GatherIndex(d, values, point[2]) * h.w[2];
   }
   if (!c.linear) {
     rgba[0] = value;
@@ -197,7 +200,8 @@ void run(const ShadeJob& job, ShadeBatch& b) {
   const size_t lanes = hn::Lanes(d);
   while (b.n % lanes) b.pixel[b.n] = b.pixel[b.n - 1], b.triangle[b.n] = b.triangle[b.n - 1], ++b.n;
   for (size_t i = 0; i < b.n; i += lanes) {
-    const I pixel = hn::Load(di, reinterpret_cast<const int32_t*>(b.pixel + i)), triangle = hn::Load(di, reinterpret_cast<const int32_t*>(b.triangle + i));
+    const I pixel = hn::Load(di, reinterpret_cast<const int32_t*>(b.pixel + i)),
+            triangle = hn::Load(di, reinterpret_cast<const int32_t*>(b.triangle + i));
     const I at = triangle + triangle + triangle;
     I point[3], corner[3];
     for (int k = 0; k < 3; ++k) {

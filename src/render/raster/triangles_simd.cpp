@@ -161,11 +161,13 @@ HWY_INLINE void draw_block(const TriangleJob& job, const uint32_t* t, size_t cou
     return hn::And(hn::Ge(q.z, near_plane), hn::And(hn::Lt(hn::Abs(q.px), guard), hn::Lt(hn::Abs(q.py), guard)));
   };
   const MI whole = hn::And(hn::RebindMask(di, hn::And(clean(c[0]), hn::And(clean(c[1]), clean(c[2])))), real);
-  const MI behind = hn::RebindMask(di, hn::And(hn::Lt(c[0].z, near_plane), hn::And(hn::Lt(c[1].z, near_plane), hn::Lt(c[2].z, near_plane))));
+  const MI behind =
+      hn::RebindMask(di, hn::And(hn::Lt(c[0].z, near_plane), hn::And(hn::Lt(c[1].z, near_plane), hn::Lt(c[2].z, near_plane))));
   const uint32_t first = job.first_primitive + uint32_t(triangle);
   for (uint64_t bits = bits_of(di, hn::AndNot(hn::Or(whole, behind), real)); bits; bits &= bits - 1) {
     const size_t k = size_t(__builtin_ctzll(bits));
-    clip_triangle(view, job.xyz + 3 * size_t(t[3 * k]), job.xyz + 3 * size_t(t[3 * k + 1]), job.xyz + 3 * size_t(t[3 * k + 2]), first + uint32_t(k), large);
+    clip_triangle(view, job.xyz + 3 * size_t(t[3 * k]), job.xyz + 3 * size_t(t[3 * k + 1]), job.xyz + 3 * size_t(t[3 * k + 2]),
+                  first + uint32_t(k), large);
   }
 
   // Pixels whose centres lie in the box; most tiny triangles have none.
@@ -173,8 +175,10 @@ HWY_INLINE void draw_block(const TriangleJob& job, const uint32_t* t, size_t cou
   const I ly = min3(c[0].y, c[1].y, c[2].y), hy = max3(c[0].y, c[1].y, c[2].y);
   const I half = hn::Set(di, subpixels / 2), zero = hn::Zero(di);
   Setup s;
-  s.first_x = hn::Max(hn::ShiftRight<8>(lx + (half - hn::Set(di, 1))), zero), s.first_y = hn::Max(hn::ShiftRight<8>(ly + (half - hn::Set(di, 1))), zero);
-  s.last_x = hn::Min(hn::ShiftRight<8>(hx - half), hn::Set(di, view.width - 1)), s.last_y = hn::Min(hn::ShiftRight<8>(hy - half), hn::Set(di, view.height - 1));
+  s.first_x = hn::Max(hn::ShiftRight<8>(lx + (half - hn::Set(di, 1))), zero),
+  s.first_y = hn::Max(hn::ShiftRight<8>(ly + (half - hn::Set(di, 1))), zero);
+  s.last_x = hn::Min(hn::ShiftRight<8>(hx - half), hn::Set(di, view.width - 1)),
+  s.last_y = hn::Min(hn::ShiftRight<8>(hy - half), hn::Set(di, view.height - 1));
   const MI none = hn::Or(hn::Gt(s.first_x, s.last_x), hn::Gt(s.first_y, s.last_y));
   const MI seen = hn::AndNot(none, whole);
   if (hn::AllFalse(di, seen)) return;
@@ -237,7 +241,9 @@ void draw_triangles(const TriangleJob& job, size_t begin, size_t end, std::vecto
   HWY_DYNAMIC_DISPATCH(draw)(job, begin, end, large);
 }
 
-void span_depths(const WPlane& plane, bool parallel, int x, int y, int n, float* depth) { HWY_DYNAMIC_DISPATCH(depths)(plane, parallel, x, y, n, depth); }
+void span_depths(const WPlane& plane, bool parallel, int x, int y, int n, float* depth) {
+  HWY_DYNAMIC_DISPATCH(depths)(plane, parallel, x, y, n, depth);
+}
 
 void draw_record(const TriangleRecord& t, const PixelBox& box, bool parallel, uint64_t* keys, int width) {
   const WPlane plane = w_plane(t);
@@ -271,13 +277,15 @@ void draw_triangles_reference(const TriangleJob& job, size_t begin, size_t end, 
       const float px = v.center_x + (v.parallel ? e.x : e.x * w) * v.scale, py = v.center_y - (v.parallel ? e.y : e.y * w) * v.scale;
       const bool clean = e.z >= v.near_plane && std::abs(px) < guard_band && std::abs(py) < guard_band;
       whole = whole && clean, behind = behind && e.z < v.near_plane;
-      if (clean) t.x[k] = int32_t(std::nearbyint(px * float(subpixels))), t.y[k] = int32_t(std::nearbyint(py * float(subpixels))), t.w[k] = w;
+      if (clean)
+        t.x[k] = int32_t(std::nearbyint(px * float(subpixels))), t.y[k] = int32_t(std::nearbyint(py * float(subpixels))), t.w[k] = w;
     }
     if (!whole) {
       if (!behind) clip_triangle(v, p[0], p[1], p[2], primitive, large);
       continue;
     }
-    const int wide = std::max({t.x[0], t.x[1], t.x[2]}) - std::min({t.x[0], t.x[1], t.x[2]}), high = std::max({t.y[0], t.y[1], t.y[2]}) - std::min({t.y[0], t.y[1], t.y[2]});
+    const int wide = std::max({t.x[0], t.x[1], t.x[2]}) - std::min({t.x[0], t.x[1], t.x[2]}),
+              high = std::max({t.y[0], t.y[1], t.y[2]}) - std::min({t.y[0], t.y[1], t.y[2]});
     if (!finish_record(t, v.width, v.height)) continue;
     if (wide >= job.small * subpixels || high >= job.small * subpixels) {
       large.push_back(t);
@@ -288,7 +296,8 @@ void draw_triangles_reference(const TriangleJob& job, size_t begin, size_t end, 
     for_each_span(t, pixel_box(t, v.width, v.height), [&](int y, int x0, int x1) {
       for (int x = x0; x <= x1; ++x) {
         const int cx = x * subpixels + subpixels / 2, cy = y * subpixels + subpixels / 2;
-        float w = (float(twice(1, 2, cx, cy)) * t.w[0] + float(twice(2, 0, cx, cy)) * t.w[1] + float(twice(0, 1, cx, cy)) * t.w[2]) * inverse_area;
+        float w = (float(twice(1, 2, cx, cy)) * t.w[0] + float(twice(2, 0, cx, cy)) * t.w[1] + float(twice(0, 1, cx, cy)) * t.w[2]) *
+                  inverse_area;
         if (!v.parallel) w = 1.0f / w;
         keep_nearest(job.keys + size_t(y) * size_t(v.width) + size_t(x), depth_key(w, primitive));
       }
