@@ -3,11 +3,17 @@
 #include "pipeline/operation_table.h"
 
 // Headers of the operations, sorted.
+#include "filter/field/basics.h"
 #include "filter/field/gradient.h"
 #include "filter/mesh/faces.h"
+#include "filter/mesh/slice.h"
 #include "filter/mesh/threshold.h"
+#include "filter/mesh/transform.h"
 #include "filter/scalar/contour.h"
 #include "filter/segment/label_surface.h"
+#include "simulate/flow_fields.h"
+#include "simulate/point_load.h"
+#include "simulate/scalar_fields.h"
 
 namespace sg {
 
