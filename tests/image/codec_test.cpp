@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/codec.h"
 
+#include <signal.h>
+#include <sys/resource.h>
+
 #include <cstring>
 
 #include "base/file.h"
@@ -185,7 +188,7 @@ TEST_CASE("codec: the extension chooses; files begin with their format's mark") 
     }
 }
 
-TEST_CASE("codec: unknown extensions, missing folders and full disks are errors") {
+TEST_CASE("codec: unknown extensions and missing folders are errors") {
   const Image image = sample(300, 300, 3);
   CHECK(test::error_of([&] { write_image("a.bmp", image); }).find("'.bmp'") != std::string::npos);
   CHECK(test::error_of([&] { write_image("picture", image); }).find("no extension") != std::string::npos);
@@ -193,6 +196,31 @@ TEST_CASE("codec: unknown extensions, missing folders and full disks are errors"
   CHECK(test::error_of([&] { write_image(test::temp_folder() + "a.jpg", Image()); }).find("no pixels") != std::string::npos);
   CHECK(test::error_of([&] { write_image(test::temp_folder() + "a.webp", Image(20000, 1, 3)); }).find("WebP") != std::string::npos);
   CHECK(test::error_of([] { read_png(test::temp_folder() + "missing.png"); }).find("missing.png") != std::string::npos);
+}
+
+TEST_CASE("codec: a disk that fills up is an error and leaves no file") {
+  // A limit on the size of files stands in for the full disk: write() fails half way.
+  const std::string path = test::temp_folder() + "full.png";
+  Image image = sample(300, 300, 3);
+  for (size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = uint8_t(random_bits(2, i));  // 270 kB, not compressible
+  rlimit before{};
+  ::getrlimit(RLIMIT_FSIZE, &before);
+  rlimit tight = before;
+  tight.rlim_cur = 64 << 10;
+  const auto handler = ::signal(SIGXFSZ, SIG_IGN);
+  ::setrlimit(RLIMIT_FSIZE, &tight);
+  std::string message;
+  ErrorKind kind = ErrorKind::internal;
+  try {
+    write_image(path, image);
+  } catch (const Error& e) {
+    message = e.what(), kind = e.kind();
+  }
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  ::signal(SIGXFSZ, handler);
+  CHECK(message.find("full.png") != std::string::npos);
+  CHECK(kind == ErrorKind::data);
+  CHECK(!file_exists(path));
 }
 
 TEST_CASE("compare: rms, maximum and number of pixels") {
