@@ -99,7 +99,7 @@ TEST_CASE("raster coverage: the vector code draws the keys of the plain one") {
     REQUIRE(la.size() == lb.size());
     auto order = [](const TriangleRecord& x, const TriangleRecord& y) { return x.primitive < y.primitive; };
     std::stable_sort(la.begin(), la.end(), order), std::stable_sort(lb.begin(), lb.end(), order);
-    CHECK(std::memcmp(la.data(), lb.data(), la.size() * sizeof(TriangleRecord)) == 0);
+    CHECK(test::same_bytes(la, lb));
   }
 }
 
