@@ -12,6 +12,7 @@
 #include <cstring>
 
 #include "base/error.h"
+#include "base/parallel.h"
 
 namespace sg {
 
@@ -30,7 +31,10 @@ MappedFile::MappedFile(const std::string& path) : path_(path) {
   }
   void* p = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, fd, 0);
   const int error = errno;
-  ::close(fd);
+  descriptor_ = std::shared_ptr<const int>(new int(fd), [](const int* d) {
+    ::close(*d);
+    delete d;
+  });
   if (p == MAP_FAILED) fail_data(std::string("cannot be mapped: ") + std::strerror(error), path);
   const size_t n = size_;
   owner_ = std::shared_ptr<const void>(p, [n](const void* q) { ::munmap(const_cast<void*>(q), n); });
@@ -44,6 +48,18 @@ std::string partial_name(const std::string& path) {
   return fmt::format("{}.partial-{}-{}", path, ::getpid(), count++);
 }
 }  // namespace
+
+void MappedFile::copy_to(void* to, size_t offset, size_t bytes) const {
+  if (offset > size_ || bytes > size_ - offset) fail_internal("copy_to reaches beyond the file", path_);
+  parallel_for(bytes, size_t(4) << 20, [&](size_t begin, size_t end) {
+    while (begin < end) {
+      const ssize_t n = ::pread(*descriptor_, static_cast<char*>(to) + begin, end - begin, off_t(offset + begin));
+      if (n < 0 && errno == EINTR) continue;
+      if (n <= 0) fail_data(n < 0 ? std::string("cannot be read: ") + std::strerror(errno) : std::string("ends before its size"), path_);
+      begin += size_t(n);
+    }
+  });
+}
 
 AtomicFile::AtomicFile(const std::string& path) : path_(path), partial_(partial_name(path)) {
   struct stat st {};

@@ -22,12 +22,16 @@ class MappedFile {
   size_t size() const { return size_; }
   std::string_view text() const { return {reinterpret_cast<const char*>(data_), size_}; }
   const std::string& path() const { return path_; }
+  /// Copies bytes [offset, offset + bytes) by reading, on all threads: the copy costs no mapped pages. The range must lie in the
+  /// file. Throws Error(data) when the file cannot be read (it may have been cut since).
+  void copy_to(void* to, size_t offset, size_t bytes) const;
   /// Keeps the mapping alive; for Buffer::owner.
   std::shared_ptr<const void> owner() const { return owner_; }
 
  private:
   std::string path_;
   std::shared_ptr<const void> owner_;
+  std::shared_ptr<const int> descriptor_;
   const std::byte* data_ = nullptr;
   size_t size_ = 0;
 };

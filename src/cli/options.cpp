@@ -91,8 +91,8 @@ void finish_raw(const RawText& raw, Options& o) {
 [[noreturn]] void fail_unknown(const CLI::App& command, const CLI::ParseError& e) {
   const std::string text = e.what();
   const size_t at = text.find(": ");
-  if (e.get_name() == "ExtrasError" && at != std::string::npos) {
-    const std::string word(trim(std::string_view(text).substr(at + 2)));
+  if (e.get_exit_code() == int(CLI::ExitCodes::ExtrasError) && at != std::string::npos) {
+    const std::string word(words(std::string_view(text).substr(at + 2)).at(0));
     std::vector<std::string> names;
     if (word.starts_with("-")) {
       for (const CLI::Option* option : command.get_options())
@@ -180,6 +180,7 @@ Options parse_options(int argc, char** argv) {
     a.add_flag("--json", o.json, "For programs");
   } else {
     a.description("Renders some pictures of what Sightglass can do.");
+    a.add_option("folder", o.inputs, "Render every file in this folder onto the sheet instead")->expected(0, 1);
     a.add_option("-o,--out", o.output, "Folder; default out/");
     a.add_option("--sheet", o.sheet, "All pictures on one sheet: file to write");
   }

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data/array.h"
 
-#include <sys/mman.h>
-
-#include <cstdlib>
 #include <new>
 
+#include "base/huge_allocator.h"
 #include "base/parallel.h"
 #include "base/text.h"
 
@@ -51,15 +49,14 @@ bool parse_element_type(std::string_view name, ElementType& out) {
 }
 
 Buffer Buffer::allocate(size_t bytes, std::byte** writable) {
-  constexpr size_t huge = size_t(2) << 20;
-  const bool large = bytes >= 2 * huge;
-  const size_t alignment = large ? huge : 64;
-  const size_t rounded = (std::max<size_t>(bytes, 1) + alignment - 1) / alignment * alignment;
-  void* p = rounded < bytes ? nullptr : std::aligned_alloc(alignment, rounded);
-  if (!p) fail_data(fmt::format("not enough memory for {}", human_bytes(bytes)));
-  if (large) ::madvise(p, rounded, MADV_HUGEPAGE);  // a hint: first touch of 4 KiB pages costs 0.4 s per GiB
+  void* p = nullptr;
+  try {
+    p = allocate_large(bytes);
+  } catch (const std::bad_alloc&) {
+    fail_data(fmt::format("not enough memory for {}", human_bytes(bytes)));
+  }
   Buffer b;
-  b.owner = std::shared_ptr<const void>(p, [](const void* q) { std::free(const_cast<void*>(q)); });
+  b.owner = std::shared_ptr<const void>(p, [](const void* q) { free_large(const_cast<void*>(q)); });
   b.data = static_cast<const std::byte*>(p);
   b.size = bytes;
   *writable = static_cast<std::byte*>(p);

@@ -6,6 +6,16 @@
 #include "base/parallel.h"
 
 namespace sg {
+
+Frame::Frame(int w, int h) : width(w), height(h) {
+  const size_t n = pixels();
+  rgba.resize(4 * n), depth.resize(n), ids.resize(n);
+  parallel_for(n, 1 << 16, [&](size_t begin, size_t end) {
+    std::fill(rgba.begin() + ptrdiff_t(4 * begin), rgba.begin() + ptrdiff_t(4 * end), 0.0f);
+    std::fill(depth.begin() + ptrdiff_t(begin), depth.begin() + ptrdiff_t(end), std::numeric_limits<float>::infinity());
+    std::fill(ids.begin() + ptrdiff_t(begin), ids.begin() + ptrdiff_t(end), 0u);
+  });
+}
 namespace {
 
 /// Linear light to an 8-bit sRGB code, equal to round(255 * srgb_encode(x)) for every float x.

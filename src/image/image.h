@@ -2,10 +2,11 @@
 // Image: packed 8-bit pixels, rows from the top. Frame: the planes that renderers fill.
 #pragma once
 #include <cstdint>
-#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "base/huge_allocator.h"
 
 namespace sg {
 
@@ -26,13 +27,13 @@ struct Image {
 /// where nothing was hit; id is item number + 1 in the scene, 0 for background.
 struct Frame {
   int width = 0, height = 0;
-  std::vector<float> rgba;    ///< 4 * width * height
-  std::vector<float> depth;   ///< width * height
-  std::vector<uint32_t> ids;  ///< width * height
+  Plane<float> rgba;    ///< 4 * width * height
+  Plane<float> depth;   ///< width * height
+  Plane<uint32_t> ids;  ///< width * height
 
   Frame() = default;
-  Frame(int w, int h)
-      : width(w), height(h), rgba(size_t(w) * size_t(h) * 4), depth(size_t(w) * size_t(h), std::numeric_limits<float>::infinity()), ids(size_t(w) * size_t(h)) {}
+  /// Cleared: rgba 0, depth infinity, ids 0.
+  Frame(int w, int h);
   size_t pixels() const { return size_t(width) * size_t(height); }
 };
 

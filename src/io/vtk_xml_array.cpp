@@ -98,6 +98,7 @@ Array XmlFile::finished(const Wanted& want, Buffer buffer, size_t offset, size_t
   std::byte* out = nullptr;
   Array a = Array::make_raw(want.type, tuples, want.components, &out);
   if (swap) swap_bytes_copy(out, from, n, size);
+  else if (buffer.data == file_.data()) file_.copy_to(out, offset, bytes);  // VTK writes arrays on any byte
   else parallel_for(bytes, size_t(1) << 20, [&](size_t begin, size_t end) { std::memcpy(out + begin, from + begin, end - begin); });
   return a;
 }

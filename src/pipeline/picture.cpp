@@ -187,6 +187,37 @@ bool has_nan(const Scene& scene) {
   return false;
 }
 
+// The edges of the box that do not lie in front of the data: those with a face turned away from the camera.
+LinesItem back_edges(const Box3& box, const Camera& camera) {
+  // turned_away[axis][end]: does the face at that end look away from the camera?
+  bool turned_away[3][2];
+  const Vec3 towards = camera.position - camera.target;
+  for (int a = 0; a < 3; ++a) {
+    turned_away[a][0] = camera.parallel ? towards[a] >= 0 : camera.position[a] >= box.lo[a];
+    turned_away[a][1] = camera.parallel ? towards[a] <= 0 : camera.position[a] <= box.hi[a];
+  }
+  SurfaceMesh mesh;
+  mesh.points.origin = box.center();
+  std::vector<float> xyz;
+  std::vector<int32_t> ends;
+  for (int c = 0; c < 8; ++c)
+    for (int a = 0; a < 3; ++a) xyz.push_back(float((c >> a & 1 ? box.hi[a] : box.lo[a]) - mesh.points.origin[a]));
+  for (int c = 0; c < 8; ++c)
+    for (int a = 0; a < 3; ++a) {
+      const int u = (a + 1) % 3, v = (a + 2) % 3;
+      if ((c >> a & 1) || !(box.size()[a] > 0)) continue;
+      if (turned_away[u][c >> u & 1] || turned_away[v][c >> v & 1]) ends.insert(ends.end(), {c, c | 1 << a});
+    }
+  mesh.points.xyz = Array::from_vector(std::move(xyz), 3);
+  mesh.lines.fixed = 2;
+  mesh.lines.connectivity = Array::from_vector(std::move(ends));
+  LinesItem item;
+  item.data = make_dataset(std::move(mesh));
+  item.color = {0.69f, 0.69f, 0.71f};
+  item.width = 1;
+  return item;
+}
+
 // Where a picture narrowed by its legends lies in the whole one: at the left, the rest is background.
 void place_left(const Frame& part, Frame& whole) {
   for (int y = 0; y < part.height; ++y) {
@@ -264,21 +295,11 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
   }
   if (!any_points) context.warn("the picture is empty: there are no points to show");
   if (!file.show.empty() && look.shows.empty()) choose_view(box, extension_of(origin_of(file, file.show[0].of.empty() ? file.steps.back().name : file.show[0].of)), look);
-  if (stated.picture.axes && !outlined && !box.empty()) {
-    UniformGrid whole;
-    whole.dims = {2, 2, 2};
-    whole.origin = box.lo;
-    for (int a = 0; a < 3; ++a) {
-      whole.spacing[a] = box.size()[a] > 0 ? box.size()[a] : 1;
-      if (!(box.size()[a] > 0)) whole.dims[size_t(a)] = 1;
-    }
-    find_show("outline").add(scene, make_dataset(whole), {"color=#b0b0b6", "width=1"}, context);
-  }
   scene.background = stated.bottom, scene.background_top = stated.top, scene.transparent = stated.transparent;
 
   const double brightness = 0.2126 * stated.bottom.x + 0.7152 * stated.bottom.y + 0.0722 * stated.bottom.z;
   annotation.title = stated.picture.title;
-  annotation.triad = stated.picture.triad && any_points;
+  annotation.triad = stated.picture.triad && any_points && !look.parallel;  // a map needs none: its axes are named
   annotation.scale = stated.picture.text;
   annotation.dark_background = !stated.transparent && brightness < 0.45;
   annotation.show_nan_in_legend = has_nan(scene);
@@ -287,6 +308,7 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
   const int legends = legend_width(annotation, stated.width, stated.height);
   const double aspect = double(std::max(1, legends * 2 > stated.width ? stated.width : stated.width - legends)) / stated.height;
   const Camera camera = make_camera(stated.camera, box, aspect, look.direction, look.up, look.parallel, stated.picture.axes ? 0.11 : 0.05);
+  if (stated.picture.axes && !outlined && !box.empty()) scene.items.emplace_back(back_edges(box, camera));
   picture.image = draw(scene, camera, stated, std::move(annotation), context);
   return picture;
 }

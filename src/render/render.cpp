@@ -16,7 +16,7 @@ namespace {
 int chosen_samples(const Scene& scene, int asked) {
   if (asked > 0) return asked;
   for (const Item& item : scene.items)
-    if (!std::holds_alternative<VolumeItem>(item)) return 2;
+    if (std::holds_alternative<SurfaceItem>(item)) return 2;  // lines, dots and volumes have soft edges of their own
   return 1;
 }
 

@@ -100,7 +100,8 @@ Look choose_look(const Dataset& d, const std::string& field, const std::string& 
   }
   std::vector<std::string> words;
   const bool simulation = !d.as<SurfaceMesh>() && !is_lattice(d.mesh());
-  const bool show_edges = simulation && d.cell_count() <= 12000;
+  const bool bare_map = look.parallel && d.fields().empty() && d.as<SurfaceMesh>();  // nothing but its edges tells its parts apart
+  const bool show_edges = (simulation && d.cell_count() <= 12000) || (bare_map && d.cell_count() <= 2000);
   if (show_edges) words.push_back("edges=true");
   if (look.parallel && box_grid) words.push_back("lit=false");  // an image: its colours as they are
   look.shows.push_back({"surface", words, true});

@@ -68,10 +68,19 @@ const Field* wanted_field(const Dataset& d, const ColoringParams& p) {
     if (f.association == Association::whole) fail_usage(fmt::format("field '{}' belongs to the whole dataset, not to points or cells", f.name), "field");
     return &f;
   }
-  if (const Field* f = d.fields().with_role(Role::scalars); f && f->components() == 1) return f;
+  // A field that is the same everywhere (a contour's own field) says nothing in colour.
+  auto varies = [&](const Field& f) {
+    const Range r = d.range(f);
+    return r.empty() || r.lo < r.hi;
+  };
+  auto usable = [&](const Field* f) { return f && (f->role == Role::colors || varies(*f)); };
+  if (const Field* f = d.fields().with_role(Role::scalars); usable(f) && f->components() == 1) return f;
   if (const Field* f = d.fields().with_role(Role::colors)) return f;
-  if (const Field* f = d.fields().active(1)) return f;
-  if (const Field* f = d.fields().active(3); f && f->role != Role::normals) return f;
+  for (int components : {1, 3})
+    for (Association a : {Association::point, Association::cell})
+      for (const Field& f : d.fields())
+        if (f.association == a && f.components() == components && f.role != Role::normals && f.role != Role::tcoords && f.role != Role::global_ids && varies(f))
+          return &f;
   return nullptr;
 }
 

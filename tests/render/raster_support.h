@@ -95,9 +95,9 @@ inline Picture draw(const Scene& scene, const Camera& camera, int w, int h, doub
   return p;
 }
 
-template <class T>
-bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
-  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+template <class V>
+bool same_bytes(const V& a, const V& b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(typename V::value_type)) == 0);
 }
 inline bool same_bytes(const Picture& a, const Picture& b) {
   return same_bytes(a.frame.rgba, b.frame.rgba) && same_bytes(a.frame.depth, b.frame.depth) && same_bytes(a.frame.ids, b.frame.ids) &&

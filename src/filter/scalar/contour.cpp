@@ -131,6 +131,24 @@ std::vector<T> joined_list(const std::vector<Piece>& pieces, Get&& get) {
   return r;
 }
 
+// One isovalue per point; integer fields become f32, as 0.5 is no integer.
+Array isovalues(const std::vector<Piece>& pieces, const std::vector<double>& values, ElementType type) {
+  size_t total = 0;
+  for (const Piece& p : pieces) total += p.points.count;
+  auto fill = [&]<class T>(T* out, const Array& made) {
+    for (size_t i = 0; i < pieces.size(); ++i) out = std::fill_n(out, pieces[i].points.count, T(values[i]));
+    return made;
+  };
+  if (type == ElementType::f64) {
+    double* out = nullptr;
+    const Array a = Array::make<double>(total, 1, &out);
+    return fill(out, a);
+  }
+  float* out = nullptr;
+  const Array a = Array::make<float>(total, 1, &out);
+  return fill(out, a);
+}
+
 DatasetPtr assemble(const Dataset& input, const Field& field, const std::vector<double>& values, std::vector<Piece> pieces, const Job& job,
                     bool wants_normals) {
   size_t total = 0;
@@ -155,12 +173,9 @@ DatasetPtr assemble(const Dataset& input, const Field& field, const std::vector<
   if (pieces.size() > 1) edges = list = joined_list<EdgePoint>(pieces, [](const Piece& p) -> const Block<EdgePoint>& { return p.points; });
   for (const Field& f : input.fields()) {
     if (f.association != Association::point) continue;
-    const bool made = job.values && f.array.raw() == job.samples.raw();  // the vertices had its numbers in hand
-    out.add({f.name, f.association,
-             made ? joined(
-                        pieces, 1, [](Piece& p) { return p.values; }, false)
-                  : interpolate(f.array, edges),
-             f.unit, f.role});
+    // On its own contour the field has the isovalue itself, free of the rounding of an interpolation.
+    const bool itself = f.name == field.name && f.components() == 1;
+    out.add({f.name, f.association, itself ? isovalues(pieces, values, f.array.type()) : interpolate(f.array, edges), f.unit, f.role});
   }
   if (wants_normals) {
     float* none = nullptr;
@@ -226,9 +241,8 @@ DatasetPtr contour(const DatasetPtr& input, const ContourParams& params, Context
   for (double v : values)
     if (!std::isfinite(v)) fail_usage(fmt::format("{} is no isovalue", v), "contour values", "give finite numbers");
 
-  Job job{*input, choose_samples(field, component), params.normals, false, false, choose_origin(input->bounds()), context};
+  Job job{*input, choose_samples(field, component), params.normals, false, choose_origin(input->bounds()), context};
   for (const Field& f : input->fields()) job.cells = job.cells || f.association == Association::cell;
-  job.values = is_lattice(input->mesh()) && input->point_count() > 0 && job.samples.raw() == field.array.raw() && field.components() == 1;
   std::vector<Piece> pieces;
   if (is_lattice(input->mesh()) && input->point_count() > 0) {
     LatticeContour lattice(job);

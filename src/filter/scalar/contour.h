@@ -26,7 +26,8 @@ void describe(Schema& s, ContourParams& p);
 /// triangles: faces that can be cut in two ways are decided by the bilinear function on them (Nielson and Hamann 1991). Triangles and
 /// the point field "Normals" (f32, unit) face the smaller values; on lines the larger values lie on the left in x-y meshes.
 /// Cells that touch a NaN or a hidden point, and ghost and blanked cells, leave clean borders.
-/// All fields are carried: point fields interpolated along the edges, cell fields from the cell. With several values the cell
+/// All fields are carried: point fields interpolated along the edges (the contoured field itself is the isovalue exactly, f32 for
+/// integer fields), cell fields from the cell. With several values the cell
 /// field "contour value" says which. Nothing crossed: an empty mesh with its fields, and a note in the log.
 /// Memory: less than one byte per sample beside the result. Same bytes for any number of threads.
 /// Throws Error(usage) for an unknown field, a cell field, a vector without `component`, and meshes without an interior.

@@ -205,10 +205,8 @@ Piece LatticeContour::generate(const Cuts& cuts) const {
   piece.xyz = Array::make<float>(cuts.vertices, 3, &xyz);
   if (job_.normals && corners == 3) piece.normals = Array::make<float>(cuts.vertices, 3, &normals);
   piece.points.allocate(cuts.vertices);
-  std::byte* values = nullptr;
-  if (job_.values) piece.values = Array::make_raw(job_.samples.type(), cuts.vertices, 1, &values);
   make_vertices(
-      {frame_, job_.samples, cuts.value, job_.origin, words_, cuts.cut, cuts.rows, xyz, normals, piece.points.data, values, job_.context});
+      {frame_, job_.samples, cuts.value, job_.origin, words_, cuts.cut, cuts.rows, xyz, normals, piece.points.data, job_.context});
 
   int32_t* out = nullptr;
   (corners == 3 ? piece.triangles : piece.lines) = Array::make<int32_t>(cuts.cells * size_t(corners), 1, &out);

@@ -31,7 +31,6 @@ struct Block {
 struct Piece {
   Array xyz;      ///< f32, relative to Job::origin
   Array normals;  ///< f32, or empty
-  Array values;   ///< the samples interpolated, in their own type; empty: not made
   Block<EdgePoint> points;
   Array lines, triangles;                      ///< i32 connectivity, 2 and 3 per cell
   Block<uint32_t> line_cells, triangle_cells;  ///< source cell of each; empty when not asked for
@@ -43,7 +42,6 @@ struct Job {
   Array samples;  ///< u8, i8, u16, i16, f32 or f64; one component, packed
   bool normals = true;
   bool cells = true;    ///< record source cells
-  bool values = false;  ///< interpolate the samples, too, where that is cheap
   Vec3 origin;          ///< of the result's points
   Context& context;
 };
@@ -116,12 +114,7 @@ struct VertexJob {
   float* xyz;
   float* normals;  ///< null: none
   EdgePoint* points;
-  std::byte* values;  ///< interpolated samples in their own type; null: none
   Context& context;
-  template <class T>
-  T* values_at() const {
-    return reinterpret_cast<T*>(values);
-  }
 };
 void make_vertices(const VertexJob& job);
 

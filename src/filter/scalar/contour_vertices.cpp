@@ -60,7 +60,6 @@ struct Maker {
     const double va = double(f[p]), vb = double(f[q]);
     const double t = crossing(job.value, va, vb);
     job.points[v] = {uint32_t(p), uint32_t(q), float(t)};
-    if (job.values) job.values_at<T>()[v] = blended(va, vb, double(float(t)));
     const size_t a[3] = {i, j, k}, b[3] = {i + (axis == 0), j + (axis == 1), k + (axis == 2)};
     Vec3 x;
     if (plain) {
@@ -81,13 +80,6 @@ struct Maker {
     const double square = dot(g, g);
     const Vec3 n = square > 0 && std::isfinite(square) ? g * (-1 / std::sqrt(square)) : Vec3();
     job.normals[3 * v] = float(n.x), job.normals[3 * v + 1] = float(n.y), job.normals[3 * v + 2] = float(n.z);
-  }
-
-  // As data/field_ops interpolates.
-  static T blended(double a, double b, double t) {
-    const double v = a * (1 - t) + b * t;
-    if constexpr (std::is_floating_point_v<T>) return T(v);
-    else return T(std::nearbyint(v));
   }
 
   template <int axis>
