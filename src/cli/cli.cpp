@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/cli.h"
 
-#include <malloc.h>
 #include <signal.h>
 #include <unistd.h>
 
@@ -58,9 +57,6 @@ std::string one_line(std::string s) {
 }  // namespace
 
 int cli_main(int argc, char** argv) {
-  // Large blocks come from the heap and stay there: giving pages back and taking fresh ones costs more than the work on them.
-  ::mallopt(M_MMAP_THRESHOLD, 1 << 30);
-  ::mallopt(M_TRIM_THRESHOLD, 1 << 30);
   try {
     const Options o = parse_options(argc, argv);
     if (o.threads > 0) set_thread_count(o.threads);

@@ -32,7 +32,7 @@ std::vector<Demo> demos() {
       {"abc_flow", "a cut through the ABC flow, coloured by speed", "abc size=96", {"magnitude", "slice normal=1,1,1"}, {"surface"}},
       {"double_gyre", "the speed of the double gyre, a flow in the plane", "double_gyre dims=201,101,1", {"magnitude"}, {"surface lit=false"}},
       {"taylor_green", "pressure between Taylor-Green vortices: signed, so the map has two sides", "taylor_green size=64", {}, {"surface field=pressure", "outline"}},
-      {"point_load", "stress under a point load on the ground, over decades on a log scale", "point_load size=72", {"magnitude"}, {"surface scale=log map=ember", "outline"}},
+      {"point_load", "stress under a point load on the ground, over decades on a log scale", "point_load size=72", {}, {"surface field=stress component=8 scale=symlog", "outline"}},
       {"torus_in_fog", "an opaque torus inside the volume of its own distance field", "torus size=80", {}, {"volume opacity=0:0,0.35:0,0.5:0.015,1:0.03"}},
   };
 }

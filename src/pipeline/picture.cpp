@@ -118,8 +118,10 @@ std::string free_name(const PipelineFile& file, const std::string& wanted) {
 
 bool colors_by_field(std::string_view kind) { return kind != "outline"; }
 
-// Chooses how to show every open end, adding steps and shows to the file. Returns the view of the first.
-Look choose_looks(PipelineFile& file, const PictureOptions& options, const std::shared_ptr<Cache>& cache, std::vector<std::string>& notes, Context& context) {
+// Chooses how to show every open end, adding steps and shows to the file. Returns the view of the first. `held` keeps what
+// was looked at, so that the cache finds it again and nothing is computed twice.
+Look choose_looks(PipelineFile& file, const PictureOptions& options, const std::shared_ptr<Cache>& cache, std::vector<Data>& held,
+                  std::vector<std::string>& notes, Context& context) {
   GraphOptions graph_options;
   graph_options.cache = cache;
   const PipelineGraph built = build_graph(file, graph_options);
@@ -130,7 +132,7 @@ Look choose_looks(PipelineFile& file, const PictureOptions& options, const std::
     NodeId node = built.last;
     for (const auto& [name, id] : built.nodes)
       if (name == end) node = id;
-    const Data data = built.graph.evaluate(node, {}, context);
+    const Data data = held.emplace_back(built.graph.evaluate(node, {}, context));
     DatasetPtr largest;
     for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) {
       if (!largest || d->point_count() > largest->point_count()) largest = d;
@@ -258,11 +260,12 @@ Image draw(const Scene& scene, const Camera& camera, const Stated& s, Annotation
 Picture make_picture(PipelineFile& file, const PictureOptions& options, Context& context) {
   const Stated stated = stated_in(file);
   check_shows(file);
-  const auto cache = options.cache ? options.cache : std::make_shared<Cache>(uint64_t(1) << 30);
+  const auto cache = options.cache ? options.cache : std::make_shared<Cache>(0);
+  std::vector<Data> held;
   Picture picture;
   Look look;
   if (file.show.empty()) {
-    look = choose_looks(file, options, cache, picture.notes, context);
+    look = choose_looks(file, options, cache, held, picture.notes, context);
   } else {
     for (auto& s : file.show)
       if (colors_by_field(s.kind)) s.words.insert(s.words.end(), options.coloring.begin(), options.coloring.end());
@@ -275,6 +278,7 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
   std::vector<Target> targets;
   for (NodeId node : built.show) targets.push_back({node, {}});
   const std::vector<Data> results = built.graph.evaluate(targets, context);
+  held.clear();
 
   Scene scene;
   Annotation annotation;
