@@ -10,9 +10,9 @@ namespace sg::bench {
 /// One measurement. setup() runs once in the child, off the clock, and returns the work; work() returns a count that shows
 /// that the work was done (triangles, points, pixels).
 struct Task {
-  std::string task, size;          ///< the names under which peers' records stand
-  std::string peer;                ///< ours: "sightglass:..."
-  std::string unit;                ///< of the count
+  std::string task, size;  ///< the names under which peers' records stand
+  std::string peer;        ///< ours: "sightglass:..."
+  std::string unit;        ///< of the count
   std::function<std::function<double()>()> setup;
 };
 

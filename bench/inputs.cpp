@@ -65,7 +65,8 @@ DatasetPtr tetrahedra(size_t n) {
     for (size_t j = 0; j < n; ++j)
       for (size_t i = 0; i < n; ++i)
         for (const auto& tet : kuhn)
-          for (int corner : tet) ids.push_back(int64_t(i + size_t(corner & 1) + m * (j + size_t(corner >> 1 & 1) + m * (k + size_t(corner >> 2)))));
+          for (int corner : tet)
+            ids.push_back(int64_t(i + size_t(corner & 1) + m * (j + size_t(corner >> 1 & 1) + m * (k + size_t(corner >> 2)))));
   UnstructuredMesh mesh;
   mesh.points.xyz = Array::from_vector(std::move(xyz), 3);
   mesh.cells.fixed = 4;
@@ -87,9 +88,11 @@ void make_inputs(const std::string& folder) {
     write_data(path, make(), options, context);
   };
   write("f256_raw.vti", [] { return field_grid(256); });
-  write("f256_zlib.vti", [] { return field_grid(256); }, "zlib");
+  write(
+      "f256_zlib.vti", [] { return field_grid(256); }, "zlib");
   write("tet1M_raw.vtu", [] { return tetrahedra(55); });
-  for (const char* name : {"mesh1M_binary.stl", "mesh1M_binary.ply", "mesh1M.obj", "mesh1M_raw.vtp"}) write(name, [] { return surface_mesh(235); });
+  for (const char* name : {"mesh1M_binary.stl", "mesh1M_binary.ply", "mesh1M.obj", "mesh1M_raw.vtp"})
+    write(name, [] { return surface_mesh(235); });
 }
 
 }  // namespace sg::bench

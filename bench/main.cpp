@@ -113,9 +113,11 @@ Result measure(const ProcessTask& task, int runs) {
 
 std::string record(const std::string& task, const std::string& peer, const std::string& size, const std::string& unit, const Result& r) {
   return fmt::format(
-      "{{\"task\": {}, \"peer\": {}, \"size\": {}, \"threads\": {}, \"min_s\": {:.6f}, \"median_s\": {:.6f}, \"runs\": {}, \"output_count\": {:.0f}, "
+      "{{\"task\": {}, \"peer\": {}, \"size\": {}, \"threads\": {}, \"min_s\": {:.6f}, \"median_s\": {:.6f}, \"runs\": {}, "
+      "\"output_count\": {:.0f}, "
       "\"output_unit\": {}, \"peak_rss_mb\": {:.1f}, \"base_rss_mb\": {:.1f}}}\n",
-      json_string(task), json_string(peer), json_string(size), thread_count(), r.least, r.median, r.runs, r.count, json_string(unit), r.peak_mb, r.base_mb);
+      json_string(task), json_string(peer), json_string(size), thread_count(), r.least, r.median, r.runs, r.count, json_string(unit),
+      r.peak_mb, r.base_mb);
 }
 
 int run(int argc, char** argv) {
@@ -134,10 +136,13 @@ int run(int argc, char** argv) {
     else if (a == "--runs") runs = std::atoi(value().c_str());
     else if (a == "--program") program = value();
     else if (a == "--list") list = true;
-    else fail_usage("unknown argument '" + a + "'", "sg_bench", "--data FOLDER --only TEXT --out FILE --runs N --program SIGHTGLASS --list");
+    else
+      fail_usage("unknown argument '" + a + "'", "sg_bench", "--data FOLDER --only TEXT --out FILE --runs N --program SIGHTGLASS --list");
   }
   if (program.empty()) program = folder_of(argv[0]) + "../sightglass";
-  auto wanted = [&](const std::string& task, const std::string& size) { return only.empty() || (task + "|" + size).find(only) != std::string::npos; };
+  auto wanted = [&](const std::string& task, const std::string& size) {
+    return only.empty() || (task + "|" + size).find(only) != std::string::npos;
+  };
   if (!list) make_inputs(data);
   std::string lines;
   auto report = [&](const std::string& task, const std::string& peer, const std::string& size, const std::string& unit, auto&& measured) {
@@ -151,8 +156,8 @@ int run(int argc, char** argv) {
       std::fprintf(stderr, "FAILED %s|%s\n", task.c_str(), size.c_str());
       return;
     }
-    std::printf("%-22s %-28s median %9.3f ms  min %9.3f ms  n %2d  %.0f %s  peak %.0f MB\n", task.c_str(), size.c_str(), r.median * 1e3, r.least * 1e3, r.runs, r.count,
-                unit.c_str(), r.peak_mb);
+    std::printf("%-22s %-28s median %9.3f ms  min %9.3f ms  n %2d  %.0f %s  peak %.0f MB\n", task.c_str(), size.c_str(), r.median * 1e3,
+                r.least * 1e3, r.runs, r.count, unit.c_str(), r.peak_mb);
     std::fflush(stdout);
     lines += record(task, peer, size, unit, r);
   };

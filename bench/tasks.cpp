@@ -110,7 +110,8 @@ Task volume(const char* what, bool shaded, bool maximum, bool fog) {
 
 std::vector<Task> tasks(const std::string& folder) {
   std::vector<Task> t;
-  for (const char* name : {"f256_raw.vti", "f256_zlib.vti", "tet1M_raw.vtu", "mesh1M_binary.stl", "mesh1M_binary.ply", "mesh1M.obj", "mesh1M_raw.vtp"})
+  for (const char* name :
+       {"f256_raw.vti", "f256_zlib.vti", "tet1M_raw.vtu", "mesh1M_binary.stl", "mesh1M_binary.ply", "mesh1M.obj", "mesh1M_raw.vtp"})
     t.push_back(reading(folder, name));
   t.push_back(contouring(256));
   t.push_back(surface("1M", 235));
@@ -129,11 +130,17 @@ std::vector<ProcessTask> process_tasks(const std::string& folder, const std::str
   return {
       {"first_picture_startup_only", "-", "sightglass --version", {program, "--version"}, ""},
       {"info_with_ranges", "f256_raw.vti", "sightglass info", {program, "info", vti}, ""},
-      {"first_picture_contour", "vti raw 256^3", "sightglass render, full picture 1280x720",
-       {program, "render", vti, "-f", "contour values=0", "--camera", camera, "--size", "1280x720", "-q", "-o", png}, png},
-      {"first_picture_contour", "vti raw 256^3", "sightglass render, as the peer draws it",
-       {program, "render", vti, "-f", "contour values=0", "--show", "surface color=white", "--camera", camera, "--size", "1024x1024", "-q", "--picture",
-        "samples=1 axes=false triad=false legend=false", "-o", png}, png},
+      {"first_picture_contour",
+       "vti raw 256^3",
+       "sightglass render, full picture 1280x720",
+       {program, "render", vti, "-f", "contour values=0", "--camera", camera, "--size", "1280x720", "-q", "-o", png},
+       png},
+      {"first_picture_contour",
+       "vti raw 256^3",
+       "sightglass render, as the peer draws it",
+       {program, "render", vti, "-f", "contour values=0", "--show", "surface color=white", "--camera", camera, "--size", "1024x1024", "-q",
+        "--picture", "samples=1 axes=false triad=false legend=false", "-o", png},
+       png},
   };
 }
 

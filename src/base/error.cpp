@@ -41,9 +41,7 @@ void fail_usage(std::string problem, std::string where, std::string hint) {
 void fail_data(std::string problem, std::string where, std::string hint) {
   throw Error(ErrorKind::data, std::move(problem), std::move(where), std::move(hint));
 }
-void fail_internal(std::string problem, std::string where) {
-  throw Error(ErrorKind::internal, std::move(problem), std::move(where));
-}
+void fail_internal(std::string problem, std::string where) { throw Error(ErrorKind::internal, std::move(problem), std::move(where)); }
 
 namespace {
 

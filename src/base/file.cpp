@@ -77,9 +77,7 @@ AtomicFile::~AtomicFile() {
   ::unlink(partial_.c_str());
 }
 
-void AtomicFile::fail(const char* what) const {
-  fail_data(std::string(what) + ": " + std::strerror(errno ? errno : EIO), path_);
-}
+void AtomicFile::fail(const char* what) const { fail_data(std::string(what) + ": " + std::strerror(errno ? errno : EIO), path_); }
 
 void AtomicFile::write(const void* data, size_t bytes) {
   errno = 0;

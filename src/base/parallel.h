@@ -30,11 +30,14 @@ void parallel_for(size_t n, size_t grain, F&& f, const Context* context = nullpt
     std::remove_reference_t<F>& f;
     size_t n, grain;
   } body{f, n, grain};
-  detail::run_chunks(n / grain + (n % grain != 0), [](void* p, size_t chunk) {
-    Body& b = *static_cast<Body*>(p);
-    const size_t begin = chunk * b.grain;
-    b.f(begin, b.grain < b.n - begin ? begin + b.grain : b.n);
-  }, &body, context);
+  detail::run_chunks(
+      n / grain + (n % grain != 0),
+      [](void* p, size_t chunk) {
+        Body& b = *static_cast<Body*>(p);
+        const size_t begin = chunk * b.grain;
+        b.f(begin, b.grain < b.n - begin ? begin + b.grain : b.n);
+      },
+      &body, context);
 }
 
 /// join(...join(join(init, map(chunk 0)), map(chunk 1))...) in chunk order: the same bytes for any number of threads.
@@ -43,7 +46,8 @@ T parallel_reduce(size_t n, size_t grain, T init, Map&& map, Join&& join, const 
   grain = grain ? grain : 1;
   const size_t chunks = n / grain + (n % grain != 0);
   auto parts = std::make_unique<T[]>(chunks);  // not std::vector: vector<bool> would race
-  parallel_for(n, grain, [&](size_t begin, size_t end) { parts[begin / grain] = map(begin, end); }, context);
+  parallel_for(
+      n, grain, [&](size_t begin, size_t end) { parts[begin / grain] = map(begin, end); }, context);
   for (size_t i = 0; i < chunks; ++i) init = join(std::move(init), std::move(parts[i]));
   return init;
 }

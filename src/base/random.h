@@ -20,8 +20,6 @@ SG_HD constexpr uint64_t random_bits(uint64_t seed, uint64_t index) {
 }
 
 /// Uniform in [0, 1) with 53 bits.
-SG_HD constexpr double random_unit(uint64_t seed, uint64_t index) {
-  return double(random_bits(seed, index) >> 11) * 0x1.0p-53;
-}
+SG_HD constexpr double random_unit(uint64_t seed, uint64_t index) { return double(random_bits(seed, index) >> 11) * 0x1.0p-53; }
 
 }  // namespace sg

@@ -30,7 +30,8 @@ struct Setter {
   [[noreturn]] void fail(const std::string& wanted) const { fail(wanted, text); }
   // `part` is the item of a list that is wrong.
   [[noreturn]] void fail(const std::string& wanted, std::string_view part) const {
-    fail_usage(part == text ? fmt::format("'{}' is not {}", text, wanted) : fmt::format("'{}' in '{}' is not {}", part, text, wanted), where);
+    fail_usage(part == text ? fmt::format("'{}' is not {}", text, wanted) : fmt::format("'{}' in '{}' is not {}", part, text, wanted),
+               where);
   }
   double number(std::string_view t) const {
     const auto v = parse_double(t);
@@ -43,7 +44,8 @@ struct Setter {
     const auto v = parse_int(t);
     if (!v) fail("a whole number", trim(t));
     const double d = double(*v);
-    if (d < decl.lo || d > decl.hi || (decl.lo_open && d == decl.lo) || (decl.hi_open && d == decl.hi)) fail("in range: it must be " + range_text(decl), trim(t));
+    if (d < decl.lo || d > decl.hi || (decl.lo_open && d == decl.lo) || (decl.hi_open && d == decl.hi))
+      fail("in range: it must be " + range_text(decl), trim(t));
     return *v;
   }
   std::string word(std::string_view t) const {
@@ -220,7 +222,8 @@ std::string params_json(const Schema& schema) {
     if (d.hi != HUGE_VAL) limits += fmt::format(",\"{}\":{}", d.hi_open ? "exclusiveMaximum" : "maximum", exact_number(d.hi));
     if (!d.choices_.empty()) limits += ",\"enum\":[" + joined(d.choices_, [](const std::string& s) { return json_string(s); }) + "]";
     r += (first ? "" : ",") + json_string(d.name) + ":{";
-    r += list ? fmt::format("\"type\":\"array\",\"items\":{{\"type\":\"{}\"{}}}", item, limits) : fmt::format("\"type\":\"{}\"{}", json_type, limits);
+    r += list ? fmt::format("\"type\":\"array\",\"items\":{{\"type\":\"{}\"{}}}", item, limits)
+              : fmt::format("\"type\":\"{}\"{}", json_type, limits);
     if (type == "x,y,z") r += ",\"minItems\":3,\"maxItems\":3";
     if (type == "field") r += ",\"format\":\"field\"";
     if (!d.unit_.empty()) r += ",\"unit\":" + json_string(d.unit_);

@@ -28,23 +28,38 @@ struct FieldName {
 };
 
 /// What a parameter may be bound to. The value at the time of describe() is the default.
-using ParamRef = std::variant<bool*, int*, int64_t*, double*, std::string*, FieldName*, Vec3*, std::optional<double>*,
-                              std::optional<Vec3>*, std::vector<double>*, std::vector<int64_t>*, std::vector<std::string>*>;
+using ParamRef = std::variant<bool*, int*, int64_t*, double*, std::string*, FieldName*, Vec3*, std::optional<double>*, std::optional<Vec3>*,
+                              std::vector<double>*, std::vector<int64_t>*, std::vector<std::string>*>;
 
 struct ParamDecl {
   std::string name;
   ParamRef ref;
   std::string doc;
-  std::string unit_;                  ///< "m", "deg", or "@field": the unit of that field parameter
-  double lo = -HUGE_VAL, hi = HUGE_VAL;  ///< inclusive range of numbers (each element of a list)
-  bool lo_open = false, hi_open = false; ///< the bound itself is not allowed
-  std::vector<std::string> choices_;  ///< allowed words of a string (each element of a list)
+  std::string unit_;                      ///< "m", "deg", or "@field": the unit of that field parameter
+  double lo = -HUGE_VAL, hi = HUGE_VAL;   ///< inclusive range of numbers (each element of a list)
+  bool lo_open = false, hi_open = false;  ///< the bound itself is not allowed
+  std::vector<std::string> choices_;      ///< allowed words of a string (each element of a list)
 
-  ParamDecl& unit(std::string u) { unit_ = std::move(u); return *this; }
-  ParamDecl& range(double low, double high) { lo = low, hi = high; return *this; }
-  ParamDecl& at_least(double low) { lo = low; return *this; }
-  ParamDecl& positive() { lo = 0, lo_open = true; return *this; }
-  ParamDecl& choices(std::vector<std::string> words) { choices_ = std::move(words); return *this; }
+  ParamDecl& unit(std::string u) {
+    unit_ = std::move(u);
+    return *this;
+  }
+  ParamDecl& range(double low, double high) {
+    lo = low, hi = high;
+    return *this;
+  }
+  ParamDecl& at_least(double low) {
+    lo = low;
+    return *this;
+  }
+  ParamDecl& positive() {
+    lo = 0, lo_open = true;
+    return *this;
+  }
+  ParamDecl& choices(std::vector<std::string> words) {
+    choices_ = std::move(words);
+    return *this;
+  }
 };
 
 /// Collects declarations; references returned by operator() stay valid until the next call.

@@ -65,13 +65,17 @@ using Vec4f = Vec4T<float>;
 using Vec3i = Vec3T<long long>;
 
 template <class T>
-SG_HD constexpr T dot(Vec3T<T> a, Vec3T<T> b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+SG_HD constexpr T dot(Vec3T<T> a, Vec3T<T> b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 template <class T>
 SG_HD constexpr Vec3T<T> cross(Vec3T<T> a, Vec3T<T> b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 template <class T>
-SG_HD inline T length(Vec3T<T> a) { return std::sqrt(dot(a, a)); }
+SG_HD inline T length(Vec3T<T> a) {
+  return std::sqrt(dot(a, a));
+}
 /// Unit vector along a; the zero vector stays zero.
 template <class T>
 SG_HD inline Vec3T<T> normalize(Vec3T<T> a) {
@@ -79,7 +83,9 @@ SG_HD inline Vec3T<T> normalize(Vec3T<T> a) {
   return l > T(0) ? a / l : a;
 }
 template <class T>
-SG_HD constexpr Vec3T<T> lerp(Vec3T<T> a, Vec3T<T> b, T t) { return a * (T(1) - t) + b * t; }
+SG_HD constexpr Vec3T<T> lerp(Vec3T<T> a, Vec3T<T> b, T t) {
+  return a * (T(1) - t) + b * t;
+}
 
 /// 3x3 matrix, rows first: m[row][column].
 struct Mat3 {
@@ -113,8 +119,7 @@ struct Mat4 {
   SG_HD friend constexpr Mat4 operator*(const Mat4& a, const Mat4& b) {
     Mat4 r;
     for (int i = 0; i < 4; ++i)
-      for (int j = 0; j < 4; ++j)
-        r.m[i][j] = a.m[i][0] * b.m[0][j] + a.m[i][1] * b.m[1][j] + a.m[i][2] * b.m[2][j] + a.m[i][3] * b.m[3][j];
+      for (int j = 0; j < 4; ++j) r.m[i][j] = a.m[i][0] * b.m[0][j] + a.m[i][1] * b.m[1][j] + a.m[i][2] * b.m[2][j] + a.m[i][3] * b.m[3][j];
     return r;
   }
   SG_HD friend constexpr bool operator==(const Mat4&, const Mat4&) = default;

@@ -40,7 +40,7 @@ int dispatch_command(const Options& o, Context& context) {
     std::string_view name;
     int (*run)(const Options&, Context&);
   };
-  static constexpr Command commands[] = {{"info", run_info}, {"render", run_render}, {"convert", run_convert}, {"run", run_pipeline_file},
+  static constexpr Command commands[] = {{"info", run_info}, {"render", run_render}, {"convert", run_convert},   {"run", run_pipeline_file},
                                          {"open", run_open}, {"ops", run_ops},       {"colormap", run_colormap}, {"demo", run_demo}};
   for (const Command& c : commands)
     if (c.name == o.command) return c.run(o, context);

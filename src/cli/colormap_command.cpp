@@ -36,11 +36,13 @@ Image swatch(const Colormap& map, const LightnessReport& report) {
 // What the count of falls means for this kind of map.
 std::string verdict(const Colormap& map, const LightnessReport& r) {
   switch (map.kind) {
-    case MapKind::sequential: return r.falls_float == 0 ? "lightness rises all the way: order is seen without a legend" : "lightness falls in places";
+    case MapKind::sequential:
+      return r.falls_float == 0 ? "lightness rises all the way: order is seen without a legend" : "lightness falls in places";
     case MapKind::diverging: return "lightness rises to the middle and falls again: distance from the middle is seen";
     case MapKind::cyclic: return "begins and ends alike: for angles and phases";
     case MapKind::categorical: return "no order: one colour per label";
-    case MapKind::unsafe: return "lightness rises and falls along the map: it shows edges that are not in the data, and hides some that are";
+    case MapKind::unsafe:
+      return "lightness rises and falls along the map: it shows edges that are not in the data, and hides some that are";
   }
   return "";
 }
@@ -49,11 +51,14 @@ std::string verdict(const Colormap& map, const LightnessReport& r) {
 
 int run_colormap(const Options& o, Context&) {
   if (o.inputs.empty()) {
-    if (!o.output.empty()) fail_usage("which map is to be drawn?", "sightglass colormap", "name one: sightglass colormap sight -o sight.png");
+    if (!o.output.empty())
+      fail_usage("which map is to be drawn?", "sightglass colormap", "name one: sightglass colormap sight -o sight.png");
     std::string json = "{\"colormaps\":[";
     bool first = true;
     for (const Colormap& m : colormaps()) {
-      if (o.json) json += fmt::format("{}{{\"name\":{},\"kind\":\"{}\",\"about\":{}}}", first ? "" : ",", json_string(m.name), kind_name(m.kind), json_string(m.about));
+      if (o.json)
+        json += fmt::format("{}{{\"name\":{},\"kind\":\"{}\",\"about\":{}}}", first ? "" : ",", json_string(m.name), kind_name(m.kind),
+                            json_string(m.about));
       else std::printf("  %-14s %-12s %s\n", m.name.c_str(), std::string(kind_name(m.kind)).c_str(), m.about.c_str());
       first = false;
     }
@@ -64,8 +69,9 @@ int run_colormap(const Options& o, Context&) {
     const Colormap map = find_colormap(name);
     const LightnessReport r = lightness_report(map);
     if (o.json) {
-      std::printf("{\"name\":%s,\"kind\":\"%s\",\"falls\":%d,\"falls_8bit\":%d,\"lowest\":%s,\"highest\":%s,\"lightness\":[", json_string(map.name).c_str(),
-                  std::string(kind_name(map.kind)).c_str(), r.falls_float, r.falls_8bit, exact_number(r.lowest).c_str(), exact_number(r.highest).c_str());
+      std::printf("{\"name\":%s,\"kind\":\"%s\",\"falls\":%d,\"falls_8bit\":%d,\"lowest\":%s,\"highest\":%s,\"lightness\":[",
+                  json_string(map.name).c_str(), std::string(kind_name(map.kind)).c_str(), r.falls_float, r.falls_8bit,
+                  exact_number(r.lowest).c_str(), exact_number(r.highest).c_str());
       for (size_t i = 0; i < r.lightness.size(); ++i) std::printf("%s%s", i ? "," : "", short_number(r.lightness[i], 7).c_str());
       std::printf("]}\n");
     } else {
@@ -73,8 +79,10 @@ int run_colormap(const Options& o, Context&) {
       std::printf("  %s\n", verdict(map, r).c_str());
       std::printf("  lightness L* from %s to %s (CIELAB, D65)\n", short_number(r.lowest, 4).c_str(), short_number(r.highest, 4).c_str());
       std::printf("  L* falls in %d of 255 steps (%d after rounding the colours to 8 bits)\n", r.falls_float, r.falls_8bit);
-      std::printf("  colour difference per unit of position: %s at most, %s at least (CIEDE2000)\n", short_number(r.steepest, 4).c_str(), short_number(r.flattest, 4).c_str());
-      std::printf("  first %s, middle %s, last %s\n", color_text(map.at(0)).c_str(), color_text(map.at(0.5)).c_str(), color_text(map.at(1)).c_str());
+      std::printf("  colour difference per unit of position: %s at most, %s at least (CIEDE2000)\n", short_number(r.steepest, 4).c_str(),
+                  short_number(r.flattest, 4).c_str());
+      std::printf("  first %s, middle %s, last %s\n", color_text(map.at(0)).c_str(), color_text(map.at(0.5)).c_str(),
+                  color_text(map.at(1)).c_str());
     }
     if (!o.output.empty()) write_image(o.output, swatch(map, r));
   }

@@ -25,15 +25,47 @@ struct Demo {
 
 std::vector<Demo> demos() {
   return {
-      {"gyroid", "an isosurface of the gyroid, coloured by the distance from the middle of its values", "gyroid size=96", {"gradient", "magnitude", "contour values=0"}, {"surface"}},
-      {"tangle", "three nested surfaces of the tangle cube, seen through each other", "tangle size=80", {"contour values=-4,0,6"}, {"surface field='contour value' opacity=0.55 map=ember"}},
-      {"hydrogen", "the probability density of an electron in a hydrogen atom, as a volume", "hydrogen size=96", {}, {"volume map=ember", "outline"}},
-      {"marschner_lobb", "the test signal of Marschner and Lobb, which shows what interpolation loses", "marschner_lobb size=64", {"contour values=0.5"}, {"surface color=#d8c9a8"}},
+      {"gyroid",
+       "an isosurface of the gyroid, coloured by the distance from the middle of its values",
+       "gyroid size=96",
+       {"gradient", "magnitude", "contour values=0"},
+       {"surface"}},
+      {"tangle",
+       "three nested surfaces of the tangle cube, seen through each other",
+       "tangle size=80",
+       {"contour values=-4,0,6"},
+       {"surface field='contour value' opacity=0.55 map=ember"}},
+      {"hydrogen",
+       "the probability density of an electron in a hydrogen atom, as a volume",
+       "hydrogen size=96",
+       {},
+       {"volume map=ember", "outline"}},
+      {"marschner_lobb",
+       "the test signal of Marschner and Lobb, which shows what interpolation loses",
+       "marschner_lobb size=64",
+       {"contour values=0.5"},
+       {"surface color=#d8c9a8"}},
       {"abc_flow", "a cut through the ABC flow, coloured by speed", "abc size=96", {"magnitude", "slice normal=1,1,1"}, {"surface"}},
-      {"double_gyre", "the speed of the double gyre, a flow in the plane", "double_gyre dims=201,101,1", {"magnitude"}, {"surface lit=false"}},
-      {"taylor_green", "pressure between Taylor-Green vortices: signed, so the map has two sides", "taylor_green size=64", {}, {"surface field=pressure", "outline"}},
-      {"point_load", "stress under a point load on the ground, over decades on a log scale", "point_load size=72", {}, {"surface field=stress component=8 scale=symlog", "outline"}},
-      {"torus_in_fog", "an opaque torus inside the volume of its own distance field", "torus size=80", {}, {"volume opacity=0:0,0.35:0,0.5:0.015,1:0.03"}},
+      {"double_gyre",
+       "the speed of the double gyre, a flow in the plane",
+       "double_gyre dims=201,101,1",
+       {"magnitude"},
+       {"surface lit=false"}},
+      {"taylor_green",
+       "pressure between Taylor-Green vortices: signed, so the map has two sides",
+       "taylor_green size=64",
+       {},
+       {"surface field=pressure", "outline"}},
+      {"point_load",
+       "stress under a point load on the ground, over decades on a log scale",
+       "point_load size=72",
+       {},
+       {"surface field=stress component=8 scale=symlog", "outline"}},
+      {"torus_in_fog",
+       "an opaque torus inside the volume of its own distance field",
+       "torus size=80",
+       {},
+       {"volume opacity=0:0,0.35:0,0.5:0.015,1:0.03"}},
   };
 }
 
@@ -114,7 +146,8 @@ int sheet_of_folder(const Options& o, Context& context) {
   constexpr size_t per_sheet = 48;
   const std::string ext = extension_of(o.sheet), stem = o.sheet.substr(0, o.sheet.size() - ext.size() - 1);
   for (size_t begin = 0, n = 1; begin < pictures.size(); begin += per_sheet, ++n) {
-    const std::vector<CaptionedImage> part(pictures.begin() + ptrdiff_t(begin), pictures.begin() + ptrdiff_t(std::min(pictures.size(), begin + per_sheet)));
+    const std::vector<CaptionedImage> part(pictures.begin() + ptrdiff_t(begin),
+                                           pictures.begin() + ptrdiff_t(std::min(pictures.size(), begin + per_sheet)));
     const std::string path = pictures.size() <= per_sheet ? o.sheet : fmt::format("{}-{}.{}", stem, n, ext);
     write_image(path, contact_sheet(part, 6, 400));
     if (!o.quiet) std::printf("%s\n", path.c_str());

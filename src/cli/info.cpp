@@ -32,7 +32,9 @@ std::string dataset_json(const Dataset& d, bool quick) {
   r += "},\"bounds\":";
   const Box3& b = d.bounds();
   if (b.empty()) r += "null";
-  else r += "[" + number(b.lo.x) + "," + number(b.hi.x) + "," + number(b.lo.y) + "," + number(b.hi.y) + "," + number(b.lo.z) + "," + number(b.hi.z) + "]";
+  else
+    r += "[" + number(b.lo.x) + "," + number(b.hi.x) + "," + number(b.lo.y) + "," + number(b.hi.y) + "," + number(b.lo.z) + "," +
+         number(b.hi.z) + "]";
   if (auto* g = d.as<UniformGrid>()) {
     r += fmt::format(",\"origin\":[{},{},{}]", number(g->origin.x), number(g->origin.y), number(g->origin.z));
     r += fmt::format(",\"spacing\":[{},{},{}],\"direction\":[", number(g->spacing.x), number(g->spacing.y), number(g->spacing.z));
@@ -68,7 +70,8 @@ std::string data_json(const Data& data, bool quick) {
   }
   std::string r = "\"kind\":\"collection\",\"parts\":[";
   const auto& parts = std::get<CollectionPtr>(data)->parts;
-  for (size_t i = 0; i < parts.size(); ++i) r += (i ? ",{\"name\":" : "{\"name\":") + json_string(parts[i].name) + "," + data_json(parts[i].data, quick) + "}";
+  for (size_t i = 0; i < parts.size(); ++i)
+    r += (i ? ",{\"name\":" : "{\"name\":") + json_string(parts[i].name) + "," + data_json(parts[i].data, quick) + "}";
   return r + "]";
 }
 
@@ -116,8 +119,8 @@ std::string dataset_text(const Dataset& d, const std::string& name, bool quick) 
   const Box3& b = d.bounds();
   if (b.empty()) r += "\n  bounds  none";
   else
-    r += fmt::format("\n  bounds  x {} .. {}, y {} .. {}, z {} .. {}", short_number(b.lo.x), short_number(b.hi.x), short_number(b.lo.y), short_number(b.hi.y),
-                     short_number(b.lo.z), short_number(b.hi.z));
+    r += fmt::format("\n  bounds  x {} .. {}, y {} .. {}, z {} .. {}", short_number(b.lo.x), short_number(b.hi.x), short_number(b.lo.y),
+                     short_number(b.hi.y), short_number(b.lo.z), short_number(b.hi.z));
   if (auto* g = d.as<UniformGrid>()) {
     r += fmt::format("\n  spacing {} x {} x {}", short_number(g->spacing.x), short_number(g->spacing.y), short_number(g->spacing.z));
     if (!(g->direction == Mat3{})) r += ", turned";
@@ -138,7 +141,8 @@ std::string info_json(const Data& data, bool quick) { return "{" + data_json(dat
 
 std::string info_text(const Data& data, const std::string& name, bool quick) {
   std::string r;
-  for_each_dataset(data, [&](const std::string& part, const DatasetPtr& d) { r += dataset_text(*d, part.empty() ? name : name + ": " + part, quick); });
+  for_each_dataset(
+      data, [&](const std::string& part, const DatasetPtr& d) { r += dataset_text(*d, part.empty() ? name : name + ": " + part, quick); });
   if (auto* t = std::get_if<TablePtr>(&data)) r += fmt::format("{}\n  table of {} columns\n", name, (*t)->columns.size());
   return r.empty() ? name + "\n  nothing in it\n" : r;
 }

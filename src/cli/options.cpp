@@ -35,13 +35,15 @@ void add_reading(CLI::App& a, RawText& raw) {
 }
 
 void add_pipeline(CLI::App& a, Options& o) {
-  a.add_option("-f,--filter", o.filters, "An operation and its parameters: 'contour field=T values=300,400'; may be repeated, they chain")->allow_extra_args(false);
+  a.add_option("-f,--filter", o.filters, "An operation and its parameters: 'contour field=T values=300,400'; may be repeated, they chain")
+      ->allow_extra_args(false);
   a.add_option("-s,--source", o.source, "Compute the data instead of reading a file: 'gyroid size=128'");
   a.add_flag("--explain", o.explain, "Print the plan and what it will cost, run nothing");
 }
 
 void add_picture(CLI::App& a, Options& o) {
-  a.add_option("--show", o.shows, "How to show it: 'surface|volume|lines|points|outline key=value ...'; may be repeated")->allow_extra_args(false);
+  a.add_option("--show", o.shows, "How to show it: 'surface|volume|lines|points|outline key=value ...'; may be repeated")
+      ->allow_extra_args(false);
   a.add_option("--field", o.field, "Field to colour by");
   a.add_option("--map", o.map, "Colour map (see: sightglass colormap)");
   a.add_option("--scale", o.scale, "linear, log or symlog");
@@ -68,7 +70,8 @@ void finish_raw(const RawText& raw, Options& o) {
   if (!raw.dims.empty()) {
     const Vec3 d = triple(raw.dims, "--dims", 1);
     for (int i = 0; i < 3; ++i) {
-      if (d[i] != std::floor(d[i]) || d[i] > 1e9) fail_usage(fmt::format("'{}' is not three whole numbers", raw.dims), "--dims", "like 256,256,128");
+      if (d[i] != std::floor(d[i]) || d[i] > 1e9)
+        fail_usage(fmt::format("'{}' is not three whole numbers", raw.dims), "--dims", "like 256,256,128");
       o.read.raw_dims[size_t(i)] = size_t(d[i]);
     }
     if (raw.type.empty()) fail_usage("a raw brick needs its element type too", "--type", "one of u8 i8 u16 i16 u32 i32 u64 i64 f32 f64");

@@ -9,17 +9,17 @@
 namespace sg {
 
 struct Options {
-  std::string command;              ///< render, info, convert, run, ops, open, demo, colormap
-  std::vector<std::string> inputs;  ///< files, or what the command names
-  std::vector<std::string> filters; ///< each one -f: operation and key=value words
-  std::vector<std::string> shows;   ///< each one --show
-  std::string source;               ///< --source: a source operation instead of a file
+  std::string command;               ///< render, info, convert, run, ops, open, demo, colormap
+  std::vector<std::string> inputs;   ///< files, or what the command names
+  std::vector<std::string> filters;  ///< each one -f: operation and key=value words
+  std::vector<std::string> shows;    ///< each one --show
+  std::string source;                ///< --source: a source operation instead of a file
   std::string output;
   std::string camera, size, title, background, field, map, scale;
   std::vector<std::string> picture;  ///< key=value for the picture, from the flags above and --picture
   ReadOptions read;
   WriteOptions write;
-  std::string sheet;                 ///< demo: contact sheet
+  std::string sheet;  ///< demo: contact sheet
   int threads = 0;
   size_t memory = 0;
   bool json = false, quick = false, quiet = false, verbose = false, explain = false, recipe = false;

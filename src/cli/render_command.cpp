@@ -105,8 +105,8 @@ int render_to(PipelineFile& file, const std::string& output, const PictureOption
 
 PipelineFile pipeline_of(const Options& o) {
   if (o.inputs.empty() == o.source.empty())
-    fail_usage(o.inputs.empty() ? "name a file to read, or a source to compute with --source" : "name files or a --source, not both", "sightglass " + o.command,
-               fmt::format("see: sightglass {} --help", o.command));
+    fail_usage(o.inputs.empty() ? "name a file to read, or a source to compute with --source" : "name files or a --source, not both",
+               "sightglass " + o.command, fmt::format("see: sightglass {} --help", o.command));
   PipelineFile file;
   auto chain = [&](std::string name) {
     for (size_t i = 0; i < o.filters.size(); ++i) {
@@ -188,7 +188,10 @@ int run_convert(const Options& o, Context& context) {
   const PipelineGraph built = build_graph(file);
   const Data data = built.graph.evaluate(built.last, {}, context);
   write_data(o.output, data, o.write, context);
-  if (!o.quiet) for_each_dataset(data, [&](const std::string& part, const DatasetPtr& d) { std::printf("%s: %s%s\n", o.output.c_str(), part.empty() ? "" : (part + ": ").c_str(), summary(*d).c_str()); });
+  if (!o.quiet)
+    for_each_dataset(data, [&](const std::string& part, const DatasetPtr& d) {
+      std::printf("%s: %s%s\n", o.output.c_str(), part.empty() ? "" : (part + ": ").c_str(), summary(*d).c_str());
+    });
   return 0;
 }
 

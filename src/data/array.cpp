@@ -67,7 +67,12 @@ Array::Array(Buffer buffer, ElementType type, size_t count, int components)
     : Array(std::move(buffer), type, count, components, 0, ptrdiff_t(element_size(type)) * components, ptrdiff_t(element_size(type))) {}
 
 Array::Array(Buffer buffer, ElementType type, size_t count, int components, size_t offset, ptrdiff_t stride, ptrdiff_t component_stride)
-    : buffer_(std::move(buffer)), data_(buffer_.data + offset), count_(count), components_(components), type_(type), stride_(stride),
+    : buffer_(std::move(buffer)),
+      data_(buffer_.data + offset),
+      count_(count),
+      components_(components),
+      type_(type),
+      stride_(stride),
       component_stride_(component_stride) {
   if (components < 1) fail_internal("an array needs at least one component");
   if (count == 0) return;

@@ -152,9 +152,7 @@ decltype(auto) dispatch(const Array& a, F&& f) {
 struct IndexView {
   const void* data = nullptr;
   bool wide = true;
-  int64_t operator[](size_t i) const {
-    return wide ? static_cast<const int64_t*>(data)[i] : static_cast<const int32_t*>(data)[i];
-  }
+  int64_t operator[](size_t i) const { return wide ? static_cast<const int64_t*>(data)[i] : static_cast<const int32_t*>(data)[i]; }
 };
 
 }  // namespace sg

@@ -6,7 +6,8 @@
 
 namespace sg {
 
-Dataset::Dataset(DatasetParts parts) : parts_(std::move(parts)), points_(sg::point_count(parts_.mesh)), cells_(sg::cell_count(parts_.mesh)) {}
+Dataset::Dataset(DatasetParts parts)
+    : parts_(std::move(parts)), points_(sg::point_count(parts_.mesh)), cells_(sg::cell_count(parts_.mesh)) {}
 
 DatasetPtr make_dataset(DatasetParts parts) {
   validate(parts.mesh);
@@ -15,10 +16,12 @@ DatasetPtr make_dataset(DatasetParts parts) {
     if (f.association == Association::whole) continue;
     const size_t want = f.association == Association::point ? points : cells;
     if (f.array.count() != want)
-      fail_data(fmt::format("{} field '{}' has {} tuples for {} {}s", association_name(f.association), f.name, f.array.count(), want, association_name(f.association)));
+      fail_data(fmt::format("{} field '{}' has {} tuples for {} {}s", association_name(f.association), f.name, f.array.count(), want,
+                            association_name(f.association)));
   }
   auto check_ghost = [](const Array& a, size_t n, const char* what) {
-    if (!a.empty() && (a.type() != ElementType::u8 || a.count() != n)) fail_data(fmt::format("{} ghost array has {} entries for {}", what, a.count(), n));
+    if (!a.empty() && (a.type() != ElementType::u8 || a.count() != n))
+      fail_data(fmt::format("{} ghost array has {} entries for {}", what, a.count(), n));
   };
   check_ghost(parts.point_ghost, points, "point");
   check_ghost(parts.cell_ghost, cells, "cell");
@@ -52,7 +55,8 @@ Range Dataset::range(const Field& field, int component) const {
   const FieldStats& s = stats(field);
   if (field.components() == 1) return s.range[0];
   if (component < 0) return s.magnitude;
-  if (component >= field.components()) fail_usage(fmt::format("field '{}' has {} components, not component {}", field.name, field.components(), component));
+  if (component >= field.components())
+    fail_usage(fmt::format("field '{}' has {} components, not component {}", field.name, field.components(), component));
   return s.range[size_t(component)];
 }
 
@@ -85,7 +89,8 @@ DatasetPtr single_dataset(const Data& data, std::string_view who) {
   DatasetPtr found;
   size_t n = 0;
   for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) { found = d, ++n; });
-  if (n != 1) fail_usage(n ? fmt::format("needs one mesh but got {} parts", n) : std::string("needs a mesh but got none"), std::string(who));
+  if (n != 1)
+    fail_usage(n ? fmt::format("needs one mesh but got {} parts", n) : std::string("needs a mesh but got none"), std::string(who));
   return found;
 }
 
@@ -95,7 +100,8 @@ std::string summary(const Dataset& d) {
     const auto n = lattice_dims(d.mesh());
     r += fmt::format(" {}x{}x{}", n[0], n[1], n[2]);
   }
-  return r + fmt::format(", {} points, {} cells, {} field{}", d.point_count(), d.cell_count(), d.fields().size(), d.fields().size() == 1 ? "" : "s");
+  return r + fmt::format(", {} points, {} cells, {} field{}", d.point_count(), d.cell_count(), d.fields().size(),
+                         d.fields().size() == 1 ? "" : "s");
 }
 
 }  // namespace sg

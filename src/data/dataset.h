@@ -25,7 +25,7 @@ enum GhostBits : uint8_t { ghost_duplicate = 1, ghost_hidden_point = 2, ghost_re
 struct DatasetParts {
   Mesh mesh;
   FieldSet fields;
-  Array point_ghost, cell_ghost;  ///< u8 GhostBits per point / cell, or empty
+  Array point_ghost, cell_ghost;                           ///< u8 GhostBits per point / cell, or empty
   std::vector<std::pair<std::string, std::string>> notes;  ///< from the file: title, unit of length, history
   std::optional<double> time;
 };
@@ -41,7 +41,9 @@ class Dataset {
   const DatasetParts& parts() const { return parts_; }  ///< copy, change, make_dataset: arrays are shared, not copied
 
   template <class M>
-  const M* as() const { return std::get_if<M>(&parts_.mesh); }
+  const M* as() const {
+    return std::get_if<M>(&parts_.mesh);
+  }
 
   std::string_view kind() const { return mesh_kind(parts_.mesh); }
   size_t point_count() const { return points_; }

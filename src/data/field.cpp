@@ -5,9 +5,7 @@
 
 namespace sg {
 
-std::string_view association_name(Association a) {
-  return a == Association::point ? "point" : a == Association::cell ? "cell" : "whole";
-}
+std::string_view association_name(Association a) { return a == Association::point ? "point" : a == Association::cell ? "cell" : "whole"; }
 
 void FieldSet::add(Field f) {
   for (Field& have : fields_)

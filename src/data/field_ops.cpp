@@ -99,7 +99,8 @@ void carry_gathered(FieldSet& out, const FieldSet& in, Association association, 
 void carry_interpolated(FieldSet& out, const FieldSet& in, std::span<const EdgePoint> points) {
   carry(out, in, Association::point, Association::point, [&](const Array& a) { return interpolate(a, points); });
 }
-void carry_combined(FieldSet& out, const FieldSet& in, Association association, std::span<const int64_t> ids, std::span<const double> weights, size_t n, Association as) {
+void carry_combined(FieldSet& out, const FieldSet& in, Association association, std::span<const int64_t> ids,
+                    std::span<const double> weights, size_t n, Association as) {
   carry(out, in, association, as, [&](const Array& a) { return combine(a, ids, weights, n); });
 }
 void carry_whole(FieldSet& out, const FieldSet& in) {

@@ -27,7 +27,8 @@ Array combine(const Array& a, std::span<const int64_t> ids, std::span<const doub
 void carry_gathered(FieldSet& out, const FieldSet& in, Association association, std::span<const int64_t> ids, Association as);
 void carry_gathered(FieldSet& out, const FieldSet& in, Association association, std::span<const uint32_t> ids, Association as);
 void carry_interpolated(FieldSet& out, const FieldSet& in, std::span<const EdgePoint> points);
-void carry_combined(FieldSet& out, const FieldSet& in, Association association, std::span<const int64_t> ids, std::span<const double> weights, size_t n, Association as);
+void carry_combined(FieldSet& out, const FieldSet& in, Association association, std::span<const int64_t> ids,
+                    std::span<const double> weights, size_t n, Association as);
 /// Fields of the whole, unchanged.
 void carry_whole(FieldSet& out, const FieldSet& in);
 

@@ -4,7 +4,8 @@
 namespace sg {
 
 bool is_lattice(const Mesh& mesh) {
-  return std::holds_alternative<UniformGrid>(mesh) || std::holds_alternative<RectilinearGrid>(mesh) || std::holds_alternative<CurvilinearGrid>(mesh);
+  return std::holds_alternative<UniformGrid>(mesh) || std::holds_alternative<RectilinearGrid>(mesh) ||
+         std::holds_alternative<CurvilinearGrid>(mesh);
 }
 
 std::array<size_t, 3> lattice_dims(const Mesh& mesh) {

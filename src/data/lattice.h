@@ -12,9 +12,9 @@ struct LatticeView {
   enum class Mode { affine, separable, listed };
   Mode mode = Mode::affine;
   std::array<size_t, 3> dims{1, 1, 1};
-  Vec3 origin{0, 0, 0};        // affine: point (0,0,0); listed: added to xyz
-  Vec3 step[3];                // affine: from one point to the next along each axis
-  const double* axis[3]{};     // separable: coordinates (owned by LatticeAxes)
+  Vec3 origin{0, 0, 0};          // affine: point (0,0,0); listed: added to xyz
+  Vec3 step[3];                  // affine: from one point to the next along each axis
+  const double* axis[3]{};       // separable: coordinates (owned by LatticeAxes)
   const float* xyz32 = nullptr;  // listed: packed positions, one of the two
   const double* xyz64 = nullptr;
 

@@ -41,23 +41,26 @@ size_t lattice_cells(const std::array<size_t, 3>& d) {
 
 template <class T>
 Box3 bounds_of(const View<T>& v, Vec3 origin) {
-  return parallel_reduce(v.count, 1 << 16, Box3{}, [&](size_t begin, size_t end) {
-    T lo[3], hi[3];
-    for (int c = 0; c < 3; ++c) lo[c] = std::numeric_limits<T>::infinity(), hi[c] = -lo[c];
-    for (size_t i = begin; i < end; ++i)
-      for (int c = 0; c < 3; ++c) {
-        const T x = v(i, c);
-        lo[c] = x < lo[c] ? x : lo[c];
-        hi[c] = x > hi[c] ? x : hi[c];
-      }
-    Box3 b;
-    b.lo = origin + Vec3(double(lo[0]), double(lo[1]), double(lo[2]));
-    b.hi = origin + Vec3(double(hi[0]), double(hi[1]), double(hi[2]));
-    return b;
-  }, [](Box3 a, const Box3& b) {
-    a.add(b);
-    return a;
-  });
+  return parallel_reduce(
+      v.count, 1 << 16, Box3{},
+      [&](size_t begin, size_t end) {
+        T lo[3], hi[3];
+        for (int c = 0; c < 3; ++c) lo[c] = std::numeric_limits<T>::infinity(), hi[c] = -lo[c];
+        for (size_t i = begin; i < end; ++i)
+          for (int c = 0; c < 3; ++c) {
+            const T x = v(i, c);
+            lo[c] = x < lo[c] ? x : lo[c];
+            hi[c] = x > hi[c] ? x : hi[c];
+          }
+        Box3 b;
+        b.lo = origin + Vec3(double(lo[0]), double(lo[1]), double(lo[2]));
+        b.hi = origin + Vec3(double(hi[0]), double(hi[1]), double(hi[2]));
+        return b;
+      },
+      [](Box3 a, const Box3& b) {
+        a.add(b);
+        return a;
+      });
 }
 
 }  // namespace
@@ -102,7 +105,8 @@ Box3 bounds(const Mesh& mesh) {
   if (auto* m = std::get_if<UniformGrid>(&mesh)) {
     if (point_count(mesh) == 0) return b;
     for (int corner = 0; corner < 8; ++corner) {
-      const Vec3 index{corner & 1 ? double(m->dims[0] - 1) : 0.0, corner & 2 ? double(m->dims[1] - 1) : 0.0, corner & 4 ? double(m->dims[2] - 1) : 0.0};
+      const Vec3 index{corner & 1 ? double(m->dims[0] - 1) : 0.0, corner & 2 ? double(m->dims[1] - 1) : 0.0,
+                       corner & 4 ? double(m->dims[2] - 1) : 0.0};
       b.add(m->origin + m->direction * (m->spacing * index));
     }
   } else if (auto* r = std::get_if<RectilinearGrid>(&mesh)) {
@@ -132,7 +136,8 @@ std::vector<std::pair<std::string_view, size_t>> cell_type_counts(const Mesh& me
     const auto d = lattice_dims(mesh);
     const int axes = int(d[0] > 1) + int(d[1] > 1) + int(d[2] > 1);
     const bool box = !std::holds_alternative<CurvilinearGrid>(mesh);
-    const CellType t[] = {CellType::vertex, CellType::line, box ? CellType::pixel : CellType::quad, box ? CellType::voxel : CellType::hexahedron};
+    const CellType t[] = {CellType::vertex, CellType::line, box ? CellType::pixel : CellType::quad,
+                          box ? CellType::voxel : CellType::hexahedron};
     add(t[axes], cell_count(mesh));
   } else if (auto* g = std::get_if<AmrGrid>(&mesh)) {
     add(g->dimension == 2 ? CellType::pixel : CellType::voxel, cell_count(mesh));

@@ -49,7 +49,7 @@ struct UniformGrid {
   std::array<size_t, 3> dims{1, 1, 1};  ///< points per axis
   Vec3 origin{0, 0, 0};                 ///< position of point (0,0,0)
   Vec3 spacing{1, 1, 1};
-  Mat3 direction;  ///< columns are the directions of the axes: p = origin + direction * (spacing * (i,j,k))
+  Mat3 direction;                                  ///< columns are the directions of the axes: p = origin + direction * (spacing * (i,j,k))
   std::array<long long, 3> extent_start{0, 0, 0};  ///< index of the first point in the file's whole extent
 };
 

@@ -22,14 +22,14 @@ struct RunStats {
 #define SG_CLONES
 #endif
 
-#define SG_RUN_INT(T, name)                                  \
+#define SG_RUN_INT(T, name)                                   \
   SG_CLONES void name(const T* p, size_t n, RunStats<T>& s) { \
-    T lo = s.lo, hi = s.hi;                                  \
-    for (size_t i = 0; i < n; ++i) {                         \
-      lo = p[i] < lo ? p[i] : lo;                            \
-      hi = p[i] > hi ? p[i] : hi;                            \
-    }                                                        \
-    s.lo = lo, s.hi = hi;                                    \
+    T lo = s.lo, hi = s.hi;                                   \
+    for (size_t i = 0; i < n; ++i) {                          \
+      lo = p[i] < lo ? p[i] : lo;                             \
+      hi = p[i] > hi ? p[i] : hi;                             \
+    }                                                         \
+    s.lo = lo, s.hi = hi;                                     \
   }
 SG_RUN_INT(uint8_t, run)
 SG_RUN_INT(int8_t, run)
@@ -41,33 +41,33 @@ SG_RUN_INT(uint64_t, run)
 SG_RUN_INT(int64_t, run)
 
 // 32 independent lanes, so that the compiler may vectorise the minimum without reordering a chain.
-#define SG_RUN_FLOAT(T, I, mask)                                                  \
-  SG_CLONES void run(const T* p, size_t n, RunStats<T>& s) {                       \
-    constexpr size_t lanes = 32;                                                  \
-    T lo[lanes], hi[lanes];                                                       \
-    I odd[lanes] = {};                                                            \
-    for (size_t l = 0; l < lanes; ++l) lo[l] = s.lo, hi[l] = s.hi;                \
-    size_t i = 0;                                                                 \
-    for (; i + lanes <= n; i += lanes)                                            \
-      for (size_t l = 0; l < lanes; ++l) {                                        \
-        const T v = p[i + l];                                                     \
-        lo[l] = v < lo[l] ? v : lo[l];                                            \
-        hi[l] = v > hi[l] ? v : hi[l];                                            \
-        I b;                                                                      \
-        std::memcpy(&b, &p[i + l], sizeof b);                                     \
-        odd[l] |= I((b & I(mask)) == I(mask));                                    \
-      }                                                                           \
-    for (; i < n; ++i) {                                                          \
-      const T v = p[i];                                                           \
-      lo[0] = v < lo[0] ? v : lo[0];                                              \
-      hi[0] = v > hi[0] ? v : hi[0];                                              \
-      odd[0] |= I(!(v - v == 0));                                                 \
-    }                                                                             \
-    for (size_t l = 0; l < lanes; ++l) {                                          \
-      s.lo = lo[l] < s.lo ? lo[l] : s.lo;                                         \
-      s.hi = hi[l] > s.hi ? hi[l] : s.hi;                                         \
-      s.odd += odd[l];                                                            \
-    }                                                                             \
+#define SG_RUN_FLOAT(T, I, mask)                                   \
+  SG_CLONES void run(const T* p, size_t n, RunStats<T>& s) {       \
+    constexpr size_t lanes = 32;                                   \
+    T lo[lanes], hi[lanes];                                        \
+    I odd[lanes] = {};                                             \
+    for (size_t l = 0; l < lanes; ++l) lo[l] = s.lo, hi[l] = s.hi; \
+    size_t i = 0;                                                  \
+    for (; i + lanes <= n; i += lanes)                             \
+      for (size_t l = 0; l < lanes; ++l) {                         \
+        const T v = p[i + l];                                      \
+        lo[l] = v < lo[l] ? v : lo[l];                             \
+        hi[l] = v > hi[l] ? v : hi[l];                             \
+        I b;                                                       \
+        std::memcpy(&b, &p[i + l], sizeof b);                      \
+        odd[l] |= I((b & I(mask)) == I(mask));                     \
+      }                                                            \
+    for (; i < n; ++i) {                                           \
+      const T v = p[i];                                            \
+      lo[0] = v < lo[0] ? v : lo[0];                               \
+      hi[0] = v > hi[0] ? v : hi[0];                               \
+      odd[0] |= I(!(v - v == 0));                                  \
+    }                                                              \
+    for (size_t l = 0; l < lanes; ++l) {                           \
+      s.lo = lo[l] < s.lo ? lo[l] : s.lo;                          \
+      s.hi = hi[l] > s.hi ? hi[l] : s.hi;                          \
+      s.odd += odd[l];                                             \
+    }                                                              \
   }
 SG_RUN_FLOAT(float, uint32_t, 0x7F800000u)
 SG_RUN_FLOAT(double, uint64_t, 0x7FF0000000000000ull)
@@ -126,9 +126,12 @@ FieldStats field_stats(const Array& array, bool with_magnitude, const Array& ski
   return dispatch(array, [&](auto v) {
     const bool fast = !skipping && v.components == 1 && v.packed();
     const size_t grain = std::max<size_t>(1, (size_t(1) << (fast ? 18 : 16)) / size_t(v.components));
-    return parallel_reduce(v.count, grain, std::move(total), [&](size_t begin, size_t end) {
-      return fast ? fast_run(v, begin, end) : careful(v, skipping ? &hidden : nullptr, begin, end, with_magnitude && v.components > 1);
-    }, join);
+    return parallel_reduce(
+        v.count, grain, std::move(total),
+        [&](size_t begin, size_t end) {
+          return fast ? fast_run(v, begin, end) : careful(v, skipping ? &hidden : nullptr, begin, end, with_magnitude && v.components > 1);
+        },
+        join);
   });
 }
 

@@ -19,7 +19,8 @@ void check_points(const Points& p) {
 void check_dims(const std::array<size_t, 3>& d) {
   size_t n = 1;
   for (size_t a : d)
-    if (__builtin_mul_overflow(n, std::max<size_t>(a, 1), &n) || n > (size_t(1) << 62)) fail_data("the grid has more points than can be counted");
+    if (__builtin_mul_overflow(n, std::max<size_t>(a, 1), &n) || n > (size_t(1) << 62))
+      fail_data("the grid has more points than can be counted");
 }
 
 constexpr size_t none = SIZE_MAX;
@@ -27,24 +28,30 @@ constexpr size_t none = SIZE_MAX;
 // The first index for which bad(i) holds, found in parallel; `none` when there is no such index.
 template <class Bad>
 size_t first_bad(size_t n, Bad bad) {
-  return parallel_reduce(n, 1 << 17, none, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i)
-      if (bad(i)) return i;
-    return none;
-  }, [](size_t a, size_t b) { return std::min(a, b); });
+  return parallel_reduce(
+      n, 1 << 17, none,
+      [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i)
+          if (bad(i)) return i;
+        return none;
+      },
+      [](size_t a, size_t b) { return std::min(a, b); });
 }
 
 template <class T>
 size_t first_outside(const T* ids, size_t n, size_t points) {
   using U = std::make_unsigned_t<T>;
-  return parallel_reduce(n, 1 << 18, none, [&](size_t begin, size_t end) {
-    U most = 0;  // as unsigned, a negative id is a huge one
-    for (size_t i = begin; i < end; ++i) most = std::max(most, U(ids[i]));
-    if (size_t(most) < points) return none;
-    for (size_t i = begin; i < end; ++i)
-      if (size_t(U(ids[i])) >= points) return i;
-    return none;
-  }, [](size_t a, size_t b) { return std::min(a, b); });
+  return parallel_reduce(
+      n, 1 << 18, none,
+      [&](size_t begin, size_t end) {
+        U most = 0;  // as unsigned, a negative id is a huge one
+        for (size_t i = begin; i < end; ++i) most = std::max(most, U(ids[i]));
+        if (size_t(most) < points) return none;
+        for (size_t i = begin; i < end; ++i)
+          if (size_t(U(ids[i])) >= points) return i;
+        return none;
+      },
+      [](size_t a, size_t b) { return std::min(a, b); });
 }
 
 // `listed` is what the numbers in the list refer to (points, faces), `what` names the cells.
@@ -68,7 +75,8 @@ void check_cells(const CellArray& a, size_t limit, const char* what) {
   index_view(ids);
   const size_t bad = ids.type() == ElementType::i64 ? first_outside(ids.view<int64_t>().data, ids.count(), limit)
                                                     : first_outside(ids.view<int32_t>().data, ids.count(), limit);
-  if (bad != none) fail_data(fmt::format("{}: point id {} at place {} is not in 0..{}", what, index_view(ids)[bad], bad, int64_t(limit) - 1));
+  if (bad != none)
+    fail_data(fmt::format("{}: point id {} at place {} is not in 0..{}", what, index_view(ids)[bad], bad, int64_t(limit) - 1));
 }
 
 void check_axis(const Array& a, char name) {
@@ -122,7 +130,8 @@ struct Checker {
       const CellsView v = cells_view(m.cells);
       const int points = cell_type_info(m.single_type).points;
       if (!m.cells.fixed && points >= 0)
-        if (const size_t c = first_bad(n, [&](size_t i) { return v.size(i) != size_t(points); }); c != none) check_type(c, uint8_t(m.single_type));
+        if (const size_t c = first_bad(n, [&](size_t i) { return v.size(i) != size_t(points); }); c != none)
+          check_type(c, uint8_t(m.single_type));
     } else if (n > 0) {
       // Sizes of every type in one table: one look per cell.
       std::array<int, 256> want{};
@@ -139,7 +148,8 @@ struct Checker {
     if (polyhedra && m.polyhedron_faces.count() != n + 1) fail_data("polyhedra without their faces");
     if (m.polyhedron_faces.count() > 0) {
       check_cells(m.faces, m.points.count(), "faces of polyhedra");
-      if (m.polyhedron_faces.type() != ElementType::i64 || m.polyhedron_faces.count() != n + 1) fail_data("face lists of polyhedra do not fit the cells");
+      if (m.polyhedron_faces.type() != ElementType::i64 || m.polyhedron_faces.count() != n + 1)
+        fail_data("face lists of polyhedra do not fit the cells");
       const auto at = m.polyhedron_faces.view<int64_t>();
       if (at[0] != 0 || size_t(at[n]) > m.faces.size()) fail_data("face lists of polyhedra run out of the faces");
       if (const size_t c = first_bad(n, [&](size_t i) { return at[i + 1] < at[i]; }); c != none)
@@ -159,7 +169,8 @@ struct Checker {
     for (size_t l = 0; l < g.levels.size(); ++l)
       for (const auto& p : g.levels[l].patches)
         for (size_t a = 0; a < 3; ++a)
-          if (p.hi[a] < p.lo[a] || p.hi[a] - p.lo[a] > (1ll << 40)) fail_data(fmt::format("a patch of level {} runs from {} to {}", l, p.lo[a], p.hi[a]));
+          if (p.hi[a] < p.lo[a] || p.hi[a] - p.lo[a] > (1ll << 40))
+            fail_data(fmt::format("a patch of level {} runs from {} to {}", l, p.lo[a], p.hi[a]));
   }
 };
 

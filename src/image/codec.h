@@ -23,9 +23,9 @@ Image decode_png(std::span<const std::byte> bytes, const std::string& name);
 Image read_png(const std::string& path);
 
 struct ImageDifference {
-  double rms = 0;       ///< of the channels, 0..255
-  int maximum = 0;      ///< largest difference of one channel
-  size_t pixels = 0;    ///< pixels that differ at all
+  double rms = 0;     ///< of the channels, 0..255
+  int maximum = 0;    ///< largest difference of one channel
+  size_t pixels = 0;  ///< pixels that differ at all
 };
 /// Throws Error(usage) when the sizes differ.
 ImageDifference compare(const Image& a, const Image& b);

@@ -14,20 +14,20 @@
 namespace sg {
 
 struct ReadOptions {
-  std::vector<std::string> fields;      ///< names to load; empty = all. Readers may skip the bytes of the others.
-  bool header_only = false;             ///< no field values needed: readers may leave fields out that cost reading
+  std::vector<std::string> fields;          ///< names to load; empty = all. Readers may skip the bytes of the others.
+  bool header_only = false;                 ///< no field values needed: readers may leave fields out that cost reading
   std::array<size_t, 3> raw_dims{0, 0, 0};  ///< raw bricks: size, ...
-  std::string raw_type;                 ///< ... element type ("u8", "f32", ...),
-  bool raw_big_endian = false;          ///< ... byte order,
-  size_t raw_header = 0;                ///< ... bytes to skip,
-  int raw_components = 1;               ///< ... numbers per voxel,
-  Vec3 raw_spacing{1, 1, 1};            ///< ... distance of voxels
+  std::string raw_type;                     ///< ... element type ("u8", "f32", ...),
+  bool raw_big_endian = false;              ///< ... byte order,
+  size_t raw_header = 0;                    ///< ... bytes to skip,
+  int raw_components = 1;                   ///< ... numbers per voxel,
+  Vec3 raw_spacing{1, 1, 1};                ///< ... distance of voxels
 };
 
 struct WriteOptions {
-  std::string encoding = "appended";    ///< VTK XML: ascii, base64, appended (raw)
-  std::string compression = "none";     ///< VTK XML: none, zlib, lz4, lzma; NRRD: none, gzip
-  bool binary = true;                   ///< STL, PLY
+  std::string encoding = "appended";  ///< VTK XML: ascii, base64, appended (raw)
+  std::string compression = "none";   ///< VTK XML: none, zlib, lz4, lzma; NRRD: none, gzip
+  bool binary = true;                 ///< STL, PLY
 };
 
 /// Reads any known file. Errors name the file, the byte or line, and what was expected.

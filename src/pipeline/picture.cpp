@@ -69,7 +69,8 @@ Stated stated_in(const PipelineFile& file) {
     s.transparent = true;
   } else {
     const auto parts = split(s.picture.background, '/');
-    if (parts.empty() || parts.size() > 2) fail_usage(fmt::format("'{}' is not a background", s.picture.background), "background", "like white, or white/skyblue");
+    if (parts.empty() || parts.size() > 2)
+      fail_usage(fmt::format("'{}' is not a background", s.picture.background), "background", "like white, or white/skyblue");
     s.bottom = parse_color(parts[0], "background");
     if (parts.size() == 2) s.top = parse_color(parts[1], "background");
   }
@@ -175,15 +176,17 @@ bool same_legend(const ColorScale& a, const ColorScale& b) {
 
 bool has_nan(const Scene& scene) {
   for (const Item& item : scene.items) {
-    const bool nan = std::visit([](const auto& i) {
-      using T = std::remove_cvref_t<decltype(i)>;
-      const Field* f = nullptr;
-      if constexpr (std::is_same_v<T, VolumeItem>) return false;  // seen through, not painted
-      else {
-        if (i.color_by && !i.color_by->direct) f = i.data->fields().find(i.color_by->field, i.color_by->association);
-        return f && i.data->stats(*f).nan > 0;
-      }
-    }, item);
+    const bool nan = std::visit(
+        [](const auto& i) {
+          using T = std::remove_cvref_t<decltype(i)>;
+          const Field* f = nullptr;
+          if constexpr (std::is_same_v<T, VolumeItem>) return false;  // seen through, not painted
+          else {
+            if (i.color_by && !i.color_by->direct) f = i.data->fields().find(i.color_by->field, i.color_by->association);
+            return f && i.data->stats(*f).nan > 0;
+          }
+        },
+        item);
     if (nan) return true;
   }
   return false;
@@ -226,7 +229,8 @@ void place_left(const Frame& part, Frame& whole) {
     const size_t from = size_t(y) * size_t(part.width), to = size_t(y) * size_t(whole.width);
     std::copy_n(&part.rgba[4 * from], 4 * size_t(part.width), &whole.rgba[4 * to]);
     // The background goes on to the right.
-    for (int x = part.width; x < whole.width; ++x) std::copy_n(&part.rgba[4 * (from + size_t(part.width) - 1)], 4, &whole.rgba[4 * (to + size_t(x))]);
+    for (int x = part.width; x < whole.width; ++x)
+      std::copy_n(&part.rgba[4 * (from + size_t(part.width) - 1)], 4, &whole.rgba[4 * (to + size_t(x))]);
   }
 }
 
@@ -247,7 +251,8 @@ Image draw(const Scene& scene, const Camera& camera, const Stated& s, Annotation
     const Frame background = render(empty, camera, column, context);
     place_left(frame, whole);
     for (int y = 0; y < s.height; ++y)
-      for (int x = options.width; x < s.width; ++x) std::copy_n(&background.rgba[4 * size_t(y)], 4, &whole.rgba[4 * (size_t(y) * size_t(s.width) + size_t(x))]);
+      for (int x = options.width; x < s.width; ++x)
+        std::copy_n(&background.rgba[4 * size_t(y)], 4, &whole.rgba[4 * (size_t(y) * size_t(s.width) + size_t(x))]);
     frame = std::move(whole);
   }
   Image image = to_image(frame, scene.transparent);
@@ -298,7 +303,8 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
     });
   }
   if (!any_points) context.warn("the picture is empty: there are no points to show");
-  if (!file.show.empty() && look.shows.empty()) choose_view(box, extension_of(origin_of(file, file.show[0].of.empty() ? file.steps.back().name : file.show[0].of)), look);
+  if (!file.show.empty() && look.shows.empty())
+    choose_view(box, extension_of(origin_of(file, file.show[0].of.empty() ? file.steps.back().name : file.show[0].of)), look);
   scene.background = stated.bottom, scene.background_top = stated.top, scene.transparent = stated.transparent;
 
   const double brightness = 0.2126 * stated.bottom.x + 0.7152 * stated.bottom.y + 0.0722 * stated.bottom.z;

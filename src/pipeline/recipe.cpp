@@ -64,7 +64,8 @@ PipelineFile recipe_in(const Image& image, const std::string& picture_path, std:
     if (key == "sightglass") recipe = &value;
     if (key == "sightglass-inputs") inputs = &value;
   }
-  if (!recipe) fail_data("has no recipe inside", picture_path, "pictures made by sightglass carry one, unless another program rewrote them");
+  if (!recipe)
+    fail_data("has no recipe inside", picture_path, "pictures made by sightglass carry one, unless another program rewrote them");
   PipelineFile file = parse_pipeline(*recipe, picture_path, picture_vocabulary());
   if (inputs)
     for (std::string_view line : split(*inputs, '\n')) {

@@ -77,11 +77,18 @@ Projection make_projection(const Camera& c, int width, int height) {
 }
 
 Projection::Ray Projection::ray(double px, double py) const {
-  const double x = (px - 0.5 * width) / scale, y = (0.5 * height - py) / scale;
+  const double x = (px - 0.5 * width) / scale, y = (0.5 * height + shift_y - py) / scale;
   if (parallel) return {eye + right * x + up * y, forward, 1.0};
   const Vec3 d = forward + right * x + up * y;
   const double l = length(d);
   return {eye, d / l, l};
+}
+
+Projection band_of(const Projection& whole, int first, int rows) {
+  Projection p = whole;
+  p.height = rows;
+  p.shift_y = 0.5 * whole.height + whole.shift_y - first - 0.5 * rows;
+  return p;
 }
 
 Camera fit_camera(const Box3& given, Vec3 direction, Vec3 up, double aspect, double margin, double view_angle, bool parallel) {

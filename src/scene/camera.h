@@ -12,7 +12,7 @@ struct Camera {
   Vec3 position{0, 0, 1}, target{0, 0, 0}, up{0, 1, 0};
   double view_angle = 30;  ///< degrees, vertical; perspective only
   bool parallel = false;
-  double parallel_height = 1;  ///< world height of the picture; parallel only
+  double parallel_height = 1;                  ///< world height of the picture; parallel only
   double near_plane = 0.01, far_plane = 1000;  ///< eye distances; depth beyond is clipped
 
   Vec3 forward() const { return normalize(target - position); }
@@ -24,6 +24,7 @@ struct Projection {
   int width = 1, height = 1;
   bool parallel = false;
   Vec3 eye, right, up, forward;  ///< orthonormal, world
+  double shift_y = 0;            ///< pixels added to y: a band of a picture is drawn with the projection of the whole, shifted
   double scale = 1;              ///< pixels per unit of (x/z) in perspective, pixels per world unit in parallel
   double near_plane = 0.01, far_plane = 1000;
 
@@ -35,7 +36,7 @@ struct Projection {
   Vec3 to_pixel(Vec3 world) const {
     const Vec3 e = to_eye(world);
     const double s = parallel ? scale : scale / e.z;
-    return {0.5 * width + s * e.x, 0.5 * height - s * e.y, e.z};
+    return {0.5 * width + s * e.x, 0.5 * height + shift_y - s * e.y, e.z};
   }
   struct Ray {
     Vec3 origin, direction;  ///< direction has length 1
@@ -44,10 +45,13 @@ struct Projection {
   Ray ray(double px, double py) const;
 };
 Projection make_projection(const Camera& camera, int width, int height);
+/// The projection of rows [first, first + rows) of the picture as a picture of their own.
+Projection band_of(const Projection& whole, int first, int rows);
 
 /// Looks at the box from `direction` (towards the viewer; need not be unit) so that all of it is seen with `margin` of the
 /// picture left free on each side; sets near and far. A flat or empty box works too.
-Camera fit_camera(const Box3& box, Vec3 direction, Vec3 up, double aspect, double margin = 0.08, double view_angle = 30, bool parallel = false);
+Camera fit_camera(const Box3& box, Vec3 direction, Vec3 up, double aspect, double margin = 0.08, double view_angle = 30,
+                  bool parallel = false);
 /// Near and far planes around the box.
 void fit_planes(Camera& camera, const Box3& box);
 

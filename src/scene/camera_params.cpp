@@ -15,9 +15,8 @@ struct NamedView {
 };
 // Named as an observer says it: "front" looks along +y, z is up.
 const NamedView views[] = {
-    {"front", {0, -1, 0}, {0, 0, 1}}, {"back", {0, 1, 0}, {0, 0, 1}}, {"left", {-1, 0, 0}, {0, 0, 1}},
-    {"right", {1, 0, 0}, {0, 0, 1}},  {"top", {0, 0, 1}, {0, 1, 0}},  {"bottom", {0, 0, -1}, {0, 1, 0}},
-    {"iso", {1, -1, 0.8}, {0, 0, 1}},
+    {"front", {0, -1, 0}, {0, 0, 1}}, {"back", {0, 1, 0}, {0, 0, 1}},    {"left", {-1, 0, 0}, {0, 0, 1}},  {"right", {1, 0, 0}, {0, 0, 1}},
+    {"top", {0, 0, 1}, {0, 1, 0}},    {"bottom", {0, 0, -1}, {0, 1, 0}}, {"iso", {1, -1, 0.8}, {0, 0, 1}},
 };
 
 // v turned about a unit axis (Rodrigues).
@@ -59,7 +58,8 @@ Camera make_camera(const CameraParams& p, const Box3& box, double aspect, Vec3 d
   if (p.up) up = *p.up;
   if (p.position && p.target) direction = *p.position - *p.target;
   else if (p.position) direction = *p.position - box.center();
-  if (!(length(direction) > 0)) fail_usage("the camera has no direction to look along", "camera", "position and target must differ; direction must not be 0,0,0");
+  if (!(length(direction) > 0))
+    fail_usage("the camera has no direction to look along", "camera", "position and target must differ; direction must not be 0,0,0");
   if (!(length(up) > 0)) fail_usage("up must not be 0,0,0", "camera up");
   if (length(cross(normalize(direction), normalize(up))) < 1e-9) {
     if (p.up) fail_usage("up lies along the line of sight", "camera up", "choose another up");

@@ -88,16 +88,18 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
         if (x > 0 && std::isfinite(x)) positive.add({x, x});
       }
     });
-    if (positive.empty()) fail_usage(fmt::format("field '{}' has no positive value for a log scale", field.name), "scale", "use scale=linear or scale=symlog");
+    if (positive.empty())
+      fail_usage(fmt::format("field '{}' has no positive value for a log scale", field.name), "scale", "use scale=linear or scale=symlog");
     r = positive;
   }
   const bool is_signed = r.lo < 0 && r.hi > 0 && std::min(-r.lo, r.hi) > 0.05 * std::max(-r.lo, r.hi);
   if (automatic) s.map = find_colormap(labels ? "labels" : is_signed && s.kind != ScaleKind::log ? "coolwarm" : "sight");
   else s.map = find_colormap(p.map);
   if (s.map.kind == MapKind::unsafe)
-    context.warn(fmt::format("colour map '{}' is not perceptually uniform: its lightness rises and falls, so it shows edges that are not in the data; "
-                             "'sight' is the safe choice (see: sightglass colormap {})",
-                             s.map.name, s.map.name));
+    context.warn(fmt::format(
+        "colour map '{}' is not perceptually uniform: its lightness rises and falls, so it shows edges that are not in the data; "
+        "'sight' is the safe choice (see: sightglass colormap {})",
+        s.map.name, s.map.name));
 
   if (!p.range.empty()) {
     s.lo = p.range[0], s.hi = p.range[1];

@@ -34,10 +34,10 @@ struct SurfaceItem {
   Vec3f color{0.80f, 0.80f, 0.82f};  ///< sRGB, without color_by
   double opacity = 1;
   Material material;
-  std::string normals;       ///< point field of normals; "" = its field of role normals, else smooth (below feature_angle)
-  bool flat = false;         ///< face normals
-  double feature_angle = 40; ///< degrees; edges sharper than this are not smoothed when normals are computed
-  bool edges = false;        ///< draw the edges of the polygons
+  std::string normals;        ///< point field of normals; "" = its field of role normals, else smooth (below feature_angle)
+  bool flat = false;          ///< face normals
+  double feature_angle = 40;  ///< degrees; edges sharper than this are not smoothed when normals are computed
+  bool edges = false;         ///< draw the edges of the polygons
   Vec3f edge_color{0.1f, 0.1f, 0.1f};
 };
 
@@ -56,8 +56,8 @@ struct PointsItem {
   std::optional<FieldColor> color_by;
   Vec3f color{0.15f, 0.15f, 0.17f};
   double opacity = 1;
-  double size = 4;      ///< pixels across
-  bool shaded = true;   ///< as little spheres
+  double size = 4;     ///< pixels across
+  bool shaded = true;  ///< as little spheres
 };
 
 /// A scalar field of a lattice, seen through.
@@ -67,11 +67,11 @@ struct VolumeItem {
   Association association = Association::point;
   int component = -1;
   ColorScale color;
-  OpacityCurve opacity;        ///< over values
-  double unit_distance = 0;    ///< length to which opacity refers; 0 = 1/100 of the diagonal of the bounds
+  OpacityCurve opacity;      ///< over values
+  double unit_distance = 0;  ///< length to which opacity refers; 0 = 1/100 of the diagonal of the bounds
   enum class Mode { composite, maximum } mode = Mode::composite;
   bool shaded = true;
-  double step = 0;             ///< world length; 0 = half the smallest cell edge
+  double step = 0;  ///< world length; 0 = half the smallest cell edge
 };
 
 using Item = std::variant<SurfaceItem, LinesItem, PointsItem, VolumeItem>;
@@ -84,10 +84,10 @@ struct Light {
 
 struct Scene {
   std::vector<Item> items;
-  std::vector<Light> lights;                ///< empty = one light over the viewer's left shoulder and a weak one from the right
-  Vec3f background{1, 1, 1};                ///< sRGB, bottom
-  std::optional<Vec3f> background_top;      ///< sRGB; a vertical gradient when set
-  bool transparent = false;                 ///< no background at all
+  std::vector<Light> lights;            ///< empty = one light over the viewer's left shoulder and a weak one from the right
+  Vec3f background{1, 1, 1};            ///< sRGB, bottom
+  std::optional<Vec3f> background_top;  ///< sRGB; a vertical gradient when set
+  bool transparent = false;             ///< no background at all
 };
 
 /// Bounds of everything in the scene.

@@ -65,7 +65,8 @@ const Field* wanted_field(const Dataset& d, const ColoringParams& p) {
   if (!p.color.empty() || p.field.name == "none") return nullptr;
   if (!p.field.empty()) {
     const Field& f = d.fields().require(p.field.name);
-    if (f.association == Association::whole) fail_usage(fmt::format("field '{}' belongs to the whole dataset, not to points or cells", f.name), "field");
+    if (f.association == Association::whole)
+      fail_usage(fmt::format("field '{}' belongs to the whole dataset, not to points or cells", f.name), "field");
     return &f;
   }
   // A field that is the same everywhere (a contour's own field) says nothing in colour.
@@ -79,7 +80,8 @@ const Field* wanted_field(const Dataset& d, const ColoringParams& p) {
   for (int components : {1, 3})
     for (Association a : {Association::point, Association::cell})
       for (const Field& f : d.fields())
-        if (f.association == a && f.components() == components && f.role != Role::normals && f.role != Role::tcoords && f.role != Role::global_ids && varies(f))
+        if (f.association == a && f.components() == components && f.role != Role::normals && f.role != Role::tcoords &&
+            f.role != Role::global_ids && varies(f))
           return &f;
   return nullptr;
 }
@@ -196,7 +198,8 @@ std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const Outli
   const auto* grid = input->as<UniformGrid>();
   for (int c = 0; c < 8; ++c) {
     if (grid) {
-      const Vec3 index{c & 1 ? double(grid->dims[0] - 1) : 0.0, c & 2 ? double(grid->dims[1] - 1) : 0.0, c & 4 ? double(grid->dims[2] - 1) : 0.0};
+      const Vec3 index{c & 1 ? double(grid->dims[0] - 1) : 0.0, c & 2 ? double(grid->dims[1] - 1) : 0.0,
+                       c & 4 ? double(grid->dims[2] - 1) : 0.0};
       corner[c] = grid->origin + grid->direction * (grid->spacing * index);
     } else {
       corner[c] = {c & 1 ? box.hi.x : box.lo.x, c & 2 ? box.hi.y : box.lo.y, c & 4 ? box.hi.z : box.lo.z};
@@ -224,7 +227,8 @@ std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const Outli
 
 template <class P>
 constexpr ShowKind kind(std::string_view name, std::string_view sentence) {
-  return {name, sentence,
+  return {name,
+          sentence,
           [] {
             P p;
             return params_help(schema_of(p));

@@ -72,7 +72,8 @@ void ct_look(const Range& r, double offset, bool choose_colors, VolumeItem& item
     double hu;
     Vec3f color;
   };
-  const Stop stops[] = {{-500, {0.55f, 0.25f, 0.15f}}, {-100, {0.85f, 0.55f, 0.42f}}, {60, {0.88f, 0.52f, 0.40f}}, {160, {0.93f, 0.80f, 0.64f}}, {300, {0.96f, 0.93f, 0.86f}}, {1500, {1.0f, 1.0f, 0.97f}}};
+  const Stop stops[] = {{-500, {0.55f, 0.25f, 0.15f}}, {-100, {0.85f, 0.55f, 0.42f}}, {60, {0.88f, 0.52f, 0.40f}},
+                        {160, {0.93f, 0.80f, 0.64f}},  {300, {0.96f, 0.93f, 0.86f}},  {1500, {1.0f, 1.0f, 0.97f}}};
   item.color.lo = std::max(-500 + offset, r.lo);
   item.color.hi = std::min(1500 + offset, r.hi);
   item.color.map = Colormap{"ct", MapKind::sequential, "Flesh to bone over Hounsfield units.", {}};

@@ -73,17 +73,21 @@ TEST_CASE("bad input: truncated header and data") {
   check_refused({"render", "header.vti", "-o", "x.png"}, 3, {"header.vti"}, f);
   write_file(f + "data.vti", bytes.substr(0, bytes.size() - 900));
   check_refused({"render", "data.vti", "-o", "x.png"}, 3, {"data.vti"}, f);
-  write_file(f + "legacy.vtk", "# vtk DataFile Version 3.0\nx\nBINARY\nDATASET STRUCTURED_POINTS\nDIMENSIONS 8 8 8\nORIGIN 0 0 0\nSPACING 1 1 1\nPOINT_DATA 512\n"
-                               "SCALARS T float 1\nLOOKUP_TABLE default\nabcd");
+  write_file(
+      f + "legacy.vtk",
+      "# vtk DataFile Version 3.0\nx\nBINARY\nDATASET STRUCTURED_POINTS\nDIMENSIONS 8 8 8\nORIGIN 0 0 0\nSPACING 1 1 1\nPOINT_DATA 512\n"
+      "SCALARS T float 1\nLOOKUP_TABLE default\nabcd");
   check_refused({"render", "legacy.vtk", "-o", "x.png"}, 3, {"legacy.vtk"}, f);
 }
 
 TEST_CASE("bad input: sizes that overflow or exceed the file") {
   const std::string f = fresh("sizes");
-  write_file(f + "huge.vtk", "# vtk DataFile Version 3.0\nx\nBINARY\nDATASET STRUCTURED_POINTS\nDIMENSIONS 4000000000 4000000000 4000000000\nORIGIN 0 0 0\n"
-                             "SPACING 1 1 1\nPOINT_DATA 8\nSCALARS T float 1\nLOOKUP_TABLE default\nabcd");
+  write_file(f + "huge.vtk",
+             "# vtk DataFile Version 3.0\nx\nBINARY\nDATASET STRUCTURED_POINTS\nDIMENSIONS 4000000000 4000000000 4000000000\nORIGIN 0 0 0\n"
+             "SPACING 1 1 1\nPOINT_DATA 8\nSCALARS T float 1\nLOOKUP_TABLE default\nabcd");
   check_refused({"info", "huge.vtk"}, 3, {"huge.vtk"}, f);
-  write_file(f + "huge.nrrd", "NRRD0004\ntype: float\ndimension: 3\nsizes: 2147483647 2147483647 2147483647\nencoding: raw\nendian: little\n\nabcd");
+  write_file(f + "huge.nrrd",
+             "NRRD0004\ntype: float\ndimension: 3\nsizes: 2147483647 2147483647 2147483647\nencoding: raw\nendian: little\n\nabcd");
   check_refused({"info", "huge.nrrd"}, 3, {"huge.nrrd"}, f);
   write_file(f + "small.raw", "abcdefgh");
   check_refused({"info", "small.raw", "--dims", "100,100,100", "--type", "u8"}, 3, {"small.raw", "1000000"}, f);
@@ -130,7 +134,8 @@ TEST_CASE("bad input: a full disk leaves no partial file") {
   const std::string f = fresh("full");
   write_grid(f + "a.vti", ramp(32768), {32, 32, 32});
   const auto before = test::files_in(f);
-  for (const auto& args : {std::vector<std::string>{"render", "a.vti", "-o", "x.png"}, std::vector<std::string>{"convert", "a.vti", "-o", "x.nrrd"}}) {
+  for (const auto& args :
+       {std::vector<std::string>{"render", "a.vti", "-o", "x.png"}, std::vector<std::string>{"convert", "a.vti", "-o", "x.nrrd"}}) {
     const auto r = sightglass(args, f, 2048);
     INFO(r.err);
     CHECK(r.status == 3);

@@ -28,7 +28,7 @@ Ran sightglass(const std::vector<std::string>& args, const std::string& folder, 
     const int o = ::open(out.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600), e = ::open(err.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600);
     if (::chdir(where.c_str()) != 0 || ::dup2(o, 1) < 0 || ::dup2(e, 2) < 0) ::_exit(126);
     if (largest_file > 0) {
-      const struct rlimit limit {rlim_t(largest_file), rlim_t(largest_file)};
+      const struct rlimit limit { rlim_t(largest_file), rlim_t(largest_file) };
       ::setrlimit(RLIMIT_FSIZE, &limit);
       ::signal(SIGXFSZ, SIG_IGN);
     }

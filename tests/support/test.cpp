@@ -20,7 +20,8 @@ const std::string& data_folder() {
     if (env && *env) places.push_back(env);
     places.push_back("../shared/data");
     std::error_code ignored;
-    for (std::filesystem::path p = std::filesystem::current_path(ignored); p.has_relative_path(); p = p.parent_path()) places.push_back((p / "shared/data").string());
+    for (std::filesystem::path p = std::filesystem::current_path(ignored); p.has_relative_path(); p = p.parent_path())
+      places.push_back((p / "shared/data").string());
     for (const std::string& p : places)
       if (file_exists(p + "/manifest.json")) return p + "/";
     return std::string();

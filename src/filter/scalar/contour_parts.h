@@ -41,8 +41,8 @@ struct Job {
   const Dataset& input;
   Array samples;  ///< u8, i8, u16, i16, f32 or f64; one component, packed
   bool normals = true;
-  bool cells = true;    ///< record source cells
-  Vec3 origin;          ///< of the result's points
+  bool cells = true;  ///< record source cells
+  Vec3 origin;        ///< of the result's points
   Context& context;
 };
 

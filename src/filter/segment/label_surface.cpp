@@ -39,7 +39,9 @@ void corner_indices(const Face& f, std::array<uint32_t, 3> (&corner)[4]) {
 
 DatasetPtr label_surface(const DatasetPtr& input, const LabelSurfaceParams& params, Context& context) {
   const auto* grid = input->as<UniformGrid>();
-  if (!grid) fail_usage(fmt::format("works on uniform grids, this is {}", input->kind()), "label_surface", "use threshold and faces for other meshes");
+  if (!grid)
+    fail_usage(fmt::format("works on uniform grids, this is {}", input->kind()), "label_surface",
+               "use threshold and faces for other meshes");
   const Field* field = params.field.empty() ? input->fields().active(1) : &input->fields().require(params.field.name, Association::point);
   if (!field || field->association != Association::point || field->components() != 1)
     fail_usage("needs a point field with one component", "label_surface");
@@ -54,21 +56,24 @@ DatasetPtr label_surface(const DatasetPtr& input, const LabelSurfaceParams& para
       if (double(x) == params.background || !(x == x)) return false;
       return params.labels.empty() || std::find(params.labels.begin(), params.labels.end(), int64_t(x)) != params.labels.end();
     };
-    parallel_for(d[2], 1, [&](size_t begin, size_t end) {
-      for (size_t k = begin; k < end; ++k)
-        for (size_t j = 0; j < d[1]; ++j)
-          for (size_t i = 0; i < d[0]; ++i) {
-            const size_t id = i + d[0] * (j + d[1] * k);
-            if (!wanted(v[id])) continue;
-            const size_t index[3] = {i, j, k}, stride[3] = {1, d[0], d[0] * d[1]};
-            for (size_t side = 0; side < 6; ++side) {
-              const size_t a = side / 2;
-              const bool border = side & 1 ? index[a] + 1 == d[a] : index[a] == 0;
-              if (border || !wanted(v[side & 1 ? id + stride[a] : id - stride[a]]))
-                slices[k].push_back({uint32_t(i), uint32_t(j), uint32_t(k), uint8_t(side)});
-            }
-          }
-    }, &context);
+    parallel_for(
+        d[2], 1,
+        [&](size_t begin, size_t end) {
+          for (size_t k = begin; k < end; ++k)
+            for (size_t j = 0; j < d[1]; ++j)
+              for (size_t i = 0; i < d[0]; ++i) {
+                const size_t id = i + d[0] * (j + d[1] * k);
+                if (!wanted(v[id])) continue;
+                const size_t index[3] = {i, j, k}, stride[3] = {1, d[0], d[0] * d[1]};
+                for (size_t side = 0; side < 6; ++side) {
+                  const size_t a = side / 2;
+                  const bool border = side & 1 ? index[a] + 1 == d[a] : index[a] == 0;
+                  if (border || !wanted(v[side & 1 ? id + stride[a] : id - stride[a]]))
+                    slices[k].push_back({uint32_t(i), uint32_t(j), uint32_t(k), uint8_t(side)});
+                }
+              }
+        },
+        &context);
   });
   std::vector<size_t> offset(slices.size() + 1);
   for (size_t k = 0; k < slices.size(); ++k) offset[k] = slices[k].size();

@@ -12,11 +12,11 @@
 namespace sg {
 
 struct Annotation {
-  std::string title;                ///< top centre; long titles wrap, then shrink, never crop
+  std::string title;  ///< top centre; long titles wrap, then shrink, never crop
   /// Right side, side by side; each exactly the colours drawn, title, unit, ticks. A `below` or `above` colour that is set shows
   /// as a triangle at that end: set it, to the end colour if need be, when data lies out of range.
   std::vector<ColorScale> legends;
-  std::optional<Box3> box;          ///< bounding box with numbered axes (the box lines themselves are scene lines)
+  std::optional<Box3> box;  ///< bounding box with numbered axes (the box lines themselves are scene lines)
   std::string axis_names[3] = {"x", "y", "z"};
   std::string length_unit;
   bool triad = true;                ///< orientation axes, lower left

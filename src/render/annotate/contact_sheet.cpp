@@ -50,7 +50,8 @@ Image contact_sheet(const std::vector<CaptionedImage>& pictures, int columns, in
     const int left = gap + int(i % size_t(columns)) * (width + gap), top = gap + int(i / size_t(columns)) * (height + caption + gap);
     if (image.width > 0 && image.height > 0) {
       const double fit = std::min(double(width) / image.width, double(height) / image.height);
-      const Image small = scaled(image, std::max(1, int(std::lround(image.width * fit))), std::max(1, int(std::lround(image.height * fit))));
+      const Image small =
+          scaled(image, std::max(1, int(std::lround(image.width * fit))), std::max(1, int(std::lround(image.height * fit))));
       const int x0 = left + (width - small.width) / 2, y0 = top + (height - small.height) / 2;
       for (int y = 0; y < small.height; ++y) std::copy_n(small.at(0, y), size_t(small.width) * 3, sheet.at(x0, y0 + y));
     }
