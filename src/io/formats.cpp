@@ -39,21 +39,32 @@ std::string known_extensions(bool writable) {
 
 }  // namespace
 
+namespace {
+
+Data read_known(const std::string& path, const ReadOptions& options, Context& context) {
+  const MappedFile file(path);
+  if (file.size() == 0) fail_data("is empty", path, "a data file has at least a header");
+  if (options.raw_dims[0] > 0) return read_raw(path, options, context);
+  const std::span<const std::byte> head(file.data(), std::min<size_t>(file.size(), 4096));
+  for (const Format& f : formats())
+    if (f.sniff && f.sniff(head)) return f.read(path, options, context);
+  const std::string ext = extension_of(path);
+  for (const Format& f : formats())
+    if (!f.sniff && has_extension(f, ext)) return f.read(path, options, context);
+  for (const Format& f : formats())
+    if (has_extension(f, ext)) fail_data(fmt::format("is named .{} but its content is no {}", ext, f.name), path);
+  fail_data("is in no known format", path, "known are: " + known_extensions(false) + "; for a raw brick give --dims and --type");
+}
+
+}  // namespace
+
 Data read_data(const std::string& path, const ReadOptions& options, Context& context) {
-  return with_context(fmt::format("reading '{}'", path), [&]() -> Data {
-    const MappedFile file(path);
-    if (file.size() == 0) fail_data("is empty", path, "a data file has at least a header");
-    if (options.raw_dims[0] > 0) return read_raw(path, options, context);
-    const std::span<const std::byte> head(file.data(), std::min<size_t>(file.size(), 4096));
-    for (const Format& f : formats())
-      if (f.sniff && f.sniff(head)) return f.read(path, options, context);
-    const std::string ext = extension_of(path);
-    for (const Format& f : formats())
-      if (!f.sniff && has_extension(f, ext)) return f.read(path, options, context);
-    for (const Format& f : formats())
-      if (has_extension(f, ext)) fail_data(fmt::format("is named .{} but its content is no {}", ext, f.name), path);
-    fail_data("is in no known format", path, "known are: " + known_extensions(false) + "; for a raw brick give --dims and --type");
-  });
+  try {
+    return read_known(path, options, context);
+  } catch (Error& e) {  // most say where; those found when the dataset is made cannot
+    if (e.where().find(path) == std::string::npos) e.add_context(fmt::format("reading '{}'", path));
+    throw;
+  }
 }
 
 void write_data(const std::string& path, const Data& data, const WriteOptions& options, Context& context) {

@@ -30,7 +30,7 @@ void look_at_grid(const Dataset& d, const Field& f, Look& look) {
   double offset = 0;
   if (d.as<UniformGrid>() && f.association == Association::point && looks_like_labels(d, f)) {
     look.filter = {"label_surface", "field=" + f.name};
-    look.shows.push_back({"surface", {"field=" + f.name}, false});
+    look.shows.push_back({"surface", {"field=" + f.name, "map=labels"}, false});
     look.shows.push_back({"outline", {}, true});
     look.reason = fmt::format("'{}' holds few integer values in pieces: labels, shown as surfaces with one colour each", f.name);
     return;

@@ -127,6 +127,7 @@ std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const Surfa
     lines.color_by = item.color_by;
     if (!p.coloring.color.empty()) lines.color = item.color;
     lines.opacity = p.opacity;
+    if (mesh.polygons.size() + mesh.strips.size() == 0) lines.width = 2.5;  // alone they may be seen
     scene.items.emplace_back(std::move(lines));
   }
   if (mesh.vertices.size() > 0) {
@@ -135,7 +136,7 @@ std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const Surfa
     points.color_by = item.color_by;
     if (!p.coloring.color.empty()) points.color = item.color;
     points.opacity = p.opacity;
-    points.size = 6;
+    points.size = 8;
     scene.items.emplace_back(std::move(points));
   }
   if (mesh.polygons.size() + mesh.strips.size() > 0) scene.items.emplace_back(std::move(item));

@@ -123,7 +123,7 @@ std::string choose_volume_look(const Dataset& data, const Field& field, const Co
   // Where the foreground begins: past the background peak, and past what most of the volume holds.
   const double start = std::max(peak_value + 0.02 * width, std::min(quantile(h, r.lo, r.hi, 0.6), r.lo + 0.35 * width));
   const double middle = std::max(start + 0.15 * width, quantile(h, r.lo, r.hi, 0.95));
-  item.opacity.points = {{r.lo, 0}, {start, 0}, {std::min(middle, 0.5 * (start + r.hi)), 0.06}, {r.hi, 0.55}};
+  item.opacity.points = {{r.lo, 0}, {start, 0}, {std::min(middle, 0.5 * (start + r.hi)), 0.12}, {r.hi, 0.7}};
   return fmt::format("values above {} are shown, the background below is left out", short_number(start, 3));
 }
 

@@ -185,7 +185,7 @@ std::vector<LegendLayout> layout_legends(const Overlay& overlay, const std::vect
       rest.width = legends.front().column.x - column_gap * f - rest.x;
     }
     const bool tall = std::all_of(legends.begin(), legends.end(), [&](const LegendLayout& l) {
-      return l.bar.height >= 3 * f && (l.nan ? l.nan_y + 1.5 * f : l.bar.bottom()) <= l.column.bottom();
+      return (l.swatches > 0 || l.bar.height >= 3 * f) && (l.nan ? l.nan_y + 1.5 * f : l.bar.bottom()) <= l.column.bottom();
     });
     if (tall && (legends_width(legends) <= 0.6 * area.width || (f < 5.5 && legends_width(legends) <= 0.95 * area.width))) return legends;
     if (f < 3) return {};

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is chosen when nobody says: colours, ranges, representations.
+#include "scene/look.h"
+
+#include "color/parse_color.h"
+#include "scene/volume_look.h"
+#include "support/test.h"
+
+using namespace sg;
+
+namespace {
+
+template <class T>
+DatasetPtr image(size_t n, const std::function<T(size_t, size_t, size_t)>& f) {
+  UniformGrid g;
+  g.dims = {n, n, n};
+  std::vector<T> v;
+  for (size_t k = 0; k < n; ++k)
+    for (size_t j = 0; j < n; ++j)
+      for (size_t i = 0; i < n; ++i) v.push_back(f(i, j, k));
+  FieldSet fields;
+  fields.add({"v", Association::point, Array::from_vector(std::move(v)), "K", Role::scalars});
+  return make_dataset(g, fields);
+}
+
+ColorScale scale_of(const DatasetPtr& d, ColoringParams p = {}) {
+  Context quiet;
+  return choose_scale(*d, d->fields()[0], p, quiet);
+}
+
+}  // namespace
+
+TEST_CASE("choose_scale: signed data gets a diverging map with zero in the middle, other data a sequential one") {
+  const auto is_signed = image<float>(4, [](size_t i, size_t, size_t) { return float(i) - 1.f; });  // -1 .. 2
+  const ColorScale s = scale_of(is_signed);
+  CHECK(s.map.kind == MapKind::diverging);
+  CHECK(s.lo == -2);
+  CHECK(s.hi == 2);
+  CHECK(s.position(0) == doctest::Approx(0.5));
+  CHECK(s.title == "v");
+  CHECK(s.unit == "K");
+  const auto positive = image<float>(4, [](size_t i, size_t, size_t) { return float(i); });
+  CHECK(scale_of(positive).map.kind == MapKind::sequential);
+  CHECK(scale_of(positive).hi == 3);
+}
+
+TEST_CASE("choose_scale: labels in pieces get one colour each, noisy integers do not") {
+  const auto pieces = image<uint8_t>(16, [](size_t i, size_t j, size_t) { return uint8_t(i < 4 ? 0 : i < 9 ? 3 : j < 8 ? 7 : 12); });
+  CHECK(looks_like_labels(*pieces, pieces->fields()[0]));
+  const ColorScale s = scale_of(pieces);
+  CHECK(s.map.categorical());
+  CHECK(s.labels == std::vector<double>{0, 3, 7, 12});
+  const auto noise = image<uint8_t>(16, [](size_t i, size_t j, size_t k) { return uint8_t((i * 37 + j * 101 + k * 53) % 60); });
+  CHECK_FALSE(looks_like_labels(*noise, noise->fields()[0]));
+  const auto real = image<float>(8, [](size_t i, size_t, size_t) { return float(i < 4); });
+  CHECK_FALSE(looks_like_labels(*real, real->fields()[0]));
+}
+
+TEST_CASE("choose_scale: a log scale begins at the smallest positive value, and refuses data without one") {
+  const auto d = image<float>(4, [](size_t i, size_t, size_t) { return i == 0 ? 0.f : float(i) * 10; });
+  ColoringParams p;
+  p.scale = "log";
+  const ColorScale s = scale_of(d, p);
+  CHECK(s.lo == 10);
+  CHECK(s.hi == 30);
+  const auto negative = image<float>(4, [](size_t i, size_t, size_t) { return -float(i); });
+  CHECK(test::error_of([&] { scale_of(negative, p); }).find("symlog") != std::string::npos);
+}
+
+TEST_CASE("choose_scale: constant and NaN-only fields give a usable range") {
+  const auto constant = image<float>(4, [](size_t, size_t, size_t) { return 5.f; });
+  CHECK(scale_of(constant).lo < 5);
+  CHECK(scale_of(constant).hi > 5);
+  const auto nan = image<float>(4, [](size_t, size_t, size_t) { return NAN; });
+  CHECK(scale_of(nan).lo < scale_of(nan).hi);
+  ColoringParams p;
+  p.range = {3, 1};
+  CHECK(test::error_of([&] { scale_of(constant, p); }).find("lower one first") != std::string::npos);
+}
+
+TEST_CASE("choose_scale: jet is drawn with a warning") {
+  const auto d = image<float>(4, [](size_t i, size_t, size_t) { return float(i); });
+  ColoringParams p;
+  p.map = "jet";
+  std::string warned;
+  Context context;
+  context.on_log = [&](LogLevel level, std::string_view text) {
+    if (level == LogLevel::warning) warned += text;
+  };
+  choose_scale(*d, d->fields()[0], p, context);
+  CHECK(warned.find("jet") != std::string::npos);
+  CHECK(warned.find("uniform") != std::string::npos);
+}
+
+TEST_CASE("choose_look: CT, labels, flat images, surfaces and points are recognised") {
+  // A body of water (0 HU) with bone (700 HU) in air (-1000 HU).
+  const auto ct = image<int16_t>(32, [](size_t i, size_t j, size_t k) {
+    const double x = double(i) - 15.5, y = double(j) - 15.5, z = double(k) - 15.5, r = std::sqrt(x * x + y * y + z * z);
+    return int16_t(r < 4 ? 1600 : r < 12 ? 20 + int(i % 3) : -1000);
+  });
+  double offset = -1;
+  CHECK(looks_like_ct(*ct, ct->fields()[0], &offset));
+  CHECK(offset == 0);
+  CHECK(choose_look(*ct, "", "mhd").reason.find("CT") != std::string::npos);
+  CHECK(choose_look(*ct, "", "mhd").shows[0].kind == "volume");
+
+  const auto labels = image<uint8_t>(16, [](size_t i, size_t j, size_t) { return uint8_t(i < 4 ? 0 : j < 8 ? 1 : 2); });
+  const Look look = choose_look(*labels, "", "");
+  REQUIRE(look.filter.size() == 2);
+  CHECK(look.filter[0] == "label_surface");
+
+  UniformGrid flat;
+  flat.dims = {8, 4, 1};
+  FieldSet f;
+  f.add({"a", Association::point, Array::from_vector(std::vector<float>(32, 1.f)), "", Role::none});
+  const Look map = choose_look(*make_dataset(flat, f), "", "");
+  CHECK(map.parallel);
+  CHECK(map.direction == Vec3(0, 0, 1));
+  CHECK(map.shows[0].kind == "surface");
+
+  PointCloud cloud;
+  cloud.points.xyz = Array::from_vector<float>({0, 0, 0, 1, 2, 3}, 3);
+  CHECK(choose_look(*make_dataset(cloud), "", "").shows[0].kind == "points");
+}
+
+TEST_CASE("show: a constant field is no automatic colour, a named one is") {
+  SurfaceMesh m;
+  m.points.xyz = Array::from_vector<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, 3);
+  m.polygons.fixed = 3;
+  m.polygons.connectivity = Array::from_vector<int32_t>({0, 1, 2});
+  FieldSet f;
+  f.add({"iso", Association::point, Array::from_vector<float>({2, 2, 2}), "", Role::scalars});
+  f.add({"t", Association::point, Array::from_vector<float>({0, 1, 2}), "", Role::none});
+  const DatasetPtr d = make_dataset(m, f);
+  Context context;
+  Scene scene;
+  const auto automatic = find_show("surface").add(scene, d, {}, context);
+  REQUIRE(automatic);
+  CHECK(automatic->title == "t");
+  const auto named = find_show("surface").add(scene, d, {"field=iso"}, context);
+  REQUIRE(named);
+  CHECK(named->title == "iso");
+  CHECK_FALSE(find_show("surface").add(scene, d, {"color=white"}, context));
+  CHECK(test::error_of([&] { find_show("surface").add(scene, d, {"field=tt"}, context); }).find("did you mean 't'") != std::string::npos);
+  CHECK(test::error_of([] { find_show("volme"); }).find("did you mean 'volume'") != std::string::npos);
+}
+
+TEST_CASE("colours as text: hex, numbers and names; anything else says what would be right") {
+  CHECK(parse_color("#ff8000", "x") == Vec3f(1.f, 128 / 255.f, 0.f));
+  CHECK(parse_color("#f80", "x") == Vec3f(1.f, 136 / 255.f, 0.f));
+  CHECK(parse_color("0.25,0.5,1", "x") == Vec3f(0.25f, 0.5f, 1.f));
+  CHECK(parse_color("White", "x") == Vec3f(1.f, 1.f, 1.f));
+  CHECK(color_text(parse_color("#123456", "x")) == "#123456");
+  for (const char* bad : {"#12345", "#ggg", "0.2,0.3", "2,0,0", "purpel", ""}) CHECK_THROWS_AS(parse_color(bad, "x"), Error);
+  CHECK(test::error_of([] { parse_color("purpel", "background"); }).find("did you mean 'purple'") != std::string::npos);
+}
+
+TEST_CASE("outline: twelve edges of the grid's own box, turned with it") {
+  UniformGrid g;
+  g.dims = {3, 3, 3};
+  g.direction.m[0][0] = 0, g.direction.m[0][1] = -1, g.direction.m[1][0] = 1, g.direction.m[1][1] = 0;
+  Context context;
+  Scene scene;
+  find_show("outline").add(scene, make_dataset(g), {}, context);
+  const auto& item = std::get<LinesItem>(scene.items.at(0));
+  CHECK(item.data->as<SurfaceMesh>()->lines.size() == 12);
+  CHECK(item.data->bounds().lo == Vec3(-2, 0, 0));
+  CHECK(item.data->bounds().hi == Vec3(0, 2, 2));
+}
