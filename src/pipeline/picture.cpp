@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/picture.h"
 
+#include "base/error.h"
 #include "base/file.h"
 #include "base/text.h"
 #include "color/parse_color.h"
-#include "render/annotate/annotate.h"
-#include "render/render.h"
-#include "scene/camera_params.h"
-#include "scene/look.h"
+#include "pipeline/picture_parts.h"
 
 namespace sg {
 
@@ -41,20 +39,8 @@ PipelineVocabulary picture_vocabulary() {
   return v;
 }
 
-namespace {
-
-// What the words under `picture` say.
-struct Stated {
-  PictureParams picture;
-  CameraParams camera;
-  int width = 0, height = 0;
-  Vec3f bottom{1, 1, 1};
-  std::optional<Vec3f> top;
-  bool transparent = false;
-};
-
-Stated stated_in(const PipelineFile& file) {
-  Stated s;
+StatedPicture stated_in(const PipelineFile& file) {
+  StatedPicture s;
   std::vector<std::string> words;
   for (const std::string& w : file.picture)
     if (!w.starts_with("camera.") && !w.starts_with("output=") && !w.starts_with("camera=")) words.push_back(w);
@@ -77,86 +63,7 @@ Stated stated_in(const PipelineFile& file) {
   return s;
 }
 
-// The file a step's data comes from, for hints by extension; "" for sources.
-std::string origin_of(const PipelineFile& file, std::string step) {
-  for (int hops = 0; hops < 1000; ++hops) {
-    size_t at = file.steps.size();
-    for (size_t i = 0; i < file.steps.size(); ++i)
-      if (file.steps[i].name == step) at = i;
-    if (at == file.steps.size()) return "";
-    const auto& s = file.steps[at];
-    if (s.operation == "read") return word_value(s.words, "path").value_or("");
-    if (!s.from.empty()) step = s.from[0];
-    else if (at > 0) step = file.steps[at - 1].name;
-    else return "";
-  }
-  return "";
-}
-
-// The steps that nobody takes as input: what is to be seen when nothing is said.
-std::vector<std::string> open_ends(const PipelineFile& file) {
-  std::vector<std::string> used, ends;
-  for (size_t i = 0; i < file.steps.size(); ++i) {
-    const auto& s = file.steps[i];
-    if (!s.from.empty()) used.insert(used.end(), s.from.begin(), s.from.end());
-    else if (i > 0 && s.operation != "read") {
-      const auto names = operations();
-      const auto op = std::find_if(names.begin(), names.end(), [&](const Operation& o) { return o.name == s.operation; });
-      if (op == names.end() || op->kind == OperationKind::filter) used.push_back(file.steps[i - 1].name);
-    }
-  }
-  for (const auto& s : file.steps)
-    if (std::find(used.begin(), used.end(), s.name) == used.end()) ends.push_back(s.name);
-  return ends;
-}
-
-std::string free_name(const PipelineFile& file, const std::string& wanted) {
-  for (int n = 0;; ++n) {
-    const std::string name = n ? fmt::format("{}_{}", wanted, n + 1) : wanted;
-    if (std::none_of(file.steps.begin(), file.steps.end(), [&](const auto& s) { return s.name == name; })) return name;
-  }
-}
-
-bool colors_by_field(std::string_view kind) { return kind != "outline"; }
-
-// Chooses how to show every open end, adding steps and shows to the file. Returns the view of the first. `held` keeps what
-// was looked at, so that the cache finds it again and nothing is computed twice.
-Look choose_looks(PipelineFile& file, const PictureOptions& options, const std::shared_ptr<Cache>& cache, std::vector<Data>& held,
-                  std::vector<std::string>& notes, Context& context) {
-  GraphOptions graph_options;
-  graph_options.cache = cache;
-  const PipelineGraph built = build_graph(file, graph_options);
-  const std::string field = word_value(options.coloring, "field").value_or("");
-  Look first;
-  bool have = false;
-  for (const std::string& end : open_ends(file)) {
-    NodeId node = built.last;
-    for (const auto& [name, id] : built.nodes)
-      if (name == end) node = id;
-    const Data data = held.emplace_back(built.graph.evaluate(node, {}, context));
-    DatasetPtr largest;
-    for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) {
-      if (!largest || d->point_count() > largest->point_count()) largest = d;
-    });
-    if (!largest) fail_usage("there is no mesh to show", end);
-    if (!field.empty()) largest->fields().require(field);
-    const Look look = choose_look(*largest, field, extension_of(origin_of(file, end)));
-    notes.push_back(look.reason);
-    std::string result = end;
-    if (!look.filter.empty()) {
-      result = free_name(file, look.filter[0]);
-      file.steps.push_back({result, look.filter[0], {look.filter.begin() + 1, look.filter.end()}, {end}, 0});
-    }
-    for (const Look::Show& s : look.shows) {
-      std::vector<std::string> words = s.words;
-      if (colors_by_field(s.kind)) words.insert(words.end(), options.coloring.begin(), options.coloring.end());
-      file.show.push_back({s.kind, words, s.of_input ? end : result, 0});
-    }
-    if (!have) first = look;
-    have = true;
-  }
-  return first;
-}
+namespace {
 
 void check_shows(const PipelineFile& file) {
   std::string problems;
@@ -192,78 +99,49 @@ bool has_nan(const Scene& scene) {
   return false;
 }
 
-// The edges of the box that do not lie in front of the data: those with a face turned away from the camera.
-LinesItem back_edges(const Box3& box, const Camera& camera) {
-  // turned_away[axis][end]: does the face at that end look away from the camera?
-  bool turned_away[3][2];
-  const Vec3 towards = camera.position - camera.target;
-  for (int a = 0; a < 3; ++a) {
-    turned_away[a][0] = camera.parallel ? towards[a] >= 0 : camera.position[a] >= box.lo[a];
-    turned_away[a][1] = camera.parallel ? towards[a] <= 0 : camera.position[a] <= box.hi[a];
+// What the results of all shows come to.
+struct Shown {
+  Scene scene;
+  std::vector<ColorScale> legends;  // each once
+  Box3 box;
+  bool outlined = false, any_points = false;
+};
+
+Shown collect(const PipelineFile& file, const std::vector<Data>& results, const StatedPicture& stated, Context& context) {
+  Shown s;
+  for (size_t i = 0; i < results.size(); ++i) {
+    const auto& show = file.show[i];
+    s.outlined = s.outlined || show.kind == "outline";
+    for_each_dataset(results[i], [&](const std::string&, const DatasetPtr& d) {
+      s.any_points = s.any_points || d->point_count() > 0;
+      s.box.add(d->bounds());
+      const auto legend = find_show(show.kind).add(s.scene, d, show.words, context);
+      if (!legend || !stated.picture.legend) return;
+      for (const ColorScale& have : s.legends)
+        if (same_legend(have, *legend)) return;
+      s.legends.push_back(*legend);
+    });
   }
-  SurfaceMesh mesh;
-  mesh.points.origin = box.center();
-  std::vector<float> xyz;
-  std::vector<int32_t> ends;
-  for (int c = 0; c < 8; ++c)
-    for (int a = 0; a < 3; ++a) xyz.push_back(float((c >> a & 1 ? box.hi[a] : box.lo[a]) - mesh.points.origin[a]));
-  for (int c = 0; c < 8; ++c)
-    for (int a = 0; a < 3; ++a) {
-      const int u = (a + 1) % 3, v = (a + 2) % 3;
-      if ((c >> a & 1) || !(box.size()[a] > 0)) continue;
-      if (turned_away[u][c >> u & 1] || turned_away[v][c >> v & 1]) ends.insert(ends.end(), {c, c | 1 << a});
-    }
-  mesh.points.xyz = Array::from_vector(std::move(xyz), 3);
-  mesh.lines.fixed = 2;
-  mesh.lines.connectivity = Array::from_vector(std::move(ends));
-  LinesItem item;
-  item.data = make_dataset(std::move(mesh));
-  item.color = {0.69f, 0.69f, 0.71f};
-  item.width = 1;
-  return item;
+  return s;
 }
 
-// Where a picture narrowed by its legends lies in the whole one: at the left, the rest is background.
-void place_left(const Frame& part, Frame& whole) {
-  for (int y = 0; y < part.height; ++y) {
-    const size_t from = size_t(y) * size_t(part.width), to = size_t(y) * size_t(whole.width);
-    std::copy_n(&part.rgba[4 * from], 4 * size_t(part.width), &whole.rgba[4 * to]);
-    // The background goes on to the right.
-    for (int x = part.width; x < whole.width; ++x)
-      std::copy_n(&part.rgba[4 * (from + size_t(part.width) - 1)], 4, &whole.rgba[4 * (to + size_t(x))]);
-  }
-}
-
-Image draw(const Scene& scene, const Camera& camera, const Stated& s, Annotation annotation, Context& context) {
-  int legends = legend_width(annotation, s.width, s.height);
-  if (legends * 2 > s.width) legends = 0;  // too narrow a picture: legends go over it
-  RenderOptions options;
-  options.width = s.width - legends, options.height = s.height, options.samples = s.picture.samples;
-  Frame frame = render(scene, camera, options, context);
-  const Projection projection = make_projection(camera, options.width, options.height);
-  if (legends > 0) {
-    Frame whole(s.width, s.height);
-    // The last column may hold data; take the background's own colour there.
-    Scene empty;
-    empty.background = scene.background, empty.background_top = scene.background_top, empty.transparent = scene.transparent;
-    RenderOptions column = options;
-    column.width = 1, column.samples = 1;
-    const Frame background = render(empty, camera, column, context);
-    place_left(frame, whole);
-    for (int y = 0; y < s.height; ++y)
-      for (int x = options.width; x < s.width; ++x)
-        std::copy_n(&background.rgba[4 * size_t(y)], 4, &whole.rgba[4 * (size_t(y) * size_t(s.width) + size_t(x))]);
-    frame = std::move(whole);
-  }
-  Image image = to_image(frame, scene.transparent);
-  annotate(image, annotation, projection);
-  return image;
+Annotation annotation_of(const StatedPicture& stated, const Shown& shown, const Look& look) {
+  Annotation a;
+  a.legends = shown.legends;
+  a.title = stated.picture.title;
+  a.triad = stated.picture.triad && shown.any_points && !look.parallel;  // a map needs none: its axes are named
+  a.scale = stated.picture.text;
+  const double brightness = 0.2126 * stated.bottom.x + 0.7152 * stated.bottom.y + 0.0722 * stated.bottom.z;
+  a.dark_background = !stated.transparent && brightness < 0.45;
+  a.show_nan_in_legend = has_nan(shown.scene);
+  if (stated.picture.axes && !shown.box.empty()) a.box = shown.box;
+  return a;
 }
 
 }  // namespace
 
 Picture make_picture(PipelineFile& file, const PictureOptions& options, Context& context) {
-  const Stated stated = stated_in(file);
+  const StatedPicture stated = stated_in(file);
   check_shows(file);
   const auto cache = options.cache ? options.cache : std::make_shared<Cache>(0);
   std::vector<Data> held;
@@ -285,41 +163,18 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
   const std::vector<Data> results = built.graph.evaluate(targets, context);
   held.clear();
 
-  Scene scene;
-  Annotation annotation;
-  bool outlined = false, any_points = false;
-  Box3 box;
-  for (size_t i = 0; i < results.size(); ++i) {
-    const auto& show = file.show[i];
-    outlined = outlined || show.kind == "outline";
-    for_each_dataset(results[i], [&](const std::string&, const DatasetPtr& d) {
-      any_points = any_points || d->point_count() > 0;
-      box.add(d->bounds());
-      const auto legend = find_show(show.kind).add(scene, d, show.words, context);
-      if (!legend || !stated.picture.legend) return;
-      for (const ColorScale& have : annotation.legends)
-        if (same_legend(have, *legend)) return;
-      annotation.legends.push_back(*legend);
-    });
-  }
-  if (!any_points) context.warn("the picture is empty: there are no points to show");
+  Shown shown = collect(file, results, stated, context);
+  const Box3& box = shown.box;
+  if (!shown.any_points) context.warn("the picture is empty: there are no points to show");
   if (!file.show.empty() && look.shows.empty())
     choose_view(box, extension_of(origin_of(file, file.show[0].of.empty() ? file.steps.back().name : file.show[0].of)), look);
+  Scene& scene = shown.scene;
   scene.background = stated.bottom, scene.background_top = stated.top, scene.transparent = stated.transparent;
-
-  const double brightness = 0.2126 * stated.bottom.x + 0.7152 * stated.bottom.y + 0.0722 * stated.bottom.z;
-  annotation.title = stated.picture.title;
-  annotation.triad = stated.picture.triad && any_points && !look.parallel;  // a map needs none: its axes are named
-  annotation.scale = stated.picture.text;
-  annotation.dark_background = !stated.transparent && brightness < 0.45;
-  annotation.show_nan_in_legend = has_nan(scene);
-  if (stated.picture.axes && !box.empty()) annotation.box = box;
-
-  const int legends = legend_width(annotation, stated.width, stated.height);
-  const double aspect = double(std::max(1, legends * 2 > stated.width ? stated.width : stated.width - legends)) / stated.height;
+  const Annotation annotation = annotation_of(stated, shown, look);
+  const double aspect = double(std::max(1, width_beside_legends(annotation, stated))) / stated.height;
   const Camera camera = make_camera(stated.camera, box, aspect, look.direction, look.up, look.parallel, stated.picture.axes ? 0.11 : 0.05);
-  if (stated.picture.axes && !outlined && !box.empty()) scene.items.emplace_back(back_edges(box, camera));
-  picture.image = draw(scene, camera, stated, std::move(annotation), context);
+  if (stated.picture.axes && !shown.outlined && !box.empty()) scene.items.emplace_back(back_edges(box, camera));
+  picture.image = draw_picture(scene, camera, stated, annotation, context);
   return picture;
 }
 

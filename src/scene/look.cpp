@@ -25,18 +25,28 @@ bool has_polygons(const Dataset& d) {
   return true;
 }
 
+// A grid whose box does not lie along x, y and z: the box with the numbers is not its own.
+bool is_turned(const Dataset& d) {
+  const auto* g = d.as<UniformGrid>();
+  if (!g) return false;
+  for (int a = 0; a < 3; ++a) {
+    const Vec3 axis = g->direction.column(a);
+    if (std::max({std::abs(axis.x), std::abs(axis.y), std::abs(axis.z)}) < 0.99999 * length(axis)) return true;
+  }
+  return false;
+}
+
 // A 3D scalar image or box grid: seen through, or for labels its voxel faces.
 void look_at_grid(const Dataset& d, const Field& f, Look& look) {
   double offset = 0;
   if (d.as<UniformGrid>() && f.association == Association::point && looks_like_labels(d, f)) {
     look.filter = {"label_surface", "field=" + f.name};
     look.shows.push_back({"surface", {"field=" + f.name, "map=labels"}, false});
-    look.shows.push_back({"outline", {}, true});
     look.reason = fmt::format("'{}' holds few integer values in pieces: labels, shown as surfaces with one colour each", f.name);
     return;
   }
   look.shows.push_back({"volume", {"field=" + f.name}, true});
-  look.shows.push_back({"outline", {}, true});
+  if (is_turned(d)) look.shows.push_back({"outline", {}, true});
   if (looks_like_ct(d, f, &offset)) {
     look.reason = fmt::format("'{}' looks like CT (16-bit, air peak): volume with skin and bone colours", f.name);
     return;

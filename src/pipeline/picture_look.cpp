@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is shown when nothing is said.
+#include "base/error.h"
+#include "base/file.h"
+#include "pipeline/picture_parts.h"
+
+namespace sg {
+
+bool colors_by_field(std::string_view kind) { return kind != "outline"; }
+
+std::string origin_of(const PipelineFile& file, std::string step) {
+  for (int hops = 0; hops < 1000; ++hops) {
+    size_t at = file.steps.size();
+    for (size_t i = 0; i < file.steps.size(); ++i)
+      if (file.steps[i].name == step) at = i;
+    if (at == file.steps.size()) return "";
+    const auto& s = file.steps[at];
+    if (s.operation == "read") return word_value(s.words, "path").value_or("");
+    if (!s.from.empty()) step = s.from[0];
+    else if (at > 0) step = file.steps[at - 1].name;
+    else return "";
+  }
+  return "";
+}
+
+namespace {
+
+// The steps that nobody takes as input: what is to be seen when nothing is said.
+std::vector<std::string> open_ends(const PipelineFile& file) {
+  std::vector<std::string> used, ends;
+  for (size_t i = 0; i < file.steps.size(); ++i) {
+    const auto& s = file.steps[i];
+    if (!s.from.empty()) used.insert(used.end(), s.from.begin(), s.from.end());
+    else if (i > 0 && s.operation != "read") {
+      const auto names = operations();
+      const auto op = std::find_if(names.begin(), names.end(), [&](const Operation& o) { return o.name == s.operation; });
+      if (op == names.end() || op->kind == OperationKind::filter) used.push_back(file.steps[i - 1].name);
+    }
+  }
+  for (const auto& s : file.steps)
+    if (std::find(used.begin(), used.end(), s.name) == used.end()) ends.push_back(s.name);
+  return ends;
+}
+
+std::string free_name(const PipelineFile& file, const std::string& wanted) {
+  for (int n = 0;; ++n) {
+    const std::string name = n ? fmt::format("{}_{}", wanted, n + 1) : wanted;
+    if (std::none_of(file.steps.begin(), file.steps.end(), [&](const auto& s) { return s.name == name; })) return name;
+  }
+}
+
+}  // namespace
+
+Look choose_looks(PipelineFile& file, const PictureOptions& options, const std::shared_ptr<Cache>& cache, std::vector<Data>& held,
+                  std::vector<std::string>& notes, Context& context) {
+  GraphOptions graph_options;
+  graph_options.cache = cache;
+  const PipelineGraph built = build_graph(file, graph_options);
+  const std::string field = word_value(options.coloring, "field").value_or("");
+  Look first;
+  bool have = false;
+  for (const std::string& end : open_ends(file)) {
+    NodeId node = built.last;
+    for (const auto& [name, id] : built.nodes)
+      if (name == end) node = id;
+    const Data data = held.emplace_back(built.graph.evaluate(node, {}, context));
+    DatasetPtr largest;
+    for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) {
+      if (!largest || d->point_count() > largest->point_count()) largest = d;
+    });
+    if (!largest) fail_usage("there is no mesh to show", end);
+    if (!field.empty()) largest->fields().require(field);
+    const Look look = choose_look(*largest, field, extension_of(origin_of(file, end)));
+    notes.push_back(look.reason);
+    std::string result = end;
+    if (!look.filter.empty()) {
+      result = free_name(file, look.filter[0]);
+      file.steps.push_back({result, look.filter[0], {look.filter.begin() + 1, look.filter.end()}, {end}, 0});
+    }
+    for (const Look::Show& s : look.shows) {
+      std::vector<std::string> words = s.words;
+      if (colors_by_field(s.kind)) words.insert(words.end(), options.coloring.begin(), options.coloring.end());
+      file.show.push_back({s.kind, words, s.of_input ? end : result, 0});
+    }
+    if (!have) first = look;
+    have = true;
+  }
+  return first;
+}
+
+}  // namespace sg

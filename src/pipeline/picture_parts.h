@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// The parts of make_picture(): what is stated, what is chosen, what is drawn.
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pipeline/picture.h"
+#include "render/annotate/annotate.h"
+#include "scene/camera_params.h"
+#include "scene/look.h"
+
+namespace sg {
+
+/// What the words under `picture` say.
+struct StatedPicture {
+  PictureParams picture;
+  CameraParams camera;
+  int width = 0, height = 0;
+  Vec3f bottom{1, 1, 1};
+  std::optional<Vec3f> top;
+  bool transparent = false;
+};
+
+/// Throws Error(usage).
+StatedPicture stated_in(const PipelineFile& file);
+
+/// Outlines have one colour; all other ways to show take the words of ColoringParams.
+bool colors_by_field(std::string_view kind);
+/// The file a step's data comes from, for hints by extension; "" for sources.
+std::string origin_of(const PipelineFile& file, std::string step);
+/// Chooses how to show every step that nobody takes as input, adding steps and shows to the file. Returns the view of the first.
+/// `held` keeps what was looked at, so that the cache finds it again and nothing is computed twice.
+Look choose_looks(PipelineFile& file, const PictureOptions& options, const std::shared_ptr<Cache>& cache, std::vector<Data>& held,
+                  std::vector<std::string>& notes, Context& context);
+
+/// The edges of the box that do not lie in front of the data: those with a face turned away from the camera.
+LinesItem back_edges(const Box3& box, const Camera& camera);
+/// Width of the picture itself, beside its legends.
+int width_beside_legends(const Annotation& annotation, const StatedPicture& stated);
+/// Renders to the left of the legends, goes on with the background to the right, and annotates.
+Image draw_picture(const Scene& scene, const Camera& camera, const StatedPicture& stated, const Annotation& annotation, Context& context);
+
+}  // namespace sg
