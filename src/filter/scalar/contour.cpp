@@ -115,7 +115,7 @@ Array joined(std::vector<Piece>& pieces, int components, Get&& get, bool ids) {
   int32_t before = 0;
   for (Piece& p : pieces) {
     const Array a = get(p);
-    std::memcpy(out, a.raw(), a.bytes());
+    if (a.count()) std::memcpy(out, a.raw(), a.bytes());  // a piece without any surface has no bytes to point at
     if (ids)
       for (size_t i = 0; i < a.count(); ++i) reinterpret_cast<int32_t*>(out)[i] += before;
     out += a.bytes();
