@@ -19,7 +19,7 @@ struct RawText {
 };
 
 void add_common(CLI::App& a, Options& o, RawText& raw) {
-  a.add_option("--threads", o.threads, "Worker threads; 0 = all cores")->check(CLI::NonNegativeNumber);
+  a.add_option("--threads", o.threads, "Worker threads; 0 = all cores");
   a.add_option("--memory", raw.memory, "Memory to stay within, like 2G");
   a.add_flag("--quiet,-q", o.quiet, "Print errors only");
   a.add_flag("--verbose,-v", o.verbose, "Print what is done, step by step");
@@ -67,6 +67,8 @@ Vec3 triple(const std::string& text, const char* option, double least) {
 }
 
 void finish_raw(const RawText& raw, Options& o) {
+  if (o.threads < 0 || o.threads > 4096)
+    fail_usage(fmt::format("{} is no number of threads", o.threads), "--threads", "from 0 (all cores) to 4096");
   if (!raw.dims.empty()) {
     const Vec3 d = triple(raw.dims, "--dims", 1);
     for (int i = 0; i < 3; ++i) {

@@ -142,6 +142,7 @@ void write_stl(const std::string& path, const Data& data, const WriteOptions& op
   if (n > UINT32_MAX) fail_usage(fmt::format("{} triangles are more than an STL file can count", n), path);
   if (!mesh.lines.connectivity.empty() || !mesh.vertices.connectivity.empty())
     context.warn(path + ": lines and vertices are not written; STL holds triangles only");
+  if (!d->fields().empty()) context.warn(path + ": STL holds no fields; they are left out");
   AtomicFile file(path);
   auto triangle = [&](size_t t, float v[12]) {
     Vec3 p[3];

@@ -59,7 +59,8 @@ Look choose_looks(PipelineFile& file, const PictureOptions& options, const std::
   const std::string field = word_value(options.coloring, "field").value_or("");
   Look first;
   bool have = false;
-  for (const std::string& end : open_ends(file)) {
+  const std::vector<std::string> ends = open_ends(file);
+  for (const std::string& end : ends) {
     NodeId node = built.last;
     for (const auto& [name, id] : built.nodes)
       if (name == end) node = id;
@@ -71,7 +72,7 @@ Look choose_looks(PipelineFile& file, const PictureOptions& options, const std::
     if (!largest) fail_usage("there is no mesh to show", end);
     if (!field.empty()) largest->fields().require(field);
     const Look look = choose_look(*largest, field, extension_of(origin_of(file, end)));
-    notes.push_back(look.reason);
+    notes.push_back(ends.size() > 1 ? fmt::format("{}: {}", file_name_of(origin_of(file, end)), look.reason) : look.reason);
     std::string result = end;
     if (!look.filter.empty()) {
       result = free_name(file, look.filter[0]);

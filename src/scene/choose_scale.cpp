@@ -91,6 +91,7 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
     if (positive.empty())
       fail_usage(fmt::format("field '{}' has no positive value for a log scale", field.name), "scale", "use scale=linear or scale=symlog");
     r = positive;
+    context.info(fmt::format("values of '{}' at or below 0 have no place on a log scale; they are drawn as below it", field.name));
   }
   const bool is_signed = r.lo < 0 && r.hi > 0 && std::min(-r.lo, r.hi) > 0.05 * std::max(-r.lo, r.hi);
   if (automatic) s.map = find_colormap(labels ? "labels" : is_signed && s.kind != ScaleKind::log ? "coolwarm" : "sight");

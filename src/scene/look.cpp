@@ -9,15 +9,33 @@ namespace sg {
 
 namespace {
 
-// What the picture will be coloured by: the same choice as wanted_field() in show.cpp makes for a surface.
+// What a surface, line or dot will be coloured by.
 std::string field_reason(const Dataset& d, const std::string& field) {
-  const Field* f = field.empty() ? d.fields().with_role(Role::scalars) : d.fields().find(field);
-  if (!f) f = d.fields().with_role(Role::colors);
-  if (!f) f = d.fields().active(1);
-  if (!f) f = d.fields().active(3);
-  if (!f) return "one colour (there is no field)";
+  const Field* f = field.empty() ? automatic_field(d) : d.fields().find(field);
+  if (!f) return d.fields().empty() ? "one colour (there is no field)" : "one colour (no field varies over it)";
   if (f->role == Role::colors) return fmt::format("its own colours '{}'", f->name);
   return fmt::format("coloured by '{}'{}", f->name, f->components() > 1 ? " (magnitude)" : "");
+}
+
+// The normal of a surface whose points all lie in one plane, towards the usual viewer; nothing for others.
+std::optional<Vec3> plane_normal(const Dataset& d, Vec3 towards) {
+  const auto* m = d.as<SurfaceMesh>();
+  if (!m || m->polygons.size() == 0) return {};
+  const CellsView c = cells_view(m->polygons);
+  const double size = d.bounds().diagonal();
+  Vec3 normal;
+  for (size_t cell = 0; cell < c.count && !(length(normal) > 0); ++cell) {
+    Vec3 sum;  // Newell: twice the area vector
+    const Vec3 first = m->points.at(size_t(c.point(cell, 0)));
+    for (size_t k = 1; k + 1 < c.size(cell); ++k)
+      sum += cross(m->points.at(size_t(c.point(cell, k))) - first, m->points.at(size_t(c.point(cell, k + 1))) - first);
+    if (length(sum) > 1e-9 * size * size) normal = normalize(sum);
+  }
+  if (!(length(normal) > 0)) return {};
+  const Vec3 origin = m->points.at(size_t(c.point(0, 0)));
+  for (size_t i = 0; i < m->points.count(); ++i)
+    if (std::abs(dot(m->points.at(i) - origin, normal)) > 1e-4 * size) return {};
+  return dot(normal, towards) < 0 ? -normal : normal;
 }
 
 bool has_polygons(const Dataset& d) {
@@ -81,6 +99,8 @@ void choose_view(const Box3& b, const std::string& extension, Look& look) {
 Look choose_look(const Dataset& d, const std::string& field, const std::string& extension) {
   Look look;
   choose_view(d.bounds(), extension, look);
+  if (!look.parallel)
+    if (const auto normal = plane_normal(d, look.direction)) look.direction = *normal;
   if (d.point_count() == 0) {
     look.reason = "there are no points: an empty picture";
     return look;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/show.h"
 
+#include "base/text.h"
 #include "color/parse_color.h"
 #include "data/field_ops.h"
 #include "data/lattice.h"
@@ -60,6 +61,40 @@ void describe(Schema& s, OutlineShow& p) {
 
 namespace {
 
+// Ids: 5, 6, 7, ... in the order of the points or cells, or a name that says so.
+bool is_numbering(const Field& f) {
+  if (f.components() != 1) return false;
+  const std::string name = to_lower(f.name);
+  for (std::string_view end : {"id", "ids", "nodenums", "elemnums", "number"})
+    if (name.ends_with(end)) return true;
+  const size_t n = std::min<size_t>(f.array.count(), 1000);
+  if (n < 16) return false;
+  for (size_t i = 1; i < n; ++i)
+    if (f.array.get(i) != f.array.get(i - 1) + 1) return false;
+  return true;
+}
+
+}  // namespace
+
+const Field* automatic_field(const Dataset& d) {
+  // A field that is the same everywhere (a contour's own field) says nothing in colour.
+  auto varies = [&](const Field& f) {
+    const Range r = d.range(f);
+    return r.empty() || r.lo < r.hi;
+  };
+  auto plain = [](Role r) { return r != Role::normals && r != Role::tcoords && r != Role::global_ids; };
+  if (const Field* f = d.fields().with_role(Role::scalars); f && f->components() == 1 && varies(*f)) return f;
+  if (const Field* f = d.fields().with_role(Role::colors)) return f;
+  for (const bool numberings : {false, true})
+    for (int components : {1, 3})
+      for (Association a : {Association::point, Association::cell})
+        for (const Field& f : d.fields())
+          if (f.association == a && f.components() == components && plain(f.role) && is_numbering(f) == numberings && varies(f)) return &f;
+  return nullptr;
+}
+
+namespace {
+
 // The field to colour by, or null for one colour. `names_input`: what the mistake is about.
 const Field* wanted_field(const Dataset& d, const ColoringParams& p) {
   if (!p.color.empty() || p.field.name == "none") return nullptr;
@@ -69,21 +104,7 @@ const Field* wanted_field(const Dataset& d, const ColoringParams& p) {
       fail_usage(fmt::format("field '{}' belongs to the whole dataset, not to points or cells", f.name), "field");
     return &f;
   }
-  // A field that is the same everywhere (a contour's own field) says nothing in colour.
-  auto varies = [&](const Field& f) {
-    const Range r = d.range(f);
-    return r.empty() || r.lo < r.hi;
-  };
-  auto usable = [&](const Field* f) { return f && (f->role == Role::colors || varies(*f)); };
-  if (const Field* f = d.fields().with_role(Role::scalars); usable(f) && f->components() == 1) return f;
-  if (const Field* f = d.fields().with_role(Role::colors)) return f;
-  for (int components : {1, 3})
-    for (Association a : {Association::point, Association::cell})
-      for (const Field& f : d.fields())
-        if (f.association == a && f.components() == components && f.role != Role::normals && f.role != Role::tcoords &&
-            f.role != Role::global_ids && varies(f))
-          return &f;
-  return nullptr;
+  return automatic_field(d);
 }
 
 bool is_direct(const Field& f) {
@@ -146,6 +167,12 @@ std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const Surfa
 std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const VolumeShow& p, Context& context) {
   const Field* f = wanted_field(*input, p.coloring);
   if (!f) fail_usage("there is no field to see through", "volume", "name one with field=");
+  if (is_lattice(input->mesh())) {
+    const auto n = lattice_dims(input->mesh());
+    if (std::min({n[0], n[1], n[2]}) < 2)
+      fail_usage(fmt::format("a grid of {}x{}x{} points has no volume", n[0], n[1], n[2]), "volume",
+                 "show it as a surface: --show surface");
+  }
   VolumeItem item;
   item.data = input;
   item.field = f->name;

@@ -76,6 +76,10 @@ const ShowKind& find_show(std::string_view name);
 /// symmetric when signed about zero, else sequential).
 ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringParams& params, Context& context);
 
+/// The field that colours a dataset when none is named: its scalars when they vary, else its own colours, else the first field
+/// that varies, points before cells, scalars before vectors, numberings last. Null when there is none.
+const Field* automatic_field(const Dataset& data);
+
 /// Integer values that name things: few distinct ones, in pieces. For fields of lattices, points and cells.
 bool looks_like_labels(const Dataset& data, const Field& field);
 

@@ -236,6 +236,6 @@ TEST_CASE("gradient: refuses what it cannot do and says what would be right") {
   FieldSet fields;
   fields.add({"c", Association::cell, Array::from_vector(std::vector<float>(1)), "", Role::none});
   const auto cells = make_dataset(uniform({2, 2, 2}, {0, 0, 0}, {1, 1, 1}), fields);
-  CHECK(error_of([&] { run(cells, "c"); }).find("average it") != std::string::npos);
+  CHECK(error_of([&] { run(cells, "c"); }).find("field of the points") != std::string::npos);
   CHECK(error_of([&] { run(cells); }).find("no point field") != std::string::npos);
 }

@@ -21,7 +21,7 @@ const Field& choose_field(const Dataset& input, const FieldName& name) {
   if (!name.empty()) {
     input.fields().require(name.name);
     f = input.fields().find(name.name, Association::point);
-    if (!f) fail_usage(fmt::format("field '{}' does not lie on the points", name.name), "gradient", "average it to the points first");
+    if (!f) fail_usage(fmt::format("field '{}' does not lie on the points", name.name), "gradient", "name a field of the points");
     return *f;
   }
   f = input.fields().active(1);
@@ -103,7 +103,7 @@ Array cells_gradient(const Dataset& input, const Array& values, ElementType type
 
 DatasetPtr gradient(const DatasetPtr& input, const GradientParams& params, Context& context) {
   if (input->as<PointCloud>())
-    fail_usage("a mesh of kind 'points' has no gradient: nothing connects its points", "gradient", "resample the points to a grid first");
+    fail_usage("a mesh of kind 'points' has no gradient: nothing connects its points", "gradient", "points alone have no gradient");
   const Field& field = choose_field(*input, params.field);
   const ElementType t = field.array.type();
   const ElementType type = t == ElementType::f32 || element_size(t) < 4 ? ElementType::f32 : ElementType::f64;

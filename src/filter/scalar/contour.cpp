@@ -26,7 +26,7 @@ const Field& choose_field(const Dataset& input, const FieldName& name) {
     if (const Field* point = input.fields().find(name.name, Association::point)) return *point;
     if (f.association == Association::cell)
       fail_usage(fmt::format("field '{}' lies on the cells; a contour needs values at the points", name.name), "contour",
-                 "average it to the points first");
+                 "name a field of the points; threshold and faces take cell fields");
     fail_usage(fmt::format("field '{}' lies on the whole mesh; a contour needs values at the points", name.name), "contour");
   }
   const Field* f = input.fields().active(1);
@@ -37,7 +37,7 @@ const Field& choose_field(const Dataset& input, const FieldName& name) {
     if (p.association == Association::point) return p;  // a vector: the next check says what to do
   if (f)
     fail_usage(fmt::format("the mesh has no point field to contour, only the cell field '{}'", f->name), "contour",
-               "average it to the points first");
+               "name a field of the points; threshold and faces take cell fields");
   fail_usage("the mesh has no point field to contour", "contour");
 }
 
@@ -95,9 +95,8 @@ void check_mesh(const Dataset& input) {
                  "give it a grid of two or three axes");
   } else if (!input.as<UnstructuredMesh>() && !input.as<SurfaceMesh>()) {
     const bool amr = input.as<AmrGrid>();
-    fail_usage(
-        fmt::format("a mesh of kind '{}' cannot be contoured", input.kind()), "contour",
-        amr ? "resample it to a uniform grid, or turn its leaf cells into an unstructured mesh" : "resample the points to a grid first");
+    fail_usage(fmt::format("a mesh of kind '{}' cannot be contoured", input.kind()), "contour",
+               amr ? "its outer surface can be shown: -f faces" : "points alone have no inside");
   }
 }
 

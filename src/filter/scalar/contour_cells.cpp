@@ -34,7 +34,7 @@ Found find(size_t n, const Context& context, Each&& each) {
 
 [[noreturn]] void unsupported(const UnstructuredMesh& m, size_t cell) {
   fail_usage(fmt::format("cell {} is a {}; only linear cells can be contoured", cell, cell_type_info(m.type(cell)).name), "contour",
-             "split the mesh into linear cells first");
+             "contours of curved cells are not there yet; slice and faces take them");
 }
 
 Found find_cells(const Finder& finder, const UnstructuredMesh& m) {

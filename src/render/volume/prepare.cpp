@@ -28,7 +28,7 @@ void check(const VolumeItem& item) {
   if (!item.data) fail_usage("a volume item has no dataset", "volume");
   if (!item.data->as<UniformGrid>() && !item.data->as<RectilinearGrid>())
     fail_usage(fmt::format("a {} mesh cannot be looked through as a volume", item.data->kind()), "volume",
-               "resample it to a grid first or render its surface");
+               "volumes are grids so far; show its surface: --show surface");
   if (!(item.step >= 0) || !std::isfinite(item.step))
     fail_usage(fmt::format("the step {} is no length", item.step), "volume", "give a length above 0, or 0 for half a cell");
   if (!(item.unit_distance >= 0) || !std::isfinite(item.unit_distance))
