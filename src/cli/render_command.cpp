@@ -76,12 +76,26 @@ std::string stem_of(const std::string& path) {
   return dot == std::string::npos || dot == 0 ? name : name.substr(0, dot);
 }
 
-void print_explanation(const PipelineFile& file) {
-  const PipelineGraph built = build_graph(file);
+std::vector<Target> targets_of(const PipelineGraph& built) {
   std::vector<Target> targets;
   for (NodeId n : built.show) targets.push_back({n, {}});
   if (targets.empty()) targets.push_back({built.last, {}});
-  std::fputs(built.graph.explain(targets).c_str(), stdout);
+  return targets;
+}
+
+void print_explanation(const PipelineFile& file) {
+  const PipelineGraph built = build_graph(file);
+  std::fputs(built.graph.explain(targets_of(built)).c_str(), stdout);
+}
+
+// With --memory, what the steps are expected to hold together is known before any of them runs.
+void check_memory(const PipelineGraph& built, const Options& o) {
+  if (o.memory == 0) return;
+  uint64_t bytes = 0;
+  for (const PlannedStep& step : built.graph.plan(targets_of(built))) bytes += step.bytes;
+  if (bytes > o.memory)
+    fail_usage(fmt::format("the steps are expected to hold {}, more than the {} allowed", human_bytes(bytes), human_bytes(o.memory)),
+               "--memory", "--explain shows which; allow more, or read a smaller part");
 }
 
 int render_to(PipelineFile& file, const std::string& output, const PictureOptions& options, const Options& o, Context& context) {
@@ -90,6 +104,7 @@ int render_to(PipelineFile& file, const std::string& output, const PictureOption
     return 0;
   }
   check_output(output);
+  if (o.memory > 0) check_memory(build_graph(file), o);
   Picture picture = make_picture(file, options, context);
   attach_recipe(picture.image, file, output);
   write_image(output, picture.image);
@@ -186,6 +201,7 @@ int run_convert(const Options& o, Context& context) {
     return 0;
   }
   const PipelineGraph built = build_graph(file);
+  check_memory(built, o);
   const Data data = built.graph.evaluate(built.last, {}, context);
   write_data(o.output, data, o.write, context);
   if (!o.quiet)

@@ -116,6 +116,8 @@ TEST_CASE("bad input: unreadable options") {
   check_refused({"render", "a.vti", "--camera", "azimut=3", "-o", "x.png"}, 2, {"azimut", "did you mean 'azimuth'"}, f);
   check_refused({"render", "a.vti", "--threads", "many"}, 2, {"many"}, f);
   check_refused({"render", "a.vti", "--background", "purpel", "-o", "x.png"}, 2, {"purpel", "purple"}, f);
+  check_refused({"render", "a.vti", "--threads", "-2", "-o", "x.png"}, 2, {"-2", "0 (all cores)"}, f);
+  check_refused({"render", "a.vti", "--memory", "1K", "-o", "x.png"}, 2, {"--memory", "1.0 KiB", "--explain"}, f);
   check_refused({"render"}, 2, {"file"}, f);
 }
 

@@ -70,12 +70,12 @@ std::optional<Rect> name_place(const Overlay& o, const BoxAxis& a, const Project
     // How far this number reaches out of its edge.
     const Vec2 center{t.rect.x + 0.5 * t.rect.width, t.rect.y + 0.5 * t.rect.height};
     const double reach = std::abs(a.outward.x) * 0.5 * t.rect.width + std::abs(a.outward.y) * 0.5 * t.rect.height;
-    beyond = std::max(beyond, dot_of({center.x - t.at.x, center.y - t.at.y}, a.outward) + reach + 0.3 * font);
+    beyond = std::max(beyond, dot_of({center.x - t.at.x, center.y - t.at.y}, a.outward) + reach + 0.55 * font);
   }
   for (double out : {beyond, beyond * 0.75, beyond * 0.5, beyond * 1.4})
     for (double shift : {0.0, 0.1, -0.1, 0.2, -0.2, 0.3, -0.3, 0.42, -0.42, 0.5, -0.5}) {
       const Rect r = beside(middle + along * shift + a.outward * out, a.outward, e);
-      const bool hits = std::any_of(ticks.begin(), ticks.end(), [&](const PlacedTick& t) { return t.rect.overlaps(r); });
+      const bool hits = std::any_of(ticks.begin(), ticks.end(), [&](const PlacedTick& t) { return t.rect.grown(0.45 * font).overlaps(r); });
       if (!hits && is_free(r, o, taken)) return r;
     }
   return {};
