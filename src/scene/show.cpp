@@ -95,7 +95,7 @@ const Field* automatic_field(const Dataset& d) {
 
 namespace {
 
-// The field to colour by, or null for one colour. `names_input`: what the mistake is about.
+// The field to colour by, or null for one colour.
 const Field* wanted_field(const Dataset& d, const ColoringParams& p) {
   if (!p.color.empty() || p.field.name == "none") return nullptr;
   if (!p.field.empty()) {
