@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/file.h"
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
@@ -107,6 +108,44 @@ void write_file(const std::string& path, std::string_view bytes) {
 bool file_exists(const std::string& path) {
   struct stat st {};
   return ::stat(path.c_str(), &st) == 0;
+}
+
+bool is_folder(const std::string& path) {
+  struct stat st {};
+  return ::stat(path.c_str(), &st) == 0 && S_ISDIR(st.st_mode);
+}
+
+bool natural_less(std::string_view a, std::string_view b) {
+  auto digit = [](std::string_view s, size_t i) { return i < s.size() && s[i] >= '0' && s[i] <= '9'; };
+  size_t i = 0, j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (digit(a, i) && digit(b, j)) {
+      while (i < a.size() && a[i] == '0') ++i;  // leading zeros count only when all else is equal
+      while (j < b.size() && b[j] == '0') ++j;
+      const size_t i0 = i, j0 = j;
+      while (digit(a, i)) ++i;
+      while (digit(b, j)) ++j;
+      if (i - i0 != j - j0) return i - i0 < j - j0;
+      if (const int c = a.substr(i0, i - i0).compare(b.substr(j0, j - j0))) return c < 0;
+    } else if (a[i] != b[j]) {
+      return uint8_t(a[i]) < uint8_t(b[j]);
+    } else {
+      ++i, ++j;
+    }
+  }
+  if (i < a.size() || j < b.size()) return i == a.size();
+  return a < b;
+}
+
+std::vector<std::string> folder_entries(const std::string& path) {
+  DIR* folder = ::opendir(path.c_str());
+  if (!folder) fail_data(std::string("cannot be listed: ") + std::strerror(errno), path);
+  std::vector<std::string> names;
+  while (const dirent* entry = ::readdir(folder))
+    if (const std::string name = entry->d_name; name != "." && name != "..") names.push_back(name);
+  ::closedir(folder);
+  std::sort(names.begin(), names.end(), natural_less);
+  return names;
 }
 
 std::string folder_of(std::string_view path) {

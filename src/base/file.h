@@ -60,6 +60,12 @@ class AtomicFile {
 void write_file(const std::string& path, std::string_view bytes);
 
 bool file_exists(const std::string& path);
+bool is_folder(const std::string& path);
+/// Names in a folder, without . and .., sorted so that numbers in them count ("s2" before "s10"). Throws Error(data) when it cannot be
+/// read.
+std::vector<std::string> folder_entries(const std::string& path);
+/// "s2" before "s10": runs of digits are compared as numbers, the rest byte by byte.
+bool natural_less(std::string_view a, std::string_view b);
 /// Folder part with trailing '/', or "" when there is none.
 std::string folder_of(std::string_view path);
 std::string file_name_of(std::string_view path);

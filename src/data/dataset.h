@@ -71,9 +71,14 @@ DatasetPtr make_dataset(Mesh mesh, FieldSet fields = {});
 
 struct Collection;
 using CollectionPtr = std::shared_ptr<const Collection>;
-/// Columns of equal length.
+/// Columns of equal length. A column of words holds i32 places in its list of labels, -1 where there is none.
 struct Table {
   std::vector<Field> columns;
+  std::vector<std::vector<std::string>> labels;  ///< one list per column (empty for numbers), or none at all
+  /// The labels of a column of words; null for numbers.
+  const std::vector<std::string>* words(size_t column) const {
+    return column < labels.size() && !labels[column].empty() ? &labels[column] : nullptr;
+  }
 };
 using TablePtr = std::shared_ptr<const Table>;
 

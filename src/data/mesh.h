@@ -75,6 +75,8 @@ struct UnstructuredMesh {
   CellType single_type = CellType::empty;
   CellArray faces;
   Array polyhedron_faces;  ///< i64, cells.size()+1
+  Array degrees;           ///< Lagrange and Bezier cells: u8, 3 components a cell, orders along the axes; empty = the same along all
+  Array weights;           ///< f64, one a point: rational weights of Bezier cells; empty = all 1
 
   CellType type(size_t cell) const { return types.empty() ? single_type : CellType(types.view<uint8_t>()[cell]); }
 };

@@ -4,28 +4,25 @@
 
 #include "base/file.h"
 #include "base/text.h"
+#include "data/lattice.h"
+#include "data/lattice_crop.h"
 
 namespace sg {
 
 std::span<const Format> formats() {
   static constexpr Format table[] = {
-      {"legacy VTK", "vtk", sniff_vtk_legacy, read_vtk_legacy, nullptr},
-      {"VTK XML", "vti vtr vts vtu vtp", sniff_vtk_xml, read_vtk_xml, write_vtk_xml},
-      {"NRRD", "nrrd nhdr", sniff_nrrd, read_nrrd, write_nrrd},
-      {"MetaImage", "mhd mha", sniff_metaimage, read_metaimage, nullptr},
-      {"PLY", "ply", sniff_ply, read_ply, write_ply},
-      {"STL", "stl", nullptr, read_stl, write_stl},
-      {"OBJ", "obj", nullptr, read_obj, write_obj},
-      {"raw brick", "raw bin", nullptr, read_raw, nullptr},
+#include "io/formats.def"
   };
   return table;
 }
 
 namespace {
 
-bool has_extension(const Format& f, const std::string& ext) {
+/// Whether the name ends in one of the format's extensions; these may have two parts ("nii.gz").
+bool has_extension(const Format& f, const std::string& path) {
+  const std::string name = to_lower(file_name_of(path));
   for (std::string_view e : words(f.extensions))
-    if (e == ext) return true;
+    if (name.size() > e.size() && name.ends_with(e) && name[name.size() - e.size() - 1] == '.') return true;
   return false;
 }
 
@@ -37,43 +34,95 @@ std::string known_extensions(bool writable) {
   return r;
 }
 
-}  // namespace
+const Format* raw_format() {
+  for (const Format& f : formats())
+    if (f.read == read_raw) return &f;
+  return nullptr;
+}
 
-namespace {
+const Format& format_of_folder(const std::string& path) {
+  for (const Format& f : formats())
+    if (f.sniff_folder && f.sniff_folder(path)) return f;
+  fail_data("is a folder of no known kind", path,
+            "folders that are read: DICOM slices, OpenFOAM cases, AMReX plotfiles, stacks of pictures");
+}
 
-Data read_known(const std::string& path, const ReadOptions& options, Context& context) {
+const Format& format_of_file(const std::string& path, const ReadOptions& options) {
   const MappedFile file(path);
   if (file.size() == 0) fail_data("is empty", path, "a data file has at least a header");
-  if (options.raw_dims[0] > 0) return read_raw(path, options, context);
+  if (options.raw_dims[0] > 0) return *raw_format();
   const std::span<const std::byte> head(file.data(), std::min<size_t>(file.size(), 4096));
+  const Format* found = nullptr;
   for (const Format& f : formats())
-    if (f.sniff && f.sniff(head)) return f.read(path, options, context);
-  const std::string ext = extension_of(path);
+    if (f.read && f.sniff && f.sniff(head)) {
+      if (has_extension(f, path)) return f;
+      if (!found) found = &f;
+    }
+  if (found) return *found;
   for (const Format& f : formats())
-    if (!f.sniff && has_extension(f, ext)) return f.read(path, options, context);
+    if (f.read && !f.sniff && has_extension(f, path)) return f;
   for (const Format& f : formats())
-    if (has_extension(f, ext)) fail_data(fmt::format("is named .{} but its content is no {}", ext, f.name), path);
+    if (f.read && has_extension(f, path)) fail_data(fmt::format("is named like {} but its content is none", f.name), path);
   fail_data("is in no known format", path, "known are: " + known_extensions(false) + "; for a raw brick give --dims and --type");
 }
 
-}  // namespace
+const Format& format_of(std::string& path, const ReadOptions& options) {
+  while (path.size() > 1 && path.back() == '/') path.pop_back();
+  return is_folder(path) ? format_of_folder(path) : format_of_file(path, options);
+}
 
-Data read_data(const std::string& path, const ReadOptions& options, Context& context) {
+/// Runs f(format, path); errors that do not say where get the path.
+template <class F>
+auto with_format(std::string path, const ReadOptions& options, F&& f) {
   try {
-    return read_known(path, options, context);
+    return f(format_of(path, options), path);
   } catch (Error& e) {  // most say where; those found when the dataset is made cannot
     if (e.where().find(path) == std::string::npos) e.add_context(fmt::format("reading '{}'", path));
     throw;
   }
 }
 
+}  // namespace
+
+Data read_data(const std::string& path, const ReadOptions& options, Context& context) {
+  return with_format(path, options, [&](const Format& f, const std::string& at) {
+    Data data = f.read(at, options, context);
+    if (options.region.whole() || (f.honours & honours_region)) return data;
+    return map_datasets(data, [&](const DatasetPtr& d) {
+      return is_lattice(d->mesh()) ? crop_lattice(*d, options.region.lo, options.region.hi, options.region.stride) : d;
+    });
+  });
+}
+
+std::vector<double> file_times(const std::string& path, const ReadOptions& options, Context& context) {
+  return with_format(path, options, [&](const Format& f, const std::string& at) {
+    return f.times ? f.times(at, options, context) : std::vector<double>();
+  });
+}
+
+size_t chosen_step(const std::vector<double>& times, const ReadOptions& options, const std::string& path, size_t otherwise) {
+  if (options.step >= 0) {
+    if (size_t(options.step) >= times.size())
+      fail_usage(fmt::format("there is no time step {}", options.step), path, fmt::format("it has {}, counted from 0", times.size()));
+    return size_t(options.step);
+  }
+  if (!options.time) return otherwise;
+  size_t best = 0;
+  for (size_t i = 1; i < times.size(); ++i)
+    if (std::fabs(times[i] - *options.time) < std::fabs(times[best] - *options.time)) best = i;
+  return best;
+}
+
 void write_data(const std::string& path, const Data& data, const WriteOptions& options, Context& context) {
   const std::string ext = extension_of(path);
+  const Format* known = nullptr;
   for (const Format& f : formats())
-    if (has_extension(f, ext)) {
-      if (!f.write) fail_usage(fmt::format("{} files are read but not written", f.name), path, "can write: " + known_extensions(true));
-      return with_context(fmt::format("writing '{}'", path), [&] { f.write(path, data, options, context); });
-    }
+    if (has_extension(f, path) && (!known || !known->write)) known = &f;
+  if (const Format* p = known) {
+    const Format& f = *p;
+    if (!f.write) fail_usage(fmt::format("{} files are read but not written", f.name), path, "can write: " + known_extensions(true));
+    return with_context(fmt::format("writing '{}'", path), [&] { f.write(path, data, options, context); });
+  }
   fail_usage(fmt::format("unknown extension '{}'", ext), path, "can write: " + known_extensions(true));
 }
 

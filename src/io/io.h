@@ -13,9 +13,23 @@
 
 namespace sg {
 
+/// Part of a lattice: points lo..hi (inclusive, counted from 0 in the file's lattice), every stride-th along each axis.
+struct LatticeRegion {
+  std::array<size_t, 3> lo{0, 0, 0}, hi{SIZE_MAX, SIZE_MAX, SIZE_MAX};  ///< hi is clamped to the lattice
+  std::array<size_t, 3> stride{1, 1, 1};
+  bool whole() const { return *this == LatticeRegion(); }
+  friend bool operator==(const LatticeRegion&, const LatticeRegion&) = default;
+};
+
+/// What a reader may leave out. It may always give more than was asked for; read_data() then cuts what it can (see Format::honours).
 struct ReadOptions {
   std::vector<std::string> fields;          ///< names to load; empty = all. Readers may skip the bytes of the others.
   bool header_only = false;                 ///< no field values needed: readers may leave fields out that cost reading
+  std::optional<double> time;               ///< of a series: the step nearest to this time
+  int64_t step = -1;                        ///< of a series: this step, 0 first; -1 = by time, else the format's default (the first)
+  LatticeRegion region;                     ///< of a lattice: this part only
+  int piece = 0, pieces = 1;                ///< part `piece` of `pieces`, when several processes share the work
+  int ghost_levels = 0;                     ///< layers of cells of neighbouring pieces, marked ghost_duplicate
   std::array<size_t, 3> raw_dims{0, 0, 0};  ///< raw bricks: size, ...
   std::string raw_type;                     ///< ... element type ("u8", "f32", ...),
   bool raw_big_endian = false;              ///< ... byte order,
@@ -35,14 +49,28 @@ Data read_data(const std::string& path, const ReadOptions& options, Context& con
 /// Writes by extension. Throws Error(usage) for an unknown extension or a mesh the format cannot hold.
 void write_data(const std::string& path, const Data& data, const WriteOptions& options, Context& context);
 
-/// One format: what it is called, how to know it, how to read and write it. The table stands in formats.cpp.
+/// Time values of a series, ascending; empty for a file without time.
+std::vector<double> file_times(const std::string& path, const ReadOptions& options, Context& context);
+/// The step that `options` ask for among `times` (not empty): by number, else the nearest time, else `otherwise`. Throws
+/// Error(usage) for a step that is not there.
+size_t chosen_step(const std::vector<double>& times, const ReadOptions& options, const std::string& path, size_t otherwise = 0);
+
+/// What a reader does itself; the rest is done behind it, on all that it read.
+enum Honours : unsigned { honours_region = 1, honours_pieces = 2 };
+
+/// One format: what it is called, how to know it, how to read and write it. The table stands in formats.def.
 struct Format {
   std::string_view name;
-  std::string_view extensions;  ///< blank-separated, lower case
+  std::string_view extensions;  ///< blank-separated, lower case; may hold two parts ("nii.gz")
   /// Content test on the first bytes (up to 4 KiB; fewer when the file is shorter); null = extension only.
-  bool (*sniff)(std::span<const std::byte> head);
-  Data (*read)(const std::string& path, const ReadOptions&, Context&);
-  void (*write)(const std::string& path, const Data&, const WriteOptions&, Context&);
+  bool (*sniff)(std::span<const std::byte> head) = nullptr;
+  Data (*read)(const std::string& path, const ReadOptions&, Context&) = nullptr;
+  void (*write)(const std::string& path, const Data&, const WriteOptions&, Context&) = nullptr;
+  /// Time values without reading the data; null = the format has no time.
+  std::vector<double> (*times)(const std::string& path, const ReadOptions&, Context&) = nullptr;
+  /// For formats that are a folder; `path` has no trailing slash.
+  bool (*sniff_folder)(const std::string& path) = nullptr;
+  unsigned honours = 0;
 };
 std::span<const Format> formats();
 

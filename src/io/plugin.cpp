@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/plugin.h"
+
+#include <dlfcn.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <mutex>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/parallel.h"
+
+namespace sg {
+
+namespace {
+
+using EntryPoint = const PluginFormat* (*)(size_t* count, int threads);
+
+struct Package {
+  std::string_view plugin, what, packages;
+};
+constexpr Package packages[] = {
+    {"hdf5", "HDF5", "libhdf5-103-1"}, {"netcdf", "netCDF", "libnetcdf19"},      {"cgns", "CGNS", "libcgns3.4"},
+    {"gdcm", "DICOM", "libgdcm3.0"},   {"openvdb", "OpenVDB", "libopenvdb10.0"},
+};
+
+const Package& package_of(std::string_view plugin) {
+  for (const Package& p : packages)
+    if (p.plugin == plugin) return p;
+  fail_internal(fmt::format("plug-in '{}' has no package", plugin));
+}
+
+// Where plug-ins are looked for: the environment's folder, beside the program, an installation's lib, where the build put them.
+std::vector<std::string> plugin_folders() {
+  std::vector<std::string> folders;
+  if (const char* set = std::getenv("SIGHTGLASS_PLUGINS")) return {std::string(set) + "/"};
+  char program[4096];
+  const ssize_t n = ::readlink("/proc/self/exe", program, sizeof program);
+  if (n > 0) {
+    const std::string here = folder_of(std::string_view(program, size_t(n)));
+    folders.push_back(here + "plugins/");
+    folders.push_back(here + "../lib/sightglass/");
+  }
+#ifdef SG_PLUGIN_FOLDER
+  folders.push_back(SG_PLUGIN_FOLDER "/");
+#endif
+  return folders;
+}
+
+struct Loaded {
+  std::string name;
+  const PluginFormat* formats = nullptr;
+  size_t count = 0;
+};
+
+// Never unloaded: data that it made points into its code.
+Loaded load(std::string_view name) {
+  const Package& package = package_of(name);
+  const std::string file = fmt::format("sightglass_{}.so", name);
+  std::string tried;
+  for (const std::string& folder : plugin_folders()) {
+    tried += (tried.empty() ? "" : ", ") + folder;
+    if (!file_exists(folder + file)) continue;
+    void* handle = ::dlopen((folder + file).c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (!handle)
+      fail_data(fmt::format("the reader for {} cannot be loaded: {}", package.what, ::dlerror()), folder + file,
+                fmt::format("install its library: apt-get install {}", package.packages));
+    const auto entry = reinterpret_cast<EntryPoint>(::dlsym(handle, "sightglass_plugin"));
+    if (!entry) fail_data("is no Sightglass plug-in", folder + file, "remove it, or build it again");
+    Loaded l{std::string(name), nullptr, 0};
+    l.formats = entry(&l.count, thread_count());
+    return l;
+  }
+  fail_data(fmt::format("the reader for {} ({}) is not installed", package.what, file), "",
+            fmt::format("install the library's development package before building ({}); looked in {}", package.packages, tried));
+}
+
+}  // namespace
+
+const PluginFormat& plugin_format(std::string_view plugin, std::string_view format) {
+  static std::mutex mutex;
+  static std::vector<std::unique_ptr<Loaded>> loaded;
+  std::lock_guard lock(mutex);
+  const Loaded* found = nullptr;
+  for (const auto& l : loaded)
+    if (l->name == plugin) found = l.get();
+  if (!found) found = loaded.emplace_back(std::make_unique<Loaded>(load(plugin))).get();
+  for (size_t i = 0; i < found->count; ++i)
+    if (found->formats[i].name == format) return found->formats[i];
+  fail_internal(fmt::format("plug-in '{}' has no format '{}'", plugin, format));
+}
+
+}  // namespace sg

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// Readers that need a heavy library live in plug-ins, shared objects beside the program, loaded when a file asks for them. A
+// missing plug-in, or one whose library is missing, gives an error that names the package to install.
+//
+// A plug-in is a folder src/io/plugins/NAME, built by sg_plugin(NAME ...). It exports one function:
+//   SG_PLUGIN_FORMATS({"vtkhdf", read_vtkhdf, write_vtkhdf, times_of_vtkhdf}, ...)
+// and formats.def names it:
+//   {"VTKHDF", "vtkhdf hdf", sniff_hdf5, plugin_read<"hdf5", "vtkhdf">, plugin_write<"hdf5", "vtkhdf">, plugin_times<"hdf5", "vtkhdf">},
+#pragma once
+#include <algorithm>
+
+#include "io/io.h"
+
+namespace sg {
+
+/// What a plug-in offers under one name; null = it cannot do that.
+struct PluginFormat {
+  std::string_view name;
+  Data (*read)(const std::string& path, const ReadOptions&, Context&) = nullptr;
+  void (*write)(const std::string& path, const Data&, const WriteOptions&, Context&) = nullptr;
+  std::vector<double> (*times)(const std::string& path, const ReadOptions&, Context&) = nullptr;
+};
+
+/// Loads a plug-in (once) and finds a format in it. Throws Error(data) that names what to install.
+const PluginFormat& plugin_format(std::string_view plugin, std::string_view format);
+
+/// A name as a template argument.
+template <size_t N>
+struct PluginName {
+  char text[N];
+  constexpr PluginName(const char (&s)[N]) { std::copy_n(s, N, text); }
+};
+
+template <PluginName PLUGIN, PluginName FORMAT>
+Data plugin_read(const std::string& path, const ReadOptions& options, Context& context) {
+  return plugin_format(PLUGIN.text, FORMAT.text).read(path, options, context);
+}
+template <PluginName PLUGIN, PluginName FORMAT>
+void plugin_write(const std::string& path, const Data& data, const WriteOptions& options, Context& context) {
+  plugin_format(PLUGIN.text, FORMAT.text).write(path, data, options, context);
+}
+template <PluginName PLUGIN, PluginName FORMAT>
+std::vector<double> plugin_times(const std::string& path, const ReadOptions& options, Context& context) {
+  return plugin_format(PLUGIN.text, FORMAT.text).times(path, options, context);
+}
+
+}  // namespace sg
+
+/// In one file of a plug-in: what it offers. `threads` is the host's cap on threads (0 = all): a plug-in has its own copy of base.
+#define SG_PLUGIN_FORMATS(...)                                                                                              \
+  extern "C" __attribute__((visibility("default"))) const sg::PluginFormat* sightglass_plugin(size_t* count, int threads) { \
+    static const sg::PluginFormat table[] = {__VA_ARGS__};                                                                  \
+    sg::set_thread_count(threads);                                                                                          \
+    *count = sizeof table / sizeof *table;                                                                                  \
+    return table;                                                                                                           \
+  }
