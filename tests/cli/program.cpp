@@ -19,7 +19,7 @@ Ran sightglass(const std::vector<std::string>& args, const std::string& folder, 
   const std::string where = folder.empty() ? temp_folder() : folder;
   const std::string out = temp_folder() + "stdout.txt", err = temp_folder() + "stderr.txt";
   std::vector<char*> argv;
-  const std::string program = std::string(SG_BINARY_DIR) + "/sightglass";
+  const std::string program = std::string(test::build_folder()) + "/sightglass";
   argv.push_back(const_cast<char*>(program.c_str()));
   for (const std::string& a : args) argv.push_back(const_cast<char*>(a.c_str()));
   argv.push_back(nullptr);

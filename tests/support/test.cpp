@@ -31,6 +31,9 @@ const std::string& data_folder() {
 
 std::string data_file(const std::string& name) { return data_folder() + name; }
 
+const char* source_folder() { return SG_SOURCE_DIR; }
+const char* build_folder() { return SG_BINARY_DIR; }
+
 const std::string& temp_folder() {
   struct Folder {
     std::string path;

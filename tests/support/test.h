@@ -15,6 +15,9 @@ const std::string& data_folder();
 inline bool no_data() { return data_folder().empty(); }
 /// Path of a file in the data folder.
 std::string data_file(const std::string& name);
+/// The checkout, and the folder of the build; without trailing '/'.
+const char* source_folder();
+const char* build_folder();
 /// A fresh folder that is removed when the program ends; with trailing '/'.
 const std::string& temp_folder();
 
