@@ -16,7 +16,7 @@ bool no_python() { return std::system("python3 -c pass >/dev/null 2>&1") != 0; }
 
 /// Output of the checker on a checkout; `passed` says whether it exited 0.
 std::string check(const std::string& root, bool& passed) {
-  std::FILE* p = ::popen(("python3 '" + std::string(source_folder()) + "/tools/check_layers' '" + root + "' 2>&1").c_str(), "r");
+  std::FILE* p = ::popen(("python3 '" + std::string(test::source_folder()) + "/tools/check_layers' '" + root + "' 2>&1").c_str(), "r");
   REQUIRE(p);
   std::string out;
   char b[4096];
@@ -42,7 +42,7 @@ const std::string spdx = "// SPDX-License-Identifier: Apache-2.0\n";
 
 TEST_CASE("check_layers: this checkout keeps the rules" * doctest::skip(no_python())) {
   bool passed = false;
-  const std::string out = check(source_folder(), passed);
+  const std::string out = check(test::source_folder(), passed);
   CHECK_MESSAGE(passed, out);
 }
 
