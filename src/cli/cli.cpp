@@ -86,8 +86,16 @@ int run_info(const Options& o, Context& context) {
   ReadOptions read = o.read;
   read.header_only = o.quick;
   for (const std::string& path : o.inputs) {
-    const Data data = read_data(path, read, context);
-    const std::string text = o.json ? info_json(data, o.quick) : info_text(data, path, o.quick);
+    std::string text;
+    if (o.all_times) {
+      const Series series = open_series(path, read, context);
+      const SeriesRange range = series_range(series, context);
+      text = o.json ? series_json(range, series.times) : series_text(range, path, series.times);
+    } else {
+      const Data data = read_data(path, read, context);
+      const std::vector<double> times = file_times(path, read, context);
+      text = o.json ? info_json(data, o.quick, times) : info_text(data, path, o.quick, times);
+    }
     std::fwrite(text.data(), 1, text.size(), stdout);
   }
   return 0;

@@ -17,7 +17,19 @@ std::string range_json(const FieldStats& s) {
   return r + "]";
 }
 
-std::string dataset_json(const Dataset& d, bool quick) {
+std::string bounds_json(const Box3& b) {
+  if (b.empty()) return "null";
+  return "[" + number(b.lo.x) + "," + number(b.hi.x) + "," + number(b.lo.y) + "," + number(b.hi.y) + "," + number(b.lo.z) + "," +
+         number(b.hi.z) + "]";
+}
+
+std::string times_json(const std::vector<double>& times) {
+  std::string r = "[";
+  for (size_t i = 0; i < times.size(); ++i) r += (i ? "," : "") + number(times[i]);
+  return r + "]";
+}
+
+std::string dataset_json(const Dataset& d, bool quick, const std::vector<double>* times) {
   std::string r = fmt::format("\"kind\":\"{}\",\"dims\":[", d.kind());
   if (is_lattice(d.mesh())) {
     const auto n = lattice_dims(d.mesh());
@@ -29,12 +41,7 @@ std::string dataset_json(const Dataset& d, bool quick) {
     r += fmt::format("{}\"{}\":{}", first ? "" : ",", name, count);
     first = false;
   }
-  r += "},\"bounds\":";
-  const Box3& b = d.bounds();
-  if (b.empty()) r += "null";
-  else
-    r += "[" + number(b.lo.x) + "," + number(b.hi.x) + "," + number(b.lo.y) + "," + number(b.hi.y) + "," + number(b.lo.z) + "," +
-         number(b.hi.z) + "]";
+  r += "},\"bounds\":" + bounds_json(d.bounds());
   if (auto* g = d.as<UniformGrid>()) {
     r += fmt::format(",\"origin\":[{},{},{}]", number(g->origin.x), number(g->origin.y), number(g->origin.z));
     r += fmt::format(",\"spacing\":[{},{},{}],\"direction\":[", number(g->spacing.x), number(g->spacing.y), number(g->spacing.z));
@@ -56,23 +63,31 @@ std::string dataset_json(const Dataset& d, bool quick) {
     r += "}";
     first = false;
   }
+  if (times && !times->empty()) return r + "],\"time\":" + (d.time() ? number(*d.time()) : "null") + ",\"times\":" + times_json(*times);
   return r + "],\"times\":[" + (d.time() ? number(*d.time()) : std::string()) + "]";
 }
 
-std::string data_json(const Data& data, bool quick) {
-  if (auto* d = std::get_if<DatasetPtr>(&data)) return dataset_json(**d, quick);
-  if (auto* t = std::get_if<TablePtr>(&data)) {
-    std::string r = "\"kind\":\"table\",\"columns\":[";
-    for (size_t i = 0; i < (*t)->columns.size(); ++i)
-      r += fmt::format("{}{{\"name\":{},\"type\":\"{}\",\"rows\":{}}}", i ? "," : "", json_string((*t)->columns[i].name),
-                       element_name((*t)->columns[i].array.type()), (*t)->columns[i].array.count());
-    return r + "]";
+std::string table_json(const Table& t) {
+  std::string r = "\"kind\":\"table\",\"columns\":[";
+  for (size_t i = 0; i < t.columns.size(); ++i) {
+    const Field& f = t.columns[i];
+    const auto* labels = t.words(i);
+    r += fmt::format("{}{{\"name\":{},\"type\":\"{}\",\"rows\":{}", i ? "," : "", json_string(f.name),
+                     labels ? "words" : element_name(f.array.type()), f.array.count());
+    if (labels) r += fmt::format(",\"distinct\":{}}}", labels->size());
+    else r += ",\"range\":" + range_json(field_stats(f.array)) + "}";
   }
+  return r + "]";
+}
+
+std::string data_json(const Data& data, bool quick, const std::vector<double>* times) {
+  if (auto* d = std::get_if<DatasetPtr>(&data)) return dataset_json(**d, quick, times);
+  if (auto* t = std::get_if<TablePtr>(&data)) return table_json(**t);
   std::string r = "\"kind\":\"collection\",\"parts\":[";
   const auto& parts = std::get<CollectionPtr>(data)->parts;
   for (size_t i = 0; i < parts.size(); ++i)
-    r += (i ? ",{\"name\":" : "{\"name\":") + json_string(parts[i].name) + "," + data_json(parts[i].data, quick) + "}";
-  return r + "]";
+    r += (i ? ",{\"name\":" : "{\"name\":") + json_string(parts[i].name) + "," + data_json(parts[i].data, quick, nullptr) + "}";
+  return r + "]" + (times ? ",\"times\":" + times_json(*times) : "");
 }
 
 std::string range_text(const Range& r) {
@@ -137,14 +152,63 @@ std::string dataset_text(const Dataset& d, const std::string& name, bool quick) 
 
 }  // namespace
 
-std::string info_json(const Data& data, bool quick) { return "{" + data_json(data, quick) + "}\n"; }
+std::string info_json(const Data& data, bool quick, const std::vector<double>& times) {
+  return "{" + data_json(data, quick, &times) + "}\n";
+}
 
-std::string info_text(const Data& data, const std::string& name, bool quick) {
+namespace {
+
+std::string table_text(const Table& t, const std::string& name) {
+  const size_t rows = t.columns.empty() ? 0 : t.columns[0].array.count();
+  std::string r = fmt::format("{}\n  table of {} rows, {} columns\n", name, rows, t.columns.size());
+  size_t width = 6;
+  for (const Field& f : t.columns) width = std::max(width, std::min<size_t>(f.name.size(), 32));
+  for (size_t i = 0; i < t.columns.size(); ++i) {
+    const Field& f = t.columns[i];
+    const auto* labels = t.words(i);
+    const std::string what = labels ? fmt::format("{} words", labels->size()) : range_text(field_stats(f.array).range[0]);
+    r += fmt::format("  {:<{}}  {:<5}  {}\n", f.name, width, labels ? "words" : element_name(f.array.type()), what);
+  }
+  return r;
+}
+
+std::string times_text(const std::vector<double>& times) {
+  if (times.empty()) return "";
+  return fmt::format("  times   {} .. {}, {} steps\n", short_number(times.front()), short_number(times.back()), times.size());
+}
+
+}  // namespace
+
+std::string info_text(const Data& data, const std::string& name, bool quick, const std::vector<double>& times) {
   std::string r;
+  if (auto* t = std::get_if<TablePtr>(&data)) return table_text(**t, name);
   for_each_dataset(
       data, [&](const std::string& part, const DatasetPtr& d) { r += dataset_text(*d, part.empty() ? name : name + ": " + part, quick); });
-  if (auto* t = std::get_if<TablePtr>(&data)) r += fmt::format("{}\n  table of {} columns\n", name, (*t)->columns.size());
-  return r.empty() ? name + "\n  nothing in it\n" : r;
+  return (r.empty() ? name + "\n  nothing in it\n" : r) + times_text(times);
+}
+
+std::string series_json(const SeriesRange& range, const std::vector<double>& times) {
+  std::string r = "{\"times\":" + times_json(times) + ",\"bounds\":" + bounds_json(range.bounds) + ",\"fields\":[";
+  for (size_t i = 0; i < range.fields.size(); ++i) {
+    const SeriesField& f = range.fields[i];
+    r += fmt::format("{}{{\"name\":{},\"association\":\"{}\",\"steps\":{},\"range\":{},\"nan\":{}}}", i ? "," : "", json_string(f.name),
+                     association_name(f.association), f.steps, range_json(f.stats), f.stats.nan);
+  }
+  return r + "]}\n";
+}
+
+std::string series_text(const SeriesRange& range, const std::string& name, const std::vector<double>& times) {
+  std::string r = name + ", over all steps\n" + times_text(times);
+  size_t width = 5;
+  for (const SeriesField& f : range.fields) width = std::max(width, std::min<size_t>(f.name.size(), 32));
+  for (const SeriesField& f : range.fields) {
+    r += fmt::format("  {:<{}}  {:<5}  ", f.name, width, association_name(f.association));
+    for (size_t c = 0; c < std::min<size_t>(f.stats.range.size(), 4); ++c) r += (c ? ", " : "") + range_text(f.stats.range[c]);
+    if (f.steps != times.size()) r += fmt::format("; in {} steps", f.steps);
+    if (f.stats.nan) r += fmt::format("; {} NaN", f.stats.nan);
+    r += "\n";
+  }
+  return r;
 }
 
 }  // namespace sg

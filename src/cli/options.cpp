@@ -14,6 +14,7 @@ namespace {
 
 struct RawText {
   std::string dims, type, spacing, endian = "little", memory;
+  std::string time, region, stride, fields, piece;  // of any file: which part of it
   size_t header = 0;
   int components = 1;
 };
@@ -25,7 +26,13 @@ void add_common(CLI::App& a, Options& o, RawText& raw) {
   a.add_flag("--verbose,-v", o.verbose, "Print what is done, step by step");
 }
 
-void add_reading(CLI::App& a, RawText& raw) {
+void add_reading(CLI::App& a, Options& o, RawText& raw) {
+  a.add_option("--time", raw.time, "Time series: the step nearest to this time");
+  a.add_option("--step", o.read.step, "Time series: this step, counted from 0")->check(CLI::NonNegativeNumber);
+  a.add_option("--fields", raw.fields, "Read only these fields, like T,velocity");
+  a.add_option("--region", raw.region, "Grids: read points i0,i1,j0,j1,k0,k1 only");
+  a.add_option("--stride", raw.stride, "Grids: read every n-th point, like 2 or 2,2,1");
+  a.add_option("--piece", raw.piece, "Read one piece of several, like 0/4, or 0/4/1 with a layer of ghost cells");
   a.add_option("--dims", raw.dims, "Raw brick: size, like 256,256,128");
   a.add_option("--type", raw.type, "Raw brick: element type: u8 i8 u16 i16 u32 i32 f32 f64");
   a.add_option("--spacing", raw.spacing, "Raw brick: distance of samples, like 1,1,2");
@@ -66,7 +73,51 @@ Vec3 triple(const std::string& text, const char* option, double least) {
   return v;
 }
 
+std::vector<size_t> whole_numbers(const std::string& text, char separator, const char* option, const char* hint) {
+  std::vector<size_t> out;
+  for (std::string_view part : split(text, separator)) {
+    const auto v = parse_int(part);
+    if (!v || *v < 0) fail_usage(fmt::format("'{}' is not a list of whole numbers", text), option, hint);
+    out.push_back(size_t(*v));
+  }
+  return out;
+}
+
+void finish_parts(const RawText& raw, ReadOptions& r) {
+  if (!raw.time.empty()) {
+    r.time = parse_double(raw.time);
+    if (!r.time) fail_usage(fmt::format("'{}' is no number", raw.time), "--time", "like 0.25");
+  }
+  for (std::string_view name : split(raw.fields, ','))
+    if (!name.empty()) r.fields.emplace_back(name);
+  if (!raw.region.empty()) {
+    const auto n = whole_numbers(raw.region, ',', "--region", "like 0,99,0,99,20,40");
+    if (n.size() != 6) fail_usage(fmt::format("'{}' is not six numbers", raw.region), "--region", "like 0,99,0,99,20,40");
+    for (size_t a = 0; a < 3; ++a) {
+      r.region.lo[a] = n[2 * a], r.region.hi[a] = n[2 * a + 1];
+      if (r.region.lo[a] > r.region.hi[a])
+        fail_usage(fmt::format("'{}' ends before it begins", raw.region), "--region", "first,last along x, y, z");
+    }
+  }
+  if (!raw.stride.empty()) {
+    const auto n = whole_numbers(raw.stride, ',', "--stride", "like 2 or 2,2,1");
+    if (n.size() != 1 && n.size() != 3)
+      fail_usage(fmt::format("'{}' is not one or three numbers", raw.stride), "--stride", "like 2 or 2,2,1");
+    for (size_t a = 0; a < 3; ++a) {
+      r.region.stride[a] = n[n.size() == 3 ? a : 0];
+      if (r.region.stride[a] == 0) fail_usage("a stride of 0", "--stride", "1 reads every point");
+    }
+  }
+  if (!raw.piece.empty()) {
+    const auto n = whole_numbers(raw.piece, '/', "--piece", "like 0/4");
+    if (n.size() < 2 || n.size() > 3 || n[0] >= n[1] || n[1] > 1000000 || (n.size() == 3 && n[2] > 1000))
+      fail_usage(fmt::format("'{}' is not a piece of several", raw.piece), "--piece", "like 0/4: pieces count from 0");
+    r.piece = int(n[0]), r.pieces = int(n[1]), r.ghost_levels = n.size() == 3 ? int(n[2]) : 0;
+  }
+}
+
 void finish_raw(const RawText& raw, Options& o) {
+  finish_parts(raw, o.read);
   if (o.threads < 0 || o.threads > 4096)
     fail_usage(fmt::format("{} is no number of threads", o.threads), "--threads", "from 0 (all cores) to 4096");
   if (!raw.dims.empty()) {
@@ -114,7 +165,7 @@ const char* const overview =
     "Sightglass: from the numbers of simulations and scanners to pictures that can be trusted.\n\n"
     "  sightglass render IN... [-f 'OP key=value ...']... [--show 'surface|volume|lines|points|outline key=value ...']...\n"
     "             [--camera ...] [--size 1920x1080] [-o OUT.png]      a picture; without options it looks at the data and chooses\n"
-    "  sightglass info IN [--json] [--quick]                         what is in a file\n"
+    "  sightglass info IN [--json] [--quick] [--all-times]           what is in a file\n"
     "  sightglass convert IN [-f ...]... -o OUT.vtu                  filter and write data\n"
     "  sightglass run PIPELINE.yaml                                  run a pipeline file\n"
     "  sightglass open PICTURE.png                                   make a picture again from the recipe inside it\n"
@@ -147,13 +198,14 @@ Options parse_options(int argc, char** argv) {
   if (first == "render") {
     a.description("Makes a picture of the data. Without options it looks at the data and chooses.");
     a.add_option("input", o.inputs, "Files to read");
-    add_reading(a, raw), add_pipeline(a, o), add_picture(a, o);
+    add_reading(a, o, raw), add_pipeline(a, o), add_picture(a, o);
   } else if (first == "info") {
     a.description("Says what is in a file: mesh, sizes, cell types, bounds, fields with their ranges.");
     a.add_option("input", o.inputs, "Files to read")->required();
     a.add_flag("--json", o.json, "For programs");
     a.add_flag("--quick", o.quick, "Without ranges: touches no value");
-    add_reading(a, raw);
+    a.add_flag("--all-times", o.all_times, "Ranges over all steps of a series, one step in memory at a time");
+    add_reading(a, o, raw);
   } else if (first == "convert") {
     a.description("Reads, filters and writes data; the extension of the output chooses the format.");
     a.add_option("input", o.inputs, "File to read");
@@ -161,7 +213,7 @@ Options parse_options(int argc, char** argv) {
     a.add_option("--encoding", o.write.encoding, "VTK XML")->check(CLI::IsMember({"ascii", "base64", "appended"}));
     a.add_option("--compression", o.write.compression, "VTK XML, NRRD")->check(CLI::IsMember({"none", "zlib", "lz4", "lzma", "gzip"}));
     a.add_flag("!--ascii", o.write.binary, "STL and PLY as text");
-    add_reading(a, raw), add_pipeline(a, o);
+    add_reading(a, o, raw), add_pipeline(a, o);
   } else if (first == "run") {
     a.description("Runs a pipeline file.");
     a.add_option("input", o.inputs, "Pipeline file (YAML)")->required();

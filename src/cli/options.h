@@ -22,7 +22,7 @@ struct Options {
   std::string sheet;  ///< demo: contact sheet
   int threads = 0;
   size_t memory = 0;
-  bool json = false, quick = false, quiet = false, verbose = false, explain = false, recipe = false;
+  bool json = false, quick = false, all_times = false, quiet = false, verbose = false, explain = false, recipe = false;
 };
 
 /// Parses; for --help and --version prints to stdout and sets command to "". Throws Error(usage).

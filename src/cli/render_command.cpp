@@ -26,24 +26,6 @@ void split_words(const std::string& text, const char* option, std::string& first
   rest.assign(all.begin() + 1, all.end());
 }
 
-std::vector<std::string> read_words(const std::string& path, const ReadOptions& o) {
-  ReadParams defaults, p;
-  p.path = path;
-  if (o.raw_dims[0] > 0) p.dims = {int64_t(o.raw_dims[0]), int64_t(o.raw_dims[1]), int64_t(o.raw_dims[2])};
-  p.type = o.raw_type;
-  p.big_endian = o.raw_big_endian;
-  p.header = int64_t(o.raw_header);
-  p.components = o.raw_components;
-  p.spacing = o.raw_spacing;
-  Schema have = schema_of(p), plain = schema_of(defaults);
-  std::vector<std::string> words;
-  for (size_t i = 0; i < have.decls().size(); ++i) {
-    const std::string value = param_text(have.decls()[i]);
-    if (value != param_text(plain.decls()[i])) words.push_back(have.decls()[i].name + "=" + value);
-  }
-  return words;
-}
-
 void add_picture_words(const Options& o, PipelineFile& file) {
   auto add = [&](const char* key, const std::string& value) {
     if (!value.empty()) file.picture.push_back(fmt::format("{}={}", key, value));

@@ -94,10 +94,28 @@ Data read_data(const std::string& path, const ReadOptions& options, Context& con
   });
 }
 
+const Format& find_format(const std::string& path, const ReadOptions& options) {
+  std::string at = path;
+  return format_of(at, options);
+}
+
 std::vector<double> file_times(const std::string& path, const ReadOptions& options, Context& context) {
   return with_format(path, options, [&](const Format& f, const std::string& at) {
     return f.times ? f.times(at, options, context) : std::vector<double>();
   });
+}
+
+Series open_series(const std::string& path, const ReadOptions& options, Context& context) {
+  Series series{file_times(path, options, context), nullptr};
+  const bool timeless = series.times.empty();
+  if (timeless) series.times = {0};
+  series.load = [=, &context](size_t step) {
+    ReadOptions one = options;
+    one.time.reset();
+    one.step = timeless ? -1 : int64_t(step);
+    return read_data(path, one, context);
+  };
+  return series;
 }
 
 size_t chosen_step(const std::vector<double>& times, const ReadOptions& options, const std::string& path, size_t otherwise) {

@@ -51,6 +51,8 @@ void write_data(const std::string& path, const Data& data, const WriteOptions& o
 
 /// Time values of a series, ascending; empty for a file without time.
 std::vector<double> file_times(const std::string& path, const ReadOptions& options, Context& context);
+/// A series that reads a step when it is asked for; a file without time is a series of one step at 0.
+Series open_series(const std::string& path, const ReadOptions& options, Context& context);
 /// The step that `options` ask for among `times` (not empty): by number, else the nearest time, else `otherwise`. Throws
 /// Error(usage) for a step that is not there.
 size_t chosen_step(const std::vector<double>& times, const ReadOptions& options, const std::string& path, size_t otherwise = 0);
@@ -73,5 +75,7 @@ struct Format {
   unsigned honours = 0;
 };
 std::span<const Format> formats();
+/// The format of a file or folder, by content, then by extension. Throws Error(data) when none knows it.
+const Format& find_format(const std::string& path, const ReadOptions& options);
 
 }  // namespace sg

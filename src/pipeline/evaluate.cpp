@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Running a plan: from the targets up, each step when it is first asked for.
 #include "pipeline/graph_state.h"
+#include "pipeline/read_part.h"
 
 namespace sg {
 
@@ -75,8 +76,7 @@ class Evaluation {
   }
 
   Data read_file(const ReadNode& read, const Step& s, Context& context) {
-    if (!g_.options.read && s.request.pieces > 1) fail_usage("files are read whole, not in pieces", read.path);
-    Data data = g_.options.read ? g_.options.read(read.path, s.read, s.request, context) : read_data(read.path, s.read, context);
+    Data data = g_.options.read ? g_.options.read(read.path, s.read, s.request, context) : read_part(read.path, s.read, s.request, context);
     if (!s.read.header_only) check_chosen_fields(read, s, data);
     return data;
   }

@@ -25,7 +25,7 @@ struct GraphOptions {
   std::shared_ptr<Cache> cache;                ///< shared with other graphs; null = one of its own
   uint64_t cache_limit = uint64_t(512) << 20;  ///< bytes, of its own cache
   bool strict = false;                         ///< keys of files cover their content, not only path, size and time of change
-  /// Reads a file; null = read_data, which knows no time, region or piece. ReadOptions::fields already holds what the
+  /// Reads a file; null = read_part. ReadOptions already holds the time, piece and fields that the
   /// request needs; it may hold names of fields that a filter makes, so a reader passes over those that the file lacks.
   std::function<Data(const std::string& path, const ReadOptions& options, const Request& request, Context& context)> read;
   /// Names of the fields in a file, when they are cheap to find out; lets validate() check field names. May be null.

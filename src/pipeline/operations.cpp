@@ -5,7 +5,9 @@
 // Headers of the operations, sorted.
 #include "filter/field/basics.h"
 #include "filter/field/gradient.h"
+#include "filter/mesh/crop.h"
 #include "filter/mesh/faces.h"
+#include "filter/mesh/piece.h"
 #include "filter/mesh/slice.h"
 #include "filter/mesh/threshold.h"
 #include "filter/mesh/transform.h"

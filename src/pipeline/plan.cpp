@@ -2,6 +2,7 @@
 // From targets to steps: requests go up, keys come down.
 #include <map>
 
+#include "base/text.h"
 #include "pipeline/graph_state.h"
 
 namespace sg {
@@ -19,6 +20,8 @@ void want(std::vector<Request>& wanted, const Request& r) {
 
 // What the reader is told: the user's list of fields, cut to what is needed.
 ReadOptions read_for(ReadOptions options, const Request& request) {
+  if (request.time && !options.time && options.step < 0) options.time = request.time;
+  if (request.pieces > 1 && options.pieces == 1) options.piece = request.piece, options.pieces = request.pieces;
   if (request.all_fields) return options;
   std::vector<std::string> fields;
   for (const std::string& f : request.fields)
@@ -35,6 +38,10 @@ Key read_key(const std::string& path, const ReadOptions& o, const Request& reque
   for (const size_t n : o.raw_dims) key.add(uint64_t(n));
   key.add(o.raw_type).add(uint64_t(o.raw_big_endian)).add(uint64_t(o.raw_header)).add(uint64_t(o.raw_components));
   for (int i = 0; i < 3; ++i) key.add(std::bit_cast<uint64_t>(o.raw_spacing[i]));
+  key.add(o.time ? exact_number(*o.time) : "first").add(uint64_t(o.step));
+  for (size_t a = 0; a < 3; ++a) key.add(uint64_t(o.region.lo[a])).add(uint64_t(o.region.hi[a])).add(uint64_t(o.region.stride[a]));
+  key.add(uint64_t(o.piece)).add(uint64_t(o.pieces)).add(uint64_t(o.ghost_levels));
+  if (request.region) key.add(request_text(request));
   Request rest = request;  // the fields stand in the options
   rest.all_fields = true, rest.fields.clear();
   if (custom_reader) key.add(request_text(rest));

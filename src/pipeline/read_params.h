@@ -15,10 +15,16 @@ struct ReadParams {
   int64_t header = 0;
   int components = 1;
   Vec3 spacing{1, 1, 1};
+  std::optional<double> time;
+  int64_t step = -1;
+  std::vector<int64_t> region, stride;
+  int piece = 0, pieces = 1, ghost_levels = 0;
 };
 void describe(Schema& s, ReadParams& p);
 
-/// Throws Error(usage) when path is missing or dims are not three.
+/// Throws Error(usage) when path is missing, or lists do not have their length.
 ReadOptions read_options(const ReadParams& params);
+/// The other way round: the words that say the same.
+std::vector<std::string> read_words(const std::string& path, const ReadOptions& options);
 
 }  // namespace sg

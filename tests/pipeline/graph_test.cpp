@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/graph.h"
+#include "pipeline/read_part.h"
 
 #include <atomic>
 #include <thread>
@@ -309,7 +310,7 @@ TEST_CASE("graph: an error names the step, and the part of a collection") {
   CHECK(runs("scale") == 0);
 }
 
-TEST_CASE("graph: without a reader of its own it reads files by read_data, whole") {
+TEST_CASE("graph: without a reader of its own it reads files by read_data") {
   GraphOptions o = options();
   o.read = nullptr;
   Graph g(o);
@@ -318,9 +319,45 @@ TEST_CASE("graph: without a reader of its own it reads files by read_data, whole
   const std::string text = test::error_of([&] { g.evaluate(read, {}, context); });
   CHECK(text.find("is in no known format") != std::string::npos);
   CHECK(text.find("while reading (step 1)") != std::string::npos);
-  Request piece;
-  piece.pieces = 2;
-  CHECK(test::error_of([&] { g.evaluate(read, piece, context); }).find("read whole, not in pieces") != std::string::npos);
+}
+
+TEST_CASE("graph: pieces of a request are cut behind a format that has none") {
+  const std::string path = test::temp_folder() + "pieces.raw";
+  write_file(path, std::string(8 * 3 * 3, 'x'));
+  GraphOptions o = options();
+  o.read = nullptr;
+  Graph g(o);
+  ReadOptions brick;
+  brick.raw_dims = {8, 3, 3}, brick.raw_type = "u8";
+  const NodeId read = g.add_read(path, brick);
+  Context context;
+  size_t cells = 0;
+  for (int i = 0; i < 3; ++i) {
+    Request piece;
+    piece.piece = i, piece.pieces = 3;
+    cells += std::get<DatasetPtr>(g.evaluate(read, piece, context))->cell_count();
+  }
+  CHECK(cells == 7 * 2 * 2);
+}
+
+TEST_CASE("read_part: a region of space names the points of the cells that it meets") {
+  UniformGrid u;
+  u.dims = {11, 5, 1};
+  u.spacing = {0.5, 1, 1};
+  const auto r = lattice_region(u, Box3{{1.2, -HUGE_VAL, 0}, {1.6, HUGE_VAL, 0}});
+  REQUIRE(r);
+  CHECK(r->lo == std::array<size_t, 3>{2, 0, 0});
+  CHECK(r->hi == std::array<size_t, 3>{4, 4, 0});
+  RectilinearGrid down{Array::from_vector(std::vector<double>{9, 4, 1, 0}),
+                       Array::from_vector(std::vector<double>{0}),
+                       Array::from_vector(std::vector<double>{0}),
+                       {0, 0, 0}};
+  const auto d = lattice_region(down, Box3{{2, -1, -1}, {3, 1, 1}});
+  REQUIRE(d);
+  CHECK(d->lo[0] == 1);
+  CHECK(d->hi[0] == 2);
+  u.direction.m[0][0] = 0, u.direction.m[0][1] = 1, u.direction.m[1][0] = -1, u.direction.m[1][1] = 0;
+  CHECK_FALSE(lattice_region(u, Box3{{0, 0, 0}, {1, 1, 1}}));
 }
 
 TEST_CASE("graph: cancelling stops between steps") {
