@@ -4,6 +4,7 @@
 
 // Headers of the operations, sorted.
 #include "filter/field/basics.h"
+#include "filter/field/calc.h"
 #include "filter/field/gradient.h"
 #include "filter/mesh/crop.h"
 #include "filter/mesh/faces.h"
