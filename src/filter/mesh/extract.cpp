@@ -79,6 +79,8 @@ void extract_unstructured(const UnstructuredMesh& m, std::span<const int64_t> ce
       v, cells.size(), [&](size_t i) { return size_t(cells[i]); }, number, who);
   r.single_type = m.single_type;
   if (!m.types.empty()) r.types = gather(m.types, cells);
+  if (!m.degrees.empty()) r.degrees = gather(m.degrees, cells);
+  if (!m.weights.empty()) r.weights = gather(m.weights, points);
   if (!kept_faces.empty()) {
     r.faces = chosen_lists(
         faces, kept_faces.size(), [&](size_t i) { return size_t(kept_faces[i]); }, number, who);

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Connected components of a mesh.
+#pragma once
+#include "base/context.h"
+#include "base/schema.h"
+#include "data/dataset.h"
+
+namespace sg {
+
+struct ComponentsParams {
+  int keep = 0;
+  std::optional<Vec3> at;
+};
+inline void describe(Schema& s, ComponentsParams& p) {
+  s("keep", p.keep, "Keeps only this many of the largest components; 0: all.").at_least(0);
+  s("at", p.at, "Keeps only the component that owns the mesh point nearest to this one.");
+}
+
+/// Cells that share a point hang together. Adds a cell field 'component' (i32): 0 is the component with most cells; equals in order of
+/// their first cell. Hidden, refined and duplicate cells belong to none (-1) and join nothing. With keep or at, the other cells
+/// are removed (see extract_cells). Point clouds: each point is a component. O(corners) union-find.
+DatasetPtr components(const DatasetPtr& in, const ComponentsParams& p, Context& ctx);
+
+}  // namespace sg

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filter/stats/statistics.h"
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "data/field_ops.h"
+
+namespace sg {
+
+namespace {
+
+constexpr size_t grain = 1 << 16;
+
+// Ghosts of the field's places; empty when there are none.
+const Array& ghosts_of(const DatasetPtr& in, const Field& f) {
+  static const Array none;
+  return f.association == Association::point ? in->point_ghost() : f.association == Association::cell ? in->cell_ghost() : none;
+}
+
+bool left_out(const Array& ghost, size_t i) { return !ghost.empty() && ghost.view<uint8_t>()[i] != 0; }
+
+// The values that are numbers, in order, and how many are not.
+std::vector<double> numbers_of(const Array& a, int component, const Array& ghost, size_t& missing) {
+  std::vector<double> v;
+  v.reserve(a.count());
+  missing = 0;
+  dispatch(a, [&](const auto& view) {
+    for (size_t i = 0; i < view.count; ++i) {
+      if (left_out(ghost, i)) continue;
+      double x = 0;
+      if (component >= 0) x = double(view(i, component));
+      else {
+        for (int c = 0; c < view.components; ++c) x += double(view(i, c)) * double(view(i, c));
+        x = std::sqrt(x);
+      }
+      if (std::isnan(x)) ++missing;
+      else v.push_back(x);
+    }
+  });
+  return v;
+}
+
+// Neumaier's sum of f(v) in fixed chunks.
+template <class F>
+double exact_sum(const std::vector<double>& v, F&& f) {
+  struct Part {
+    double sum = 0, rest = 0;
+    void add(double x) {
+      const double t = sum + x;
+      rest += std::fabs(sum) >= std::fabs(x) ? (sum - t) + x : (x - t) + sum;
+      sum = t;
+    }
+  };
+  const Part total = parallel_reduce(
+      v.size(), grain, Part{},
+      [&](size_t begin, size_t end) {
+        Part p;
+        for (size_t i = begin; i < end; ++i) p.add(f(v[i]));
+        return p;
+      },
+      [](Part a, Part b) {
+        a.add(b.sum);
+        a.rest += b.rest;
+        return a;
+      });
+  return total.sum + total.rest;
+}
+
+double quantile(std::vector<double>& v, double q) {
+  const double at = q * double(v.size() - 1);
+  const auto i = size_t(at);
+  const auto place = v.begin() + ptrdiff_t(i);
+  std::nth_element(v.begin(), place, v.end());
+  const double lo = *place;
+  const double hi = i + 1 < v.size() ? *std::min_element(place + 1, v.end()) : lo;
+  return lo + (at - double(i)) * (hi - lo);
+}
+
+// Columns that grow row by row.
+struct Rows {
+  std::vector<std::string> fields;
+  std::vector<int32_t> field, association, component;
+  std::vector<int64_t> count, missing;
+  std::vector<double> number[9];
+};
+constexpr const char* number_names[9] = {"min", "quartile1", "median", "quartile3", "max", "mean", "deviation", "sum", "sum_of_squares"};
+
+void add_row(Rows& rows, const DatasetPtr& in, const Field& f, int component) {
+  size_t missing = 0;
+  std::vector<double> v = numbers_of(f.array, component, ghosts_of(in, f), missing);
+  if (rows.fields.empty() || rows.fields.back() != f.name || rows.association.back() != int32_t(f.association)) {
+    if (std::find(rows.fields.begin(), rows.fields.end(), f.name) == rows.fields.end()) rows.fields.push_back(f.name);
+  }
+  rows.field.push_back(int32_t(std::find(rows.fields.begin(), rows.fields.end(), f.name) - rows.fields.begin()));
+  rows.association.push_back(int32_t(f.association));
+  rows.component.push_back(component);
+  rows.count.push_back(int64_t(v.size()));
+  rows.missing.push_back(int64_t(missing));
+  double row[9];
+  std::fill_n(row, 9, std::nan(""));
+  if (!v.empty()) {
+    const double n = double(v.size());
+    row[7] = exact_sum(v, [](double x) { return x; });
+    row[5] = row[7] / n;
+    row[8] = exact_sum(v, [](double x) { return x * x; });
+    // Two passes: the squares of differences from the mean do not cancel.
+    row[6] = v.size() > 1 ? std::sqrt(exact_sum(v, [&](double x) { return (x - row[5]) * (x - row[5]); }) / (n - 1)) : 0;
+    row[0] = quantile(v, 0), row[1] = quantile(v, 0.25), row[2] = quantile(v, 0.5), row[3] = quantile(v, 0.75), row[4] = quantile(v, 1);
+  }
+  for (int i = 0; i < 9; ++i) rows.number[i].push_back(row[i]);
+}
+
+template <class T>
+void add_column(Table& t, const char* name, std::vector<T> values, std::vector<std::string> labels = {}) {
+  t.columns.push_back({name, Association::whole, Array::from_vector(std::move(values)), "", Role::none});
+  t.labels.push_back(std::move(labels));
+}
+
+}  // namespace
+
+TablePtr statistics(const DatasetPtr& in, const StatisticsParams& p, Context& ctx) {
+  std::vector<Field> fields;
+  for (const std::string& name : p.fields) fields.push_back(in->fields().require(name));
+  if (p.fields.empty())
+    for (const Field& f : in->fields())
+      if (f.association != Association::whole) fields.push_back(f);
+  Rows rows;
+  for (const Field& f : fields) {
+    ctx.check();
+    for (int c = 0; c < f.components(); ++c) add_row(rows, in, f, c);
+    if (f.components() > 1) add_row(rows, in, f, -1);
+  }
+  auto t = std::make_shared<Table>();
+  add_column(*t, "field", std::move(rows.field), rows.fields);
+  add_column(*t, "association", std::move(rows.association), {"point", "cell", "whole"});
+  add_column(*t, "component", std::move(rows.component));
+  add_column(*t, "count", std::move(rows.count));
+  add_column(*t, "missing", std::move(rows.missing));
+  for (int i = 0; i < 9; ++i) add_column(*t, number_names[i], std::move(rows.number[i]));
+  return t;
+}
+
+TablePtr histogram(const DatasetPtr& in, const HistogramParams& p, Context&) {
+  const Field* f = p.field.empty() ? in->fields().active() : &in->fields().require(p.field.name);
+  if (!f) fail_usage("there is no scalar field", "histogram field", "name one");
+  if (p.component >= f->components())
+    fail_usage(fmt::format("asks for component {} of {}", p.component, f->components()), "histogram component", "components count from 0");
+  size_t missing = 0;
+  const int component = f->components() == 1 ? 0 : p.component;
+  const std::vector<double> v = numbers_of(f->array, component, ghosts_of(in, *f), missing);
+  double lo = HUGE_VAL, hi = -HUGE_VAL;
+  for (const double x : v)
+    if (std::isfinite(x)) lo = std::min(lo, x), hi = std::max(hi, x);
+  lo = p.min.value_or(lo), hi = p.max.value_or(hi);
+  if (!(lo <= hi))
+    fail_usage(v.empty() ? "has no numbers" : fmt::format("counts from {} to {}", lo, hi), "histogram", "min must not be above max");
+  if (lo == hi) hi = std::nextafter(lo + std::max(std::fabs(lo), 1.0) * 1e-6, HUGE_VAL);  // one value: the first bin holds it
+  const auto bins = size_t(p.bins);
+  std::vector<double> edge(bins + 1);
+  for (size_t i = 0; i <= bins; ++i) edge[i] = i == bins ? hi : lo + (hi - lo) * (double(i) / double(bins));
+  std::vector<int64_t> count(bins, 0);
+  for (const double x : v) {
+    if (!(x >= lo && x <= hi)) continue;
+    auto b = std::min(size_t((x - lo) / (hi - lo) * double(bins)), bins - 1);
+    while (b > 0 && x < edge[b]) --b;  // the edges decide, not the rounding of the division
+    while (b + 1 < bins && x >= edge[b + 1]) ++b;
+    ++count[b];
+  }
+  std::vector<double> fraction;
+  for (const int64_t n : count) fraction.push_back(v.empty() ? 0 : double(n) / double(v.size()));
+  auto t = std::make_shared<Table>();
+  add_column(*t, "lo", std::vector<double>(edge.begin(), edge.end() - 1));
+  add_column(*t, "hi", std::vector<double>(edge.begin() + 1, edge.end()));
+  t->columns[0].unit = t->columns[1].unit = f->unit;
+  add_column(*t, "count", std::move(count));
+  add_column(*t, "fraction", std::move(fraction));
+  return t;
+}
+
+}  // namespace sg

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbers about fields, as tables.
+#pragma once
+#include "base/context.h"
+#include "base/schema.h"
+#include "data/dataset.h"
+
+namespace sg {
+
+struct StatisticsParams {
+  std::vector<std::string> fields;
+};
+inline void describe(Schema& s, StatisticsParams& p) { s("fields", p.fields, "Fields to describe; default: all on points and cells."); }
+
+/// One row per component of each field (and one for the length of a vector): field, association, component, count, missing (NaN),
+/// min, quartile1, median, quartile3, max, mean, deviation (of the sample: n-1), sum, sum_of_squares. Hidden and duplicate cells and points
+/// are left out. Quartiles by linear interpolation between order statistics (Hyndman and Fan 1996, type 7). Sums are exact to the last
+/// places for any number of threads (fixed chunks, each summed with Neumaier's compensation). O(n) memory for the order statistics.
+TablePtr statistics(const DatasetPtr& in, const StatisticsParams& p, Context& ctx);
+
+struct HistogramParams {
+  FieldName field;
+  int component = -1;
+  int bins = 64;
+  std::optional<double> min, max;
+};
+inline void describe(Schema& s, HistogramParams& p) {
+  s("field", p.field, "Field to count; default: the active scalar.");
+  s("component", p.component, "Component of the field; -1: the length of a field of several.").at_least(-1);
+  s("bins", p.bins, "Number of bins.").range(1, 1 << 20);
+  s("min", p.min, "Where the first bin begins; default: the smallest value.").unit("@field");
+  s("max", p.max, "Where the last bin ends; default: the largest value.").unit("@field");
+}
+/// Columns lo, hi, count, fraction: a value v lies in the bin with lo <= v < hi, the last bin holds its upper end too. Values outside
+/// and NaN are in no bin; fractions are of all values that are numbers.
+TablePtr histogram(const DatasetPtr& in, const HistogramParams& p, Context& ctx);
+
+}  // namespace sg

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filter/stats/statistics.h"
+
+#include "base/parallel.h"
+#include "support/test.h"
+
+using namespace sg;
+
+namespace {
+
+DatasetPtr with_values(std::vector<double> v) {
+  PointCloud c;
+  c.points.xyz = Array::from_vector(std::vector<float>(v.size() * 3, 0.f), 3);
+  FieldSet f;
+  f.add({"v", Association::point, Array::from_vector(std::move(v)), "m", Role::scalars});
+  return make_dataset(Mesh(c), std::move(f));
+}
+
+double cell(const TablePtr& t, const char* column, size_t row = 0) {
+  for (const Field& f : t->columns)
+    if (f.name == column) return f.array.get(row);
+  FAIL("no column");
+  return 0;
+}
+
+}  // namespace
+
+TEST_CASE("statistics: closed forms of 1..n, NaN counted apart") {
+  std::vector<double> v;
+  for (int i = 101; i >= 1; --i) v.push_back(i);
+  v.push_back(NAN);
+  Context ctx;
+  const TablePtr t = statistics(with_values(v), {}, ctx);
+  CHECK(cell(t, "count") == 101);
+  CHECK(cell(t, "missing") == 1);
+  CHECK(cell(t, "min") == 1);
+  CHECK(cell(t, "quartile1") == 26);
+  CHECK(cell(t, "median") == 51);
+  CHECK(cell(t, "quartile3") == 76);
+  CHECK(cell(t, "max") == 101);
+  CHECK(cell(t, "mean") == 51);
+  CHECK(cell(t, "sum") == 5151);
+  CHECK(cell(t, "sum_of_squares") == 101.0 * 102 * 203 / 6);
+  CHECK(cell(t, "deviation") == doctest::Approx(std::sqrt(101.0 * 102 / 12)).epsilon(1e-14));
+  CHECK(*t->words(0) == std::vector<std::string>{"v"});
+}
+
+TEST_CASE("statistics: a small deviation about a large mean survives") {
+  std::vector<double> v;
+  for (int i = 0; i < 1000; ++i) v.push_back(1e9 + (i % 2));
+  Context ctx;
+  CHECK(cell(statistics(with_values(v), {}, ctx), "deviation") == doctest::Approx(0.5 * std::sqrt(1000.0 / 999)).epsilon(1e-12));
+}
+
+TEST_CASE("statistics: one row per component and one for the length; empty fields have no numbers") {
+  PointCloud c;
+  c.points.xyz = Array::from_vector(std::vector<float>{0, 0, 0, 1, 1, 1}, 3);
+  FieldSet f;
+  f.add({"u", Association::point, Array::from_vector(std::vector<float>{3, 4, 0, 0, 0, 5}, 3), "", Role::vectors});
+  f.add({"none", Association::point, Array::from_vector(std::vector<float>{NAN, NAN}), "", Role::none});
+  Context ctx;
+  const TablePtr t = statistics(make_dataset(Mesh(c), std::move(f)), {}, ctx);
+  CHECK(t->columns[0].array.count() == 5);
+  CHECK(cell(t, "component", 3) == -1);
+  CHECK(cell(t, "mean", 3) == 5);
+  CHECK(cell(t, "count", 4) == 0);
+  CHECK(std::isnan(cell(t, "mean", 4)));
+}
+
+TEST_CASE("statistics: the same numbers for any number of threads") {
+  std::vector<double> v;
+  for (int i = 0; i < 300000; ++i) v.push_back(std::sin(i * 0.7) * 1e3);
+  Context ctx;
+  set_thread_count(1);
+  const double one = cell(statistics(with_values(v), {}, ctx), "sum");
+  set_thread_count(8);
+  CHECK(cell(statistics(with_values(v), {}, ctx), "sum") == one);
+  set_thread_count(0);
+}
+
+TEST_CASE("histogram: every value in one bin, upper end in the last, edges as printed") {
+  std::vector<double> v;
+  for (int i = 0; i <= 100; ++i) v.push_back(i);
+  v.push_back(NAN);
+  Context ctx;
+  HistogramParams p;
+  p.bins = 10;
+  const TablePtr t = histogram(with_values(v), p, ctx);
+  for (size_t b = 0; b < 10; ++b) {
+    CHECK(cell(t, "lo", b) == doctest::Approx(10.0 * double(b)));
+    CHECK(cell(t, "count", b) == (b == 9 ? 11 : 10));
+  }
+  CHECK(t->columns[0].unit == "m");
+  p.min = 50, p.max = 60;
+  const TablePtr part = histogram(with_values(v), p, ctx);
+  CHECK(cell(part, "count", 0) == 1);
+  CHECK(cell(part, "count", 9) == 2);
+  p.min = 70;
+  CHECK(test::error_of([&] { histogram(with_values(v), p, ctx); }).find("min must not be above max") != std::string::npos);
+  p = {};
+  CHECK(cell(histogram(with_values({4, 4, 4}), p, ctx), "count", 0) == 3);
+}
