@@ -83,6 +83,8 @@ int cli_main(int argc, char** argv) {
 }
 
 int run_info(const Options& o, Context& context) {
+  if (!o.filters.empty() || !o.source.empty()) return run_info_of_pipeline(o, context);
+  if (o.inputs.empty()) fail_usage("name a file to read", "sightglass info", "see: sightglass info --help");
   ReadOptions read = o.read;
   read.header_only = o.quick;
   for (const std::string& path : o.inputs) {

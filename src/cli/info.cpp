@@ -158,9 +158,32 @@ std::string info_json(const Data& data, bool quick, const std::vector<double>& t
 
 namespace {
 
+std::string table_cell(const Table& t, size_t column, size_t row) {
+  const Array& a = t.columns[column].array;
+  const double v = a.get(row);
+  if (const auto* labels = t.words(column)) return v >= 0 && size_t(v) < labels->size() ? (*labels)[size_t(v)] : "-";
+  return std::isnan(v) ? "-" : is_float(a.type()) ? short_number(v) : exact_number(v);
+}
+
+// A table that fits a screen is shown; of a longer one, what each column holds.
 std::string table_text(const Table& t, const std::string& name) {
   const size_t rows = t.columns.empty() ? 0 : t.columns[0].array.count();
   std::string r = fmt::format("{}\n  table of {} rows, {} columns\n", name, rows, t.columns.size());
+  if (rows <= 32 && t.columns.size() <= 24) {
+    std::vector<size_t> width;
+    for (size_t c = 0; c < t.columns.size(); ++c) {
+      width.push_back(t.columns[c].name.size());
+      for (size_t i = 0; i < rows; ++i) width[c] = std::max(width[c], table_cell(t, c, i).size());
+    }
+    auto line = [&](auto&& cell) {
+      for (size_t c = 0; c < t.columns.size(); ++c)
+        r += t.words(c) ? fmt::format("  {:<{}}", cell(c), width[c]) : fmt::format("  {:>{}}", cell(c), width[c]);
+      r += "\n";
+    };
+    line([&](size_t c) { return t.columns[c].name; });
+    for (size_t i = 0; i < rows; ++i) line([&](size_t c) { return table_cell(t, c, i); });
+    return r;
+  }
   size_t width = 6;
   for (const Field& f : t.columns) width = std::max(width, std::min<size_t>(f.name.size(), 32));
   for (size_t i = 0; i < t.columns.size(); ++i) {
@@ -177,13 +200,23 @@ std::string times_text(const std::vector<double>& times) {
   return fmt::format("  times   {} .. {}, {} steps\n", short_number(times.front()), short_number(times.back()), times.size());
 }
 
+// Datasets and tables of a tree, each with the path of its names.
+void add_parts(const Data& data, const std::string& name, const std::string& path, bool quick, std::string& out) {
+  const std::string title = path.empty() ? name : name + ": " + path;
+  if (auto* d = std::get_if<DatasetPtr>(&data)) {
+    if (*d) out += dataset_text(**d, title, quick);
+  } else if (auto* t = std::get_if<TablePtr>(&data)) {
+    if (*t) out += table_text(**t, title);
+  } else if (const auto& c = std::get<CollectionPtr>(data)) {
+    for (const Collection::Part& part : c->parts) add_parts(part.data, name, path.empty() ? part.name : path + "/" + part.name, quick, out);
+  }
+}
+
 }  // namespace
 
 std::string info_text(const Data& data, const std::string& name, bool quick, const std::vector<double>& times) {
   std::string r;
-  if (auto* t = std::get_if<TablePtr>(&data)) return table_text(**t, name);
-  for_each_dataset(
-      data, [&](const std::string& part, const DatasetPtr& d) { r += dataset_text(*d, part.empty() ? name : name + ": " + part, quick); });
+  add_parts(data, name, "", quick, r);
   return (r.empty() ? name + "\n  nothing in it\n" : r) + times_text(times);
 }
 

@@ -201,8 +201,9 @@ Options parse_options(int argc, char** argv) {
     add_reading(a, o, raw), add_pipeline(a, o), add_picture(a, o);
   } else if (first == "info") {
     a.description("Says what is in a file: mesh, sizes, cell types, bounds, fields with their ranges.");
-    a.add_option("input", o.inputs, "Files to read")->required();
+    a.add_option("input", o.inputs, "Files to read");
     a.add_flag("--json", o.json, "For programs");
+    add_pipeline(a, o);
     a.add_flag("--quick", o.quick, "Without ranges: touches no value");
     a.add_flag("--all-times", o.all_times, "Ranges over all steps of a series, one step in memory at a time");
     add_reading(a, o, raw);

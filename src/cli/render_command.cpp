@@ -10,6 +10,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "cli/cli.h"
+#include "cli/info.h"
 #include "image/codec.h"
 #include "pipeline/picture.h"
 #include "pipeline/read_params.h"
@@ -175,6 +176,22 @@ int run_open(const Options& o, Context& context) {
   return 0;
 }
 
+// What is in the result of filters.
+int run_info_of_pipeline(const Options& o, Context& context) {
+  if (o.inputs.size() > 1) fail_usage("filters one file at a time", "sightglass info");
+  const PipelineFile file = pipeline_of(o);
+  const PipelineGraph built = build_graph(file);
+  if (o.explain) {
+    print_explanation(file);
+    return 0;
+  }
+  check_memory(built, o);
+  const Data data = built.graph.evaluate(built.last, {}, context);
+  const std::string name = o.inputs.empty() ? o.source : o.inputs[0];
+  std::fputs((o.json ? info_json(data, o.quick) : info_text(data, name, o.quick)).c_str(), stdout);
+  return 0;
+}
+
 int run_convert(const Options& o, Context& context) {
   PipelineFile file = pipeline_of(o);
   if (o.inputs.size() > 1) fail_usage("converts one file at a time", "sightglass convert");
@@ -190,6 +207,8 @@ int run_convert(const Options& o, Context& context) {
     for_each_dataset(data, [&](const std::string& part, const DatasetPtr& d) {
       std::printf("%s: %s%s\n", o.output.c_str(), part.empty() ? "" : (part + ": ").c_str(), summary(*d).c_str());
     });
+  if (auto* t = std::get_if<TablePtr>(&data); t && !o.quiet)
+    std::printf("%s: table of %zu columns\n", o.output.c_str(), (*t)->columns.size());
   return 0;
 }
 

@@ -31,4 +31,9 @@ void write_stl(const std::string& path, const Data& data, const WriteOptions& op
 Data read_obj(const std::string& path, const ReadOptions& options, Context& context);
 void write_obj(const std::string& path, const Data& data, const WriteOptions& options, Context& context);
 
+Data read_csv(const std::string& path, const ReadOptions& options, Context& context);
+void write_csv(const std::string& path, const Data& data, const WriteOptions& options, Context& context);
+
+Data read_json(const std::string& path, const ReadOptions& options, Context& context);
+
 }  // namespace sg

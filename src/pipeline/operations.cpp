@@ -20,6 +20,7 @@
 #include "filter/scalar/contour.h"
 #include "filter/segment/label_surface.h"
 #include "filter/stats/statistics.h"
+#include "filter/stats/table_to_points.h"
 #include "simulate/flow_fields.h"
 #include "simulate/point_load.h"
 #include "simulate/scalar_fields.h"

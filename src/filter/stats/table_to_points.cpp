@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filter/stats/table_to_points.h"
+
+#include "base/error.h"
+#include "base/text.h"
+#include "data/field_ops.h"
+
+namespace sg {
+
+namespace {
+
+class Columns {
+ public:
+  explicit Columns(const Table& t) : table_(t) {
+    for (size_t i = 0; i < t.columns.size(); ++i) {
+      names_.push_back(t.columns[i].name);
+      if (!t.words(i) && t.columns[i].components() == 1) numbers_.push_back(i);
+    }
+  }
+  /// The column asked for, one with a usual name, or the nth column of numbers; -1 when there is none.
+  int find(const std::string& asked, std::initializer_list<std::string_view> usual, size_t nth) const {
+    if (!asked.empty()) {
+      for (size_t i = 0; i < names_.size(); ++i)
+        if (names_[i] == asked) {
+          if (table_.words(i)) fail_usage(fmt::format("column '{}' holds words", asked), "table_to_points", "coordinates are numbers");
+          return int(i);
+        }
+      fail_usage(fmt::format("there is no column '{}'", asked), "table_to_points", unknown_name_hint(asked, names_));
+    }
+    for (std::string_view u : usual)
+      for (const size_t i : numbers_)
+        if (to_lower(names_[i]) == u) return int(i);
+    return nth < numbers_.size() ? int(numbers_[nth]) : -1;
+  }
+
+ private:
+  const Table& table_;
+  std::vector<std::string> names_;
+  std::vector<size_t> numbers_;
+};
+
+}  // namespace
+
+DatasetPtr table_to_points(const Data& in, const TableToPointsParams& p, Context& ctx) {
+  auto* table = std::get_if<TablePtr>(&in);
+  if (!table) fail_usage("needs a table", "table_to_points", "read a .csv or .json file");
+  const Table& t = **table;
+  const Columns columns(t);
+  const int at[3] = {columns.find(p.x, {"x", "longitude", "lon"}, 0), columns.find(p.y, {"y", "latitude", "lat"}, 1),
+                     columns.find(p.z, {"z"}, SIZE_MAX)};
+  if (at[0] < 0 || at[1] < 0) fail_usage("has fewer than two columns of numbers", "table_to_points", "name the coordinates: x=... y=...");
+  std::vector<int64_t> rows;
+  std::vector<double> xyz;
+  const size_t n = t.columns[0].array.count();
+  for (size_t r = 0; r < n; ++r) {
+    double v[3] = {0, 0, 0};
+    for (int a = 0; a < 3; ++a)
+      if (at[a] >= 0) v[a] = t.columns[size_t(at[a])].array.get(r);
+    if (std::isnan(v[0] + v[1] + v[2])) continue;
+    rows.push_back(int64_t(r));
+    xyz.insert(xyz.end(), v, v + 3);
+  }
+  if (rows.size() < n) ctx.info(fmt::format("table_to_points: {} rows have no coordinates", n - rows.size()));
+  PointCloud cloud;
+  cloud.points.xyz = Array::from_vector(std::move(xyz), 3);
+  FieldSet fields;
+  for (size_t i = 0; i < t.columns.size(); ++i) {
+    Field f = t.columns[i];
+    f.association = Association::point;
+    f.array = gather(f.array, rows);
+    f.role = t.words(i) ? Role::labels : int(i) == at[0] || int(i) == at[1] || int(i) == at[2] ? Role::none : Role::scalars;
+    fields.add(std::move(f));
+  }
+  return make_dataset(Mesh(cloud), std::move(fields));
+}
+
+}  // namespace sg

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rows of a table as points.
+#pragma once
+#include "base/context.h"
+#include "base/schema.h"
+#include "data/dataset.h"
+
+namespace sg {
+
+struct TableToPointsParams {
+  std::string x, y, z;
+};
+inline void describe(Schema& s, TableToPointsParams& p) {
+  s("x", p.x, "Column of the x coordinates; default: x or longitude, else the first column of numbers.");
+  s("y", p.y, "Column of the y coordinates; default: y or latitude, else the second column of numbers.");
+  s("z", p.z, "Column of the z coordinates; default: z, else 0.");
+}
+
+/// A point cloud with one point per row and every column as a point field; words by the number of their label. Rows without a
+/// coordinate (NaN) are left out. Throws Error(usage) for unknown columns, columns of words as coordinates, and data that is no table.
+DatasetPtr table_to_points(const Data& in, const TableToPointsParams& p, Context& ctx);
+
+}  // namespace sg

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tables out of words: each column becomes numbers when all of its words are numbers.
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "data/dataset.h"
+
+namespace sg {
+
+/// Collects cells column by column. Missing ones are "".
+class TableBuilder {
+ public:
+  /// Cells of one row, in the order of the columns; more cells than columns make new columns.
+  void add_row(const std::vector<std::string_view>& cells);
+  /// Sets a cell of the current last row of a named column (made when it is new).
+  void set(const std::string& column, std::string value);
+  void begin_row() { ++rows_; }
+  void name_columns(const std::vector<std::string_view>& names);
+  size_t rows() const { return rows_; }
+
+  /// Columns of words become i32 places in their labels (in order of appearance); of whole numbers i32, i64 where they need it; of
+  /// numbers, or with cells missing ("", NA, NaN, null, none), f64. Names are made unique.
+  TablePtr build();
+
+ private:
+  struct Column {
+    std::string name;
+    std::vector<std::string> cells;
+  };
+  Column& column(size_t i);
+  std::vector<Column> columns_;
+  size_t rows_ = 0;
+};
+
+/// A cell that says that there is no value.
+bool is_missing(std::string_view word);
+
+}  // namespace sg
