@@ -19,6 +19,7 @@
 #include "filter/mesh/transform.h"
 #include "filter/scalar/contour.h"
 #include "filter/segment/label_surface.h"
+#include "filter/stats/integrate.h"
 #include "filter/stats/statistics.h"
 #include "filter/stats/table_to_points.h"
 #include "simulate/flow_fields.h"
