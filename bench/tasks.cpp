@@ -2,6 +2,7 @@
 // What is measured, under the names of the peers' records.
 #include "base/file.h"
 #include "bench.h"
+#include "filter/field/gradient.h"
 #include "filter/scalar/contour.h"
 #include "inputs.h"
 #include "io/io.h"
@@ -54,6 +55,16 @@ Task contouring(size_t n) {
               ContourParams p;
               p.values = {0};
               return double(contour(grid, p, context)->cell_count());
+            };
+          }};
+}
+
+Task gradients(const char* input, const char* size) {
+  return {"gradient", size, "sightglass:gradient", "points", [=] {
+            const DatasetPtr d = std::string_view(input) == "grid" ? field_grid(256) : tetrahedra(55);
+            return [=] {
+              Context context;
+              return double(gradient(d, {}, context)->point_count());
             };
           }};
 }
@@ -114,6 +125,8 @@ std::vector<Task> tasks(const std::string& folder) {
        {"f256_raw.vti", "f256_zlib.vti", "tet1M_raw.vtu", "mesh1M_binary.stl", "mesh1M_binary.ply", "mesh1M.obj", "mesh1M_raw.vtp"})
     t.push_back(reading(folder, name));
   t.push_back(contouring(256));
+  t.push_back(gradients("grid", "uniform256"));
+  t.push_back(gradients("tets", "tet1M"));
   t.push_back(surface("1M", 235));
   t.push_back(surface("5M", 526));
   t.push_back(surface("10M", 744));

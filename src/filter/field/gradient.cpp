@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "filter/field/gradient_cells.h"
+#include "filter/field/gradient_rows.h"
 #include "filter/field/lattice_frame.h"
 
 namespace sg {
@@ -32,31 +33,40 @@ const Field& choose_field(const Dataset& input, const FieldName& name) {
   fail_usage("the mesh has no point field of one or three components", "gradient", f ? "average the cell field to the points first" : "");
 }
 
-// All rows of a lattice whose points start at `first` in the arrays. T is the number type of both.
+// One row of a lattice, with one-sided differences beside missing values. T is the number type of both.
+template <class T>
+void row_gradient(const LatticeFrame& frame, const View<T>& f, T* out, size_t r) {
+  const size_t nx = frame.dims[0], ny = frame.dims[1], n = size_t(f.components);
+  const bool listed = frame.view.mode == LatticeView::Mode::listed;
+  for (size_t i = 0; i < nx; ++i) {
+    const size_t at[3] = {i, r % ny, r / ny}, p = i + nx * r;
+    const Mat3 m = listed ? frame.metric(p, at) : frame.to_world;
+    for (size_t c = 0; c < n; ++c) {
+      Vec3 d;
+      auto value = [&](size_t q) { return double(f.data[q * n + c]); };
+      for (int l = 0; l < frame.axes; ++l) {
+        const AxisStencil& s = frame.stencil[l][at[l]];
+        for (int k = 0; k < 3; ++k) d[l] += s.w[k] == 0 ? 0.0 : s.w[k] * value(size_t(ptrdiff_t(p) + s.o[k]));
+      }
+      if (!std::isfinite(dot(d, d))) [[unlikely]]
+        for (int l = 0; l < frame.axes; ++l) d[l] = careful_derivative(frame.stencil[l][at[l]], p, value);
+      const Vec3 g = std::isnan(value(p)) ? Vec3(NAN, NAN, NAN) : m * d;
+      for (int a = 0; a < 3; ++a) out[(p * n + c) * 3 + size_t(a)] = T(g[a]);
+    }
+  }
+}
+
+// All rows of a lattice whose points start at `first` in the arrays.
 template <class T>
 void lattice_gradient(const LatticeFrame& frame, const View<T>& f, T* out, Context& context) {
-  const size_t nx = frame.dims[0], ny = frame.dims[1], rows = ny * frame.dims[2], n = size_t(f.components);
-  const bool listed = frame.view.mode == LatticeView::Mode::listed;
+  const size_t rows = frame.dims[1] * frame.dims[2];
+  const bool fast = f.components == 1 && f.packed() && has_fast_rows(frame);
   parallel_for(
-      rows, std::max<size_t>(1, 4096 / nx),
+      rows, std::max<size_t>(1, (fast ? 16384 : 4096) / frame.dims[0]),
       [&](size_t begin, size_t end) {
+        std::vector<T> scratch;
         for (size_t r = begin; r < end; ++r)
-          for (size_t i = 0; i < nx; ++i) {
-            const size_t at[3] = {i, r % ny, r / ny}, p = i + nx * r;
-            const Mat3 m = listed ? frame.metric(p, at) : frame.to_world;
-            for (size_t c = 0; c < n; ++c) {
-              Vec3 d;
-              auto value = [&](size_t q) { return double(f.data[q * n + c]); };
-              for (int l = 0; l < frame.axes; ++l) {
-                const AxisStencil& s = frame.stencil[l][at[l]];
-                for (int k = 0; k < 3; ++k) d[l] += s.w[k] == 0 ? 0.0 : s.w[k] * value(size_t(ptrdiff_t(p) + s.o[k]));
-              }
-              if (!std::isfinite(dot(d, d))) [[unlikely]]
-                for (int l = 0; l < frame.axes; ++l) d[l] = careful_derivative(frame.stencil[l][at[l]], p, value);
-              const Vec3 g = std::isnan(value(p)) ? Vec3(NAN, NAN, NAN) : m * d;
-              for (int a = 0; a < 3; ++a) out[(p * n + c) * 3 + size_t(a)] = T(g[a]);
-            }
-          }
+          if (!fast || !fast_row_gradient(frame, f.data, out, r, scratch)) row_gradient(frame, f, out, r);
       },
       &context);
 }
