@@ -5,6 +5,7 @@
 // Headers of the operations, sorted.
 #include "filter/field/basics.h"
 #include "filter/field/calc.h"
+#include "filter/field/derivatives.h"
 #include "filter/field/gradient.h"
 #include "filter/field/point_cell.h"
 #include "filter/mesh/append.h"

@@ -234,10 +234,10 @@ TEST_CASE("gradient: refuses what it cannot do and says what would be right") {
   cloud.points.xyz = Array::from_vector(std::vector<float>{0, 0, 0}, 3);
   CHECK(error_of([&] { run(make_dataset(cloud)); }).find("nothing connects") != std::string::npos);
   FieldSet fields;
-  fields.add({"c", Association::cell, Array::from_vector(std::vector<float>(1)), "", Role::none});
-  const auto cells = make_dataset(uniform({2, 2, 2}, {0, 0, 0}, {1, 1, 1}), fields);
-  CHECK(error_of([&] { run(cells, "c"); }).find("field of the points") != std::string::npos);
-  CHECK(error_of([&] { run(cells); }).find("no point field") != std::string::npos);
+  fields.add({"w", Association::whole, Array::from_vector(std::vector<float>(1)), "", Role::none});
+  const auto whole = make_dataset(uniform({2, 2, 2}, {0, 0, 0}, {1, 1, 1}), fields);
+  CHECK(error_of([&] { run(whole, "w"); }).find("on no points or cells") != std::string::npos);
+  CHECK(error_of([&] { run(whole); }).find("no field of one or three components") != std::string::npos);
 }
 
 TEST_CASE("gradient: fast rows of an even grid agree with the general path, also beside missing values") {

@@ -4,33 +4,30 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "filter/field/gradient_cells.h"
+#include "filter/field/center_lattice.h"
+#include "filter/field/fitted_derivatives.h"
 #include "filter/field/gradient_rows.h"
 #include "filter/field/lattice_frame.h"
 
 namespace sg {
 
 void describe(Schema& s, GradientParams& p) {
-  s("field", p.field, "Point field of any number of components; default: the active scalar.");
+  s("field", p.field, "Point or cell field of any number of components; default: the active scalar.");
   s("as", p.as, "Name of the result; default: gradient(FIELD).");
 }
 
 namespace {
 
 const Field& choose_field(const Dataset& input, const FieldName& name) {
-  const Field* f = nullptr;
   if (!name.empty()) {
-    input.fields().require(name.name);
-    f = input.fields().find(name.name, Association::point);
-    if (!f) fail_usage(fmt::format("field '{}' does not lie on the points", name.name), "gradient", "name a field of the points");
-    return *f;
+    const Field& f = input.fields().require(name.name);
+    if (f.association == Association::whole) fail_usage(fmt::format("field '{}' lies on no points or cells", name.name), "gradient");
+    return f;
   }
-  f = input.fields().active(1);
-  if (f && f->association == Association::point) return *f;
-  for (int components : {1, 3})
-    for (const Field& p : input.fields())
-      if (p.association == Association::point && p.components() == components) return p;
-  fail_usage("the mesh has no point field of one or three components", "gradient", f ? "average the cell field to the points first" : "");
+  const Field* f = input.fields().active(1);
+  if (!f) f = input.fields().active(3);
+  if (!f || f->association == Association::whole) fail_usage("the mesh has no field of one or three components", "gradient");
+  return *f;
 }
 
 // One row of a lattice, with one-sided differences beside missing values. T is the number type of both.
@@ -71,41 +68,40 @@ void lattice_gradient(const LatticeFrame& frame, const View<T>& f, T* out, Conte
       &context);
 }
 
+// Patch by patch; with `of_cells` the values lie in the middles of the cells.
 template <class T>
-void amr_gradient(const AmrGrid& grid, const View<T>& f, T* out, Context& context) {
+void amr_gradient(const AmrGrid& grid, bool of_cells, const View<T>& f, T* out, Context& context) {
   for (const auto& level : grid.levels)
     for (const auto& patch : level.patches) {
       const auto cells = patch.cells();
+      const size_t more = of_cells ? 0 : 1;
       LatticeView v;
-      v.dims = {cells[0] + 1, cells[1] + 1, grid.dimension == 3 ? cells[2] + 1 : 1};
+      v.dims = {cells[0] + more, cells[1] + more, grid.dimension == 3 ? cells[2] + more : 1};
       for (int a = 0; a < 3; ++a) v.step[a][a] = level.spacing[a];
-      const size_t first = patch.point_offset * size_t(f.components);
+      const size_t first = (of_cells ? patch.cell_offset : patch.point_offset) * size_t(f.components);
       const View<T> part{f.data + first, v.points(), f.components, f.stride, f.component_stride};
       lattice_gradient(LatticeFrame(v), part, out + 3 * first, context);
     }
 }
 
 template <class T>
-Array grid_gradient(const Dataset& input, const Array& values, Context& context) {
+Array grid_gradient(const Dataset& input, bool of_cells, const Array& values, Context& context) {
   T* out = nullptr;
   Array result = Array::make<T>(values.count(), values.components() * 3, &out);
   if (values.count() == 0) return result;
   if (const auto* amr = input.as<AmrGrid>()) {
-    amr_gradient(*amr, values.view<T>(), out, context);
+    amr_gradient(*amr, of_cells, values.view<T>(), out, context);
   } else {
-    const Lattice lattice(input.mesh());
+    const Lattice lattice(of_cells ? center_lattice(input.mesh()) : input.mesh());
     lattice_gradient(LatticeFrame(lattice.view()), values.view<T>(), out, context);
   }
   return result;
 }
 
-Array cells_gradient(const Dataset& input, const Array& values, ElementType type, Context& context) {
-  if (values.count() > size_t(UINT32_MAX) - 1) fail_usage("the mesh has more than 2^32 points", "gradient", "take a part of it at a time");
-  std::vector<uint32_t> all(values.count());
-  for (size_t i = 0; i < all.size(); ++i) all[i] = uint32_t(i);
+Array fitted_gradient(const DatasetPtr& input, Association on, const Array& values, ElementType type, Context& context) {
   double* out = nullptr;
   Array result = Array::make<double>(values.count(), values.components() * 3, &out);
-  least_squares_gradients(input, all, values.converted(ElementType::f64), out, context);
+  fitted_derivatives(input, on, values.converted(ElementType::f64).made_packed(), out, nullptr, context);
   return result.converted(type);
 }
 
@@ -123,13 +119,17 @@ DatasetPtr gradient(const DatasetPtr& input, const GradientParams& params, Conte
   out.role = field.components() == 1 ? Role::vectors : field.components() == 3 ? Role::tensors : Role::none;
   const bool grid = is_lattice(input->mesh()) || input->as<AmrGrid>();
   if (!grid) {
-    out.array = cells_gradient(*input, field.array, type, context);
+    out.array = fitted_gradient(input, field.association, field.array, type, context);
   } else {
-    const Array values = field.array.converted(type);
-    out.array = type == ElementType::f32 ? grid_gradient<float>(*input, values, context) : grid_gradient<double>(*input, values, context);
+    const Array values = field.array.converted(type).made_packed();
+    const bool of_cells = field.association == Association::cell;
+    out.array = type == ElementType::f32 ? grid_gradient<float>(*input, of_cells, values, context)
+                                         : grid_gradient<double>(*input, of_cells, values, context);
   }
+  out.association = field.association;
   DatasetParts parts = input->parts();
-  if (parts.fields.find(out.name, Association::point)) context.info(fmt::format("gradient: replaces the point field '{}'", out.name));
+  if (parts.fields.find(out.name, out.association))
+    context.info(fmt::format("gradient: replaces the {} field '{}'", association_name(out.association), out.name));
   parts.fields.add(std::move(out));
   return make_dataset(std::move(parts));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// gradient: the spatial derivatives of a point field.
+// gradient: the spatial derivatives of a field.
 #pragma once
 #include <string>
 
@@ -15,14 +15,16 @@ struct GradientParams {
 };
 void describe(Schema& s, GradientParams& p);
 
-/// The input with one more point field: for each component of `field` its derivatives along x, y and z, so 3 numbers for a scalar
-/// and 9 for a vector (d u_c / d x_a at 3*c + a). f32 for fields of 32 bits and less, f64 for wider ones.
+/// The input with one more field, where `field` lies: for each component of it its derivatives along x, y and z, so 3 numbers for
+/// a scalar and 9 for a vector (d u_c / d x_a at 3*c + a). f32 for fields of 32 bits and less, f64 for wider ones. Cell fields are
+/// values at the middles of the cells.
 ///
 /// Uniform, rectilinear and curvilinear grids: second order, one-sided at the borders; curvilinear ones through the derivatives of
 /// the positions. Axes with one point give 0 (curved sheets and lines: the gradient along them). AMR grids: patch by patch.
-/// Unstructured and surface meshes: least squares over the points that share a cell, exact for linear functions.
+/// Unstructured and surface meshes: a parabola fitted to the places that share a cell (see quadratic_fit.h), of second order on smooth
+/// meshes, exact for quadratic functions where there are enough neighbours, else for linear ones.
 /// Beside NaN values differences are one-sided; a NaN has a NaN gradient.
-/// Throws Error(usage) for an unknown or cell field, and for point clouds.
+/// Throws Error(usage) for an unknown field and for point clouds.
 DatasetPtr gradient(const DatasetPtr& input, const GradientParams& params, Context& context);
 
 }  // namespace sg
