@@ -11,36 +11,67 @@ namespace sg {
 
 namespace {
 
+// Ids without repetition, in the order in which they came: that order depends on the mesh alone.
+class IdList {
+ public:
+  void clear() {
+    ids_.clear();
+    if (++stamp_ == 0) std::fill(table_.begin(), table_.end(), Entry{}), stamp_ = 1;
+  }
+  void add(int64_t id) {
+    if (2 * ids_.size() >= table_.size()) grow();
+    if (claim(id)) ids_.push_back(id);
+  }
+  const std::vector<int64_t>& ids() const { return ids_; }
+
+ private:
+  struct Entry {
+    int64_t id = -1;
+    uint32_t stamp = 0;
+  };
+  bool claim(int64_t id) {
+    const size_t mask = table_.size() - 1;
+    for (size_t at = size_t(uint64_t(id) * 0x9e3779b97f4a7c15u >> 40) & mask;; at = (at + 1) & mask) {
+      Entry& e = table_[at];
+      if (e.stamp == stamp_ && e.id == id) return false;
+      if (e.stamp == stamp_) continue;
+      e = {id, stamp_};
+      return true;
+    }
+  }
+  void grow() {
+    table_.assign(table_.size() * 2, {});
+    stamp_ = 1;
+    for (const int64_t id : ids_) claim(id);
+  }
+  std::vector<Entry> table_ = std::vector<Entry>(256);
+  std::vector<int64_t> ids_;
+  uint32_t stamp_ = 0;
+};
+
 // What surrounds a place: other places, the dimension of the cells there, and across surfaces their normal.
 class Surroundings {
  public:
   Surroundings(const DatasetPtr& d, Association on, const PointCells& cells, const Array& at)
       : reader_(d), on_(on), cells_(cells), at_(at.view<double>()) {}
 
-  /// Other places within `rings` steps, ascending.
+  /// Places within `rings` steps, the place itself among them.
   const std::vector<int64_t>& open(size_t i, int rings) {
     found_.clear();
     dimension_ = 0;
     normal_ = {0, 0, 0};
     add_ring(int64_t(i), true);
     for (int r = 1; r < rings; ++r) {
-      const std::vector<int64_t> before = found_;
+      const std::vector<int64_t> before = found_.ids();
       for (const int64_t p : before) add_ring(p, false);
-      tidy();
     }
-    tidy();
-    found_.erase(std::remove(found_.begin(), found_.end(), int64_t(i)), found_.end());
-    return found_;
+    return found_.ids();
   }
   int dimension() const { return dimension_; }
   Vec3 normal() const { return normal_; }
   Vec3 position(size_t i) const { return {at_(i, 0), at_(i, 1), at_(i, 2)}; }
 
  private:
-  void tidy() {
-    std::sort(found_.begin(), found_.end());
-    found_.erase(std::unique(found_.begin(), found_.end()), found_.end());
-  }
   void look_at(size_t cell) {
     reader_.open(cell);
     if (reader_.dimension() > dimension_) dimension_ = reader_.dimension(), normal_ = {0, 0, 0};
@@ -55,7 +86,7 @@ class Surroundings {
       for (const uint32_t c : cells_[size_t(i)]) {
         if (own) look_at(c);
         else reader_.open(c);
-        found_.insert(found_.end(), reader_.ids().begin(), reader_.ids().end());
+        for (const int64_t p : reader_.ids()) found_.add(p);
       }
       return;
     }
@@ -63,14 +94,15 @@ class Surroundings {
     else reader_.open(size_t(i));
     points_.assign(reader_.ids().begin(), reader_.ids().end());
     for (const int64_t p : points_)
-      for (const uint32_t c : cells_[size_t(p)]) found_.push_back(int64_t(c));
+      for (const uint32_t c : cells_[size_t(p)]) found_.add(int64_t(c));
   }
 
   CellReader reader_;
   Association on_;
   const PointCells& cells_;
   View<double> at_;
-  std::vector<int64_t> found_, points_;
+  IdList found_;
+  std::vector<int64_t> points_;
   int dimension_ = 0;
   Vec3 normal_;
 };
