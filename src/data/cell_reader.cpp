@@ -272,6 +272,11 @@ void CellReader::open_unstructured(size_t cell) {
 Box3 CellReader::box() const {
   Box3 b;
   for (Vec3 p : at_) b.add(p);
+  if (is_high_order(type_) && !is_bezier(type_) && type_ != CellType::quadratic_polygon && !b.empty()) {
+    // A parabola leaves the range of its nodes by up to an eighth; higher orders by more.
+    const Vec3 margin = b.size() * (orders_[0] > 2 || orders_[1] > 2 || orders_[2] > 2 || type_ == CellType::cubic_line ? 0.25 : 0.15);
+    b.lo -= margin, b.hi += margin;
+  }
   return b;
 }
 
