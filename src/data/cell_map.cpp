@@ -101,14 +101,16 @@ bool CellMap::locate_solid(Vec3 x, CellPlace& place, double tolerance) {
   } else if (shape_->type() == CellType::voxel) {
     if (locate_box(x, place, tolerance, solved)) return inside();
   }
-  const double eased = tolerance + rounding(x, size());
+  // Near misses only: rounding far from zero must not open cracks between cells.
+  const double eased = solved && place.outside > 1e-3 ? tolerance : tolerance + rounding(x, size());
   if (!solved) {
     const InverseResult r = invert_solid(Geometry(*this), x, eased);
     place.rst = r.rst;
     place.outside = r.found ? r.outside : HUGE_VAL;
   }
   if (place.outside <= eased) return inside();
-  place.nearest = position(shape_->clamped(place.rst));
+  const Vec3 q = shape_->clamped(place.rst), *p = reader_.at().data();
+  place.nearest = shape_->nodes() == 4 ? p[0] + (p[1] - p[0]) * q.x + (p[2] - p[0]) * q.y + (p[3] - p[0]) * q.z : position(q);
   place.distance2 = dot(place.nearest - x, place.nearest - x);
   if (!(place.outside < HUGE_VAL)) place.outside = std::sqrt(place.distance2) / size();
   return false;
@@ -187,7 +189,7 @@ void CellMap::nearest(Vec3 x, CellPlace& place) {
 void CellMap::nearest_of_faces(Vec3 x, CellPlace& place) {
   const auto at = reader_.at();
   const auto weight = reader_.weights();
-  const CellFaces& faces = cell_faces(reader_.type(), at.size());
+  const CellFaces& faces = cell_faces(reader_.type(), at.size(), reader_.orders());
   std::vector<Vec3> corner, dn;
   std::vector<double> w, n;
   double best = HUGE_VAL;
@@ -198,7 +200,7 @@ void CellMap::nearest_of_faces(Vec3 x, CellPlace& place) {
       if (!weight.empty()) w.push_back(weight[k]);
     }
     n.resize(corner.size()), dn.resize(corner.size());
-    const CellShape* shape = CellShape::find(faces.type[f], corner.size());
+    const CellShape* shape = CellShape::find(faces.type[f], corner.size(), faces.orders[f]);
     if (!shape) continue;
     const CellGeometry g{shape, corner, w, n.data(), dn.data()};
     const Vec3 p = g.position(nearest_reference(g, x));
