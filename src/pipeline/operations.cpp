@@ -15,6 +15,7 @@
 #include "filter/mesh/merge_points.h"
 #include "filter/mesh/piece.h"
 #include "filter/mesh/slice.h"
+#include "filter/mesh/tessellate_cells.h"
 #include "filter/mesh/threshold.h"
 #include "filter/mesh/to_unstructured.h"
 #include "filter/mesh/transform.h"
