@@ -86,8 +86,7 @@ void halve(const Part& p, std::vector<Part>& out) {
   }
 }
 
-// Corners of the linear types in VTK's reference coordinates (0 or 1; a pyramid's apex stands over its first corner here: lattice
-// coordinates of pyramids are those of the unit cube's corners pulled along straight edges, see place()).
+// Corners of the linear types in lattice coordinates (0 or 1); a pyramid's apex stands over its first corner here.
 std::vector<std::array<int, 3>> reference_corners(CellType t) {
   switch (t) {
     case CellType::line: return {{0, 0, 0}, {1, 0, 0}};
@@ -100,14 +99,10 @@ std::vector<std::array<int, 3>> reference_corners(CellType t) {
   }
 }
 
-// Reference coordinates of a lattice place. A pyramid shrinks towards its apex: r = x / (1 - t), as its shape functions want.
+// Reference coordinates of a lattice place: a pyramid leans over its first corner in the lattice, and stands upright in reference space.
 Vec3 place(CellType t, const std::array<int, 3>& at, int n) {
-  Vec3 r{double(at[0]) / n, double(at[1]) / n, double(at[2]) / n};
-  if (t == CellType::pyramid) {
-    const int left = n - at[2];
-    r.x = left ? double(at[0]) / left : 0.5, r.y = left ? double(at[1]) / left : 0.5;
-  }
-  return r;
+  const double lean = t == CellType::pyramid ? 0.5 * at[2] : 0;
+  return {(at[0] + lean) / n, (at[1] + lean) / n, double(at[2]) / n};
 }
 
 // The parts of a type, its edges halved `level` times; made once.
