@@ -18,6 +18,7 @@ void write_nrrd(const std::string& path, const Data& data, const WriteOptions& o
 
 bool sniff_metaimage(std::span<const std::byte> head);
 Data read_metaimage(const std::string& path, const ReadOptions& options, Context& context);
+void write_metaimage(const std::string& path, const Data& data, const WriteOptions& options, Context& context);
 
 Data read_raw(const std::string& path, const ReadOptions& options, Context& context);
 

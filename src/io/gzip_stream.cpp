@@ -12,7 +12,7 @@ struct GzipStream::State {
   std::string where;
   z_stream z{};
   size_t at = 0, made = 0;
-  bool open = false, damaged = false, ended = false;
+  bool open = false, zlib = false, damaged = false, ended = false;
 
   ~State() {
     if (open) inflateEnd(&z);
@@ -24,11 +24,12 @@ struct GzipStream::State {
     while (got < bytes && !ended) {
       if (!open) {
         // Members may follow one another; anything else behind the last one is padding.
-        if (at >= in.size() || (made > 0 && in[at] != std::byte(0x1f)) || inflateInit2(&z, 15 + 16) != Z_OK) {
+        if (at >= in.size() || (made > 0 && (zlib || in[at] != std::byte(0x1f))) || inflateInit2(&z, 15 + 32) != Z_OK) {
           ended = true;
           break;
         }
         open = true;
+        zlib = in[at] != std::byte(0x1f);  // a zlib stream has one member
       }
       const size_t give = std::min(step, in.size() - at), take = std::min(step, bytes - got);
       z.next_in = reinterpret_cast<Bytef*>(const_cast<std::byte*>(in.data() + at));
@@ -64,7 +65,7 @@ void GzipStream::read(std::byte* to, size_t bytes) {
     const size_t n = state_->some(to ? to + got : rubbish.get(), want);
     got += n;
     if (n < want) {
-      if (state_->damaged) fail_data(fmt::format("the gzip data are damaged or cut off near byte {}", state_->at), state_->where);
+      if (state_->damaged) fail_data(fmt::format("the packed data are damaged or cut off near byte {}", state_->at), state_->where);
       fail_data(fmt::format("unpacks to {} bytes, {} more are needed", state_->made, bytes - got), state_->where);
     }
   }
