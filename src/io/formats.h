@@ -37,4 +37,13 @@ Data read_nifti(const std::string& path, const ReadOptions& options, Context& co
 std::vector<double> times_of_nifti(const std::string& path, const ReadOptions& options, Context& context);
 void write_nifti(const std::string& path, const Data& data, const WriteOptions& options, Context& context);
 
+bool sniff_npy(std::span<const std::byte> head);
+Data read_npy(const std::string& path, const ReadOptions& options, Context& context);
+void write_npy(const std::string& path, const Data& data, const WriteOptions& options, Context& context);
+
+bool sniff_slc(std::span<const std::byte> head);
+Data read_slc(const std::string& path, const ReadOptions& options, Context& context);
+
+Data read_cube(const std::string& path, const ReadOptions& options, Context& context);
+
 }  // namespace sg
