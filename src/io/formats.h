@@ -46,4 +46,7 @@ Data read_slc(const std::string& path, const ReadOptions& options, Context& cont
 
 Data read_cube(const std::string& path, const ReadOptions& options, Context& context);
 
+bool sniff_dicom(std::span<const std::byte> head);
+bool sniff_dicom_folder(const std::string& path);
+
 }  // namespace sg
