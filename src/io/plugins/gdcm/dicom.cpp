@@ -172,16 +172,8 @@ DatasetPtr make_volume(const std::vector<Slice>& v, bool placed, const std::stri
     }
     runs.emplace_back(k, 1);
   }
-  const bool packed = std::any_of(v.begin(), v.end(), [](const Slice& s) { return s.picture->decode; });
-  if (packed)
-    for (size_t i = 0; i < runs.size(); ++i) {  // GDCM's decoders make no promise about threads
-      context.check();
-      context.progress(double(i) / double(runs.size()), "decoding slices");
-      read(runs[i].first, runs[i].second);
-    }
-  else
-    parallel_for(
-        runs.size(), 1, [&](size_t i, size_t) { read(runs[i].first, runs[i].second); }, &context);
+  parallel_for(
+      runs.size(), 1, [&](size_t i, size_t) { read(runs[i].first, runs[i].second); }, &context);
   const Role role = a.components() >= 3 && a.type() == ElementType::u8 ? Role::colors : Role::scalars;
   out.fields.add({"DICOMImage", Association::point, std::move(a), p.notes.empty() || p.notes[0].second != "CT" ? "" : "HU", role});
   return make_dataset(std::move(out));
@@ -224,7 +216,8 @@ Data read_dicom(const std::string& path, const ReadOptions& options, Context& co
   Collection all;
   for (const Group& g : group(pictures)) {
     bool placed = false;
-    const auto volumes = volumes_of(slices_of(g, placed), placed);
+    const std::vector<Slice> slices = slices_of(g, placed);
+    const auto volumes = volumes_of(slices, placed);
     for (size_t i = 0; i < volumes.size(); ++i) {
       const std::string name = volumes.size() == 1 ? g.name : fmt::format("{}, volume {}", g.name, i + 1);
       all.parts.push_back({name, make_volume(volumes[i], placed, path, options, context)});

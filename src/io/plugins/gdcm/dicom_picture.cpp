@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "dicom_picture.h"
 
+#include <fcntl.h>
 #include <gdcmImageApplyLookupTable.h>
 #include <gdcmImageChangePhotometricInterpretation.h>
 #include <gdcmImageChangePlanarConfiguration.h>
 #include <gdcmImageReader.h>
-#include <gdcmTrace.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
-#include <mutex>
+#include <cerrno>
+#include <csignal>
 #include <sstream>
 
 #include "base/bytes.h"
@@ -66,71 +71,100 @@ std::string minimal_file(const DicomElements& d) {
   return s;
 }
 
-void silence_gdcm() {
-  static std::once_flag once;
-  std::call_once(once, [] {
-    static std::ostringstream nowhere;
-    nowhere.setstate(std::ios::failbit);
-    gdcm::Trace::SetStream(nowhere);
-    gdcm::Trace::DebugOff();
-    gdcm::Trace::WarningOff();
-    gdcm::Trace::ErrorOff();
-  });
-}
-
 struct Decoded {
-  std::vector<char> bytes;
-  int bits_allocated = 16, bits_stored = 16, high_bit = 15, samples = 1;
+  std::shared_ptr<void> owner;
+  const std::byte* bytes = nullptr;
+  int bits_allocated = 16, bits_stored = 16, high_bit = 15;
   bool is_signed = false;
 };
 
+// What the decoding process leaves behind: this, then the pixels.
+struct Result {
+  int state = 0;  // 0 = died, 1 = good, 2 = failed with a message
+  int bits_allocated = 0, bits_stored = 0, high_bit = 0, is_signed = 0;
+  char message[256]{};
+};
+
+void say(Result& r, const std::string& text) {
+  std::memcpy(r.message, text.data(), std::min(text.size(), sizeof r.message - 1));
+  r.state = 2;
+}
+
+// Unpacks `file` to at most `room` bytes behind `r`. Runs in a process of its own.
+void decode_here(const std::string& file, const DicomPicture& p, Result& r, char* out, size_t room) {
+  std::istringstream stream(file);
+  gdcm::ImageReader reader;
+  reader.SetStream(stream);
+  if (!reader.Read()) return say(r, "the decoder does not know them");
+  const gdcm::Image* image = &reader.GetImage();
+  gdcm::ImageApplyLookupTable lookup;
+  gdcm::ImageChangePlanarConfiguration planar;
+  gdcm::ImageChangePhotometricInterpretation colors;
+  if (image->GetPhotometricInterpretation() == gdcm::PhotometricInterpretation::PALETTE_COLOR) {
+    lookup.SetInput(*image);
+    if (!lookup.Apply()) return say(r, "the palette cannot be applied");
+    image = &lookup.GetOutput();
+  }
+  if (image->GetPixelFormat().GetSamplesPerPixel() == 3 && image->GetPlanarConfiguration() == 1) {
+    planar.SetInput(*image);
+    planar.SetPlanarConfiguration(0);
+    if (!planar.Change()) return say(r, "the colour planes cannot be put together");
+    image = &static_cast<const gdcm::Image&>(planar.GetOutput());
+  }
+  if (image->GetPhotometricInterpretation() == gdcm::PhotometricInterpretation::YBR_FULL) {
+    colors.SetInput(*image);
+    colors.SetPhotometricInterpretation(gdcm::PhotometricInterpretation::RGB);
+    if (colors.Change()) image = &static_cast<const gdcm::Image&>(colors.GetOutput());
+  }
+  const gdcm::PixelFormat& f = image->GetPixelFormat();
+  r.bits_allocated = f.GetBitsAllocated(), r.bits_stored = f.GetBitsStored(), r.high_bit = f.GetHighBit();
+  r.is_signed = f.GetPixelRepresentation() == 1;
+  const size_t need = p.numbers_per_frame() * p.frames * size_t(r.bits_allocated / 8), have = image->GetBufferLength();
+  if (have != need || need > room || int(f.GetSamplesPerPixel()) != p.components())
+    return say(r, fmt::format("they unpack to {} bytes, {} are needed", have, need));
+  if (!image->GetBuffer(out)) return say(r, "they are damaged");
+  r.state = 1;
+}
+
+// GDCM ends the program on some damaged files (its assertions are compiled in), so it works in a process of its own.
 Decoded decode(const DicomPicture& p) {
-  silence_gdcm();
   const MappedFile file(p.path);
   const DicomElements d = walk_dicom({file.data(), file.size()}, p.path);
-  Decoded r;
-  try {
-    std::istringstream stream(minimal_file(d));
-    gdcm::ImageReader reader;
-    reader.SetStream(stream);
-    if (!reader.Read()) fail_data(fmt::format("its pixels (transfer syntax {}) cannot be decoded", d.transfer_syntax), p.path);
-    gdcm::SmartPointer<gdcm::Image> image = &reader.GetImage();
-    const gdcm::ImageApplyLookupTable* looked_up = nullptr;
-    gdcm::ImageApplyLookupTable lookup;
-    gdcm::ImageChangePhotometricInterpretation colors;
-    gdcm::ImageChangePlanarConfiguration planar;
-    if (image->GetPhotometricInterpretation() == gdcm::PhotometricInterpretation::PALETTE_COLOR) {
-      lookup.SetInput(*image);
-      if (!lookup.Apply()) fail_data("its palette cannot be applied", p.path);
-      looked_up = &lookup;
-      image = &const_cast<gdcm::Image&>(static_cast<const gdcm::Image&>(looked_up->GetOutput()));
+  const std::string minimal = minimal_file(d);
+  const size_t room = p.numbers_per_frame() * p.frames * (p.photometric == "PALETTE COLOR" ? 2 : size_t(p.bits_allocated / 8));
+  const size_t total = sizeof(Result) + room;
+  void* shared = ::mmap(nullptr, total, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  if (shared == MAP_FAILED) fail_data(fmt::format("not enough memory for {} bytes of pixels", room), p.path);
+  const std::shared_ptr<void> owner(shared, [total](void* m) { ::munmap(m, total); });
+  auto* r = new (shared) Result;
+  char* out = static_cast<char*>(shared) + sizeof(Result);
+
+  const pid_t child = ::fork();
+  if (child < 0) fail_data("no process for decoding can be started", p.path);
+  if (child == 0) {
+    for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL}) ::signal(signal, SIG_DFL);
+    const rlimit no_core{0, 0};
+    ::setrlimit(RLIMIT_CORE, &no_core);
+    if (const int nowhere = ::open("/dev/null", O_WRONLY); nowhere >= 0) ::dup2(nowhere, 1), ::dup2(nowhere, 2);
+    try {
+      decode_here(minimal, p, *r, out, room);
+    } catch (const std::exception& e) {
+      say(*r, e.what());
+    } catch (...) {
     }
-    if (image->GetPixelFormat().GetSamplesPerPixel() == 3 && image->GetPlanarConfiguration() == 1) {
-      planar.SetInput(*image);
-      planar.SetPlanarConfiguration(0);
-      if (!planar.Change()) fail_data("its colour planes cannot be put together", p.path);
-      image = &const_cast<gdcm::Image&>(static_cast<const gdcm::Image&>(planar.GetOutput()));
-    }
-    if (image->GetPhotometricInterpretation() == gdcm::PhotometricInterpretation::YBR_FULL) {
-      colors.SetInput(*image);
-      colors.SetPhotometricInterpretation(gdcm::PhotometricInterpretation::RGB);
-      if (colors.Change()) image = &const_cast<gdcm::Image&>(static_cast<const gdcm::Image&>(colors.GetOutput()));
-    }
-    const gdcm::PixelFormat& f = image->GetPixelFormat();
-    r.bits_allocated = f.GetBitsAllocated(), r.bits_stored = f.GetBitsStored(), r.high_bit = f.GetHighBit();
-    r.samples = f.GetSamplesPerPixel();
-    r.is_signed = f.GetPixelRepresentation() == 1;
-    const size_t need = p.numbers_per_frame() * p.frames * size_t(r.bits_allocated / 8);
-    if (image->GetBufferLength() < need || r.samples != p.components())
-      fail_data(fmt::format("its pixels unpack to {} bytes, {} are needed", image->GetBufferLength(), need), p.path);
-    r.bytes.resize(image->GetBufferLength());
-    if (!image->GetBuffer(r.bytes.data())) fail_data(fmt::format("its pixels (transfer syntax {}) are damaged", d.transfer_syntax), p.path);
-  } catch (const Error&) {
-    throw;
-  } catch (const std::exception& e) {
-    fail_data(fmt::format("its pixels cannot be decoded: {}", e.what()), p.path);
+    ::_exit(0);
   }
-  return r;
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (r->state != 1)
+    fail_data(fmt::format("its pixels (transfer syntax {}) cannot be decoded: {}", d.transfer_syntax,
+                          r->state == 2 ? r->message : "they are damaged"),
+              p.path);
+  Decoded result{owner, reinterpret_cast<const std::byte*>(out), r->bits_allocated, r->bits_stored, r->high_bit, r->is_signed != 0};
+  if (result.bits_allocated != 8 && result.bits_allocated != 16 && result.bits_allocated != 32)
+    fail_data(fmt::format("its pixels decode to numbers of {} bits", result.bits_allocated), p.path);
+  return result;
 }
 
 // How stored numbers become values.
@@ -237,7 +271,7 @@ void read_dicom_frames(const DicomPicture& p, size_t first, size_t count, Elemen
     c.bits = decoded.bits_allocated, c.stored = decoded.bits_stored, c.high = decoded.high_bit;
     c.is_signed = decoded.is_signed, c.big = false;
     if (p.photometric == "PALETTE COLOR" && c.bits == 16) c.slope = 1.0 / 257, c.intercept = 0;  // colours of 16 bits
-    in = reinterpret_cast<const std::byte*>(decoded.bytes.data());
+    in = decoded.bytes;
   } else {
     file = MappedFile(p.path);
     if (p.pixels_begin > file.size() || p.pixels_bytes > file.size() - p.pixels_begin) fail_data("has changed while it was read", p.path);
