@@ -49,4 +49,6 @@ Data read_cube(const std::string& path, const ReadOptions& options, Context& con
 bool sniff_dicom(std::span<const std::byte> head);
 bool sniff_dicom_folder(const std::string& path);
 
+bool sniff_vdb(std::span<const std::byte> head);
+
 }  // namespace sg

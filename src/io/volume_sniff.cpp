@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// How to know DICOM; the reader is the plug-in "gdcm".
+// How to know the volumes that plug-ins read: DICOM ("gdcm"), OpenVDB ("openvdb").
 #include "base/file.h"
 #include "io/formats.h"
 
 namespace sg {
 
 bool sniff_dicom(std::span<const std::byte> head) { return head.size() >= 132 && std::memcmp(head.data() + 128, "DICM", 4) == 0; }
+
+bool sniff_vdb(std::span<const std::byte> head) {
+  // The magic number as 64 bits, little endian: " BDV" and four zeros.
+  return head.size() >= 12 && std::memcmp(head.data(), " BDV\0\0\0\0", 8) == 0;
+}
 
 bool sniff_dicom_folder(const std::string& path) {
   constexpr size_t most = 64;  // files looked into
