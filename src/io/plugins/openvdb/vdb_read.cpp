@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <openvdb/tools/Dense.h>
-
 #include "base/bytes.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/parallel.h"
 #include "base/text.h"
 #include "io/direction.h"
+#include "io/isolated.h"
 #include "io/lattice_part.h"
 #include "io/plugin.h"
 #include "vdb.h"
@@ -15,7 +14,11 @@ namespace sg {
 
 namespace {
 
-constexpr size_t default_budget = size_t(8) << 30;  ///< bytes of one dense field, when no limit is stated
+// Bytes of one dense field: what is stated, else what a file of this size may reasonably unfold to, 256 MiB to 8 GiB.
+size_t budget_for(const std::string& path, const Context& context) {
+  if (context.memory_limit) return context.memory_limit;
+  return std::clamp(MappedFile(path).size() * 4096, size_t(256) << 20, size_t(8) << 30);
+}
 
 using openvdb::Coord;
 using openvdb::CoordBBox;
@@ -62,36 +65,51 @@ std::vector<Group> group(const std::vector<openvdb::GridBase::ConstPtr>& grids, 
   return groups;
 }
 
+// The wanted voxels along one axis that lie in first..last of the index space: from, to (exclusive), counted over the wanted ones.
+std::pair<size_t, size_t> covered(int first, int last, int lo, const LatticePart& part, int axis) {
+  const size_t a = size_t(axis);
+  const int64_t begin = int64_t(lo) + int64_t(part.lo[a]), step = int64_t(part.stride[a]);
+  const int64_t from = first <= begin ? 0 : (first - begin + step - 1) / step;
+  const int64_t to = last < begin ? 0 : (last - begin) / step + 1;
+  return {size_t(from), std::min(size_t(to), part.count[a])};
+}
+
+// Calls f(place of the result, coordinate) for the wanted voxels of a box.
+template <class F>
+void each_voxel(const CoordBBox& voxels, const Coord& lo, const LatticePart& part, F&& f) {
+  std::pair<size_t, size_t> r[3];
+  for (int a = 0; a < 3; ++a) {
+    r[a] = covered(voxels.min()[a], voxels.max()[a], lo[a], part, a);
+    if (r[a].first >= r[a].second) return;
+  }
+  for (size_t k = r[2].first; k < r[2].second; ++k)
+    for (size_t j = r[1].first; j < r[1].second; ++j)
+      for (size_t i = r[0].first; i < r[0].second; ++i)
+        f(i + part.count[0] * (j + part.count[1] * k),
+          lo.offsetBy(int(part.lo[0] + i * part.stride[0]), int(part.lo[1] + j * part.stride[1]), int(part.lo[2] + k * part.stride[2])));
+}
+
+// Background, then tiles, then leaves. Not by the library's own copyToDense: that needs threads, which a reading process lacks.
 template <class GridType, class T, int N>
-Array dense(const GridType& grid, const CoordBBox& box, const LatticePart& part, Context& context) {
+Array dense(const GridType& grid, const CoordBBox& box, const LatticePart& part) {
   using Value = typename GridType::ValueType;
   T* out = nullptr;
   Array a = Array::make<T>(part.points(), N, &out);
-  // Truth values are bits in the tree; everything else is copied node by node.
-  if constexpr (sizeof(Value) == sizeof(T) * N && !std::is_same_v<Value, bool>) {
-    if (part.stride == std::array<size_t, 3>{1, 1, 1}) {
-      const Coord lo = box.min().offsetBy(int(part.lo[0]), int(part.lo[1]), int(part.lo[2]));
-      const CoordBBox wanted(lo, lo.offsetBy(int(part.count[0]) - 1, int(part.count[1]) - 1, int(part.count[2]) - 1));
-      openvdb::tools::Dense<Value, openvdb::tools::LayoutXYZ> d(wanted, reinterpret_cast<Value*>(out));
-      openvdb::tools::copyToDense(grid, d);
-      return a;
-    }
+  auto put = [&](size_t at, const Value& v) {
+    if constexpr (N == 3) out[3 * at] = v[0], out[3 * at + 1] = v[1], out[3 * at + 2] = v[2];
+    else out[at] = T(v);
+  };
+  const Value background = grid.background();
+  for (size_t i = 0; i < part.points(); ++i) put(i, background);
+  const auto& tree = grid.tree();
+  auto tile = tree.cbeginValueAll();
+  for (tile.setMaxDepth(decltype(tile)::LEAF_DEPTH - 1); tile; ++tile) {
+    const Value v = *tile;
+    if (v == background) continue;
+    each_voxel(tile.getBoundingBox(), box.min(), part, [&](size_t at, const Coord&) { put(at, v); });
   }
-  parallel_for(
-      part.count[1] * part.count[2], std::max<size_t>(1, (1 << 14) / part.count[0]),
-      [&](size_t begin, size_t end) {
-        auto tree = grid.getConstAccessor();
-        for (size_t row = begin; row < end; ++row) {
-          const size_t j = part.lo[1] + row % part.count[1] * part.stride[1], k = part.lo[2] + row / part.count[1] * part.stride[2];
-          T* to = out + row * part.count[0] * N;
-          for (size_t i = 0; i < part.count[0]; ++i) {
-            const Value v = tree.getValue(box.min().offsetBy(int(part.lo[0] + i * part.stride[0]), int(j), int(k)));
-            if constexpr (N == 3) *to++ = v[0], *to++ = v[1], *to++ = v[2];
-            else *to++ = T(v);
-          }
-        }
-      },
-      &context);
+  for (auto leaf = tree.cbeginLeaf(); leaf; ++leaf)
+    each_voxel(leaf->getNodeBoundingBox(), box.min(), part, [&](size_t at, const Coord& c) { put(at, leaf->getValue(c)); });
   return a;
 }
 
@@ -130,8 +148,7 @@ DatasetPtr make_grid(const Group& g, const std::string& path, const ReadOptions&
   if (!multiply(whole[0], whole[1], points) || !multiply(points, whole[2], points)) fail_data("the dense box cannot be counted", path);
   const LatticePart part = cut_grid(grid, options.region);
   out.mesh = grid;
-  const size_t budget = context.memory_limit ? context.memory_limit : default_budget;
-  std::string names;
+  const size_t budget = budget_for(path, context);
   for (const auto& one : g.grids) {
     std::string name = one->getName().empty() ? "values" : one->getName();
     while (out.fields.find(name, Association::point)) name += "'";
@@ -145,7 +162,7 @@ DatasetPtr make_grid(const Group& g, const std::string& path, const ReadOptions&
                   path, "read a region or every n-th voxel of it, or allow more memory");
       if (options.header_only) return;
       const Role role = n == 3 ? Role::vectors : out.fields.empty() ? Role::scalars : Role::none;
-      out.fields.add({name, Association::point, dense<std::decay_t<decltype(typed)>, T, n>(typed, g.box, part, context), "", role});
+      out.fields.add({name, Association::point, dense<std::decay_t<decltype(typed)>, T, n>(typed, g.box, part), "", role});
     });
     if (!known) context.warn(fmt::format("{}: grid '{}' of type {} holds no numbers that are read", path, name, one->valueType()));
     if (one->getGridClass() != openvdb::GRID_UNKNOWN)
@@ -190,7 +207,9 @@ bool vdb_affine(const openvdb::GridBase& grid, Vec3& origin, Vec3 step[3]) {
   return true;
 }
 
-Data read_vdb(const std::string& path, const ReadOptions& options, Context& context) {
+namespace {
+
+Data read_all(const std::string& path, const ReadOptions& options, Context& context) {
   start_openvdb();
   Collection all;
   try {
@@ -213,6 +232,15 @@ Data read_vdb(const std::string& path, const ReadOptions& options, Context& cont
   if (all.parts.empty()) fail_data("no grid in it has an active voxel", path);
   if (all.parts.size() == 1) return all.parts[0].data;
   return std::make_shared<const Collection>(std::move(all));
+}
+
+}  // namespace
+
+Data read_vdb(const std::string& path, const ReadOptions& options, Context& context) {
+  const size_t budget = budget_for(path, context);
+  // The tree, the dense numbers, and room for the library itself.
+  return read_isolated(
+      path, [&](Context& c) { return read_all(path, options, c); }, 2 * budget + (size_t(256) << 20), context);
 }
 
 }  // namespace sg

@@ -19,6 +19,15 @@ openvdb::GridBase::Ptr sparse(const Array& values, const openvdb::CoordBBox& box
   openvdb::tools::Dense<Value, openvdb::tools::LayoutXYZ> dense(box, data);
   auto grid = GridType::create(openvdb::zeroVal<Value>());
   openvdb::tools::copyFromDense(dense, *grid, openvdb::zeroVal<Value>());  // tolerance 0: what is not zero stays as it is
+  // A leaf of zeros and NaN counts as all zero there.
+  auto tree = grid->getAccessor();
+  const T* v = reinterpret_cast<const T*>(packed.raw());
+  const openvdb::Coord n = box.dim();
+  for (size_t i = 0; i < packed.count(); ++i) {
+    bool nan = false;
+    for (size_t c = 0; c < N; ++c) nan = nan || v[i * N + c] != v[i * N + c];
+    if (nan) tree.setValue({int(i % size_t(n[0])), int(i / size_t(n[0]) % size_t(n[1])), int(i / size_t(n[0]) / size_t(n[1]))}, data[i]);
+  }
   return grid;
 }
 
