@@ -6,6 +6,8 @@
 #include "base/bytes.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "data/lattice_crop.h"
+#include "io/gzip_stream.h"
 #include "io/inflate.h"
 #include "io/text_scan.h"
 
@@ -141,6 +143,44 @@ Array load_brick(const BrickLayout& l, const std::vector<BrickPart>& parts, Cont
     parallel_for(
         parts.size(), 1, [&](size_t i, size_t) { fill(l, parts[i], out + i * share, share, context); }, &context);
   if (swap) swap_bytes(out, need / size, size);
+  return a;
+}
+
+Array load_brick_part(const BrickLayout& l, const LatticePart& part, const std::vector<BrickPart>& files, Context& context) {
+  if (part.whole()) return load_brick(l, files, context);
+  const size_t size = element_size(l.type), tuple = size * size_t(l.components);
+  uint64_t need = 0, row = 0;
+  if (!multiply(l.count, tuple, need) || need > (uint64_t(1) << 60) || !multiply(part.dims[0], tuple, row))
+    fail_data("the volume is larger than any memory");
+  const size_t share = files.empty() ? 0 : need / files.size();
+  const bool raw = l.encoding == BrickEncoding::raw && !files.empty() && need % files.size() == 0 && share % row == 0;
+  const bool packed = (l.encoding == BrickEncoding::gzip || l.encoding == BrickEncoding::zlib) && files.size() == 1 && files[0].skip >= 0;
+  if (!raw && !packed) return crop_block(load_brick(l, files, context), part.dims, part.lo, part.count, part.stride);
+
+  std::vector<std::span<const std::byte>> windows;
+  if (raw)
+    for (const BrickPart& f : files) windows.push_back(raw_window(f, share, context));
+  else check_ratio(codec_of(l.encoding), stored(files[0]).size(), need, files[0].file.path());
+  std::byte* out = nullptr;
+  Array a = Array::make_raw(l.type, part.points(), l.components, &out);
+  if (packed) {
+    GzipStream stream(stored(files[0]), files[0].file.path());
+    stream.read(nullptr, size_t(files[0].skip));
+    stream_part([&](std::byte* to, size_t n) { stream.read(to, n); }, tuple, part, out);
+  } else {
+    // Row by row: each lies in one file.
+    const size_t out_row = part.count[0] * tuple;
+    const LatticePart in_row{{part.dims[0], 1, 1}, {part.lo[0], 0, 0}, {part.count[0], 1, 1}, {part.stride[0], 1, 1}};
+    parallel_for(part.count[1] * part.count[2], std::max<size_t>(1, (size_t(1) << 18) / std::max<size_t>(out_row, 1)),
+                 [&](size_t begin, size_t end) {
+                   for (size_t r = begin; r < end; ++r) {
+                     const size_t j = part.lo[1] + r % part.count[1] * part.stride[1], k = part.lo[2] + r / part.count[1] * part.stride[2];
+                     const size_t at = (j + part.dims[1] * k) * row;
+                     copy_part(windows[at / share].data() + at % share, tuple, in_row, out + r * out_row);
+                   }
+                 });
+  }
+  if (l.big_endian && size > 1) swap_bytes(out, a.bytes() / size, size);
   return a;
 }
 

@@ -8,6 +8,7 @@
 #include "base/context.h"
 #include "base/file.h"
 #include "data/array.h"
+#include "io/lattice_part.h"
 
 namespace sg {
 
@@ -32,6 +33,10 @@ struct BrickLayout {
 
 /// `count` packed tuples, an equal share from each part. Throws Error(data) that says how many bytes are needed and there are.
 Array load_brick(const BrickLayout& layout, const std::vector<BrickPart>& parts, Context& context);
+
+/// The same for a part of a lattice that lies in the brick x fastest, l.count == product of part.dims: of raw numbers only the rows
+/// that are wanted are touched, of a gzip or zlib stream no more than these are kept.
+Array load_brick_part(const BrickLayout& layout, const LatticePart& part, const std::vector<BrickPart>& parts, Context& context);
 
 /// Product of sizes; throws Error(data) naming `where` when it cannot be counted (more than 2^60) or a size is 0.
 size_t checked_product(const std::vector<size_t>& sizes, const std::string& where);

@@ -18,6 +18,7 @@ void write_nrrd(const std::string& path, const Data& data, const WriteOptions& o
 
 bool sniff_metaimage(std::span<const std::byte> head);
 Data read_metaimage(const std::string& path, const ReadOptions& options, Context& context);
+void write_metaimage(const std::string& path, const Data& data, const WriteOptions& options, Context& context);
 
 Data read_raw(const std::string& path, const ReadOptions& options, Context& context);
 
@@ -35,5 +36,23 @@ Data read_csv(const std::string& path, const ReadOptions& options, Context& cont
 void write_csv(const std::string& path, const Data& data, const WriteOptions& options, Context& context);
 
 Data read_json(const std::string& path, const ReadOptions& options, Context& context);
+bool sniff_nifti(std::span<const std::byte> head);
+Data read_nifti(const std::string& path, const ReadOptions& options, Context& context);
+std::vector<double> times_of_nifti(const std::string& path, const ReadOptions& options, Context& context);
+void write_nifti(const std::string& path, const Data& data, const WriteOptions& options, Context& context);
+
+bool sniff_npy(std::span<const std::byte> head);
+Data read_npy(const std::string& path, const ReadOptions& options, Context& context);
+void write_npy(const std::string& path, const Data& data, const WriteOptions& options, Context& context);
+
+bool sniff_slc(std::span<const std::byte> head);
+Data read_slc(const std::string& path, const ReadOptions& options, Context& context);
+
+Data read_cube(const std::string& path, const ReadOptions& options, Context& context);
+
+bool sniff_dicom(std::span<const std::byte> head);
+bool sniff_dicom_folder(const std::string& path);
+
+bool sniff_vdb(std::span<const std::byte> head);
 
 }  // namespace sg

@@ -2,6 +2,7 @@
 // MetaImage (.mhd with data files beside it, .mha in one file): "Key = value" lines, the last of which is ElementDataFile.
 // The consecutive numbers of TransformMatrix are the directions of the axes, one axis after the other.
 #include "base/text.h"
+#include "data/lattice_crop.h"
 #include "io/brick.h"
 #include "io/direction.h"
 #include "io/formats.h"
@@ -188,7 +189,7 @@ Data read_metaimage(const std::string& path, const ReadOptions& options, Context
     if (!n || *n < 1 || *n > 1 << 20) fail_data(fmt::format("ElementNumberOfChannels is '{}'", v), path);
     channels = *n;
   }
-  const UniformGrid grid = make_grid(h, sizes);
+  UniformGrid grid = make_grid(h, sizes);
   const size_t voxels = grid.dims[0] * grid.dims[1] * grid.dims[2], steps = total / voxels;  // axes beyond the third
   if (steps > 1 << 20) fail_data(fmt::format("{} volumes in one file", steps), path);
   l.count = total;
@@ -198,6 +199,7 @@ Data read_metaimage(const std::string& path, const ReadOptions& options, Context
   if (!binary) l.encoding = BrickEncoding::text;
 
   DatasetParts out;
+  LatticePart part = cut_grid(grid, steps > 1 ? LatticeRegion() : options.region);
   out.mesh = grid;
   for (const auto& [key, value] : h.lines) {
     static constexpr std::string_view known[] = {"ObjectType",
@@ -212,10 +214,12 @@ Data read_metaimage(const std::string& path, const ReadOptions& options, Context
                                                  "CompressedDataSize",
                                                  "BinaryDataByteOrderMSB",
                                                  "ElementByteOrderMSB",
-                                                 "ElementNumberOfChannels"};
+                                                 "ElementNumberOfChannels",
+                                                 "FieldName"};
     if (std::none_of(std::begin(known), std::end(known), [&](std::string_view k) { return equal_ignoring_case(k, key); }))
       out.notes.emplace_back(key, value);
   }
+  if (steps > 1) part.dims = part.count = {total, 1, 1};
   if (options.header_only && (h.flag({"CompressedData"}) || !binary)) return make_dataset(std::move(out));
   std::vector<BrickPart> parts = find_parts(h, file, sizes.back());
   if (h.flag({"CompressedData"})) {
@@ -229,7 +233,7 @@ Data read_metaimage(const std::string& path, const ReadOptions& options, Context
     if (!n || *n < -1) fail_data(fmt::format("HeaderSize is '{}'", v), path, "a number of bytes, or -1 for 'the data are at the end'");
     for (BrickPart& p : parts) *n < 0 ? void(p.skip = -1) : void(p.begin += size_t(*n));
   }
-  Array a = load_brick(l, parts, context);
+  Array a = load_brick_part(l, part, parts, context);
   if (steps > 1) {
     // Further volumes become components, one volume after the other in memory.
     if (channels > 1)
@@ -241,8 +245,10 @@ Data read_metaimage(const std::string& path, const ReadOptions& options, Context
   const Role role = channels >= 3 && channels <= 4 && l.type == ElementType::u8 ? Role::colors
                     : channels == 3                                             ? Role::vectors
                                                                                 : Role::scalars;
-  out.fields.add({"MetaImage", Association::point, std::move(a), "", role});
-  return make_dataset(std::move(out));
+  const std::string_view name = h.get({"FieldName"});
+  out.fields.add({std::string(name.empty() ? "MetaImage" : name), Association::point, std::move(a), "", role});
+  const DatasetPtr d = make_dataset(std::move(out));
+  return steps == 1 || options.region.whole() ? d : crop_lattice(*d, options.region.lo, options.region.hi, options.region.stride);
 }
 
 }  // namespace sg

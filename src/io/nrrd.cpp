@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // NRRD (nearly raw raster data): attached and detached headers. The header is read in nrrd_header.cpp; here its axes become a
-// grid and one point field. The field is named as VTK names it: ImageFile for raw data, ImageScalars for all other encodings.
+// grid and one point field. The field is named by the key "field name" that we write, else as VTK names it: ImageFile for raw data,
+// ImageScalars for all other encodings.
 #include "base/bytes.h"
 #include "base/parallel.h"
 #include "base/text.h"
 #include "data/lattice.h"
+#include "data/lattice_crop.h"
 #include "io/formats.h"
 #include "io/inflate.h"
 #include "io/nrrd_header.h"
@@ -130,7 +132,7 @@ void add_field(DatasetParts& out, const NrrdHeader& h, const Array& stored, size
     role = Role::vectors;
   else if (components == 3 && kind.find("normal") != std::string::npos) role = Role::normals;
   else if (components == 9 && kind == "3d-matrix") role = Role::tensors;
-  const std::string name = h.encoding == BrickEncoding::raw ? "ImageFile" : "ImageScalars";
+  const std::string name = !h.field_name.empty() ? h.field_name : h.encoding == BrickEncoding::raw ? "ImageFile" : "ImageScalars";
   if (components == 7 && kind == "3d-masked-symmetric-matrix") {
     out.fields.add({name, Association::point, full_tensor(a, 1), h.sample_units, Role::tensors});
     out.fields.add({"Mask", Association::point, a.component(0), "", Role::none});
@@ -161,13 +163,31 @@ Data read_nrrd(const std::string& path, const ReadOptions& options, Context& con
   if (components > (1 << 24)) fail_data(fmt::format("{} numbers per point", components), path);
 
   DatasetParts out;
-  out.mesh = nrrd_grid(h);
+  UniformGrid grid = nrrd_grid(h);
+  const UniformGrid whole = grid;
+  const LatticePart part = cut_grid(grid, options.region);
+  out.mesh = grid;
   out.notes = h.notes;
   // What costs reading is left out when only the header is wanted; mapped data cost nothing.
   if (options.header_only && h.encoding != BrickEncoding::raw) return make_dataset(std::move(out));
-  const Array stored = load_brick(l, find_parts(h, file), context);
-  add_field(out, h, stored, l.count / components, int(components));
-  return make_dataset(std::move(out));
+  // Where a point's numbers lie together, only the wanted rows are read; else the part is cut from the whole.
+  bool together = true, in_space = false;
+  for (const NrrdAxis& a : h.axes)
+    if (a.is_space) in_space = true;
+    else if (a.size > 1 && in_space) together = false;
+  if (together) {
+    l.count /= components;
+    l.components = int(components);
+    const Array a = load_brick_part(l, part, find_parts(h, file), context);
+    const size_t offset = size_t(a.raw() - a.buffer().data), size = element_size(l.type);
+    const auto step = ptrdiff_t(size);
+    add_field(out, h, Array(a.buffer(), l.type, a.count() * components, 1, offset, step, step), a.count(), int(components));
+    return make_dataset(std::move(out));
+  }
+  out.mesh = whole;
+  add_field(out, h, load_brick(l, find_parts(h, file), context), l.count / components, int(components));
+  const DatasetPtr d = make_dataset(std::move(out));
+  return part.whole() ? d : crop_lattice(*d, options.region.lo, options.region.hi, options.region.stride);
 }
 
 namespace {
@@ -225,6 +245,7 @@ std::string header_text(const UniformGrid& g, const Field& f, bool gzip, const s
   else if (f.role == Role::normals && n == 3) kind = "3-normal";
   t += fmt::format("\nkinds:{} domain domain domain\n", n > 1 ? fmt::format(" {}", kind) : "");
   if (!f.unit.empty()) t += fmt::format("sample units: \"{}\"\n", f.unit);
+  if (!f.name.empty()) keys += fmt::format("{}:={}\n", nrrd_name_key, escaped(f.name));
   t += fmt::format("endian: little\nencoding: {}\nspace origin: {}\n", gzip ? "gzip" : "raw", vector(g.origin));
   return t + keys + "\n";
 }

@@ -22,6 +22,9 @@ struct NrrdAxis {
   bool is_space = true;
 };
 
+/// Key of the key:=value line that holds the name of the field.
+inline constexpr std::string_view nrrd_name_key = "field name";
+
 struct NrrdHeader {
   std::string path;
   ElementType type = ElementType::u8;
@@ -33,6 +36,7 @@ struct NrrdHeader {
   bool has_origin = false;
   Vec3 origin;
   std::string sample_units;
+  std::string field_name;                                  ///< what our writer puts under nrrd_name_key
   std::vector<std::string> data_files;                     ///< empty: attached
   size_t subdim = 0;                                       ///< of the data files; 0: all axes but the last
   size_t data_begin = 0;                                   ///< attached: byte behind the header

@@ -22,14 +22,14 @@ Data read_raw(const std::string& path, const ReadOptions& o, Context& context) {
   l.components = o.raw_components;
   l.big_endian = o.raw_big_endian;
 
-  BrickPart part;
-  part.file = MappedFile(path);
-  part.begin = o.raw_header;
+  BrickPart file;
+  file.file = MappedFile(path);
+  file.begin = o.raw_header;
   uint64_t need = 0;
   const auto size = uint64_t(element_size(l.type));
   const std::string what = fmt::format("{}x{}x{} {}{}", grid.dims[0], grid.dims[1], grid.dims[2], element_name(l.type),
                                        l.components > 1 ? fmt::format(" x {}", l.components) : "");
-  const uint64_t have = part.file.size() - std::min(part.file.size(), o.raw_header);
+  const uint64_t have = file.file.size() - std::min(file.file.size(), o.raw_header);
   if (!multiply(l.count, size * uint64_t(l.components), need) || need != have) {
     // A brick of another size than told is nearly always a wrong size or type: what would fit is said.
     std::string hint = fmt::format("{} bytes are {} numbers of {}", have, have / size, element_name(l.type));
@@ -39,9 +39,10 @@ Data read_raw(const std::string& path, const ReadOptions& o, Context& context) {
               path, hint);
   }
   DatasetParts parts;
+  const LatticePart part = cut_grid(grid, o.region);
   parts.mesh = grid;
   const Role role = l.components == 3 && is_float(l.type) ? Role::vectors : Role::scalars;
-  parts.fields.add({"values", Association::point, load_brick(l, {part}, context), "", role});
+  parts.fields.add({"values", Association::point, load_brick_part(l, part, {file}, context), "", role});
   return make_dataset(std::move(parts));
 }
 

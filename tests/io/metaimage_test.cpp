@@ -76,6 +76,48 @@ TEST_CASE("metaimage: geometry, channels and further axes") {
   CHECK(d->as<UniformGrid>()->spacing == Vec3(0.5, 0.25, 1));
 }
 
+TEST_CASE("metaimage: what is written reads back the same, with the field's name") {
+  DatasetParts p;
+  UniformGrid g;
+  g.dims = {5, 4, 3};
+  g.origin = {0.1, -2e7, 3};
+  g.spacing = {0.5, 0.1, 2};
+  g.direction.m[0][0] = 0, g.direction.m[1][0] = 1, g.direction.m[0][1] = -1, g.direction.m[1][1] = 0;
+  p.mesh = g;
+  p.notes = {{"Modality", "MET_MOD_CT"}};
+  std::vector<float> v(180);
+  for (size_t i = 0; i < v.size(); ++i) v[i] = float(i) * 0.37f;
+  Context context;
+  for (const int components : {1, 3})
+    for (const char* compression : {"none", "zlib"})
+      for (const char* name : {"w.mha", "w.mhd"}) {
+        p.fields = {};
+        p.fields.add({"wind speed", Association::point,
+                      Array::from_vector(std::vector<float>(v.begin(), v.begin() + 60 * components), components), "",
+                      components == 3 ? Role::vectors : Role::scalars});
+        const auto d = make_dataset(p);
+        WriteOptions o;
+        o.compression = compression;
+        write_data(temp_folder() + name, d, o, context);
+        const auto r = read_file(temp_folder() + name);
+        const auto* h = r->as<UniformGrid>();
+        REQUIRE(h);
+        CHECK(h->dims == g.dims);
+        CHECK(h->origin == g.origin);
+        CHECK(h->spacing == g.spacing);
+        CHECK(h->direction == g.direction);
+        CHECK(r->fields()[0].name == "wind speed");
+        CHECK(same_array(r->fields()[0].array, d->fields()[0].array));
+        CHECK(std::find(r->notes().begin(), r->notes().end(), p.notes[0]) != r->notes().end());
+      }
+  WriteOptions o;
+  o.compression = "lz4";
+  CHECK(contains(error_of([&] { write_data(temp_folder() + "w.mha", make_dataset(p), o, context); }), "lz4"));
+  CHECK(contains(error_of([&] { write_data(temp_folder() + "w.mha", make_dataset(PointCloud{}), {}, context); }), "uniform grid"));
+  p.fields = {};
+  CHECK(contains(error_of([&] { write_data(temp_folder() + "w.mha", make_dataset(p), {}, context); }), "no point field"));
+}
+
 TEST_CASE("metaimage: bad headers are refused") {
   const std::string end = "ElementType = MET_SHORT\nElementDataFile = LOCAL\n" + shorts(false);
   CHECK(contains(refusal("b.mha", "NDims = 3\nDimSize = 3 2\n" + end), "2 numbers but NDims is 3"));

@@ -190,6 +190,7 @@ TEST_CASE("nrrd: writing and reading back gives the same grid, field and notes")
     CHECK(length(h->spacing - g.spacing) < 1e-15);
     CHECK(h->direction == g.direction);
     CHECK(same_array(r->fields()[0].array, d->fields()[0].array));
+    CHECK(r->fields()[0].name == "u");
     CHECK(r->fields()[0].unit == "m/s");
     CHECK(r->fields()[0].role == Role::vectors);
     for (const auto& note : p.notes) CHECK(std::find(r->notes().begin(), r->notes().end(), note) != r->notes().end());

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reading in a process of its own: for libraries that end the program, or spoil its memory, on damaged files.
+#pragma once
+#include <functional>
+
+#include "base/context.h"
+#include "data/dataset.h"
+
+namespace sg {
+
+/// Calls read() in a child process and brings its result here: uniform grids and point clouds with fields and notes, alone or as parts
+/// of one collection. Errors and log lines of the child come along; a child that dies gives Error(data) naming `path`. The child has one
+/// thread: TBB, and so parallel loops of more than one chunk, must not be used in it. It may use `memory` bytes more than this process.
+Data read_isolated(const std::string& path, const std::function<Data(Context&)>& read, size_t memory, Context& context);
+
+}  // namespace sg

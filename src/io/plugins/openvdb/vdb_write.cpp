@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <openvdb/tools/Dense.h>
+
+#include <cstdio>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "vdb.h"
+
+namespace sg {
+
+namespace {
+
+template <class GridType, class T, int N>
+openvdb::GridBase::Ptr sparse(const Array& values, const openvdb::CoordBBox& box) {
+  using Value = typename GridType::ValueType;
+  const Array packed = values.converted(element_type_of<T>());
+  auto* data = const_cast<Value*>(reinterpret_cast<const Value*>(packed.raw()));  // only read
+  openvdb::tools::Dense<Value, openvdb::tools::LayoutXYZ> dense(box, data);
+  auto grid = GridType::create(openvdb::zeroVal<Value>());
+  openvdb::tools::copyFromDense(dense, *grid, openvdb::zeroVal<Value>());  // tolerance 0: what is not zero stays as it is
+  // A leaf of zeros and NaN counts as all zero there.
+  auto tree = grid->getAccessor();
+  const T* v = reinterpret_cast<const T*>(packed.raw());
+  const openvdb::Coord n = box.dim();
+  for (size_t i = 0; i < packed.count(); ++i) {
+    bool nan = false;
+    for (size_t c = 0; c < N; ++c) nan = nan || v[i * N + c] != v[i * N + c];
+    if (nan) tree.setValue({int(i % size_t(n[0])), int(i / size_t(n[0]) % size_t(n[1])), int(i / size_t(n[0]) / size_t(n[1]))}, data[i]);
+  }
+  return grid;
+}
+
+}  // namespace
+
+void write_vdb(const std::string& path, const Data& data, const WriteOptions&, Context& context) {
+  start_openvdb();
+  const DatasetPtr d = single_dataset(data, "writing OpenVDB");
+  const UniformGrid* g = d->as<UniformGrid>();
+  if (!g)
+    fail_usage(fmt::format("an OpenVDB file holds uniform grids, not a {} mesh", d->kind()), path,
+               "sample it on a grid first: -f 'resample'");
+  for (const size_t n : g->dims)
+    if (n > size_t(1) << 30) fail_usage(fmt::format("{} points along an axis", n), path);
+  const openvdb::Coord last(int(g->dims[0]) - 1, int(g->dims[1]) - 1, int(g->dims[2]) - 1);
+  const openvdb::CoordBBox box(openvdb::Coord(0), last);
+  openvdb::GridPtrVec grids;
+  try {
+    // OpenVDB multiplies from the left: the rows are the steps, the last one the origin.
+    openvdb::Mat4R map = openvdb::Mat4R::identity();
+    for (int a = 0; a < 3; ++a)
+      for (int c = 0; c < 3; ++c) map[a][c] = g->direction.m[c][a] * g->spacing[a], map[3][c] = g->origin[c];
+    for (const Field& f : d->fields()) {
+      if (f.association != Association::point) continue;
+      openvdb::GridBase::Ptr grid;
+      if (f.components() == 1 && f.array.type() == ElementType::f64) grid = sparse<openvdb::DoubleGrid, double, 1>(f.array, box);
+      else if (f.components() == 1) grid = sparse<openvdb::FloatGrid, float, 1>(f.array, box);
+      else if (f.components() == 3) grid = sparse<openvdb::Vec3SGrid, float, 3>(f.array, box);
+      else {
+        context.warn(fmt::format("{}: '{}' with {} components is left out; OpenVDB holds 1 or 3", path, f.name, f.components()));
+        continue;
+      }
+      grid->setName(f.name);
+      grid->setTransform(openvdb::math::Transform::createLinearTransform(map));
+      grid->insertMeta(vdb_box_lo, openvdb::Vec3IMetadata(openvdb::Vec3i(0, 0, 0)));
+      grid->insertMeta(vdb_box_hi, openvdb::Vec3IMetadata(last.asVec3i()));
+      grids.push_back(grid);
+    }
+    if (grids.empty()) fail_usage("there is no point field of 1 or 3 components to write", path);
+    // Written beside and renamed: never half a file.
+    const std::string partial = path + ".partial";
+    try {
+      openvdb::io::File file(partial);
+      file.write(grids);
+      file.close();
+    } catch (...) {
+      std::remove(partial.c_str());
+      throw;
+    }
+    if (std::rename(partial.c_str(), path.c_str()) != 0) {
+      std::remove(partial.c_str());
+      fail_data("cannot be written", path);
+    }
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& e) {
+    fail_data(fmt::format("OpenVDB cannot write it: {}", e.what()), path);
+  }
+}
+
+}  // namespace sg
