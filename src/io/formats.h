@@ -31,4 +31,11 @@ void write_stl(const std::string& path, const Data& data, const WriteOptions& op
 Data read_obj(const std::string& path, const ReadOptions& options, Context& context);
 void write_obj(const std::string& path, const Data& data, const WriteOptions& options, Context& context);
 
+bool sniff_mfem_mesh(std::span<const std::byte> head);
+bool sniff_mfem_function(std::span<const std::byte> head);
+bool sniff_glvis(std::span<const std::byte> head);
+Data read_mfem_mesh(const std::string& path, const ReadOptions& options, Context& context);
+Data read_mfem_function(const std::string& path, const ReadOptions& options, Context& context);
+Data read_glvis(const std::string& path, const ReadOptions& options, Context& context);
+
 }  // namespace sg
