@@ -117,6 +117,27 @@ void CellList::finish(UnstructuredMesh& mesh, const std::vector<int64_t>* number
   else mesh.types = Array::from_vector(std::move(types_));
 }
 
+TagIndex::TagIndex(const std::vector<int64_t>& tags) {
+  if (tags.empty()) return;
+  const auto [lo, hi] = std::minmax_element(tags.begin(), tags.end());
+  first_ = *lo;
+  if (uint64_t(*hi) - uint64_t(*lo) < 4 * tags.size() + 1024) {
+    direct_.assign(size_t(*hi - *lo) + 1, -1);
+    for (size_t i = 0; i < tags.size(); ++i) direct_[size_t(tags[i] - first_)] = int64_t(i);
+    return;
+  }
+  hashed_.reserve(tags.size());
+  for (size_t i = 0; i < tags.size(); ++i) hashed_[tags[i]] = int64_t(i);
+}
+
+int64_t TagIndex::find(int64_t tag) const {
+  if (!hashed_.empty()) {
+    const auto it = hashed_.find(tag);
+    return it == hashed_.end() ? -1 : it->second;
+  }
+  return tag < first_ || uint64_t(tag) - uint64_t(first_) >= direct_.size() ? -1 : direct_[size_t(tag - first_)];
+}
+
 std::vector<std::array<int, 3>> lattice_places(CellType shape, int n) {
   std::vector<std::array<int, 3>> places;
   if (shape == CellType::vertex) return {{0, 0, 0}};

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "data/dataset.h"
@@ -66,6 +67,19 @@ class CellList {
  private:
   std::vector<uint8_t> types_;
   std::vector<int64_t> offsets_{0}, ids_;
+};
+
+/// Places of things by their tags: direct where the tags are dense, else hashed.
+class TagIndex {
+ public:
+  explicit TagIndex(const std::vector<int64_t>& tags);
+  /// -1 for a tag that is not there.
+  int64_t find(int64_t tag) const;
+
+ private:
+  int64_t first_ = 0;
+  std::vector<int64_t> direct_;
+  std::unordered_map<int64_t, int64_t> hashed_;
 };
 
 /// Lattice places (i, j, k) of the nodes of a Lagrange or Bezier cell of order n, in the order in which VTK lists them. `shape` is the

@@ -78,12 +78,16 @@ NodeBlend bezier_blend(const Dataset& in, const UnstructuredMesh& mesh, std::spa
     add_blends(type, ids, kept, blends);
   }
   if (blends.empty()) return r;
-  const Field* rational = in.fields().find("RationalWeights", Association::point);
+  // The mesh's own weights come first; files of VTK carry them as a point field.
+  Array rational = mesh.weights;
+  if (rational.empty())
+    if (const Field* f = in.fields().find("RationalWeights", Association::point); f && f->components() == 1) rational = f->array;
+  if (rational.count() != mesh.points.count()) rational = {};
   for (auto& [id, b] : blends) {
     r.width = std::max(r.width, b.ids.size());
-    if (!rational || rational->components() != 1) continue;
+    if (rational.empty()) continue;
     double sum = 0;
-    for (size_t i = 0; i < b.ids.size(); ++i) sum += b.weights[i] *= rational->array.get(size_t(b.ids[i]));
+    for (size_t i = 0; i < b.ids.size(); ++i) sum += b.weights[i] *= rational.get(size_t(b.ids[i]));
     for (double& w : b.weights) w /= sum;
   }
   r.ids.resize(kept.size() * r.width);
