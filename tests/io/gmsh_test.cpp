@@ -184,7 +184,8 @@ TEST_CASE("gmsh: elements that no cell is equal to are refused by name") {
   std::string missing = ascii_22();
   missing.replace(missing.find("10 20 30"), 8, "10 20 31");
   CHECK(test::error_of([&] { test::read_bytes("f.msh", missing); }).find("node 31") != std::string::npos);
-  CHECK(test::error_of([&] { test::read_bytes("g.msh", "$MeshFormat\n3.0 0 8\n$EndMeshFormat\n"); }).find("version 3") != std::string::npos);
+  CHECK(test::error_of([&] { test::read_bytes("g.msh", "$MeshFormat\n3.0 0 8\n$EndMeshFormat\n"); }).find("version 3") !=
+        std::string::npos);
   CHECK(test::error_of([&] { test::read_bytes("h.msh", "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n"); }).find("no nodes") != std::string::npos);
 }
 
