@@ -154,7 +154,7 @@ TEST_CASE("tecplot: what is wrong is named with its line; damaged files are refu
   };
   CHECK(message(tecplot, "1 3 4\n", "1 3 5\n").find("line 17: node 5") != std::string::npos);
   CHECK(message(tecplot, "ET=TRIANGLE", "ET=POLYGON").find("FEPOLYGON") != std::string::npos);
-  CHECK(message(tecplot, "3*0 3*1.0", "3*0 4*1.0").find("repeat count") != std::string::npos);
+  CHECK(message(tecplot, "10 20\n", "10 5*20\n").find("repeat count") != std::string::npos);
   CHECK(message(tecplot, "I=3, J=2", "I=2147483648, J=2147483648").find("only") != std::string::npos);
   CHECK(message(tecplot, "3*0 3*1.0", "3*0 2*1 x").find("'x'") != std::string::npos);
   test::check_survives("robust.tec", tecplot);

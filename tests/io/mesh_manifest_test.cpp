@@ -176,5 +176,5 @@ TEST_CASE("meshes: every Gmsh, MFEM, UCD, Tecplot, GAMBIT, nek5000 and OFF file 
       check_vtk(*d, vtk.contains("blocks") ? vtk["blocks"][0] : vtk);
     }
   }
-  CHECK(read == 5 + 17 + 7 + 2 + 2 + 1 + 3);
+  CHECK(read == 5 + 18 + 7 + 2 + 2 + 1 + 3);
 }

@@ -124,11 +124,11 @@ TEST_CASE("mfem: matrices reproduce polynomials of every basis, geometry and ord
 }
 
 TEST_CASE("mfem: a linear mesh keeps its vertices, attributes and order") {
-  const DatasetPtr d = test::read_one("linear.mesh", std::string(triangle_and_square) + "2\n0 0\n1 0\n1 1\n0 1\n2 1\n");
+  const DatasetPtr d = test::read_one("linear.mesh", std::string(triangle_and_square) + "2\n1 0\n0 0\n1 1\n0 1\n1 2\n");
   CHECK(d->point_count() == 5);
   CHECK(cell_type_counts(d->mesh()) == std::vector<std::pair<std::string_view, size_t>>{{"Triangle", 1}, {"Quad", 1}});
   CHECK(d->fields().require("attribute").array.get(0) == 3);
-  CHECK(d->as<UnstructuredMesh>()->points.at(4) == Vec3(2, 1, 0));
+  CHECK(d->as<UnstructuredMesh>()->points.at(4) == Vec3(1, 2, 0));
   CHECK(cells_view(d->as<UnstructuredMesh>()->cells).point(0, 1) == 0);
 }
 
@@ -156,7 +156,7 @@ TEST_CASE("mfem: degrees of freedom of order 3 lie on vertices, edges from the s
 }
 
 TEST_CASE("mfem: a discontinuous field opens the mesh only where it jumps") {
-  const std::string mesh = std::string(triangle_and_square) + "2\n0 0\n1 0\n1 1\n0 1\n2 1\n";
+  const std::string mesh = std::string(triangle_and_square) + "2\n1 0\n0 0\n1 1\n0 1\n1 2\n";
   // On the square 1 everywhere; on the triangle 1 at vertices 3 and 2, 5 at vertex 4.
   const std::string field = "\nFiniteElementSpace\nFiniteElementCollection: L2_T1_2D_P1\nVDim: 1\nOrdering: 0\n\n1\n1\n1\n1\n1\n1\n5\n";
   DatasetPtr d = test::read_one("jump.saved", "solution\n" + mesh + field);
@@ -181,7 +181,7 @@ TEST_CASE("mfem: a discontinuous field opens the mesh only where it jumps") {
 }
 
 TEST_CASE("mfem: grid functions beside a mesh, and a mesh beside a grid function") {
-  write_file(test::temp_folder() + "pair.mesh", std::string(triangle_and_square) + "2\n0 0\n1 0\n1 1\n0 1\n2 1\n");
+  write_file(test::temp_folder() + "pair.mesh", std::string(triangle_and_square) + "2\n1 0\n0 0\n1 1\n0 1\n1 2\n");
   const std::string space = "FiniteElementSpace\nFiniteElementCollection: H1_2D_P1\nVDim: 2\nOrdering: 0\n\n";
   write_file(test::temp_folder() + "pair.speed.gf", space + "1 2 3 4 5\n6 7 8 9 10\n");
   Context context;
@@ -212,7 +212,7 @@ TEST_CASE("mfem: meshes made from a few numbers fill their box") {
 }
 
 TEST_CASE("mfem: what cannot be read says so") {
-  const std::string mesh = std::string(triangle_and_square) + "2\n0 0\n1 0\n1 1\n0 1\n2 1\n";
+  const std::string mesh = std::string(triangle_and_square) + "2\n1 0\n0 0\n1 1\n0 1\n1 2\n";
   auto message = [&](const std::string& bytes) { return test::error_of([&] { test::read_bytes("wrong.mesh", bytes); }); };
   std::string s = mesh;
   s.replace(s.find("3 2 4\n"), 5, "3 2 9");
@@ -220,7 +220,7 @@ TEST_CASE("mfem: what cannot be read says so") {
   s = mesh;
   s.replace(s.find("4 2 3 2 4"), 3, "4 5");
   CHECK(message(s).find("dimension 3") != std::string::npos);
-  CHECK(message("MFEM mesh v2.0\n").find("no known format") != std::string::npos);
+  CHECK(message("MFEM mesh v2.0\n").find("its content is none") != std::string::npos);
   CHECK(message("MFEM mesh v1.0\ndimension\n2\nelements\n99999999999\n").find("line 5") != std::string::npos);
   CHECK(test::error_of([&] {
           test::read_bytes("nd.saved",
@@ -244,7 +244,7 @@ TEST_CASE("mfem: cut and damaged files are refused") {
 }
 
 TEST_CASE("mfem: curved meshes equal the same meshes that VTK holds" * doctest::skip(test::no_data())) {
-  for (const char* name : {"star-q2", "escher-p2", "fichera-mixed-p2"}) {
+  for (const std::string name : {"star-q2", "escher-p2", "fichera-mixed-p2"}) {
     CAPTURE(name);
     const DatasetPtr a = data(std::string(name) + ".mesh"), b = data(std::string(name) + ".vtk");
     const auto &m = *a->as<UnstructuredMesh>(), &v = *b->as<UnstructuredMesh>();
@@ -254,15 +254,22 @@ TEST_CASE("mfem: curved meshes equal the same meshes that VTK holds" * doctest::
     double worst = 0;
     for (size_t c = 0; c < mc.count; ++c) {
       REQUIRE(mc.size(c) == vc.size(c));
-      for (size_t k = 0; k < mc.size(c); ++k)
-        worst = std::max(worst, length(m.points.at(size_t(mc.point(c, k))) - v.points.at(size_t(vc.point(c, k)))));
+      // MFEM turned some tetrahedra when it wrote the .vtk files: there each node has to be found at one of the others' places.
+      const bool turned = m.type(c) == CellType::lagrange_tetra;
+      for (size_t k = 0; k < mc.size(c); ++k) {
+        const Vec3 at = m.points.at(size_t(mc.point(c, k)));
+        double nearest = 1e9;
+        for (size_t l = turned ? 0 : k; l < (turned ? mc.size(c) : k + 1); ++l)
+          nearest = std::min(nearest, length(at - v.points.at(size_t(vc.point(c, l)))));
+        worst = std::max(worst, nearest);
+      }
     }
     CHECK(worst < 1e-5);  // files of six digits
   }
 }
 
 TEST_CASE("mfem: no element of the real meshes is folded" * doctest::skip(test::no_data())) {
-  for (const char* name :
+  for (const std::string name :
        {"star-q2.mesh", "star-q3.mesh", "star-mixed-p2.mesh", "escher-p2.mesh", "escher-p3.mesh", "toroid-hex.mesh", "toroid-wedge.mesh",
         "fichera-mixed-p2.mesh", "ex27.saved", "laghos.saved", "triple-pt-1/triple-pt-1.mesh", "tinyzoo-3d.mesh"}) {
     CAPTURE(name);

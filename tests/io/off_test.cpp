@@ -44,7 +44,7 @@ TEST_CASE("off: colours, normals and faces of any size") {
 }
 
 TEST_CASE("off: header and numbers wherever blanks allow them") {
-  const DatasetPtr d = test::read_one("b.off", "\t\n  OFF3 1 0\n0 0\n0 1 0 0\r\n  0 1\t0\n\n 3 0\n 1 2");
+  const DatasetPtr d = test::read_one("b.off", "\t\n  OFF3 1 0\n0 0\n0\n 1 0 0\r\n  0 1\t0\n\n 3 0\n 1 2");
   CHECK(d->point_count() == 3);
   CHECK(d->as<SurfaceMesh>()->polygons.size() == 1);
 }

@@ -107,7 +107,15 @@ std::vector<int64_t> open_mesh(Cells& cells, size_t nodes, const std::vector<std
       }
     return true;
   };
+  auto given = [&](size_t i) {
+    for (size_t s = 0; s < values.size(); ++s)
+      for (size_t k = 0; k < width[s]; ++k)
+        if (!std::isnan(values[s][i * width[s] + k])) return true;
+    return false;
+  };
+  std::vector<int64_t> point(cells.points.size(), -1);
   for (size_t i = 0; i < cells.points.size(); ++i) {
+    if (!given(i)) continue;
     const auto node = size_t(cells.points[i]);
     int64_t p = head[node], last = -1;
     while (p >= 0 && !same(corner[size_t(p)], i)) last = p, p = next[size_t(p)];
@@ -122,8 +130,11 @@ std::vector<int64_t> open_mesh(Cells& cells, size_t nodes, const std::vector<std
       }
       corner[size_t(p)] = int64_t(i);
     }
-    cells.points[i] = p;
+    point[i] = p;
   }
+  // Elements without values stay with the node's own number.
+  for (size_t i = 0; i < point.size(); ++i)
+    if (point[i] >= 0) cells.points[i] = point[i];
   return source;
 }
 
@@ -185,7 +196,8 @@ DatasetPtr make(MshInput& in, const MshFile& f, const ReadOptions& options, cons
     Array a = Array::make<double>(points, int(width[s]), &out);
     std::fill_n(out, points * width[s], std::nan(""));
     for (size_t i = 0; i < cells.points.size(); ++i)
-      std::copy_n(corner[s].begin() + ptrdiff_t(i * width[s]), width[s], out + size_t(cells.points[i]) * width[s]);
+      for (size_t k = 0; k < width[s]; ++k)
+        if (const double v = corner[s][i * width[s] + k]; !std::isnan(v)) out[size_t(cells.points[i]) * width[s] + k] = v;
     Field field;
     field.name = corner_sections[s]->name;
     field.array = std::move(a);
