@@ -54,5 +54,32 @@ bool sniff_dicom(std::span<const std::byte> head);
 bool sniff_dicom_folder(const std::string& path);
 
 bool sniff_vdb(std::span<const std::byte> head);
+bool sniff_mfem_mesh(std::span<const std::byte> head);
+bool sniff_mfem_function(std::span<const std::byte> head);
+bool sniff_glvis(std::span<const std::byte> head);
+Data read_mfem_mesh(const std::string& path, const ReadOptions& options, Context& context);
+Data read_mfem_function(const std::string& path, const ReadOptions& options, Context& context);
+Data read_glvis(const std::string& path, const ReadOptions& options, Context& context);
+
+bool sniff_gmsh(std::span<const std::byte> head);
+Data read_gmsh(const std::string& path, const ReadOptions& options, Context& context);
+std::vector<double> times_of_gmsh(const std::string& path, const ReadOptions& options, Context& context);
+
+bool sniff_off(std::span<const std::byte> head);
+Data read_off(const std::string& path, const ReadOptions& options, Context& context);
+
+bool sniff_ucd(std::span<const std::byte> head);
+Data read_ucd(const std::string& path, const ReadOptions& options, Context& context);
+
+bool sniff_tecplot(std::span<const std::byte> head);
+Data read_tecplot(const std::string& path, const ReadOptions& options, Context& context);
+std::vector<double> times_of_tecplot(const std::string& path, const ReadOptions& options, Context& context);
+
+bool sniff_gambit(std::span<const std::byte> head);
+Data read_gambit(const std::string& path, const ReadOptions& options, Context& context);
+
+bool sniff_nek5000(std::span<const std::byte> head);
+Data read_nek5000(const std::string& path, const ReadOptions& options, Context& context);
+std::vector<double> times_of_nek5000(const std::string& path, const ReadOptions& options, Context& context);
 
 }  // namespace sg

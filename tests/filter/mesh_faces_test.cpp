@@ -263,6 +263,12 @@ TEST_CASE("faces: Bezier control points move onto the surface") {
   fields.add(make_field("RationalWeights", Association::point, {1, 1, std::sqrt(0.5)}));
   arc = faces(make_dataset(m, fields), {}, ctx);
   CHECK(length(arc->as<SurfaceMesh>()->points.at(2)) == doctest::Approx(1).epsilon(1e-14));
+  // The mesh's own weights do the same.
+  fields.remove("RationalWeights", Association::point);
+  m.weights = Array::from_vector(std::vector<double>{1, 1, std::sqrt(0.5)});
+  arc = faces(make_dataset(m, fields), {}, ctx);
+  CHECK(length(arc->as<SurfaceMesh>()->points.at(2)) == doctest::Approx(1).epsilon(1e-14));
+  CHECK(arc->fields().require("f").array.get(2) == doctest::Approx(std::sqrt(2.0) - 1).epsilon(1e-14));
 }
 
 TEST_CASE("faces: the same bytes for one and eight threads") {

@@ -16,7 +16,7 @@ struct NodeBlend {
   std::vector<int64_t> ids;
   std::vector<double> weights;
 };
-/// For the kept points (ascending) of a mesh; a point field "RationalWeights" makes the blend rational.
+/// For the kept points (ascending) of a mesh; UnstructuredMesh::weights, else a point field "RationalWeights", make the blend rational.
 NodeBlend bezier_blend(const Dataset& in, const UnstructuredMesh& mesh, std::span<const int64_t> kept);
 
 }  // namespace sg::detail
