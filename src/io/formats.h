@@ -31,4 +31,8 @@ void write_stl(const std::string& path, const Data& data, const WriteOptions& op
 Data read_obj(const std::string& path, const ReadOptions& options, Context& context);
 void write_obj(const std::string& path, const Data& data, const WriteOptions& options, Context& context);
 
+bool sniff_ensight(std::span<const std::byte> head);
+Data read_ensight(const std::string& path, const ReadOptions& options, Context& context);
+std::vector<double> times_ensight(const std::string& path, const ReadOptions& options, Context& context);
+
 }  // namespace sg
