@@ -12,7 +12,7 @@ constexpr int64_t most_steps = 10'000'000;
 
 struct Line {
   size_t number;
-  std::string key;    // lower case, before the colon; "" for lines that go on
+  std::string key;        // lower case, before the colon; "" for lines that go on
   std::string_view text;  // behind the colon
 };
 
@@ -239,8 +239,10 @@ class Parser {
     }
     auto check = [&](FileRef& ref) {
       // A pattern without a set uses the only one there is.
-      if (ref.time_set == 0 && ref.name.find('*') != std::string::npos && !case_.time_sets.empty()) ref.time_set = case_.time_sets[0].number;
-      if (ref.time_set && !find_time_set(case_, ref.time_set)) fail(fmt::format("'{}' uses time set {}, which is not there", ref.name, ref.time_set));
+      if (ref.time_set == 0 && ref.name.find('*') != std::string::npos && !case_.time_sets.empty())
+        ref.time_set = case_.time_sets[0].number;
+      if (ref.time_set && !find_time_set(case_, ref.time_set))
+        fail(fmt::format("'{}' uses time set {}, which is not there", ref.name, ref.time_set));
       if (ref.name.find('*') != std::string::npos && !ref.time_set) fail(fmt::format("'{}' has a pattern but no time set", ref.name));
     };
     check(case_.model);

@@ -36,8 +36,8 @@ struct Variable {
   VariableKind kind = VariableKind::scalar;
   Association association = Association::point;
   bool complex = false, measured = false;
-  FileRef file, imaginary;           ///< `imaginary` of complex variables only
-  std::vector<double> constants;     ///< of a constant: one per step of its time set, or one
+  FileRef file, imaginary;        ///< `imaginary` of complex variables only
+  std::vector<double> constants;  ///< of a constant: one per step of its time set, or one
   int components() const;
 };
 

@@ -123,7 +123,8 @@ Data read_ensight(const std::string& path, const ReadOptions& options, Context& 
   for (Part& p : g.parts) {
     p.data.time = time;
     if (!g.description.empty()) p.data.notes.emplace_back("description", g.description);
-    r->parts.push_back({p.name, with_context(fmt::format("making part {} '{}'", p.number, p.name), [&] { return make_dataset(std::move(p.data)); })});
+    r->parts.push_back(
+        {p.name, with_context(fmt::format("making part {} '{}'", p.number, p.name), [&] { return make_dataset(std::move(p.data)); })});
   }
   return r;
 }

@@ -193,7 +193,8 @@ class Reader {
  private:
   bool listed(const std::string& what) {
     const std::string k = to_lower(s_.keyword(what));
-    if (!k.starts_with(what)) s_.fail(fmt::format("'{}' where '{} ...' is due", k.substr(0, 40), what), "is this an EnSight Gold geometry?");
+    if (!k.starts_with(what))
+      s_.fail(fmt::format("'{}' where '{} ...' is due", k.substr(0, 40), what), "is this an EnSight Gold geometry?");
     const auto w = words(k);
     const std::string_view how = w.back();
     if (how != "off" && how != "given" && how != "assign" && how != "ignore")

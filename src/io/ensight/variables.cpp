@@ -123,7 +123,8 @@ void read_variable(Stream& s, const Variable& v, const std::string& name, Geomet
     } else {
       const std::string line = to_lower(s.keyword("'coordinates' or 'block'"));
       if (!line.starts_with(part.structured ? "block" : "coordinates"))
-        s.fail(fmt::format("'{}' where '{}' is due in part {}", line.substr(0, 40), part.structured ? "block" : "coordinates", part.number));
+        s.fail(
+            fmt::format("'{}' where '{}' is due in part {}", line.substr(0, 40), part.structured ? "block" : "coordinates", part.number));
       values.read(s, v.kind, line, 0, on_cells ? part.cells : part.points);
     }
     Role role = Role::none;
