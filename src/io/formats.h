@@ -49,4 +49,9 @@ bool sniff_bov(std::span<const std::byte> head);
 Data read_bov(const std::string& path, const ReadOptions& options, Context& context);
 Data read_bare_bov(const std::string& path, const ReadOptions& options, Context& context);
 
+bool sniff_openfoam_folder(const std::string& path);
+bool sniff_openfoam_control(std::span<const std::byte> head);
+Data read_openfoam(const std::string& path, const ReadOptions& options, Context& context);
+std::vector<double> times_openfoam(const std::string& path, const ReadOptions& options, Context& context);
+
 }  // namespace sg
