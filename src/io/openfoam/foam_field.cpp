@@ -122,6 +122,7 @@ class FieldReader {
     } else if (how == "nonuniform") {
       if (f_.peek().starts_with("List<")) f_.next();
       if (look_only_) {
+        look_type_ = f_.list_type();
         v.given = true;
         return v;
       }
@@ -172,7 +173,7 @@ class FieldReader {
   }
 
   Array array_of(const Value& v, size_t count, const std::string& what) const {
-    if (look_only_) return unread_values(f_.binary() ? ElementType::f64 : ElementType::f32, count, kind_.components);
+    if (look_only_) return unread_values(look_type_, count, kind_.components);
     Array a;
     if (v.uniform) a = filled(v.one, type_, count);
     else if (v.list.count() != count) f_.fail(fmt::format("{} has {} values, {} are due", what, v.list.count(), count));
@@ -207,7 +208,7 @@ class FieldReader {
   const FoamMesh& mesh_;
   bool look_only_;
   FieldClass kind_;
-  ElementType type_ = ElementType::f32;
+  ElementType type_ = ElementType::f32, look_type_ = ElementType::f32;
   std::string unit_;
   Value inner_;
   std::vector<PatchEntry> entries_;
