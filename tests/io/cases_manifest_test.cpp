@@ -157,8 +157,8 @@ TEST_CASE("cases: PLOT3D files agree with the manifest" * doctest::skip(no_data(
     CAPTURE(path);
     check_tree(read_set(path), set_of(path)["vtk"]["data"], computed);
   }
-  check_tree(read_set("meshes/curvilinear/plot3d-multi-bin/multi.p3d"), set_of("meshes/curvilinear/plot3d-multi-bin/multi-bin.xyz")["vtk"]["data"],
-             computed);
+  check_tree(read_set("meshes/curvilinear/plot3d-multi-bin/multi.p3d"),
+             set_of("meshes/curvilinear/plot3d-multi-bin/multi-bin.xyz")["vtk"]["data"], computed);
 }
 
 TEST_CASE("cases: the AMReX plotfile agrees with the manifest, level by level" * doctest::skip(no_data())) {

@@ -166,8 +166,8 @@ const char* const case_text =
     "tensor asym per node: strain m.asy\nconstant per case: gamma 1.4\n";
 
 CaseFiles model(Writing form) {
-  return {{"m.case", case_text},           {"m.geo", geometry(form)},        {"m.scl", node_scalars(form)},
-          {"m.vel", cell_vectors(form)},   {"m.ten", node_tensors(form, 6)}, {"m.asy", node_tensors(form, 9)}};
+  return {{"m.case", case_text},         {"m.geo", geometry(form)},        {"m.scl", node_scalars(form)},
+          {"m.vel", cell_vectors(form)}, {"m.ten", node_tensors(form, 6)}, {"m.asy", node_tensors(form, 9)}};
 }
 
 }  // namespace
@@ -260,8 +260,9 @@ TEST_CASE("ensight: only the fields that are asked for are read, and a quick loo
 }
 
 TEST_CASE("ensight: time sets choose files by pattern, and steps in a file by their marks") {
-  const std::string times = "TIME\ntime set: 1\nnumber of steps: 3\nfilename start number: 4\nfilename increment: 2\ntime values: 0.5\n 1.5 2.5\n"
-                            "time set: 2 slow\nnumber of steps: 2\ntime values: 0.5 2.0\nFILE\nfile set: 7\nnumber of steps: 2\n";
+  const std::string times =
+      "TIME\ntime set: 1\nnumber of steps: 3\nfilename start number: 4\nfilename increment: 2\ntime values: 0.5\n 1.5 2.5\n"
+      "time set: 2 slow\nnumber of steps: 2\ntime values: 0.5 2.0\nFILE\nfile set: 7\nnumber of steps: 2\n";
   for (const Writing form : all_forms) {
     CaseFiles files = model(form);
     std::string single;
@@ -284,8 +285,10 @@ TEST_CASE("ensight: time sets choose files by pattern, and steps in a file by th
       e.line("a step"), e.line("part"), e.ints({4}), e.line("block"), e.reals(std::vector<float>(4, float(k)));
       files[fmt::format("v.{:04}", k)] = e.out;
     }
-    files["t.case"] = "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: 2 7 moving.geo\nVARIABLE\nscalar per node: 1 v v.****\n"
-                      "constant per case: 1 c 10 20 30\n" + times;
+    files["t.case"] =
+        "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: 2 7 moving.geo\nVARIABLE\nscalar per node: 1 v v.****\n"
+        "constant per case: 1 c 10 20 30\n" +
+        times;
     const std::string path = write_case("ens_time" + std::to_string(int(form)), files) + "t.case";
     Context context;
     CHECK(file_times(path, {}, context) == std::vector<double>{0.5, 1.5, 2.0, 2.5});
@@ -351,7 +354,8 @@ TEST_CASE("ensight: errors say what is wrong and where") {
   CHECK(contains(refused("m.geo", "node id given", "node id maybe"), "off, given, assign or ignore"));
   CHECK(contains(refused("m.geo", "coordinates\n        10", "coordinates\n2147483647"), "do not fit"));
   CHECK(contains(refused("m.geo", "coordinates\n        10", "coordinates\n        -1"), "do not fit"));
-  CHECK(contains(refused("m.geo", fmt::format("{:10}{:10}{:10}", 1, 2, 9), fmt::format("{:10}{:10}{:10}", 1, 2, 11)), "node 11, there are 1 to 10"));
+  CHECK(contains(refused("m.geo", fmt::format("{:10}{:10}{:10}", 1, 2, 9), fmt::format("{:10}{:10}{:10}", 1, 2, 11)),
+                 "node 11, there are 1 to 10"));
   CHECK(contains(refused("m.geo", "block rectilinear\n         2", "block rectilinear\n         0"), "a block of 0 x 3 x 2"));
   CHECK(contains(refused("m.geo", "         9\n         3         4", "         9\n         3        44"), "a range of 3 to 44"));
   CHECK(contains(refused("m.scl", "part\n         2", "part\n         7"), "part 7 is not in the geometry"));
