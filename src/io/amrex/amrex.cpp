@@ -166,6 +166,7 @@ std::vector<double> times_amrex(const std::string& path, const ReadOptions&, Con
 
 Data read_amrex(const std::string& path, const ReadOptions& options, Context& context) {
   const Plotfile p = read_headers(path);
+  chosen_step({p.time}, options, path);  // refuses a step that is not there
   if (p.names.empty()) fail_data("names no variable", path + "/Header");
   AmrGrid g = make_grid(p, path + "/Header");
   const size_t cells = cell_count(g);
