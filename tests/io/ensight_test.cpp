@@ -313,6 +313,31 @@ TEST_CASE("ensight: time sets choose files by pattern, and steps in a file by th
   }
 }
 
+TEST_CASE("ensight: measured particles are a part of points with their own values") {
+  for (const Writing form : {Writing::ascii, Writing::c_big}) {
+    CaseFiles files = model(form);
+    Emit e{form};
+    e.head();
+    e.line("droplets"), e.line("particle coordinates"), e.ints({2});
+    if (form == Writing::ascii) e.out += "       7 1.00000e+00 2.00000e+00 3.00000e+00\n       8 4.00000e+00 5.00000e+00 6.00000e+00\n";
+    else e.ints({7, 8}), e.reals({1, 2, 3, 4, 5, 6});
+    files["m.mea"] = e.out;
+    Emit v{form};
+    v.line("speed"), v.reals({10, 11, 12, 20, 21, 22});
+    files["m.msp"] = v.out;
+    files["m.case"] =
+        "FORMAT\ntype: ensight gold\nGEOMETRY\nmodel: m.geo\nmeasured: m.mea\nVARIABLE\nvector per measured node: speed m.msp\n";
+    const Data data = read_any(write_case("ens_measured" + std::to_string(int(form)), files) + "m.case");
+    const auto all = leaves(data);
+    REQUIRE(all.size() == 5);
+    CHECK(all[4].first == "measured particles");
+    const auto* cloud = all[4].second->as<PointCloud>();
+    REQUIRE(cloud);
+    CHECK(cloud->points.at(1) == Vec3{4, 5, 6});
+    CHECK(all[4].second->fields().require("speed").array.get(1, 2) == 22);
+  }
+}
+
 TEST_CASE("ensight: columns of text that touch are told apart") {
   CaseFiles files = model(Writing::ascii);
   Emit e{Writing::ascii};

@@ -64,16 +64,17 @@ void add_measured_variable(Stream& s, const Variable& v, Part& particles) {
   particles.data.fields.add({v.name, Association::point, Array(a.buffer(), ElementType::f32, particles.points, int(k)), "", Role::none});
 }
 
-void add_variable(const CaseFile& c, const Variable& v, std::optional<double> time, Form form, bool look_only, Geometry& g) {
+void add_variable(const CaseFile& c, const Variable& v, std::optional<double> time, const Stream& model, bool look_only, Geometry& g) {
   if (v.kind == VariableKind::constant) return add_constant(c, v, time, g);
-  Stream s = open_at(c, v.file, time, form);
+  Stream s = open_at(c, v.file, time, model.form());
+  s.take_order(model);
   if (v.measured) {
     if (!g.parts.empty() && g.parts.back().number == -1) add_measured_variable(s, v, g.parts.back());
     return;
   }
   read_variable(s, v, v.complex ? v.name + "_r" : v.name, g, look_only);
   if (!v.complex) return;
-  Stream im = open_at(c, v.imaginary, time, form);
+  Stream im = open_at(c, v.imaginary, time, model.form());
   read_variable(im, v, v.name + "_i", g, look_only);
   if (v.kind == VariableKind::scalar) join_complex(v.name, v.association, g);
 }
@@ -116,7 +117,7 @@ Data read_ensight(const std::string& path, const ReadOptions& options, Context& 
   for (const Variable& v : c.variables) {
     context.progress(double(++done) / double(c.variables.size() + 1), "reading variables");
     context.check();
-    if (is_wanted_variable(options, v)) add_variable(c, v, time, s.form(), options.header_only, g);
+    if (is_wanted_variable(options, v)) add_variable(c, v, time, s, options.header_only, g);
   }
   if (g.parts.empty()) fail_data("has no parts", s.path());
   auto r = std::make_shared<Collection>();

@@ -23,6 +23,10 @@ class Stream {
   static Form form_of(const MappedFile& file);
   Stream(MappedFile file, Form form);
 
+  /// The byte order of another file of the case, until an integer of this one tells its own.
+  void take_order(const Stream& other) {
+    if (!order_known_) big_endian_ = other.big_endian_;
+  }
   /// Goes to the lines behind the k-th "BEGIN TIME STEP".
   void seek_step(int64_t k);
   bool at_end();

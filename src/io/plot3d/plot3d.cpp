@@ -56,7 +56,7 @@ Array vectors(const Numbers& n, const Layout& l, size_t at, size_t points) {
   return a;
 }
 
-DatasetParts read_grid(const Numbers& n, const Layout& l, size_t g) {
+DatasetParts read_grid(const Numbers& n, const Layout& l, size_t g, const ReadOptions& o) {
   DatasetParts d;
   CurvilinearGrid m;
   m.dims = l.sizes[g];
@@ -73,7 +73,7 @@ DatasetParts read_grid(const Numbers& n, const Layout& l, size_t g) {
     hide_cells(m.dims, ghost.data(), cells.data());
     d.point_ghost = Array::from_vector(std::move(ghost));
     d.cell_ghost = Array::from_vector(std::move(cells));
-    d.fields.add({"IBlank", Association::point, Array::from_vector(std::move(blank)), "", Role::none});
+    if (is_wanted(o.fields, "IBlank")) d.fields.add({"IBlank", Association::point, Array::from_vector(std::move(blank)), "", Role::none});
   }
   d.mesh = std::move(m);
   return d;
@@ -137,7 +137,7 @@ Data read_files(const Files& files, std::optional<double> time, const ReadOption
   auto r = std::make_shared<Collection>();
   for (size_t g = 0; g < l->sizes.size(); ++g) {
     context.check();
-    DatasetParts d = read_grid(n, *l, g);
+    DatasetParts d = read_grid(n, *l, g, o);
     if (q) {
       add_solution(q->numbers, q->layout, g, o, d);
       const double t = q->numbers.real(q->layout, q->layout.begin[g] + 3 * q->numbers.real_size(q->layout));
