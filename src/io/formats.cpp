@@ -50,6 +50,9 @@ const Format& format_of_folder(const std::string& path) {
 
 const Format& format_of_file(const std::string& path, const ReadOptions& options) {
   const MappedFile file(path);
+  if (file.size() == 0)
+    for (const Format& f : formats())
+      if ((f.honours & may_be_empty) && has_extension(f, path)) return f;
   if (file.size() == 0) fail_data("is empty", path, "a data file has at least a header");
   if (options.raw_dims[0] > 0) return *raw_format();
   const std::span<const std::byte> head(file.data(), std::min<size_t>(file.size(), 4096));
@@ -61,7 +64,9 @@ const Format& format_of_file(const std::string& path, const ReadOptions& options
     }
   if (found) return *found;
   for (const Format& f : formats())
-    if (f.read && !f.sniff && has_extension(f, path)) return f;
+    if (f.read && f.sniff_file && has_extension(f, path) && f.sniff_file({file.data(), file.size()})) return f;
+  for (const Format& f : formats())
+    if (f.read && !f.sniff && !f.sniff_file && has_extension(f, path)) return f;
   for (const Format& f : formats())
     if (f.read && has_extension(f, path)) fail_data(fmt::format("is named like {} but its content is none", f.name), path);
   fail_data("is in no known format", path, "known are: " + known_extensions(false) + "; for a raw brick give --dims and --type");

@@ -81,5 +81,27 @@ Data read_gambit(const std::string& path, const ReadOptions& options, Context& c
 bool sniff_nek5000(std::span<const std::byte> head);
 Data read_nek5000(const std::string& path, const ReadOptions& options, Context& context);
 std::vector<double> times_of_nek5000(const std::string& path, const ReadOptions& options, Context& context);
+bool sniff_ensight(std::span<const std::byte> head);
+Data read_ensight(const std::string& path, const ReadOptions& options, Context& context);
+std::vector<double> times_ensight(const std::string& path, const ReadOptions& options, Context& context);
+
+bool sniff_plot3d(std::span<const std::byte> whole);
+Data read_plot3d(const std::string& path, const ReadOptions& options, Context& context);
+bool sniff_plot3d_meta(std::span<const std::byte> head);
+Data read_plot3d_meta(const std::string& path, const ReadOptions& options, Context& context);
+std::vector<double> times_plot3d_meta(const std::string& path, const ReadOptions& options, Context& context);
+
+bool sniff_amrex_folder(const std::string& path);
+Data read_amrex(const std::string& path, const ReadOptions& options, Context& context);
+std::vector<double> times_amrex(const std::string& path, const ReadOptions& options, Context& context);
+
+bool sniff_bov(std::span<const std::byte> head);
+Data read_bov(const std::string& path, const ReadOptions& options, Context& context);
+Data read_bare_bov(const std::string& path, const ReadOptions& options, Context& context);
+
+bool sniff_openfoam_folder(const std::string& path);
+bool sniff_openfoam_control(std::span<const std::byte> head);
+Data read_openfoam(const std::string& path, const ReadOptions& options, Context& context);
+std::vector<double> times_openfoam(const std::string& path, const ReadOptions& options, Context& context);
 
 }  // namespace sg

@@ -58,7 +58,8 @@ Series open_series(const std::string& path, const ReadOptions& options, Context&
 size_t chosen_step(const std::vector<double>& times, const ReadOptions& options, const std::string& path, size_t otherwise = 0);
 
 /// What a reader does itself; the rest is done behind it, on all that it read.
-enum Honours : unsigned { honours_region = 1, honours_pieces = 2 };
+/// `may_be_empty`: an empty file is right, because it only marks its folder.
+enum Honours : unsigned { honours_region = 1, honours_pieces = 2, may_be_empty = 4 };
 
 /// One format: what it is called, how to know it, how to read and write it. The table stands in formats.def.
 struct Format {
@@ -73,6 +74,9 @@ struct Format {
   /// For formats that are a folder; `path` has no trailing slash.
   bool (*sniff_folder)(const std::string& path) = nullptr;
   unsigned honours = 0;
+  /// For formats without a magic number, known by the length and all of the content; asked when no sniff accepts the content and the
+  /// extension is one of the format's. `whole` is mapped: touch little of it.
+  bool (*sniff_file)(std::span<const std::byte> whole) = nullptr;
 };
 std::span<const Format> formats();
 /// The format of a file or folder, by content, then by extension. Throws Error(data) when none knows it.

@@ -14,7 +14,21 @@ namespace sg {
 namespace {
 
 // XXH3-64 over the hashes of 4 MiB blocks, so that all cores share the work and the result does not depend on them.
+// Of a folder: the names and sizes of the files in it, at any depth (a case may hold many gigabytes).
+std::string folder_hash(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::vector<std::string> files;
+  std::error_code error;
+  for (fs::recursive_directory_iterator at(path, error), end; !error && at != end; at.increment(error))
+    if (at->is_regular_file(error)) files.push_back(fmt::format("{} {}\n", at->path().lexically_relative(path).string(), at->file_size(error)));
+  std::sort(files.begin(), files.end());
+  std::string all;
+  for (const std::string& f : files) all += f;
+  return fmt::format("{:016x}", XXH3_64bits(all.data(), all.size()));
+}
+
 std::string content_hash(const std::string& path) {
+  if (is_folder(path)) return folder_hash(path);
   const MappedFile file(path);
   constexpr size_t block = size_t(4) << 20;
   std::vector<uint64_t> parts((file.size() + block - 1) / block);
