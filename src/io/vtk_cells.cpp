@@ -310,6 +310,33 @@ CellArray concatenated_cells(std::span<const CellArray> parts, std::span<const s
   return r;
 }
 
+void set_weights(UnstructuredMesh& mesh, const Field& field) {
+  if (field.components() != 1 || field.array.count() != mesh.points.count())
+    fail_data(fmt::format("the rational weights '{}' have {} components", field.name, field.components()), {}, "one number a point");
+  mesh.weights = field.array.converted(ElementType::f64);
+  const double* w = mesh.weights.view<double>().data;
+  if (!all_of(mesh.weights.count(), [&](size_t i) { return std::isfinite(w[i]); }))
+    fail_data(fmt::format("the rational weights '{}' are not all finite", field.name));
+}
+
+void set_degrees(UnstructuredMesh& mesh, const Field& field) {
+  if (field.components() != 3 || field.array.count() != mesh.cells.size())
+    fail_data(fmt::format("the orders of cells '{}' have {} components", field.name, field.components()), {}, "three numbers a cell");
+  const size_t n = field.array.count();
+  uint8_t* out = nullptr;
+  Array degrees = Array::make<uint8_t>(n, 3, &out);
+  dispatch(field.array, [&](auto v) {
+    for (size_t i = 0; i < n; ++i)
+      for (int c = 0; c < 3; ++c) {
+        const auto d = double(v(i, c));
+        if (!(d >= 0 && d <= 255) || d != std::floor(d))
+          fail_data(fmt::format("cell {} has the order {}", i, d), fmt::format("array '{}'", field.name), "a whole number from 0 to 255");
+        out[3 * i + size_t(c)] = uint8_t(d);
+      }
+  });
+  mesh.degrees = degrees;
+}
+
 bool is_ghost_name(std::string_view name) { return name == "vtkGhostType" || name == "vtkGhostLevels"; }
 
 void take_ghosts(DatasetParts& parts) {

@@ -51,6 +51,11 @@ Array concatenated_indices(std::span<const Array> parts, std::span<const size_t>
 /// Cells of several pieces as one list; point ids of piece i are shifted by shift[i].
 CellArray concatenated_cells(std::span<const CellArray> parts, std::span<const size_t> shift);
 
+/// Rational weights of Bezier cells, and orders of Lagrange and Bezier cells along their axes, from a field. Fields that are not of
+/// that kind (components, values) throw Error(data).
+void set_weights(UnstructuredMesh& mesh, const Field& field);
+void set_degrees(UnstructuredMesh& mesh, const Field& field);
+
 /// Moves vtkGhostType and vtkGhostLevels from the fields to the ghost arrays.
 void take_ghosts(DatasetParts& parts);
 bool is_ghost_name(std::string_view name);

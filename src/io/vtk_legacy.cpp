@@ -372,6 +372,10 @@ DatasetPtr LegacyReader::read() {
     (this->*k->read)();
   }
   parts_.mesh = mesh();
+  if (auto* m = std::get_if<UnstructuredMesh>(&parts_.mesh)) {
+    if (const Field* f = parts_.fields.find("RationalWeights", Association::point)) set_weights(*m, *f);
+    if (const Field* f = parts_.fields.find("HigherOrderDegrees", Association::cell)) set_degrees(*m, *f);
+  }
   take_ghosts(parts_);
   return make_dataset(std::move(parts_));
 }

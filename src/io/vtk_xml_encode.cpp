@@ -12,7 +12,9 @@ constexpr size_t block_bytes = size_t(1) << 18;
 constexpr uint64_t alignment = 64;
 constexpr size_t header_bytes = 8;  // header_type UInt64
 
-std::string escaped(std::string_view s) {
+}  // namespace
+
+std::string escaped_xml(std::string_view s) {
   std::string r;
   for (const char c : s) {
     switch (c) {
@@ -27,6 +29,8 @@ std::string escaped(std::string_view s) {
   }
   return r;
 }
+
+namespace {
 
 std::string_view vtk_type(ElementType t) {
   constexpr std::string_view names[] = {"UInt8", "Int8", "UInt16", "Int16", "UInt32", "Int32", "UInt64", "Int64", "Float32", "Float64"};
@@ -61,7 +65,7 @@ void XmlWriter::open(std::string_view element, const XmlAttributes& attributes, 
   text_.append(2 * open_.size(), ' ');
   text_ += '<';
   text_ += element;
-  for (const auto& [name, value] : attributes) text_ += fmt::format(" {}=\"{}\"", name, escaped(value));
+  for (const auto& [name, value] : attributes) text_ += fmt::format(" {}=\"{}\"", name, escaped_xml(value));
   if (element == "VTKFile" && codec_ != Codec::none) text_ += fmt::format(" compressor=\"{}\"", codec_name(codec_));
   text_ += empty ? "/>\n" : ">\n";
   if (text_.size() > 1 << 20 && encoding_ != Encoding::appended) flush();

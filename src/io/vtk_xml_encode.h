@@ -15,6 +15,9 @@ namespace sg::vtk {
 /// Attributes in order; values are escaped.
 using XmlAttributes = std::vector<std::pair<std::string_view, std::string>>;
 
+/// With the characters that XML reserves written as it asks for.
+std::string escaped_xml(std::string_view text);
+
 /// Writes elements and arrays one after the other; appended bytes follow in finish(). The bytes of the file do not depend
 /// on the number of threads. Appended uncompressed arrays begin at multiples of 64 bytes of the file.
 class XmlWriter {
@@ -50,5 +53,10 @@ class XmlWriter {
   std::vector<Block> blocks_;
   uint64_t appended_ = 0;
 };
+
+/// "vti", "vtr", "vts", "vtu", "vtp" or "vthb": the form that holds a mesh of that kind.
+std::string_view extension_for(const Mesh& mesh);
+/// One dataset to a file *.vti ... *.vtp; surfaces and point clouds to *.vtu too. Throws Error(usage) for another extension.
+void write_dataset(const std::string& path, const Dataset& dataset, const WriteOptions& options, Context& context);
 
 }  // namespace sg::vtk
