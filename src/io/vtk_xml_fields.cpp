@@ -119,15 +119,6 @@ bool header_only(const XmlRead& read, const XmlField& f) {
   return read.options.header_only && !is_ghost_name(f.field.name) && !shapes_mesh(f.nodes[0].parent(), f.field.name);
 }
 
-Array hollow(ElementType type, size_t tuples, int components) {
-  std::byte* one = nullptr;
-  const Buffer b = Buffer::allocate(64, &one);
-  std::memset(one, 0, 64);
-  if (const double nan = std::numeric_limits<double>::quiet_NaN(); type == ElementType::f64) std::memcpy(one, &nan, sizeof nan);
-  if (const float nan = std::numeric_limits<float>::quiet_NaN(); type == ElementType::f32) std::memcpy(one, &nan, sizeof nan);
-  return Array(b, type, tuples, components, 0, 0, 0);
-}
-
 void check_backed(const std::vector<XmlPiece>& pieces, const XmlField& f, size_t tuples) {
   uint64_t most = 0, bytes = 0;
   const XmlFile* last = nullptr;

@@ -33,8 +33,6 @@ struct XmlField {
 std::vector<XmlField> list_fields(const XmlRead& read, const std::vector<XmlPiece>& pieces, const char* element, Association association);
 /// Only names and types are wanted (ReadOptions::header_only), and it is no ghost array.
 bool header_only(const XmlRead& read, const XmlField& field);
-/// An array of that type and size without numbers of its own: all NaN, or 0 for integers. What header_only leaves of a field.
-Array hollow(ElementType type, size_t tuples, int components);
 /// Throws Error(data) when the files of the pieces cannot hold that many numbers, before memory is asked for.
 void check_backed(const std::vector<XmlPiece>& pieces, const XmlField& field, size_t tuples);
 /// All numbers of a field, piece after piece of tuples[i] each.
