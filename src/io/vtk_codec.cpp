@@ -19,7 +19,8 @@ std::string_view codec_name(Codec codec) {
 
 namespace {
 
-constexpr int zlib_level = 5;
+// On a smooth field of 64 MB level 1 gives 59 % in 0.57 s, level 5 57 % in 1.6 s (zlib at level 5, as VTK writes: 61 % in 3.3 s).
+constexpr int zlib_level = 1;
 constexpr uint32_t lzma_level = 5;
 
 // One per thread: making them costs more than a small block.
