@@ -139,7 +139,7 @@ Array LegacyText::array(std::string_view type_name, size_t tuples, size_t compon
     const std::byte* from = take(bytes, what);
     std::byte* out = nullptr;
     a = Array::make_raw(type, tuples, int(components), &out);
-    swap_bytes_copy(out, from, n, element_size(type));
+    read_swapped(file_, size_t(from - file_.data()), n, element_size(type), out);
     if (equal_ignoring_case(type_name, "vtkidtype")) a = a.converted(ElementType::i64);
   }
   if (equal_ignoring_case(peek(), "METADATA")) word(), skip_metadata();

@@ -3,6 +3,8 @@
 //   plain       [bytes] numbers
 //   compressed  [blocks] [bytes per block] [bytes of the last, 0 = full] [compressed bytes of each block]... block block ...
 // with [x] of header_type. In base64 the header of a compressed array is a padded stream of its own.
+#include <sys/mman.h>
+
 #include <atomic>
 
 #include "base/bytes.h"
@@ -104,7 +106,8 @@ Array XmlFile::finished(const Wanted& want, Buffer buffer, size_t offset, size_t
   }
   std::byte* out = nullptr;
   Array a = Array::make_raw(want.type, tuples, want.components, &out);
-  if (swap) swap_bytes_copy(out, from, n, size);
+  if (swap && buffer.data == file_.data()) read_swapped(file_, offset, n, size, out);
+  else if (swap) swap_bytes_copy(out, from, n, size);
   else if (buffer.data == file_.data()) file_.copy_to(out, offset, bytes);  // VTK writes arrays on any byte
   else parallel_for(bytes, size_t(1) << 20, [&](size_t begin, size_t end) { std::memcpy(out + begin, from + begin, end - begin); });
   return a;
@@ -195,6 +198,13 @@ XmlFile::BlockTable XmlFile::block_table(const Wanted& want, const Source& s) co
   return t;
 }
 
+// Whole pages of a mapped file may go; they come back from the file when they are looked at again.
+static void forget_mapped(const std::byte* p, size_t bytes) {
+  constexpr uintptr_t page = 4096;
+  const auto begin = (reinterpret_cast<uintptr_t>(p) + page - 1) / page * page, end = (reinterpret_cast<uintptr_t>(p) + bytes) / page * page;
+  if (begin < end) ::madvise(reinterpret_cast<void*>(begin), end - begin, MADV_DONTNEED);
+}
+
 Array XmlFile::compressed(const Wanted& want, const Source& s) const {
   const BlockTable t = block_table(want, s);
   const size_t bytes = bytes_to_read(want, t.total);
@@ -202,8 +212,13 @@ Array XmlFile::compressed(const Wanted& want, const Source& s) const {
   const size_t needed = t.block ? (bytes + t.block - 1) / t.block : 0;
   const Buffer b = Buffer::allocate(size_t(std::min<uint64_t>(t.total, uint64_t(needed) * t.block)), &out);
   std::atomic<bool> good{true};
-  parallel_for(needed, 1, [&](size_t i, size_t) {
-    if (!t.unpack(codec_, i, out + i * t.block)) good = false;
+  // About 1 MiB of packed bytes at a time, which are then dropped from memory: they are not needed again.
+  const size_t packed = needed ? t.starts[needed] : 0;
+  const size_t grain = packed < size_t(16) << 20 ? 1 : std::max<size_t>(1, needed / (packed >> 20));
+  parallel_for(needed, grain, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i)
+      if (!t.unpack(codec_, i, out + i * t.block)) good = false;
+    if (grain > 1 && !s.base64) forget_mapped(t.packed + t.starts[begin], t.starts[end] - t.starts[begin]);
   });
   if (!good) fail("cannot be decompressed", want.element, "the file is truncated or damaged");
   return finished(want, b, 0, bytes);
