@@ -100,7 +100,8 @@ class AmrReader {
         for (const pugi::xml_node& set : n.children("DataSet")) add_patch(level, set);
         if (level < spacings_.size()) have_spacing_[level] = parse_doubles(file_, n, "spacing", &spacings_[level].x, 3);
       } else if (element == "RefinementRatio") {
-        if (parse_count(file_, n, "level") == ratios_.size()) ratios_.push_back(int(std::min<uint64_t>(parse_count(file_, n, "refinement"), 1024)));
+        if (parse_count(file_, n, "level") == ratios_.size())
+          ratios_.push_back(int(std::min<uint64_t>(parse_count(file_, n, "refinement"), 1024)));
       }
     }
     std::stable_sort(patches_.begin(), patches_.end(), [](const Patch& a, const Patch& b) { return a.level < b.level; });

@@ -15,9 +15,7 @@ namespace {
 constexpr size_t most_depth = 32;
 constexpr size_t most_parts = size_t(1) << 20;
 
-std::string_view type_in(std::span<const std::byte> head) {
-  return xml_type({reinterpret_cast<const char*>(head.data()), head.size()});
-}
+std::string_view type_in(std::span<const std::byte> head) { return xml_type({reinterpret_cast<const char*>(head.data()), head.size()}); }
 
 bool is_multiblock(std::string_view type) {
   for (const char* t : {"vtkMultiBlockDataSet", "vtkMultiPieceDataSet", "vtkPartitionedDataSet", "vtkPartitionedDataSetCollection",
@@ -90,7 +88,8 @@ class TreeReader {
 
   void count(size_t parts) {
     parts_ += parts;
-    if (parts_ > most_parts) fail_data(fmt::format("has more than {} parts, counting files that are named again and again", most_parts), stack_[0]);
+    if (parts_ > most_parts)
+      fail_data(fmt::format("has more than {} parts, counting files that are named again and again", most_parts), stack_[0]);
   }
 
   Data read_new(const std::string& path) {
@@ -152,7 +151,8 @@ class TreeReader {
         const std::string_view source = n.attribute("file").value();
         if (source.empty()) continue;  // a block without a mesh
         if (!is_mine()) continue;
-        part.data = with_context(fmt::format("reading the parts of '{}'", file.path()), [&] { return read(path_beside(file.path(), source)); });
+        part.data =
+            with_context(fmt::format("reading the parts of '{}'", file.path()), [&] { return read(path_beside(file.path(), source)); });
       }
       out.parts.push_back(std::move(part));
     }
@@ -179,7 +179,8 @@ class TreeReader {
       if (source.empty()) file.fail("has no file", n, "the name of the file of that step");
       const size_t place = i++;
       if (!is_mine()) continue;
-      Data data = with_context(fmt::format("reading the parts of '{}'", file.path()), [&] { return read(path_beside(file.path(), source)); });
+      Data data =
+          with_context(fmt::format("reading the parts of '{}'", file.path()), [&] { return read(path_beside(file.path(), source)); });
       if (!steps.times.empty()) data = at_time(data, steps.times[step]);
       collection->parts.push_back({part_name(n, sets, place), std::move(data)});
     }
@@ -234,8 +235,6 @@ Data read_pvd(const std::string& path, const ReadOptions& options, Context& cont
   return vtk::TreeReader(options, context).read(path);
 }
 
-std::vector<double> times_of_pvd(const std::string& path, const ReadOptions&, Context&) {
-  return vtk::steps_of(vtk::XmlFile(path)).times;
-}
+std::vector<double> times_of_pvd(const std::string& path, const ReadOptions&, Context&) { return vtk::steps_of(vtk::XmlFile(path)).times; }
 
 }  // namespace sg

@@ -53,7 +53,8 @@ class BlockWriter {
     auto* d = std::get_if<DatasetPtr>(&data);
     if (!d) fail_usage(fmt::format("part '{}' is a table, which a multiblock file cannot hold", name), path_, "write tables to .csv");
     if (*d) {
-      if ((*d)->as<AmrGrid>()) fail_usage(fmt::format("part '{}' is AMR, which a multiblock file cannot hold", name), path_, "write it to .vthb");
+      if ((*d)->as<AmrGrid>())
+        fail_usage(fmt::format("part '{}' is AMR, which a multiblock file cannot hold", name), path_, "write it to .vthb");
       const std::string_view extension = extension_for((*d)->mesh());
       write_dataset(folder_.file(parts_, extension), **d, options_, context_);
       attributes.emplace_back("file", folder_.name(parts_++, extension));
@@ -73,7 +74,8 @@ class BlockWriter {
 std::string three(Vec3 v) { return fmt::format("{} {} {}", exact_number(v.x), exact_number(v.y), exact_number(v.z)); }
 
 // One patch as image data, with its share of the fields. Refined cells are found again by every reader, so their bit is left out.
-DatasetPtr patch_dataset(const Dataset& d, const AmrGrid& grid, const AmrGrid::Level& level, const AmrGrid::Patch& patch, const Array& ghost) {
+DatasetPtr patch_dataset(const Dataset& d, const AmrGrid& grid, const AmrGrid::Level& level, const AmrGrid::Patch& patch,
+                         const Array& ghost) {
   UniformGrid g;
   const auto cells = patch.cells();
   g.spacing = level.spacing;

@@ -251,7 +251,9 @@ void LegacyReader::cell_types() {
 }
 
 // Ghosts, weights and orders belong to the mesh.
-static bool shapes_mesh(const std::string& name) { return is_ghost_name(name) || name == "RationalWeights" || name == "HigherOrderDegrees"; }
+static bool shapes_mesh(const std::string& name) {
+  return is_ghost_name(name) || name == "RationalWeights" || name == "HigherOrderDegrees";
+}
 
 bool LegacyReader::is_wanted(const std::string& name) const {
   return shapes_mesh(name) || options_.fields.empty() ||

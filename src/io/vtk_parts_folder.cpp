@@ -39,19 +39,23 @@ PartsFolder::PartsFolder(const std::string& path) {
     fail_usage("a file has the name that the folder of parts needs", folder_, "choose another name");
   }
   if (::mkdir(partial_.c_str(), 0777) != 0)
-    fail_data(errno == ENOENT ? "cannot be written: the folder does not exist" : std::string("cannot be made: ") + std::strerror(errno), partial_);
+    fail_data(errno == ENOENT ? "cannot be written: the folder does not exist" : std::string("cannot be made: ") + std::strerror(errno),
+              partial_);
 }
 
 PartsFolder::~PartsFolder() {
   if (!done_) remove_folder(partial_);
 }
 
-std::string PartsFolder::file(size_t i, std::string_view extension) const { return fmt::format("{}/{}_{}.{}", partial_, stem_, i, extension); }
+std::string PartsFolder::file(size_t i, std::string_view extension) const {
+  return fmt::format("{}/{}_{}.{}", partial_, stem_, i, extension);
+}
 std::string PartsFolder::name(size_t i, std::string_view extension) const { return fmt::format("{}/{}_{}.{}", stem_, stem_, i, extension); }
 
 void PartsFolder::commit() {
   const bool replaces = is_folder(folder_);
-  if (replaces && ::rename(folder_.c_str(), old_.c_str()) != 0) fail_data(std::string("cannot be replaced: ") + std::strerror(errno), folder_);
+  if (replaces && ::rename(folder_.c_str(), old_.c_str()) != 0)
+    fail_data(std::string("cannot be replaced: ") + std::strerror(errno), folder_);
   if (::rename(partial_.c_str(), folder_.c_str()) != 0) {
     const int error = errno;
     if (replaces) ::rename(old_.c_str(), folder_.c_str());

@@ -201,7 +201,8 @@ XmlFile::BlockTable XmlFile::block_table(const Wanted& want, const Source& s) co
 // Whole pages of a mapped file may go; they come back from the file when they are looked at again.
 static void forget_mapped(const std::byte* p, size_t bytes) {
   constexpr uintptr_t page = 4096;
-  const auto begin = (reinterpret_cast<uintptr_t>(p) + page - 1) / page * page, end = (reinterpret_cast<uintptr_t>(p) + bytes) / page * page;
+  const auto begin = (reinterpret_cast<uintptr_t>(p) + page - 1) / page * page,
+             end = (reinterpret_cast<uintptr_t>(p) + bytes) / page * page;
   if (begin < end) ::madvise(reinterpret_cast<void*>(begin), end - begin, MADV_DONTNEED);
 }
 

@@ -48,8 +48,7 @@ void read_face_lists(const XmlFile& file, pugi::xml_node cells, UnstructuredMesh
   for (size_t c = 0; c < n; ++c) {
     for (; int64_t(at) < end[c + skip]; ++at) {
       if (at >= of_cell.count() || face[at] < 0 || size_t(face[at]) >= faces.count)
-        fail_data(fmt::format("cell {} has a face that is not there", c),
-                  fmt::format("{}: DataArray 'polyhedron_to_faces'", file.path()));
+        fail_data(fmt::format("cell {} has a face that is not there", c), fmt::format("{}: DataArray 'polyhedron_to_faces'", file.path()));
       for (size_t k = 0; k < faces.size(size_t(face[at])); ++k) ids.push_back(faces.point(size_t(face[at]), k));
       offsets.push_back(int64_t(ids.size()));
     }
@@ -199,7 +198,8 @@ constexpr struct {
                      {"Strips", "NumberOfStrips", &SurfaceMesh::strips}};
 
 // Cells of each list of all pieces lie together, so cell data do too.
-Array joined_cell_field(const XmlRead& read, const std::vector<XmlPiece>& pieces, const XmlField& f, const std::vector<SurfaceMesh>& meshes) {
+Array joined_cell_field(const XmlRead& read, const std::vector<XmlPiece>& pieces, const XmlField& f,
+                        const std::vector<SurfaceMesh>& meshes) {
   std::vector<size_t> cells;
   size_t total = 0;
   for (const SurfaceMesh& m : meshes) cells.push_back(m.cell_count()), total += cells.back();

@@ -78,10 +78,10 @@ std::optional<Share> share_of(const Grid& grid, const Index3& lo, const Size3& d
 struct Layout {
   std::vector<XmlPiece> pieces;
   std::vector<Extent> extents;
-  Extent box;              // of all pieces
-  Size3 lo{0, 0, 0};       // the part asked for, in points of the box
-  Grid points, cells;      // what is made of it
-  bool keep_cells = true;  // cells do not survive a stride
+  Extent box;                                                   // of all pieces
+  Size3 lo{0, 0, 0};                                            // the part asked for, in points of the box
+  Grid points, cells;                                           // what is made of it
+  bool keep_cells = true;                                       // cells do not survive a stride
   std::vector<std::optional<Share>> point_shares, cell_shares;  // of the pieces
 
   Index3 start() const {
@@ -144,8 +144,7 @@ Layout lay_out(const XmlRead& read) {
     l.pieces.push_back(p), l.extents.push_back(e);
   }
   if (l.pieces.empty()) {
-    if (!announced.empty() && read.options.pieces == 1)
-      read.file.fail("has no Piece", dataset, "the file is truncated or not complete");
+    if (!announced.empty() && read.options.pieces == 1) read.file.fail("has no Piece", dataset, "the file is truncated or not complete");
     return l;
   }
   l.box = l.extents[0];
@@ -293,7 +292,9 @@ void put_all_fields(const XmlRead& read, const Layout& l, DatasetParts& parts) {
   if (l.pieces.empty()) return;
   put_fields(read, l, {Association::point, "PointData", l.points, l.point_shares, ghost_hidden_point}, parts);
   if (l.keep_cells) return put_fields(read, l, {Association::cell, "CellData", l.cells, l.cell_shares, ghost_hidden_cell}, parts);
-  if (const size_t n = list_fields(read, l.pieces, "CellData", Association::cell).size())
+  std::vector<XmlField> dropped = list_fields(read, l.pieces, "CellData", Association::cell);
+  std::erase_if(dropped, [](const XmlField& f) { return is_ghost_name(f.field.name); });
+  if (const size_t n = dropped.size())
     parts.notes.emplace_back("crop", fmt::format("{} cell fields were left out: cells do not survive a stride", n));
 }
 

@@ -12,11 +12,8 @@ namespace sg {
 namespace vtk {
 namespace {
 
-constexpr std::pair<std::string_view, std::string_view> elements[] = {{"vti", "ImageData"},
-                                                                      {"vtr", "RectilinearGrid"},
-                                                                      {"vts", "StructuredGrid"},
-                                                                      {"vtu", "UnstructuredGrid"},
-                                                                      {"vtp", "PolyData"}};
+constexpr std::pair<std::string_view, std::string_view> elements[] = {
+    {"vti", "ImageData"}, {"vtr", "RectilinearGrid"}, {"vts", "StructuredGrid"}, {"vtu", "UnstructuredGrid"}, {"vtp", "PolyData"}};
 
 std::string three(Vec3 v) { return fmt::format("{} {} {}", exact_number(v.x), exact_number(v.y), exact_number(v.z)); }
 
@@ -155,7 +152,8 @@ UnstructuredMesh as_unstructured(const Mesh& mesh) {
   m.types = Array::make<uint8_t>(s.cell_count(), 1, &out);
   auto add = [&](const CellArray& cells, size_t size, CellType one, CellType other) {
     const CellsView v = cells_view(cells);
-    for (size_t i = 0; i < v.count; ++i) *out++ = uint8_t(v.size(i) == size ? one : v.size(i) == 4 && one == CellType::triangle ? CellType::quad : other);
+    for (size_t i = 0; i < v.count; ++i)
+      *out++ = uint8_t(v.size(i) == size ? one : v.size(i) == 4 && one == CellType::triangle ? CellType::quad : other);
   };
   add(s.vertices, 1, CellType::vertex, CellType::poly_vertex);
   add(s.lines, 2, CellType::line, CellType::poly_line);
