@@ -133,7 +133,7 @@ void XmlWriter::inline_binary(const Array& a) {
   text_ += '\n';
 }
 
-void XmlWriter::array(std::string_view name, const Array& given, bool with_tuples) {
+void XmlWriter::array(std::string_view name, const Array& given, bool with_tuples, std::string_view unit) {
   check();
   const Array a = given.made_packed();
   XmlAttributes attributes{
@@ -155,7 +155,11 @@ void XmlWriter::array(std::string_view name, const Array& given, bool with_tuple
     attributes.emplace_back("format", "appended");
     attributes.emplace_back("offset", std::to_string(b.offset));
     blocks_.push_back(std::move(b));
-    open("DataArray", attributes, true);
+    open("DataArray", attributes, unit.empty());
+    if (unit.empty()) return;
+    open_.emplace_back("DataArray");
+    write_unit(unit);
+    end();
     return;
   }
   const bool text = encoding_ == Encoding::ascii;
@@ -163,7 +167,12 @@ void XmlWriter::array(std::string_view name, const Array& given, bool with_tuple
   begin("DataArray", attributes);
   if (text) text_ += format_numbers(a, size_t(a.components()) * std::max<size_t>(1, 12 / size_t(a.components())));
   else inline_binary(a);
+  if (!unit.empty()) write_unit(unit);
   end();
+}
+
+void XmlWriter::write_unit(std::string_view unit) {
+  text_ += fmt::format("<InformationKey name=\"UNITS_LABEL\" location=\"vtkDataArray\">{}</InformationKey>\n", escaped_xml(unit));
 }
 
 void XmlWriter::finish() {

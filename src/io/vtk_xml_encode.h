@@ -27,7 +27,8 @@ class XmlWriter {
 
   void begin(std::string_view element, const XmlAttributes& attributes = {});
   void end();
-  void array(std::string_view name, const Array& array, bool with_tuples = false);
+  /// `unit` goes where VTK keeps it (vtkDataArray::UNITS_LABEL).
+  void array(std::string_view name, const Array& array, bool with_tuples = false, std::string_view unit = {});
   /// Closes all elements, writes the appended bytes and puts the file in its place.
   void finish();
 
@@ -41,6 +42,7 @@ class XmlWriter {
   void write_base64(const std::byte* data, size_t n);
   void inline_binary(const Array& packed);
   void open(std::string_view element, const XmlAttributes& attributes, bool empty);
+  void write_unit(std::string_view unit);
   void flush();
   void check() const { context_.check(); }
 

@@ -47,6 +47,12 @@ Role role_of(pugi::xml_node data, std::string_view name) {
   return Role::none;
 }
 
+// VTK keeps it among the information of an array.
+std::string unit_of(pugi::xml_node array) {
+  const pugi::xml_node key = array.find_child_by_attribute("InformationKey", "name", "UNITS_LABEL");
+  return std::string(trim(key.child_value()));
+}
+
 // Orders of cells and weights of points shape the mesh, so they are read whatever fields are asked for.
 bool shapes_mesh(pugi::xml_node data, std::string_view name) {
   for (const char* attribute : {"HigherOrderDegrees", "RationalWeights"})
@@ -76,7 +82,7 @@ std::vector<XmlField> list_fields(const XmlRead& read, const std::vector<XmlPiec
   auto add = [&](const XmlPiece& piece, pugi::xml_node data, pugi::xml_node n) {
     std::string name = n.attribute("Name").value();
     const auto [type, components] = piece.file->number_type(n);
-    XmlField f{{name, association, {}, {}, role_of(data, name)}, type, components, {}};
+    XmlField f{{name, association, {}, unit_of(n), role_of(data, name)}, type, components, {}};
     if (name.empty()) {
       f.field.name = fmt::format("unnamed {}", fields.size());
       if (pieces.size() == 1) f.nodes.push_back(n);
@@ -166,7 +172,7 @@ FieldSet read_whole_fields(const XmlRead& read, pugi::xml_node parent) {
       if (n.attribute("NumberOfTuples")) count = parse_count(read.file, n, "NumberOfTuples");
       const Role role = role_of(data, name);
       if (name.empty()) name = fmt::format("unnamed {}", fields.size());
-      fields.add({std::move(name), Association::whole, read.file.array(n, count), {}, role});
+      fields.add({std::move(name), Association::whole, read.file.array(n, count), unit_of(n), role});
     }
   return fields;
 }

@@ -182,7 +182,7 @@ void write_fields(XmlWriter& xml, const Dataset& d, Association association, con
   if (!shape.empty()) attributes.emplace_back(shaping, std::string(shaping));
   xml.begin(point ? "PointData" : "CellData", attributes);
   for (const Field& f : d.fields())
-    if (f.association == association) xml.array(f.name, f.array);
+    if (f.association == association) xml.array(f.name, f.array, false, f.unit);
   if (!shape.empty() && !d.fields().find(shaping, association)) xml.array(shaping, shape.converted(ElementType::f64));
   if (!ghost.empty()) xml.array("vtkGhostType", ghost);
   xml.end();
@@ -192,7 +192,7 @@ void write_whole(XmlWriter& xml, const Dataset& d) {
   xml.begin("FieldData");
   if (d.time()) xml.array("TimeValue", Array::from_vector(std::vector<double>{*d.time()}), true);
   for (const Field& f : d.fields())
-    if (f.association == Association::whole) xml.array(f.name, f.array, true);
+    if (f.association == Association::whole) xml.array(f.name, f.array, true, f.unit);
   xml.end();
 }
 

@@ -97,3 +97,23 @@ TEST_CASE("vtk xml: surfaces and clouds are written as unstructured grids too") 
   write(temp("cloud.vtp"), make_dataset(cloud));
   CHECK(read(temp("cloud.vtp"))->as<SurfaceMesh>()->vertices.size() == 5);
 }
+
+TEST_CASE("vtk xml: units of fields go into the file and come back, in every encoding") {
+  DatasetParts p;
+  p.mesh = tetra_mesh(90);
+  p.fields.add({"T", Association::point, ramp<float>(93), "K", Role::none});
+  p.fields.add({"q", Association::cell, ramp<double>(90, 3), "W/m<2> & \"more\"", Role::none});
+  p.fields.add({"whole", Association::whole, numbers<double>({1, 2}), "s", Role::none});
+  p.fields.add({"plain", Association::cell, ramp<double>(90), {}, Role::none});
+  const DatasetPtr d = make_dataset(p);
+  for (const WriteOptions& o : every_option) {
+    CAPTURE(o.encoding);
+    CAPTURE(o.compression);
+    write(temp("units.vtu"), d, o);
+    const DatasetPtr back = read(temp("units.vtu"));
+    for (const Field& f : d->fields()) {
+      CHECK(back->fields().require(f.name).unit == f.unit);
+      CHECK(same(back->fields().require(f.name).array, f.array));
+    }
+  }
+}
