@@ -4,6 +4,7 @@
 #include "io/vtk_amr.h"
 
 #include <map>
+#include <set>
 
 #include "base/bytes.h"
 #include "base/text.h"
@@ -114,6 +115,7 @@ class AmrReader {
     parse_longs(file_, n, "amr_box", p.box.data(), 6);
     const std::string_view source = n.attribute("file").value();
     if (source.empty()) return;  // a patch that nobody wrote
+    if (!sources_.insert(source).second) file_.fail(fmt::format("names '{}' a second time", source), n, "each patch once");
     for (size_t a = 0; a < 3; ++a)
       if (std::abs(p.box[2 * a]) > 1ll << 40 || std::abs(p.box[2 * a + 1]) > 1ll << 40 || p.box[2 * a + 1] < p.box[2 * a] - 1)
         file_.fail(fmt::format("amr_box runs from {} to {} along {}", p.box[2 * a], p.box[2 * a + 1], "xyz"[a]), n);
@@ -237,6 +239,7 @@ class AmrReader {
   Context& context_;
   std::vector<Patch> patches_;
   std::vector<Vec3> spacings_;
+  std::set<std::string_view> sources_;
   std::vector<char> have_spacing_;
   std::vector<int> ratios_;
   std::map<size_t, Vec3> seen_;

@@ -59,7 +59,7 @@ bool decompress_block(Codec codec, const std::byte* src, size_t n, std::byte* ds
       return got >= 0 && size_t(got) == bytes;
     }
     case Codec::lzma: {
-      uint64_t memory = uint64_t(1) << 30;
+      uint64_t memory = uint64_t(128) << 20;  // the strongest preset needs 65 MiB; a damaged header asks for more
       size_t in = 0, out = 0;
       return lzma_stream_buffer_decode(&memory, 0, nullptr, reinterpret_cast<const uint8_t*>(src), &in, n, reinterpret_cast<uint8_t*>(dst),
                                        &out, bytes) == LZMA_OK &&

@@ -269,15 +269,16 @@ void add_hidden(FieldSet& fields, Association association, const Array& hidden) 
 
 void put_fields(const XmlRead& read, const Layout& l, const Side& side, DatasetParts& parts) {
   const std::vector<XmlField> fields = list_fields(read, l.pieces, side.element, side.association);
-  if (l.pieces.size() > 1) check_backed(l.pieces, {{}, ElementType::u8, 1, {l.pieces[0].node}}, product(side.grid.count) / 64);
+  if (l.pieces.size() > 1) check_backed(l.pieces, {{}, ElementType::u8, 1, {l.pieces[0].node}}, product(side.grid.count) / 8);
   const Owners owners = find_owners(l, side, fields);
   for (const XmlField& f : fields) {
     read.context.check();
     Field field = f.field;
     if (header_only(read, f)) {
+      check_backed(l.pieces, f, product(side.grid.count) / (l.pieces.size() > 1 ? 8 : 1));
       field.array = hollow(f.type, product(side.grid.count), f.components);
     } else {
-      if (l.pieces.size() > 1) check_backed(l.pieces, f, product(side.grid.count) / 64);
+      if (l.pieces.size() > 1) check_backed(l.pieces, f, product(side.grid.count) / 8);
       field.array = assembled(l, side, owners, f.type, f.components, [&](size_t i) {
         if (f.nodes[i]) return l.pieces[i].file->block(f.nodes[i], side.shares[i]->window);
         return hollow(f.type, side.shares[i]->window.tuples(), f.components);
@@ -330,34 +331,30 @@ void read_rectilinear(const XmlRead& read, DatasetParts& parts) {
   RectilinearGrid g;
   g.extent_start = l.start();
   Array* axes[3] = {&g.x, &g.y, &g.z};
+  std::vector<double> merged[3];
+  bool narrow = true;
   for (size_t p = 0; p < l.pieces.size(); ++p) {
     const XmlFile& file = *l.pieces[p].file;
     pugi::xml_node n = l.pieces[p].node.child("Coordinates").child("DataArray");
     for (size_t a = 0; a < 3; ++a, n = n.next_sibling("DataArray")) {
       if (!n) file.fail("has no three arrays of Coordinates", l.pieces[p].node, "the file is truncated or not complete");
-      const size_t dims = l.extents[p].points(a);
-      Window w{{dims, 1, 1}};
-      size_t at = 0;
-      if (l.point_shares[p]) {
-        const Share& s = *l.point_shares[p];
-        w.lo[0] = s.window.lo[a], w.count[0] = s.window.count[a], w.stride[0] = s.window.stride[a], at = s.at[a];
-      } else {
-        w.count[0] = 0;
-      }
-      const Array part = w.count[0] ? as_coordinates(file.block(n, w)) : Array();
+      if (!l.point_shares[p]) continue;  // gives cells only
+      const Share& s = *l.point_shares[p];
+      const Window w{{l.extents[p].points(a), 1, 1}, {s.window.lo[a], 0, 0}, {s.window.count[a], 1, 1}, {s.window.stride[a], 1, 1}};
+      const Array part = as_coordinates(file.block(n, w));
       if (l.pieces.size() == 1) {
         *axes[a] = part;
         continue;
       }
       // Gaps between pieces would leave coordinates unknown, so NaN: validate() names them.
-      const size_t total = l.points.count[a];
-      double* out = nullptr;
-      Array merged = Array::make<double>(total, 1, &out);
-      for (size_t i = 0; i < total; ++i) out[i] = p > 0 ? axes[a]->get(i) : std::numeric_limits<double>::quiet_NaN();
-      for (size_t i = 0; i < part.count(); ++i) out[at + i] = part.get(i);
-      *axes[a] = merged;
-      if (p + 1 == l.pieces.size() && part.type() == ElementType::f32) *axes[a] = merged.converted(ElementType::f32);
+      merged[a].resize(l.points.count[a], std::numeric_limits<double>::quiet_NaN());
+      for (size_t i = 0; i < part.count(); ++i) merged[a][s.at[a] + i] = part.get(i);
+      narrow = narrow && part.type() == ElementType::f32;
     }
+  }
+  for (size_t a = 0; a < 3 && l.pieces.size() > 1; ++a) {
+    *axes[a] = Array::from_vector(std::move(merged[a]));
+    if (narrow) *axes[a] = axes[a]->converted(ElementType::f32);
   }
   parts.mesh = g;
   put_all_fields(read, l, parts);
@@ -378,7 +375,7 @@ void read_curvilinear(const XmlRead& read, DatasetParts& parts) {
   if (!l.pieces.empty()) {
     const ElementType type = wide ? ElementType::f64 : ElementType::f32;
     const Side side{Association::point, "", l.points, l.point_shares, 0};
-    if (l.pieces.size() > 1) check_backed(l.pieces, {{}, type, 3, nodes}, product(l.points.count) / 64);
+    if (l.pieces.size() > 1) check_backed(l.pieces, {{}, type, 3, nodes}, product(l.points.count) / 8);
     g.points.xyz = assembled(l, side, {}, type, 3, [&](size_t i) {
       return as_coordinates(l.pieces[i].file->block(nodes[i], side.shares[i]->window)).converted(type);
     });
