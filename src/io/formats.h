@@ -103,5 +103,18 @@ bool sniff_openfoam_folder(const std::string& path);
 bool sniff_openfoam_control(std::span<const std::byte> head);
 Data read_openfoam(const std::string& path, const ReadOptions& options, Context& context);
 std::vector<double> times_openfoam(const std::string& path, const ReadOptions& options, Context& context);
+bool sniff_vtk_parallel(std::span<const std::byte> head);
+Data read_vtk_parallel(const std::string& path, const ReadOptions& options, Context& context);
+bool sniff_vtk_multiblock(std::span<const std::byte> head);
+Data read_vtk_multiblock(const std::string& path, const ReadOptions& options, Context& context);
+/// Parts go into a folder of the file's name without its extension.
+void write_vtk_multiblock(const std::string& path, const Data& data, const WriteOptions& options, Context& context);
+bool sniff_pvd(std::span<const std::byte> head);
+Data read_pvd(const std::string& path, const ReadOptions& options, Context& context);
+std::vector<double> times_of_pvd(const std::string& path, const ReadOptions& options, Context& context);
+bool sniff_vtk_amr(std::span<const std::byte> head);
+Data read_vtk_amr(const std::string& path, const ReadOptions& options, Context& context);
+/// Patches go into a folder of the file's name without its extension.
+void write_vtk_amr(const std::string& path, const Data& data, const WriteOptions& options, Context& context);
 
 }  // namespace sg

@@ -45,15 +45,15 @@ namespace {
 
 constexpr int most_points = 4096;  // of cells of one size; larger ones are worth their offsets
 
-template <class T>
+template <class T, bool BIG>
 int uniform_size_of(const std::byte* p, size_t n) {
-  const T size = load<T>(p);
+  const T size = load<T>(p, BIG);
   if (size <= 0 || size > most_points || size_t(size) > size_t(std::numeric_limits<T>::max()) / n) return 0;
   const bool uniform = parallel_reduce(
       n, 1 << 16, true,
       [&](size_t begin, size_t end) {
         T odd = 0, want = T(begin) * size;
-        for (size_t i = begin; i < end; ++i) odd |= load<T>(p + i * sizeof(T)) ^ (want += size);
+        for (size_t i = begin; i < end; ++i) odd |= load<T>(p + i * sizeof(T), BIG) ^ (want += size);
         return odd == 0;
       },
       [](bool a, bool b) { return a && b; });
@@ -62,10 +62,10 @@ int uniform_size_of(const std::byte* p, size_t n) {
 
 }  // namespace
 
-int uniform_size(const std::byte* p, ElementType type, size_t n) {
+int uniform_size(const std::byte* p, ElementType type, size_t n, bool big_endian) {
   if (n == 0) return 0;
-  if (type == ElementType::i64) return uniform_size_of<int64_t>(p, n);
-  if (type == ElementType::i32) return uniform_size_of<int32_t>(p, n);
+  if (type == ElementType::i64) return big_endian ? uniform_size_of<int64_t, true>(p, n) : uniform_size_of<int64_t, false>(p, n);
+  if (type == ElementType::i32) return big_endian ? uniform_size_of<int32_t, true>(p, n) : uniform_size_of<int32_t, false>(p, n);
   return 0;
 }
 
@@ -308,6 +308,42 @@ CellArray concatenated_cells(std::span<const CellArray> parts, std::span<const s
     for (size_t c = 0; c < v.count; ++c, ++offsets) offsets[1] = offsets[0] + int64_t(v.size(c));
   }
   return r;
+}
+
+void set_weights(UnstructuredMesh& mesh, const Field& field) {
+  if (field.components() != 1 || field.array.count() != mesh.points.count())
+    fail_data(fmt::format("the rational weights '{}' have {} components", field.name, field.components()), {}, "one number a point");
+  mesh.weights = field.array.converted(ElementType::f64);
+  const double* w = mesh.weights.view<double>().data;
+  if (!all_of(mesh.weights.count(), [&](size_t i) { return std::isfinite(w[i]); }))
+    fail_data(fmt::format("the rational weights '{}' are not all finite", field.name));
+}
+
+void set_degrees(UnstructuredMesh& mesh, const Field& field) {
+  if (field.components() != 3 || field.array.count() != mesh.cells.size())
+    fail_data(fmt::format("the orders of cells '{}' have {} components", field.name, field.components()), {}, "three numbers a cell");
+  const size_t n = field.array.count();
+  uint8_t* out = nullptr;
+  Array degrees = Array::make<uint8_t>(n, 3, &out);
+  dispatch(field.array, [&](auto v) {
+    for (size_t i = 0; i < n; ++i)
+      for (int c = 0; c < 3; ++c) {
+        const auto d = double(v(i, c));
+        if (!(d >= 0 && d <= 255) || d != std::floor(d))
+          fail_data(fmt::format("cell {} has the order {}", i, d), fmt::format("array '{}'", field.name), "a whole number from 0 to 255");
+        out[3 * i + size_t(c)] = uint8_t(d);
+      }
+  });
+  mesh.degrees = degrees;
+}
+
+Array hollow(ElementType type, size_t tuples, int components) {
+  std::byte* one = nullptr;
+  const Buffer b = Buffer::allocate(64, &one);
+  std::memset(one, 0, 64);
+  if (const double nan = std::numeric_limits<double>::quiet_NaN(); type == ElementType::f64) std::memcpy(one, &nan, sizeof nan);
+  if (const float nan = std::numeric_limits<float>::quiet_NaN(); type == ElementType::f32) std::memcpy(one, &nan, sizeof nan);
+  return Array(b, type, tuples, components, 0, 0, 0);
 }
 
 bool is_ghost_name(std::string_view name) { return name == "vtkGhostType" || name == "vtkGhostLevels"; }

@@ -18,7 +18,7 @@ Array as_coordinates(const Array& a);
 /// Throws Error(data) when the ends run backwards or out of the ids.
 CellArray cells_from_ends(const Array& ends, const Array& connectivity);
 /// The size k of all cells when the n numbers at p, aligned or not, are k, 2k, 3k, ...; else 0.
-int uniform_size(const std::byte* p, ElementType type, size_t n);
+int uniform_size(const std::byte* p, ElementType type, size_t n, bool big_endian = false);
 /// Cells of one size.
 CellArray cells_of_size(int size, size_t n, const Array& connectivity);
 /// The same from n+1 (or no) numbers at which each cell's ids begin.
@@ -50,6 +50,14 @@ Array concatenated(std::span<const Array> parts);
 Array concatenated_indices(std::span<const Array> parts, std::span<const size_t> shift);
 /// Cells of several pieces as one list; point ids of piece i are shifted by shift[i].
 CellArray concatenated_cells(std::span<const CellArray> parts, std::span<const size_t> shift);
+
+/// Rational weights of Bezier cells, and orders of Lagrange and Bezier cells along their axes, from a field. Fields that are not of
+/// that kind (components, values) throw Error(data).
+void set_weights(UnstructuredMesh& mesh, const Field& field);
+void set_degrees(UnstructuredMesh& mesh, const Field& field);
+
+/// An array of that type and size without numbers of its own: all NaN, or 0 for integers. What header_only leaves of a field.
+Array hollow(ElementType type, size_t tuples, int components);
 
 /// Moves vtkGhostType and vtkGhostLevels from the fields to the ghost arrays.
 void take_ghosts(DatasetParts& parts);

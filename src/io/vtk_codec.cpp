@@ -19,7 +19,8 @@ std::string_view codec_name(Codec codec) {
 
 namespace {
 
-constexpr int zlib_level = 5;
+// On a smooth field of 64 MB level 1 gives 59 % in 0.57 s, level 5 57 % in 1.6 s (zlib at level 5, as VTK writes: 61 % in 3.3 s).
+constexpr int zlib_level = 1;
 constexpr uint32_t lzma_level = 5;
 
 // One per thread: making them costs more than a small block.
@@ -58,7 +59,7 @@ bool decompress_block(Codec codec, const std::byte* src, size_t n, std::byte* ds
       return got >= 0 && size_t(got) == bytes;
     }
     case Codec::lzma: {
-      uint64_t memory = uint64_t(1) << 30;
+      uint64_t memory = uint64_t(128) << 20;  // the strongest preset needs 65 MiB; a damaged header asks for more
       size_t in = 0, out = 0;
       return lzma_stream_buffer_decode(&memory, 0, nullptr, reinterpret_cast<const uint8_t*>(src), &in, n, reinterpret_cast<uint8_t*>(dst),
                                        &out, bytes) == LZMA_OK &&

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Legacy VTK files ("# vtk DataFile Version 1.0" to 5.1): a header of three lines, then keywords with their numbers.
 // Format: VTK User's Guide, "Simple legacy formats"; versions 5.x as VTK 9 writes them.
+#include "base/bytes.h"
 #include "base/text.h"
 #include "io/formats.h"
 #include "io/vtk_cells.h"
@@ -68,7 +69,9 @@ class LegacyReader {
   CellArray cell_list(std::string_view keyword);
   CellArray surface_cells(std::string_view keyword) { return need(Kind::surface, keyword), cell_list(keyword); }
   void simple(size_t components, Role role);
-  void add(std::string name, Association association, Array array, Role role);
+  bool is_wanted(const std::string& name) const;
+  void add(std::string name, Association association, const std::string& type, size_t tuples, size_t components, std::string_view keyword,
+           Role role);
   size_t tuples();
   Mesh mesh();
 
@@ -85,6 +88,8 @@ class LegacyReader {
   CellArray cells_;
   bool have_cells_ = false;
   Array types_;
+  std::optional<CellType> one_type_;
+  size_t type_count_ = 0;
   SurfaceMesh surface_;
   Association association_ = Association::whole;
   size_t attribute_count_ = 0;
@@ -214,11 +219,20 @@ CellArray LegacyReader::cell_list(std::string_view keyword) {
   if (equal_ignoring_case(text_.peek(), "OFFSETS")) {
     text_.word();
     const std::string offset_type(text_.need_word("the type of the offsets"));
-    const Array starts = text_.array(offset_type, n, 1, "OFFSETS");
+    // Cells of one size: one look at the offsets where they lie, and they need not become an array.
+    ElementType type{};
+    const std::byte* p = n > 1 ? text_.in_place(offset_type, n, type) : nullptr;
+    const size_t width = element_size(type);
+    const bool from_zero = p && std::all_of(p, p + width, [](std::byte b) { return b == std::byte(0); });
+    const int fixed = from_zero ? uniform_size(p + width, type, n - 1, true) : 0;
+    Array starts;
+    if (fixed) text_.skip_array(offset_type, n, 1, "OFFSETS");
+    else starts = text_.array(offset_type, n, 1, "OFFSETS");
     if (!equal_ignoring_case(text_.need_word("CONNECTIVITY"), "CONNECTIVITY")) text_.fail("CONNECTIVITY should stand here");
     const std::string id_type(text_.need_word("the type of the connectivity"));
     const Array ids = text_.array(id_type, size, 1, "CONNECTIVITY");
-    return with_context(fmt::format("taking {} apart", keyword), [&] { return cells_from_starts(starts, ids); });
+    return with_context(fmt::format("taking {} apart", keyword),
+                        [&] { return fixed ? cells_of_size(fixed, n - 1, ids) : cells_from_starts(starts, ids); });
   }
   const Array records = text_.array("int", size, 1, keyword);
   return with_context(fmt::format("taking {} apart", keyword), [&] { return cells_from_records(records, n); });
@@ -227,14 +241,36 @@ CellArray LegacyReader::cell_list(std::string_view keyword) {
 void LegacyReader::cell_types() {
   need(Kind::unstructured, "CELL_TYPES");
   const size_t n = text_.count("the number of cells");
-  types_ = text_.array("int", n, 1, "CELL_TYPES");
+  // All of one type: the numbers need not become an array.
+  ElementType type{};
+  if (const std::byte* p = n > 0 ? text_.in_place("int", n, type) : nullptr)
+    if (n == 1 || std::memcmp(p, p + 4, (n - 1) * 4) == 0)
+      if (const uint32_t t = load<uint32_t>(p, true); t < 256 && CellType(t) != CellType::polyhedron) one_type_ = CellType(t);
+  if (one_type_) text_.skip_array("int", n, 1, "CELL_TYPES"), type_count_ = n;
+  else types_ = text_.array("int", n, 1, "CELL_TYPES"), type_count_ = types_.count();
 }
 
-void LegacyReader::add(std::string name, Association association, Array array, Role role) {
-  if (!is_ghost_name(name) && !options_.fields.empty() &&
-      std::find(options_.fields.begin(), options_.fields.end(), name) == options_.fields.end())
+// Ghosts, weights and orders belong to the mesh.
+static bool shapes_mesh(const std::string& name) {
+  return is_ghost_name(name) || name == "RationalWeights" || name == "HigherOrderDegrees";
+}
+
+bool LegacyReader::is_wanted(const std::string& name) const {
+  return shapes_mesh(name) || options_.fields.empty() ||
+         std::find(options_.fields.begin(), options_.fields.end(), name) != options_.fields.end();
+}
+
+void LegacyReader::add(std::string name, Association association, const std::string& type, size_t tuples, size_t components,
+                       std::string_view keyword, Role role) {
+  const std::string what = fmt::format("{} '{}'", keyword, name);
+  if (!is_wanted(name)) {
+    text_.skip_array(type, tuples, components, what);
     return;
-  parts_.fields.add({std::move(name), association, std::move(array), {}, role});
+  }
+  const bool hollow_one = options_.header_only && text_.binary && !shapes_mesh(name);
+  Array a = hollow_one ? hollow(text_.skip_array(type, tuples, components, what), tuples, int(components))
+                       : text_.array(type, tuples, components, what);
+  parts_.fields.add({std::move(name), association, std::move(a), {}, role});
 }
 
 size_t LegacyReader::tuples() {
@@ -249,8 +285,7 @@ void LegacyReader::scalars() {
   const size_t components = equal_ignoring_case(text_.peek(), "LOOKUP_TABLE") ? 1 : text_.count("the number of components or LOOKUP_TABLE");
   if (!equal_ignoring_case(text_.need_word("LOOKUP_TABLE"), "LOOKUP_TABLE")) text_.fail("LOOKUP_TABLE should stand here");
   text_.need_word("the name of the lookup table");
-  const std::string what = fmt::format("SCALARS '{}'", name);
-  add(std::move(name), association_, text_.array(type, tuples(), components, what), Role::scalars);
+  add(std::move(name), association_, type, tuples(), components, "SCALARS", Role::scalars);
 }
 
 void LegacyReader::color_scalars() {
@@ -265,7 +300,7 @@ void LegacyReader::color_scalars() {
     for (size_t i = 0; i < v.count * components; ++i) out[i] = uint8_t(std::clamp(255.0f * v.data[i] + 0.5f, 0.0f, 255.0f));
     a = bytes;  // not before: v looks into the old numbers
   }
-  add(std::move(name), association_, a, Role::colors);
+  if (is_wanted(name)) parts_.fields.add({std::move(name), association_, a, {}, Role::colors});
 }
 
 void LegacyReader::lookup_table() {
@@ -277,16 +312,14 @@ void LegacyReader::lookup_table() {
 void LegacyReader::simple(size_t components, Role role) {
   std::string name = decode_name(text_.need_word("the name of the array"));
   const std::string type(text_.need_word("the type of the array"));
-  const std::string what = fmt::format("array '{}'", name);
-  add(std::move(name), association_, text_.array(type, tuples(), components, what), role);
+  add(std::move(name), association_, type, tuples(), components, "array", role);
 }
 
 void LegacyReader::texture_coordinates() {
   std::string name = decode_name(text_.need_word("the name of the texture coordinates"));
   const size_t components = text_.count("the number of texture coordinates per point");
   const std::string type(text_.need_word("the type of the texture coordinates"));
-  const std::string what = fmt::format("TEXTURE_COORDINATES '{}'", name);
-  add(std::move(name), association_, text_.array(type, tuples(), components, what), Role::tcoords);
+  add(std::move(name), association_, type, tuples(), components, "TEXTURE_COORDINATES", Role::tcoords);
 }
 
 void LegacyReader::field() {
@@ -303,14 +336,13 @@ void LegacyReader::field() {
       text_.skip_strings(strings);
       continue;
     }
-    const Array a = text_.array(type, n, components, fmt::format("array '{}'", name));
     if (association_ == Association::whole && n == 1 && components == 1 && (name == "TimeValue" || name == "TIME")) {
-      parts_.time = a.get(0);
+      parts_.time = text_.array(type, n, components, fmt::format("array '{}'", name)).get(0);
       continue;
     }
     const bool fits = association_ == Association::whole || n == attribute_count_;
     if (!fits) context_.warn(fmt::format("array '{}' has {} tuples, not {}: kept as a field of the whole", name, n, attribute_count_));
-    add(std::move(name), fits ? association_ : Association::whole, a, Role::none);
+    add(std::move(name), fits ? association_ : Association::whole, type, n, components, "array", Role::none);
   }
 }
 
@@ -343,9 +375,10 @@ Mesh LegacyReader::mesh() {
       if (!have_cells_ && points_.count() > 0) text_.fail("the dataset has no CELLS", "the file is truncated");
       UnstructuredMesh m;
       m.points = points_, m.cells = cells_;
-      if (types_.count() != cells_.size())
-        text_.fail(fmt::format("{} CELL_TYPES for {} CELLS", types_.count(), cells_.size()), "the file is truncated or the count is wrong");
-      set_types(m, types_);
+      if (type_count_ != cells_.size())
+        text_.fail(fmt::format("{} CELL_TYPES for {} CELLS", type_count_, cells_.size()), "the file is truncated or the count is wrong");
+      if (one_type_) m.single_type = *one_type_;
+      else set_types(m, types_);
       if (!m.types.empty()) expand_polyhedra(m);
       return m;
     }
@@ -372,6 +405,10 @@ DatasetPtr LegacyReader::read() {
     (this->*k->read)();
   }
   parts_.mesh = mesh();
+  if (auto* m = std::get_if<UnstructuredMesh>(&parts_.mesh)) {
+    if (const Field* f = parts_.fields.find("RationalWeights", Association::point)) set_weights(*m, *f);
+    if (const Field* f = parts_.fields.find("HigherOrderDegrees", Association::cell)) set_degrees(*m, *f);
+  }
   take_ghosts(parts_);
   return make_dataset(std::move(parts_));
 }

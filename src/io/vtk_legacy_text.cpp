@@ -110,36 +110,68 @@ Array LegacyText::bits(size_t tuples, size_t components, std::string_view what) 
   return a;
 }
 
+ElementType LegacyText::number_type(std::string_view type_name, std::string_view what) const {
+  // Ids are written as int, whatever their size in memory.
+  if (equal_ignoring_case(type_name, "vtkidtype")) return binary ? ElementType::i32 : ElementType::i64;
+  if (equal_ignoring_case(type_name, "bit")) return ElementType::u8;
+  std::string_view plain = type_name;  // "vtktypeuint64" is "uint64"
+  if (plain.size() > 7 && equal_ignoring_case(plain.substr(0, 7), "vtktype")) plain.remove_prefix(7);
+  ElementType type{};
+  if (!parse_element_type(plain, type))
+    fail(fmt::format("{} has the unknown type '{}'", what, type_name.substr(0, 40)),
+         "known are: bit, char, short, int, long, their unsigned forms, float, double, vtkIdType, vtktypeint64");
+  return type;
+}
+
 Array LegacyText::array(std::string_view type_name, size_t tuples, size_t components, std::string_view what) {
   if (components == 0 || components > 1u << 20) fail(fmt::format("{} has {} components", what, components));
+  const ElementType type = number_type(type_name, what);
   if (binary) line();
   Array a;
-  ElementType type = ElementType::f32;
-  const bool ids = equal_ignoring_case(type_name, "vtkidtype");
   if (equal_ignoring_case(type_name, "bit")) {
     a = bits(tuples, components, what);
+  } else if (!binary) {
+    a = text_array(type, tuples, components, what);
   } else {
-    std::string_view plain = type_name;  // "vtktypeuint64" is "uint64"
-    if (plain.size() > 7 && equal_ignoring_case(plain.substr(0, 7), "vtktype")) plain.remove_prefix(7);
-    if (!parse_element_type(plain, type))
-      fail(fmt::format("{} has the unknown type '{}'", what, type_name.substr(0, 40)),
-           "known are: bit, char, short, int, long, their unsigned forms, float, double, vtkIdType, vtktypeint64");
-    if (!binary) {
-      a = text_array(type, tuples, components, what);
-    } else {
-      if (ids) type = ElementType::i32;  // that is how they are written, whatever their size in memory
-      uint64_t n = 0, bytes = 0;
-      if (!multiply(tuples, components, n) || !multiply(n, element_size(type), bytes))
-        fail(fmt::format("{} has {} x {} numbers", what, tuples, components));
-      const std::byte* from = take(bytes, what);
-      std::byte* out = nullptr;
-      a = Array::make_raw(type, tuples, int(components), &out);
-      swap_bytes_copy(out, from, n, element_size(type));
-      if (ids) a = a.converted(ElementType::i64);
-    }
+    uint64_t n = 0, bytes = 0;
+    if (!multiply(tuples, components, n) || !multiply(n, element_size(type), bytes))
+      fail(fmt::format("{} has {} x {} numbers", what, tuples, components));
+    const std::byte* from = take(bytes, what);
+    std::byte* out = nullptr;
+    a = Array::make_raw(type, tuples, int(components), &out);
+    read_swapped(file_, size_t(from - file_.data()), n, element_size(type), out);
+    if (equal_ignoring_case(type_name, "vtkidtype")) a = a.converted(ElementType::i64);
   }
   if (equal_ignoring_case(peek(), "METADATA")) word(), skip_metadata();
   return a;
+}
+
+ElementType LegacyText::skip_array(std::string_view type_name, size_t tuples, size_t components, std::string_view what) {
+  if (components == 0 || components > 1u << 20) fail(fmt::format("{} has {} components", what, components));
+  const ElementType type = number_type(type_name, what);
+  const bool bit = equal_ignoring_case(type_name, "bit");
+  uint64_t n = 0, bytes = 0;
+  if (!multiply(tuples, components, n) || !multiply(n, element_size(type), bytes))
+    fail(fmt::format("{} has {} x {} numbers", what, tuples, components));
+  if (binary) {
+    line();
+    take(bit ? n / 8 + (n % 8 != 0) : bytes, what);
+  } else {
+    for (uint64_t i = 0; i < n; ++i)
+      if (word().empty()) fail(fmt::format("{}: the file ends after {} of {} numbers", what, i, n), "the file is truncated");
+  }
+  if (equal_ignoring_case(peek(), "METADATA")) word(), skip_metadata();
+  return equal_ignoring_case(type_name, "vtkidtype") ? ElementType::i64 : type;
+}
+
+const std::byte* LegacyText::in_place(std::string_view type_name, size_t n, ElementType& type) const {
+  if (!binary || equal_ignoring_case(type_name, "bit")) return nullptr;
+  type = number_type(type_name, "an array");
+  LegacyText ahead = *this;
+  ahead.line();
+  uint64_t bytes = 0;
+  if (!multiply(n, element_size(type), bytes) || bytes > all_.size() - ahead.at_) return nullptr;
+  return file_.data() + ahead.at_;
 }
 
 void LegacyText::skip_metadata() {

@@ -32,6 +32,11 @@ class LegacyText {
   /// `tuples` x `components` numbers of a legacy type ("float", "vtktypeint64", "bit", "vtkIdType"). Binary numbers begin
   /// on the next line. A METADATA block behind them is skipped.
   Array array(std::string_view type, size_t tuples, size_t components, std::string_view what);
+  /// Passes over such an array; its type. Binary numbers are not touched.
+  ElementType skip_array(std::string_view type, size_t tuples, size_t components, std::string_view what);
+  /// Where `n` binary big-endian numbers of that type would begin that array() reads next, and their type; null when they are text
+  /// or too few. The position stays.
+  const std::byte* in_place(std::string_view type, size_t n, ElementType& number_type) const;
   /// Skips an array of strings.
   void skip_strings(size_t n);
   /// Behind the word METADATA: its lines up to an empty one.
@@ -40,6 +45,7 @@ class LegacyText {
   [[noreturn]] void fail(std::string problem, std::string hint = {}) const;
 
  private:
+  ElementType number_type(std::string_view type, std::string_view what) const;
   Array bits(size_t tuples, size_t components, std::string_view what);
   Array text_array(ElementType type, size_t tuples, size_t components, std::string_view what);
   const std::byte* take(uint64_t bytes, std::string_view what);

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cstdlib>
 
+#include "base/bytes.h"
 #include "base/parallel.h"
 
 namespace sg::vtk {
@@ -187,6 +188,13 @@ std::string format_numbers(const Array& a, size_t per_line) {
   std::string text;
   for (const std::string& s : parts) text += s;
   return text;
+}
+
+void read_swapped(const MappedFile& file, size_t offset, size_t n, size_t size, std::byte* out) {
+  parallel_for(n, (size_t(1) << 19) / size, [&](size_t begin, size_t end) {
+    file.copy_to(out + begin * size, offset + begin * size, (end - begin) * size);
+    swap_bytes(out + begin * size, end - begin, size);
+  });
 }
 
 }  // namespace sg::vtk

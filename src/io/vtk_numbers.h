@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "base/file.h"
 #include "data/array.h"
 
 namespace sg::vtk {
@@ -25,5 +26,9 @@ size_t count_words(std::string_view text);
 
 /// The numbers [begin, end) as text, `per_line` on a line, in the shortest form that reads back as the same number.
 std::string format_numbers(const Array& packed, size_t per_line);
+
+/// n numbers of `size` bytes in big-endian order, from byte `offset` of the file: read, not looked at where they are mapped, so that
+/// they cost their own memory only.
+void read_swapped(const MappedFile& file, size_t offset, size_t n, size_t size, std::byte* out);
 
 }  // namespace sg::vtk

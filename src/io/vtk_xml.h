@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // An open VTK XML file: its elements, and the arrays that they describe in any encoding.
 #pragma once
+#include <array>
 #include <optional>
 #include <pugixml.hpp>
 #include <string>
@@ -12,6 +13,16 @@
 #include "io/vtk_codec.h"
 
 namespace sg::vtk {
+
+/// Part of a lattice of dims[0] x dims[1] x dims[2] tuples: count[a] of them along each axis, from lo[a] on, every stride[a]-th.
+struct Window {
+  std::array<size_t, 3> dims{1, 1, 1}, lo{0, 0, 0}, count{1, 1, 1}, stride{1, 1, 1};
+  bool whole() const { return count == dims; }
+  size_t tuples() const { return count[0] * count[1] * count[2]; }
+};
+
+/// The name of the root's type in the first bytes of a VTK XML file ("ImageData", "Collection"); "" when it is none.
+std::string_view xml_type(std::string_view head);
 
 class XmlFile {
  public:
@@ -26,6 +37,13 @@ class XmlFile {
   /// The numbers of a DataArray. With `tuples` there must be at least as many (more are dropped), without all there are.
   /// Little-endian uncompressed appended bytes are not copied when they lie on multiples of the element size.
   Array array(pugi::xml_node element, std::optional<uint64_t> tuples) const;
+  /// The part of a lattice that `window` names. Of uncompressed raw bytes only those rows are read, of compressed ones only the
+  /// blocks with such rows are unpacked; other encodings are read whole.
+  Array block(pugi::xml_node element, const Window& window) const;
+  /// No array of this file can hold more bytes.
+  uint64_t most_bytes() const;
+  /// Type and components of a DataArray, as array() will give them. Throws Error(data) for unknown ones.
+  std::pair<ElementType, int> number_type(pugi::xml_node element) const;
   /// Where `tuples` one-component numbers lie in the file as they are (uncompressed, raw, little-endian), on any byte; null when
   /// they do not. For a look that needs no array.
   const std::byte* in_place(pugi::xml_node element, uint64_t tuples, ElementType& type) const;
@@ -38,11 +56,16 @@ class XmlFile {
  private:
   struct Wanted;
   struct Source;
+  struct BlockTable;
   void parse();
   void parse_elements(std::string_view head, std::string_view tail);
   std::string_view text_of(pugi::xml_node element, std::string& joined) const;
   void read_root();
   Source source(pugi::xml_node element) const;
+  Wanted wanted(pugi::xml_node element, std::optional<uint64_t> tuples) const;
+  BlockTable block_table(const Wanted& want, const Source& source) const;
+  Array raw_window(const Wanted& want, const std::byte* numbers, const Window& window) const;
+  Array compressed_window(const Wanted& want, const Source& source, const Window& window) const;
   Array plain(const Wanted& want, const Source& source) const;
   Array compressed(const Wanted& want, const Source& source) const;
   Array text(const Wanted& want) const;

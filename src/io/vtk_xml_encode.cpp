@@ -12,7 +12,9 @@ constexpr size_t block_bytes = size_t(1) << 18;
 constexpr uint64_t alignment = 64;
 constexpr size_t header_bytes = 8;  // header_type UInt64
 
-std::string escaped(std::string_view s) {
+}  // namespace
+
+std::string escaped_xml(std::string_view s) {
   std::string r;
   for (const char c : s) {
     switch (c) {
@@ -27,6 +29,8 @@ std::string escaped(std::string_view s) {
   }
   return r;
 }
+
+namespace {
 
 std::string_view vtk_type(ElementType t) {
   constexpr std::string_view names[] = {"UInt8", "Int8", "UInt16", "Int16", "UInt32", "Int32", "UInt64", "Int64", "Float32", "Float64"};
@@ -61,7 +65,7 @@ void XmlWriter::open(std::string_view element, const XmlAttributes& attributes, 
   text_.append(2 * open_.size(), ' ');
   text_ += '<';
   text_ += element;
-  for (const auto& [name, value] : attributes) text_ += fmt::format(" {}=\"{}\"", name, escaped(value));
+  for (const auto& [name, value] : attributes) text_ += fmt::format(" {}=\"{}\"", name, escaped_xml(value));
   if (element == "VTKFile" && codec_ != Codec::none) text_ += fmt::format(" compressor=\"{}\"", codec_name(codec_));
   text_ += empty ? "/>\n" : ">\n";
   if (text_.size() > 1 << 20 && encoding_ != Encoding::appended) flush();
@@ -129,7 +133,7 @@ void XmlWriter::inline_binary(const Array& a) {
   text_ += '\n';
 }
 
-void XmlWriter::array(std::string_view name, const Array& given, bool with_tuples) {
+void XmlWriter::array(std::string_view name, const Array& given, bool with_tuples, std::string_view unit) {
   check();
   const Array a = given.made_packed();
   XmlAttributes attributes{
@@ -151,7 +155,11 @@ void XmlWriter::array(std::string_view name, const Array& given, bool with_tuple
     attributes.emplace_back("format", "appended");
     attributes.emplace_back("offset", std::to_string(b.offset));
     blocks_.push_back(std::move(b));
-    open("DataArray", attributes, true);
+    open("DataArray", attributes, unit.empty());
+    if (unit.empty()) return;
+    open_.emplace_back("DataArray");
+    write_unit(unit);
+    end();
     return;
   }
   const bool text = encoding_ == Encoding::ascii;
@@ -159,7 +167,12 @@ void XmlWriter::array(std::string_view name, const Array& given, bool with_tuple
   begin("DataArray", attributes);
   if (text) text_ += format_numbers(a, size_t(a.components()) * std::max<size_t>(1, 12 / size_t(a.components())));
   else inline_binary(a);
+  if (!unit.empty()) write_unit(unit);
   end();
+}
+
+void XmlWriter::write_unit(std::string_view unit) {
+  text_ += fmt::format("<InformationKey name=\"UNITS_LABEL\" location=\"vtkDataArray\">{}</InformationKey>\n", escaped_xml(unit));
 }
 
 void XmlWriter::finish() {

@@ -15,6 +15,9 @@ namespace sg::vtk {
 /// Attributes in order; values are escaped.
 using XmlAttributes = std::vector<std::pair<std::string_view, std::string>>;
 
+/// With the characters that XML reserves written as it asks for.
+std::string escaped_xml(std::string_view text);
+
 /// Writes elements and arrays one after the other; appended bytes follow in finish(). The bytes of the file do not depend
 /// on the number of threads. Appended uncompressed arrays begin at multiples of 64 bytes of the file.
 class XmlWriter {
@@ -24,7 +27,8 @@ class XmlWriter {
 
   void begin(std::string_view element, const XmlAttributes& attributes = {});
   void end();
-  void array(std::string_view name, const Array& array, bool with_tuples = false);
+  /// `unit` goes where VTK keeps it (vtkDataArray::UNITS_LABEL).
+  void array(std::string_view name, const Array& array, bool with_tuples = false, std::string_view unit = {});
   /// Closes all elements, writes the appended bytes and puts the file in its place.
   void finish();
 
@@ -38,6 +42,7 @@ class XmlWriter {
   void write_base64(const std::byte* data, size_t n);
   void inline_binary(const Array& packed);
   void open(std::string_view element, const XmlAttributes& attributes, bool empty);
+  void write_unit(std::string_view unit);
   void flush();
   void check() const { context_.check(); }
 
@@ -50,5 +55,10 @@ class XmlWriter {
   std::vector<Block> blocks_;
   uint64_t appended_ = 0;
 };
+
+/// "vti", "vtr", "vts", "vtu", "vtp" or "vthb": the form that holds a mesh of that kind.
+std::string_view extension_for(const Mesh& mesh);
+/// One dataset to a file *.vti ... *.vtp; surfaces and point clouds to *.vtu too. Throws Error(usage) for another extension.
+void write_dataset(const std::string& path, const Dataset& dataset, const WriteOptions& options, Context& context);
 
 }  // namespace sg::vtk

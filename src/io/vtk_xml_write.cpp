@@ -4,6 +4,7 @@
 #include "base/text.h"
 #include "data/lattice.h"
 #include "io/formats.h"
+#include "io/vtk_cells.h"
 #include "io/vtk_xml_encode.h"
 
 namespace sg {
@@ -11,23 +12,8 @@ namespace sg {
 namespace vtk {
 namespace {
 
-struct KindRow {
-  std::string_view extension, element;
-};
-
-// The extension and the dataset element of each mesh kind; none for AMR.
-KindRow kind_row(const Mesh& mesh) {
-  struct Visitor {
-    KindRow operator()(const UniformGrid&) const { return {"vti", "ImageData"}; }
-    KindRow operator()(const RectilinearGrid&) const { return {"vtr", "RectilinearGrid"}; }
-    KindRow operator()(const CurvilinearGrid&) const { return {"vts", "StructuredGrid"}; }
-    KindRow operator()(const UnstructuredMesh&) const { return {"vtu", "UnstructuredGrid"}; }
-    KindRow operator()(const SurfaceMesh&) const { return {"vtp", "PolyData"}; }
-    KindRow operator()(const PointCloud&) const { return {"vtp", "PolyData"}; }
-    KindRow operator()(const AmrGrid&) const { return {}; }
-  };
-  return std::visit(Visitor{}, mesh);
-}
+constexpr std::pair<std::string_view, std::string_view> elements[] = {
+    {"vti", "ImageData"}, {"vtr", "RectilinearGrid"}, {"vts", "StructuredGrid"}, {"vtu", "UnstructuredGrid"}, {"vtp", "PolyData"}};
 
 std::string three(Vec3 v) { return fmt::format("{} {} {}", exact_number(v.x), exact_number(v.y), exact_number(v.z)); }
 
@@ -128,16 +114,52 @@ constexpr struct {
                      {"Strips", "NumberOfStrips", &SurfaceMesh::strips},
                      {"Polys", "NumberOfPolys", &SurfaceMesh::polygons}};
 
-// A cloud is written with one vertex per point, so that every reader draws it.
+// One vertex per point, so that every reader draws the cloud.
+CellArray one_vertex_each(const PointCloud& cloud) {
+  int64_t* ids = nullptr;
+  CellArray cells;
+  cells.connectivity = Array::make<int64_t>(cloud.points.count(), 1, &ids);
+  std::iota(ids, ids + cloud.points.count(), 0);
+  cells.fixed = 1;
+  return cells;
+}
+
 SurfaceMesh as_surface(const Mesh& mesh) {
   if (auto* s = std::get_if<SurfaceMesh>(&mesh)) return *s;
+  const auto& cloud = std::get<PointCloud>(mesh);
   SurfaceMesh s;
-  s.points = std::get<PointCloud>(mesh).points;
-  std::vector<int64_t> ids(s.points.count());
-  std::iota(ids.begin(), ids.end(), 0);
-  s.vertices.connectivity = Array::from_vector(std::move(ids));
-  s.vertices.fixed = 1;
+  s.points = cloud.points;
+  s.vertices = one_vertex_each(cloud);
   return s;
+}
+
+// Surfaces and clouds as cells of an unstructured grid, in the order of their cell fields.
+UnstructuredMesh as_unstructured(const Mesh& mesh) {
+  if (auto* u = std::get_if<UnstructuredMesh>(&mesh)) return *u;
+  UnstructuredMesh m;
+  if (auto* cloud = std::get_if<PointCloud>(&mesh)) {
+    m.points = cloud->points;
+    m.cells = one_vertex_each(*cloud);
+    m.single_type = CellType::vertex;
+    return m;
+  }
+  const auto& s = std::get<SurfaceMesh>(mesh);
+  m.points = s.points;
+  const CellArray lists[] = {s.vertices, s.lines, s.polygons, s.strips};
+  const size_t shift[] = {0, 0, 0, 0};
+  m.cells = concatenated_cells(lists, shift);
+  uint8_t* out = nullptr;
+  m.types = Array::make<uint8_t>(s.cell_count(), 1, &out);
+  auto add = [&](const CellArray& cells, size_t size, CellType one, CellType other) {
+    const CellsView v = cells_view(cells);
+    for (size_t i = 0; i < v.count; ++i)
+      *out++ = uint8_t(v.size(i) == size ? one : v.size(i) == 4 && one == CellType::triangle ? CellType::quad : other);
+  };
+  add(s.vertices, 1, CellType::vertex, CellType::poly_vertex);
+  add(s.lines, 2, CellType::line, CellType::poly_line);
+  add(s.polygons, 3, CellType::triangle, CellType::polygon);
+  add(s.strips, 0, CellType::triangle_strip, CellType::triangle_strip);
+  return m;
 }
 
 // PointData or CellData, with the attributes that say what an array is for.
@@ -152,9 +174,16 @@ void write_fields(XmlWriter& xml, const Dataset& d, Association association, con
         attributes.emplace_back(attribute, f.name);
         break;
       }
-  xml.begin(association == Association::point ? "PointData" : "CellData", attributes);
+  // What shapes high-order cells: the mesh's own, unless the file that was read kept it as a field.
+  const auto* u = d.as<UnstructuredMesh>();
+  const bool point = association == Association::point;
+  const std::string_view shaping = point ? "RationalWeights" : "HigherOrderDegrees";
+  const Array shape = !u ? Array() : point ? u->weights : u->degrees;
+  if (!shape.empty()) attributes.emplace_back(shaping, std::string(shaping));
+  xml.begin(point ? "PointData" : "CellData", attributes);
   for (const Field& f : d.fields())
-    if (f.association == association) xml.array(f.name, f.array);
+    if (f.association == association) xml.array(f.name, f.array, false, f.unit);
+  if (!shape.empty() && !d.fields().find(shaping, association)) xml.array(shaping, shape.converted(ElementType::f64));
   if (!ghost.empty()) xml.array("vtkGhostType", ghost);
   xml.end();
 }
@@ -163,7 +192,7 @@ void write_whole(XmlWriter& xml, const Dataset& d) {
   xml.begin("FieldData");
   if (d.time()) xml.array("TimeValue", Array::from_vector(std::vector<double>{*d.time()}), true);
   for (const Field& f : d.fields())
-    if (f.association == Association::whole) xml.array(f.name, f.array, true);
+    if (f.association == Association::whole) xml.array(f.name, f.array, true, f.unit);
   xml.end();
 }
 
@@ -171,7 +200,7 @@ struct Header {
   XmlAttributes dataset, piece;
 };
 
-Header header_of(const Dataset& d) {
+Header header_of(const Dataset& d, size_t cells) {
   Header h;
   auto extent = [&](const std::array<long long, 3>& lo) {
     const std::string text = extent_text(lattice_dims(d.mesh()), lo);
@@ -189,8 +218,8 @@ Header header_of(const Dataset& d) {
     extent(r->extent_start);
   } else if (auto* c = d.as<CurvilinearGrid>()) {
     extent(c->extent_start);
-  } else if (d.as<UnstructuredMesh>()) {
-    h.piece = {{"NumberOfPoints", std::to_string(d.point_count())}, {"NumberOfCells", std::to_string(d.cell_count())}};
+  } else {
+    h.piece = {{"NumberOfPoints", std::to_string(d.point_count())}, {"NumberOfCells", std::to_string(cells)}};
   }
   return h;
 }
@@ -202,30 +231,42 @@ void write_geometry(XmlWriter& xml, const Dataset& d) {
     xml.end();
   } else if (auto* c = d.as<CurvilinearGrid>()) {
     write_points(xml, c->points);
-  } else if (auto* u = d.as<UnstructuredMesh>()) {
-    write_points(xml, u->points);
-    write_cells(xml, *u);
   }
 }
 
+}  // namespace
+
+std::string_view extension_for(const Mesh& mesh) {
+  struct Visitor {
+    std::string_view operator()(const UniformGrid&) const { return "vti"; }
+    std::string_view operator()(const RectilinearGrid&) const { return "vtr"; }
+    std::string_view operator()(const CurvilinearGrid&) const { return "vts"; }
+    std::string_view operator()(const UnstructuredMesh&) const { return "vtu"; }
+    std::string_view operator()(const SurfaceMesh&) const { return "vtp"; }
+    std::string_view operator()(const PointCloud&) const { return "vtp"; }
+    std::string_view operator()(const AmrGrid&) const { return "vthb"; }
+  };
+  return std::visit(Visitor{}, mesh);
+}
+
 void write_dataset(const std::string& path, const Dataset& d, const WriteOptions& options, Context& context) {
-  const KindRow row = kind_row(d.mesh());
   const std::string ext = extension_of(path);
-  if (row.extension.empty())
-    fail_usage(fmt::format("a mesh of kind {} cannot be written as VTK XML", d.kind()), path, "resample it to a uniform grid first");
-  if (ext != row.extension)
-    fail_usage(fmt::format("a mesh of kind {} cannot be written to .{}", d.kind(), ext), path,
-               fmt::format("name the file *.{}", row.extension));
+  const std::string_view right = extension_for(d.mesh());
+  if (ext != right && !(ext == "vtu" && right == "vtp"))
+    fail_usage(fmt::format("a mesh of kind {} cannot be written to .{}", d.kind(), ext), path, fmt::format("name the file *.{}", right));
+  const auto* element = std::find_if(std::begin(elements), std::end(elements), [&](const auto& e) { return e.first == ext; });
   XmlWriter xml(path, options, context);
-  const bool surface = row.extension == "vtp";
-  Header h = header_of(d);
+  const bool surface = ext == "vtp", unstructured = ext == "vtu";
   const SurfaceMesh lists = surface ? as_surface(d.mesh()) : SurfaceMesh{};
+  const UnstructuredMesh cells = unstructured ? as_unstructured(d.mesh()) : UnstructuredMesh{};
+  Header h = surface ? Header{} : header_of(d, cells.cells.size());
   if (surface) {
     h.piece.emplace_back("NumberOfPoints", std::to_string(d.point_count()));
     for (const auto& kind : surface_lists) h.piece.emplace_back(kind.count, std::to_string((lists.*kind.list).size()));
   }
-  xml.begin("VTKFile", {{"type", std::string(row.element)}, {"version", "1.0"}, {"byte_order", "LittleEndian"}, {"header_type", "UInt64"}});
-  xml.begin(row.element, h.dataset);
+  xml.begin("VTKFile",
+            {{"type", std::string(element->second)}, {"version", "1.0"}, {"byte_order", "LittleEndian"}, {"header_type", "UInt64"}});
+  xml.begin(element->second, h.dataset);
   write_whole(xml, d);
   xml.begin("Piece", h.piece);
   write_fields(xml, d, Association::point, d.point_ghost());
@@ -237,13 +278,15 @@ void write_dataset(const std::string& path, const Dataset& d, const WriteOptions
       write_cell_list(xml, lists.*kind.list);
       xml.end();
     }
+  } else if (unstructured) {
+    write_points(xml, cells.points);
+    write_cells(xml, cells);
   } else {
     write_geometry(xml, d);
   }
   xml.finish();
 }
 
-}  // namespace
 }  // namespace vtk
 
 void write_vtk_xml(const std::string& path, const Data& data, const WriteOptions& options, Context& context) {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // VTK XML: cut, bent and absurd files give errors that name the element.
+#include <fstream>
+
 #include "io/vtk_samples.h"
 
 using namespace sg;
@@ -108,4 +110,80 @@ TEST_CASE("vtk xml: entities are not expanded and deep nesting is survived") {
   std::string deep = "<VTKFile type=\"ImageData\">";
   for (int i = 0; i < 200000; ++i) deep += "<a>";
   CHECK(!test::error_of([&] { read_text("deep.vti", deep); }).empty());
+}
+
+namespace {
+
+size_t peak_megabytes() {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.starts_with("VmHWM:")) return std::stoul(line.substr(6)) / 1024;
+  return 0;
+}
+
+// A lattice of one compressed array: `blocks` blocks of `size` bytes, the packed bytes of each given.
+std::string bomb(const char* compressor, uint32_t blocks, uint32_t size, const std::string& packed, const std::string& extent) {
+  std::string bytes;
+  auto word = [&](uint32_t v) { bytes.append(reinterpret_cast<const char*>(&v), 4); };
+  word(blocks), word(size), word(0);
+  for (uint32_t i = 0; i < blocks; ++i) word(uint32_t(packed.size()));
+  for (uint32_t i = 0; i < blocks; ++i) bytes += packed;
+  return std::string("<VTKFile type=\"ImageData\" compressor=\"") + compressor + "\"><ImageData WholeExtent=\"" + extent +
+         "\"><Piece Extent=\"" + extent +
+         "\"><PointData><DataArray type=\"UInt8\" Name=\"T\" format=\"appended\" offset=\"0\"/></PointData></Piece></ImageData>"
+         "<AppendedData encoding=\"raw\">_" +
+         bytes + "</AppendedData></VTKFile>";
+}
+
+}  // namespace
+
+TEST_CASE("vtk xml: compressed blocks that claim more than they can hold are refused before memory is asked for") {
+  const size_t before = peak_megabytes();
+  for (const char* compressor : {"vtkZLibDataCompressor", "vtkLZ4DataCompressor", "vtkLZMADataCompressor"}) {
+    CAPTURE(compressor);
+    // 40 packed bytes that are to hold 4 GB, and sixteen such blocks.
+    for (const uint32_t blocks : {1u, 16u}) {
+      const std::string e = test::error_of(
+          [&] { read_text("bomb.vti", bomb(compressor, blocks, 0xf0000000u, std::string(40, 'x'), "0 4026531839 0 0 0 0")); });
+      CHECK(e.find("'T'") != std::string::npos);
+    }
+    // A block whose claim could be true but is not.
+    CHECK(test::error_of([&] { read_text("bomb.vti", bomb(compressor, 1, 4000, std::string(40, 'x'), "0 3999 0 0 0 0")); }).find("'T'") !=
+          std::string::npos);
+  }
+  // Pieces and points beyond what the file can back, in each kind.
+  for (const char* extent : {"0 1000000 0 1000000 0 1000", "0 2147483647 0 2147483647 0 0", "-2147483648 2147483647 0 0 0 0"}) {
+    const std::string array = "<PointData><DataArray type=\"Float64\" Name=\"T\" format=\"ascii\">1 2 3</DataArray></PointData>";
+    const std::string piece = std::string("<Piece Extent=\"") + extent + "\">" + array + "</Piece>";
+    for (const bool header : {false, true})
+      for (const std::string& pieces : {piece, piece + piece}) {
+        ReadOptions o;
+        o.header_only = header;
+        CHECK(!test::error_of([&] {
+                 read_text("huge.vti",
+                           std::string("<VTKFile type=\"ImageData\"><ImageData WholeExtent=\"") + extent + "\">" + pieces +
+                               "</ImageData></VTKFile>",
+                           o);
+               }).empty());
+      }
+  }
+  CHECK(peak_megabytes() < before + 200);
+}
+
+TEST_CASE("vtk xml: one face that hangs on thousands of polyhedra is refused") {
+  std::string face, zeros, ends, offsets, types, ids;
+  for (int i = 0; i < 2000; ++i) face += std::to_string(i % 3) + " ";
+  for (int i = 0; i < 20000; ++i)
+    zeros += "0 ", ends += std::to_string(i + 1) + " ", offsets += std::to_string(3 * i + 3) + " ", types += "42 ", ids += "0 1 2 ";
+  auto list = [](const char* name, const std::string& text) {
+    return std::string("<DataArray type=\"Int64\" Name=\"") + name + "\" format=\"ascii\">" + text + "</DataArray>";
+  };
+  const std::string e = test::error_of([&] {
+    read_text("faces.vtu", vtu("<Piece NumberOfPoints=\"3\" NumberOfCells=\"20000\"><Points><DataArray type=\"Float32\" "
+                               "NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 0 1 0</DataArray></Points><Cells>" +
+                               list("connectivity", ids) + list("offsets", offsets) + list("types", types) +
+                               list("face_connectivity", face) + list("face_offsets", "2000") + list("polyhedron_to_faces", zeros) +
+                               list("polyhedron_offsets", ends) + "</Cells></Piece>"));
+  });
+  CHECK(e.find("many more than two cells") != std::string::npos);
 }
