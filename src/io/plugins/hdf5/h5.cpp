@@ -1,0 +1,374 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/plugins/hdf5/h5.h"
+
+#include "base/bytes.h"
+#include "base/error.h"
+#include "base/text.h"
+
+namespace sg::h5 {
+
+void silence() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
+std::string library_message() {
+  std::string text;
+  H5Ewalk2(
+      H5E_DEFAULT, H5E_WALK_UPWARD,
+      [](unsigned, const H5E_error2_t* e, void* out) -> herr_t {
+        auto& t = *static_cast<std::string*>(out);
+        if (t.empty() && e->desc) t = e->desc;
+        return 0;
+      },
+      &text);
+  H5Eclear2(H5E_DEFAULT);
+  return text;
+}
+
+namespace {
+
+// "" or what the library said, in brackets, without line ends.
+std::string said() {
+  std::string t = library_message();
+  for (char& c : t)
+    if (static_cast<unsigned char>(c) < ' ') c = ' ';
+  return t.empty() ? t : fmt::format(" (HDF5: {})", std::string(trim(t)));
+}
+
+constexpr size_t most_children = 1000000;
+
+}  // namespace
+
+File::File(const std::string& path) : path_(path) {
+  silence();
+  if (!file_exists(path) || is_folder(path)) MappedFile missing(path);  // says why it cannot be read
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS));
+  H5Pset_file_locking(access, false, true);  // reading needs no lock, and some shared folders have none
+  H5Pset_fclose_degree(access, H5F_CLOSE_SEMI);
+  file_ = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access));
+  if (!file_.good()) fail_data("cannot be opened as HDF5" + said(), path, "the file is truncated, damaged or no HDF5 file");
+  hsize_t size = 0;
+  if (H5Fget_filesize(file_, &size) < 0) fail_data("cannot be measured" + said(), path);
+  size_ = size;
+}
+
+void File::fail(std::string problem, const std::string& object, std::string hint) const {
+  fail_data(problem + said(), object.empty() ? path_ : fmt::format("{}: '{}'", path_, object), std::move(hint));
+}
+
+const MappedFile& File::mapped() const {
+  if (!mapped_) mapped_.emplace(path_);
+  return *mapped_;
+}
+
+bool File::exists(const std::string& object) const {
+  if (object == "/") return true;
+  for (size_t end = object.find('/', 1);; end = object.find('/', end + 1)) {
+    const std::string part = object.substr(0, end);
+    const htri_t there = H5Lexists(file_, part.c_str(), H5P_DEFAULT);
+    if (there <= 0) break;
+    if (end == std::string::npos) {
+      const bool leads_somewhere = H5Oexists_by_name(file_, part.c_str(), H5P_DEFAULT) > 0;
+      H5Eclear2(H5E_DEFAULT);
+      return leads_somewhere;
+    }
+  }
+  H5Eclear2(H5E_DEFAULT);
+  return false;
+}
+
+namespace {
+
+bool is_kind(const File& f, const std::string& object, H5O_type_t kind) {
+  if (!f.exists(object)) return false;
+  H5O_info_t info;
+  const bool good = H5Oget_info_by_name2(f.id(), object.c_str(), &info, H5O_INFO_BASIC, H5P_DEFAULT) >= 0;
+  H5Eclear2(H5E_DEFAULT);
+  return good && info.type == kind;
+}
+
+}  // namespace
+
+bool File::is_group(const std::string& object) const { return is_kind(*this, object, H5O_TYPE_GROUP); }
+bool File::is_dataset(const std::string& object) const { return is_kind(*this, object, H5O_TYPE_DATASET); }
+
+std::vector<std::string> File::children(const std::string& group) const {
+  std::vector<std::string> names;
+  const Handle g(H5Gopen2(file_, group.c_str(), H5P_DEFAULT));
+  if (!g.good()) fail("is no group that can be opened", group);
+  const Handle made(H5Gget_create_plist(g));
+  unsigned order = 0;
+  H5Pget_link_creation_order(made, &order);
+  const auto add = [](hid_t, const char* name, const H5L_info_t*, void* out) -> herr_t {
+    auto& n = *static_cast<std::vector<std::string>*>(out);
+    n.emplace_back(name);
+    return n.size() < most_children ? 0 : 1;
+  };
+  hsize_t at = 0;
+  if (H5Literate(g, order & H5P_CRT_ORDER_TRACKED ? H5_INDEX_CRT_ORDER : H5_INDEX_NAME, H5_ITER_INC, &at, add, &names) < 0)
+    fail("cannot be listed", group, "the file is truncated or damaged");
+  return names;
+}
+
+std::vector<std::string> File::attributes(const std::string& object) const {
+  std::vector<std::string> names;
+  const Handle o(H5Oopen(file_, object.c_str(), H5P_DEFAULT));
+  if (!o.good()) fail("cannot be opened", object);
+  const auto add = [](hid_t, const char* name, const H5A_info_t*, void* out) -> herr_t {
+    auto& n = *static_cast<std::vector<std::string>*>(out);
+    n.emplace_back(name);
+    return n.size() < most_children ? 0 : 1;
+  };
+  hsize_t at = 0;
+  if (H5Aiterate2(o, H5_INDEX_NAME, H5_ITER_INC, &at, add, &names) < 0) fail("has attributes that cannot be listed", object);
+  return names;
+}
+
+std::optional<std::string> File::text_attribute(const std::string& object, const std::string& name) const {
+  const Handle a(H5Aopen_by_name(file_, object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT));
+  if (!a.good()) {
+    H5Eclear2(H5E_DEFAULT);
+    return {};
+  }
+  const Handle type(H5Aget_type(a)), space(H5Aget_space(a));
+  if (H5Tget_class(type) != H5T_STRING || H5Sget_simple_extent_npoints(space) != 1) return {};
+  std::string text;
+  if (H5Tis_variable_str(type) > 0) {
+    char* p = nullptr;
+    const Handle memory(H5Tcopy(H5T_C_S1));
+    H5Tset_size(memory, H5T_VARIABLE);
+    H5Tset_cset(memory, H5Tget_cset(type));
+    if (H5Aread(a, memory, &p) < 0) fail(fmt::format("has an attribute '{}' that cannot be read", name), object);
+    if (p) text = p;
+    H5Dvlen_reclaim(memory, space, H5P_DEFAULT, &p);
+  } else {
+    const size_t n = H5Tget_size(type);
+    if (n > 1 << 20) fail(fmt::format("has an attribute '{}' of {} bytes", name, n), object);
+    text.resize(n);
+    if (H5Aread(a, type, text.data()) < 0) fail(fmt::format("has an attribute '{}' that cannot be read", name), object);
+    text.resize(std::min(text.find('\0'), text.size()));
+  }
+  return std::string(trim(text));
+}
+
+std::vector<double> File::number_attribute(const std::string& object, const std::string& name) const {
+  const Handle a(H5Aopen_by_name(file_, object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT));
+  if (!a.good()) {
+    H5Eclear2(H5E_DEFAULT);
+    return {};
+  }
+  const Handle type(H5Aget_type(a)), space(H5Aget_space(a));
+  const H5T_class_t kind = H5Tget_class(type);
+  const hssize_t n = H5Sget_simple_extent_npoints(space);
+  if ((kind != H5T_INTEGER && kind != H5T_FLOAT) || n < 0 || n > 4096) return {};
+  std::vector<double> values(static_cast<size_t>(n));
+  if (n > 0 && H5Aread(a, H5T_NATIVE_DOUBLE, values.data()) < 0)
+    fail(fmt::format("has an attribute '{}' that cannot be read", name), object);
+  return values;
+}
+
+hid_t native_type(ElementType t) {
+  switch (t) {
+    case ElementType::u8: return H5T_NATIVE_UINT8;
+    case ElementType::i8: return H5T_NATIVE_INT8;
+    case ElementType::u16: return H5T_NATIVE_UINT16;
+    case ElementType::i16: return H5T_NATIVE_INT16;
+    case ElementType::u32: return H5T_NATIVE_UINT32;
+    case ElementType::i32: return H5T_NATIVE_INT32;
+    case ElementType::u64: return H5T_NATIVE_UINT64;
+    case ElementType::i64: return H5T_NATIVE_INT64;
+    case ElementType::f32: return H5T_NATIVE_FLOAT;
+    case ElementType::f64: return H5T_NATIVE_DOUBLE;
+  }
+  fail_internal("native_type: unknown element type");
+}
+
+namespace {
+
+bool element_type(hid_t type, ElementType& out) {
+  const H5T_class_t kind = H5Tget_class(type);
+  const size_t size = H5Tget_size(type);
+  if (kind == H5T_FLOAT && size >= 2 && size <= 16) {
+    out = size <= 4 ? ElementType::f32 : ElementType::f64;
+    return true;
+  }
+  if (kind == H5T_ENUM) return element_type(Handle(H5Tget_super(type)), out);
+  if (kind != H5T_INTEGER || size == 0 || size > 8) return false;
+  const bool is_signed = H5Tget_sign(type) != H5T_SGN_NONE;
+  constexpr ElementType types[4][2] = {{ElementType::u8, ElementType::i8},
+                                       {ElementType::u16, ElementType::i16},
+                                       {ElementType::u32, ElementType::i32},
+                                       {ElementType::u64, ElementType::i64}};
+  out = types[size == 1 ? 0 : size == 2 ? 1 : size <= 4 ? 2 : 3][is_signed];
+  return true;
+}
+
+}  // namespace
+
+Dataset::Dataset(const File& file, const std::string& path) : file_(file), path_(path) {
+  if (!file.is_dataset(path)) file.fail("is no dataset", path, "the file is truncated or not complete");
+  set_ = Handle(H5Dopen2(file.id(), path.c_str(), H5P_DEFAULT));
+  if (!set_.good()) file.fail("cannot be opened", path, "the file is damaged");
+  type_in_file_ = Handle(H5Dget_type(set_));
+  space_ = Handle(H5Dget_space(set_));
+  if (!type_in_file_.good() || !space_.good()) file.fail("has no type or no shape", path, "the file is damaged");
+  const int rank = H5Sget_simple_extent_ndims(space_);
+  if (H5Sget_simple_extent_type(space_) == H5S_NULL) {
+    dims_ = {0};
+  } else if (rank > 0) {
+    std::vector<hsize_t> d(static_cast<size_t>(rank));
+    H5Sget_simple_extent_dims(space_, d.data(), nullptr);
+    dims_.assign(d.begin(), d.end());
+  }
+  for (size_t i = 0; i < dims_.size(); ++i)
+    if (!multiply(count_, dims_[i], count_) || (i > 0 && !multiply(row_size_, dims_[i], row_size_)))
+      file.fail("has more numbers than can be counted", path);
+  numeric_ = element_type(type_in_file_, type_);
+  find_layout();
+}
+
+// What the file can back: bytes stored, times what deflate can reach at most where there are filters. Chunks that were never written
+// are legal but backed by nothing: a mebibyte of them is allowed for.
+void Dataset::find_layout() {
+  const Handle made(H5Dget_create_plist(set_));
+  const Handle file(H5Iget_file_id(set_));
+  hsize_t size = 0;
+  if (!made.good() || !file.good() || H5Fget_filesize(file, &size) < 0) file_.fail("has no layout", path_, "the file is damaged");
+  const H5D_layout_t layout = H5Pget_layout(made);
+  if (layout == H5D_VIRTUAL) file_.fail("is a virtual dataset: these are not read", path_, "copy it with h5repack first");
+  if (layout == H5D_CONTIGUOUS && H5Pget_external_count(made) > 0)
+    file_.fail("keeps its numbers in other files: that is not read", path_, "copy it with h5repack first");
+  const int filters = H5Pget_nfilters(made);
+  const uint64_t stored = std::min<uint64_t>(H5Dget_storage_size(set_), size);
+  if (!multiply(stored, filters > 0 ? 1032 : 1, backed_) || !add(backed_, 1 << 20, backed_)) backed_ = UINT64_MAX;
+  if (layout == H5D_CHUNKED) {
+    std::vector<hsize_t> chunk(dims_.size());
+    uint64_t bytes = H5Tget_size(type_in_file_);
+    H5Pget_chunk(made, int(chunk.size()), chunk.data());
+    for (const hsize_t c : chunk)
+      if (!multiply(bytes, c, bytes)) bytes = UINT64_MAX;
+    if (bytes > backed_ && count_ > 0)
+      file_.fail(fmt::format("has chunks of {} bytes, but only {} bytes are stored", bytes, stored), path_, "the file is damaged");
+  }
+  for (int i = 0; i < filters; ++i) {
+    unsigned flags = 0, config = 0;
+    size_t values = 0;
+    char name[64] = "";
+    const H5Z_filter_t filter = H5Pget_filter2(made, unsigned(i), &flags, &values, nullptr, sizeof name, name, &config);
+    if (filter < 0 || H5Zfilter_avail(filter) <= 0)
+      file_.fail(fmt::format("is packed with the filter {} '{}', which is not installed", int(filter), name), path_,
+                 "repack it: h5repack -f GZIP=4 IN OUT");
+  }
+  H5O_info_t here, top;
+  if (layout != H5D_CONTIGUOUS || filters > 0 || !numeric_) return;
+  if (H5Oget_info2(set_, &here, H5O_INFO_BASIC) < 0 || H5Oget_info_by_name2(file_.id(), "/", &top, H5O_INFO_BASIC, H5P_DEFAULT) < 0) return;
+  hsize_t user_block = 0;
+  const Handle creation(H5Fget_create_plist(file));
+  if (H5Pget_userblock(creation, &user_block) < 0 || user_block != 0 || here.fileno != top.fileno) return;
+  const haddr_t at = H5Dget_offset(set_);
+  if (at != HADDR_UNDEF && at % element_size(type_) == 0 && H5Tequal(type_in_file_, native_type(type_)) > 0) at_ = at;
+}
+
+void Dataset::check_backed(uint64_t bytes) const {
+  if (!numeric_) file_.fail("holds no numbers", path_);
+  if (bytes > backed_)
+    file_.fail(fmt::format("has {} bytes, more than what the file holds of it can give", bytes), path_, "the file is truncated or damaged");
+}
+
+std::optional<Array> Dataset::mapped(uint64_t first, uint64_t n, int components) const {
+  if (!at_ || n == 0) return {};
+  const size_t size = element_size(type_);
+  const MappedFile& file = file_.mapped();
+  uint64_t begin = 0, bytes = 0, end = 0;
+  if (!multiply(first, size, begin) || !multiply(n, size, bytes) || !add(*at_, begin, begin) || !add(begin, bytes, end) ||
+      end > file.size())
+    file_.fail(fmt::format("has {} numbers at byte {}, beyond the end of the file", n, *at_), path_, "the file is truncated");
+  return Array(Buffer{file.owner(), file.data() + begin, bytes}, type_, n / uint64_t(components), components);
+}
+
+namespace {
+
+int component_count(uint64_t n) { return int(std::max<uint64_t>(n, 1)); }
+
+}  // namespace
+
+Array Dataset::read(int components) const {
+  if (count_ % uint64_t(components)) file_.fail(fmt::format("has {} numbers, not tuples of {}", count_, components), path_);
+  uint64_t bytes = 0;
+  if (!multiply(count_, element_size(type_), bytes)) bytes = UINT64_MAX;
+  check_backed(bytes);
+  if (auto there = mapped(0, count_, components)) return *there;
+  std::byte* out = nullptr;
+  Array a = Array::make_raw(type_, count_ / uint64_t(components), components, &out);
+  if (count_ > 0 && H5Dread(set_, native_type(type_), H5S_ALL, H5S_ALL, H5P_DEFAULT, out) < 0)
+    file_.fail("cannot be read", path_, "the file is truncated or damaged");
+  return a;
+}
+
+Array Dataset::read_rows(uint64_t begin, uint64_t n) const {
+  uint64_t end = 0;
+  if (!add(begin, n, end) || end > rows())
+    file_.fail(fmt::format("has {} rows but rows {} to {} are asked for", rows(), begin, end), path_, "the file is not complete");
+  if (row_size_ > 1 << 20) file_.fail(fmt::format("has rows of {} numbers", row_size_), path_);
+  if (dims_.empty()) return read();
+  if (auto there = mapped(begin * row_size_, n * row_size_, component_count(row_size_))) return *there;
+  std::vector<uint64_t> start(dims_.size(), 0), count = dims_;
+  start[0] = begin, count[0] = n;
+  return read_block(start, count, std::vector<uint64_t>(dims_.size(), 1), component_count(row_size_));
+}
+
+Array Dataset::read_block(const std::vector<uint64_t>& start, const std::vector<uint64_t>& count, const std::vector<uint64_t>& stride,
+                          int components) const {
+  if (start.size() != dims_.size() || count.size() != dims_.size() || stride.size() != dims_.size())
+    file_.fail(fmt::format("has {} dimensions, not {}", dims_.size(), start.size()), path_);
+  uint64_t n = 1, bytes = 0;
+  for (size_t a = 0; a < dims_.size(); ++a) {
+    n *= count[a];  // at most the dataset's own count, checked here
+    if (count[a] == 0) continue;
+    uint64_t last = 0;
+    if (stride[a] == 0 || !multiply(count[a] - 1, stride[a], last) || !add(last, start[a], last) || last >= dims_[a])
+      file_.fail(fmt::format("has {} indices along dimension {}: there is no index {}", dims_[a], a, last), path_);
+  }
+  if (!multiply(n, element_size(type_), bytes)) bytes = UINT64_MAX;
+  check_backed(bytes);
+  if (n % uint64_t(components)) file_.fail(fmt::format("has {} numbers there, not tuples of {}", n, components), path_);
+  std::byte* out = nullptr;
+  Array a = Array::make_raw(type_, n / uint64_t(components), components, &out);
+  if (n == 0) return a;
+  if (dims_.empty()) return read();
+  const std::vector<hsize_t> from(start.begin(), start.end()), step(stride.begin(), stride.end()), many(count.begin(), count.end());
+  const Handle there(H5Scopy(space_));
+  const hsize_t total = n;
+  const Handle here(H5Screate_simple(1, &total, nullptr));
+  if (H5Sselect_hyperslab(there, H5S_SELECT_SET, from.data(), step.data(), many.data(), nullptr) < 0 ||
+      H5Dread(set_, native_type(type_), here, there, H5P_DEFAULT, out) < 0)
+    file_.fail("cannot be read", path_, "the file is truncated or damaged");
+  return a;
+}
+
+std::vector<std::string> Dataset::strings() const {
+  std::vector<std::string> r;
+  if (H5Tget_class(type_in_file_) != H5T_STRING || H5Tis_variable_str(type_in_file_) > 0) return r;
+  const size_t size = H5Tget_size(type_in_file_);
+  uint64_t bytes = 0;
+  if (!multiply(count_, size, bytes) || bytes > std::min<uint64_t>(backed_, 16 << 20)) return r;
+  std::vector<char> text(bytes);
+  if (bytes > 0 && H5Dread(set_, type_in_file_, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()) < 0)
+    file_.fail("cannot be read", path_, "the file is truncated or damaged");
+  for (uint64_t i = 0; i < count_; ++i) {
+    const std::string_view one(text.data() + i * size, size);
+    r.emplace_back(trim(one.substr(0, one.find('\0'))));
+  }
+  return r;
+}
+
+std::vector<uint64_t> read_counts(const File& file, const std::string& dataset, uint64_t begin, uint64_t n) {
+  const Array a = Dataset(file, dataset).read_rows(begin, n).converted(ElementType::i64);
+  const auto v = a.view<int64_t>();
+  std::vector<uint64_t> r(a.count());
+  for (size_t i = 0; i < r.size(); ++i) {
+    if (v(i) < 0 || v(i) > (int64_t(1) << 60)) file.fail(fmt::format("holds the count {}", v(i)), dataset, "the file is damaged");
+    r[i] = uint64_t(v(i));
+  }
+  return r;
+}
+
+}  // namespace sg::h5
