@@ -34,4 +34,8 @@ void write_obj(const std::string& path, const Data& data, const WriteOptions& op
 bool sniff_hdf5(std::span<const std::byte> head);
 bool sniff_enzo(std::span<const std::byte> head);
 
+bool sniff_xdmf(std::span<const std::byte> head);
+Data read_xdmf(const std::string& path, const ReadOptions& options, Context& context);
+std::vector<double> times_of_xdmf(const std::string& path, const ReadOptions& options, Context& context);
+
 }  // namespace sg
