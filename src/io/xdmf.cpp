@@ -145,7 +145,7 @@ struct Reader {
     Array values = doc.item(data).values.made_packed();
     const size_t tuples = on == Association::point ? points : on == Association::cell ? cells : 1;
     size_t components = tuples > 0 ? values.count() / tuples : 1;
-    if (on == Association::whole && type == "scalar") components = 1;
+    if (on == Association::whole && (type.empty() || type == "scalar")) components = 1;
     if (on != Association::whole && (components * tuples != values.count() || (components == 0 && tuples > 0)))
       doc.fail(fmt::format("has {} numbers for {} {}s", values.count(), tuples, association_name(on)), a);
     if (components == 0 || components > 1 << 20) components = 1;

@@ -158,6 +158,7 @@ void read_enzo_fields(const EnzoHierarchy& h, const std::string& path, const Rea
 }  // namespace
 
 Data read_enzo(const std::string& path, const ReadOptions& options, Context& context) {
+  const h5::Turn turn;
   const EnzoHierarchy h = parse_enzo_hierarchy(MappedFile(path).text(), path);
   DatasetParts parts;
   parts.time = h.time;

@@ -4,10 +4,16 @@
 #include "base/bytes.h"
 #include "base/error.h"
 #include "base/text.h"
+#include "io/plugins/hdf5/guarded.h"
 
 namespace sg::h5 {
 
 void silence() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
+std::recursive_mutex& Turn::mutex() {
+  static std::recursive_mutex m;
+  return m;
+}
 
 std::string library_message() {
   std::string text;
@@ -132,13 +138,16 @@ std::optional<std::string> File::text_attribute(const std::string& object, const
   if (H5Tget_class(type) != H5T_STRING || H5Sget_simple_extent_npoints(space) != 1) return {};
   std::string text;
   if (H5Tis_variable_str(type) > 0) {
-    char* p = nullptr;
-    const Handle memory(H5Tcopy(H5T_C_S1));
-    H5Tset_size(memory, H5T_VARIABLE);
-    H5Tset_cset(memory, H5Tget_cset(type));
-    if (H5Aread(a, memory, &p) < 0) fail(fmt::format("has an attribute '{}' that cannot be read", name), object);
-    if (p) text = p;
-    H5Dvlen_reclaim(memory, space, H5P_DEFAULT, &p);
+    const auto read = guarded([&] {
+      char* p = nullptr;
+      const Handle memory(H5Tcopy(H5T_C_S1));
+      H5Tset_size(memory, H5T_VARIABLE);
+      H5Tset_cset(memory, H5Tget_cset(type));
+      if (H5Aread(a, memory, &p) < 0) fail("", "");
+      return std::string(p ? p : "");
+    });
+    if (!read) fail(fmt::format("has an attribute '{}' that cannot be read", name), object, "the file is damaged");
+    text = *read;
   } else {
     const size_t n = H5Tget_size(type);
     if (n > 1 << 20) fail(fmt::format("has an attribute '{}' of {} bytes", name, n), object);
@@ -147,22 +156,6 @@ std::optional<std::string> File::text_attribute(const std::string& object, const
     text.resize(std::min(text.find('\0'), text.size()));
   }
   return std::string(trim(text));
-}
-
-std::vector<double> File::number_attribute(const std::string& object, const std::string& name) const {
-  const Handle a(H5Aopen_by_name(file_, object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT));
-  if (!a.good()) {
-    H5Eclear2(H5E_DEFAULT);
-    return {};
-  }
-  const Handle type(H5Aget_type(a)), space(H5Aget_space(a));
-  const H5T_class_t kind = H5Tget_class(type);
-  const hssize_t n = H5Sget_simple_extent_npoints(space);
-  if ((kind != H5T_INTEGER && kind != H5T_FLOAT) || n < 0 || n > 4096) return {};
-  std::vector<double> values(static_cast<size_t>(n));
-  if (n > 0 && H5Aread(a, H5T_NATIVE_DOUBLE, values.data()) < 0)
-    fail(fmt::format("has an attribute '{}' that cannot be read", name), object);
-  return values;
 }
 
 hid_t native_type(ElementType t) {
@@ -183,25 +176,43 @@ hid_t native_type(ElementType t) {
 
 namespace {
 
-bool element_type(hid_t type, ElementType& out) {
-  const H5T_class_t kind = H5Tget_class(type);
-  const size_t size = H5Tget_size(type);
-  if (kind == H5T_FLOAT && size >= 2 && size <= 16) {
-    out = size <= 4 ? ElementType::f32 : ElementType::f64;
-    return true;
+// Integers and IEEE floats of 1, 2, 4 or 8 bytes in one of the two byte orders, and enumerations of such. The library converts other
+// types, but trusts what the file says about their bits.
+bool plain_type(hid_t type, ElementType& out, bool& big_endian) {
+  const Handle base(H5Tget_class(type) == H5T_ENUM ? H5Tget_super(type) : H5Tcopy(type));
+  if (!base.good()) return false;
+  for (const ElementType t : {ElementType::f32, ElementType::f64, ElementType::i32, ElementType::i64, ElementType::u8, ElementType::i8,
+                              ElementType::u16, ElementType::i16, ElementType::u32, ElementType::u64}) {
+    out = t;
+    big_endian = false;
+    if (H5Tequal(base, native_type(t)) > 0) return true;
+    const Handle swapped(H5Tcopy(native_type(t)));
+    big_endian = element_size(t) > 1;
+    if (H5Tset_order(swapped, H5T_ORDER_BE) >= 0 && H5Tequal(base, swapped) > 0) return true;
   }
-  if (kind == H5T_ENUM) return element_type(Handle(H5Tget_super(type)), out);
-  if (kind != H5T_INTEGER || size == 0 || size > 8) return false;
-  const bool is_signed = H5Tget_sign(type) != H5T_SGN_NONE;
-  constexpr ElementType types[4][2] = {{ElementType::u8, ElementType::i8},
-                                       {ElementType::u16, ElementType::i16},
-                                       {ElementType::u32, ElementType::i32},
-                                       {ElementType::u64, ElementType::i64}};
-  out = types[size == 1 ? 0 : size == 2 ? 1 : size <= 4 ? 2 : 3][is_signed];
-  return true;
+  return false;
 }
 
 }  // namespace
+
+std::vector<double> File::number_attribute(const std::string& object, const std::string& name) const {
+  const Handle a(H5Aopen_by_name(file_, object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT));
+  if (!a.good()) {
+    H5Eclear2(H5E_DEFAULT);
+    return {};
+  }
+  const Handle type(H5Aget_type(a)), space(H5Aget_space(a));
+  const hssize_t n = H5Sget_simple_extent_npoints(space);
+  ElementType element{};
+  bool big_endian = false;
+  if (n <= 0 || n > 4096 || !plain_type(type, element, big_endian)) return {};
+  std::byte* out = nullptr;
+  const Array raw = Array::make_raw(element, size_t(n), 1, &out);
+  if (H5Aread(a, native_type(element), out) < 0) fail(fmt::format("has an attribute '{}' that cannot be read", name), object);
+  std::vector<double> values(raw.count());
+  for (size_t i = 0; i < values.size(); ++i) values[i] = raw.get(i);
+  return values;
+}
 
 Dataset::Dataset(const File& file, const std::string& path) : file_(file), path_(path) {
   if (!file.is_dataset(path)) file.fail("is no dataset", path, "the file is truncated or not complete");
@@ -221,7 +232,7 @@ Dataset::Dataset(const File& file, const std::string& path) : file_(file), path_
   for (size_t i = 0; i < dims_.size(); ++i)
     if (!multiply(count_, dims_[i], count_) || (i > 0 && !multiply(row_size_, dims_[i], row_size_)))
       file.fail("has more numbers than can be counted", path);
-  numeric_ = element_type(type_in_file_, type_);
+  numeric_ = plain_type(type_in_file_, type_, big_endian_);
   find_layout();
 }
 
@@ -239,36 +250,85 @@ void Dataset::find_layout() {
   const int filters = H5Pget_nfilters(made);
   const uint64_t stored = std::min<uint64_t>(H5Dget_storage_size(set_), size);
   if (!multiply(stored, filters > 0 ? 1032 : 1, backed_) || !add(backed_, 1 << 20, backed_)) backed_ = UINT64_MAX;
+  uint64_t bytes = H5Tget_size(type_in_file_);
   if (layout == H5D_CHUNKED) {
     std::vector<hsize_t> chunk(dims_.size());
-    uint64_t bytes = H5Tget_size(type_in_file_);
-    H5Pget_chunk(made, int(chunk.size()), chunk.data());
+    if (H5Pget_chunk(made, int(chunk.size()), chunk.data()) != int(dims_.size())) file_.fail("has chunks of other dimensions", path_);
     for (const hsize_t c : chunk)
-      if (!multiply(bytes, c, bytes)) bytes = UINT64_MAX;
+      if (c == 0 || !multiply(bytes, c, bytes)) bytes = UINT64_MAX;
     if (bytes > backed_ && count_ > 0)
       file_.fail(fmt::format("has chunks of {} bytes, but only {} bytes are stored", bytes, stored), path_, "the file is damaged");
+  } else if (!multiply(bytes, count_, bytes) || (stored > 0 && stored < bytes)) {
+    file_.fail(fmt::format("needs {} bytes, but {} are stored", bytes, stored), path_, "the file is damaged");
   }
-  for (int i = 0; i < filters; ++i) {
-    unsigned flags = 0, config = 0;
-    size_t values = 0;
-    char name[64] = "";
-    const H5Z_filter_t filter = H5Pget_filter2(made, unsigned(i), &flags, &values, nullptr, sizeof name, name, &config);
-    if (filter < 0 || H5Zfilter_avail(filter) <= 0)
-      file_.fail(fmt::format("is packed with the filter {} '{}', which is not installed", int(filter), name), path_,
-                 "repack it: h5repack -f GZIP=4 IN OUT");
-  }
+  file_size_ = size;
+  if (!numeric_ || count_ == 0) return;
   H5O_info_t here, top;
-  if (layout != H5D_CONTIGUOUS || filters > 0 || !numeric_) return;
-  if (H5Oget_info2(set_, &here, H5O_INFO_BASIC) < 0 || H5Oget_info_by_name2(file_.id(), "/", &top, H5O_INFO_BASIC, H5P_DEFAULT) < 0) return;
-  hsize_t user_block = 0;
-  const Handle creation(H5Fget_create_plist(file));
-  if (H5Pget_userblock(creation, &user_block) < 0 || user_block != 0 || here.fileno != top.fileno) return;
-  const haddr_t at = H5Dget_offset(set_);
-  if (at != HADDR_UNDEF && at % element_size(type_) == 0 && H5Tequal(type_in_file_, native_type(type_)) > 0) at_ = at;
+  if (H5Oget_info2(set_, &here, H5O_INFO_BASIC) < 0 || H5Oget_info_by_name2(file_.id(), "/", &top, H5O_INFO_BASIC, H5P_DEFAULT) < 0)
+    file_.fail("has no header", path_, "the file is damaged");
+  if (here.fileno != top.fileno) {
+    std::string name(size_t(std::max<ssize_t>(H5Fget_name(file, nullptr, 0), 0)) + 1, '\0');
+    H5Fget_name(file, name.data(), name.size());
+    name.pop_back();
+    other_path_ = name;
+  }
+  find_storage(made, layout);
+}
+
+void Dataset::find_storage(hid_t made, H5D_layout_t layout) {
+  Storage s;
+  s.big_endian = big_endian_;
+  s.element_size = element_size(type_);
+  s.dims = dims_.empty() ? std::vector<uint64_t>{1} : dims_;
+  s.file_size = file_size_;
+  if (layout == H5D_CONTIGUOUS) {
+    const haddr_t at = H5Dget_offset(set_);
+    if (at == HADDR_UNDEF && count_ > 0) file_.fail("was never written", path_, "the file is not complete");
+    s.at = at;
+    if (other_path_.empty() && !s.big_endian && at % s.element_size == 0) at_ = at;
+  } else if (layout == H5D_CHUNKED) {
+    std::vector<hsize_t> chunk(dims_.size());
+    H5Pget_chunk(made, int(chunk.size()), chunk.data());
+    s.chunk.assign(chunk.begin(), chunk.end());
+    for (int i = 0; i < H5Pget_nfilters(made); ++i) {
+      unsigned flags = 0, config = 0, values[8] = {};
+      size_t n = 8;
+      const H5Z_filter_t id = H5Pget_filter2(made, unsigned(i), &flags, &n, values, 0, nullptr, &config);
+      if (id != H5Z_FILTER_DEFLATE && id != H5Z_FILTER_SHUFFLE && id != H5Z_FILTER_FLETCHER32) {
+        if (id < 0 || H5Zfilter_avail(id) <= 0)
+          file_.fail(fmt::format("is packed with the filter {}, which is not installed", int(id)), path_,
+                     "repack it: h5repack -f GZIP=4 IN OUT");
+        return;
+      }
+      s.filters.push_back({id, id == H5Z_FILTER_SHUFFLE && n > 0 ? values[0] : 1});
+    }
+    s.fill = [this, swap = s.big_endian, size = s.element_size] {
+      const auto fill = guarded([&] {
+        const Handle list(H5Dget_create_plist(set_));
+        std::string value(size, '\0');
+        if (H5Pget_fill_value(list, native_type(type_), value.data()) < 0) value.assign(size, '\0');
+        return value;
+      });
+      if (!fill || fill->size() != size) file_.fail("has a fill value that cannot be read", path_, "the file is damaged");
+      std::string value = *fill;
+      if (swap) std::reverse(value.begin(), value.end());  // all is swapped at the end
+      return value;
+    };
+  } else {
+    return;
+  }
+  H5Eclear2(H5E_DEFAULT);
+  storage_ = std::move(s);
+}
+
+const MappedFile& Dataset::home() const {
+  if (other_path_.empty()) return file_.mapped();
+  if (!other_) other_.emplace(other_path_);
+  return *other_;
 }
 
 void Dataset::check_backed(uint64_t bytes) const {
-  if (!numeric_) file_.fail("holds no numbers", path_);
+  if (!numeric_) file_.fail("holds no numbers of a type that is read", path_, "integers and floats of 1, 2, 4 or 8 bytes");
   if (bytes > backed_)
     file_.fail(fmt::format("has {} bytes, more than what the file holds of it can give", bytes), path_, "the file is truncated or damaged");
 }
@@ -296,9 +356,11 @@ Array Dataset::read(int components) const {
   if (!multiply(count_, element_size(type_), bytes)) bytes = UINT64_MAX;
   check_backed(bytes);
   if (auto there = mapped(0, count_, components)) return *there;
+  if (!dims_.empty()) return read_block(std::vector<uint64_t>(dims_.size(), 0), dims_, std::vector<uint64_t>(dims_.size(), 1), components);
   std::byte* out = nullptr;
-  Array a = Array::make_raw(type_, count_ / uint64_t(components), components, &out);
-  if (count_ > 0 && H5Dread(set_, native_type(type_), H5S_ALL, H5S_ALL, H5P_DEFAULT, out) < 0)
+  Array a = Array::make_raw(type_, 1, 1, &out);
+  if (storage_) read_storage(set_, *storage_, home(), {0}, {1}, {1}, out, where());
+  else if (H5Dread(set_, native_type(type_), H5S_ALL, H5S_ALL, H5P_DEFAULT, out) < 0)
     file_.fail("cannot be read", path_, "the file is truncated or damaged");
   return a;
 }
@@ -334,6 +396,10 @@ Array Dataset::read_block(const std::vector<uint64_t>& start, const std::vector<
   Array a = Array::make_raw(type_, n / uint64_t(components), components, &out);
   if (n == 0) return a;
   if (dims_.empty()) return read();
+  if (storage_) {
+    read_storage(set_, *storage_, home(), start, count, stride, out, where());
+    return a;
+  }
   const std::vector<hsize_t> from(start.begin(), start.end()), step(stride.begin(), stride.end()), many(count.begin(), count.end());
   const Handle there(H5Scopy(space_));
   const hsize_t total = n;

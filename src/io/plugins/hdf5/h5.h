@@ -4,12 +4,14 @@
 #pragma once
 #include <hdf5.h>
 
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/file.h"
 #include "data/array.h"
+#include "io/plugins/hdf5/h5_data.h"
 
 namespace sg::h5 {
 
@@ -37,6 +39,17 @@ class Handle {
 void silence();
 /// What the library said last, innermost message; clears it. "" when it said nothing.
 std::string library_message();
+
+/// Held by every entry point of the plug-in: one thread at a time works with the library, so that a child process (see guarded.h)
+/// finds none of its locks taken.
+class Turn {
+ public:
+  Turn() : lock_(mutex()) {}
+
+ private:
+  static std::recursive_mutex& mutex();
+  std::lock_guard<std::recursive_mutex> lock_;
+};
 
 /// A file open for reading.
 class File {
@@ -74,13 +87,15 @@ class Dataset {
  public:
   /// Throws Error(data) when there is no such dataset.
   Dataset(const File& file, const std::string& path);
+  Dataset(const Dataset&) = delete;
+  Dataset& operator=(const Dataset&) = delete;
 
   const std::vector<uint64_t>& dims() const { return dims_; }
   uint64_t count() const { return count_; }
   /// The first dimension (1 for a single number), and the numbers in each row.
   uint64_t rows() const { return dims_.empty() ? 1 : dims_[0]; }
   uint64_t row_size() const { return row_size_; }
-  /// Integers, floats and enumerations of up to 8 bytes; half floats are read as f32, long ones as f64.
+  /// Integers and IEEE floats of 1, 2, 4 or 8 bytes in any byte order, and enumerations.
   bool numeric() const { return numeric_; }
   ElementType type() const { return type_; }
   /// Reading costs nothing: the numbers lie in the file as they are needed.
@@ -103,15 +118,22 @@ class Dataset {
  private:
   void check_backed(uint64_t bytes) const;
   void find_layout();
+  void find_storage(hid_t made, H5D_layout_t layout);
+  const MappedFile& home() const;
   std::optional<Array> mapped(uint64_t first, uint64_t n, int components) const;
   const File& file_;
   std::string path_;
   Handle set_, type_in_file_, space_;
   std::vector<uint64_t> dims_;
   uint64_t count_ = 1, row_size_ = 1;
-  uint64_t backed_ = 0;         // bytes that the file can back
-  std::optional<uint64_t> at_;  // where the numbers lie, when they lie there as they are needed
-  bool numeric_ = false;
+  std::string where() const { return file_.path() + ": '" + path_ + "'"; }
+  uint64_t file_size_ = 0;
+  uint64_t backed_ = 0;                      // bytes that the file can back
+  std::optional<Storage> storage_;           // where the numbers lie, unless only the library can tell
+  std::optional<uint64_t> at_;               // the same, when they lie there as they are needed
+  mutable std::optional<MappedFile> other_;  // the file behind an external link
+  std::string other_path_;
+  bool numeric_ = false, big_endian_ = false;
   ElementType type_ = ElementType::f32;
 };
 

@@ -9,6 +9,7 @@
 namespace {
 
 sg::PluginArray read_array(const std::string& path, const sg::PluginSelection& wanted, sg::Context&) {
+  const sg::h5::Turn turn;
   const sg::h5::File file(path);
   const sg::h5::Dataset set(file, wanted.dataset.starts_with('/') ? wanted.dataset : "/" + wanted.dataset);
   const auto& d = set.dims();

@@ -187,6 +187,7 @@ void check_version(const h5::File& file, Context& context) {
 }  // namespace vtkhdf
 
 Data read_vtkhdf(const std::string& path, const ReadOptions& options, Context& context) {
+  const h5::Turn turn;
   const h5::File file(path);
   if (!file.is_group("/VTKHDF")) vtkhdf::refuse_other(file);
   vtkhdf::check_version(file, context);
@@ -195,6 +196,7 @@ Data read_vtkhdf(const std::string& path, const ReadOptions& options, Context& c
 }
 
 std::vector<double> times_of_vtkhdf(const std::string& path, const ReadOptions& options, Context& context) {
+  const h5::Turn turn;
   const h5::File file(path);
   if (!file.is_group("/VTKHDF")) return {};
   return vtkhdf::Reader{file, options, context}.times("/VTKHDF", 0);

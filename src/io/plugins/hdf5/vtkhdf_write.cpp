@@ -306,6 +306,7 @@ void write_vtkhdf(const std::string& path, const Data& data, const WriteOptions&
   const DatasetPtr d = single_dataset(data, "a VTKHDF file");
   if (options.compression != "none" && options.compression != "zlib")
     fail_usage(fmt::format("VTKHDF files are not packed with '{}'", options.compression), path, "zlib or none");
+  const h5::Turn turn;
   errno = 0;
   vtkhdf::Writer writer(path, options.compression == "zlib", context);
   vtkhdf::write_kind({writer, *d, "/VTKHDF"});
