@@ -16,7 +16,7 @@ namespace sg::h5 {
 namespace {
 
 constexpr size_t most_bytes = 1 << 20;
-constexpr int most_milliseconds = 10000;
+constexpr int most_milliseconds = 3000;
 
 // In the child: the answer with a '+' before it. Nothing of the parent's state may be flushed or destroyed.
 [[noreturn]] void answer(int to, const std::function<std::string()>& f) {

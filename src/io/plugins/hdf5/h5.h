@@ -112,12 +112,13 @@ class Dataset {
   /// count[a] indices from start[a] on, every stride[a]-th, along each dimension; tuples of `components`.
   Array read_block(const std::vector<uint64_t>& start, const std::vector<uint64_t>& count, const std::vector<uint64_t>& stride,
                    int components = 1) const;
-  /// The strings of a dataset of fixed-length strings; empty for others.
+  /// The strings of a dataset of fixed-length strings, half a mebibyte at most; empty for others.
   std::vector<std::string> strings() const;
 
  private:
   void check_backed(uint64_t bytes) const;
   void find_layout();
+  void read_by_library(hid_t here, hid_t there, std::byte* out, size_t bytes) const;
   void find_storage(hid_t made, H5D_layout_t layout);
   const MappedFile& home() const;
   std::optional<Array> mapped(uint64_t first, uint64_t n, int components) const;
@@ -133,7 +134,7 @@ class Dataset {
   std::optional<uint64_t> at_;               // the same, when they lie there as they are needed
   mutable std::optional<MappedFile> other_;  // the file behind an external link
   std::string other_path_;
-  bool numeric_ = false, big_endian_ = false;
+  bool numeric_ = false, big_endian_ = false, compact_ = false;
   ElementType type_ = ElementType::f32;
 };
 

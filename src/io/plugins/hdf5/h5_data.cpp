@@ -129,6 +129,7 @@ class ChunkReader {
       first[a] = start_[a] / s_.chunk[a];
       last[a] = (start_[a] + (count_[a] - 1) * stride_[a]) / s_.chunk[a];
     }
+    if (s_.filters.empty()) check_sizes();
     Sizes at = first;
     for (;;) {
       fetch(at);
@@ -144,6 +145,23 @@ class ChunkReader {
   }
 
  private:
+  // The library copies as many bytes of an unfiltered chunk as its index says. Looking at every entry takes time with the square of
+  // their number, so that of many only the sum is checked.
+  void check_sizes() const {
+    const hid_t all = H5S_ALL;
+    hsize_t n = 0;
+    uint64_t want = 0;
+    if (H5Dget_num_chunks(set_, all, &n) < 0 || !multiply(n, chunk_bytes_, want) || H5Dget_storage_size(set_) != want)
+      fail("has not the size that all chunks have");
+    std::vector<hsize_t> at(s_.dims.size());
+    for (hsize_t i = 0; i < n && n <= 2048; ++i) {
+      unsigned mask = 0;
+      haddr_t place = 0;
+      hsize_t bytes = 0;
+      if (H5Dget_chunk_info(set_, all, i, at.data(), &mask, &place, &bytes) < 0 || bytes != chunk_bytes_)
+        fail("has not the size that all chunks have");
+    }
+  }
   void fetch(const Sizes& chunk) {
     std::vector<hsize_t> at(chunk.size());
     Stored s;

@@ -96,7 +96,7 @@ void read_amr(const Group& g, DatasetParts& parts) {
   for (const auto& [data, association] : {std::pair("PointData", Association::point), std::pair("CellData", Association::cell)}) {
     const Group first{g.file, g.at(level_name(0)), g.options, g.context, {}};
     for (const std::string& name : field_names(first, data)) {
-      if (auto a = read_levels(g, grid, data, name)) parts.fields.add({name, association, std::move(*a), {}, role_of(first, data, name)});
+      if (auto a = read_levels(g, grid, data, name)) parts.fields.add(field_of(first, data, name, association, std::move(*a)));
       else g.context.warn(fmt::format("{}: array '{}' is not the same in all levels: left out", g.file.path(), name));
     }
   }

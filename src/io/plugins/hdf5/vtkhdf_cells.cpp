@@ -151,7 +151,7 @@ void check_partitions(const Partitions& p, const CellLists& r) {
 void add_point_fields(const Group& g, const Partitions& p, DatasetParts& parts) {
   for (const std::string& name : field_names(g, "PointData"))
     parts.fields.add(
-        {name, Association::point, read_field(g, "PointData", name, p.point_offset, 0, p.point_count), {}, role_of(g, "PointData", name)});
+        field_of(g, "PointData", name, Association::point, read_field(g, "PointData", name, p.point_offset, 0, p.point_count)));
 }
 
 }  // namespace
@@ -176,11 +176,8 @@ void read_unstructured(const Group& g, DatasetParts& parts) {
   parts.mesh = std::move(mesh);
   add_point_fields(g, p, parts);
   for (const std::string& name : field_names(g, "CellData"))
-    parts.fields.add({name,
-                      Association::cell,
-                      read_field(g, "CellData", name, cells.cell_offset, 0, cells.cell_count),
-                      {},
-                      role_of(g, "CellData", name)});
+    parts.fields.add(
+        field_of(g, "CellData", name, Association::cell, read_field(g, "CellData", name, cells.cell_offset, 0, cells.cell_count)));
 }
 
 void read_polydata(const Group& g, DatasetParts& parts) {
@@ -215,7 +212,7 @@ void read_polydata(const Group& g, DatasetParts& parts) {
       for (const auto& s : slices) all.insert(all.end(), s.begin(), s.end());
       a = vtk::concatenated(all);
     }
-    parts.fields.add({name, Association::cell, std::move(a), {}, role_of(g, "CellData", name)});
+    parts.fields.add(field_of(g, "CellData", name, Association::cell, std::move(a)));
   }
 }
 

@@ -97,13 +97,13 @@ void read_image(const Group& g, DatasetParts& parts) {
     }
   }
   for (const std::string& name : field_names(g, "PointData"))
-    parts.fields.add({name, Association::point, read_array(g, "PointData", name, points), {}, role_of(g, "PointData", name)});
+    parts.fields.add(field_of(g, "PointData", name, Association::point, read_array(g, "PointData", name, points)));
   if (!with_cells) {
     parts.notes.emplace_back("crop", "cell fields were left out: cells do not survive a stride");
     return;
   }
   for (const std::string& name : field_names(g, "CellData"))
-    parts.fields.add({name, Association::cell, read_array(g, "CellData", name, cells), {}, role_of(g, "CellData", name)});
+    parts.fields.add(field_of(g, "CellData", name, Association::cell, read_array(g, "CellData", name, cells)));
 }
 
 }  // namespace sg::vtkhdf

@@ -60,6 +60,11 @@ Role role_of(const Group& g, const std::string& data, const std::string& name) {
   return Role::none;
 }
 
+Field field_of(const Group& g, const std::string& data, const std::string& name, Association association, Array values) {
+  const std::string path = g.at(data + "/" + name);
+  return {name, association, std::move(values), g.file.text_attribute(path, "units").value_or(""), role_of(g, data, name)};
+}
+
 Array read_field(const Group& g, const std::string& data, const std::string& name, uint64_t otherwise, uint64_t begin, uint64_t n) {
   uint64_t from = 0;
   if (!add(g.step_entry(data + "Offsets/" + name, otherwise), begin, from)) from = UINT64_MAX;

@@ -148,6 +148,7 @@ void write_fields(const Out& o, const std::string& group, Association associatio
     while (std::find(used.begin(), used.end(), name) != used.end()) name += "_";
     used.push_back(name);
     put(name, f.array);
+    if (!f.unit.empty()) o.w.text(o(group + "/" + name), "units", f.unit);
     for (const auto& [role, attribute] : roles)
       if (f.role == role && o.d.fields().with_role(role) == &f) o.w.text(o(group), attribute, name);
   }
@@ -277,7 +278,11 @@ void write(const Out& o, const AmrGrid& g) {
       const size_t from = level.patches.empty() ? 0 : points ? point : cell, to = level.patches.empty() ? 0 : points ? point_end : cell_end;
       o.w.group(at + "/" + data);
       for (const Field& f : o.d.fields())
-        if (f.association == association) o.w.list(at + "/" + data + "/" + safe_name(f.name), f.array.slice(from, to));
+        if (f.association == association) {
+          const std::string name = at + "/" + data + "/" + safe_name(f.name);
+          o.w.list(name, f.array.slice(from, to));
+          if (!f.unit.empty()) o.w.text(name, "units", f.unit);
+        }
       const Array& ghost = points ? o.d.point_ghost() : o.d.cell_ghost();
       if (!ghost.empty()) o.w.list(at + "/" + data + "/vtkGhostType", ghost.slice(from, to));
     }
