@@ -148,7 +148,11 @@ class ChunkReader {
   // The library copies as many bytes of an unfiltered chunk as its index says. Looking at every entry takes time with the square of
   // their number, so that of many only the sum is checked.
   void check_sizes() const {
-    const hid_t all = H5S_ALL;
+    const hid_t all = H5Dget_space(set_);
+    struct Closer {
+      hid_t id;
+      ~Closer() { H5Sclose(id); }
+    } closer{all};
     hsize_t n = 0;
     uint64_t want = 0;
     if (H5Dget_num_chunks(set_, all, &n) < 0 || !multiply(n, chunk_bytes_, want) || H5Dget_storage_size(set_) != want)
