@@ -116,5 +116,11 @@ bool sniff_vtk_amr(std::span<const std::byte> head);
 Data read_vtk_amr(const std::string& path, const ReadOptions& options, Context& context);
 /// Patches go into a folder of the file's name without its extension.
 void write_vtk_amr(const std::string& path, const Data& data, const WriteOptions& options, Context& context);
+bool sniff_hdf5(std::span<const std::byte> head);
+bool sniff_enzo(std::span<const std::byte> head);
+
+bool sniff_xdmf(std::span<const std::byte> head);
+Data read_xdmf(const std::string& path, const ReadOptions& options, Context& context);
+std::vector<double> times_of_xdmf(const std::string& path, const ReadOptions& options, Context& context);
 
 }  // namespace sg

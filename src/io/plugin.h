@@ -13,12 +13,23 @@
 
 namespace sg {
 
+/// One array in a file of arrays, or a block of it: count[a] indices from start[a] on, every stride[a]-th; all when these are empty.
+struct PluginSelection {
+  std::string dataset;  ///< its path in the file
+  std::vector<size_t> start, count, stride;
+};
+struct PluginArray {
+  Array values;              ///< one component, the last dimension fastest
+  std::vector<size_t> dims;  ///< slowest first; empty for a single number
+};
+
 /// What a plug-in offers under one name; null = it cannot do that.
 struct PluginFormat {
   std::string_view name;
   Data (*read)(const std::string& path, const ReadOptions&, Context&) = nullptr;
   void (*write)(const std::string& path, const Data&, const WriteOptions&, Context&) = nullptr;
   std::vector<double> (*times)(const std::string& path, const ReadOptions&, Context&) = nullptr;
+  PluginArray (*array)(const std::string& path, const PluginSelection&, Context&) = nullptr;
 };
 
 /// Loads a plug-in (once) and finds a format in it. Throws Error(data) that names what to install.

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the plug-in offers.
+#include "io/plugin.h"
+
+#include "base/parallel.h"
+#include "io/plugins/hdf5/enzo.h"
+#include "io/plugins/hdf5/vtkhdf.h"
+
+namespace {
+
+sg::PluginArray read_array(const std::string& path, const sg::PluginSelection& wanted, sg::Context&) {
+  const sg::h5::Turn turn;
+  const sg::h5::File file(path);
+  const sg::h5::Dataset set(file, wanted.dataset.starts_with('/') ? wanted.dataset : "/" + wanted.dataset);
+  const auto& d = set.dims();
+  sg::PluginArray out;
+  if (wanted.count.empty()) {
+    out.dims.assign(d.begin(), d.end());
+    out.values = set.read();
+    return out;
+  }
+  const std::vector<uint64_t> start(wanted.start.begin(), wanted.start.end()), count(wanted.count.begin(), wanted.count.end()),
+      stride(wanted.stride.begin(), wanted.stride.end());
+  out.dims = wanted.count;
+  out.values = set.read_block(start, count, stride);
+  return out;
+}
+
+}  // namespace
+
+SG_PLUGIN_FORMATS({"vtkhdf", sg::read_vtkhdf, sg::write_vtkhdf, sg::times_of_vtkhdf}, {"enzo", sg::read_enzo, nullptr, sg::times_of_enzo},
+                  {"array", nullptr, nullptr, nullptr, read_array})

@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: Apache-2.0
+// VTKHDF files, writing: uniform grids, unstructured and surface meshes, point clouds, AMR grids; one partition, one step. Version 1.0
+// where that has the kind (so that VTK 9.1 reads it), else 2.0, 2.5 with polyhedra.
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+
+#include "base/text.h"
+#include "data/lattice.h"
+#include "io/plugins/hdf5/vtkhdf.h"
+
+namespace sg {
+
+namespace vtkhdf {
+
+namespace {
+
+using h5::Handle;
+
+/// The file under its temporary name; renamed by commit(), else removed.
+class Writer {
+ public:
+  Writer(const std::string& path, bool compress, Context& context)
+      : path_(path), partial_(fmt::format("{}.partial-{}", path, ::getpid())), compress_(compress), context_(context) {
+    h5::silence();
+    const Handle access(H5Pcreate(H5P_FILE_ACCESS));
+    H5Pset_file_locking(access, false, true);
+    file_ = Handle(H5Fcreate(partial_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access));
+    if (!file_.good()) fail("cannot be written");
+  }
+  ~Writer() {
+    file_ = Handle();
+    if (!partial_.empty()) ::unlink(partial_.c_str());
+  }
+  Writer(const Writer&) = delete;
+  Writer& operator=(const Writer&) = delete;
+
+  void commit() {
+    const bool flushed = H5Fflush(file_, H5F_SCOPE_GLOBAL) >= 0;
+    file_ = Handle();
+    if (!flushed || ::rename(partial_.c_str(), path_.c_str()) != 0) fail("cannot be written");
+    partial_.clear();
+  }
+
+  void group(const std::string& path) {
+    if (!Handle(H5Gcreate2(file_, path.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT)).good()) fail(fmt::format("cannot hold '{}'", path));
+  }
+  void text(const std::string& object, const char* name, const std::string& value) {
+    const Handle type(H5Tcopy(H5T_C_S1)), space(H5Screate(H5S_SCALAR));
+    H5Tset_size(type, std::max<size_t>(value.size(), 1));
+    H5Tset_strpad(type, H5T_STR_NULLPAD);
+    attribute(object, name, type, space, value.data());
+  }
+  template <class T>
+  void numbers(const std::string& object, const char* name, const std::vector<T>& values) {
+    const hsize_t n = values.size();
+    const Handle space(H5Screate_simple(1, &n, nullptr));
+    attribute(object, name, h5::native_type(element_type_of<T>()), space, values.data());
+  }
+  /// An array with the dimensions `dims`, slowest first; chunked and packed when asked for and worth it.
+  void array(const std::string& path, const Array& values, std::vector<hsize_t> dims) {
+    context_.check();
+    const Array packed = values.made_packed();
+    const Handle space(H5Screate_simple(int(dims.size()), dims.data(), nullptr)), make(H5Pcreate(H5P_DATASET_CREATE));
+    H5Pset_obj_track_times(make, false);  // the same data give the same bytes
+    if (compress_ && packed.bytes() >= 4096) {
+      H5Pset_chunk(make, int(dims.size()), chunk_of(dims, element_size(packed.type())).data());
+      H5Pset_shuffle(make);
+      H5Pset_deflate(make, 4);
+    }
+    const hid_t type = h5::native_type(packed.type());
+    const Handle set(H5Dcreate2(file_, path.c_str(), type, space, H5P_DEFAULT, make, H5P_DEFAULT));
+    if (!set.good() || (packed.bytes() > 0 && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, packed.raw()) < 0))
+      fail(fmt::format("cannot hold '{}'", path));
+  }
+  /// A list of tuples: (n) or (n, components).
+  void list(const std::string& path, const Array& values) {
+    std::vector<hsize_t> dims{values.count()};
+    if (values.components() > 1) dims.push_back(hsize_t(values.components()));
+    array(path, values, dims);
+  }
+  void count(const std::string& path, size_t n) { list(path, Array::from_vector(std::vector<int64_t>{int64_t(n)})); }
+  const std::string& path() const { return path_; }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    std::string why = h5::library_message();
+    if (errno) why += (why.empty() ? "" : ", ") + std::string(std::strerror(errno));
+    fail_data(what + (why.empty() ? "" : " (" + why + ")"), path_, "is the folder there, may it be written to, and is there room?");
+  }
+  void attribute(const std::string& object, const char* name, hid_t type, hid_t space, const void* value) {
+    const Handle a(H5Acreate_by_name(file_, object.c_str(), name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+    if (!a.good() || H5Awrite(a, type, value) < 0) fail(fmt::format("cannot hold the attribute '{}' of '{}'", name, object));
+  }
+  // About a quarter of a mebibyte: the slowest dimensions are cut first.
+  static std::vector<hsize_t> chunk_of(std::vector<hsize_t> dims, size_t size) {
+    for (size_t a = 0; a < dims.size(); ++a) {
+      hsize_t row = size;
+      for (size_t b = a + 1; b < dims.size(); ++b) row *= dims[b];
+      dims[a] = std::clamp<hsize_t>((256 << 10) / std::max<hsize_t>(row, 1), 1, std::max<hsize_t>(dims[a], 1));
+    }
+    return dims;
+  }
+  std::string path_, partial_;
+  bool compress_;
+  Context& context_;
+  Handle file_;
+};
+
+struct Out {
+  Writer& w;
+  const Dataset& d;
+  std::string at;  ///< the group
+
+  std::string operator()(const std::string& name) const { return at + "/" + name; }
+};
+
+void head(const Out& o, const char* type, int64_t major, int64_t minor) {
+  o.w.group(o.at);
+  o.w.numbers<int64_t>(o.at, "Version", {major, minor});
+  o.w.text(o.at, "Type", type);
+}
+
+/// A name that a dataset can have: '/' would make groups.
+std::string safe_name(std::string name) {
+  for (char& c : name)
+    if (c == '/') c = '_';
+  return name.empty() || name == "." ? "unnamed" : name;
+}
+
+// Fields of one association; `lattice` has the dimensions of a grid (x first), or is empty for lists.
+void write_fields(const Out& o, const std::string& group, Association association, const std::vector<size_t>& lattice) {
+  o.w.group(o(group));
+  auto put = [&](const std::string& name, const Array& a) {
+    std::vector<hsize_t> dims(lattice.rbegin(), lattice.rend());
+    if (dims.empty()) return o.w.list(o(group + "/" + name), a);
+    if (a.components() > 1) dims.push_back(hsize_t(a.components()));
+    o.w.array(o(group + "/" + name), a, dims);
+  };
+  constexpr std::pair<Role, const char*> roles[] = {{Role::scalars, "Scalars"}, {Role::vectors, "Vectors"},
+                                                    {Role::normals, "Normals"}, {Role::tcoords, "TCoords"},
+                                                    {Role::tensors, "Tensors"}, {Role::global_ids, "GlobalIds"}};
+  std::vector<std::string> used;
+  for (const Field& f : o.d.fields()) {
+    if (f.association != association) continue;
+    std::string name = safe_name(f.name);
+    while (std::find(used.begin(), used.end(), name) != used.end()) name += "_";
+    used.push_back(name);
+    put(name, f.array);
+    if (!f.unit.empty()) o.w.text(o(group + "/" + name), "units", f.unit);
+    for (const auto& [role, attribute] : roles)
+      if (f.role == role && o.d.fields().with_role(role) == &f) o.w.text(o(group), attribute, name);
+  }
+  const Array& ghost = association == Association::point ? o.d.point_ghost() : o.d.cell_ghost();
+  if (association != Association::whole && !ghost.empty()) put("vtkGhostType", ghost);
+}
+
+Array coordinates(const Points& p) {
+  if (p.origin == Vec3{0, 0, 0}) return p.xyz;
+  double* out = nullptr;
+  Array a = Array::make<double>(p.count(), 3, &out);
+  for (size_t i = 0; i < p.count(); ++i)
+    for (int c = 0; c < 3; ++c) out[3 * i + size_t(c)] = p.at(i)[c];
+  return a;
+}
+
+Array wide(const Array& ids) { return ids.converted(ElementType::i64); }
+
+/// Offsets and ids of a list of cells, with their numbers.
+void write_list(const Out& o, const std::string& at, const CellArray& cells) {
+  const size_t n = cells.size();
+  const CellsView v = cells_view(cells);
+  int64_t* offsets = nullptr;
+  const Array starts = Array::make<int64_t>(n + 1, 1, &offsets);
+  for (size_t i = 0; i <= n; ++i) offsets[i] = i == 0 ? 0 : int64_t(v.end(i - 1));
+  o.w.count(o(at + "NumberOfCells"), n);
+  o.w.count(o(at + "NumberOfConnectivityIds"), size_t(offsets[n]));
+  o.w.list(o(at + "Offsets"), starts);
+  o.w.list(o(at + "Connectivity"), wide(cells.connectivity.slice(0, size_t(offsets[n]))));
+}
+
+void write_points(const Out& o, const Points& p) {
+  o.w.count(o("NumberOfPoints"), p.count());
+  if (p.count() > 0) o.w.list(o("Points"), coordinates(p));
+  else o.w.array(o("Points"), Array::from_vector(std::vector<float>{}), {0, 3});
+}
+
+void write(const Out& o, const UniformGrid& g) {
+  head(o, "ImageData", 1, 0);
+  std::vector<int64_t> extent;
+  std::vector<double> direction;
+  Vec3 back{0, 0, 0};
+  std::vector<size_t> points(3), cells(3);
+  for (size_t a = 0; a < 3; ++a) {
+    extent.insert(extent.end(), {g.extent_start[a], g.extent_start[a] + static_cast<long long>(g.dims[a]) - 1});
+    back[int(a)] = g.spacing[int(a)] * double(g.extent_start[a]);
+    points[a] = g.dims[a], cells[a] = std::max<size_t>(g.dims[a] - 1, 1);
+    for (size_t b = 0; b < 3; ++b) direction.push_back(g.direction.m[a][b]);
+  }
+  const Vec3 origin = g.origin - g.direction * back;  // of the point with index 0 0 0
+  o.w.numbers<int64_t>(o.at, "WholeExtent", extent);
+  o.w.numbers<double>(o.at, "Origin", {origin.x, origin.y, origin.z});
+  o.w.numbers<double>(o.at, "Spacing", {g.spacing.x, g.spacing.y, g.spacing.z});
+  o.w.numbers<double>(o.at, "Direction", direction);
+  write_fields(o, "PointData", Association::point, points);
+  write_fields(o, "CellData", Association::cell, cells);
+}
+
+void write_faces(const Out& o, const UnstructuredMesh& m) {
+  const CellsView v = cells_view(m.faces);
+  std::vector<int64_t> offsets{0}, numbers(m.faces.size());
+  for (size_t f = 0; f < v.count; ++f) offsets.push_back(int64_t(v.end(f)));
+  std::iota(numbers.begin(), numbers.end(), int64_t(0));
+  const auto ids = size_t(offsets.back());
+  o.w.count(o("NumberOfFaces"), numbers.size());
+  o.w.count(o("NumberOfFaceConnectivityIds"), ids);
+  o.w.count(o("NumberOfPolyhedronToFaceIds"), numbers.size());
+  o.w.list(o("FaceConnectivity"), wide(m.faces.connectivity.slice(0, ids)));
+  o.w.list(o("FaceOffsets"), Array::from_vector(std::move(offsets)));
+  o.w.list(o("PolyhedronToFaces"), Array::from_vector(std::move(numbers)));
+  o.w.list(o("PolyhedronOffsets"), m.polyhedron_faces);
+}
+
+void write(const Out& o, const UnstructuredMesh& m) {
+  const bool faces = !m.polyhedron_faces.empty();
+  head(o, "UnstructuredGrid", faces ? 2 : 1, faces ? 5 : 0);
+  write_points(o, m.points);
+  write_list(o, "", m.cells);
+  std::vector<uint8_t> types(m.cells.size());
+  for (size_t c = 0; c < types.size(); ++c) types[c] = uint8_t(m.type(c));
+  o.w.list(o("Types"), Array::from_vector(std::move(types)));
+  if (faces) write_faces(o, m);
+  write_fields(o, "PointData", Association::point, {});
+  write_fields(o, "CellData", Association::cell, {});
+}
+
+void write(const Out& o, const SurfaceMesh& m) {
+  head(o, "PolyData", 2, 0);
+  write_points(o, m.points);
+  for (const auto& [name, list] : {std::pair("Vertices", &m.vertices), std::pair("Lines", &m.lines), std::pair("Polygons", &m.polygons),
+                                   std::pair("Strips", &m.strips)}) {
+    o.w.group(o(name));
+    write_list(o, std::string(name) + "/", *list);
+  }
+  write_fields(o, "PointData", Association::point, {});
+  write_fields(o, "CellData", Association::cell, {});
+}
+
+void write(const Out& o, const PointCloud& m) {
+  SurfaceMesh s;
+  s.points = m.points;
+  write(o, s);
+}
+
+void write(const Out& o, const AmrGrid& g) {
+  head(o, "OverlappingAMR", 1, 0);
+  o.w.numbers<double>(o.at, "Origin", {g.origin.x, g.origin.y, g.origin.z});
+  o.w.text(o.at, "GridDescription", g.dimension == 2 ? "XY" : "XYZ");
+  for (size_t l = 0; l < g.levels.size(); ++l) {
+    const auto& level = g.levels[l];
+    DatasetParts slice;  // the fields of this level
+    size_t cell = SIZE_MAX, cell_end = 0, point = SIZE_MAX, point_end = 0;
+    std::vector<int64_t> boxes;
+    for (const auto& p : level.patches) {
+      const auto c = p.cells();
+      cell = std::min(cell, p.cell_offset), cell_end = std::max(cell_end, p.cell_offset + c[0] * c[1] * c[2]);
+      const size_t n = (c[0] + 1) * (c[1] + 1) * (g.dimension == 2 ? 1 : c[2] + 1);
+      point = std::min(point, p.point_offset), point_end = std::max(point_end, p.point_offset + n);
+      for (size_t a = 0; a < 3; ++a) boxes.insert(boxes.end(), {p.lo[a], g.dimension == 2 && a == 2 ? p.lo[a] - 1 : p.hi[a]});
+    }
+    const std::string at = o(fmt::format("Level{}", l));
+    o.w.group(at);
+    o.w.numbers<double>(at, "Spacing", {level.spacing.x, level.spacing.y, level.spacing.z});
+    o.w.array(at + "/AMRBox", Array::from_vector(std::move(boxes), 6), {level.patches.size(), 6});
+    for (const auto& [data, association] : {std::pair("PointData", Association::point), std::pair("CellData", Association::cell)}) {
+      const bool points = association == Association::point;
+      const size_t from = level.patches.empty() ? 0 : points ? point : cell, to = level.patches.empty() ? 0 : points ? point_end : cell_end;
+      o.w.group(at + "/" + data);
+      for (const Field& f : o.d.fields())
+        if (f.association == association) {
+          const std::string name = at + "/" + data + "/" + safe_name(f.name);
+          o.w.list(name, f.array.slice(from, to));
+          if (!f.unit.empty()) o.w.text(name, "units", f.unit);
+        }
+      const Array& ghost = points ? o.d.point_ghost() : o.d.cell_ghost();
+      if (!ghost.empty()) o.w.list(at + "/" + data + "/vtkGhostType", ghost.slice(from, to));
+    }
+  }
+}
+
+void write_kind(const Out& o) {
+  std::visit(
+      [&](const auto& mesh) {
+        using M = std::remove_cvref_t<decltype(mesh)>;
+        if constexpr (std::is_same_v<M, RectilinearGrid> || std::is_same_v<M, CurvilinearGrid>)
+          fail_usage(fmt::format("VTKHDF has no grids of kind {}", o.d.kind()), o.w.path(),
+                     "write .vtr or .vts, or turn it into cells first");
+        else write(o, mesh);
+      },
+      o.d.mesh());
+  write_fields(o, "FieldData", Association::whole, {});
+  if (!o.d.time()) return;
+  o.w.list(o("FieldData/TimeValue"), Array::from_vector(std::vector<double>{*o.d.time()}));
+}
+
+}  // namespace
+}  // namespace vtkhdf
+
+void write_vtkhdf(const std::string& path, const Data& data, const WriteOptions& options, Context& context) {
+  const DatasetPtr d = single_dataset(data, "a VTKHDF file");
+  if (options.compression != "none" && options.compression != "zlib")
+    fail_usage(fmt::format("VTKHDF files are not packed with '{}'", options.compression), path, "zlib or none");
+  const h5::Turn turn;
+  errno = 0;
+  vtkhdf::Writer writer(path, options.compression == "zlib", context);
+  vtkhdf::write_kind({writer, *d, "/VTKHDF"});
+  writer.commit();
+}
+
+}  // namespace sg
