@@ -6,6 +6,7 @@
 #include "base/text.h"
 #include "data/lattice.h"
 #include "data/lattice_crop.h"
+#include "io/plugin.h"
 
 namespace sg {
 

@@ -31,4 +31,7 @@ void write_stl(const std::string& path, const Data& data, const WriteOptions& op
 Data read_obj(const std::string& path, const ReadOptions& options, Context& context);
 void write_obj(const std::string& path, const Data& data, const WriteOptions& options, Context& context);
 
+bool sniff_netcdf(std::span<const std::byte> head);
+bool sniff_cgns(std::span<const std::byte> head);
+
 }  // namespace sg
