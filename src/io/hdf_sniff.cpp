@@ -20,6 +20,13 @@ bool sniff_netcdf(std::span<const std::byte> head) {
   return version == 1 || version == 2 || version == 5;
 }
 
-bool sniff_cgns(std::span<const std::byte> head) { return is_hdf5(head) || begins(head, "@(#)ADF Database Version"); }
+bool sniff_cgns(std::span<const std::byte> head) {
+  if (is_hdf5(head)) return true;
+  if (head.size() < 64 || !begins(head.subspan(4), "ADF Database Version")) return false;
+  // "@(#)", with the high bits set or not
+  for (size_t i = 0; i < 4; ++i)
+    if ((head[i] & std::byte{127}) != std::byte("@(#)"[i])) return false;
+  return true;
+}
 
 }  // namespace sg

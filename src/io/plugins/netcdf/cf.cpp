@@ -120,7 +120,10 @@ std::vector<double> times_of(const NcFile& file, const CfModel& model) {
   const int d = model.time_dim();
   if (d < 0) return {};
   std::vector<double> times;
-  if (const Variable* v = model.coordinate(d)) times = file.doubles(*v);
+  if (const Variable* v = model.coordinate(d)) {
+    const Array a = decoded(file, *v, file.read(*v, v->element())).converted(ElementType::f64);
+    times.assign(a.view<double>().data, a.view<double>().data + a.count());
+  }
   // Without (good) times the steps are counted.
   if (times.empty() || !std::all_of(times.begin(), times.end(), [](double t) { return std::isfinite(t); })) {
     times.resize(file.dimensions()[size_t(d)].length);

@@ -98,7 +98,9 @@ Data read_exodus(const NcFile& file, const ReadOptions& options, Context& contex
   Collection all;
   const auto add = [&](const std::vector<ExodusObject>& objects, const ObjectKind& kind, auto&& make) {
     Collection group;
-    for (const ExodusObject& o : objects) {
+    std::vector<ExodusObject> sorted = objects;  // by id, as VTK lists them
+    std::stable_sort(sorted.begin(), sorted.end(), [](const ExodusObject& a, const ExodusObject& b) { return a.id < b.id; });
+    for (const ExodusObject& o : sorted) {
       context.check();
       if (o.size == 0) continue;
       const DatasetPtr d = with_context(fmt::format("reading '{}' of the {}", o.name, to_lower(kind.group)), [&] { return make(o); });
