@@ -149,7 +149,7 @@ std::optional<size_t> NcFile::dim(std::string_view name) const {
 
 bool NcFile::has_group(const char* name) const {
   int group = 0;
-  return nc_inq_grp_ncid(id_, name, &group) == NC_NOERR;
+  return packed_ && nc_inq_grp_ncid(id_, name, &group) == NC_NOERR;
 }
 
 std::string NcFile::text(const Variable* v, const char* name) const {
