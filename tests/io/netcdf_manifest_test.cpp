@@ -209,15 +209,22 @@ TEST_CASE("netcdf: a step of moving eddies reads alike with one thread and with 
 }
 
 TEST_CASE("exodus: blocks of faces and edges come when a field of theirs is asked for" * doctest::skip(no_data())) {
-  ReadOptions o;
-  const Json* set = nullptr;
-  for (const Json& s : manifest()["datasets"])
-    if (s["path"] == "meshes/exodus/edgeFaceElem.exii") set = &s;
-  REQUIRE(set);
-  o.fields = {"OMEGA"};
+  const std::string path = data_file("meshes/exodus/edgeFaceElem.exii");
   Context context;
   std::string said;
   context.on_log = [&](LogLevel, std::string_view text) { said += text; };
-  read_data(data_file("meshes/exodus/edgeFaceElem.exii"), {}, context);
-  CHECK(contains(said, "3 face blocks"));
+  read_data(path, {}, context);
+  CHECK(contains(said, "3 face blocks are left out"));
+  ReadOptions o;
+  o.fields = {"PHI"};
+  o.step = 1;
+  std::map<std::string, DatasetPtr> parts;
+  for_each_dataset(read_data(path, o, context), [&](const std::string& name, const DatasetPtr& d) { parts[name] = d; });
+  REQUIRE(parts.count("Face Blocks/John BARTHA"));
+  const DatasetPtr faces = parts["Face Blocks/John BARTHA"];
+  CHECK(cell_type_counts(faces->mesh())[0] == std::pair<std::string_view, size_t>("Quad", 8));
+  CHECK(faces->range(faces->fields().require("PHI")).hi == 4);
+  CHECK(parts.count("Face Blocks/Claudio SCARCHILLI") == 1);
+  CHECK(parts["Face Blocks/Claudio SCARCHILLI"]->fields().empty());
+  CHECK(parts.count("Edge Blocks/Aldo GIUFFRE") == 0);
 }
