@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/plugins/netcdf/cf.h"
+
+#include "base/parallel.h"
+#include "base/text.h"
+
+namespace sg::nc {
+
+namespace {
+
+constexpr size_t grain = 1 << 15;
+
+// Numbers in the file's order of dimensions (lengths n, slowest first) to the mesh's: order[a] is the dimension along axis a.
+Array permuted(const Array& a, const std::vector<size_t>& n, const std::vector<int>& order) {
+  size_t stride[3] = {0, 0, 0}, count[3] = {1, 1, 1};
+  bool same = true;
+  size_t expected = 1;
+  for (size_t axis = 0; axis < 3; ++axis) {
+    if (order[axis] < 0) continue;
+    const auto d = size_t(order[axis]);
+    count[axis] = n[d];
+    stride[axis] = 1;
+    for (size_t k = d + 1; k < n.size(); ++k) stride[axis] *= n[k];
+    if (count[axis] > 1 && stride[axis] != expected) same = false;
+    expected *= count[axis];
+  }
+  if (same) return a;
+  std::byte* out = nullptr;
+  Array r = Array::make_raw(a.type(), a.count(), 1, &out);
+  const size_t size = element_size(a.type());
+  parallel_for(count[1] * count[2], std::max<size_t>(1, grain / std::max<size_t>(count[0], 1)), [&](size_t begin, size_t end) {
+    for (size_t row = begin; row < end; ++row) {
+      const size_t from = row % count[1] * stride[1] + row / count[1] * stride[2];
+      for (size_t i = 0; i < count[0]; ++i) std::memcpy(out + (row * count[0] + i) * size, a.raw() + (from + i * stride[0]) * size, size);
+    }
+  });
+  return r;
+}
+
+bool wanted(const ReadOptions& options, const std::string& name) {
+  return options.fields.empty() || std::find(options.fields.begin(), options.fields.end(), name) != options.fields.end();
+}
+
+std::string unit_of(const NcFile& file, const Variable& v) {
+  const std::string unit = file.text(&v, "units");
+  return unit == "1" || unit == "none" ? std::string() : unit;
+}
+
+// The numbers of one step, in the file's order of the variable's axes; `n` receives their lengths.
+Array read_step(const NcFile& file, const CfVariable& c, size_t step, std::vector<size_t>& n) {
+  const Variable& v = *c.v;
+  std::vector<size_t> start(v.shape.size(), 0), count(v.shape.size(), 1);
+  for (const int p : c.axes) {
+    count[size_t(p)] = v.shape[size_t(p)];
+    n.push_back(v.shape[size_t(p)]);
+  }
+  if (c.time >= 0) start[size_t(c.time)] = std::min(step, v.shape[size_t(c.time)] - 1);
+  return decoded(file, v, file.read(v, start, count, v.element()));
+}
+
+// Axes of the mesh (places in the grid's dims) as places among this variable's own axes.
+std::vector<int> own_order(const CfGrid& grid, const CfVariable& c, const std::vector<int>& order) {
+  std::vector<int> own(3, -1);
+  for (size_t a = 0; a < 3; ++a) {
+    if (order[a] < 0) continue;
+    for (size_t k = 0; k < c.axes.size(); ++k)
+      if (c.v->dims[size_t(c.axes[k])] == grid.dims[size_t(order[a])]) own[a] = int(k);
+  }
+  return own;
+}
+
+DatasetPtr read_grid(const NcFile& file, const CfModel& model, const CfGrid& grid, bool main, size_t step, std::optional<double> time,
+                     const ReadOptions& options, Context& context) {
+  CfMesh mesh = cf_mesh(file, model, grid, context);
+  DatasetParts parts;
+  std::vector<const Variable*> auxiliary;  // coordinates that are not those of the mesh come last
+  const auto add = [&](const CfVariable& c) {
+    context.check();
+    std::vector<size_t> n;
+    Array a = read_step(file, c, step, n);
+    a = permuted(a, n, own_order(grid, c, mesh.order));
+    parts.fields.add({c.v->name, mesh.association, std::move(a), unit_of(file, *c.v), Role::none});
+    if (!c.first.empty()) {
+      std::string held;
+      for (const int p : c.first) held += (held.empty() ? "" : ", ") + file.dimensions()[size_t(c.v->dims[size_t(p)])].name;
+      mesh.notes.emplace_back(c.v->name, "first entry along " + held);
+    }
+  };
+  std::vector<std::string> coordinates;
+  for (const CfVariable& c : grid.variables)
+    for (const std::string_view w : words(file.text(c.v, "coordinates"))) coordinates.emplace_back(w);
+  for (const bool last : {false, true})
+    for (const CfVariable& c : grid.variables) {
+      const bool is_coordinate = std::find(coordinates.begin(), coordinates.end(), c.v->name) != coordinates.end();
+      if (options.header_only || is_coordinate != last || !wanted(options, c.v->name)) continue;
+      if (std::find(mesh.used.begin(), mesh.used.end(), c.v) == mesh.used.end()) add(c);
+    }
+  if (main && !options.header_only)
+    for (const CfVariable& c : model.loose()) {
+      if (!wanted(options, c.v->name)) continue;
+      std::vector<size_t> n;
+      parts.fields.add({c.v->name, Association::whole, read_step(file, c, step, n), unit_of(file, *c.v), Role::none});
+    }
+  parts.mesh = std::move(mesh.mesh);
+  parts.point_ghost = mesh.point_ghost, parts.cell_ghost = mesh.cell_ghost;
+  for (const char* name : {"title", "institution", "source", "history", "references", "comment", "Conventions"})
+    if (std::string text = file.text(nullptr, name); !text.empty()) parts.notes.emplace_back(name, std::move(text));
+  parts.notes.insert(parts.notes.end(), mesh.notes.begin(), mesh.notes.end());
+  if (model.time_dim() >= 0) {
+    parts.time = time;
+    if (const Variable* t = model.coordinate(model.time_dim())) {
+      const std::string unit = file.text(t, "units"), calendar = file.text(t, "calendar");
+      if (!unit.empty()) parts.notes.emplace_back("time", calendar.empty() ? unit : fmt::format("{} ({} calendar)", unit, calendar));
+    }
+  }
+  return make_dataset(std::move(parts));
+}
+
+std::vector<double> times_of(const NcFile& file, const CfModel& model) {
+  const int d = model.time_dim();
+  if (d < 0) return {};
+  std::vector<double> times;
+  if (const Variable* v = model.coordinate(d)) {
+    const Array a = decoded(file, *v, file.read(*v, v->element())).converted(ElementType::f64);
+    times.assign(a.view<double>().data, a.view<double>().data + a.count());
+  }
+  // Without (good) times the steps are counted.
+  if (times.empty() || !std::all_of(times.begin(), times.end(), [](double t) { return std::isfinite(t); })) {
+    times.resize(file.dimensions()[size_t(d)].length);
+    for (size_t i = 0; i < times.size(); ++i) times[i] = double(i);
+  }
+  return times;
+}
+
+}  // namespace
+
+std::vector<double> cf_times(const NcFile& file) { return times_of(file, CfModel(file)); }
+
+Data read_cf(const NcFile& file, const ReadOptions& options, Context& context) {
+  const CfModel model(file);
+  if (model.grids().empty()) {
+    if (file.has_group("minc-2.0"))
+      file.fail("is a MINC 2 file, which is not read", {}, "convert it with mincconvert to MINC 1 or with mnc2nii to NIfTI");
+    file.fail("holds no variable on a grid", {}, "expected a numeric variable with at least one dimension longer than 1");
+  }
+  const std::vector<double> times = times_of(file, model);
+  size_t step = 0;
+  std::optional<double> time;
+  if (!times.empty() || options.step > 0) {
+    step = chosen_step(times, options, file.path());
+    time = times[step];
+  }
+  const auto one = [&](size_t i) { return read_grid(file, model, model.grids()[i], i == 0, step, time, options, context); };
+  if (model.grids().size() == 1) return one(0);
+  Collection all;
+  for (size_t i = 0; i < model.grids().size(); ++i) {
+    std::string name;
+    for (const int d : model.grids()[i].dims) name += (name.empty() ? "" : " x ") + file.dimensions()[size_t(d)].name;
+    all.parts.push_back({name, one(i)});
+  }
+  return std::make_shared<const Collection>(std::move(all));
+}
+
+}  // namespace sg::nc
