@@ -4,7 +4,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "data/cell_reader.h"
+#include "index/cell_probe.h"
 
 namespace sg {
 
@@ -69,7 +69,7 @@ void boxes_by_reader(const DatasetPtr& d, Vec3 center, Plane<TreeRecord>& out, C
         CellReader reader = model;
         for (size_t c = begin; c < end; ++c) {
           reader.open(c);
-          const Box3 b = reader.box();
+          const Box3 b = cell_box(reader);
           set_record(out[c], b.lo, b.hi, center, c);
         }
       },
