@@ -238,6 +238,8 @@ CellFaces make_cell_faces(CellType type, size_t nodes) {
   }
   const CellType shape = linear_type(type);
   if (shape == type && !linear_topology(type)) return {};
+  if (type == lagrange_pyramid && (nodes == 13 || nodes == 14 || nodes == 19))
+    return quadratic_faces(pyramid_topology, 8, [&](int f) { return nodes == 19 || (nodes == 14 && f == 0) ? 13 + f : -1; });
   if (shape != type) {
     if ((shape == tetra && nodes == 15) || (shape == wedge && nodes == 21)) return centred_faces(type, nodes);
     const int n = shape == pyramid ? 0 : high_order_of(type, nodes);

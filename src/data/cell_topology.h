@@ -111,5 +111,9 @@ Vec3 polygon_vector_area(std::span<const Vec3> at);
 /// Number of the node at lattice place (i, j, k) of a Lagrange or Bezier cell of order n (curves: i; triangles: i + j <= n;
 /// tetrahedra: i + j + k <= n; wedges: i + j <= n).
 uint32_t lattice_node(CellType type, int n, int i, int j = 0, int k = 0);
+/// The same with an order per axis: quads, hexahedra and wedges (whose first two are equal); others use the first.
+uint32_t lattice_node(CellType type, std::array<int, 3> orders, int i, int j = 0, int k = 0);
+/// Number of nodes of a Lagrange or Bezier cell of those orders; 0 for pyramids and types without a lattice.
+size_t lattice_nodes(CellType type, std::array<int, 3> orders);
 
 }  // namespace sg
