@@ -117,8 +117,9 @@ int64_t LocatorCursor::State::find_tree(Vec3 x) {
       if (int64_t(c) >= best) return false;
       const size_t b = s.cells.begin(c);
       const IndexView& ids = s.cells.connectivity;
-      const Vec3 r = tetra_coordinates(x, s.point(ids[b]), s.point(ids[b + 1]), s.point(ids[b + 2]), s.point(ids[b + 3]));
-      if (in_tetra(r)) best = c, place = {r, 0, x, 0};
+      const Vec3 p = s.point(ids[b]), q = s.point(ids[b + 1]);
+      const Vec3 r = tetra_coordinates(x, p, q, s.point(ids[b + 2]), s.point(ids[b + 3]));
+      if (in_tetra(r, tetra_tolerance(s.ease, q - p))) best = c, place = {r, 0, x, 0};
       return false;
     });
   } else {

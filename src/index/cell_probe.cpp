@@ -28,6 +28,9 @@ SimplexArrays::SimplexArrays(const Dataset& dataset) {
     cells = {};
     return;
   }
+  const Box3 b = dataset.bounds();
+  for (int a = 0; a < 3; ++a) ease = std::max({ease, std::abs(b.lo[a]), std::abs(b.hi[a])});
+  ease = std::isfinite(ease) ? 4 * std::numeric_limits<double>::epsilon() * ease : 0;
   keep = points->xyz.made_packed();
   origin = points->origin;
   if (keep.type() == ElementType::f32) f32 = keep.view<float>().data;
@@ -108,7 +111,7 @@ bool CellProbe::holds(size_t cell, Vec3 x, CellPlace& place) {
   if (n == 4) {
     place.rst = tetra_coordinates(x, p[0], p[1], p[2], p[3]);
     place.nearest = x, place.distance2 = 0, place.outside = 0;
-    return in_tetra(place.rst);
+    return in_tetra(place.rst, tetra_tolerance(fast_->ease, p[1] - p[0]));
   }
   if (n == 3) {
     const Vec2 r = nearest_in_triangle(x, p[0], p[1], p[2]);
@@ -154,6 +157,7 @@ void CellProbe::make_triangles() {
   const CellReader& reader = map_.reader();
   const CellType type = reader.type();
   const auto at = reader.at();
+  const auto ids = reader.ids();
   corners_.assign(at.begin(), at.end());
   if (is_bezier(type))
     if (const CellShape* shape = CellShape::find(type, at.size(), reader.orders()))
@@ -162,9 +166,13 @@ void CellProbe::make_triangles() {
   if (reader.dimension() != 3) return;
   auto add_face = [&](CellType face_type, std::span<const uint32_t> nodes) {
     face_.clear(), part_.clear();
-    for (uint32_t k : nodes) face_.push_back(corners_[k]);
+    ring_.assign(nodes.begin(), nodes.end());
+    // From the smallest id on: both cells of a warped face cut it along the same diagonal.
+    if (face_type == CellType::quad || face_type == CellType::polygon)
+      std::rotate(ring_.begin(), std::min_element(ring_.begin(), ring_.end(), [&](uint32_t a, uint32_t b) { return ids[a] < ids[b]; }), ring_.end());
+    for (uint32_t k : ring_) face_.push_back(corners_[k]);
     tessellate_face(face_type, face_, part_);
-    for (uint32_t k : part_) triangles_.push_back(nodes[k]);
+    for (uint32_t k : part_) triangles_.push_back(ring_[k]);
   };
   if (type == CellType::polyhedron) {
     CellReader faces = reader;  // lists faces on demand
@@ -196,15 +204,9 @@ double CellProbe::nearest(size_t cell, Vec3 x, Vec3& at) {
     for (const auto& f : tetra_faces) test(p[f[0]], p[f[1]], p[f[2]]);
     return best;
   }
-  CellMap& m = open(cell);
-  if (m.dimension() < 3) {
-    m.locate(x, place, locate_tolerance);
-    return at = place.nearest, place.distance2;
-  }
-  if (inside) return at = x, 0;
-  make_triangles();
-  for (size_t i = 0; i + 2 < triangles_.size(); i += 3) test(corners_[triangles_[i]], corners_[triangles_[i + 1]], corners_[triangles_[i + 2]]);
-  return best;
+  if (inside && open(cell).dimension() == 3) return at = x, 0;
+  open(cell).nearest(x, place);
+  return at = place.nearest, place.distance2;
 }
 
 double CellProbe::hit(size_t cell, Vec3 x, Vec3 d, double t0, double t1, Vec3& normal) {

@@ -24,6 +24,7 @@ struct SimplexArrays {
   const uint8_t* types = nullptr;   ///< null when all are `single`
   CellType single = CellType::empty;
   Array keep;                       ///< owns the packed positions
+  double ease = 0;                  ///< what doubles leave uncertain of a position, times 4: see tetra_tolerance
 
   SimplexArrays() = default;
   explicit SimplexArrays(const Dataset& dataset);
@@ -50,8 +51,12 @@ inline Vec3 tetra_coordinates(Vec3 x, Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
   const double scale = 1 / dot(u, vw);
   return Vec3(dot(p, vw), dot(p, wu), dot(p, uv)) * scale;
 }
-inline bool in_tetra(Vec3 r) {
-  return (r.x >= -locate_tolerance) & (r.y >= -locate_tolerance) & (r.z >= -locate_tolerance) & (r.x + r.y + r.z <= 1 + locate_tolerance);
+inline bool in_tetra(Vec3 r, double tolerance) {
+  return (r.x >= -tolerance) & (r.y >= -tolerance) & (r.z >= -tolerance) & (r.x + r.y + r.z <= 1 + tolerance);
+}
+/// locate_tolerance, and far from zero what rounding of positions amounts to in a tetrahedron with this edge.
+inline double tetra_tolerance(double ease, Vec3 edge) {
+  return locate_tolerance + ease / (std::abs(edge.x) + std::abs(edge.y) + std::abs(edge.z));
 }
 
 /// How far from points, curves and surfaces a point may lie to belong to them: 1e-6 of the mesh's size.
@@ -68,8 +73,8 @@ class CellProbe {
 
   /// Does the cell hold x, and where?
   bool holds(size_t cell, Vec3 x, CellPlace& place);
-  /// The nearest point of the cell and its squared distance: 0 for a solid that holds x, else of its faces (curved ones by their
-  /// tessellation); of curves and surfaces by their map.
+  /// The nearest point of the cell and its squared distance: 0 for a solid that holds x, else of its faces; of curves and
+  /// surfaces by their map.
   double nearest(size_t cell, Vec3 x, Vec3& at);
   /// Smallest t in [t0, t1] where the ray meets a face of a solid or a 2D cell; NaN for none. `normal`: unit; of a solid: outward.
   double hit(size_t cell, Vec3 x, Vec3 d, double t0, double t1, Vec3& normal);
@@ -90,7 +95,7 @@ class CellProbe {
   const SimplexArrays* fast_;
   double slack_;
   size_t opened_ = size_t(-1), triangles_of_ = size_t(-1);
-  std::vector<uint32_t> triangles_, part_;  // places in the open cell's ids(), three a triangle
+  std::vector<uint32_t> triangles_, part_, ring_;  // places in the open cell's ids(), three a triangle
   std::vector<Vec3> corners_, face_;        // positions of the open cell's nodes; Bezier: on the cell
 };
 

@@ -1,41 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/probe/probe.h"
 
-#include "base/parallel.h"
 #include "data/lattice.h"
 #include "filter/mesh/surface_builder.h"
 #include "filter/probe/sample.h"
-#include "index/cell_locator.h"
 
 namespace sg {
 
 namespace {
-
-// Numbers of the points so that neighbours follow one another: sorted by cells of a coarse grid over their box, itself in Morton order.
-std::vector<uint32_t> spatial_order(size_t count, const std::function<Vec3(size_t)>& point, const Box3& box) {
-  const int bits = count < (size_t(1) << 22) ? 5 : 6;
-  const double cells = double(1 << bits);
-  const Vec3 size = box.size();
-  Vec3 scale;
-  for (int a = 0; a < 3; ++a) scale[a] = size[a] > 0 ? cells / size[a] : 0.0;
-  std::vector<uint32_t> key(count), order(count);
-  parallel_for(count, 1 << 15, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const Vec3 q = (point(i) - box.lo) * scale;
-      uint32_t k = 0;
-      for (int a = 0; a < 3; ++a) {
-        const auto v = uint32_t(q[a] > 0 ? std::min(q[a], cells - 1) : 0.0);  // NaN: 0
-        for (int b = 0; b < bits; ++b) k |= (v >> b & 1) << (3 * b + a);
-      }
-      key[i] = k;
-    }
-  });
-  std::vector<uint32_t> start((size_t(1) << (3 * bits)) + 1);
-  for (uint32_t k : key) ++start[k + 1];
-  for (size_t k = 1; k < start.size(); ++k) start[k] += start[k - 1];
-  for (size_t i = 0; i < count; ++i) order[start[key[i]]++] = uint32_t(i);
-  return order;
-}
 
 FieldSet sampled_fields(const DatasetPtr& source, size_t count, const std::function<Vec3(size_t)>& point, bool scattered, Context& context) {
   FieldSampler sampler(*source, count);
@@ -51,30 +23,6 @@ void tell_missing(const FieldSet& fields, Context& context) {
 }
 
 }  // namespace
-
-void sample_points(const DatasetPtr& from, size_t count, const std::function<Vec3(size_t)>& point, bool scattered, FieldSampler& out,
-                   Context& context) {
-  const CellLocator locator(from, context);
-  std::vector<uint32_t> order;
-  if (scattered && count >= 4096 && count < UINT32_MAX) order = spatial_order(count, point, from->bounds());
-  parallel_for(
-      count, 4096,
-      [&](size_t begin, size_t end) {
-        LocatorCursor cursor(locator);
-        SampleBlock block;
-        for (size_t first = begin; first < end; first += 256) {
-          block.clear();
-          for (size_t i = first; i < std::min(first + 256, end); ++i) {
-            const size_t p = order.empty() ? i : order[i];
-            const int64_t cell = cursor.find(point(p));
-            if (cell < 0) block.add_missing(p);
-            else block.add(p, cell, cursor.ids(), cursor.weights());
-          }
-          out.write(block);
-        }
-      },
-      &context);
-}
 
 DatasetPtr probe(const DatasetPtr& points, const DatasetPtr& source, const ProbeParams& params, Context& context) {
   const size_t count = points->point_count();

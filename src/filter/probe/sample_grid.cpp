@@ -3,8 +3,8 @@
 // are evaluated row by row. A tetrahedron claims rows at a time: its barycentric coordinates are linear along them.
 #include "base/parallel.h"
 #include "filter/probe/cell_slabs.h"
+#include "filter/probe/place_writer.h"
 #include "filter/probe/sample.h"
-#include "index/cell_locator.h"
 
 namespace sg {
 
@@ -74,7 +74,9 @@ void Scanner::claim_tetra(uint32_t cell) {
   const SimplexArrays& s = scan_.simplices;
   Vec3 p[4];
   const size_t b = s.cells.begin(cell);
-  for (size_t m = 0; m < 4; ++m) p[m] = scan_.to_grid(s.point(s.cells.connectivity[b + m]));
+  for (size_t m = 0; m < 4; ++m) p[m] = s.point(s.cells.connectivity[b + m]);
+  const double tolerance = tetra_tolerance(s.ease, p[1] - p[0]);
+  for (Vec3& q : p) q = scan_.to_grid(q);
   // Relative to a grid point nearby, so that nothing cancels.
   const Vec3 base(std::floor(p[0].x), std::floor(p[0].y), std::floor(p[0].z));
   for (Vec3& q : p) q = q - base;
@@ -93,10 +95,10 @@ void Scanner::claim_tetra(uint32_t cell) {
       double r[4], from = double(lo[0]) - base.x, to = double(hi[0]) - base.x;
       for (int m = 0; m < 4; ++m) {
         r[m] = t.at[m] + t.along[m].y * (double(j) - base.y) + t.along[m].z * (double(k) - base.z);
-        const double slope = t.along[m].x, limit = (-locate_tolerance - r[m]) * inverse[m];
+        const double slope = t.along[m].x, limit = (-tolerance - r[m]) * inverse[m];
         if (slope > 0) from = limit > from ? limit : from;
         else if (slope < 0) to = limit < to ? limit : to;
-        else if (r[m] < -locate_tolerance) to = -HUGE_VAL;
+        else if (r[m] < -tolerance) to = -HUGE_VAL;
       }
       if (!(from <= to)) continue;
       const ptrdiff_t i0 = ptrdiff_t(std::ceil(from)), i1 = ptrdiff_t(std::floor(to));
@@ -127,40 +129,14 @@ void Scanner::claim_any(uint32_t cell) {
 }
 
 void Scanner::write(FieldSampler& out) {
-  const SimplexArrays& s = scan_.simplices;
-  SampleBlock block;
-  std::vector<int64_t> ids;
-  std::vector<double> weights;
+  PlaceWriter writer(std::move(probe_), scan_.simplices, out);
   for (size_t k = slab_.k0; k < slab_.k1; ++k)
-    for (size_t j = 0; j < scan_.dims[1]; ++j) {
-      block.clear();
+    for (size_t j = 0; j < scan_.dims[1]; ++j)
       for (size_t i = 0; i < scan_.dims[0]; ++i) {
         const size_t at = place(i, j, k), to = i + scan_.dims[0] * (j + scan_.dims[1] * k);
-        const uint32_t c = slab_.cell[at];
-        if (c == none) {
-          block.add_missing(to);
-          continue;
-        }
-        CellPlace p;
-        p.rst = slab_.rst[at];
-        if (s.type(c) == CellType::tetra) {
-          const size_t b = s.cells.begin(c);
-          const IndexView& n = s.cells.connectivity;
-          const int64_t four[4] = {n[b], n[b + 1], n[b + 2], n[b + 3]};
-          const double w[4] = {1 - p.rst.x - p.rst.y - p.rst.z, p.rst.x, p.rst.y, p.rst.z};
-          block.add(to, c, four, w);
-          continue;
-        }
-        // A place in a polygon or polyhedron is more than its reference coordinates.
-        if (s.type(c) == CellType::empty) {
-          const CellReader& reader = probe_.open(c).reader();
-          if (!CellShape::find(reader.type(), reader.ids().size(), reader.orders())) probe_.holds(c, scan_.point(i, j, k), p);
-        }
-        probe_.weights(c, p, ids, weights);
-        block.add(to, c, ids, weights);
+        if (slab_.cell[at] == none) writer.add_missing(to);
+        else writer.add(to, slab_.cell[at], slab_.rst[at], scan_.point(i, j, k));
       }
-      out.write(block);
-    }
 }
 
 }  // namespace
