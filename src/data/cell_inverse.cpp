@@ -146,27 +146,30 @@ bool search(const CellGeometry& g, Vec3 x, double tolerance, InverseResult& best
 InverseResult invert_solid(const CellGeometry& g, Vec3 x, double tolerance) {
   InverseResult r;
   r.rst = g.shape->center();
+  Box3 box;
+  for (Vec3 p : g.at) box.add(p);
+  const bool hull = in_hull_of_nodes(g);
+  // Linear cells stay in the box of their nodes; curved ones may bulge a little.
+  const Vec3 margin = box.size() * (hull ? tolerance : 0.25);
+  bool possible = true;
+  for (int a = 0; a < 3; ++a) possible = possible && x[a] >= box.lo[a] - margin[a] && x[a] <= box.hi[a] + margin[a];
+  if (!possible) {
+    // One step tells the direction, for those who walk from cell to cell.
+    Vec3 column[3], d;
+    const Vec3 p = g.frame(r.rst, column);
+    if (solve_columns(column, x - p, d)) r = {r.rst + d, true, 0};
+    r.outside = r.found ? std::max(g.shape->outside(r.rst), 2 * tolerance + 1e-9) : r.outside;
+    return r;
+  }
   if (newton(g, x, r.rst)) {
     r.found = true;
     r.outside = g.shape->outside(r.rst);
     if (r.outside <= tolerance) return r;
+    // A second place may be inside, unless a plane between x and the nodes tells that it is not.
+    if (hull && separated(g, x, r.rst)) return r;
   } else {
     r = {};
     r.rst = g.shape->center();
-  }
-  // A second place inside is possible only if x lies in the hull (or near, for cells that bulge beyond their nodes).
-  if (in_hull_of_nodes(g)) {
-    if (separated(g, x, r.rst)) return r;
-    Box3 box;
-    for (Vec3 p : g.at) box.add(p);
-    for (int a = 0; a < 3; ++a)
-      if (!(x[a] >= box.lo[a] && x[a] <= box.hi[a])) return r;
-  } else {
-    Box3 box;
-    for (Vec3 p : g.at) box.add(p);
-    const Vec3 margin = box.size() * 0.25;
-    for (int a = 0; a < 3; ++a)
-      if (!(x[a] >= box.lo[a] - margin[a] && x[a] <= box.hi[a] + margin[a])) return r;
   }
   search(g, x, tolerance, r);
   return r;

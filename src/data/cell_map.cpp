@@ -101,7 +101,8 @@ bool CellMap::locate_solid(Vec3 x, CellPlace& place, double tolerance) {
   } else if (shape_->type() == CellType::voxel) {
     if (locate_box(x, place, tolerance, solved)) return inside();
   }
-  const double eased = tolerance + rounding(x, size());
+  // Near misses only: rounding far from zero must not open cracks between cells.
+  const double eased = solved && place.outside > 1e-3 ? tolerance : tolerance + rounding(x, size());
   if (!solved) {
     const InverseResult r = invert_solid(Geometry(*this), x, eased);
     place.rst = r.rst;

@@ -141,6 +141,8 @@ double CellMap::integrate(double* weights) {
   // The Jacobian determinant of a solid is a polynomial; lengths and areas of bent cells and rational ones are not.
   int degree = d == 3 ? (shape_->base() == CellType::tetra ? 3 * (n - 1) : 3 * n - (linear ? 0 : 1)) : d == 2 ? 2 * n : 0;
   if (shape_->base() == CellType::pyramid) degree = linear ? 3 : 12;
+  if (reader_.type() == CellType::lagrange_tetra && g.at.size() == 15) degree = 9;  // bubbles of degree 3 and 4
+  if (reader_.type() == CellType::lagrange_wedge && g.at.size() == 21) degree = 8;
   if (d == 2 && shape_->base() != CellType::triangle) degree += 6;
   if (d < 3 && !linear) degree += 12;
   if (!g.weight.empty()) degree += 10;

@@ -204,11 +204,12 @@ int CellReader::dimension() const { return cell_type_info(type_).dimension; }
 void CellReader::open(size_t cell) {
   const Source& s = *source_;
   cell_ = cell;
-  ids_.clear(), at_.clear();
   if (!weights_.empty()) weights_.clear();
   if (!face_begin_.empty()) face_begin_.clear(), face_nodes_.clear();
   orders_ = {0, 0, 0};
   if (cell >= count_) fail_internal(fmt::format("cell {} of {} was asked for", cell, count_));
+  if (s.kind == Source::Kind::unstructured) return open_unstructured(cell);
+  ids_.clear(), at_.clear();
   s.each_id(cell, [&](size_t id) { ids_.push_back(int64_t(id)); });
   switch (s.kind) {
     case Source::Kind::lattice: {
@@ -231,17 +232,7 @@ void CellReader::open(size_t cell) {
         at_.push_back(p.origin + (lo + Vec3(double(c & 1), double(c >> 1 & 1), double(c >> 2))) * p.spacing);
       return;
     }
-    case Source::Kind::unstructured: {
-      type_ = s.types ? CellType(s.types[cell]) : s.mesh->single_type;
-      if (type_ >= CellType::lagrange_curve) {
-        for (int a = 0; a < 3 && s.degrees.data; ++a) orders_[size_t(a)] = s.degrees(cell, a);
-        if (orders_[0] == 0) orders_.fill(high_order_of(type_, ids_.size()));
-        for (int a = dimension(); a < 3; ++a) orders_[size_t(a)] = 0;
-        if (s.weights.data && is_bezier(type_))
-          for (int64_t id : ids_) weights_.push_back(s.weights[size_t(id)]);
-      }
-      break;
-    }
+    case Source::Kind::unstructured: return;  // above
     case Source::Kind::surface: {
       const size_t n = ids_.size();
       switch (s.surface_part(cell)) {
@@ -255,6 +246,27 @@ void CellReader::open(size_t cell) {
     case Source::Kind::cloud: type_ = CellType::vertex; break;
   }
   for (int64_t id : ids_) at_.push_back((*s.points)(size_t(id)));
+}
+
+// The way of most cells: no more than the copies.
+void CellReader::open_unstructured(size_t cell) {
+  const Source& s = *source_;
+  type_ = s.types ? CellType(s.types[cell]) : s.mesh->single_type;
+  const size_t begin = s.cells.begin(cell), n = s.cells.end(cell) - begin;
+  ids_.resize(n), at_.resize(n);
+  if (s.cells.connectivity.wide) {
+    std::copy_n(static_cast<const int64_t*>(s.cells.connectivity.data) + begin, n, ids_.data());
+  } else {
+    std::copy_n(static_cast<const int32_t*>(s.cells.connectivity.data) + begin, n, ids_.data());
+  }
+  const PointSource& points = *s.points;
+  for (size_t k = 0; k < n; ++k) at_[k] = points(size_t(ids_[k]));
+  if (type_ < CellType::lagrange_curve) return;
+  for (int a = 0; a < 3 && s.degrees.data; ++a) orders_[size_t(a)] = s.degrees(cell, a);
+  if (orders_[0] == 0) orders_.fill(high_order_of(type_, n));
+  for (int a = dimension(); a < 3; ++a) orders_[size_t(a)] = 0;
+  if (s.weights.data && is_bezier(type_))
+    for (int64_t id : ids_) weights_.push_back(s.weights[size_t(id)]);
 }
 
 Box3 CellReader::box() const {

@@ -40,6 +40,7 @@ class CellReader {
 
  private:
   struct Source;
+  void open_unstructured(size_t cell);
   std::shared_ptr<const Source> source_;
   size_t count_ = 0, cell_ = 0;
   CellType type_ = CellType::empty;

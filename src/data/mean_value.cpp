@@ -58,7 +58,9 @@ double winding_number(std::span<const Vec3> at, std::span<const uint32_t> triang
   for (size_t i = 0; i + 2 < triangles.size(); i += 3) {
     const Vec3 a = at[triangles[i]] - x, b = at[triangles[i + 1]] - x, c = at[triangles[i + 2]] - x;
     const double la = length(a), lb = length(b), lc = length(c);
-    sum += std::atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+    const double volume = dot(a, cross(b, c));
+    if (volume != 0)  // in the triangle's plane it is seen edge-on, or from both sides alike
+      sum += std::atan2(volume, la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
   }
   return sum / (2 * M_PI);
 }
