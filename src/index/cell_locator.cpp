@@ -94,7 +94,8 @@ int64_t LocatorCursor::State::find_amr(Vec3 x) {
     const CellLocator::Index::Patch& to = index->patches[p];
     if (to.level < level) return false;
     CellPlace at;
-    int64_t c = to.grid.find(x, index->slack, [&](size_t local) { return hidden(to.cell_begin + local); }, at);
+    int64_t c = to.grid.find(
+        x, index->slack, [&](size_t local) { return hidden(to.cell_begin + local); }, at);
     if (c < 0) return false;
     c += int64_t(to.cell_begin);
     if (to.level > level || c < best) level = to.level, best = c, place = at, patch = &to;
@@ -151,7 +152,9 @@ int64_t LocatorCursor::find(Vec3 x) {
   if (!std::isfinite(x.x + x.y + x.z)) return s.cell = -1;
   switch (s.index->kind) {
     case CellLocator::Index::Kind::grid:
-      s.cell = s.index->grid ? s.index->grid->find(x, s.index->slack, [&](size_t c) { return s.hidden(c); }, s.place) : -1;
+      s.cell = s.index->grid ? s.index->grid->find(
+                                   x, s.index->slack, [&](size_t c) { return s.hidden(c); }, s.place)
+                             : -1;
       break;
     case CellLocator::Index::Kind::amr: s.cell = s.find_amr(x); break;
     case CellLocator::Index::Kind::tree: s.cell = s.find_tree(x); break;

@@ -169,7 +169,8 @@ void CellProbe::make_triangles() {
     ring_.assign(nodes.begin(), nodes.end());
     // From the smallest id on: both cells of a warped face cut it along the same diagonal.
     if (face_type == CellType::quad || face_type == CellType::polygon)
-      std::rotate(ring_.begin(), std::min_element(ring_.begin(), ring_.end(), [&](uint32_t a, uint32_t b) { return ids[a] < ids[b]; }), ring_.end());
+      std::rotate(ring_.begin(), std::min_element(ring_.begin(), ring_.end(), [&](uint32_t a, uint32_t b) { return ids[a] < ids[b]; }),
+                  ring_.end());
     for (uint32_t k : ring_) face_.push_back(corners_[k]);
     tessellate_face(face_type, face_, part_);
     for (uint32_t k : part_) triangles_.push_back(ring_[k]);

@@ -20,11 +20,11 @@ struct SimplexArrays {
   const double* f64 = nullptr;
   Vec3 origin{0, 0, 0};
   CellsView cells;
-  size_t first = 0;                 ///< number of the first cell of the list (a surface's polygons)
-  const uint8_t* types = nullptr;   ///< null when all are `single`
+  size_t first = 0;                ///< number of the first cell of the list (a surface's polygons)
+  const uint8_t* types = nullptr;  ///< null when all are `single`
   CellType single = CellType::empty;
-  Array keep;                       ///< owns the packed positions
-  double ease = 0;                  ///< what doubles leave uncertain of a position, times 4: see tetra_tolerance
+  Array keep;       ///< owns the packed positions
+  double ease = 0;  ///< what doubles leave uncertain of a position, times 4: see tetra_tolerance
 
   SimplexArrays() = default;
   explicit SimplexArrays(const Dataset& dataset);
@@ -96,7 +96,7 @@ class CellProbe {
   double slack_;
   size_t opened_ = size_t(-1), triangles_of_ = size_t(-1);
   std::vector<uint32_t> triangles_, part_, ring_;  // places in the open cell's ids(), three a triangle
-  std::vector<Vec3> corners_, face_;        // positions of the open cell's nodes; Bezier: on the cell
+  std::vector<Vec3> corners_, face_;               // positions of the open cell's nodes; Bezier: on the cell
 };
 
 }  // namespace sg

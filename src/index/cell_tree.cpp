@@ -46,8 +46,8 @@ void boxes_of_lists(const CellsView& cells, const View<T>& xyz, Vec3 origin, Vec
               hi[a] = p[a] > hi[a] ? p[a] : hi[a];
             }
           }
-          set_record(out[c], origin + Vec3(double(lo[0]), double(lo[1]), double(lo[2])), origin + Vec3(double(hi[0]), double(hi[1]), double(hi[2])),
-                     center, first + c);
+          set_record(out[c], origin + Vec3(double(lo[0]), double(lo[1]), double(lo[2])),
+                     origin + Vec3(double(hi[0]), double(hi[1]), double(hi[2])), center, first + c);
         }
       },
       &context);
@@ -84,7 +84,8 @@ bool flat_cells(const UnstructuredMesh& m) {
       types.count, 1 << 16, true,
       [&](size_t begin, size_t end) {
         bool flat = true;
-        for (size_t i = begin; i < end; ++i) flat = flat && (types[i] < uint8_t(CellType::quadratic_edge) || types[i] == uint8_t(CellType::polyhedron));
+        for (size_t i = begin; i < end; ++i)
+          flat = flat && (types[i] < uint8_t(CellType::quadratic_edge) || types[i] == uint8_t(CellType::polyhedron));
         return flat;
       },
       [](bool a, bool b) { return a && b; });

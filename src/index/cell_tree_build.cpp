@@ -182,15 +182,14 @@ void build_subtree(TreeRecord* records, NodeRange root, std::vector<TreeNode>& n
   }
 }
 
-// std::partition by all threads, in place: each chunk by itself, then the cells on the wrong side change places pairwise. The result depends
-// on chunk borders alone.
+// std::partition by all threads, in place: each chunk by itself, then the cells on the wrong side change places pairwise. The result
+// depends on chunk borders alone.
 template <class Left>
 size_t partition_parallel(TreeRecord* r, size_t n, Left&& is_left) {
   const size_t chunks = (n + grain - 1) / grain;
   std::vector<size_t> lefts(chunks);
-  parallel_for(n, grain, [&](size_t begin, size_t end) {
-    lefts[begin / grain] = size_t(std::partition(r + begin, r + end, is_left) - (r + begin));
-  });
+  parallel_for(n, grain,
+               [&](size_t begin, size_t end) { lefts[begin / grain] = size_t(std::partition(r + begin, r + end, is_left) - (r + begin)); });
   size_t total = 0;
   for (size_t l : lefts) total += l;
   struct Run {
@@ -208,7 +207,8 @@ size_t partition_parallel(TreeRecord* r, size_t n, Left&& is_left) {
   }
   parallel_for(nr, grain, [&](size_t begin, size_t end) {
     auto run_of = [&](const std::vector<Run>& runs) {
-      return size_t(std::upper_bound(runs.begin(), runs.end(), begin, [](size_t v, const Run& x) { return v < x.before; }) - runs.begin()) - 1;
+      return size_t(std::upper_bound(runs.begin(), runs.end(), begin, [](size_t v, const Run& x) { return v < x.before; }) - runs.begin()) -
+             1;
     };
     size_t a = run_of(rights), b = run_of(wrong_lefts);
     for (size_t i = begin; i < end;) {

@@ -56,7 +56,8 @@ int GridIndex::cells_of(int a, double q, double slack, size_t index[3], double r
     i = size_t(std::min(std::max(q, 0.0), double(n - 1)));
   } else {
     const bool up = at[n] > at[0];
-    const double* it = up ? std::upper_bound(at, at + n + 1, q) : std::upper_bound(at, at + n + 1, q, [](double v, double e) { return v > e; });
+    const double* it =
+        up ? std::upper_bound(at, at + n + 1, q) : std::upper_bound(at, at + n + 1, q, [](double v, double e) { return v > e; });
     i = std::min(size_t(std::max<ptrdiff_t>(it - at - 1, 0)), n - 1);
   }
   int found = 0;
@@ -92,7 +93,8 @@ Vec3 GridIndex::nearest(Vec3 x, int64_t& cell) const {
     q[a] = flat_[a] ? 0.0 : std::min(std::max(q[a], std::min(p, e)), std::max(p, e));
   }
   CellPlace place;
-  cell = find_grid(q, HUGE_VAL, [](size_t) { return false; }, place);
+  cell = find_grid(
+      q, HUGE_VAL, [](size_t) { return false; }, place);
   return to_world(q);
 }
 
@@ -101,7 +103,10 @@ GridIndex::Hit GridIndex::hit_plane(double t, int a, size_t plane_number, Vec3 o
   Vec3 q = o + d * t;
   q[a] = flat_[a] ? 0.0 : plane(a, plane_number);
   CellPlace place;
-  Hit h{t, find_grid(q, slack, [](size_t) { return false; }, place), normalize(rows_[a])};
+  Hit h{t,
+        find_grid(
+            q, slack, [](size_t) { return false; }, place),
+        normalize(rows_[a])};
   if (h.cell < 0) return {};
   const size_t c = size_t(h.cell), at[3] = {c % cells_[0], c / cells_[0] % cells_[1], c / cells_[0] / cells_[1]};
   bool low = !flat_[a] && at[a] == plane_number;

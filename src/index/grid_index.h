@@ -9,8 +9,8 @@
 
 namespace sg {
 
-/// Works in grid coordinates q: numbers of points along the axes of an affine lattice, positions for a rectilinear one; along an axis of one
-/// point always a distance.
+/// Works in grid coordinates q: numbers of points along the axes of an affine lattice, positions for a rectilinear one; along an axis of
+/// one point always a distance.
 class GridIndex {
  public:
   /// `view` is affine or separable; what it points to must live on.

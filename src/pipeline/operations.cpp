@@ -9,6 +9,8 @@
 #include "filter/mesh/slice.h"
 #include "filter/mesh/threshold.h"
 #include "filter/mesh/transform.h"
+#include "filter/probe/probe.h"
+#include "filter/probe/resample.h"
 #include "filter/scalar/contour.h"
 #include "filter/segment/label_surface.h"
 #include "simulate/flow_fields.h"

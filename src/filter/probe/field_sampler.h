@@ -16,9 +16,7 @@ struct SampleBlock {
   std::vector<double> weights;
 
   size_t size() const { return to.size(); }
-  void clear() {
-    to.clear(), cells.clear(), begin.assign(1, 0), ids.clear(), weights.clear();
-  }
+  void clear() { to.clear(), cells.clear(), begin.assign(1, 0), ids.clear(), weights.clear(); }
   void add(size_t out, int64_t cell, std::span<const int64_t> point_ids, std::span<const double> w) {
     to.push_back(out), cells.push_back(cell);
     ids.insert(ids.end(), point_ids.begin(), point_ids.end());
@@ -36,7 +34,8 @@ class FieldSampler {
   FieldSampler(const Dataset& from, size_t count);
   /// Blocks may be written at the same time when they write different tuples.
   void write(const SampleBlock& block);
-  /// The fields, in the order of `from`, and the u8 point field "valid": 1 where there was a cell. Fields of the whole are added as they are.
+  /// The fields, in the order of `from`, and the u8 point field "valid": 1 where there was a cell. Fields of the whole are added as they
+  /// are.
   FieldSet take();
 
  private:

@@ -11,7 +11,8 @@ namespace sg {
 /// One per thread. What was added is written at the latest when it dies.
 class PlaceWriter {
  public:
-  PlaceWriter(CellProbe probe, const SimplexArrays& simplices, FieldSampler& out) : probe_(std::move(probe)), simplices_(simplices), out_(out) {}
+  PlaceWriter(CellProbe probe, const SimplexArrays& simplices, FieldSampler& out)
+      : probe_(std::move(probe)), simplices_(simplices), out_(out) {}
   ~PlaceWriter() { flush(); }
   PlaceWriter(const PlaceWriter&) = delete;
 

@@ -9,7 +9,8 @@ namespace sg {
 
 namespace {
 
-FieldSet sampled_fields(const DatasetPtr& source, size_t count, const std::function<Vec3(size_t)>& point, bool scattered, Context& context) {
+FieldSet sampled_fields(const DatasetPtr& source, size_t count, const std::function<Vec3(size_t)>& point, bool scattered,
+                        Context& context) {
   FieldSampler sampler(*source, count);
   sample_points(source, count, point, scattered, sampler, context);
   return sampler.take();
@@ -36,7 +37,8 @@ DatasetPtr probe(const DatasetPtr& points, const DatasetPtr& source, const Probe
       sampled = sampler.take();
     } else {
       const size_t nx = v.dims[0], ny = v.dims[1];
-      sampled = sampled_fields(source, count, [&](size_t i) { return v.position(i % nx, i / nx % ny, i / nx / ny); }, false, context);
+      sampled = sampled_fields(
+          source, count, [&](size_t i) { return v.position(i % nx, i / nx % ny, i / nx / ny); }, false, context);
     }
   } else {
     std::vector<int64_t> all;
@@ -44,12 +46,16 @@ DatasetPtr probe(const DatasetPtr& points, const DatasetPtr& source, const Probe
       all.resize(count);
       std::iota(all.begin(), all.end(), int64_t(0));
     }
-    const Points at = points->as<AmrGrid>() ? amr_points(*points->as<AmrGrid>(), all) : std::visit([](const auto& m) -> Points {
-      if constexpr (requires { m.points; }) return m.points;
-      else return {};
-    }, points->mesh());
+    const Points at = points->as<AmrGrid>() ? amr_points(*points->as<AmrGrid>(), all)
+                                            : std::visit(
+                                                  [](const auto& m) -> Points {
+                                                    if constexpr (requires { m.points; }) return m.points;
+                                                    else return {};
+                                                  },
+                                                  points->mesh());
     const PointReader reader(at);
-    sampled = sampled_fields(source, count, [&](size_t i) { return reader[i]; }, true, context);
+    sampled = sampled_fields(
+        source, count, [&](size_t i) { return reader[i]; }, true, context);
   }
   tell_missing(sampled, context);
   DatasetParts parts = points->parts();
@@ -60,7 +66,8 @@ DatasetPtr probe(const DatasetPtr& points, const DatasetPtr& source, const Probe
 
 DatasetPtr probe_at(const DatasetPtr& source, const ProbeAtParams& p, Context& context) {
   const bool line = p.from || p.to;
-  if (line == !p.points.empty()) fail_usage("either points or a line from one point to another is needed", "probe_at", "points=x,y,z,... or from=x,y,z to=x,y,z");
+  if (line == !p.points.empty())
+    fail_usage("either points or a line from one point to another is needed", "probe_at", "points=x,y,z,... or from=x,y,z to=x,y,z");
   if (line && !(p.from && p.to)) fail_usage("a line has two ends", "probe_at", p.from ? "add to=x,y,z" : "add from=x,y,z");
   if (p.points.size() % 3 != 0)
     fail_usage(fmt::format("{} numbers make no whole points", p.points.size()), "probe_at", "three numbers a point: points=x,y,z,x,y,z");

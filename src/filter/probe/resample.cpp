@@ -33,7 +33,8 @@ UniformGrid resample_grid(const Dataset& input, const ResampleParams& p) {
     if (!p.dims.empty()) n = size_t(p.dims[size_t(a)]);
     else if (!flat) n = std::max<size_t>(2, size_t(std::lround(extent[a] / longest * double(p.size - 1))) + 1);
     if (flat && n > 1)
-      fail_usage(fmt::format("{} points along {}, where the box has no extent", n, "xyz"[a]), "resample", "1 there, or bounds with an extent");
+      fail_usage(fmt::format("{} points along {}, where the box has no extent", n, "xyz"[a]), "resample",
+                 "1 there, or bounds with an extent");
     if (n == 1 && !flat) g.origin[a] = box.center()[a];
     g.dims[size_t(a)] = n;
     g.spacing[a] = n > 1 ? extent[a] / double(n - 1) : 1.0;

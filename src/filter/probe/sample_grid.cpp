@@ -144,7 +144,8 @@ void Scanner::write(FieldSampler& out) {
 void sample_grid(const DatasetPtr& from, const LatticeView& grid, FieldSampler& out, Context& context) {
   const auto& d = grid.dims;
   if (!from->as<UnstructuredMesh>() && !from->as<SurfaceMesh>() && !from->as<CurvilinearGrid>()) {
-    sample_points(from, grid.points(), [&](size_t i) { return grid.position(i % d[0], i / d[0] % d[1], i / d[0] / d[1]); }, false, out, context);
+    sample_points(
+        from, grid.points(), [&](size_t i) { return grid.position(i % d[0], i / d[0] % d[1], i / d[0] / d[1]); }, false, out, context);
     return;
   }
   const GridScan scan(from, grid);

@@ -78,7 +78,9 @@ Buckets sort_points(const Dataset& from, size_t count, const PointAt& point) {
   const double slack = locate_slack(from);
   Box3 mesh = from.bounds();
   mesh.lo += Vec3(-slack, -slack, -slack), mesh.hi += Vec3(slack, slack, slack);
-  auto within = [&](Vec3 x) { return x.x >= mesh.lo.x && x.x <= mesh.hi.x && x.y >= mesh.lo.y && x.y <= mesh.hi.y && x.z >= mesh.lo.z && x.z <= mesh.hi.z; };
+  auto within = [&](Vec3 x) {
+    return x.x >= mesh.lo.x && x.x <= mesh.hi.x && x.y >= mesh.lo.y && x.y <= mesh.hi.y && x.z >= mesh.lo.z && x.z <= mesh.hi.z;
+  };
   const Box3 box = parallel_reduce(
       count, 1 << 15, Box3{},
       [&](size_t begin, size_t end) {
