@@ -188,7 +188,7 @@ void CellMap::nearest(Vec3 x, CellPlace& place) {
 void CellMap::nearest_of_faces(Vec3 x, CellPlace& place) {
   const auto at = reader_.at();
   const auto weight = reader_.weights();
-  const CellFaces& faces = cell_faces(reader_.type(), at.size());
+  const CellFaces& faces = cell_faces(reader_.type(), at.size(), reader_.orders());
   std::vector<Vec3> corner, dn;
   std::vector<double> w, n;
   double best = HUGE_VAL;
@@ -199,7 +199,7 @@ void CellMap::nearest_of_faces(Vec3 x, CellPlace& place) {
       if (!weight.empty()) w.push_back(weight[k]);
     }
     n.resize(corner.size()), dn.resize(corner.size());
-    const CellShape* shape = CellShape::find(faces.type[f], corner.size());
+    const CellShape* shape = CellShape::find(faces.type[f], corner.size(), faces.orders[f]);
     if (!shape) continue;
     const CellGeometry g{shape, corner, w, n.data(), dn.data()};
     const Vec3 p = g.position(nearest_reference(g, x));

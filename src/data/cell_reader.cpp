@@ -262,7 +262,7 @@ void CellReader::open_unstructured(size_t cell) {
   const PointSource& points = *s.points;
   for (size_t k = 0; k < n; ++k) at_[k] = points(size_t(ids_[k]));
   if (type_ < CellType::lagrange_curve) return;
-  for (int a = 0; a < 3 && s.degrees.data; ++a) orders_[size_t(a)] = s.degrees(cell, a);
+  if (s.degrees.data) orders_ = cell_orders(*s.mesh, cell);
   if (orders_[0] == 0) orders_.fill(high_order_of(type_, n));
   for (int a = dimension(); a < 3; ++a) orders_[size_t(a)] = 0;
   if (s.weights.data && is_bezier(type_))
@@ -272,6 +272,11 @@ void CellReader::open_unstructured(size_t cell) {
 Box3 CellReader::box() const {
   Box3 b;
   for (Vec3 p : at_) b.add(p);
+  if (is_high_order(type_) && !is_bezier(type_) && type_ != CellType::quadratic_polygon && !b.empty()) {
+    // A parabola leaves the range of its nodes by up to an eighth; higher orders by more.
+    const Vec3 margin = b.size() * (orders_[0] > 2 || orders_[1] > 2 || orders_[2] > 2 || type_ == CellType::cubic_line ? 0.25 : 0.15);
+    b.lo -= margin, b.hi += margin;
+  }
   return b;
 }
 
@@ -288,7 +293,7 @@ size_t CellReader::face_count() {
   face_begin_.push_back(0);
   if (type_ != CellType::polyhedron) {
     if (dimension() != 3) return 0;
-    const CellFaces& faces = cell_faces(type_, ids_.size());
+    const CellFaces& faces = cell_faces(type_, ids_.size(), orders_);
     face_begin_ = faces.begin;
     face_nodes_ = faces.nodes;
     return faces.size();

@@ -31,10 +31,14 @@ class CellReader {
   std::span<const double> weights() const { return weights_; }
   /// Orders along the axes of a Lagrange or Bezier cell (from UnstructuredMesh::degrees, else the same along all); 0 for others.
   std::array<int, 3> orders() const { return orders_; }
+  /// What the cell lies in: the box of its nodes, grown by 15 % (above order 2: 25 %) of its size for Lagrange-like curved cells,
+  /// which bulge beyond their nodes.
   Box3 box() const;
-  /// Not to be located, drawn or integrated: ghost_hidden_cell, ghost_refined_cell or ghost_duplicate are set.
+  /// Not to be located, drawn or integrated: ghost_hidden_cell, ghost_refined_cell or ghost_duplicate are set, or one of its points
+  /// is hidden (ghost_hidden_point).
   bool hidden(size_t cell) const;
-  /// Polyhedra: faces as lists of places in ids() (not point ids), as the file orders them; others: from cell_faces().
+  /// Polyhedra: faces as lists of places in ids() (not point ids), as the file orders them; others: from cell_faces(). Throws
+  /// Error(data) when a face has a point that the cell does not list.
   size_t face_count();
   std::span<const uint32_t> face(size_t f);
 

@@ -145,6 +145,7 @@ void add_face(CellFaces& out, CellType type, std::span<const uint32_t> nodes, si
   out.nodes.insert(out.nodes.end(), nodes.begin(), nodes.end());
   out.begin.push_back(uint32_t(out.nodes.size()));
   out.corners.push_back(uint8_t(corners));
+  out.orders.push_back({0, 0, 0});
 }
 
 CellFaces linear_faces(const LinearTopology& t) {
@@ -185,13 +186,15 @@ CellFaces quadratic_faces(const LinearTopology& t, size_t edge_nodes, Centre cen
 struct Place {
   int i, j, k;
 };
-Place corner_place(CellType shape, int n, int corner) {
-  if (shape == CellType::tetra) return {corner == 1 ? n : 0, corner == 2 ? n : 0, corner == 3 ? n : 0};
-  if (shape == CellType::wedge) return {corner % 3 == 1 ? n : 0, corner % 3 == 2 ? n : 0, corner >= 3 ? n : 0};
-  return {corner % 4 == 1 || corner % 4 == 2 ? n : 0, corner % 4 >= 2 ? n : 0, corner >= 4 ? n : 0};
+using Orders = std::array<int, 3>;
+
+Place corner_place(CellType shape, Orders n, int corner) {
+  if (shape == CellType::tetra) return {corner == 1 ? n[0] : 0, corner == 2 ? n[0] : 0, corner == 3 ? n[0] : 0};
+  if (shape == CellType::wedge) return {corner % 3 == 1 ? n[0] : 0, corner % 3 == 2 ? n[0] : 0, corner >= 3 ? n[2] : 0};
+  return {corner % 4 == 1 || corner % 4 == 2 ? n[0] : 0, corner % 4 >= 2 ? n[1] : 0, corner >= 4 ? n[2] : 0};
 }
 
-CellFaces lattice_faces(CellType type, int n) {
+CellFaces lattice_faces(CellType type, Orders n) {
   const CellType shape = linear_type(type);
   const LinearTopology& t = *linear_topology(shape);
   CellFaces out;
@@ -202,13 +205,17 @@ CellFaces lattice_faces(CellType type, int n) {
                                                : (triangle ? CellType::lagrange_triangle : CellType::lagrange_quad);
     // u runs from the first corner to the second, v from the first to the last.
     const Place a = corner_place(shape, n, c[0]), b = corner_place(shape, n, c[1]), d = corner_place(shape, n, c[c.size() - 1]);
-    std::vector<uint32_t> nodes(size_t(triangle ? (n + 1) * (n + 2) / 2 : (n + 1) * (n + 1)));
-    for (int v = 0; v <= n; ++v)
-      for (int u = 0; u <= (triangle ? n - v : n); ++u) {
-        auto mix = [&](int p, int q, int r) { return p + (u * (q - p) + v * (r - p)) / n; };
-        nodes[lattice_node(face_type, n, u, v)] = lattice_node(type, n, mix(a.i, b.i, d.i), mix(a.j, b.j, d.j), mix(a.k, b.k, d.k));
+    auto steps = [&](Place q) { return std::max({std::abs(q.i - a.i), std::abs(q.j - a.j), std::abs(q.k - a.k)}); };
+    const int nu = steps(b), nv = steps(d);
+    std::vector<uint32_t> nodes(lattice_nodes(face_type, {nu, nv, 1}));
+    for (int v = 0; v <= nv; ++v)
+      for (int u = 0; u <= (triangle ? nu - v : nu); ++u) {
+        auto mix = [&](int p, int q, int r) { return p + u * (q - p) / nu + v * (r - p) / nv; };
+        nodes[lattice_node(face_type, {nu, nv, 1}, u, v)] =
+            lattice_node(type, n, mix(a.i, b.i, d.i), mix(a.j, b.j, d.j), mix(a.k, b.k, d.k));
       }
     add_face(out, face_type, nodes, c.size());
+    out.orders.back() = {nu, nv, 0};
   }
   return out;
 }
@@ -221,7 +228,7 @@ CellFaces centred_faces(CellType type, size_t nodes) {
   return out;
 }
 
-CellFaces make_cell_faces(CellType type, size_t nodes) {
+CellFaces make_cell_faces(CellType type, size_t nodes, Orders orders) {
   using enum CellType;
   auto none = [](int) { return -1; };
   switch (type) {
@@ -242,8 +249,8 @@ CellFaces make_cell_faces(CellType type, size_t nodes) {
     return quadratic_faces(pyramid_topology, 8, [&](int f) { return nodes == 19 || (nodes == 14 && f == 0) ? 13 + f : -1; });
   if (shape != type) {
     if ((shape == tetra && nodes == 15) || (shape == wedge && nodes == 21)) return centred_faces(type, nodes);
-    const int n = shape == pyramid ? 0 : high_order_of(type, nodes);
-    if (n > 1) return lattice_faces(type, n);
+    if (orders[0] < 1 || orders[1] < 1 || orders[2] < 1 || lattice_nodes(type, orders) != nodes) orders.fill(high_order_of(type, nodes));
+    if (shape != pyramid && std::max({orders[0], orders[1], orders[2]}) > 1) return lattice_faces(type, orders);
   }
   const LinearTopology* t = linear_topology(shape);
   return t ? linear_faces(*t) : CellFaces{};
@@ -251,14 +258,22 @@ CellFaces make_cell_faces(CellType type, size_t nodes) {
 
 }  // namespace
 
-const CellFaces& cell_faces(CellType type, size_t nodes) {
+const CellFaces& cell_faces(CellType type, size_t nodes, std::array<int, 3> orders) {
   static std::mutex mutex;
-  static std::map<std::pair<CellType, size_t>, CellFaces> known;
+  static std::map<std::tuple<CellType, size_t, Orders>, CellFaces> known;
   std::lock_guard lock(mutex);
-  const auto key = std::make_pair(type, nodes);
+  const auto key = std::make_tuple(type, nodes, orders);
   auto it = known.find(key);
-  if (it == known.end()) it = known.emplace(key, make_cell_faces(type, nodes)).first;
+  if (it == known.end()) it = known.emplace(key, make_cell_faces(type, nodes, orders)).first;
   return it->second;
+}
+
+std::array<int, 3> cell_orders(const UnstructuredMesh& mesh, size_t cell) {
+  const CellType type = mesh.type(cell), form = linear_type(type);
+  if (mesh.degrees.empty() || type < CellType::lagrange_curve) return {0, 0, 0};
+  if (form != CellType::quad && form != CellType::hexahedron && form != CellType::wedge) return {0, 0, 0};
+  const auto v = mesh.degrees.view<uint8_t>();
+  return {v(cell, 0), v(cell, 1), v(cell, 2)};
 }
 
 CellFaceReader::CellFaceReader(const UnstructuredMesh& mesh) : mesh_(mesh), cells_(cells_view(mesh.cells)), faces_(cells_view(mesh.faces)) {
@@ -274,14 +289,16 @@ size_t CellFaceReader::open(size_t cell) {
   }
   begin_ = cells_.begin(cell);
   const size_t n = cells_.size(cell);
-  if (!table_ || type != known_type_ || n != known_nodes_) {
-    table_ = &cell_faces(type, n);
-    known_type_ = type, known_nodes_ = n;
+  const auto orders = cell_orders(mesh_, cell);
+  if (!table_ || type != known_type_ || n != known_nodes_ || orders != known_orders_) {
+    table_ = &cell_faces(type, n, orders);
+    known_type_ = type, known_nodes_ = n, known_orders_ = orders;
   }
   return table_->size();
 }
 
 CellType CellFaceReader::face_type(size_t f) const { return table_ ? table_->type[f] : CellType::polygon; }
+std::array<int, 3> CellFaceReader::face_orders(size_t f) const { return table_ ? table_->orders[f] : std::array<int, 3>{0, 0, 0}; }
 std::span<const int64_t> CellFaceReader::nodes(size_t f) { return read(f, false); }
 std::span<const int64_t> CellFaceReader::corners(size_t f) { return read(f, true); }
 

@@ -50,7 +50,8 @@ struct CellFaces {
   std::vector<CellType> type;
   std::vector<uint32_t> begin{0};  ///< size()+1 entries into nodes
   std::vector<uint32_t> nodes;
-  std::vector<uint8_t> corners;  ///< number of corner nodes of each face
+  std::vector<uint8_t> corners;            ///< number of corner nodes of each face
+  std::vector<std::array<int, 3>> orders;  ///< of Lagrange and Bezier faces along their first and second side; 0 for others
 
   size_t size() const { return type.size(); }
   std::span<const uint32_t> face(size_t f) const { return std::span(nodes).subspan(begin[f], begin[f + 1] - begin[f]); }
@@ -58,8 +59,12 @@ struct CellFaces {
 };
 
 /// Faces of a 3D cell of `nodes` points; computed once and kept. Cells of other dimensions and polyhedra have none here.
-/// A Lagrange or Bezier cell whose node count fits no order has the linear faces of its corners.
-const CellFaces& cell_faces(CellType type, size_t nodes);
+/// A Lagrange or Bezier cell whose node count fits no order has the linear faces of its corners. `orders` of 0: the same along
+/// all axes.
+const CellFaces& cell_faces(CellType type, size_t nodes, std::array<int, 3> orders = {0, 0, 0});
+
+/// UnstructuredMesh::degrees of a Lagrange or Bezier quad, hexahedron or wedge; 0 for others and where there are none.
+std::array<int, 3> cell_orders(const UnstructuredMesh& mesh, size_t cell);
 
 /// Faces of any solid cell of a mesh as lists of point ids, polyhedra included. Not thread-safe: one per thread.
 class CellFaceReader {
@@ -68,6 +73,8 @@ class CellFaceReader {
   /// Selects a cell; its number of faces (0 unless the cell is solid).
   size_t open(size_t cell);
   CellType face_type(size_t f) const;
+  /// For tessellate_face and CellShape::find.
+  std::array<int, 3> face_orders(size_t f) const;
   /// All nodes of face f, in the order of face_type(f).
   std::span<const int64_t> nodes(size_t f);
   /// Its corners only, counter-clockwise seen from outside (a polyhedron's faces as the file lists them).
@@ -81,20 +88,21 @@ class CellFaceReader {
   const CellFaces* table_ = nullptr;  // of the open cell; null for a polyhedron
   CellType known_type_ = CellType::empty;
   size_t known_nodes_ = 0;
+  std::array<int, 3> known_orders_{0, 0, 0};
   size_t begin_ = 0, first_face_ = 0;
   std::vector<int64_t> ids_;
 };
 
 /// Appends triangles (three local node numbers each) that cover a 2D cell of `type` through all of its nodes: n*n per
 /// triangle of order n, 2*n*n per quad. `at` holds the position of each node and decides how polygons and quads are split
-/// (non-convex ones by ear clipping in their best plane); strips keep their alternating orientation.
-void tessellate_face(CellType type, std::span<const Vec3> at, std::vector<uint32_t>& triangles);
+/// (non-convex ones by ear clipping in their best plane); strips keep their alternating orientation. `orders` as in cell_faces.
+void tessellate_face(CellType type, std::span<const Vec3> at, std::vector<uint32_t>& triangles, std::array<int, 3> orders = {0, 0, 0});
 
 /// The nodes of a 1D cell in the order along the curve (0, interior nodes, 1).
 void curve_order(CellType type, size_t nodes, std::vector<uint32_t>& order);
 
 /// The nodes of a 2D cell that lie on its outline, in order around it: what to draw as its edges. Strips are not outlines: empty.
-void face_outline(CellType type, size_t nodes, std::vector<uint32_t>& ring);
+void face_outline(CellType type, size_t nodes, std::vector<uint32_t>& ring, std::array<int, 3> orders = {0, 0, 0});
 
 /// Triangles of a simple polygon, also a non-convex one, by ear clipping; n-2 triangles, oriented like the polygon.
 void triangulate_polygon(std::span<const Vec3> at, std::vector<uint32_t>& triangles);

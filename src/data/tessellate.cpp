@@ -81,6 +81,8 @@ void triangulate_polygon(std::span<const Vec3> at, std::vector<uint32_t>& triang
 
 namespace {
 
+using Orders = std::array<int, 3>;
+
 void split_lattice_triangle(CellType type, int n, std::vector<uint32_t>& out) {
   auto node = [&](int i, int j) { return lattice_node(type, n, i, j); };
   for (int j = 0; j < n; ++j)
@@ -90,11 +92,17 @@ void split_lattice_triangle(CellType type, int n, std::vector<uint32_t>& out) {
     }
 }
 
-void split_lattice_quad(CellType type, int n, std::span<const Vec3> at, std::vector<uint32_t>& out) {
-  for (int j = 0; j < n; ++j)
-    for (int i = 0; i < n; ++i)
-      split_quad(at, lattice_node(type, n, i, j), lattice_node(type, n, i + 1, j), lattice_node(type, n, i + 1, j + 1),
-                 lattice_node(type, n, i, j + 1), out);
+void split_lattice_quad(CellType type, Orders n, std::span<const Vec3> at, std::vector<uint32_t>& out) {
+  auto node = [&](int i, int j) { return lattice_node(type, n, i, j); };
+  for (int j = 0; j < n[1]; ++j)
+    for (int i = 0; i < n[0]; ++i) split_quad(at, node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1), out);
+}
+
+// Orders along both sides of a Lagrange or Bezier quad: the given ones when they fit, else what the count of nodes says; 0 = none.
+Orders quad_orders(CellType type, size_t nodes, Orders given) {
+  if (given[0] > 0 && given[1] > 0 && lattice_nodes(type, given) == nodes) return given;
+  const int n = high_order_of(type, nodes);
+  return {n, n, n};
 }
 
 void split_strip(size_t n, std::vector<uint32_t>& out) {
@@ -103,7 +111,7 @@ void split_strip(size_t n, std::vector<uint32_t>& out) {
 
 }  // namespace
 
-void tessellate_face(CellType type, std::span<const Vec3> at, std::vector<uint32_t>& out) {
+void tessellate_face(CellType type, std::span<const Vec3> at, std::vector<uint32_t>& out, std::array<int, 3> orders) {
   using enum CellType;
   const size_t n = at.size();
   const CellType shape = linear_type(type);
@@ -131,12 +139,12 @@ void tessellate_face(CellType type, std::span<const Vec3> at, std::vector<uint32
   }
   if (shape == quad) {
     if (n == 4) return split_quad(at, 0, 1, 2, 3, out);
-    if (n == 6) return split_quad(at, 0, 4, 5, 3, out), split_quad(at, 4, 1, 2, 5, out);
-    if (n == 8) {
+    if (type == quadratic_linear_quad) return split_quad(at, 0, 4, 5, 3, out), split_quad(at, 4, 1, 2, 5, out);
+    if (type == quadratic_quad) {
       add(out, 0, 4, 7), add(out, 1, 5, 4), add(out, 2, 6, 5), add(out, 3, 7, 6);
       return split_quad(at, 4, 5, 6, 7, out);
     }
-    if (const int order = high_order_of(type, n); order > 0) return split_lattice_quad(type, order, at, out);
+    if (const Orders o = quad_orders(type, n, orders); o[0] > 0) return split_lattice_quad(type, o, at, out);
     if (n > 4) return split_quad(at, 0, 1, 2, 3, out);
   }
   if (cell_type_info(type).dimension != 2) fail_internal(fmt::format("{} is not a 2D cell", cell_type_info(type).name));
@@ -154,7 +162,7 @@ void curve_order(CellType type, size_t nodes, std::vector<uint32_t>& order) {
   order.push_back(1);
 }
 
-void face_outline(CellType type, size_t nodes, std::vector<uint32_t>& ring) {
+void face_outline(CellType type, size_t nodes, std::vector<uint32_t>& ring, std::array<int, 3> orders) {
   using enum CellType;
   ring.clear();
   const CellType shape = linear_type(type);
@@ -164,20 +172,23 @@ void face_outline(CellType type, size_t nodes, std::vector<uint32_t>& ring) {
     for (uint32_t i = 0; i < nodes / 2; ++i) ring.push_back(i), ring.push_back(i + uint32_t(nodes / 2));
   } else if (type == polygon) {
     for (uint32_t i = 0; i < nodes; ++i) ring.push_back(i);
-  } else if (shape == quad && nodes == 6) {
+  } else if (type == quadratic_linear_quad) {
     ring = {0, 4, 1, 2, 5, 3};
-  } else if (shape == quad && (nodes == 8 || nodes == 9)) {
+  } else if (type == quadratic_quad || type == biquadratic_quad) {
     ring = {0, 4, 1, 5, 2, 6, 3, 7};
   } else if (shape == triangle && (nodes == 6 || nodes == 7)) {
     ring = {0, 3, 1, 4, 2, 5};
   } else if (shape == triangle || shape == quad) {
-    const int n = is_high_order(type) ? std::max(high_order_of(type, nodes), 1) : 1;
+    Orders n{1, 1, 1};
+    if (shape == quad && is_high_order(type)) n = quad_orders(type, nodes, orders);
+    else if (is_high_order(type)) n.fill(high_order_of(type, nodes));
+    for (int& o : n) o = std::max(o, 1);
     auto add_side = [&](int i, int j, int di, int dj) {
-      for (int s = 0; s < n; ++s) ring.push_back(lattice_node(shape, n, i + s * di, j + s * dj));
+      for (int s = 0; s < (di != 0 ? n[0] : n[1]); ++s) ring.push_back(lattice_node(shape, n, i + s * di, j + s * dj));
     };
     add_side(0, 0, 1, 0);
-    if (shape == triangle) add_side(n, 0, -1, 1), add_side(0, n, 0, -1);
-    else add_side(n, 0, 0, 1), add_side(n, n, -1, 0), add_side(0, n, 0, -1);
+    if (shape == triangle) add_side(n[0], 0, -1, 1), add_side(0, n[0], 0, -1);
+    else add_side(n[0], 0, 0, 1), add_side(n[0], n[1], -1, 0), add_side(0, n[1], 0, -1);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <atomic>
 
 #include "base/parallel.h"
+#include "data/cell_topology.h"
 #include "data/lattice.h"
 #include "data/mesh.h"
 
@@ -90,6 +91,45 @@ void check_axis(const Array& a, char name) {
   }
 }
 
+// Orders of 0 mean the same along all axes, found from the number of nodes.
+void check_orders(const UnstructuredMesh& m) {
+  if (m.degrees.empty()) return;
+  const size_t n = m.cells.size();
+  if (m.degrees.type() != ElementType::u8 || m.degrees.components() != 3 || m.degrees.count() != n)
+    fail_data(fmt::format("orders of cells: {} tuples of {} {} for {} cells", m.degrees.count(), m.degrees.components(),
+                          element_name(m.degrees.type()), n),
+              {}, "they must be 3 u8 a cell");
+  const auto order = m.degrees.view<uint8_t>();
+  const CellsView cells = cells_view(m.cells);
+  auto fits = [&](size_t c) {
+    const CellType type = m.type(c), form = linear_type(type);
+    const bool has_orders =
+        type >= CellType::lagrange_curve && (form == CellType::quad || form == CellType::hexahedron || form == CellType::wedge);
+    if (!has_orders || order(c, 0) == 0) return true;
+    std::array<int, 3> o{order(c, 0), order(c, 1), form == CellType::quad ? 1 : order(c, 2)};
+    for (int k : o)
+      if (k < 1 || k > 10) return false;
+    const size_t nodes = cells.size(c);
+    if (form == CellType::wedge && (o[0] != o[1] || nodes == 21)) return nodes == 21;
+    return lattice_nodes(type, o) == nodes;
+  };
+  if (const size_t c = first_bad(n, [&](size_t i) { return !fits(i); }); c != none)
+    fail_data(fmt::format("cell {} is a {} of {} points, which do not fit its orders {}, {}, {}", c, cell_type_info(m.type(c)).name,
+                          cells.size(c), order(c, 0), order(c, 1), order(c, 2)),
+              {}, "orders are 1 to 10 and their lattice has as many points as the cell; the first two of a wedge are equal");
+}
+
+void check_weights(const UnstructuredMesh& m) {
+  if (m.weights.empty()) return;
+  if (m.weights.type() != ElementType::f64 || m.weights.components() != 1 || m.weights.count() != m.points.count())
+    fail_data(fmt::format("rational weights: {} tuples of {} {} for {} points", m.weights.count(), m.weights.components(),
+                          element_name(m.weights.type()), m.points.count()),
+              {}, "they must be one f64 a point");
+  const auto weight = m.weights.view<double>();
+  if (const size_t p = first_bad(weight.count, [&](size_t i) { return !std::isfinite(weight[i]); }); p != none)
+    fail_data(fmt::format("the rational weight of point {} is {}", p, weight[p]));
+}
+
 struct Checker {
   void operator()(const UniformGrid& g) const {
     check_dims(g.dims);
@@ -155,6 +195,8 @@ struct Checker {
       if (const size_t c = first_bad(n, [&](size_t i) { return at[i + 1] < at[i]; }); c != none)
         fail_data(fmt::format("face lists of polyhedra fall at cell {}", c));
     }
+    check_orders(m);
+    check_weights(m);
   }
   void operator()(const SurfaceMesh& m) const {
     check_points(m.points);

@@ -119,6 +119,35 @@ TEST_CASE("cell map: strongly distorted hexahedra, where Newton from the centre 
   CHECK(places == 6000);
 }
 
+TEST_CASE("cell map: a parabola that bulges beyond its nodes is found there, and its box holds it") {
+  // The middle node sits at a quarter: the arc rises above it.
+  CellMap m(test::one_cell(CellType::quadratic_triangle, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.5, -0.3, 0}, {0.7, 0.5, 0}, {0, 0.5, 0}}));
+  m.open(0);
+  for (int i = 0; i <= 20; ++i)
+    for (Vec3 p : {Vec3(i / 20.0, 0, 0), Vec3(1 - i / 20.0, i / 20.0, 0)}) {
+      const Vec3 x = m.position(p);
+      const Box3 box = m.reader().box();
+      for (int a = 0; a < 2; ++a) CHECK((box.lo[a] <= x[a] && x[a] <= box.hi[a]));
+      CellPlace place;
+      CHECK(m.locate(x, place, 1e-8));
+    }
+  std::vector<Vec3> at;
+  const CellShape& s = *CellShape::find(CellType::quadratic_hexahedron, 20);
+  for (size_t k = 0; k < 20; ++k) {
+    const Vec3 p = s.node(k);
+    at.push_back({p.x, p.y, p.z + 0.9 * (p.x - 0.35) * (p.x - 0.35)});
+  }
+  CellMap bent(test::one_cell(CellType::quadratic_hexahedron, at));
+  bent.open(0);
+  for (uint64_t i = 0; i < 200; ++i) {
+    const Vec3 p = test::random_place(s, i), x{p.x, p.y, p.z + 0.9 * (p.x - 0.35) * (p.x - 0.35)};
+    CellPlace place;
+    REQUIRE(bent.locate(x, place));
+    CHECK(length(place.rst - p) < 1e-9);
+    CHECK_FALSE(bent.locate(x - Vec3(0, 0, p.z + 1e-6), place));
+  }
+}
+
 TEST_CASE("cell map: places outside are outside, with a way back to the cell") {
   using enum CellType;
   for (CellType type : {tetra, voxel, hexahedron, wedge, pyramid, quadratic_tetra, quadratic_hexahedron}) {

@@ -36,7 +36,7 @@ class ChunkWalk {
         load(ids_);
         mirrored = dot(polygon_vector_area(corner_), corner_.empty() ? Vec3() : corner_[0] - middle) < 0;
       }
-      add_face(reader_.face_type(f), cell, mirrored);
+      add_face(reader_.face_type(f), cell, mirrored, reader_.face_orders(f));
     }
   }
 
@@ -52,7 +52,7 @@ class ChunkWalk {
         line_.clear();
         for (uint32_t i : local_) line_.push_back(ids_[i]);
         return out_.lines.add(line_, int64_t(cell));
-      case 2: return add_face(type, cell, false);
+      case 2: return add_face(type, cell, false, cell_orders(mesh_, cell));
       default: break;
     }
   }
@@ -87,7 +87,7 @@ class ChunkWalk {
   }
 
   // A 2D cell with the nodes ids_: linear ones as they are, curved ones and strips as triangles.
-  void add_face(CellType type, size_t cell, bool mirrored) {
+  void add_face(CellType type, size_t cell, bool mirrored, std::array<int, 3> orders) {
     if (type == CellType::triangle || type == CellType::quad || type == CellType::polygon)
       return ids_.size() >= 3 ? add_polygon(cell, mirrored) : void();
     if (type == CellType::pixel) {
@@ -96,7 +96,7 @@ class ChunkWalk {
     }
     load(ids_);
     local_.clear();
-    tessellate_face(type, corner_, local_);
+    tessellate_face(type, corner_, local_, orders);
     for (size_t t = 0; t + 2 < local_.size(); t += 3) {
       int64_t tri[3] = {ids_[local_[t]], ids_[local_[t + 1]], ids_[local_[t + 2]]};
       if (mirrored) std::swap(tri[1], tri[2]);
