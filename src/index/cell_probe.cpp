@@ -77,16 +77,17 @@ double locate_slack(const Dataset& dataset) {
   return std::isfinite(s) ? s : 0;
 }
 
-Box3 cell_box(const CellReader& reader) {
-  Box3 box = reader.box();
-  const CellType type = reader.type();
-  if (!is_high_order(type) || is_bezier(type)) return box;  // in the hull of their nodes
+namespace {
+
+// Per axis, how far a point of a curved cell may lie from its corners' interpolation at the same reference coordinates; false where that is
+// not known.
+bool curvature(const CellReader& reader, Vec3& bound) {
+  const CellType type = reader.type(), corner_type = linear_type(type);
   const auto at = reader.at();
-  const CellShape* shape = CellShape::find(type, at.size(), reader.orders());
-  const CellType corner_type = linear_type(type);
   const size_t corners = size_t(std::max(cell_type_info(corner_type).corners, 0));
+  const CellShape* shape = CellShape::find(type, at.size(), reader.orders());
   const CellShape* straight = CellShape::find(corner_type, corners);
-  if (!shape || !straight || corners > 8 || corners > at.size()) return box;
+  if (!shape || !straight || corners > 8 || corners > at.size()) return false;
   Vec3 deviation;
   for (size_t k = corners; k < at.size(); ++k) {
     double n[8];
@@ -95,14 +96,47 @@ Box3 cell_box(const CellReader& reader) {
     for (size_t c = 0; c < corners; ++c) p += at[c] * n[c];
     for (int a = 0; a < 3; ++a) deviation[a] = std::max(deviation[a], std::abs(at[k][a] - p[a]));
   }
-  // Sum of the absolute shape functions that do not belong to corners; 3 holds for all quadratic types.
+  // Largest sum of the absolute shape functions that do not belong to corners: 1.5 for the quadratic tetrahedron, at most 3 for all
+  // quadratic types; else no more than the Lebesgue constant of equidistant nodes, per axis.
   constexpr double lebesgue[] = {1, 1, 1.25, 1.64, 2.21, 3.11, 4.55, 6.94, 10.95, 17.85, 29.9};
   int order = 2;
   for (int o : reader.orders()) order = std::max(order, o);
-  const double factor = order == 2 ? 3.0 : std::pow(lebesgue[std::min(order, 10)], reader.dimension());
-  box.lo += deviation * -factor, box.hi += deviation * factor;
+  bound = deviation * (order > 2 ? std::pow(lebesgue[std::min(order, 10)], reader.dimension()) : shape->nodes() == 10 ? 1.5 : 3.0);
+  return true;
+}
+
+}  // namespace
+
+Box3 cell_box(const CellReader& reader) {
+  Box3 box = reader.box();
+  const CellType type = reader.type();
+  Vec3 bound;
+  if (!is_high_order(type) || is_bezier(type) || !curvature(reader, bound)) return box;  // Bezier: in the hull of the nodes
+  box.lo += -bound, box.hi += bound;
   return box;
 }
+
+namespace {
+
+// A curved tetrahedron lies within its curvature of the flat one of its corners: whether x is beyond that on one of the sides. Spares the
+// search that a solver needs to be sure that x is not inside.
+bool beside_curved_tetra(const CellReader& reader, Vec3 x) {
+  Vec3 bound;
+  if (linear_type(reader.type()) != CellType::tetra || is_bezier(reader.type()) || !curvature(reader, bound)) return false;
+  const auto p = reader.at();
+  const Vec3 u = p[1] - p[0], v = p[2] - p[0], w = p[3] - p[0], d = x - p[0];
+  Vec3 side[4] = {Vec3(), cross(v, w), cross(w, u), cross(u, v)};
+  const double volume = dot(u, side[1]);
+  side[0] = -(side[1] + side[2] + side[3]);
+  for (int m = 0; m < 4; ++m) {
+    const double r = dot(d, side[m]) / volume + (m == 0 ? 1.0 : 0.0);
+    const double reach = (std::abs(side[m].x) * bound.x + std::abs(side[m].y) * bound.y + std::abs(side[m].z) * bound.z) / std::abs(volume);
+    if (r < -reach - 1e-6) return true;
+  }
+  return false;
+}
+
+}  // namespace
 
 bool CellProbe::holds(size_t cell, Vec3 x, CellPlace& place) {
   int64_t ids[4];
@@ -127,6 +161,7 @@ bool CellProbe::holds(size_t cell, Vec3 x, CellPlace& place) {
   const double grow = solid ? 1e-7 * std::max({size.x, size.y, size.z}) : slack_;
   for (int a = 0; a < 3; ++a)
     if (!(x[a] >= b.lo[a] - grow && x[a] <= b.hi[a] + grow)) return false;
+  if (solid && is_high_order(m.reader().type()) && beside_curved_tetra(m.reader(), x)) return false;
   const bool inside = m.locate(x, place, locate_tolerance);
   return solid ? inside : place.distance2 <= slack_ * slack_;
 }

@@ -6,7 +6,7 @@
 namespace sg {
 
 GridIndex::GridIndex(const LatticeView& view) : points_(view.dims), cells_(view.cell_dims()), origin_(view.origin) {
-  for (int a = 0; a < 3; ++a) flat_[a] = points_[size_t(a)] <= 1;
+  for (int a = 0; a < 3; ++a) flat_[a] = points_[size_t(a)] <= 1, any_flat_ = any_flat_ || flat_[a];
   if (view.mode == LatticeView::Mode::separable) {
     separable_ = true;
     for (int a = 0; a < 3; ++a) {
@@ -63,9 +63,31 @@ int GridIndex::cells_of(int a, double q, double slack, size_t index[3], double r
   int found = 0;
   for (size_t j = i > 0 ? i - 1 : 0; j <= std::min(i + 1, n - 1); ++j) {
     const double s = at ? (q - at[j]) / (at[j + 1] - at[j]) : q - double(j);
-    if (s >= -locate_tolerance && s <= 1 + locate_tolerance) index[found] = j, r[found++] = s;
+    const double tolerance = any_flat_ ? slack / width(a, j) : locate_tolerance;
+    if (s >= -tolerance && s <= 1 + tolerance) index[found] = j, r[found++] = s;
   }
   return found;
+}
+
+bool GridIndex::close(Vec3 q, const std::array<size_t, 3>& cell, double r[3], double slack) const {
+  double d2 = 0;
+  for (int a = 0; a < 3; ++a) {
+    const double d = flat_[a] ? q[a] : std::max({-r[a], r[a] - 1, 0.0}) * width(a, cell[size_t(a)]);
+    d2 += d * d;
+    r[a] = std::clamp(r[a], 0.0, 1.0);
+  }
+  return d2 <= slack * slack;
+}
+
+Vec3 GridIndex::position(int64_t cell, const CellPlace& place) const {
+  const size_t c = size_t(cell), at[3] = {c % cells_[0], c / cells_[0] % cells_[1], c / cells_[0] / cells_[1]};
+  Vec3 q;
+  for (int a = 0, axis = 0; a < 3; ++a) {
+    if (flat_[a]) continue;
+    const double r = place.rst[axis++];
+    q[a] = plane(a, at[a]) * (1 - r) + plane(a, at[a] + 1) * r;
+  }
+  return to_world(q);
 }
 
 int GridIndex::weights(int64_t cell, const CellPlace& place, int64_t ids[8], double out[8]) const {

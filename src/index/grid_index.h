@@ -16,12 +16,13 @@ class GridIndex {
   /// `view` is affine or separable; what it points to must live on.
   explicit GridIndex(const LatticeView& view);
 
-  /// The smallest of the cells that hold x (1e-9 of a cell; `slack` along axes of one point) and for which `skip` is false; -1: none.
-  /// `place` gets its reference coordinates.
+  /// The smallest of the cells that hold x (solids: to 1e-9 of a cell; lattices with an axis of one point: within the distance `slack`) and
+  /// for which `skip` is false; -1: none. `place` gets its reference coordinates.
   template <class Skip>
   int64_t find(Vec3 x, double slack, Skip&& skip, CellPlace& place) const {
-    const int64_t cell = find_grid(to_grid(x), slack, skip, place);
-    place.nearest = x;
+    const Vec3 q = to_grid(x);
+    const int64_t cell = find_grid(q, slack, skip, place);
+    if (cell >= 0) place.nearest = any_flat_ ? position(cell, place) : x;
     return cell;
   }
   /// Point ids and multilinear weights of a place, in the order of CellReader (bit a of k steps along the a-th axis with cells); how many.
@@ -46,7 +47,8 @@ class GridIndex {
   }
   Vec3 direction_to_grid(Vec3 d) const { return separable_ ? d : Vec3(dot(rows_[0], d), dot(rows_[1], d), dot(rows_[2], d)); }
   Vec3 to_world(Vec3 q) const;
-  /// Cells along axis a whose closed interval holds q, ascending, and q in each as a number from 0 to 1.
+  Vec3 position(int64_t cell, const CellPlace& place) const;
+  /// Cells along axis a whose closed interval holds q, ascending, and q in each as a number from 0 to 1 (or outside by the tolerance).
   int cells_of(int a, double q, double slack, size_t index[3], double r[3]) const;
   double plane(int a, size_t i) const { return axis_[a] ? axis_[a][i] : double(i); }
   template <class Skip>
@@ -61,7 +63,8 @@ class GridIndex {
         for (int a = 0; a < n[0]; ++a) {
           const size_t cell = i[0][a] + cells_[0] * (i[1][b] + cells_[1] * i[2][c]);
           if (skip(cell)) continue;
-          const double all[3] = {r[0][a], r[1][b], r[2][c]};
+          double all[3] = {r[0][a], r[1][b], r[2][c]};
+          if (any_flat_ && !close(q, {i[0][a], i[1][b], i[2][c]}, all, slack)) continue;
           place = CellPlace{};
           for (int axis = 0, k = 0; axis < 3; ++axis)
             if (!flat_[axis]) place.rst[k++] = all[axis];
@@ -69,10 +72,13 @@ class GridIndex {
         }
     return -1;
   }
+  /// Is a cell of points, lines or pixels within `slack` of q? Clamps r to it.
+  bool close(Vec3 q, const std::array<size_t, 3>& cell, double r[3], double slack) const;
+  double width(int a, size_t i) const { return std::abs(axis_[a] ? axis_[a][i + 1] - axis_[a][i] : length(step_[a])); }
   Hit hit_plane(double t, int a, size_t plane_number, Vec3 o, Vec3 d, double slack) const;
 
   std::array<size_t, 3> points_, cells_;
-  bool flat_[3], separable_ = false, orthogonal_ = true;
+  bool flat_[3], any_flat_ = false, separable_ = false, orthogonal_ = true;
   const double* axis_[3] = {nullptr, nullptr, nullptr};
   Vec3 origin_, step_[3], rows_[3];
   double first_[3] = {0, 0, 0};
