@@ -114,9 +114,12 @@ Vec3 GridIndex::nearest(Vec3 x, int64_t& cell) const {
     const double p = plane(a, 0), e = plane(a, cells_[size_t(a)] * size_t(!flat_[a]));
     q[a] = flat_[a] ? 0.0 : std::min(std::max(q[a], std::min(p, e)), std::max(p, e));
   }
+  double slack = HUGE_VAL;
+  for (int a = 0; a < 3; ++a)
+    if (!flat_[a]) slack = std::min(slack, locate_tolerance * width(a, 0));
   CellPlace place;
   cell = find_grid(
-      q, HUGE_VAL, [](size_t) { return false; }, place);
+      q, slack, [](size_t) { return false; }, place);
   return to_world(q);
 }
 

@@ -45,8 +45,8 @@ TEST_CASE("locator: the cell of 100,000 points is the one that a look at every c
     const CellLocator locator(mesh.data, context);
     const EveryCell model(mesh.data);
     std::atomic<size_t> wrong{0}, inside{0};
-    const bool far = mesh.name == "tetrahedra, far away", slow = mesh.name == "curved";
-    parallel_for(slow ? 10000 : 100000, grain, [&](size_t begin, size_t end) {
+    const bool far = mesh.name == "tetrahedra, far away";
+    parallel_for(mesh.queries, grain, [&](size_t begin, size_t end) {
       LocatorCursor cursor(locator);
       EveryCell every(model);
       Places places(mesh.data, every.slack());
@@ -61,7 +61,7 @@ TEST_CASE("locator: the cell of 100,000 points is the one that a look at every c
       }
     });
     CHECK(wrong == 0);
-    CHECK(inside > (slow ? 1000 : 10000));
+    CHECK(inside > mesh.queries / 10);
   }
 }
 
@@ -73,7 +73,7 @@ TEST_CASE("locator: the answer does not depend on what was asked before") {
     LocatorCursor along(locator);
     Places places(mesh.data, 0);
     size_t wrong = 0;
-    for (size_t i = 0; i < 300; ++i) {
+    for (size_t i = 0; i < 100; ++i) {
       LocatorCursor fresh(locator);
       const Vec3 x = places(i);
       wrong += along.find(x) != fresh.find(x);
@@ -94,24 +94,25 @@ TEST_CASE("locator: weights reproduce a linear field in every cell") {
     CellReader reader(mesh.data);
     Places places(mesh.data, 0);
     double worst = 0, unity = 0;
-    size_t found = 0;
-    for (size_t i = 0; i < 3000; ++i) {
+    size_t found = 0, wrong = 0;
+    for (size_t i = 0; i < (mesh.name == "curved" ? 500 : 3000); ++i) {
       const Vec3 x = places(i);
       const int64_t cell = cursor.find(x);
       if (cell < 0) continue;
       ++found;
       reader.open(size_t(cell));
-      REQUIRE(cursor.ids().size() == reader.ids().size());
+      wrong += cursor.ids().size() != reader.ids().size();
       double sum = 0, one = 0;
       for (size_t k = 0; k < reader.ids().size(); ++k) {
-        CHECK(cursor.ids()[k] == reader.ids()[k]);
+        wrong += cursor.ids()[k] != reader.ids()[k];
         sum += cursor.weights()[k] * linear(reader.at()[k] - mesh.data->bounds().lo);
         one += cursor.weights()[k];
       }
       worst = std::max(worst, std::abs(sum - linear(cursor.place().nearest - mesh.data->bounds().lo)));
       unity = std::max(unity, std::abs(one - 1));
     }
-    CHECK(found > 300);
+    CHECK(found > 50);
+    CHECK(wrong == 0);
     CHECK(worst < (mesh.name == "tetrahedra, far away" ? 1e-7 : 1e-6));  // flat meshes: x may lie beside the surface
     CHECK(unity < 1e-9);
   }
@@ -123,8 +124,7 @@ TEST_CASE("locator: the nearest point is the one that a look at every cell finds
     Context context;
     const CellLocator locator(mesh.data, context);
     const EveryCell model(mesh.data);
-    const bool slow = mesh.name == "curved" || mesh.name == "mixed" || mesh.name == "surface" || mesh.name.starts_with("curvilinear") ||
-                      mesh.name == "hexahedra";
+    const bool slow = mesh.name == "mixed" || mesh.name == "surface" || mesh.name.starts_with("curvi") || mesh.name == "hexahedra" || mesh.name == "points";
     const bool far = mesh.name == "tetrahedra, far away", curved = mesh.name == "curved";
     std::atomic<size_t> wrong{0}, outside{0};
     parallel_for(
@@ -151,7 +151,7 @@ TEST_CASE("locator: the nearest point is the one that a look at every cell finds
           }
         });
     CHECK(wrong == 0);
-    CHECK(outside > 100);
+    CHECK(outside > 50);
   }
 }
 
@@ -164,7 +164,7 @@ TEST_CASE("locator: the first hit of a ray is the one that a look at every cell 
     const EveryCell model(mesh.data);
     const bool exact = !mesh.data->as<UniformGrid>() && !mesh.data->as<RectilinearGrid>();
     std::atomic<size_t> wrong{0}, hits{0};
-    parallel_for(20000, grain, [&](size_t begin, size_t end) {
+    parallel_for(std::max<size_t>(mesh.queries / 10, 2000), 200, [&](size_t begin, size_t end) {
       LocatorCursor cursor(locator);
       EveryCell every(model);
       const Box3 b = mesh.data->bounds();
@@ -183,7 +183,7 @@ TEST_CASE("locator: the first hit of a ray is the one that a look at every cell 
       }
     });
     CHECK(wrong == 0);
-    CHECK(hits > 2000);
+    CHECK(hits > 400);
   }
 }
 
@@ -254,16 +254,17 @@ TEST_CASE("locator: AMR answers with the finest cell and never with a refined on
   const CellLocator locator(mesh, context);
   LocatorCursor cursor(locator);
   CellReader reader(mesh);
-  size_t fine = 0;
+  size_t fine = 0, refined = 0;
   for (size_t i = 0; i < 5000; ++i) {
     const Vec3 x = Vec3(random_unit(1, 3 * i), random_unit(1, 3 * i + 1), random_unit(1, 3 * i + 2)) * 2 - Vec3(1, 1, 1);
     const int64_t cell = cursor.find(x);
     REQUIRE(cell >= 0);
-    CHECK(!reader.hidden(size_t(cell)));
+    refined += reader.hidden(size_t(cell));
     reader.open(size_t(cell));
     fine += reader.box().size().x < 0.1;
   }
   CHECK(fine > 10);
+  CHECK(refined == 0);
 }
 
 TEST_CASE("locator: meshes without cells answer nothing") {
