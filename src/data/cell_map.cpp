@@ -109,7 +109,8 @@ bool CellMap::locate_solid(Vec3 x, CellPlace& place, double tolerance) {
     place.outside = r.found ? r.outside : HUGE_VAL;
   }
   if (place.outside <= eased) return inside();
-  place.nearest = position(shape_->clamped(place.rst));
+  const Vec3 q = shape_->clamped(place.rst), *p = reader_.at().data();
+  place.nearest = shape_->nodes() == 4 ? p[0] + (p[1] - p[0]) * q.x + (p[2] - p[0]) * q.y + (p[3] - p[0]) * q.z : position(q);
   place.distance2 = dot(place.nearest - x, place.nearest - x);
   if (!(place.outside < HUGE_VAL)) place.outside = std::sqrt(place.distance2) / size();
   return false;

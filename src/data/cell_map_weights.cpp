@@ -79,6 +79,7 @@ void CellMap::gradient_weights(const CellPlace& place, std::span<Vec3> out) {
   if (dimension() == 1) {
     if (piece + 1 >= at.size()) return;
     const Vec3 d = at[piece + 1] - at[piece];
+    if (!(dot(d, d) > 0)) return;
     out[piece + 1] = d / dot(d, d), out[piece] = -out[piece + 1];
   } else if (reader_.type() == CellType::triangle_strip) {
     const auto& t = triangles();

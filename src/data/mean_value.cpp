@@ -11,6 +11,7 @@ namespace sg {
 void polygon_weights(std::span<const Vec3> at, Vec3 x, std::span<double> weights) {
   const size_t n = at.size();
   std::fill(weights.begin(), weights.end(), 0.0);
+  if (n == 0) return;
   const Vec3 normal = normalize(polygon_vector_area(at));
   auto flat = [&](size_t i) {
     const Vec3 d = at[i % n] - x;
@@ -19,14 +20,19 @@ void polygon_weights(std::span<const Vec3> at, Vec3 x, std::span<double> weights
   double size = 0;
   for (size_t i = 0; i < n; ++i) size = std::max(size, length(flat(i)));
   const double tiny = 1e-12 * size;
-  // On a side or a corner: linear there.
+  // On a side or a corner: linear there. So are polygons without an area, by their nearest side.
+  double best = HUGE_VAL, along = 0;
+  size_t side = 0;
   for (size_t i = 0; i < n; ++i) {
     double t;
-    const Vec3 a = flat(i), b = flat(i + 1), p = nearest_on_segment(a, b, {0, 0, 0}, t);
-    if (length(p) > tiny) continue;
-    weights[i] += 1 - t, weights[(i + 1) % n] += t;
-    return;
+    const double d = length(nearest_on_segment(flat(i), flat(i + 1), {0, 0, 0}, t));
+    if (d < best) best = d, side = i, along = t;
   }
+  auto linear = [&] {
+    std::fill(weights.begin(), weights.end(), 0.0);
+    weights[side] += 1 - along, weights[(side + 1) % n] += along;
+  };
+  if (!(best > tiny)) return linear();
   // tan(a/2) = sin a / (1 + cos a), both times the two lengths.
   double sum = 0;
   Vec3 d = flat(0);
@@ -38,6 +44,7 @@ void polygon_weights(std::span<const Vec3> at, Vec3 x, std::span<double> weights
     sum += half / ld + half / le;
     d = e;
   }
+  if (!(std::abs(sum) * size > 1e-12)) return linear();
   for (size_t i = 0; i < n; ++i) weights[i] /= sum;
 }
 

@@ -93,30 +93,40 @@ TEST_CASE("cell map: the inverse finds places on bent curves and surfaces of eve
   }
 }
 
-TEST_CASE("cell map: strongly distorted hexahedra, where Newton from the centre leaves, are searched by subdivision") {
+TEST_CASE("cell map: in strongly distorted hexahedra, where Newton from the centre may leave or end outside, no place is lost") {
+  // Valid ones among many random ones; Newton alone loses about one place of two thousand here.
   const CellShape& s = *CellShape::find(CellType::hexahedron, 8);
-  int cells = 0, places = 0;
-  for (uint64_t seed = 0; seed < 4000 && cells < 60; ++seed) {
+  int cells = 0;
+  size_t lost = 0, wrong = 0;
+  for (uint64_t seed = 0; seed < 300000 && cells < 300; ++seed) {
     std::vector<Vec3> at;
-    for (size_t k = 0; k < 8; ++k) at.push_back(s.node(k) + test::random_vector(seed, k) * 0.85);
-    CellMap m(test::one_cell(CellType::hexahedron, at));
-    m.open(0);
+    for (size_t k = 0; k < 8; ++k) at.push_back(s.node(k) + test::random_vector(seed, k) * 1.4);
+    std::vector<double> n(8);
+    std::vector<Vec3> dn(8);
     bool ok = true;
-    for (Vec3 p : s.quadrature(12).at) ok = ok && determinant(m.jacobian(p)) > 0.001;
-    for (size_t k = 0; k < 8; ++k) ok = ok && determinant(m.jacobian(s.node(k))) > 0.001;
+    auto positive = [&](Vec3 p) {
+      s.derivatives(p, dn.data());
+      Vec3 c[3];
+      for (size_t k = 0; k < 8; ++k)
+        for (int a = 0; a < 3; ++a) c[a] += at[k] * dn[k][a];
+      return dot(c[0], cross(c[1], c[2])) > 0.001;
+    };
+    for (size_t k = 0; k < 8 && ok; ++k) ok = positive(s.node(k));
+    for (size_t i = 0; i < s.quadrature(12).at.size() && ok; ++i) ok = positive(s.quadrature(12).at[i]);
     if (!ok) continue;
     ++cells;
-    for (uint64_t i = 0; i < 100; ++i) {
-      const Vec3 p = test::random_place(s, 77 * seed + i);
+    CellMap m(test::one_cell(CellType::hexahedron, at));
+    m.open(0);
+    for (uint64_t i = 0; i < 200; ++i) {
+      const Vec3 p = test::random_place(s, 777 * seed + i), x = m.position(p);
       CellPlace place;
-      REQUIRE(m.locate(m.position(p), place));
-      CHECK(length(m.position(place.rst) - m.position(p)) < 1e-8);
-      CHECK(length(place.rst - p) < 1e-6);
-      ++places;
+      if (!m.locate(x, place)) ++lost;
+      else if (!(length(m.position(place.rst) - x) < 1e-9)) ++wrong;
     }
   }
-  CHECK(cells == 60);
-  CHECK(places == 6000);
+  CHECK(cells == 300);
+  CHECK(lost == 0);
+  CHECK(wrong == 0);
 }
 
 TEST_CASE("cell map: a parabola that bulges beyond its nodes is found there, and its box holds it") {
@@ -194,9 +204,9 @@ TEST_CASE("cell map: a tilted voxel grid and pixels are located by arithmetic") 
   }
 }
 
-TEST_CASE("cell map: points on the shared face of two cells far from zero fall in one of them") {
+TEST_CASE("cell map: points on a face are inside both of its cells, also far from zero where they cannot lie on it exactly") {
   using enum CellType;
-  const double far = 1e7;
+  const double far = 1e9;
   CellMap left(test::one_cell(tetra, {{far, far, far}, {far + 1, far, far}, {far, far + 1.1, far}, {far, far, far + 1.2}}));
   CellMap right(test::one_cell(tetra, {{far + 1, far, far}, {far, far + 1.1, far}, {far, far, far + 1.2}, {far + 1, far + 1, far + 1}}));
   left.open(0), right.open(0);
@@ -205,7 +215,8 @@ TEST_CASE("cell map: points on the shared face of two cells far from zero fall i
     const double a = random_unit(1, i), b = (1 - a) * random_unit(2, i);
     const auto at = right.reader().at();
     const Vec3 x = at[0] * a + at[1] * b + at[2] * (1 - a - b);
-    CHECK((left.locate(x, place) || right.locate(x, place)));
+    CHECK(left.locate(x, place));
+    CHECK(right.locate(x, place));
   }
 }
 
