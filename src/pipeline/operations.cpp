@@ -19,6 +19,8 @@
 #include "filter/mesh/threshold.h"
 #include "filter/mesh/to_unstructured.h"
 #include "filter/mesh/transform.h"
+#include "filter/probe/probe.h"
+#include "filter/probe/resample.h"
 #include "filter/scalar/contour.h"
 #include "filter/segment/label_surface.h"
 #include "filter/stats/integrate.h"

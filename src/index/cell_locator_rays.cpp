@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// Nearest points and rays. Of several answers at the same distance the smallest cell is given, so that the order of the search does not
+// matter.
+#include "index/cell_locator_index.h"
+
+namespace sg {
+
+NearestPlace LocatorCursor::nearest(Vec3 x, double radius) {
+  State& s = *state_;
+  NearestPlace best;
+  best.distance2 = HUGE_VAL;
+  const double limit2 = radius * radius;
+  if (!std::isfinite(x.x + x.y + x.z) || !(radius >= 0)) return {};
+  auto take = [&](int64_t cell, Vec3 at, double d2) {
+    if (d2 <= limit2 && (d2 < best.distance2 || (d2 == best.distance2 && cell < best.cell))) best = {cell, at, d2};
+  };
+  const auto& index = *s.index;
+  if (index.kind == CellLocator::Index::Kind::grid && !index.any_hidden && index.grid && index.grid->orthogonal()) {
+    int64_t cell = -1;
+    Vec3 at = index.grid->nearest(x, cell);
+    take(cell, at, dot(x - at, x - at));
+  } else {
+    index.tree().nearest(x, limit2, [&](uint32_t c) {
+      Vec3 at;
+      const double d2 = s.probe.nearest(c, x, at);
+      take(int64_t(c), at, d2);
+      return std::min(limit2, best.distance2);
+    });
+  }
+  return best.cell < 0 ? NearestPlace{} : best;
+}
+
+std::optional<RayHit> LocatorCursor::first_hit(Vec3 x, Vec3 d, double t0, double t1) {
+  State& s = *state_;
+  const double size2 = dot(d, d);
+  if (!(size2 > 0) || !std::isfinite(size2) || !std::isfinite(x.x + x.y + x.z)) return {};
+  RayHit best;
+  best.t = t1;
+  const auto& index = *s.index;
+  if (index.kind == CellLocator::Index::Kind::grid && !index.any_hidden && index.grid) {
+    const GridIndex::Hit h = index.grid->first_hit(x, d, t0, t1, index.slack);
+    best = {h.cell, h.t, h.normal};
+  } else {
+    index.tree().along_ray(x, d, t0, t1, [&](uint32_t c) {
+      Vec3 normal;
+      const double t = s.probe.hit(c, x, d, t0, best.t, normal);
+      if (t < best.t || (t == best.t && (best.cell < 0 || int64_t(c) < best.cell))) best = {int64_t(c), t, normal};
+      return best.t;
+    });
+  }
+  if (best.cell < 0) return {};
+  return best;
+}
+
+}  // namespace sg
