@@ -20,7 +20,8 @@ std::string folder_hash(const std::string& path) {
   std::vector<std::string> files;
   std::error_code error;
   for (fs::recursive_directory_iterator at(path, error), end; !error && at != end; at.increment(error))
-    if (at->is_regular_file(error)) files.push_back(fmt::format("{} {}\n", at->path().lexically_relative(path).string(), at->file_size(error)));
+    if (at->is_regular_file(error))
+      files.push_back(fmt::format("{} {}\n", at->path().lexically_relative(path).string(), at->file_size(error)));
   std::sort(files.begin(), files.end());
   std::string all;
   for (const std::string& f : files) all += f;
