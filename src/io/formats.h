@@ -125,4 +125,12 @@ std::vector<double> times_of_xdmf(const std::string& path, const ReadOptions& op
 bool sniff_netcdf(std::span<const std::byte> head);
 bool sniff_cgns(std::span<const std::byte> head);
 
+bool sniff_png(std::span<const std::byte> head);
+bool sniff_jpeg(std::span<const std::byte> head);
+bool sniff_tiff(std::span<const std::byte> head);
+bool sniff_picture_folder(const std::string& path);
+Data read_png_grid(const std::string& path, const ReadOptions& options, Context& context);
+Data read_jpeg_grid(const std::string& path, const ReadOptions& options, Context& context);
+Data read_picture_stack(const std::string& path, const ReadOptions& options, Context& context);
+
 }  // namespace sg
