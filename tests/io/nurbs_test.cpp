@@ -101,7 +101,10 @@ TEST_CASE("nurbs: what is wrong is named") {
           .size() > 10);
 }
 
-TEST_CASE("nurbs: cut and damaged files are refused") { test::check_survives("robust.mesh", identity(true)); }
+TEST_CASE("nurbs: cut and damaged files are refused") {
+  test::check_survives("robust.mesh", identity(true));
+  test::check_survives_sizes("robust.mesh", identity(true));
+}
 
 TEST_CASE("nurbs: circles of the real meshes are round" * doctest::skip(test::no_data())) {
   Context context;

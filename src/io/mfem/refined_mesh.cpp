@@ -123,7 +123,6 @@ void parse_nonconforming(TextCursor& in, MeshFile& mesh) {
       if (!elements) in.fail("coordinates before elements");
       place_nodes(in, mesh, parents, parse_values(in, n * size_t(d)));
       drop_unused(mesh);
-      number_entities(t);
       return;
     } else if (w == "nodes") {
       in.fail("a non-conforming mesh with curved elements", "save it with linear elements, or as a conforming mesh");
@@ -216,7 +215,6 @@ void parse_inline(TextCursor& in, MeshFile& mesh) {
           t.begin.push_back(t.corners.size());
         }
       }
-  number_entities(t);
 }
 
 }  // namespace sg::mfem
