@@ -137,6 +137,18 @@ std::vector<uint32_t> places_in_local_nodes(Geometry g, int q) {
   return map;
 }
 
+// The first `dimension` values of each point are its position.
+UnstructuredMesh mesh_of(CellList& cells, const PointMerger& merger, const std::vector<int64_t>& number, const std::vector<int64_t>& source,
+                         size_t dimension) {
+  UnstructuredMesh m;
+  cells.finish(m, &number);
+  double* xyz = nullptr;
+  m.points.xyz = Array::make<double>(number.size(), 3, &xyz);
+  for (size_t p = 0; p < number.size(); ++p)
+    for (size_t a = 0; a < 3; ++a) xyz[3 * p + a] = a < dimension ? merger.values(size_t(source[p]))[a] : 0;
+  return m;
+}
+
 // Numbers `from(i, component)` for i < n as a field; a vector of the plane is filled up with 0.
 template <class From>
 Field stored_field(const GridFunction& f, Association association, int space_dimension, size_t n, From from) {
@@ -195,13 +207,7 @@ DatasetPtr lagrange_dataset(const MeshFile& mesh, const std::vector<GridFunction
   std::vector<int64_t> source(number.size());
   for (size_t p = 0; p < number.size(); ++p) source[size_t(number[p])] = int64_t(p);
   DatasetParts parts;
-  UnstructuredMesh m;
-  cells.finish(m, &number);
-  double* xyz = nullptr;
-  m.points.xyz = Array::make<double>(number.size(), 3, &xyz);
-  for (size_t p = 0; p < number.size(); ++p)
-    for (size_t a = 0; a < 3; ++a) xyz[3 * p + a] = a < size_t(positions.space.vdim) ? merger.values(size_t(source[p]))[a] : 0;
-  parts.mesh = std::move(m);
+  parts.mesh = mesh_of(cells, merger, number, source, size_t(positions.space.vdim));
   size_t s = 1;
   for (const GridFunction& f : fields) {
     if (constant_on_elements(f)) {
