@@ -191,5 +191,6 @@ TEST_CASE("gmsh: elements that no cell is equal to are refused by name") {
 
 TEST_CASE("gmsh: cut and damaged files are refused") {
   test::check_survives("robust.msh", ascii_22());
+  test::check_survives_sizes("robust.msh", ascii_22());
   test::check_survives("robust.msh", binary_41(false));
 }

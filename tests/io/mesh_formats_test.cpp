@@ -114,6 +114,7 @@ TEST_CASE("ucd: what is wrong is named with its line; damaged files are refused"
   CHECK(message(ucd, "2 8 pyr", "2 8 cone").find("'cone'") != std::string::npos);
   CHECK(message(ucd, "2 1 2\nT", "2 1 3\nT").find("promises 3") != std::string::npos);
   test::check_survives("robust.inp", ucd);
+  test::check_survives_sizes("robust.inp", ucd);
 }
 
 TEST_CASE("tecplot: zones of both kinds, values at cells, repeats, shared variables") {
@@ -158,6 +159,7 @@ TEST_CASE("tecplot: what is wrong is named with its line; damaged files are refu
   CHECK(message(tecplot, "I=3, J=2", "I=2147483648, J=2147483648").find("only") != std::string::npos);
   CHECK(message(tecplot, "3*0 3*1.0", "3*0 2*1 x").find("'x'") != std::string::npos);
   test::check_survives("robust.tec", tecplot);
+  test::check_survives_sizes("robust.tec", tecplot);
 }
 
 TEST_CASE("gambit: bricks and pyramids run x fastest; groups and node sets become fields") {
@@ -171,6 +173,7 @@ TEST_CASE("gambit: bricks and pyramids run x fastest; groups and node sets becom
   s.replace(s.find(" 2 7 5 5"), 8, " 2 7 4 5");
   CHECK(test::error_of([&] { test::read_bytes("w.neu", s); }).find("type 7 with 4 nodes") != std::string::npos);
   test::check_survives("robust.neu", gambit);
+  test::check_survives_sizes("robust.neu", gambit);
 }
 
 TEST_CASE("nek5000: elements become linear cells between their own points, in every word size and byte order") {

@@ -42,4 +42,27 @@ inline void check_survives(const std::string& name, const std::string& bytes) {
   CHECK(read > 0);
 }
 
+/// Each of the first whole numbers of a text replaced by sizes that no file backs.
+inline void check_survives_sizes(const std::string& name, const std::string& text) {
+  size_t numbers = 0;
+  for (size_t i = 0; i < text.size() && numbers < 60; ++i) {
+    const bool begins = std::isdigit(static_cast<unsigned char>(text[i])) &&
+                        (i == 0 || std::isspace(static_cast<unsigned char>(text[i - 1])) || text[i - 1] == '=');
+    if (!begins) continue;
+    size_t end = i;
+    while (end < text.size() && std::isdigit(static_cast<unsigned char>(text[end]))) ++end;
+    ++numbers;
+    for (const char* size : {"2147483648", "9223372036854775807", "-1", "4294967297", "99999999999999999999"}) {
+      std::string damaged = text;
+      damaged.replace(i, end - i, size);
+      try {
+        read_bytes(name, damaged);
+      } catch (const Error& e) {
+        if (e.kind() == ErrorKind::internal) FAIL_CHECK(e.what());
+      }
+    }
+  }
+  CHECK(numbers > 5);
+}
+
 }  // namespace sg::test

@@ -231,6 +231,16 @@ TEST_CASE("mfem: what cannot be read says so") {
         std::string::npos);
 }
 
+TEST_CASE("mfem: sizes that no file backs are refused") {
+  test::check_survives_sizes("sizes.mesh", std::string(triangle_and_square) + "2\n1 0\n0 0\n1 1\n0 1\n1 2\n");
+  test::check_survives_sizes("sizes.mesh", "MFEM INLINE mesh v1.0\ntype = tet\nnx = 2\nny = 3\nnz = 4\nsx = 1\nsy = 2\nsz = 3\n");
+  test::check_survives_sizes(
+      "sizes.saved",
+      "solution\n" + std::string(triangle_and_square) +
+          "\nnodes\nFiniteElementSpace\nFiniteElementCollection: L2_T1_2D_P1\nVDim: 2\nOrdering: 1\n\n0 0 1 0 0 1 1 "
+          "1\n0 1 1 1 2 1\nFiniteElementSpace\nFiniteElementCollection: H1_2D_P2\nVDim: 1\nOrdering: 0\n\n1 2 3 4 5 6 7 8 9 10 11 12\n");
+}
+
 TEST_CASE("mfem: cut and damaged files are refused") {
   test::check_survives(
       "robust.saved",

@@ -83,6 +83,22 @@ TEST_CASE("nurbs: a quarter of a ring is exact, as a mesh of numbered points and
   CHECK(x == doctest::Approx(map.position(place.rst).x).epsilon(1e-14));
 }
 
+TEST_CASE("nurbs: a disc in one patch has its corners at (+-2, +-2) and the area 8 pi") {
+  std::string s =
+      "MFEM NURBS mesh v1.0\ndimension\n2\nelements\n1\n1 3 0 1 2 3\nboundary\n0\nedges\n4\n0 0 1\n1 1 2\n0 3 2\n1 0 3\nvertices\n4\n"
+      "knotvectors\n2\n2 3 0 0 0 1 1 1\n2 3 0 0 0 1 1 1\nweights\n1 1 1 1\n";
+  for (int k = 0; k < 4; ++k) s += "0.70710678118654752\n";
+  s +=
+      "1\nFiniteElementSpace\nFiniteElementCollection: NURBS2\nVDim: 2\nOrdering: 1\n\n-2 -2\n2 -2\n2 2\n-2 2\n0 -4\n4 0\n0 4\n-4 0\n0 0\n";
+  const DatasetPtr d = test::read_one("disc.mesh", s);
+  CHECK(measure(d) == doctest::Approx(8 * M_PI).epsilon(1e-4));
+  CellMap map(d);
+  map.open(0);
+  for (double t : {0.0, 0.2, 0.7})
+    for (Vec3 at : {Vec3(t, 0, 0), Vec3(1, t, 0), Vec3(t, 1, 0), Vec3(0, t, 0)})
+      CHECK(length(map.position(at)) == doctest::Approx(std::sqrt(8.0)).epsilon(1e-14));
+}
+
 TEST_CASE("nurbs: what is wrong is named") {
   auto message = [&](std::string s, std::string_view from, std::string_view to) {
     s.replace(s.find(from), from.size(), to);
@@ -101,7 +117,10 @@ TEST_CASE("nurbs: what is wrong is named") {
           .size() > 10);
 }
 
-TEST_CASE("nurbs: cut and damaged files are refused") { test::check_survives("robust.mesh", identity(true)); }
+TEST_CASE("nurbs: cut and damaged files are refused") {
+  test::check_survives("robust.mesh", identity(true));
+  test::check_survives_sizes("robust.mesh", identity(true));
+}
 
 TEST_CASE("nurbs: circles of the real meshes are round" * doctest::skip(test::no_data())) {
   Context context;

@@ -72,4 +72,7 @@ TEST_CASE("off: what is wrong is named with its line") {
   CHECK(message("OFF\n2 0 0\n0 0 nan\n1 1 1\n").find("finite") != std::string::npos);
 }
 
-TEST_CASE("off: cut and damaged files are refused") { test::check_survives("robust.off", colored); }
+TEST_CASE("off: cut and damaged files are refused") {
+  test::check_survives("robust.off", colored);
+  test::check_survives_sizes("robust.off", colored);
+}

@@ -140,6 +140,38 @@ std::vector<int64_t> open_mesh(Cells& cells, size_t nodes, const std::vector<std
 
 Role role_of(int64_t components) { return components == 3 ? Role::vectors : components == 9 ? Role::tensors : Role::none; }
 
+// $ElementNodeData sections: values per corner of every cell.
+struct CornerData {
+  std::vector<const DataSection*> sections;
+  std::vector<std::vector<double>> values;
+  std::vector<size_t> width;
+};
+
+// The data at one time: fields of nodes and elements, and values at corners.
+std::pair<std::vector<Field>, CornerData> data_fields(MshInput& in, const MshFile& f, const ReadOptions& options,
+                                                      std::optional<double> time, const TagIndex& nodes, const TagIndex& elements,
+                                                      const std::vector<size_t>& cell_begin) {
+  std::vector<Field> fields;
+  CornerData corners;
+  for (const DataSection* d : sections_at(f, time)) {
+    if (!wanted(options, d->name)) continue;
+    if (d->kind == DataSection::element_node) {
+      corners.values.push_back(corner_values(in, f, *d, elements, cell_begin));
+      corners.width.push_back(size_t(d->components));
+      corners.sections.push_back(d);
+      continue;
+    }
+    const bool at_nodes = d->kind == DataSection::node;
+    Field field;
+    field.name = d->name;
+    field.association = at_nodes ? Association::point : Association::cell;
+    field.array = node_or_element_values(in, *d, at_nodes ? nodes : elements, at_nodes ? f.node_tags.size() : f.element_tags.size());
+    field.role = role_of(d->components);
+    fields.push_back(std::move(field));
+  }
+  return {std::move(fields), std::move(corners)};
+}
+
 DatasetPtr make(MshInput& in, const MshFile& f, const ReadOptions& options, const std::string& where) {
   const TagIndex nodes(f.node_tags), elements(f.element_tags);
   const size_t n = f.node_tags.size();
@@ -148,26 +180,9 @@ DatasetPtr make(MshInput& in, const MshFile& f, const ReadOptions& options, cons
   const std::vector<double> times = times_of(f);
   if (!times.empty()) parts.time = times[chosen_step(times, options, where)];
 
-  std::vector<Field> fields;
-  std::vector<std::vector<double>> corner;
-  std::vector<size_t> width;
-  std::vector<const DataSection*> corner_sections;
-  for (const DataSection* d : sections_at(f, parts.time)) {
-    if (!wanted(options, d->name)) continue;
-    if (d->kind == DataSection::element_node) {
-      corner.push_back(corner_values(in, f, *d, elements, cells.begin));
-      width.push_back(size_t(d->components));
-      corner_sections.push_back(d);
-      continue;
-    }
-    const bool at_nodes = d->kind == DataSection::node;
-    Field field;
-    field.name = d->name;
-    field.association = at_nodes ? Association::point : Association::cell;
-    field.array = node_or_element_values(in, *d, at_nodes ? nodes : elements, at_nodes ? n : f.element_tags.size());
-    field.role = role_of(d->components);
-    fields.push_back(std::move(field));
-  }
+  const auto [fields, corners] = data_fields(in, f, options, parts.time, nodes, elements, cells.begin);
+  const std::vector<std::vector<double>>& corner = corners.values;
+  const std::vector<size_t>& width = corners.width;
   std::vector<int64_t> source;
   if (!corner.empty()) source = open_mesh(cells, n, corner, width);
   const size_t points = source.empty() ? n : source.size();
@@ -186,7 +201,7 @@ DatasetPtr make(MshInput& in, const MshFile& f, const ReadOptions& options, cons
   mesh.points.xyz = at_points(f.xyz.data(), 3);
   parts.mesh = std::move(mesh);
 
-  for (Field& field : fields) {
+  for (Field field : fields) {
     if (field.association == Association::point && !source.empty())
       field.array = at_points(field.array.view<double>().data, size_t(field.components()));
     parts.fields.add(std::move(field));
@@ -199,9 +214,9 @@ DatasetPtr make(MshInput& in, const MshFile& f, const ReadOptions& options, cons
       for (size_t k = 0; k < width[s]; ++k)
         if (const double v = corner[s][i * width[s] + k]; !std::isnan(v)) out[size_t(cells.points[i]) * width[s] + k] = v;
     Field field;
-    field.name = corner_sections[s]->name;
+    field.name = corners.sections[s]->name;
     field.array = std::move(a);
-    field.role = role_of(corner_sections[s]->components);
+    field.role = role_of(corners.sections[s]->components);
     parts.fields.add(std::move(field));
   }
   parts.fields.add(cell_ids("physical", f.physical));

@@ -127,9 +127,42 @@ Field make_field(const GridFunction& f, Association association, Array array) {
   return r;
 }
 
+// Of each node of our cell of order q, its place in local_nodes().
+std::vector<uint32_t> places_in_local_nodes(Geometry g, int q) {
+  const int order = g == Geometry::pyramid ? 1 : q;  // a pyramid of higher order was refused before
+  const auto nodes = local_nodes(g, order);
+  std::vector<uint32_t> map;
+  for (const auto& place : lattice_places(info(g).shape, order))
+    map.push_back(uint32_t(std::find_if(nodes.begin(), nodes.end(), [&](const LocalNode& n) { return n.place == place; }) - nodes.begin()));
+  return map;
+}
+
+// The first `dimension` values of each point are its position.
+UnstructuredMesh mesh_of(CellList& cells, const PointMerger& merger, const std::vector<int64_t>& number, const std::vector<int64_t>& source,
+                         size_t dimension) {
+  UnstructuredMesh m;
+  cells.finish(m, &number);
+  double* xyz = nullptr;
+  m.points.xyz = Array::make<double>(number.size(), 3, &xyz);
+  for (size_t p = 0; p < number.size(); ++p)
+    for (size_t a = 0; a < 3; ++a) xyz[3 * p + a] = a < dimension ? merger.values(size_t(source[p]))[a] : 0;
+  return m;
+}
+
+// Numbers `from(i, component)` for i < n as a field; a vector of the plane is filled up with 0.
+template <class From>
+Field stored_field(const GridFunction& f, Association association, int space_dimension, size_t n, From from) {
+  const size_t stored = stored_components(f, space_dimension), vdim = size_t(f.space.vdim);
+  double* out = nullptr;
+  Array a = Array::make<double>(n, int(stored), &out);
+  for (size_t i = 0; i < n; ++i)
+    for (size_t c = 0; c < stored; ++c) out[i * stored + c] = c < vdim ? from(i, c) : 0;
+  return make_field(f, association, std::move(a));
+}
+
 }  // namespace
 
-DatasetPtr lagrange_dataset(const MeshFile& mesh, const std::vector<GridFunction>& fields, const std::string& where, Context&) {
+DatasetPtr lagrange_dataset(const MeshFile& mesh, const std::vector<GridFunction>& fields, const std::string& where, Context& context) {
   const Topology& t = mesh.topology;
   const GridFunction positions = mesh.nodes ? *mesh.nodes : vertex_positions(mesh);
   std::vector<const GridFunction*> sampled{&positions};
@@ -143,23 +176,15 @@ DatasetPtr lagrange_dataset(const MeshFile& mesh, const std::vector<GridFunction
   std::vector<size_t> at;
   std::vector<double> tolerance;
   std::vector<Sampler> samplers;
-  samplers.reserve(sampled.size());
   for (const GridFunction* f : sampled) {
     at.push_back(width);
     width += size_t(f->space.vdim);
     tolerance.resize(width, 1e-9 * largest(*f));
     samplers.emplace_back(t, *f, q, where);
   }
-
-  std::vector<uint32_t> to_local[geometry_count];  // of each node of our cell, its place in local_nodes()
-  for (Geometry g : t.geometry) {
-    auto& map = to_local[size_t(g)];
-    if (!map.empty()) continue;
-    const int order = g == Geometry::pyramid ? 1 : q;  // a pyramid of higher order was refused above
-    const auto nodes = local_nodes(g, order);
-    for (const auto& place : lattice_places(info(g).shape, order))
-      map.push_back(uint32_t(std::find_if(nodes.begin(), nodes.end(), [&](const LocalNode& n) { return n.place == place; }) - nodes.begin()));
-  }
+  std::vector<uint32_t> to_local[geometry_count];
+  for (Geometry g : t.geometry)
+    if (to_local[size_t(g)].empty()) to_local[size_t(g)] = places_in_local_nodes(g, q);
 
   Numbering slots(t, q, where);
   PointMerger merger(slots.size(), width, tolerance);
@@ -167,6 +192,7 @@ DatasetPtr lagrange_dataset(const MeshFile& mesh, const std::vector<GridFunction
   std::vector<double> values;
   std::vector<int64_t> ids;
   for (size_t e = 0; e < t.size(); ++e) {
+    if (e % 4096 == 0) context.check();
     const Geometry g = t.geometry[e];
     const auto& map = to_local[size_t(g)];
     values.resize(map.size() * width);
@@ -174,36 +200,24 @@ DatasetPtr lagrange_dataset(const MeshFile& mesh, const std::vector<GridFunction
     const auto slot = slots.element(e);
     ids.clear();
     for (size_t k = 0; k < map.size(); ++k) ids.push_back(merger.find_or_add(size_t(slot[map[k]]), values.data() + k * width));
-    cells.add(lagrange_type(info(g).shape, g == Geometry::point ? 1 : q), ids);
+    cells.add(lagrange_type(info(g).shape, q), ids);
   }
 
   const std::vector<int64_t> number = merger.order();
+  std::vector<int64_t> source(number.size());
+  for (size_t p = 0; p < number.size(); ++p) source[size_t(number[p])] = int64_t(p);
   DatasetParts parts;
-  UnstructuredMesh m;
-  cells.finish(m, &number);
-  double* xyz = nullptr;
-  m.points.xyz = Array::make<double>(number.size(), 3, &xyz);
-  for (size_t p = 0; p < number.size(); ++p)
-    for (size_t a = 0; a < 3; ++a)
-      xyz[size_t(number[p]) * 3 + a] = a < size_t(positions.space.vdim) ? merger.values(p)[a] : 0;
-  parts.mesh = std::move(m);
-
+  parts.mesh = mesh_of(cells, merger, number, source, size_t(positions.space.vdim));
   size_t s = 1;
   for (const GridFunction& f : fields) {
-    const size_t n = stored_components(f, mesh.space_dimension), vdim = size_t(f.space.vdim);
-    double* out = nullptr;
     if (constant_on_elements(f)) {
-      Array a = Array::make<double>(t.size(), int(n), &out);
-      for (size_t e = 0; e < t.size(); ++e)
-        for (size_t c = 0; c < n; ++c) out[e * n + c] = c < vdim ? f.get(e, int(c)) : 0;
-      parts.fields.add(make_field(f, Association::cell, std::move(a)));
+      parts.fields.add(
+          stored_field(f, Association::cell, mesh.space_dimension, t.size(), [&](size_t e, size_t c) { return f.get(e, int(c)); }));
       continue;
     }
-    Array a = Array::make<double>(number.size(), int(n), &out);
-    for (size_t p = 0; p < number.size(); ++p)
-      for (size_t c = 0; c < n; ++c) out[size_t(number[p]) * n + c] = c < vdim ? merger.values(p)[at[s] + c] : 0;
-    parts.fields.add(make_field(f, Association::point, std::move(a)));
-    ++s;
+    const size_t first = at[s++];
+    parts.fields.add(stored_field(f, Association::point, mesh.space_dimension, number.size(),
+                                  [&](size_t p, size_t c) { return merger.values(size_t(source[p]))[first + c]; }));
   }
   parts.fields.add(cell_ids("attribute", t.attribute));
   return make_dataset(std::move(parts));

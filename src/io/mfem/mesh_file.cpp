@@ -106,7 +106,6 @@ void parse_vertices(TextCursor& in, MeshFile& mesh) {
   if (n < 0 || uint64_t(n) > in.text().size()) in.fail(fmt::format("{} vertices in a file of {} bytes", n, in.text().size()));
   t.vertices = n;
   check_vertices(in, t);
-  number_entities(t);
   if (in.peek() == "nodes") {
     in.word();
     return parse_nodes(in, mesh);

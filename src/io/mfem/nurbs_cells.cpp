@@ -272,6 +272,95 @@ std::vector<size_t> control_points(const std::vector<KnotVector>& knots) {
   return n;
 }
 
+// All Bezier points of a mesh in homogeneous form, and the cells on them.
+struct BezierNet {
+  size_t width = 4;         ///< x y z w and the fields, all but w times w
+  std::vector<double> all;  ///< width numbers per point; NaN = a point of no patch
+  CellList cells;
+  std::vector<int32_t> attribute;
+};
+
+// Control points of one patch, times their weights.
+std::vector<double> patch_points(const MeshFile& mesh, const std::vector<GridFunction>& fields, size_t e, const std::vector<int64_t>& ids,
+                                 size_t width, const std::string& where) {
+  const NurbsMesh& n = *mesh.nurbs;
+  const auto d = size_t(mesh.space_dimension);
+  std::vector<double> h(ids.size() * width, 0.0);
+  for (size_t i = 0; i < ids.size(); ++i) {
+    double* o = h.data() + i * width;
+    const auto id = size_t(ids[i]);
+    const double* listed = n.patches.empty() ? nullptr : n.patches[e].points.data() + i * (d + 1);
+    const double w = listed ? listed[d] : n.weights[id];
+    if (!(w > 0)) fail_data(fmt::format("control point {} has the weight {}", id, w), where, "weights are positive");
+    for (size_t a = 0; a < d; ++a) o[a] = w * (listed ? listed[a] : mesh.nodes->get(id, int(a)));
+    o[3] = w;
+    size_t c = 4;
+    for (const GridFunction& f : fields)
+      for (int k = 0; k < f.space.vdim; ++k) o[c++] = w * f.get(id, k);
+  }
+  return h;
+}
+
+void add_cells(const MeshFile& mesh, size_t e, int order, const std::vector<int64_t>& ids, std::array<size_t, 3> size,
+               std::array<size_t, 3> spans, BezierNet& net) {
+  const CellType shape = info(mesh.topology.geometry[e]).shape;
+  const auto places = lattice_places(shape, order);
+  const auto q = size_t(order);
+  std::vector<int64_t> point;
+  for (size_t k = 0; k < spans[2]; ++k)
+    for (size_t j = 0; j < spans[1]; ++j)
+      for (size_t i = 0; i < spans[0]; ++i) {
+        point.clear();
+        for (const auto& p : places)
+          point.push_back(ids[i * q + size_t(p[0]) + size[0] * (j * q + size_t(p[1]) + size[1] * (k * q + size_t(p[2])))]);
+        net.cells.add(bezier_type(shape), point);
+        net.attribute.push_back(mesh.topology.attribute[e]);
+      }
+}
+
+DatasetPtr finish(const MeshFile& mesh, const std::vector<GridFunction>& fields, int order, BezierNet net) {
+  DatasetParts parts;
+  UnstructuredMesh m;
+  const size_t width = net.width;
+  // Numbers of vertices that no patch has are left out.
+  std::vector<int64_t> number(net.all.size() / width, -1);
+  int64_t points = 0;
+  for (size_t p = 0; p < number.size(); ++p)
+    if (!std::isnan(net.all[p * width + 3])) number[p] = points++;
+  net.cells.finish(m, &number);
+  double *xyz = nullptr, *weight = nullptr;
+  m.points.xyz = Array::make<double>(size_t(points), 3, &xyz);
+  Array weights = Array::make<double>(size_t(points), 1, &weight);
+  bool rational = false;
+  for (size_t p = 0; p < number.size(); ++p) {
+    if (number[p] < 0) continue;
+    const double* h = net.all.data() + p * width;
+    for (size_t a = 0; a < 3; ++a) xyz[size_t(number[p]) * 3 + a] = h[a] / h[3];
+    weight[number[p]] = h[3];
+    rational = rational || std::fabs(h[3] - 1) > 1e-14;
+  }
+  if (rational) m.weights = weights;
+  if (!rational && order == 1) m.single_type = info(mesh.topology.geometry[0]).shape;
+  parts.mesh = std::move(m);
+  size_t at = 4;
+  for (const GridFunction& f : fields) {
+    const size_t vdim = size_t(f.space.vdim), stored = vdim == 2 && mesh.space_dimension == 2 ? 3 : vdim;
+    double* out = nullptr;
+    Array a = Array::make<double>(size_t(points), int(stored), &out);
+    for (size_t p = 0; p < number.size(); ++p)
+      for (size_t c = 0; c < stored && number[p] >= 0; ++c)
+        out[size_t(number[p]) * stored + c] = c < vdim ? net.all[p * width + at + c] / net.all[p * width + 3] : 0;
+    Field field;
+    field.name = f.name;
+    field.array = std::move(a);
+    if (stored == 3) field.role = Role::vectors;
+    parts.fields.add(std::move(field));
+    at += vdim;
+  }
+  parts.fields.add(cell_ids("attribute", std::move(net.attribute)));
+  return make_dataset(std::move(parts));
+}
+
 }  // namespace
 
 size_t nurbs_size(const MeshFile& mesh, const std::string& where) {
@@ -281,111 +370,46 @@ size_t nurbs_size(const MeshFile& mesh, const std::string& where) {
 DatasetPtr nurbs_dataset(const MeshFile& mesh, const std::vector<GridFunction>& fields, const std::string& where) {
   const Topology& t = mesh.topology;
   const NurbsMesh& n = *mesh.nurbs;
+  const bool listed = !n.patches.empty();
   const std::vector<KnotVector> knots = knot_vectors(mesh, where);
   int order = 1;
   for (const KnotVector& k : knots) order = std::max(order, k.order);
-  std::vector<size_t> net;
-  for (const KnotVector& k : knots) net.push_back(extract(k, order).rows.size());
-  if (!n.patches.empty() && !fields.empty()) fail_data("fields on a NURBS mesh that lists its patches are not read", where);
-  const PatchNumbering from(mesh, control_points(knots), where), to(mesh, net, where);
-
+  std::vector<size_t> along;
+  for (const KnotVector& k : knots) along.push_back(extract(k, order).rows.size());
+  if (listed && !fields.empty()) fail_data("fields on a NURBS mesh that lists its patches are not read", where);
+  const PatchNumbering from(mesh, control_points(knots), where), to(mesh, along, where);
   if (to.size() > 100 * from.size() + 1000000)
     fail_data(fmt::format("{} control points become {} at order {}", from.size(), to.size(), order), where,
               "orders that differ less, or fewer knot spans");
-  size_t width = 4;  // x y z w, all but w times w
+  BezierNet net;
   for (const GridFunction& f : fields) {
     if (f.space.collection.family != Family::nurbs)
       fail_data(fmt::format("a field of the space '{}' on a NURBS mesh is not read", f.space.collection.name), where, "NURBS fields are");
-    width += size_t(f.space.vdim);
+    net.width += size_t(f.space.vdim);
   }
-  std::vector<double> all(to.size() * width, std::nan(""));
-  CellList cells;
-  std::vector<int32_t> attribute;
-  std::vector<int64_t> ids, point;
-  const CellType shape = info(t.geometry[0]).shape;
-  const auto places = lattice_places(shape, order);
-  const auto d = size_t(mesh.space_dimension);
+  net.all.assign(to.size() * net.width, std::nan(""));
+  std::vector<int64_t> ids;
   for (size_t e = 0; e < t.size(); ++e) {
-    std::array<size_t, 3> size = from.sizes(e);
-    if (!n.patches.empty() && n.patches[e].points.size() != size[0] * size[1] * size[2] * (d + 1))
+    std::array<size_t, 3> size = from.sizes(e), spans{1, 1, 1};
+    if (listed && n.patches[e].points.size() != size[0] * size[1] * size[2] * size_t(mesh.space_dimension + 1))
       fail_data(fmt::format("patch {} has other knot vectors than its edges", e), where);
     from.ids(e, ids);
-    std::vector<double> h(ids.size() * width, 0.0);
-    for (size_t i = 0; i < ids.size(); ++i) {
-      double* o = h.data() + i * width;
-      const auto id = size_t(ids[i]);
-      const double w = n.patches.empty() ? n.weights[id] : n.patches[e].points[i * (d + 1) + d];
-      if (!(w > 0)) fail_data(fmt::format("control point {} has the weight {}", id, w), where, "weights are positive");
-      for (size_t a = 0; a < d; ++a) o[a] = w * (n.patches.empty() ? mesh.nodes->get(id, int(a)) : n.patches[e].points[i * (d + 1) + a]);
-      o[3] = w;
-      size_t c = 4;
-      for (const GridFunction& f : fields)
-        for (int k = 0; k < f.space.vdim; ++k) o[c++] = w * f.get(id, k);
-    }
-    std::array<size_t, 3> spans{1, 1, 1};
+    std::vector<double> h = patch_points(mesh, fields, e, ids, net.width, where);
     for (int a = 0; a < t.dimension; ++a) {
-      KnotVector k = n.patches.empty() ? knots[size_t(n.edge_knots[from.axis_edge(e, a)])] : n.patches[e].knots[size_t(a)];
-      if (n.patches.empty() && from.reversed(e, a)) k = turned(k);
+      KnotVector k = listed ? n.patches[e].knots[size_t(a)] : knots[size_t(n.edge_knots[from.axis_edge(e, a)])];
+      if (!listed && from.reversed(e, a)) k = turned(k);
       const Extraction x = extract(k, order);
       spans[size_t(a)] = x.spans;
-      h = apply(x, h, size, size_t(a), width);
+      h = apply(x, h, size, size_t(a), net.width);
     }
     if (size != to.sizes(e)) fail_data(fmt::format("patch {} has other knot spans than its edges", e), where);
     to.ids(e, ids);
     for (size_t i = 0; i < ids.size(); ++i)
-      if (std::isnan(all[size_t(ids[i]) * width + 3]))
-        std::copy_n(h.begin() + ptrdiff_t(i * width), width, all.begin() + ptrdiff_t(size_t(ids[i]) * width));
-    for (size_t k = 0; k < spans[2]; ++k)
-      for (size_t j = 0; j < spans[1]; ++j)
-        for (size_t i = 0; i < spans[0]; ++i) {
-          point.clear();
-          const auto q = size_t(order);
-          for (const auto& p : places)
-            point.push_back(ids[i * q + size_t(p[0]) + size[0] * (j * q + size_t(p[1]) + size[1] * (k * q + size_t(p[2])))]);
-          cells.add(bezier_type(shape), point);
-          attribute.push_back(t.attribute[e]);
-        }
+      if (std::isnan(net.all[size_t(ids[i]) * net.width + 3]))
+        std::copy_n(h.begin() + ptrdiff_t(i * net.width), net.width, net.all.begin() + ptrdiff_t(size_t(ids[i]) * net.width));
+    add_cells(mesh, e, order, ids, size, spans, net);
   }
-
-  DatasetParts parts;
-  UnstructuredMesh m;
-  // Numbers of vertices that no patch has are left out.
-  std::vector<int64_t> number(to.size(), -1);
-  int64_t points = 0;
-  for (size_t p = 0; p < number.size(); ++p)
-    if (!std::isnan(all[p * width + 3])) number[p] = points++;
-  cells.finish(m, &number);
-  double *xyz = nullptr, *weight = nullptr;
-  m.points.xyz = Array::make<double>(size_t(points), 3, &xyz);
-  Array weights = Array::make<double>(size_t(points), 1, &weight);
-  bool rational = false;
-  for (size_t p = 0; p < number.size(); ++p) {
-    if (number[p] < 0) continue;
-    const double* h = all.data() + p * width;
-    for (size_t a = 0; a < 3; ++a) xyz[size_t(number[p]) * 3 + a] = h[a] / h[3];
-    weight[number[p]] = h[3];
-    rational = rational || std::fabs(h[3] - 1) > 1e-14;
-  }
-  if (rational) m.weights = weights;
-  if (!rational && order == 1) m.single_type = shape;
-  parts.mesh = std::move(m);
-  size_t at = 4;
-  for (const GridFunction& f : fields) {
-    const size_t vdim = size_t(f.space.vdim), stored = vdim == 2 && d == 2 ? 3 : vdim;
-    double* out = nullptr;
-    Array a = Array::make<double>(size_t(points), int(stored), &out);
-    for (size_t p = 0; p < number.size(); ++p)
-      for (size_t c = 0; c < stored && number[p] >= 0; ++c)
-        out[size_t(number[p]) * stored + c] = c < vdim ? all[p * width + at + c] / all[p * width + 3] : 0;
-    Field field;
-    field.name = f.name;
-    field.array = std::move(a);
-    if (stored == 3) field.role = Role::vectors;
-    parts.fields.add(std::move(field));
-    at += vdim;
-  }
-  parts.fields.add(cell_ids("attribute", std::move(attribute)));
-  return make_dataset(std::move(parts));
+  return finish(mesh, fields, order, std::move(net));
 }
 
 }  // namespace sg::mfem

@@ -70,6 +70,28 @@ void drop_unused(MeshFile& mesh) {
   mesh.coordinates = std::move(kept);
 }
 
+// "rank attribute geometry refinement nodes", or children where refined: only leaves are kept.
+void parse_tree_element(TextCursor& in, Topology& t) {
+  std::vector<int64_t> v;
+  for (std::string_view word : words(in.line())) {
+    const auto i = parse_int(word);
+    if (!i) in.fail(fmt::format("'{}' in an element", word.substr(0, 40)), "rank attribute geometry refinement nodes");
+    v.push_back(*i);
+  }
+  if (v.size() < 4 || v[3] != 0) return;  // not used any more, or refined
+  if (v[2] < 0 || v[2] >= geometry_count || info(Geometry(v[2])).dimension != t.dimension)
+    in.fail(fmt::format("an element of geometry {} in a mesh of dimension {}", v[2], t.dimension));
+  const auto corners = size_t(info(Geometry(v[2])).corners);
+  if (v.size() != 4 + corners) in.fail(fmt::format("an element with {} nodes", v.size() - 4), fmt::format("it needs {}", corners));
+  for (size_t k = 4; k < v.size(); ++k) {
+    if (v[k] < 0) in.fail(fmt::format("node {} does not exist", v[k]));
+    t.corners.push_back(v[k]);
+  }
+  t.geometry.push_back(Geometry(v[2]));
+  t.attribute.push_back(int32_t(std::clamp<int64_t>(v[1], INT32_MIN, INT32_MAX)));
+  t.begin.push_back(t.corners.size());
+}
+
 }  // namespace
 
 void parse_nonconforming(TextCursor& in, MeshFile& mesh) {
@@ -85,25 +107,8 @@ void parse_nonconforming(TextCursor& in, MeshFile& mesh) {
       elements = true;
       for (size_t e = 0; e < n; ++e) {
         in.skip_empty_lines();
-        std::vector<int64_t> v;
-        for (std::string_view word : words(in.line())) {
-          const auto i = parse_int(word);
-          if (!i) in.fail(fmt::format("'{}' in an element", word.substr(0, 40)), "rank attribute geometry refinement nodes");
-          v.push_back(*i);
-        }
-        if (v.empty()) in.fail(fmt::format("the list of elements ends after {} of {}", e, n));
-        if (v.size() < 4 || v[3] != 0) continue;  // not used any more, or refined
-        if (v[2] < 0 || v[2] >= geometry_count || info(Geometry(v[2])).dimension != t.dimension)
-          in.fail(fmt::format("an element of geometry {} in a mesh of dimension {}", v[2], t.dimension));
-        const auto corners = size_t(info(Geometry(v[2])).corners);
-        if (v.size() != 4 + corners) in.fail(fmt::format("an element with {} nodes", v.size() - 4), fmt::format("it needs {}", corners));
-        for (size_t k = 4; k < v.size(); ++k) {
-          if (v[k] < 0) in.fail(fmt::format("node {} does not exist", v[k]));
-          t.corners.push_back(v[k]);
-        }
-        t.geometry.push_back(Geometry(v[2]));
-        t.attribute.push_back(int32_t(std::clamp<int64_t>(v[1], INT32_MIN, INT32_MAX)));
-        t.begin.push_back(t.corners.size());
+        if (in.at_end()) in.fail(fmt::format("the list of elements ends after {} of {}", e, n));
+        parse_tree_element(in, t);
       }
     } else if (w == "boundary") {
       parse_elements(in, t, false);
@@ -123,7 +128,6 @@ void parse_nonconforming(TextCursor& in, MeshFile& mesh) {
       if (!elements) in.fail("coordinates before elements");
       place_nodes(in, mesh, parents, parse_values(in, n * size_t(d)));
       drop_unused(mesh);
-      number_entities(t);
       return;
     } else if (w == "nodes") {
       in.fail("a non-conforming mesh with curved elements", "save it with linear elements, or as a conforming mesh");
@@ -148,48 +152,11 @@ Corners box_split(std::string_view type) {
   return {{0, 1, 2, 6}, {0, 5, 1, 6}, {0, 4, 5, 6}, {0, 2, 3, 6}, {0, 3, 7, 6}, {0, 7, 4, 6}};  // around the diagonal 0-6
 }
 
-}  // namespace
-
-void parse_inline(TextCursor& in, MeshFile& mesh) {
-  in.expect("mesh");
-  in.line();
-  std::string type;
-  std::array<int64_t, 3> n{0, 0, 0};
-  std::array<double, 3> size{1, 1, 1};
-  while (!in.at_end()) {
-    const std::string name = to_lower(std::string(in.word()));
-    if (name == "mfem_mesh_end" || name == "finiteelementspace") break;
-    in.expect("=");
-    if (name == "type") {
-      type = std::string(in.word());
-      continue;
-    }
-    const size_t axis = name.size() == 2 && name[1] >= 'x' && name[1] <= 'z' ? size_t(name[1] - 'x') : 3;
-    if (axis > 2 || (name[0] != 'n' && name[0] != 's')) in.fail(fmt::format("unknown parameter '{}'", name), "type, nx, ny, nz, sx, sy, sz");
-    if (name[0] == 'n') n[axis] = in.integer("a number of elements");
-    else size[axis] = in.number("a length");
-  }
-  struct Kind {
-    const char* name;
-    Geometry geometry;
-  };
-  static constexpr Kind kinds[] = {{"segment", Geometry::segment}, {"quad", Geometry::square},        {"tri", Geometry::triangle},
-                                   {"hex", Geometry::cube},        {"tet", Geometry::tetrahedron}, {"wedge", Geometry::prism},
-                                   {"pyramid", Geometry::pyramid}};
-  const auto* kind = std::find_if(std::begin(kinds), std::end(kinds), [&](const Kind& k) { return type == k.name; });
-  if (kind == std::end(kinds)) in.fail(fmt::format("type '{}'", type), "segment, tri, quad, tet, hex, wedge or pyramid");
+// n[a] boxes along each axis, each cut into elements of one type.
+void fill_box(MeshFile& mesh, Geometry geometry, std::string_view type, std::array<int64_t, 3> n, std::array<double, 3> size) {
   Topology& t = mesh.topology;
-  const GeometryInfo& g = info(kind->geometry);
-  const int d = t.dimension = mesh.space_dimension = g.dimension;
-  uint64_t cells = 1;
-  for (int a = 0; a < 3; ++a) {
-    if (a >= d) n[size_t(a)] = 0;
-    else if (n[size_t(a)] < 1 || n[size_t(a)] > 100000) in.fail(fmt::format("n{} is {}", char('x' + a), n[size_t(a)]), "1 or more");
-    else cells *= uint64_t(n[size_t(a)]);
-    if (!(std::fabs(size[size_t(a)]) <= 1e300)) in.fail("a length that is not finite");
-  }
-  if (cells > 4000000) in.fail(fmt::format("{} elements made from a few numbers", cells), "at most 4 million");
-
+  const GeometryInfo& g = info(geometry);
+  const int d = g.dimension;
   const std::array<int64_t, 3> p{n[0] + 1, n[1] + 1, n[2] + 1};
   auto add_point = [&](double i, double j, double k) {
     const double at[3] = {i, j, k};
@@ -208,15 +175,60 @@ void parse_inline(TextCursor& in, MeshFile& mesh) {
           const int64_t dx = c % 4 == 1 || c % 4 == 2, dy = c % 4 > 1, dz = c > 3;
           box[c] = i + dx + p[0] * (j + dy + p[1] * (k + dz));
         }
-        if (kind->geometry == Geometry::pyramid) box[8] = add_point(double(i) + 0.5, double(j) + 0.5, double(k) + 0.5);
+        if (geometry == Geometry::pyramid) box[8] = add_point(double(i) + 0.5, double(j) + 0.5, double(k) + 0.5);
         for (const auto& part : split) {
           for (int c = 0; c < g.corners; ++c) t.corners.push_back(box[part[size_t(c)]]);
-          t.geometry.push_back(kind->geometry);
+          t.geometry.push_back(geometry);
           t.attribute.push_back(1);
           t.begin.push_back(t.corners.size());
         }
       }
-  number_entities(t);
+}
+
+}  // namespace
+
+void parse_inline(TextCursor& in, MeshFile& mesh) {
+  in.expect("mesh");
+  in.line();
+  std::string type;
+  std::array<int64_t, 3> n{0, 0, 0};
+  std::array<double, 3> size{1, 1, 1};
+  while (!in.at_end()) {
+    const std::string name = to_lower(std::string(in.word()));
+    if (name == "mfem_mesh_end" || name == "finiteelementspace") break;
+    in.expect("=");
+    if (name == "type") {
+      type = std::string(in.word());
+      continue;
+    }
+    const size_t axis = name.size() == 2 && name[1] >= 'x' && name[1] <= 'z' ? size_t(name[1] - 'x') : 3;
+    if (axis > 2 || (name[0] != 'n' && name[0] != 's'))
+      in.fail(fmt::format("unknown parameter '{}'", name), "type, nx, ny, nz, sx, sy, sz");
+    if (name[0] == 'n') n[axis] = in.integer("a number of elements");
+    else size[axis] = in.number("a length");
+  }
+  struct Kind {
+    const char* name;
+    Geometry geometry;
+  };
+  static constexpr Kind kinds[] = {{"segment", Geometry::segment}, {"quad", Geometry::square},     {"tri", Geometry::triangle},
+                                   {"hex", Geometry::cube},        {"tet", Geometry::tetrahedron}, {"wedge", Geometry::prism},
+                                   {"pyramid", Geometry::pyramid}};
+  const auto* kind = std::find_if(std::begin(kinds), std::end(kinds), [&](const Kind& k) { return type == k.name; });
+  if (kind == std::end(kinds)) in.fail(fmt::format("type '{}'", type), "segment, tri, quad, tet, hex, wedge or pyramid");
+  Topology& t = mesh.topology;
+  const GeometryInfo& g = info(kind->geometry);
+  const int d = t.dimension = mesh.space_dimension = g.dimension;
+  uint64_t cells = 1;
+  for (int a = 0; a < 3; ++a) {
+    if (a >= d) n[size_t(a)] = 0;
+    else if (n[size_t(a)] < 1 || n[size_t(a)] > 100000) in.fail(fmt::format("n{} is {}", char('x' + a), n[size_t(a)]), "1 or more");
+    else cells *= uint64_t(n[size_t(a)]);
+    if (!(std::fabs(size[size_t(a)]) <= 1e300)) in.fail("a length that is not finite");
+  }
+  if (cells > 4000000) in.fail(fmt::format("{} elements made from a few numbers", cells), "at most 4 million");
+
+  fill_box(mesh, kind->geometry, type, n, size);
 }
 
 }  // namespace sg::mfem

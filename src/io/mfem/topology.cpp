@@ -2,7 +2,6 @@
 #include "io/mfem/topology.h"
 
 #include <algorithm>
-#include <unordered_map>
 
 #include "base/error.h"
 
@@ -10,17 +9,46 @@ namespace sg::mfem {
 
 namespace {
 
-struct Hash {
-  size_t operator()(const std::array<int64_t, 3>& k) const {
-    uint64_t h = 0x9e3779b97f4a7c15ull;
-    for (int64_t v : k) h = (h ^ uint64_t(v)) * 0xff51afd7ed558ccdull, h ^= h >> 32;
-    return h;
+using Key = std::array<int64_t, 3>;
+
+// Numbers of keys in the order in which they come first: open addressing, twice as many slots as keys.
+class Numbers {
+ public:
+  explicit Numbers(size_t expected) {
+    size_t n = 64;
+    while (n < 2 * expected) n *= 2;
+    slots_.assign(n, -1);
+    keys_.reserve(expected);
   }
+  int64_t operator()(const Key& key) {
+    if (2 * keys_.size() >= slots_.size()) grow();
+    int64_t& slot = find(key);
+    if (slot < 0) {
+      slot = int64_t(keys_.size());
+      keys_.push_back(key);
+    }
+    return slot;
+  }
+  size_t size() const { return keys_.size(); }
+
+ private:
+  int64_t& find(const Key& key) {
+    uint64_t h = 0x9e3779b97f4a7c15ull;
+    for (int64_t v : key) h = (h ^ uint64_t(v)) * 0xff51afd7ed558ccdull, h ^= h >> 32;
+    size_t i = h & (slots_.size() - 1);
+    while (slots_[i] >= 0 && keys_[size_t(slots_[i])] != key) i = (i + 1) & (slots_.size() - 1);
+    return slots_[i];
+  }
+  void grow() {
+    slots_.assign(slots_.size() * 2, -1);
+    for (size_t k = 0; k < keys_.size(); ++k) find(keys_[k]) = int64_t(k);
+  }
+  std::vector<int64_t> slots_;
+  std::vector<Key> keys_;
 };
-using Numbers = std::unordered_map<std::array<int64_t, 3>, int64_t, Hash>;
 
 // A face is known by its three smallest vertices, as in MFEM.
-std::array<int64_t, 3> face_key(std::array<int64_t, 4> v) {
+Key face_key(std::array<int64_t, 4> v) {
   if (v[3] < 0) v[3] = INT64_MAX;
   std::sort(v.begin(), v.end());
   return {v[0], v[1], v[2]};
@@ -34,8 +62,10 @@ int corner_in(std::span<const int64_t> corners, int64_t vertex) {
   return -1;
 }
 
-void number_entities(Topology& t) {
-  Numbers edges, faces;
+void number_entities(const Topology& t) {
+  if (t.numbered) return;
+  t.numbered = true;
+  Numbers edges(t.dimension > 1 ? 3 * t.size() : 0), faces(t.dimension > 2 ? 3 * t.size() : 0);
   t.edge_begin.assign(1, 0), t.face_begin.assign(1, 0);
   t.edge.clear(), t.face.clear(), t.face_corners.clear();
   for (size_t e = 0; e < t.size(); ++e) {
@@ -44,14 +74,13 @@ void number_entities(Topology& t) {
     if (t.dimension > 1)
       for (const auto& [a, b] : g.edges) {
         const int64_t p = v[size_t(a)], q = v[size_t(b)];
-        t.edge.push_back(edges.try_emplace({std::min(p, q), std::max(p, q), 0}, int64_t(edges.size())).first->second);
+        t.edge.push_back(edges({std::min(p, q), std::max(p, q), 0}));
       }
     for (const auto& f : g.faces) {
       std::array<int64_t, 4> corner{-1, -1, -1, -1};
       for (size_t k = 0; k < f.size(); ++k) corner[k] = v[size_t(f[k])];
-      const auto [it, fresh] = faces.try_emplace(face_key(corner), int64_t(faces.size()));
-      if (fresh) t.face_corners.push_back(corner);
-      t.face.push_back(it->second);
+      t.face.push_back(faces(face_key(corner)));
+      if (faces.size() > t.face_corners.size()) t.face_corners.push_back(corner);
     }
     t.edge_begin.push_back(t.edge.size());
     t.face_begin.push_back(t.face.size());
@@ -61,6 +90,7 @@ void number_entities(Topology& t) {
 
 Numbering::Numbering(const Topology& t, int p, const std::string& where) : t_(t), p_(p), where_(where) {
   const int64_t m = p - 1;
+  if (p > 1) number_entities(t);
   int64_t next = t.vertices + int64_t(t.edges) * m;
   edges_ = size_t(t.vertices);
   for (const auto& f : t.face_corners) {
@@ -83,9 +113,7 @@ int64_t Numbering::face_node(const Topology& t, size_t e, const LocalNode& n) co
   const size_t corners = base[3] < 0 ? 3 : 4;
   std::array<int64_t, 4> v{};
   for (size_t k = 0; k < local.size(); ++k) v[k] = t.element(e)[size_t(local[k])];
-  auto odd = [&]() {
-    fail_data(fmt::format("face {} of element {} does not fit the face of its neighbour", int(n.entity), e), where_);
-  };
+  auto odd = [&]() { fail_data(fmt::format("face {} of element {} does not fit the face of its neighbour", int(n.entity), e), where_); };
   if (local.size() != corners) odd();
   const std::span<const int64_t> own(v.data(), corners);
   const int c0 = corner_in(own, base[0]), c1 = corner_in(own, base[1]), c2 = corner_in(own, base[corners - 1]);

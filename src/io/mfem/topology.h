@@ -17,17 +17,19 @@ struct Topology {
   std::vector<size_t> begin{0};  ///< elements + 1 places in `corners`
   std::vector<int64_t> corners;
 
-  // Numbered by number_entities() in the order of first appearance.
-  size_t edges = 0, faces = 0;
-  std::vector<size_t> edge_begin, face_begin;  ///< elements + 1 places in ...
-  std::vector<int64_t> edge, face;             ///< ... the edges and faces of each element (edges from dimension 2, faces in 3)
-  std::vector<std::array<int64_t, 4>> face_corners;  ///< of the element that has it first; -1 for the fourth of a triangle
+  // Numbered by number_entities(), in the order of first appearance, when somebody needs them: not for linear meshes.
+  mutable bool numbered = false;
+  mutable size_t edges = 0, faces = 0;
+  mutable std::vector<size_t> edge_begin, face_begin;  ///< elements + 1 places in ...
+  mutable std::vector<int64_t> edge, face;             ///< ... the edges and faces of each element (edges from dimension 2, faces in 3)
+  mutable std::vector<std::array<int64_t, 4>> face_corners;  ///< of the element that has it first; -1 for the fourth of a triangle
 
   size_t size() const { return geometry.size(); }
   std::span<const int64_t> element(size_t e) const { return std::span(corners).subspan(begin[e], begin[e + 1] - begin[e]); }
 };
 
-void number_entities(Topology& t);
+/// Does nothing when it is done. Not thread-safe.
+void number_entities(const Topology& t);
 
 /// The continuous numbering of order p: every element's nodes, as local_nodes() lists them.
 class Numbering {

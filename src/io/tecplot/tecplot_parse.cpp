@@ -209,16 +209,62 @@ class Parser {
     }
   }
 
+  /// What a zone's header says beside the zone itself.
+  struct ZoneHeader {
+    std::vector<std::pair<size_t, size_t>> shared;  ///< variable, zone
+    std::vector<bool> passive;
+    std::optional<size_t> connectivity_of;
+    std::string element;
+  };
+
+  void zone_key(const std::string& key, Zone& z, ZoneHeader& h) {
+    if (key == "I" || key == "J" || key == "K") z.dims[size_t(key[0] - 'I')] = count(key.c_str());
+    else if (key == "N" || key == "NODES") z.nodes = count("N");
+    else if (key == "E" || key == "ELEMENTS") z.elements = count("E");
+    else if (key == "T") equals(), z.title = string();
+    else if (key == "ET") equals(), h.element = upper(string());
+    else if (key == "ZONETYPE") equals(), z.type = upper(string());
+    else if (key == "F" || key == "DATAPACKING") {
+      equals();
+      const std::string f = upper(string());
+      z.block = f.ends_with("BLOCK");
+      if (f.starts_with("FE")) z.type = "FE";
+    } else if (key == "SOLUTIONTIME") {
+      equals();
+      double t = 0;
+      if (!scan_number(p_, end_, t)) fail("SOLUTIONTIME is no number");
+      z.time = t;
+    } else if (key == "VARLOCATION") equals(), set_locations(brackets(), z);
+    else if (key == "DT") {
+      equals();
+      size_t v = 0;
+      for (std::string_view t : items(brackets())) {
+        if (v < z.wide.size()) z.wide[v] = upper(t).ends_with("DOUBLE") || upper(t) == "LONGINT";
+        ++v;
+      }
+    } else if (key == "PASSIVEVARLIST") {
+      equals();
+      for (size_t v : variable_set(brackets_or_set())) h.passive[v] = true;
+    } else if (key == "VARSHARELIST") {
+      equals();
+      share(brackets(), h.shared);
+    } else if (key == "CONNECTIVITYSHAREZONE") {
+      h.connectivity_of = count(key.c_str());
+    } else {
+      equals();
+      if (p_ < end_ && *p_ == '(') brackets();
+      else string();
+    }
+  }
+
   void zone() {
     if (file_.variables.empty()) fail("a zone before any variables", "VARIABLES = \"X\", \"Y\", ...");
     Zone z;
     const size_t n = file_.variables.size();
     z.type = "ORDERED";
     z.at_cells.assign(n, false), z.wide.assign(n, false);
-    std::vector<std::pair<size_t, size_t>> shared;  // variable, zone
-    std::vector<bool> passive(n, false);
-    std::optional<size_t> connectivity_of;
-    std::string element;
+    ZoneHeader h;
+    h.passive.assign(n, false);
     for (;;) {
       skip();
       if (p_ == end_ || !in_name(*p_)) break;
@@ -237,47 +283,11 @@ class Parser {
         }
         fail(fmt::format("'{}' without a value in a ZONE", key));
       }
-      if (key == "I" || key == "J" || key == "K") z.dims[size_t(key[0] - 'I')] = count(key.c_str());
-      else if (key == "N" || key == "NODES") z.nodes = count("N");
-      else if (key == "E" || key == "ELEMENTS") z.elements = count("E");
-      else if (key == "T") equals(), z.title = string();
-      else if (key == "ET") equals(), element = upper(string());
-      else if (key == "ZONETYPE") equals(), z.type = upper(string());
-      else if (key == "F" || key == "DATAPACKING") {
-        equals();
-        const std::string f = upper(string());
-        z.block = f.ends_with("BLOCK");
-        if (f.starts_with("FE")) z.type = "FE";
-      } else if (key == "SOLUTIONTIME") {
-        equals();
-        double t = 0;
-        if (!scan_number(p_, end_, t)) fail("SOLUTIONTIME is no number");
-        z.time = t;
-      } else if (key == "VARLOCATION") equals(), set_locations(brackets(), z);
-      else if (key == "DT") {
-        equals();
-        size_t v = 0;
-        for (std::string_view t : items(brackets())) {
-          if (v < n) z.wide[v] = upper(t).ends_with("DOUBLE") || upper(t) == "LONGINT";
-          ++v;
-        }
-      } else if (key == "PASSIVEVARLIST") {
-        equals();
-        for (size_t v : variable_set(brackets_or_set())) passive[v] = true;
-      } else if (key == "VARSHARELIST") {
-        equals();
-        share(brackets(), shared);
-      } else if (key == "CONNECTIVITYSHAREZONE") {
-        connectivity_of = count(key.c_str());
-      } else {
-        equals();
-        if (p_ < end_ && *p_ == '(') brackets();
-        else string();
-      }
+      zone_key(key, z, h);
     }
-    finish_type(z, element);
-    values(z, shared, passive);
-    if (!z.ordered()) connectivity(z, connectivity_of);
+    finish_type(z, h.element);
+    values(z, h.shared, h.passive);
+    if (!z.ordered()) connectivity(z, h.connectivity_of);
     file_.zones.push_back(std::move(z));
   }
 
