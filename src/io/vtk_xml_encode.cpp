@@ -30,12 +30,12 @@ std::string escaped_xml(std::string_view s) {
   return r;
 }
 
-namespace {
-
-std::string_view vtk_type(ElementType t) {
+std::string_view xml_type_name(ElementType t) {
   constexpr std::string_view names[] = {"UInt8", "Int8", "UInt16", "Int16", "UInt32", "Int32", "UInt64", "Int64", "Float32", "Float64"};
   return names[size_t(t)];
 }
+
+namespace {
 
 void put_word(std::vector<std::byte>& to, uint64_t v) {
   const size_t at = to.size();
@@ -137,7 +137,7 @@ void XmlWriter::array(std::string_view name, const Array& given, bool with_tuple
   check();
   const Array a = given.made_packed();
   XmlAttributes attributes{
-      {"type", std::string(vtk_type(a.type()))}, {"Name", std::string(name)}, {"NumberOfComponents", std::to_string(a.components())}};
+      {"type", std::string(xml_type_name(a.type()))}, {"Name", std::string(name)}, {"NumberOfComponents", std::to_string(a.components())}};
   if (with_tuples) attributes.emplace_back("NumberOfTuples", std::to_string(a.count()));
   if (encoding_ == Encoding::appended) {
     Block b;

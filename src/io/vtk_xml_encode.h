@@ -18,6 +18,9 @@ using XmlAttributes = std::vector<std::pair<std::string_view, std::string>>;
 /// With the characters that XML reserves written as it asks for.
 std::string escaped_xml(std::string_view text);
 
+/// "UInt8" ... "Float64".
+std::string_view xml_type_name(ElementType type);
+
 /// Writes elements and arrays one after the other; appended bytes follow in finish(). The bytes of the file do not depend
 /// on the number of threads. Appended uncompressed arrays begin at multiples of 64 bytes of the file.
 class XmlWriter {

@@ -238,3 +238,28 @@ TEST_CASE("vtk parallel: blood vessels agree with what VTK says of them" * docte
   o.fields = {"density"};
   CHECK(std::get<DatasetPtr>(read_data(data_file("meshes/parallel/blood_vessels/T0000000500.pvtu"), o, context))->fields().size() == 1);
 }
+
+TEST_CASE("vtk parallel: a collection is written as the pieces of one mesh") {
+  DatasetParts a, b;
+  a.mesh = tetra_mesh(3);
+  a.fields.add({"T", Association::point, ramp<float>(6), {}, Role::scalars});
+  a.fields.add({"mine", Association::cell, ramp<float>(3), {}, Role::none});
+  b.mesh = mixed_mesh();
+  b.fields.add({"T", Association::point, ramp<float>(12), {}, Role::scalars});
+  b.cell_ghost = numbers<uint8_t>({0, 1, 0});
+  auto c = std::make_shared<Collection>();
+  c->parts.push_back({"a", make_dataset(a)});
+  c->parts.push_back({"b", make_dataset(b)});
+  Context context;
+  write_data(temp("pieces.pvtu"), CollectionPtr(c), {"appended", "zlib"}, context);
+  const DatasetPtr d = read(temp("pieces.pvtu"));
+  CHECK(d->point_count() == 18);
+  CHECK(d->cell_count() == 6);
+  CHECK(d->fields().require("T").array.get(6) == 0);
+  CHECK(d->cell_ghost().get(4) == ghost_duplicate);
+  CHECK(d->cell_ghost().get(0) == 0);
+  CHECK(d->as<UnstructuredMesh>()->points.xyz.type() == ElementType::f64);
+  CHECK(error_of([&] { write_data(temp("no.pvtp"), CollectionPtr(c), {}, context); }).find("part 'a'") != std::string::npos);
+  CHECK(error_of([&] { write_data(temp("no.pvti"), CollectionPtr(c), {}, context); }).find(".pvtu") != std::string::npos);
+  CHECK(!file_exists(temp("no")));
+}
