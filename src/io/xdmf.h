@@ -58,6 +58,7 @@ class Document {
   MappedFile file_;
   pugi::xml_document document_;
   std::map<std::string, std::string> entities_;
+  mutable std::map<std::string, std::vector<pugi::xml_node>> selected_;
   std::vector<pugi::xml_node> lenders_;
 };
 

@@ -66,12 +66,15 @@ std::string Document::with_entities(std::string text) const {
 std::vector<pugi::xml_node> Document::select(const std::string& xpath, pugi::xml_node from) const {
   std::vector<pugi::xml_node> found;
   if (xpath.size() > 4096) fail("has a path of more than 4096 characters", from);
+  const bool absolute = xpath.starts_with('/');  // every step of a series may hold the same path
+  if (const auto known = absolute ? selected_.find(xpath) : selected_.end(); known != selected_.end()) return known->second;
   try {
     for (const pugi::xpath_node& n : from.select_nodes(xpath.c_str()))
       if (n.node() && found.size() < 100000) found.push_back(n.node());
   } catch (const pugi::xpath_exception& e) {
     fail(fmt::format("has the path '{}', which is no XPath: {}", xpath, e.what()), from);
   }
+  if (absolute && selected_.size() < 10000) selected_[xpath] = found;
   return found;
 }
 

@@ -94,6 +94,27 @@ TEST_CASE("vtkhdf: a region of an image is the same part as one cut afterwards, 
   CHECK(values(read_one(h.path, part)->fields().require("c")) == std::vector<double>{1, 2, 4, 5});
 }
 
+TEST_CASE("vtkhdf: images of a series have the step as their first dimension, static arrays have not") {
+  H5Sample h("image_steps.vtkhdf");
+  h.vtkhdf("/VTKHDF", "ImageData");
+  h.numbers<int64_t>("/VTKHDF", "WholeExtent", {0, 1, 0, 2, 0, 0});
+  h.group("/VTKHDF/PointData"), h.group("/VTKHDF/Steps"), h.group("/VTKHDF/Steps/PointDataOffsets");
+  h.numbers<int64_t>("/VTKHDF/Steps", "NSteps", {2});
+  h.data<double>("/VTKHDF/Steps/Values", {0, 10});
+  h.data<int>("/VTKHDF/PointData/p", {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}, {2, 1, 3, 2});
+  h.data<int>("/VTKHDF/PointData/q", {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}, {2, 1, 3, 2});
+  h.data<int64_t>("/VTKHDF/Steps/PointDataOffsets/q", {0, 0});
+  h.data<int>("/VTKHDF/PointData/s", {5, 5, 5, 5, 5, 4}, {1, 3, 2});
+  h.close();
+  ReadOptions late;
+  late.time = 8;
+  late.region.lo = {1, 1, 0};
+  const DatasetPtr d = read_one(h.path, late);
+  CHECK(values(d->fields().require("p")) == std::vector<double>{9, 11});
+  CHECK(values(d->fields().require("q")) == std::vector<double>{3, 5});
+  CHECK(values(d->fields().require("s")) == std::vector<double>{5, 4});
+}
+
 TEST_CASE("vtkhdf: partitions become one mesh with shifted ids") {
   H5Sample h("cells.vtkhdf");
   make_cells(h);

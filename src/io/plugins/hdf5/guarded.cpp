@@ -16,13 +16,16 @@ namespace sg::h5 {
 namespace {
 
 constexpr size_t most_bytes = 1 << 20;
-constexpr int most_milliseconds = 3000;
+constexpr int most_milliseconds = 10000;
+constexpr rlim_t most_seconds = 1;  // of computing: reading a text takes microseconds
 
 // In the child: the answer with a '+' before it. Nothing of the parent's state may be flushed or destroyed.
 [[noreturn]] void answer(int to, const std::function<std::string()>& f) {
   for (const int s : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL}) std::signal(s, SIG_DFL);
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
+  const rlimit spinning{most_seconds, most_seconds};
+  ::setrlimit(RLIMIT_CPU, &spinning);
   if (const int quiet = ::open("/dev/null", O_WRONLY); quiet >= 0) ::dup2(quiet, 2);  // "stack smashing detected"
   ::alarm(most_milliseconds / 1000 + 1);
   try {

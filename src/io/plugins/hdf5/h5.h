@@ -66,7 +66,6 @@ class File {
   bool is_dataset(const std::string& object) const;
   /// Names in a group, in the order of creation where the file keeps it, else by name; at most 1 million.
   std::vector<std::string> children(const std::string& group) const;
-  std::vector<std::string> attributes(const std::string& object) const;
   std::optional<std::string> text_attribute(const std::string& object, const std::string& name) const;
   /// Nothing when there is no such attribute or it is no list of at most 4096 numbers.
   std::vector<double> number_attribute(const std::string& object, const std::string& name) const;
@@ -142,5 +141,7 @@ class Dataset {
 std::vector<uint64_t> read_counts(const File& file, const std::string& dataset, uint64_t begin, uint64_t n);
 
 hid_t native_type(ElementType type);
+/// Whether the numbers of that type are read, as what, and whether their bytes must be turned.
+bool plain_type(hid_t type, ElementType& out, bool& big_endian);
 
 }  // namespace sg::h5

@@ -28,8 +28,9 @@ Partitions partitions_of(const Group& g) {
   p.first = g.step_entry("PartOffsets", 0);
   p.point_offset = g.step_entry("PointOffsets", 0);
   const uint64_t all = h5::Dataset(g.file, g.at("NumberOfPoints")).rows();
-  // Files of early writers say the number of parts only where it differs from one for each step.
-  const uint64_t n = g.step_entry("NumberOfParts", g.step.any ? 1 : all);
+  // Without their number, a step has one part, or all where no step has parts of its own.
+  const bool own = g.step.any && g.file.is_dataset(g.at("Steps/PartOffsets"));
+  const uint64_t n = g.step_entry("NumberOfParts", own ? 1 : all);
   p.points = h5::read_counts(g.file, g.at("NumberOfPoints"), p.first, n);
   p.point_count = total(g, "NumberOfPoints", p.points);
   return p;

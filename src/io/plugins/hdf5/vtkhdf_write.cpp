@@ -8,6 +8,7 @@
 
 #include "base/text.h"
 #include "data/lattice.h"
+#include "io/plugins/hdf5/h5_pack.h"
 #include "io/plugins/hdf5/vtkhdf.h"
 
 namespace sg {
@@ -64,15 +65,20 @@ class Writer {
     const Array packed = values.made_packed();
     const Handle space(H5Screate_simple(int(dims.size()), dims.data(), nullptr)), make(H5Pcreate(H5P_DATASET_CREATE));
     H5Pset_obj_track_times(make, false);  // the same data give the same bytes
-    if (compress_ && packed.bytes() >= 4096) {
-      H5Pset_chunk(make, int(dims.size()), chunk_of(dims, element_size(packed.type())).data());
+    const bool pack = compress_ && packed.bytes() >= 4096;
+    const size_t size = element_size(packed.type());
+    const std::vector<hsize_t> chunk = chunk_of(dims, size);
+    if (pack) {
+      H5Pset_chunk(make, int(dims.size()), chunk.data());
       H5Pset_shuffle(make);
-      H5Pset_deflate(make, 4);
+      H5Pset_deflate(make, level);
     }
     const hid_t type = h5::native_type(packed.type());
     const Handle set(H5Dcreate2(file_, path.c_str(), type, space, H5P_DEFAULT, make, H5P_DEFAULT));
-    if (!set.good() || (packed.bytes() > 0 && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, packed.raw()) < 0))
-      fail(fmt::format("cannot hold '{}'", path));
+    const bool written =
+        set.good() && (pack ? h5::write_packed(set, packed.raw(), dims, chunk, size, level, context_)
+                            : packed.bytes() == 0 || H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, packed.raw()) >= 0);
+    if (!written) fail(fmt::format("cannot hold '{}'", path));
   }
   /// A list of tuples: (n) or (n, components).
   void list(const std::string& path, const Array& values) {
@@ -93,6 +99,7 @@ class Writer {
     const Handle a(H5Acreate_by_name(file_, object.c_str(), name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
     if (!a.good() || H5Awrite(a, type, value) < 0) fail(fmt::format("cannot hold the attribute '{}' of '{}'", name, object));
   }
+  static constexpr int level = 4;  // of deflate
   // About a quarter of a mebibyte: the slowest dimensions are cut first.
   static std::vector<hsize_t> chunk_of(std::vector<hsize_t> dims, size_t size) {
     for (size_t a = 0; a < dims.size(); ++a) {
