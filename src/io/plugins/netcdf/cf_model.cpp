@@ -95,6 +95,7 @@ void CfModel::find_grids() {
       loose_.push_back(std::move(c));
       continue;
     }
+    std::sort(key.begin(), key.end());  // the same axes in another order are the same grid
     const auto [at, fresh] = known.emplace(key, grids_.size());
     if (fresh) grids_.push_back({});
     CfGrid& grid = grids_[at->second];

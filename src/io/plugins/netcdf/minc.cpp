@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "base/text.h"
+#include "data/lattice_crop.h"
 #include "io/direction.h"
 
 namespace sg::nc {
@@ -141,7 +142,9 @@ bool is_minc(const NcFile& file) {
   return file.find("rootvariable") != nullptr;
 }
 
-Data read_minc(const NcFile& file, const ReadOptions& options, Context&) {
+namespace {
+
+DatasetPtr read_volume(const NcFile& file, const ReadOptions& options) {
   const Variable& image = file.require("image");
   const MincLayout l = layout_of(file, image);
   DatasetParts parts;
@@ -218,6 +221,14 @@ Data read_minc(const NcFile& file, const ReadOptions& options, Context&) {
     parts.fields.add({"ImageScalars", Association::point, std::move(packed), {}, scaling.used() ? Role::none : Role::scalars});
   }
   return make_dataset(std::move(parts));
+}
+
+}  // namespace
+
+Data read_minc(const NcFile& file, const ReadOptions& options, Context&) {
+  const DatasetPtr d = read_volume(file, options);
+  if (options.region.whole()) return d;
+  return crop_lattice(*d, options.region.lo, options.region.hi, options.region.stride);
 }
 
 }  // namespace sg::nc
