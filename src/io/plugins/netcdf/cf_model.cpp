@@ -29,6 +29,7 @@ void CfModel::find_roles() {
     if (const Variable* v = file_.find(name)) is_data_[size_t(v - file_.variables().data())] = false;
   };
   for (const Variable& v : file_.variables()) {
+    file_.check_backed(v);
     if (!v.is_number() || v.count() == 0) drop(v.name);
     if (v.dims.size() == 1 && file_.dimensions()[size_t(v.dims[0])].name == v.name) drop(v.name);
     for (const char* attribute : {"bounds", "climatology", "grid_mapping"})
