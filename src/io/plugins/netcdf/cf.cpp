@@ -133,7 +133,7 @@ DatasetPtr read_grid(const NcFile& file, const CfModel& model, const CfGrid& gri
   };
   std::vector<std::string> coordinates;
   for (const CfVariable& c : grid.variables)
-    for (const std::string_view w : words(file.text(c.v, "coordinates"))) coordinates.emplace_back(w);
+    for (const std::string& w : file.words(c.v, "coordinates")) coordinates.push_back(w);
   for (const bool last : {false, true})
     for (const CfVariable& c : grid.variables) {
       const bool is_coordinate = std::find(coordinates.begin(), coordinates.end(), c.v->name) != coordinates.end();

@@ -172,6 +172,12 @@ std::string NcFile::text(const Variable* v, const char* name) const {
   return {};
 }
 
+std::vector<std::string> NcFile::words(const Variable* v, const char* name) const {
+  const std::string all = text(v, name);
+  const std::vector<std::string_view> parts = sg::words(all);
+  return {parts.begin(), parts.end()};
+}
+
 std::vector<double> NcFile::numbers(const Variable* v, const char* name) const {
   const int id = v ? v->id : NC_GLOBAL;
   int type = 0;

@@ -56,6 +56,8 @@ class NcFile {
 
   /// Text attribute of a variable (null: of the file), trimmed; "" when there is none or it is a number.
   std::string text(const Variable* v, const char* name) const;
+  /// Words of a text attribute.
+  std::vector<std::string> words(const Variable* v, const char* name) const;
   /// Numbers of an attribute; empty when there is none or it is text.
   std::vector<double> numbers(const Variable* v, const char* name) const;
   std::optional<double> number(const Variable* v, const char* name) const;
