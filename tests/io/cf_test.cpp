@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // CF grids and MINC volumes in small classic netCDF files.
 #include "data/lattice.h"
+#include "data/lattice_crop.h"
 #include "io_files.h"
 #include "netcdf_bytes.h"
 
@@ -102,6 +103,35 @@ TEST_CASE("netcdf: equally spaced axes make a uniform grid, whatever the order o
   const Field& field = d->fields().require("v");
   CHECK(field.array.type() == ElementType::i32);
   for (size_t p = 0; p < 12; ++p) CHECK(field.array.get(p) == double(p % 3 + 10 * (p / 3 % 2) + 100 * (p / 6)));
+}
+
+TEST_CASE("netcdf: a region with strides is the same as the whole cut afterwards") {
+  NcBytes f;
+  const int x = f.dim("x", 7), y = f.dim("y", 5), z = f.dim("z", 6), time = f.dim("time", 2);
+  std::vector<double> along;
+  for (int i = 0; i < 7; ++i) along.push_back(i * i);
+  std::vector<float> v(2 * 7 * 5 * 6);
+  for (size_t i = 0; i < v.size(); ++i) v[i] = float(i);
+  f.var<double>("x", {x}, along).var<double>("y", {y}, {0, 1, 2, 3, 4}).var<double>("z", {z}, {0, 1, 2, 3, 4, 5});
+  f.var<double>("time", {time}, {1, 2});
+  f.var<float>("a", {time, z, y, x}, v)
+      .var<float>("b", {time, x, z, y}, v)
+      .var<float>("c", {y, x}, std::vector<float>(v.begin(), v.begin() + 35));
+  const std::string path = temp_file("region.nc", f.bytes());
+  Context context;
+  for (const std::array<size_t, 3> stride : {std::array<size_t, 3>{1, 1, 1}, {2, 1, 1}, {1, 1, 3}, {3, 2, 2}}) {
+    ReadOptions o;
+    o.step = 1;
+    o.fields = {"a", "b"};
+    const auto whole = std::get<DatasetPtr>(read_data(path, o, context));
+    o.region.lo = {1, 1, 2}, o.region.hi = {5, SIZE_MAX, 5}, o.region.stride = stride;
+    const auto part = std::get<DatasetPtr>(read_data(path, o, context));
+    const DatasetPtr cut = crop_lattice(*whole, o.region.lo, o.region.hi, stride);
+    CHECK(whole->fields().size() == 2);  // and not the grid of c
+    CHECK(lattice_dims(part->mesh()) == lattice_dims(cut->mesh()));
+    CHECK(same_array(part->as<RectilinearGrid>()->x, cut->as<RectilinearGrid>()->x));
+    for (const char* name : {"a", "b"}) CHECK(same_array(part->fields().require(name).array, cut->fields().require(name).array));
+  }
 }
 
 TEST_CASE("netcdf: listed longitudes and latitudes make a curvilinear grid; points without a place are hidden") {

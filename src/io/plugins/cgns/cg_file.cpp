@@ -15,7 +15,7 @@ constexpr uint64_t small_array = 1 << 20;
 constexpr uint64_t most_packing = 1100;  // HDF5 may be compressed; deflate makes at most about a thousand of one
 
 std::string message() {
-  char text[CGIO_MAX_ERROR_LENGTH + 1] = {};
+  char text[1024] = {};
   cgio_error_message(text);
   return std::string(trim(text));
 }
@@ -67,7 +67,8 @@ Node CgFile::node_of(double id, const std::string& parent) const {
   Node n;
   n.id = id;
   n.path = parent;
-  char name[CGIO_MAX_NAME_LENGTH + 1] = {}, label[CGIO_MAX_LABEL_LENGTH + 1] = {}, type[CGIO_MAX_DATATYPE_LENGTH + 1] = {};
+  // Longer than the library promises: a damaged ADF file has types of 32 characters.
+  char name[128] = {}, label[128] = {}, type[128] = {};
   if (cgio_get_name(file_, id, name) != CGIO_ERR_NONE) fail(fmt::format("a node has no name: {}", message()), n);
   n.name = name;
   n.path = parent + "/" + n.name;

@@ -99,6 +99,9 @@ int64_t numbered(int64_t type, double version) {
   return type == 13 ? int64_t(type_pyra13) : type - 1;
 }
 
+// Numbers in the file count from 1. The smallest wraps around, so that it stays wrong.
+int64_t zero_based(int64_t number) { return int64_t(uint64_t(number) - 1); }
+
 struct Section {
   const Node* node = nullptr;
   int64_t type = 0, first = 0, count = 0;
@@ -231,7 +234,7 @@ class Zone {
       const IndexView ids = index_view(s.ids);
       parallel_for(size_t(s.count), 1 << 14, [&](size_t begin, size_t end) {
         for (size_t e = begin; e < end; ++e)
-          for (size_t k = 0; k < n; ++k) out[e * n + k] = ids[e * kind->nodes + kind->order[k]] - 1;
+          for (size_t k = 0; k < n; ++k) out[e * n + k] = zero_based(ids[e * kind->nodes + kind->order[k]]);
       });
       out += size_t(s.count) * n;
     }
@@ -259,9 +262,9 @@ class Zone {
       }
       const ElementKind* kind = element_kind(type);
       if (kind)
-        for (const uint8_t k : kind->order) ids_.push_back(ids[at + k] - 1);
+        for (const uint8_t k : kind->order) ids_.push_back(zero_based(ids[at + k]));
       else
-        for (size_t k = 0; k < size; ++k) ids_.push_back(ids[at + k] - 1);
+        for (size_t k = 0; k < size; ++k) ids_.push_back(zero_based(ids[at + k]));
       add_cell(kind ? kind->type : CellType::polygon);
     }
   }
@@ -293,7 +296,7 @@ class Zone {
         file_.fail(fmt::format("a face is the element {}, which is no polygon", number), *cells.node);
     }
     for (size_t k = 0; k < corners; ++k) {
-      const int64_t id = ids[at + k] - 1;
+      const int64_t id = zero_based(ids[at + k]);
       face_ids_.push_back(id);
       ids_.push_back(id);
     }

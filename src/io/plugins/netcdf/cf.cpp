@@ -3,6 +3,8 @@
 
 #include "base/parallel.h"
 #include "base/text.h"
+#include "data/lattice.h"
+#include "data/lattice_crop.h"
 
 namespace sg::nc {
 
@@ -46,16 +48,43 @@ std::string unit_of(const NcFile& file, const Variable& v) {
   return unit == "1" || unit == "none" ? std::string() : unit;
 }
 
-// The numbers of one step, in the file's order of the variable's axes; `n` receives their lengths.
-Array read_step(const NcFile& file, const CfVariable& c, size_t step, std::vector<size_t>& n) {
+/// What is read along one axis: `count` entries from `lo`, every stride-th.
+struct Span {
+  size_t lo = 0, count = 1, stride = 1;
+};
+
+/// The numbers of one step, in the file's order of the variable's axes; `n` receives their lengths. `spans`: one for each axis; none =
+/// all of it. Along the slowest axis only what is wanted is read, along the others the range that holds it.
+Array read_step(const NcFile& file, const CfVariable& c, size_t step, const std::vector<Span>& spans, std::vector<size_t>& n) {
   const Variable& v = *c.v;
   std::vector<size_t> start(v.shape.size(), 0), count(v.shape.size(), 1);
-  for (const int p : c.axes) {
-    count[size_t(p)] = v.shape[size_t(p)];
-    n.push_back(v.shape[size_t(p)]);
+  std::array<size_t, 3> box{1, 1, 1}, kept{1, 1, 1}, stride{1, 1, 1};  // fastest first
+  size_t slabs = 1, total = 1;
+  bool sparse = false;
+  for (size_t k = 0; k < c.axes.size(); ++k) {
+    const auto p = size_t(c.axes[k]);
+    const Span s = spans.empty() ? Span{0, v.shape[p], 1} : spans[k];
+    start[p] = s.lo;
+    count[p] = (s.count - 1) * s.stride + 1;
+    const size_t fast = c.axes.size() - 1 - k;
+    box[fast] = count[p], kept[fast] = s.count, stride[fast] = s.stride;
+    sparse = sparse || s.stride > 1;
+    n.push_back(s.count);
+    total *= s.count;
   }
   if (c.time >= 0) start[size_t(c.time)] = std::min(step, v.shape[size_t(c.time)] - 1);
-  return decoded(file, v, file.read(v, start, count, v.element()));
+  if (!sparse) return decoded(file, v, file.read(v, start, count, v.element()));
+  const auto slowest = size_t(c.axes[0]);
+  const size_t last = c.axes.size() - 1, between = stride[last], first = start[slowest];
+  if (between > 1) slabs = kept[last], box[last] = kept[last] = stride[last] = count[slowest] = 1;
+  std::byte* out = nullptr;
+  const Array all = Array::make_raw(v.element(), total, 1, &out);
+  for (size_t s = 0; s < slabs; ++s) {
+    start[slowest] = first + s * between;
+    const Array slab = crop_block(file.read(v, start, count, v.element()), box, {0, 0, 0}, kept, stride);
+    std::memcpy(out + s * slab.bytes(), slab.raw(), slab.bytes());
+  }
+  return decoded(file, v, all);
 }
 
 // Axes of the mesh (places in the grid's dims) as places among this variable's own axes.
@@ -74,11 +103,27 @@ DatasetPtr read_grid(const NcFile& file, const CfModel& model, const CfGrid& gri
   CfMesh mesh = cf_mesh(file, model, grid, context);
   DatasetParts parts;
   std::vector<const Variable*> auxiliary;  // coordinates that are not those of the mesh come last
+  std::array<Span, 3> region;              // of the mesh's axes
+  const bool part = !options.region.whole() && is_lattice(mesh.mesh) && !std::holds_alternative<CurvilinearGrid>(mesh.mesh);
+  if (part) {
+    const LatticeRegion& r = options.region;
+    const DatasetPtr cut = crop_lattice(*make_dataset(mesh.mesh), r.lo, r.hi, r.stride);
+    const auto dims = lattice_dims(cut->mesh());
+    for (size_t a = 0; a < 3; ++a) region[a] = {r.lo[a], dims[a], r.stride[a]};
+    mesh.mesh = cut->mesh();
+  }
   const auto add = [&](const CfVariable& c) {
     context.check();
     std::vector<size_t> n;
-    Array a = read_step(file, c, step, n);
-    a = permuted(a, n, own_order(grid, c, mesh.order));
+    const std::vector<int> own = own_order(grid, c, mesh.order);
+    std::vector<Span> spans;
+    for (size_t k = 0; part && k < c.axes.size(); ++k) {
+      spans.push_back({0, c.v->shape[size_t(c.axes[k])], 1});
+      for (size_t a = 0; a < 3; ++a)
+        if (own[a] == int(k)) spans[k] = region[a];
+    }
+    Array a = read_step(file, c, step, spans, n);
+    a = permuted(a, n, own);
     parts.fields.add({c.v->name, mesh.association, std::move(a), unit_of(file, *c.v), Role::none});
     if (!c.first.empty()) {
       std::string held;
@@ -88,7 +133,7 @@ DatasetPtr read_grid(const NcFile& file, const CfModel& model, const CfGrid& gri
   };
   std::vector<std::string> coordinates;
   for (const CfVariable& c : grid.variables)
-    for (const std::string_view w : words(file.text(c.v, "coordinates"))) coordinates.emplace_back(w);
+    for (const std::string& w : file.words(c.v, "coordinates")) coordinates.push_back(w);
   for (const bool last : {false, true})
     for (const CfVariable& c : grid.variables) {
       const bool is_coordinate = std::find(coordinates.begin(), coordinates.end(), c.v->name) != coordinates.end();
@@ -99,7 +144,7 @@ DatasetPtr read_grid(const NcFile& file, const CfModel& model, const CfGrid& gri
     for (const CfVariable& c : model.loose()) {
       if (!wanted(options, c.v->name)) continue;
       std::vector<size_t> n;
-      parts.fields.add({c.v->name, Association::whole, read_step(file, c, step, n), unit_of(file, *c.v), Role::none});
+      parts.fields.add({c.v->name, Association::whole, read_step(file, c, step, {}, n), unit_of(file, *c.v), Role::none});
     }
   parts.mesh = std::move(mesh.mesh);
   parts.point_ghost = mesh.point_ghost, parts.cell_ghost = mesh.cell_ghost;
@@ -113,7 +158,9 @@ DatasetPtr read_grid(const NcFile& file, const CfModel& model, const CfGrid& gri
       if (!unit.empty()) parts.notes.emplace_back("time", calendar.empty() ? unit : fmt::format("{} ({} calendar)", unit, calendar));
     }
   }
-  return make_dataset(std::move(parts));
+  const DatasetPtr d = make_dataset(std::move(parts));
+  if (options.region.whole() || part || !is_lattice(d->mesh())) return d;
+  return crop_lattice(*d, options.region.lo, options.region.hi, options.region.stride);
 }
 
 std::vector<double> times_of(const NcFile& file, const CfModel& model) {
@@ -151,9 +198,18 @@ Data read_cf(const NcFile& file, const ReadOptions& options, Context& context) {
     time = times[step];
   }
   const auto one = [&](size_t i) { return read_grid(file, model, model.grids()[i], i == 0, step, time, options, context); };
-  if (model.grids().size() == 1) return one(0);
+  // Grids that hold nothing of what is asked for are left out.
+  std::vector<size_t> chosen;
+  for (size_t i = 0; i < model.grids().size() && !options.fields.empty(); ++i) {
+    const auto& variables = model.grids()[i].variables;
+    if (std::any_of(variables.begin(), variables.end(), [&](const CfVariable& c) { return wanted(options, c.v->name); }))
+      chosen.push_back(i);
+  }
+  if (chosen.empty())
+    for (size_t i = 0; i < model.grids().size(); ++i) chosen.push_back(i);
+  if (chosen.size() == 1) return one(chosen[0]);
   Collection all;
-  for (size_t i = 0; i < model.grids().size(); ++i) {
+  for (const size_t i : chosen) {
     std::string name;
     for (const int d : model.grids()[i].dims) name += (name.empty() ? "" : " x ") + file.dimensions()[size_t(d)].name;
     all.parts.push_back({name, one(i)});

@@ -29,10 +29,11 @@ void CfModel::find_roles() {
     if (const Variable* v = file_.find(name)) is_data_[size_t(v - file_.variables().data())] = false;
   };
   for (const Variable& v : file_.variables()) {
+    file_.check_backed(v);
     if (!v.is_number() || v.count() == 0) drop(v.name);
     if (v.dims.size() == 1 && file_.dimensions()[size_t(v.dims[0])].name == v.name) drop(v.name);
     for (const char* attribute : {"bounds", "climatology", "grid_mapping"})
-      for (const std::string_view name : words(file_.text(&v, attribute))) drop(name);
+      for (const std::string& name : file_.words(&v, attribute)) drop(name);
     if (!file_.text(&v, "grid_mapping_name").empty() || !file_.text(&v, "cf_role").empty()) drop(v.name);
   }
 }
@@ -95,6 +96,7 @@ void CfModel::find_grids() {
       loose_.push_back(std::move(c));
       continue;
     }
+    std::sort(key.begin(), key.end());  // the same axes in another order are the same grid
     const auto [at, fresh] = known.emplace(key, grids_.size());
     if (fresh) grids_.push_back({});
     CfGrid& grid = grids_[at->second];
@@ -149,7 +151,7 @@ void CfModel::find_positions(CfGrid& grid) const {
       if (l == 'y' && !found[1]) found[1] = v;
     };
     for (const CfVariable& c : grid.variables)
-      for (const std::string_view name : words(file_.text(c.v, "coordinates"))) consider(file_.find(name));
+      for (const std::string& name : file_.words(c.v, "coordinates")) consider(file_.find(name));
     for (const Variable& v : file_.variables()) consider(&v);
     if (!found[0] || !found[1]) return false;
     grid.lon = found[0], grid.lat = found[1];

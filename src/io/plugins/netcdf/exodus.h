@@ -51,6 +51,9 @@ struct BlockCells {
   size_t end(size_t e) const { return per ? (e + 1) * per : size_t(offsets[e + 1]); }
 };
 
+/// Numbers in the file count from 1. The smallest wraps around, so that it stays wrong.
+inline int64_t zero_based(int64_t number) { return int64_t(uint64_t(number) - 1); }
+
 /// An open Exodus file and what its parts share.
 class ExodusMesh {
  public:
@@ -66,6 +69,9 @@ class ExodusMesh {
   const std::vector<ExodusObject> elements, faces, edges, sides, node_lists;
 
  private:
+  struct SideList;
+  /// Appends side s (from 0) of element e of a block.
+  void add_side(const ExodusObject& set, const ExodusObject& block, size_t e, int64_t s, SideList& out);
   const BlockCells& cells_of(const ExodusObject& o);
   void add_polyhedra(const BlockCells& cells, const ExodusObject& o, UnstructuredMesh& mesh, std::vector<int64_t>& ids);
   std::vector<std::pair<const BlockCells*, size_t>> all_faces();

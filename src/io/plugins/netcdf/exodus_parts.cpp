@@ -71,7 +71,7 @@ void ordered_cells(const T* from, size_t elements, size_t per, std::span<const u
   out.resize(elements * n);
   parallel_for(elements, grain, [&](size_t begin, size_t end) {
     for (size_t e = begin; e < end; ++e)
-      for (size_t k = 0; k < n; ++k) out[e * n + k] = int64_t(from[e * per + order[k]]) - 1;
+      for (size_t k = 0; k < n; ++k) out[e * n + k] = zero_based(from[e * per + order[k]]);
   });
 }
 
@@ -100,7 +100,7 @@ void ExodusMesh::add_polyhedra(const BlockCells& c, const ExodusObject& o, Unstr
       const auto& [block, place] = all[size_t(f) - 1];
       const IndexView nodes = index_view(block->ids);
       for (size_t k = block->begin(place); k < block->end(place); ++k) {
-        const int64_t node = nodes[k] - 1;
+        const int64_t node = zero_based(nodes[k]);
         if (node < 0 || size_t(node) >= nodes_) file_.fail(fmt::format("face {} has the node {} of {}", f, nodes[k], nodes_));
         face_ids.push_back(node);
         ids.push_back(node);
@@ -143,7 +143,7 @@ DatasetPtr ExodusMesh::block(const ExodusObject& o) {
   } else {
     const IndexView list = index_view(c.ids);
     ids.resize(size_t(c.offsets.back()));
-    for (size_t i = 0; i < ids.size(); ++i) ids[i] = list[i] - 1;
+    for (size_t i = 0; i < ids.size(); ++i) ids[i] = zero_based(list[i]);
     mesh.cells.offsets = Array::from_vector(c.offsets);
   }
   return finish(std::move(mesh), std::move(ids), object_fields(o, o.size), o, o.size);
@@ -155,77 +155,10 @@ DatasetPtr ExodusMesh::node_set(const ExodusObject& o) {
   const Array list = file_.read(v, ElementType::i64);
   const int64_t* p = list.view<int64_t>().data;
   std::vector<int64_t> ids(p, p + list.count());
-  for (int64_t& id : ids) --id;
+  for (int64_t& id : ids) id = zero_based(id);
   UnstructuredMesh mesh;
   mesh.single_type = CellType::vertex;
   mesh.cells.fixed = 1;
-  return finish(std::move(mesh), std::move(ids), object_fields(o, o.size), o, o.size);
-}
-
-DatasetPtr ExodusMesh::side_set(const ExodusObject& o) {
-  const auto list = [&](const char* what) {
-    const Variable& v = file_.require(fmt::format("{}_ss{}", what, o.number));
-    if (!v.is_number() || v.shape.size() != 1 || v.shape[0] != o.size) file_.fail(fmt::format("must hold {} numbers", o.size), v.name);
-    return file_.read(v, ElementType::i64);
-  };
-  const Array element_list = list("elem"), side_list = list("side");
-  std::vector<int64_t> ids, offsets{0};
-  std::vector<uint8_t> types;
-  std::vector<std::pair<const BlockCells*, std::vector<CellSide>>> known;  // sides of the shapes met
-  std::vector<std::pair<const BlockCells*, size_t>> all;                   // faces of polyhedra
-  for (size_t i = 0; i < o.size; ++i) {
-    const int64_t e = element_list.view<int64_t>().data[i] - 1, s = side_list.view<int64_t>().data[i] - 1;
-    const auto after =
-        std::upper_bound(elements.begin(), elements.end(), e, [](int64_t n, const ExodusObject& b) { return n < int64_t(b.first); });
-    const ExodusObject* block = e < 0 || after == elements.begin() ? nullptr : &after[-1];
-    if (!block || size_t(e) - block->first >= block->size)
-      file_.fail(fmt::format("side {} is of the element {}, which is not there", i, e + 1), fmt::format("elem_ss{}", o.number));
-    const BlockCells& c = cells_of(*block);
-    const size_t local = size_t(e) - block->first;
-    const IndexView nodes = index_view(c.ids);
-    const auto no_side = [&](size_t sides) {
-      file_.fail(fmt::format("side {} of element {} is not in 1..{}", s + 1, e + 1, sides), fmt::format("side_ss{}", o.number));
-    };
-    if (c.shape.kind == ShapeKind::fixed) {
-      auto at = std::find_if(known.begin(), known.end(), [&](const auto& k) { return k.first == &c; });
-      if (at == known.end()) {
-        std::vector<CellSide> sides;
-        for (const SideCorners& corners : c.shape.sides) sides.push_back(cell_side(corners, c.shape.nodes));
-        at = known.emplace(known.end(), &c, std::move(sides));
-      }
-      if (s < 0 || size_t(s) >= at->second.size()) no_side(at->second.size());
-      const CellSide& side = at->second[size_t(s)];
-      types.push_back(uint8_t(side.type));
-      for (const uint8_t k : side.nodes) ids.push_back(nodes[local * c.per + k] - 1);
-    } else if (c.shape.kind == ShapeKind::polyhedra) {
-      const size_t begin = c.begin(local), n = c.end(local) - begin;
-      if (s < 0 || size_t(s) >= n) no_side(n);
-      if (all.empty()) all = all_faces();
-      const int64_t f = nodes[begin + size_t(s)];
-      if (f < 1 || size_t(f) > all.size()) file_.fail(fmt::format("element {} has the face {} of {}", e + 1, f, all.size()));
-      const auto& [faces_of, place] = all[size_t(f) - 1];
-      const IndexView corners = index_view(faces_of->ids);
-      types.push_back(uint8_t(CellType::polygon));
-      for (size_t k = faces_of->begin(place); k < faces_of->end(place); ++k) ids.push_back(corners[k] - 1);
-    } else {  // an edge of a polygon, or a point itself
-      const size_t begin = c.begin(local), n = c.end(local) - begin;
-      if (s < 0 || size_t(s) >= std::max<size_t>(n, 1) || n == 0) no_side(n);
-      const bool polygon = c.shape.kind == ShapeKind::polygons;
-      types.push_back(uint8_t(polygon ? CellType::line : CellType::vertex));
-      ids.push_back(nodes[begin + size_t(s)] - 1);
-      if (polygon) ids.push_back(nodes[begin + (size_t(s) + 1) % n] - 1);
-    }
-    offsets.push_back(int64_t(ids.size()));
-  }
-  UnstructuredMesh mesh;
-  const bool one_type = std::all_of(types.begin(), types.end(), [&](uint8_t t) { return t == types[0]; });
-  if (one_type && types[0] != uint8_t(CellType::polygon)) {
-    mesh.single_type = CellType(types[0]);
-    mesh.cells.fixed = int(offsets[1]);
-  } else {
-    mesh.types = Array::from_vector(std::move(types));
-    mesh.cells.offsets = Array::from_vector(std::move(offsets));
-  }
   return finish(std::move(mesh), std::move(ids), object_fields(o, o.size), o, o.size);
 }
 
@@ -258,7 +191,7 @@ DatasetPtr ExodusMesh::finish(UnstructuredMesh mesh, std::vector<int64_t> ids, F
   size_t bad = 0;
   const std::optional<std::vector<int64_t>> used = distinct(ids, nodes_, bad);
   if (bad != SIZE_MAX)
-    file_.fail(fmt::format("'{}' uses the node {} (entry {}), which is not in 1..{}", o.name, ids[bad] + 1, bad, nodes_),
+    file_.fail(fmt::format("'{}' uses the node {} (entry {}), which is not in 1..{}", o.name, int64_t(uint64_t(ids[bad]) + 1), bad, nodes_),
                fmt::format("{}{}", o.kind->connect, o.number));
   std::vector<int64_t> place;
   if (used && ids.size() >= nodes_ / 16) {

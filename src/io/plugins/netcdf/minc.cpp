@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "base/text.h"
+#include "data/lattice_crop.h"
 #include "io/direction.h"
 
 namespace sg::nc {
@@ -131,6 +132,57 @@ class Scaling {
   std::vector<double> min_, max_;
 };
 
+/// Components that stand one after the other in the file (vector_dimension is not the fastest) go side by side.
+struct Components {
+  size_t components, points, inner = 1;  // inner: numbers from one component to the next
+  Components(const MincLayout& l, const std::vector<size_t>& count, size_t numbers)
+      : components(l.components), points(numbers / l.components) {
+    for (size_t k = size_t(l.vector + 1); l.vector >= 0 && k < count.size(); ++k) inner *= count[k];
+  }
+  size_t place(size_t i) const {
+    if (components == 1) return i;
+    const size_t c = i / inner % components, point = i / (inner * components) * inner + i % inner;
+    return point * components + c;
+  }
+};
+
+Array real_values(const Array& stored, const Variable& image, const MincLayout& l, size_t step, const Scaling& scaling,
+                  const Components& order) {
+  float* out = nullptr;
+  Array real = Array::make<float>(order.points, int(order.components), &out);
+  // With a time dimension, one step is read: its slices lie elsewhere in the file.
+  size_t after = 1;
+  for (size_t k = 0; l.time >= 0 && k < image.shape.size(); ++k)
+    if (int(k) > l.time) after *= image.shape[k];
+  const size_t steps = l.time >= 0 ? image.shape[size_t(l.time)] : 1;
+  dispatch(stored, [&](const auto& v) {
+    parallel_for(v.count, 1 << 16, [&](size_t begin, size_t end) {
+      size_t known = SIZE_MAX;
+      double factor = 1, offset = 0;
+      for (size_t i = begin; i < end; ++i) {
+        if (scaling.used()) {
+          const size_t in_file = l.time >= 0 ? (i / after * steps + step) * after + i % after : i;
+          const size_t slice = in_file / scaling.slice();
+          if (slice != known) std::tie(factor, offset) = scaling.of(std::min(slice, scaling.slices() - 1)), known = slice;
+        }
+        out[order.place(i)] = float(double(v[i]) * factor + offset);
+      }
+    });
+  });
+  return real;
+}
+
+Array stored_values(const Array& stored, const Components& order) {
+  if (order.components == 1) return stored;
+  std::byte* out = nullptr;
+  Array packed = Array::make_raw(stored.type(), order.points, int(order.components), &out);
+  const size_t size = element_size(stored.type());
+  parallel_for(stored.count(), 1 << 16, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) std::memcpy(out + order.place(i) * size, stored.raw() + i * size, size);
+  });
+  return packed;
+}
+
 }  // namespace
 
 bool is_minc(const NcFile& file) {
@@ -141,7 +193,9 @@ bool is_minc(const NcFile& file) {
   return file.find("rootvariable") != nullptr;
 }
 
-Data read_minc(const NcFile& file, const ReadOptions& options, Context&) {
+namespace {
+
+DatasetPtr read_volume(const NcFile& file, const ReadOptions& options) {
   const Variable& image = file.require("image");
   const MincLayout l = layout_of(file, image);
   DatasetParts parts;
@@ -172,52 +226,21 @@ Data read_minc(const NcFile& file, const ReadOptions& options, Context&) {
 
   const Array stored = with_sign(file, image, file.read(image, start, count, image.element()));
   const Scaling scaling(file, image, stored.type());
-  // Components one after the other in the file (vector_dimension not the fastest) go side by side: out[c + components * point].
-  const size_t components = l.components, points = stored.count() / components;
-  size_t inner = 1;  // numbers from one component to the next
-  for (size_t k = size_t(l.vector + 1); l.vector >= 0 && k < count.size(); ++k) inner *= count[k];
-  const auto place = [=](size_t i) {
-    if (components == 1) return i;
-    const size_t c = i / inner % components, point = i / (inner * components) * inner + i % inner;
-    return point * components + c;
-  };
-  if (wanted("image") && (scaling.used() || is_float(stored.type()))) {
-    float* out = nullptr;
-    Array real = Array::make<float>(points, int(components), &out);
-    // With a time dimension, one step is read: its slices lie elsewhere in the file.
-    size_t after = 1;
-    for (size_t k = 0; l.time >= 0 && k < count.size(); ++k)
-      if (int(k) > l.time) after *= image.shape[k];
-    const size_t steps = l.time >= 0 ? image.shape[size_t(l.time)] : 1;
-    dispatch(stored, [&](const auto& v) {
-      parallel_for(v.count, 1 << 16, [&](size_t begin, size_t end) {
-        size_t known = SIZE_MAX;
-        double factor = 1, offset = 0;
-        for (size_t i = begin; i < end; ++i) {
-          if (scaling.used()) {
-            const size_t in_file = l.time >= 0 ? (i / after * steps + step) * after + i % after : i;
-            const size_t slice = in_file / scaling.slice();
-            if (slice != known) std::tie(factor, offset) = scaling.of(std::min(slice, scaling.slices() - 1)), known = slice;
-          }
-          out[place(i)] = float(double(v[i]) * factor + offset);
-        }
-      });
-    });
-    parts.fields.add({"image", Association::point, std::move(real), file.text(&image, "units"), Role::scalars});
-  }
-  if (wanted("ImageScalars") && !is_float(stored.type())) {
-    Array packed = stored;
-    if (components > 1) {
-      std::byte* out = nullptr;
-      packed = Array::make_raw(stored.type(), points, int(components), &out);
-      const size_t size = element_size(stored.type());
-      parallel_for(stored.count(), 1 << 16, [&](size_t begin, size_t end) {
-        for (size_t i = begin; i < end; ++i) std::memcpy(out + place(i) * size, stored.raw() + i * size, size);
-      });
-    }
-    parts.fields.add({"ImageScalars", Association::point, std::move(packed), {}, scaling.used() ? Role::none : Role::scalars});
-  }
+  const Components order(l, count, stored.count());
+  if (wanted("image") && (scaling.used() || is_float(stored.type())))
+    parts.fields.add(
+        {"image", Association::point, real_values(stored, image, l, step, scaling, order), file.text(&image, "units"), Role::scalars});
+  if (wanted("ImageScalars") && !is_float(stored.type()))
+    parts.fields.add({"ImageScalars", Association::point, stored_values(stored, order), {}, scaling.used() ? Role::none : Role::scalars});
   return make_dataset(std::move(parts));
+}
+
+}  // namespace
+
+Data read_minc(const NcFile& file, const ReadOptions& options, Context&) {
+  const DatasetPtr d = read_volume(file, options);
+  if (options.region.whole()) return d;
+  return crop_lattice(*d, options.region.lo, options.region.hi, options.region.stride);
 }
 
 }  // namespace sg::nc

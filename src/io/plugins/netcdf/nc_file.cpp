@@ -172,6 +172,12 @@ std::string NcFile::text(const Variable* v, const char* name) const {
   return {};
 }
 
+std::vector<std::string> NcFile::words(const Variable* v, const char* name) const {
+  const std::string all = text(v, name);
+  const std::vector<std::string_view> parts = sg::words(all);
+  return {parts.begin(), parts.end()};
+}
+
 std::vector<double> NcFile::numbers(const Variable* v, const char* name) const {
   const int id = v ? v->id : NC_GLOBAL;
   int type = 0;
@@ -187,6 +193,14 @@ std::optional<double> NcFile::number(const Variable* v, const char* name) const 
   return n.empty() ? std::optional<double>() : n[0];
 }
 
+uint64_t NcFile::most_bytes() const { return std::max<uint64_t>(small_array, packed_ ? file_size_ * most_packing : file_size_); }
+
+void NcFile::check_backed(const Variable& v) const {
+  uint64_t bytes = 0;
+  if (v.is_number() && (!multiply(v.count(), element_size(v.element()), bytes) || bytes > most_bytes()))
+    fail(fmt::format("{} numbers are more than a file of {} bytes can hold", v.count(), file_size_), v.name);
+}
+
 Array NcFile::read(const Variable& v, const std::vector<size_t>& start, const std::vector<size_t>& count, ElementType type) const {
   if (!v.is_number()) fail("holds no numbers", v.name);
   uint64_t n = 1, bytes = 0;
@@ -195,8 +209,7 @@ Array NcFile::read(const Variable& v, const std::vector<size_t>& start, const st
       fail(fmt::format("numbers {}..{} of dimension {} are wanted, which has {}", start[k], start[k] + count[k], k, v.shape[k]), v.name);
     if (!multiply(n, count[k], n)) fail("has more numbers than can be counted", v.name);
   }
-  const uint64_t backed = std::max<uint64_t>(small_array, packed_ ? file_size_ * most_packing : file_size_);
-  if (!multiply(n, element_size(v.element()), bytes) || bytes > backed)
+  if (!multiply(n, element_size(v.element()), bytes) || bytes > most_bytes())
     fail(fmt::format("{} numbers are more than a file of {} bytes can hold", n, file_size_), v.name);
   std::byte* out = nullptr;
   Array a = Array::make_raw(type, n, 1, &out);
@@ -218,7 +231,7 @@ std::vector<std::string> NcFile::strings(const Variable& v) const {
   if (!v.is_text()) fail("holds no text", v.name);
   if (v.shape.empty()) return {};
   const size_t n = v.count(), width = v.shape.back();
-  if (n > std::max<uint64_t>(small_array, packed_ ? file_size_ * most_packing : file_size_)) fail("is larger than the file", v.name);
+  if (n > most_bytes()) fail("is larger than the file", v.name);
   std::string all(n, '\0');
   if (n > 0)
     if (const int e = nc_get_var_text(id_, v.id, all.data()); e != NC_NOERR)

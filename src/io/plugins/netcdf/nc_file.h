@@ -56,6 +56,8 @@ class NcFile {
 
   /// Text attribute of a variable (null: of the file), trimmed; "" when there is none or it is a number.
   std::string text(const Variable* v, const char* name) const;
+  /// Words of a text attribute.
+  std::vector<std::string> words(const Variable* v, const char* name) const;
   /// Numbers of an attribute; empty when there is none or it is text.
   std::vector<double> numbers(const Variable* v, const char* name) const;
   std::optional<double> number(const Variable* v, const char* name) const;
@@ -69,10 +71,14 @@ class NcFile {
   /// Rows of a character variable, each up to its first zero byte, trailing blanks removed; rows of all leading dimensions in order.
   std::vector<std::string> strings(const Variable& v) const;
 
+  /// Throws Error(data) when the whole variable is larger than what the file can back (HDF5 keeps sizes without data).
+  void check_backed(const Variable& v) const;
+
   [[noreturn]] void fail(const std::string& problem, std::string_view variable = {}, std::string hint = {}) const;
 
  private:
   void inquire();
+  uint64_t most_bytes() const;
   std::string path_;
   size_t file_size_ = 0;
   bool packed_ = false;  // HDF5: variables may be compressed
