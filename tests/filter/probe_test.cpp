@@ -79,8 +79,9 @@ Comparison compare(const Dataset& result, const DatasetPtr& source) {
     ++r.valid;
     if (c) r.wrong_cell += c->array.get(i) != double(cell + 1);
     const double expected = linear(cursor.place().nearest);
-    r.error =
-        std::max({r.error, std::abs(f.get(i) - expected), std::abs(v.get(i, 1) - 2 * expected) * 1e-5, std::abs(n.get(i) - 10) * 1e-5});
+    const double size = 1 + std::abs(expected);
+    r.error = std::max({r.error, std::abs(f.get(i) - expected) / size, std::abs(v.get(i, 1) - 2 * expected) / size * 1e-4,
+                        std::abs(n.get(i) - 10) * 1e-5});
   }
   return r;
 }
