@@ -108,7 +108,8 @@ bool curvature(const CellReader& reader, Vec3& bound) {
 }  // namespace
 
 Box3 cell_box(const CellReader& reader) {
-  Box3 box = reader.box();
+  Box3 box;
+  for (Vec3 p : reader.at()) box.add(p);
   const CellType type = reader.type();
   Vec3 bound;
   if (!is_high_order(type) || is_bezier(type) || !curvature(reader, bound)) return box;  // Bezier: in the hull of the nodes
@@ -214,7 +215,7 @@ void CellProbe::make_triangles() {
     CellReader faces = reader;  // lists faces on demand
     for (size_t f = 0; f < faces.face_count(); ++f) add_face(CellType::polygon, faces.face(f));
   } else {
-    const CellFaces& faces = cell_faces(type, at.size());
+    const CellFaces& faces = cell_faces(type, at.size(), reader.orders());
     for (size_t f = 0; f < faces.size(); ++f) add_face(faces.type[f], faces.face(f));
   }
 }

@@ -42,7 +42,7 @@ void CellPieces::make_fans(CellMap& map) {
     CellReader faces = reader;
     for (size_t f = 0; f < faces.face_count(); ++f) fan(faces.face(f));
   } else {
-    const CellFaces& faces = cell_faces(reader.type(), nodes);
+    const CellFaces& faces = cell_faces(reader.type(), nodes, reader.orders());
     for (size_t f = 0; f < faces.size(); ++f) fan(faces.face(f));
   }
 }

@@ -42,7 +42,7 @@ void FieldSampler::combine_block(const Target& t, const View<T>& v, const Sample
   using Out = std::conditional_t<sizeof(T) == 8, double, float>;
   Out* out = reinterpret_cast<Out*>(t.out);
   const size_t comps = size_t(v.components);
-  for (size_t i = 0; i < block.size(); ++i) {
+  for (size_t i = 0; i < block.count; ++i) {
     Out* to = out + block.to[i] * comps;
     if (block.cells[i] < 0) {
       for (size_t c = 0; c < comps; ++c) to[c] = Out(NAN);
@@ -53,7 +53,10 @@ void FieldSampler::combine_block(const Target& t, const View<T>& v, const Sample
     const double* w = &block.weights[begin];
     for (size_t c = 0; c < comps; ++c) {
       double sum = 0;
-      for (size_t k = 0; k < n; ++k) sum += w[k] * double(v.data[size_t(ids[k]) * comps + c]);
+      if (n == 4)
+        for (size_t k = 0; k < 4; ++k) sum += w[k] * double(v.data[size_t(ids[k]) * comps + c]);
+      else
+        for (size_t k = 0; k < n; ++k) sum += w[k] * double(v.data[size_t(ids[k]) * comps + c]);
       if (!std::isfinite(sum)) [[unlikely]]
         sum = careful_sum(v, int(c), ids, w, n);
       to[c] = Out(sum);
@@ -64,7 +67,7 @@ void FieldSampler::combine_block(const Target& t, const View<T>& v, const Sample
 void FieldSampler::copy_block(const Target& t, const SampleBlock& block) {
   const ElementType type = t.to.type();
   const size_t bytes = element_size(type) * size_t(t.to.components());
-  for (size_t i = 0; i < block.size(); ++i) {
+  for (size_t i = 0; i < block.count; ++i) {
     std::byte* to = t.out + block.to[i] * bytes;
     if (block.cells[i] >= 0) std::memcpy(to, t.from.raw() + size_t(block.cells[i]) * bytes, bytes);
     else if (type == ElementType::f32) std::fill_n(reinterpret_cast<float*>(to), t.to.components(), NAN);
@@ -74,7 +77,7 @@ void FieldSampler::copy_block(const Target& t, const SampleBlock& block) {
 }
 
 void FieldSampler::write(const SampleBlock& block) {
-  for (size_t i = 0; i < block.size(); ++i) valid_out_[block.to[i]] = block.cells[i] >= 0;
+  for (size_t i = 0; i < block.count; ++i) valid_out_[block.to[i]] = block.cells[i] >= 0;
   for (const Target& t : targets_)
     if (t.field.association == Association::cell) copy_block(t, block);
     else dispatch(t.from, [&](auto v) { combine_block(t, v, block); });

@@ -1,29 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
 // FieldSampler: the point and cell fields of a dataset at places in its cells, filled in from any thread in any order.
 #pragma once
+#include <array>
 #include <vector>
 
 #include "data/dataset.h"
 
 namespace sg {
 
-/// Places to be evaluated together: for each the output tuple, the cell (-1: none), and ids and weights [begin[i], begin[i+1]).
+/// Up to `capacity` places to be evaluated together: for each the output tuple, the cell (-1: none), and ids and weights [begin[i],
+/// begin[i+1]).
 struct SampleBlock {
-  std::vector<size_t> to;
-  std::vector<int64_t> cells;
-  std::vector<uint32_t> begin{0};
-  std::vector<int64_t> ids;
+  static constexpr size_t capacity = 256;
+  size_t count = 0;
+  std::array<size_t, capacity> to;
+  std::array<int64_t, capacity> cells;
+  std::array<uint32_t, capacity + 1> begin{};
+  std::vector<int64_t> ids;  ///< as long as ever needed; only the first begin[count] count
   std::vector<double> weights;
 
-  size_t size() const { return to.size(); }
-  void clear() { to.clear(), cells.clear(), begin.assign(1, 0), ids.clear(), weights.clear(); }
+  bool full() const { return count == capacity; }
   void add(size_t out, int64_t cell, std::span<const int64_t> point_ids, std::span<const double> w) {
-    to.push_back(out), cells.push_back(cell);
-    ids.insert(ids.end(), point_ids.begin(), point_ids.end());
-    weights.insert(weights.end(), w.begin(), w.end());
-    begin.push_back(uint32_t(ids.size()));
+    const size_t first = begin[count], n = point_ids.size();
+    if (first + n > ids.size()) ids.resize(2 * (first + n)), weights.resize(2 * (first + n));
+    std::copy_n(point_ids.data(), n, &ids[first]);
+    std::copy_n(w.data(), n, &weights[first]);
+    to[count] = out, cells[count] = cell;
+    begin[++count] = uint32_t(first + n);
   }
-  void add_missing(size_t out) { to.push_back(out), cells.push_back(-1), begin.push_back(uint32_t(ids.size())); }
+  void add_missing(size_t out) {
+    to[count] = out, cells[count] = -1;
+    begin[count + 1] = begin[count];
+    ++count;
+  }
 };
 
 /// Point fields are combined as combine() of data/field_ops.h does (integers become f32, 64-bit ones f64), cell fields are copied from

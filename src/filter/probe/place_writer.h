@@ -18,7 +18,7 @@ class PlaceWriter {
 
   void add_missing(size_t to) {
     block_.add_missing(to);
-    if (block_.size() >= block_size) flush();
+    if (block_.full()) flush();
   }
   /// Output tuple, cell, reference coordinates, position.
   void add(size_t to, uint32_t cell, Vec3 rst, Vec3 x) {
@@ -32,15 +32,14 @@ class PlaceWriter {
     } else {
       add_any(to, cell, rst, x);
     }
-    if (block_.size() >= block_size) flush();
+    if (block_.full()) flush();
   }
   void flush() {
-    if (block_.size() > 0) out_.write(block_);
-    block_.clear();
+    if (block_.count > 0) out_.write(block_);
+    block_.count = 0;
   }
 
  private:
-  static constexpr size_t block_size = 256;
   void add_any(size_t to, uint32_t cell, Vec3 rst, Vec3 x) {
     CellPlace place;
     place.rst = rst;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scan conversion: slab by slab of a grid's layers, each by one thread. First every cell claims the points that it holds, then the fields
 // are evaluated row by row. A tetrahedron claims rows at a time: its barycentric coordinates are linear along them.
+#include <mutex>
+
 #include "base/parallel.h"
 #include "filter/probe/cell_slabs.h"
 #include "filter/probe/place_writer.h"
@@ -24,15 +26,15 @@ constexpr uint32_t none = UINT32_MAX;
 
 // The points of some layers: who holds them, and where in the cell.
 struct Slab {
-  size_t k0, k1;
   std::vector<uint32_t> cell;
   Plane<Vec3> rst;
 };
 
 class Scanner {
  public:
-  Scanner(const GridScan& scan, size_t k0, size_t k1) : scan_(scan), probe_(scan.probe()), reader_(scan.map.reader()) {
-    slab_.k0 = k0, slab_.k1 = k1;
+  /// `slab` is scratch.
+  Scanner(const GridScan& scan, Slab& slab, size_t k0, size_t k1)
+      : scan_(scan), probe_(scan.probe()), reader_(scan.map.reader()), slab_(slab), k0_(k0), k1_(k1) {
     slab_.cell.assign(scan.dims[0] * scan.dims[1] * (k1 - k0), none);
     slab_.rst.resize(slab_.cell.size());
   }
@@ -45,11 +47,12 @@ class Scanner {
  private:
   void claim_tetra(uint32_t cell);
   void claim_any(uint32_t cell);
-  size_t place(size_t i, size_t j, size_t k) const { return i + scan_.dims[0] * (j + scan_.dims[1] * (k - slab_.k0)); }
+  size_t place(size_t i, size_t j, size_t k) const { return i + scan_.dims[0] * (j + scan_.dims[1] * (k - k0_)); }
   const GridScan& scan_;
   CellProbe probe_;
   CellReader reader_;
-  Slab slab_;
+  Slab& slab_;
+  size_t k0_, k1_;
 };
 
 // The four barycentric coordinates as b = at(0,0,0) + i * along.x + j * along.y + k * along.z.
@@ -87,7 +90,7 @@ void Scanner::claim_tetra(uint32_t cell) {
     const double grow = 1e-7 * (t.box.hi[a] - t.box.lo[a]);
     GridScan::points_in(t.box.lo[a] - grow + base[a], t.box.hi[a] + grow + base[a], scan_.dims[size_t(a)], lo[a], hi[a]);
   }
-  lo[2] = std::max(lo[2], ptrdiff_t(slab_.k0)), hi[2] = std::min(hi[2], ptrdiff_t(slab_.k1) - 1);
+  lo[2] = std::max(lo[2], ptrdiff_t(k0_)), hi[2] = std::min(hi[2], ptrdiff_t(k1_) - 1);
   double inverse[4];
   for (int m = 0; m < 4; ++m) inverse[m] = 1 / t.along[m].x;
   for (ptrdiff_t k = lo[2]; k <= hi[2]; ++k)
@@ -101,7 +104,8 @@ void Scanner::claim_tetra(uint32_t cell) {
         else if (r[m] < -tolerance) to = -HUGE_VAL;
       }
       if (!(from <= to)) continue;
-      const ptrdiff_t i0 = ptrdiff_t(std::ceil(from)), i1 = ptrdiff_t(std::floor(to));
+      ptrdiff_t i0 = ptrdiff_t(from), i1 = ptrdiff_t(to);  // rounded to zero: ceil and floor are calls on plain x86-64
+      i0 += double(i0)<from, i1 -= double(i1)> to;
       const size_t row = place(size_t(0), size_t(j), size_t(k)) + size_t(ptrdiff_t(base.x));
       for (ptrdiff_t i = i0; i <= i1; ++i) {
         const size_t at = row + size_t(i);
@@ -117,7 +121,7 @@ void Scanner::claim_any(uint32_t cell) {
   const Box3 box = scan_.box(reader_, cell);
   ptrdiff_t lo[3], hi[3];
   for (int a = 0; a < 3; ++a) GridScan::points_in(box.lo[a], box.hi[a], scan_.dims[size_t(a)], lo[a], hi[a]);
-  lo[2] = std::max(lo[2], ptrdiff_t(slab_.k0)), hi[2] = std::min(hi[2], ptrdiff_t(slab_.k1) - 1);
+  lo[2] = std::max(lo[2], ptrdiff_t(k0_)), hi[2] = std::min(hi[2], ptrdiff_t(k1_) - 1);
   CellPlace place_in;
   for (ptrdiff_t k = lo[2]; k <= hi[2]; ++k)
     for (ptrdiff_t j = lo[1]; j <= hi[1]; ++j)
@@ -130,7 +134,7 @@ void Scanner::claim_any(uint32_t cell) {
 
 void Scanner::write(FieldSampler& out) {
   PlaceWriter writer(std::move(probe_), scan_.simplices, out);
-  for (size_t k = slab_.k0; k < slab_.k1; ++k)
+  for (size_t k = k0_; k < k1_; ++k)
     for (size_t j = 0; j < scan_.dims[1]; ++j)
       for (size_t i = 0; i < scan_.dims[0]; ++i) {
         const size_t at = place(i, j, k), to = i + scan_.dims[0] * (j + scan_.dims[1] * k);
@@ -151,12 +155,25 @@ void sample_grid(const DatasetPtr& from, const LatticeView& grid, FieldSampler& 
   const GridScan scan(from, grid);
   const size_t thickness = std::clamp<size_t>((size_t(1) << 19) / (d[0] * d[1]), 1, 8);
   const CellSlabs slabs = scan.slabs(thickness, false, context);
+  // Slabs are large: what one task is done with, the next takes over.
+  std::mutex mutex;
+  std::vector<std::unique_ptr<Slab>> spare;
+  auto take = [&]() -> std::unique_ptr<Slab> {
+    std::lock_guard lock(mutex);
+    if (spare.empty()) return std::make_unique<Slab>();
+    auto slab = std::move(spare.back());
+    spare.pop_back();
+    return slab;
+  };
   parallel_for(
       slabs.size(), 1,
       [&](size_t s, size_t) {
-        Scanner scanner(scan, s * thickness, std::min((s + 1) * thickness, d[2]));
+        std::unique_ptr<Slab> slab = take();
+        Scanner scanner(scan, *slab, s * thickness, std::min((s + 1) * thickness, d[2]));
         for (size_t c = slabs.begin[s]; c < slabs.begin[s + 1]; ++c) scanner.claim(slabs.cells[c]);
         scanner.write(out);
+        std::lock_guard lock(mutex);
+        spare.push_back(std::move(slab));
       },
       &context);
 }

@@ -49,9 +49,9 @@ void sample_by_locator(const DatasetPtr& from, size_t count, const PointAt& poin
       [&](size_t begin, size_t end) {
         LocatorCursor cursor(locator);
         SampleBlock block;
-        for (size_t first = begin; first < end; first += 256) {
-          block.clear();
-          for (size_t i = first; i < std::min(first + 256, end); ++i) {
+        for (size_t first = begin; first < end; first += SampleBlock::capacity) {
+          block.count = 0;
+          for (size_t i = first; i < std::min(first + SampleBlock::capacity, end); ++i) {
             const size_t p = order.empty() ? i : order[i];
             const int64_t cell = cursor.find(point(p));
             if (cell < 0) block.add_missing(p);
