@@ -116,8 +116,9 @@ class AmrReader {
     const std::string_view source = n.attribute("file").value();
     if (source.empty()) return;  // a patch that nobody wrote
     if (!sources_.insert(source).second) file_.fail(fmt::format("names '{}' a second time", source), n, "each patch once");
+    auto sane = [](long long i) { return i >= -(1ll << 40) && i <= 1ll << 40; };
     for (size_t a = 0; a < 3; ++a)
-      if (std::abs(p.box[2 * a]) > 1ll << 40 || std::abs(p.box[2 * a + 1]) > 1ll << 40 || p.box[2 * a + 1] < p.box[2 * a] - 1)
+      if (!sane(p.box[2 * a]) || !sane(p.box[2 * a + 1]) || p.box[2 * a + 1] < p.box[2 * a] - 1)
         file_.fail(fmt::format("amr_box runs from {} to {} along {}", p.box[2 * a], p.box[2 * a + 1], "xyz"[a]), n);
     patches_.push_back(std::move(p));
   }
