@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/resource.h>
+#include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -17,15 +18,16 @@ namespace {
 
 constexpr size_t most_bytes = 1 << 20;
 constexpr int most_milliseconds = 10000;
-constexpr rlim_t most_seconds = 1;  // of computing: reading a text takes microseconds
+constexpr int most_computing = 300000;  // microseconds; reading a text takes a few
 
 // In the child: the answer with a '+' before it. Nothing of the parent's state may be flushed or destroyed.
 [[noreturn]] void answer(int to, const std::function<std::string()>& f) {
   for (const int s : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL}) std::signal(s, SIG_DFL);
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
-  const rlimit spinning{most_seconds, most_seconds};
-  ::setrlimit(RLIMIT_CPU, &spinning);
+  std::signal(SIGPROF, SIG_DFL);
+  const itimerval spinning{{0, 0}, {0, most_computing}};
+  ::setitimer(ITIMER_PROF, &spinning, nullptr);
   if (const int quiet = ::open("/dev/null", O_WRONLY); quiet >= 0) ::dup2(quiet, 2);  // "stack smashing detected"
   ::alarm(most_milliseconds / 1000 + 1);
   try {
