@@ -6,9 +6,9 @@
 #include "base/file.h"
 #include "base/parallel.h"
 #include "base/text.h"
-#include "dicom_picture.h"
 #include "io/lattice_part.h"
 #include "io/plugin.h"
+#include "io/plugins/gdcm/dicom_picture.h"
 
 namespace sg {
 

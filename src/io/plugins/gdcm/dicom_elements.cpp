@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dicom_elements.h"
+#include "io/plugins/gdcm/dicom_elements.h"
 
 #include "base/bytes.h"
 #include "base/error.h"

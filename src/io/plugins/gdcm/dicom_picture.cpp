@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "dicom_picture.h"
+#include "io/plugins/gdcm/dicom_picture.h"
 
 #include <fcntl.h>
 #include <gdcmImageApplyLookupTable.h>
@@ -19,7 +19,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/text.h"
-#include "dicom_elements.h"
+#include "io/plugins/gdcm/dicom_elements.h"
 
 namespace sg {
 

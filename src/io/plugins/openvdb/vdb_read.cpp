@@ -8,7 +8,7 @@
 #include "io/isolated.h"
 #include "io/lattice_part.h"
 #include "io/plugin.h"
-#include "vdb.h"
+#include "io/plugins/openvdb/vdb.h"
 
 namespace sg {
 

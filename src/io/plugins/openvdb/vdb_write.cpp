@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "vdb.h"
+#include "io/plugins/openvdb/vdb.h"
 
 namespace sg {
 
