@@ -232,6 +232,10 @@ TEST_CASE("mfem: what cannot be read says so") {
 }
 
 TEST_CASE("mfem: sizes that no file backs are refused") {
+  test::check_survives_sizes(
+      "sizes.mesh",
+      "MFEM NC mesh v1.0\ndimension\n2\nelements\n2\n0 1 3 0 0 1 2 3\n-1 1 3 3 1 2 3 4\nboundary\n0\nvertex_parents\n1\n"
+      "4 0 1\ncoordinates\n4\n2\n0 0\n1 0\n1 1\n0 1\n");
   test::check_survives_sizes("sizes.mesh", std::string(triangle_and_square) + "2\n1 0\n0 0\n1 1\n0 1\n1 2\n");
   test::check_survives_sizes("sizes.mesh", "MFEM INLINE mesh v1.0\ntype = tet\nnx = 2\nny = 3\nnz = 4\nsx = 1\nsy = 2\nsz = 3\n");
   test::check_survives_sizes(

@@ -58,8 +58,7 @@ std::vector<LocalNode> local_nodes(Geometry g, int p) {
   if (p == 1 || g == Geometry::point || g == Geometry::pyramid) return nodes;  // pyramids of higher order are refused elsewhere
   if (e.dimension > 1)
     for (size_t k = 0; k < e.edges.size(); ++k)
-      for (int a = 1; a < p; ++a)
-        nodes.push_back({LocalNode::edge, uint8_t(k), at({{e.edges[k][0], p - a}, {e.edges[k][1], a}}), a, 0});
+      for (int a = 1; a < p; ++a) nodes.push_back({LocalNode::edge, uint8_t(k), at({{e.edges[k][0], p - a}, {e.edges[k][1], a}}), a, 0});
   for (size_t f = 0; f < e.faces.size(); ++f) {
     const auto& v = e.faces[f];
     const bool triangle = v.size() == 3;
@@ -118,11 +117,16 @@ bool parse_fixed(std::string_view name, FeCollection& c) {
     Family family;
     int order;
   };
-  static constexpr Fixed table[] = {{"Linear", Family::h1, 1},           {"Quadratic", Family::h1, 2},
-                                    {"QuadraticPos", Family::h1, 2},     {"Cubic", Family::h1, 3},
-                                    {"Const2D", Family::l2, 0},          {"Const3D", Family::l2, 0},
-                                    {"LinearDiscont2D", Family::l2, 1},  {"LinearDiscont3D", Family::l2, 1},
-                                    {"QuadraticDiscont2D", Family::l2, 2}, {"QuadraticDiscont3D", Family::l2, 2},
+  static constexpr Fixed table[] = {{"Linear", Family::h1, 1},
+                                    {"Quadratic", Family::h1, 2},
+                                    {"QuadraticPos", Family::h1, 2},
+                                    {"Cubic", Family::h1, 3},
+                                    {"Const2D", Family::l2, 0},
+                                    {"Const3D", Family::l2, 0},
+                                    {"LinearDiscont2D", Family::l2, 1},
+                                    {"LinearDiscont3D", Family::l2, 1},
+                                    {"QuadraticDiscont2D", Family::l2, 2},
+                                    {"QuadraticDiscont3D", Family::l2, 2},
                                     {"CubicDiscont2D", Family::l2, 3}};
   for (const Fixed& f : table)
     if (name == f.name) {

@@ -19,7 +19,7 @@ struct GeometryInfo {
   CellType shape;
   int dimension, corners;
   std::vector<std::array<int, 2>> edges;
-  std::vector<std::vector<int>> faces;          ///< 3D only
+  std::vector<std::vector<int>> faces;           ///< 3D only
   std::vector<std::array<int, 3>> corner_place;  ///< in the lattice of order 1
 };
 const GeometryInfo& info(Geometry g);
@@ -27,9 +27,9 @@ const GeometryInfo& info(Geometry g);
 /// A node of an element of order p in the order in which MFEM lists continuous elements: corners, edges, faces, inside.
 struct LocalNode {
   enum Kind : uint8_t { corner, edge, face, inside } kind;
-  uint8_t entity;             ///< which corner, edge or face
-  std::array<int, 3> place;   ///< in the lattice of order p
-  int a = 0, b = 0;           ///< edge: steps from its first corner; face: steps towards its second and its last corner; inside: number
+  uint8_t entity;            ///< which corner, edge or face
+  std::array<int, 3> place;  ///< in the lattice of order p
+  int a = 0, b = 0;          ///< edge: steps from its first corner; face: steps towards its second and its last corner; inside: number
 };
 std::vector<LocalNode> local_nodes(Geometry g, int p);
 

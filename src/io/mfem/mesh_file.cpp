@@ -141,7 +141,8 @@ MeshFile parse_mesh(TextCursor& in) {
   }
   const bool nurbs = kind == "NURBS", nonconforming = kind == "NC";
   if (nurbs || nonconforming) in.expect("mesh");
-  else if (kind != "mesh") in.fail(fmt::format("'MFEM {}' is no mesh that is read", kind), "'MFEM mesh', 'MFEM NC mesh', 'MFEM NURBS mesh'");
+  else if (kind != "mesh")
+    in.fail(fmt::format("'MFEM {}' is no mesh that is read", kind), "'MFEM mesh', 'MFEM NC mesh', 'MFEM NURBS mesh'");
   const std::string_view version = in.word();
   if (!version.starts_with("v1.")) in.fail(fmt::format("version '{}'", version), "versions v1.0 to v1.3 are read");
   in.expect("dimension");

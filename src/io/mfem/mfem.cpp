@@ -83,7 +83,8 @@ std::string mesh_beside(const std::string& path) {
   // X.NAME.gf, X-NAME.gf, X_NAME.gf: the longest X that has a mesh.
   const std::string folder = folder_of(path);
   for (size_t n = stem.size(); n-- > folder.size() + 1;)
-    if ((stem[n] == '.' || stem[n] == '-' || stem[n] == '_') && file_exists(stem.substr(0, n) + ".mesh")) return stem.substr(0, n) + ".mesh";
+    if ((stem[n] == '.' || stem[n] == '-' || stem[n] == '_') && file_exists(stem.substr(0, n) + ".mesh"))
+      return stem.substr(0, n) + ".mesh";
   std::vector<std::string> meshes;
   for (const std::string& name : folder_entries(folder.empty() ? "." : folder))
     if (name.ends_with(".mesh")) meshes.push_back(folder + name);
@@ -147,8 +148,7 @@ Data read_glvis(const std::string& path, const ReadOptions& options, Context& co
   if (kind == "quadrature" || in.peek() == "QuadratureSpace")
     in.fail("quadrature functions are not read", "project them on an L2 space before they are saved");
   const bool more = !in.at_end();
-  if (more && mfem::starts_function(in.text().substr(in.position())))
-    mfem::parse_function(in, mesh, "solution", options, fields);
+  if (more && mfem::starts_function(in.text().substr(in.position()))) mfem::parse_function(in, mesh, "solution", options, fields);
   else if (kind != "mesh") in.fail("the grid function is missing", "a line 'FiniteElementSpace' behind the mesh");
   return mfem::make(mesh, fields, path, context);
 }

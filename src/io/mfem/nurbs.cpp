@@ -114,7 +114,8 @@ void parse_nurbs(TextCursor& in, MeshFile& mesh) {
   finish_topology();
   GridFunction f;
   f.space = parse_space(in);
-  if (f.space.collection.family != Family::nurbs || f.space.vdim > 3) in.fail("the positions of a NURBS mesh are NURBS of up to 3 components");
+  if (f.space.collection.family != Family::nurbs || f.space.vdim > 3)
+    in.fail("the positions of a NURBS mesh are NURBS of up to 3 components");
   const size_t points = nurbs_size(mesh, in.where());
   if (n.weights.empty()) n.weights.assign(points, 1.0);
   f.values = parse_values(in, points * size_t(f.space.vdim));

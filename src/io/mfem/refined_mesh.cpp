@@ -84,7 +84,7 @@ void parse_tree_element(TextCursor& in, Topology& t) {
   const auto corners = size_t(info(Geometry(v[2])).corners);
   if (v.size() != 4 + corners) in.fail(fmt::format("an element with {} nodes", v.size() - 4), fmt::format("it needs {}", corners));
   for (size_t k = 4; k < v.size(); ++k) {
-    if (v[k] < 0) in.fail(fmt::format("node {} does not exist", v[k]));
+    if (v[k] < 0 || uint64_t(v[k]) > in.text().size()) in.fail(fmt::format("node {} does not exist", v[k]));
     t.corners.push_back(v[k]);
   }
   t.geometry.push_back(Geometry(v[2]));
