@@ -70,12 +70,15 @@ Extent extent_of(const TreeRecord* r, size_t n) {
 struct Binning {
   V4 from, scale;
   int bins;
+  int first_axis = 0, last_axis = 2;
   Binning(const Bounds& centers, size_t n) : from(centers.lo), bins(n < 24 ? 8 : n < task_cells ? 16 : max_bins) {
     const V4 size = centers.hi - centers.lo;
     for (int a = 0; a < 4; ++a) {
       scale[a] = a < 3 && size[a] > 0 ? float(bins) / size[a] : 0.0f;
       if (!(scale[a] < HUGE_VALF)) scale[a] = 0;
     }
+    // Large nodes are split across their longest axis: hardly worse, and a third of the work.
+    if (n > task_cells) first_axis = last_axis = size[0] >= size[1] ? (size[0] >= size[2] ? 0 : 2) : size[1] >= size[2] ? 1 : 2;
   }
   V4i bin(const TreeRecord& r) const {
     const V4 last = splat(float(bins) - 1);
@@ -85,7 +88,7 @@ struct Binning {
     for (size_t i = 0; i < n; ++i) {
       const V4i b = bin(r[i]);
       const V4 l = low(r[i]), h = high(r[i]);
-      for (int a = 0; a < 3; ++a) {
+      for (int a = first_axis; a <= last_axis; ++a) {
         Bin& to = out.at[a][b[a]];
         to.box.add(l, h);
         ++to.count;
@@ -100,7 +103,7 @@ struct Split {
 };
 Split best_split(const Bins& bins, const Binning& b) {
   Split best;
-  for (int a = 0; a < 3; ++a) {
+  for (int a = b.first_axis; a <= b.last_axis; ++a) {
     if (!(b.scale[a] > 0)) continue;
     float right_cost[max_bins];
     Bounds box;
