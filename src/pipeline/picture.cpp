@@ -107,20 +107,57 @@ struct Shown {
   bool outlined = false, any_points = false;
 };
 
+// The parts of a collection are one picture: the same field, over the range of all parts. Parts without the field take one colour.
+std::vector<std::vector<std::string>> words_of_parts(const std::vector<DatasetPtr>& parts, const PipelineFile::Show& show) {
+  std::vector<std::vector<std::string>> words(parts.size(), show.words);
+  if (parts.size() < 2 || !colors_by_field(show.kind) || word_value(show.words, "color")) return words;
+  std::string name = word_value(show.words, "field").value_or("");
+  if (name == "none") return words;
+  std::vector<size_t> by_size(parts.size());
+  std::iota(by_size.begin(), by_size.end(), size_t(0));
+  std::stable_sort(by_size.begin(), by_size.end(), [&](size_t a, size_t b) { return parts[a]->point_count() > parts[b]->point_count(); });
+  for (const size_t i : by_size)
+    if (name.empty())
+      if (const Field* f = automatic_field(*parts[i])) name = f->name;
+  if (name.empty()) return words;
+  const int component = int(parse_int(word_value(show.words, "component").value_or("-1")).value_or(-1));
+  Range all;
+  bool same = true, any = false;
+  for (const DatasetPtr& d : parts)
+    if (const Field* f = d->fields().find(name); f && f->association != Association::whole) {
+      const Range r = d->range(*f, f->components() > 1 ? component : 0);
+      same = same && (!any || r == all);
+      all.add(r), any = true;
+    }
+  if (!any) return words;  // the show says what there is instead
+  for (size_t i = 0; i < parts.size(); ++i) {
+    const Field* f = parts[i]->fields().find(name);
+    std::erase_if(words[i], [](const std::string& w) { return w.starts_with("field="); });
+    words[i].push_back("field=" + (f ? name : std::string("none")));
+    if (f && !same && !all.empty() && all.lo < all.hi && !word_value(show.words, "range"))
+      words[i].push_back(fmt::format("range={},{}", exact_number(all.lo), exact_number(all.hi)));
+  }
+  return words;
+}
+
 Shown collect(const PipelineFile& file, const std::vector<Data>& results, const StatedPicture& stated, Context& context) {
   Shown s;
   for (size_t i = 0; i < results.size(); ++i) {
     const auto& show = file.show[i];
     s.outlined = s.outlined || show.kind == "outline";
-    for_each_dataset(results[i], [&](const std::string&, const DatasetPtr& d) {
+    std::vector<DatasetPtr> parts;
+    for_each_dataset(results[i], [&](const std::string&, const DatasetPtr& d) { parts.push_back(d); });
+    const auto words = words_of_parts(parts, show);
+    for (size_t k = 0; k < parts.size(); ++k) {
+      const DatasetPtr& d = parts[k];
       s.any_points = s.any_points || d->point_count() > 0;
       s.box.add(d->bounds());
-      const auto legend = find_show(show.kind).add(s.scene, d, show.words, context);
-      if (!legend || !stated.picture.legend) return;
-      for (const ColorScale& have : s.legends)
-        if (same_legend(have, *legend)) return;
-      s.legends.push_back(*legend);
-    });
+      if (parts.size() > 1 && show.kind == "volume" && word_value(words[k], "field") == "none") continue;  // nothing to see through
+      const auto legend = find_show(show.kind).add(s.scene, d, words[k], context);
+      if (!legend || !stated.picture.legend) continue;
+      if (std::none_of(s.legends.begin(), s.legends.end(), [&](const ColorScale& have) { return same_legend(have, *legend); }))
+        s.legends.push_back(*legend);
+    }
   }
   return s;
 }

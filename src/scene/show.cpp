@@ -129,6 +129,25 @@ std::optional<ColorScale> legend_of(const std::optional<FieldColor>& c) {
   return c->scale;
 }
 
+// The points of the vertex cells as a cloud, on which a cell field is a point field.
+DatasetPtr vertex_cells(const Dataset& d, const SurfaceMesh& mesh, const std::string& field) {
+  const CellsView v = cells_view(mesh.vertices);
+  std::vector<double> xyz;
+  std::vector<int64_t> cells;
+  for (size_t c = 0; c < v.count; ++c)
+    for (size_t k = v.begin(c); k < v.end(c); ++k) {
+      const Vec3 p = mesh.points.at(size_t(v.connectivity[k])) - mesh.points.origin;
+      xyz.insert(xyz.end(), {p.x, p.y, p.z});
+      cells.push_back(int64_t(c));
+    }
+  Field f = d.fields().require(field, Association::cell);
+  f.association = Association::point;
+  f.array = gather(f.array, cells);
+  FieldSet fields;
+  fields.add(std::move(f));
+  return make_dataset(Mesh(PointCloud{{Array::from_vector(std::move(xyz), 3), mesh.points.origin}}), std::move(fields));
+}
+
 std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const SurfaceShow& p, Context& context) {
   SurfaceItem item;
   // Ranges come from the whole input, so that a surface and its volume share colours.
@@ -155,6 +174,10 @@ std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const Surfa
     PointsItem points;
     points.data = item.data;
     points.color_by = item.color_by;
+    if (item.color_by && item.color_by->association == Association::cell) {
+      points.data = vertex_cells(*item.data, mesh, item.color_by->field);
+      points.color_by->association = Association::point;
+    }
     if (!p.coloring.color.empty()) points.color = item.color;
     points.opacity = p.opacity;
     points.size = 8;
