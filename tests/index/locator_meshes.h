@@ -267,23 +267,23 @@ struct NamedMesh {
 };
 inline std::vector<NamedMesh> search_meshes() {
   return {{"uniform", uniform({11, 12, 9}, false)},
-          {"uniform, turned", uniform({11, 12, 9}, true), 20000},
-          {"uniform, blanked", uniform({11, 12, 9}, true, true), 20000},
-          {"uniform, flat", uniform({13, 1, 12}, true), 20000},
+          {"uniform, turned", uniform({11, 12, 9}, true), 10000},
+          {"uniform, blanked", uniform({11, 12, 9}, true, true), 10000},
+          {"uniform, flat", uniform({13, 1, 12}, true), 10000},
           {"rectilinear", rectilinear()},
           {"curvilinear", curvilinear({9, 8, 7}, false)},
           {"curvilinear, blanked", curvilinear({9, 8, 7}, true), 10000},
-          {"curvilinear, flat", curvilinear({15, 14, 1}, false), 20000},
+          {"curvilinear, flat", curvilinear({15, 14, 1}, false), 10000},
           {"tetrahedra", block_cells("tetra", 6, 0.3).dataset()},
-          {"tetrahedra, far away", block_cells("tetra", 5, 0.3).dataset({1e7, -2e7, 3e6}), 20000},
-          {"hexahedra", block_cells("hexahedron", 8, 0.2).dataset(), 20000},
-          {"mixed", block_cells("mixed", 6, 0.15).dataset(), 20000},
-          {"polyhedra", block_cells("polyhedron", 6, 0.1).dataset(), 20000},
+          {"tetrahedra, far away", block_cells("tetra", 5, 0.3).dataset({1e7, -2e7, 3e6}), 10000},
+          {"hexahedra", block_cells("hexahedron", 8, 0.2).dataset(), 10000},
+          {"mixed", block_cells("mixed", 6, 0.15).dataset(), 10000},
+          {"polyhedra", block_cells("polyhedron", 6, 0.1).dataset(), 10000},
           {"curved", block_cells("curved", 3, 0.1).dataset(), 2000},
           {"triangles", ball(16, false)},
-          {"surface", ball(12, true), 20000},
+          {"surface", ball(12, true), 10000},
           {"amr", amr()},
-          {"amr, flat", amr(2), 20000},
+          {"amr, flat", amr(2), 10000},
           {"points", cloud(3000)}};
 }
 
