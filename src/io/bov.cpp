@@ -7,6 +7,7 @@
 #include "io/brick.h"
 #include "io/formats.h"
 #include "io/inflate.h"
+#include "io/raw_guess.h"
 #include "io/text_scan.h"
 #include "io/unread.h"
 
@@ -156,34 +157,6 @@ Array assembled(const std::string& path, const BovHeader& h, size_t count, Conte
   return a;
 }
 
-/// "name_50x40x30.bov" -> 50 40 30: the last such triple of the name.
-bool size_in_name(const std::string& name, std::array<size_t, 3>& size) {
-  bool found = false;
-  for (size_t i = 0; i < name.size(); ++i) {
-    if (!is_digit(name[i]) || (i > 0 && is_digit(name[i - 1]))) continue;
-    const char *p = name.data() + i, *end = name.data() + name.size();
-    std::array<int64_t, 3> v{};
-    bool good = true;
-    for (size_t a = 0; a < 3 && good; ++a) {
-      good = p < end && is_digit(*p) && scan_number(p, end, v[a]) && v[a] > 0 && v[a] < 1000000;
-      if (a < 2) good = good && p < end && (*p == 'x' || *p == 'X') && (++p, true);
-    }
-    if (good) size = {size_t(v[0]), size_t(v[1]), size_t(v[2])}, found = true;
-  }
-  return found;
-}
-
-// The share of numbers that look like measurements rather than like swapped bytes.
-double usual_share(const MappedFile& f, bool big_endian) {
-  const size_t n = f.size() / 4, step = std::max<size_t>(n / 4096, 1);
-  size_t good = 0, seen = 0;
-  for (size_t i = 0; i < n; i += step, ++seen) {
-    const float v = std::fabs(load<float>(f.data() + 4 * i, big_endian));
-    good += size_t(v == 0 || (v > 1e-12f && v < 1e12f));
-  }
-  return seen ? double(good) / double(seen) : 0;
-}
-
 DatasetPtr grid_of(const BovHeader& h, Array values) {
   UniformGrid g;
   for (size_t a = 0; a < 3; ++a) {
@@ -226,25 +199,14 @@ Data read_bov(const std::string& path, const ReadOptions& options, Context& cont
 
 Data read_bare_bov(const std::string& path, const ReadOptions&, Context& context) {
   const MappedFile file(path);
-  BovHeader h;
-  if (!size_in_name(file_name_of(path), h.size))
-    fail_data("is no BOV header, and its name says no size", path,
+  const auto guess = guess_raw(file);
+  if (!guess)
+    fail_data("is no BOV header, and its name and length say no size", path,
               "a header has lines like 'DATA_FILE: values.dat'; for raw numbers give --dims NX,NY,NZ and --type");
-  const size_t count = checked_product({h.size[0], h.size[1], h.size[2]}, path);
-  const size_t bytes = file.size() / count;
-  if (bytes * count != file.size() || (bytes != 1 && bytes != 4 && bytes != 8))
-    fail_data(fmt::format("is no BOV header, and {} bytes are no {}x{}x{} numbers as its name says", file.size(), h.size[0], h.size[1],
-                          h.size[2]),
-              path, "give --dims NX,NY,NZ and --type");
-  h.type = bytes == 1 ? ElementType::u8 : bytes == 4 ? ElementType::f32 : ElementType::f64;
-  if (bytes == 4) h.big_endian = usual_share(file, true) > usual_share(file, false);
-  context.warn(fmt::format("{}: has no header; read as {}x{}x{} {}{}-endian numbers, as its name and length say", path, h.size[0],
-                           h.size[1], h.size[2],
-                           bytes == 1   ? "8-bit, "
-                           : bytes == 4 ? "f32, "
-                                        : "f64, ",
-                           h.big_endian ? "big" : "little"));
-  return grid_of(h, brick_of(path, h, count, context));
+  BovHeader h;
+  h.size = guess->dims, h.type = guess->type, h.big_endian = guess->big_endian;
+  context.warn(fmt::format("{}: has no header; read as {}, as its name and length say", path, guess->text()));
+  return grid_of(h, brick_of(path, h, checked_product({h.size[0], h.size[1], h.size[2]}, path), context));
 }
 
 }  // namespace sg

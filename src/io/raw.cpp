@@ -3,12 +3,27 @@
 #include "base/bytes.h"
 #include "io/brick.h"
 #include "io/formats.h"
+#include "io/raw_guess.h"
 
 namespace sg {
 
-Data read_raw(const std::string& path, const ReadOptions& o, Context& context) {
-  if (o.raw_dims[0] == 0)
+namespace {
+
+// Without a word from the caller: what the name and the length say, told as a warning.
+ReadOptions described(const std::string& path, ReadOptions o, Context& context) {
+  if (o.raw_dims[0] > 0) return o;
+  const auto guess = guess_raw(MappedFile(path));
+  if (!guess)
     fail_usage("a raw brick does not say its size", path, "give --dims NX,NY,NZ and --type, for example --dims 256,256,94 --type i16");
+  o.raw_dims = guess->dims, o.raw_type = std::string(element_name(guess->type)), o.raw_big_endian = guess->big_endian;
+  context.warn(fmt::format("{}: read as {}, as its name and length say; --dims and --type say otherwise", path, guess->text()));
+  return o;
+}
+
+}  // namespace
+
+Data read_raw(const std::string& path, const ReadOptions& given, Context& context) {
+  const ReadOptions o = described(path, given, context);
   BrickLayout l;
   if (o.raw_type.empty()) fail_usage("a raw brick does not say its element type", path, "give --type u8, i16, u16, f32, ...");
   if (!parse_element_type(o.raw_type, l.type))

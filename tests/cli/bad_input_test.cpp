@@ -59,8 +59,8 @@ TEST_CASE("bad input: a missing file, a folder, an empty file, an unknown format
   check_refused({"render", "folder.vti"}, 3, {"folder.vti", "is a folder"}, f);
   write_file(f + "empty.vtu", "");
   check_refused({"info", "empty.vtu"}, 3, {"empty.vtu", "is empty"}, f);
-  write_file(f + "what.xyz", "hello there");
-  check_refused({"info", "what.xyz"}, 3, {"what.xyz", "no known format", "vti"}, f);
+  write_file(f + "what.blob", "hello there");
+  check_refused({"info", "what.blob"}, 3, {"what.blob", "no known format", "vti"}, f);
   write_file(f + "text.vti", "hello there");
   check_refused({"info", "text.vti"}, 3, {"text.vti"}, f);
 }

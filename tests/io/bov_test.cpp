@@ -81,7 +81,7 @@ TEST_CASE("bov: a brick without a header tells its size by its name and its type
   CHECK(contains(said, "has no header; read as 5x4x3 f32, big-endian"));
   CHECK(std::get<DatasetPtr>(read_any(root + "y_5x4x3.bov"))->fields()[0].array.type() == ElementType::u8);
   CHECK(contains(error_of([&] { read_any(root + "z_5x4x3.bov"); }), "give --dims"));
-  CHECK(contains(error_of([&] { read_any(root + "w.bov"); }), "its name says no size"));
+  CHECK(contains(error_of([&] { read_any(root + "w.bov"); }), "say no size"));
   ReadOptions o;
   o.raw_dims = {3, 4, 5}, o.raw_type = "u8";
   CHECK(std::get<DatasetPtr>(read_any(root + "w.bov", o))->point_count() == 60);

@@ -46,3 +46,26 @@ TEST_CASE("raw: a wrong size says what is needed and what there is") {
   o.raw_components = 0;
   CHECK(contains(refusal("b.raw", "x", o), "components"));
 }
+
+TEST_CASE("raw: a size in the name and the length tell what the numbers are, with a warning") {
+  const std::string path = test::temp_folder() + "ball_6x5x4.raw";
+  Context context;
+  std::string said;
+  context.on_log = [&](LogLevel, std::string_view t) { said = t; };
+  for (const bool big : {false, true}) {
+    std::string bytes;
+    for (int i = 0; i < 120; ++i) {
+      const int v = 300 + i;
+      bytes += char(big ? v >> 8 : v & 255);
+      bytes += char(big ? v & 255 : v >> 8);
+    }
+    write_file(path, bytes);
+    const DatasetPtr d = std::get<DatasetPtr>(read_data(path, {}, context));
+    CHECK(d->as<UniformGrid>()->dims == std::array<size_t, 3>{6, 5, 4});
+    CHECK(d->fields()[0].array.type() == ElementType::i16);
+    CHECK(d->fields()[0].array.get(119) == 419);
+    CHECK(said.find(big ? "6x5x4 i16, big-endian" : "6x5x4 i16, little-endian") != std::string::npos);
+  }
+  write_file(path, std::string(121, 'x'));
+  CHECK(test::error_of([&] { read_data(path, {}, context); }).find("--dims") != std::string::npos);
+}

@@ -79,6 +79,35 @@ DatasetParts read_grid(const Numbers& n, const Layout& l, size_t g, const ReadOp
   return d;
 }
 
+// What the solution stands for, for a perfect gas with the format's ratio of specific heats and gas constant 1 (Walatka et al. 1990,
+// PLOT3D User's Manual: functions 200, 110, 120): u = m / rho, p = (gamma - 1)(E - rho u.u / 2), T = p / rho.
+void add_derived(const ReadOptions& o, DatasetParts& d) {
+  constexpr double gamma = 1.4;
+  const bool velocity = is_wanted(o.fields, "Velocity"), pressure = is_wanted(o.fields, "Pressure"),
+             temperature = is_wanted(o.fields, "Temperature");
+  const Field *rho = d.fields.find("Density"), *m = d.fields.find("Momentum"), *e = d.fields.find("StagnationEnergy");
+  if (o.header_only || !rho || !m || !e || !(velocity || pressure || temperature)) return;
+  const size_t count = rho->array.count();
+  std::vector<double> u(3 * count), p(count), t(count);
+  for (size_t i = 0; i < count; ++i) {
+    const double density = rho->array.get(i), over = density != 0 ? 1 / density : 1;
+    double square = 0;
+    for (int a = 0; a < 3; ++a) {
+      u[3 * i + size_t(a)] = m->array.get(i, a) * over;
+      square += m->array.get(i, a) * m->array.get(i, a);
+    }
+    p[i] = (gamma - 1) * (e->array.get(i) - 0.5 * square * over);
+    t[i] = p[i] * over;
+  }
+  const ElementType type = rho->array.type();
+  auto add = [&](bool wanted, const char* name, std::vector<double> v, int components, Role role) {
+    if (wanted) d.fields.add({name, Association::point, Array::from_vector(std::move(v), components).converted(type), "", role});
+  };
+  add(velocity, "Velocity", std::move(u), 3, Role::none);
+  add(pressure, "Pressure", std::move(p), 1, Role::none);
+  add(temperature, "Temperature", std::move(t), 1, Role::none);
+}
+
 void add_solution(const Numbers& n, const Layout& l, size_t g, const ReadOptions& o, DatasetParts& d) {
   const size_t points = point_count(d.mesh), real = n.real_size(l);
   const auto k = size_t(l.dimensions);
@@ -90,6 +119,7 @@ void add_solution(const Numbers& n, const Layout& l, size_t g, const ReadOptions
     add("Momentum", o.header_only ? unread_values(n.type(l), points, 3) : vectors(n, l, first + points * real, points), Role::vectors);
   if (is_wanted(o.fields, "StagnationEnergy"))
     add("StagnationEnergy", component(n, l, first + (k + 1) * points * real, points, o.header_only), Role::none);
+  add_derived(o, d);
   if (is_wanted(o.fields, "Properties")) {
     // Mach number, angle of attack, Reynolds number, time; the fifth is the ratio of specific heats that the format takes for granted.
     std::vector<double> v(5, 1.4);
