@@ -125,4 +125,10 @@ std::vector<double> times_of_xdmf(const std::string& path, const ReadOptions& op
 bool sniff_netcdf(std::span<const std::byte> head);
 bool sniff_cgns(std::span<const std::byte> head);
 
+bool sniff_glb(std::span<const std::byte> head);
+Data read_gltf(const std::string& path, const ReadOptions& options, Context& context);
+void write_gltf(const std::string& path, const Data& data, const WriteOptions& options, Context& context);
+Data read_bpt(const std::string& path, const ReadOptions& options, Context& context);
+Data read_gml(const std::string& path, const ReadOptions& options, Context& context);
+
 }  // namespace sg
