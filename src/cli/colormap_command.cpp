@@ -7,6 +7,7 @@
 #include "cli/cli.h"
 #include "color/colormap.h"
 #include "color/colormap_file.h"
+#include "color/colormap_nodes.h"
 #include "color/parse_color.h"
 #include "image/codec.h"
 
@@ -55,8 +56,8 @@ std::string hex_or_none(const std::optional<Vec3f>& c) { return c ? color_text(*
 std::string file_facts(const FileColormap& f, bool json) {
   if (json) {
     auto color = [](const std::optional<Vec3f>& c) { return c ? json_string(color_text(*c)) : std::string("null"); };
-    std::string r = fmt::format("\"entries\":{},\"space\":{},\"positions\":[{},{}],\"first\":{},\"last\":{}", f.entries, json_string(f.space),
-                                exact_number(f.lo), exact_number(f.hi), json_string(color_text(f.map.colors.front())),
+    std::string r = fmt::format("\"entries\":{},\"space\":{},\"positions\":[{},{}],\"first\":{},\"last\":{}", f.entries,
+                                json_string(f.space), exact_number(f.lo), exact_number(f.hi), json_string(color_text(f.map.colors.front())),
                                 json_string(color_text(f.map.colors.back())));
     if (f.range_lo && f.range_hi) r += fmt::format(",\"range\":[{},{}]", exact_number(*f.range_lo), exact_number(*f.range_hi));
     if (f.hinge) r += fmt::format(",\"hinge\":{},\"hard\":{}", exact_number(*f.hinge), f.hard_hinge);
@@ -124,7 +125,9 @@ int run_colormap(const Options& o, Context&) {
     } else {
       std::printf("%s (%s): %s\n", map.name.c_str(), std::string(kind_name(map.kind)).c_str(), map.about.c_str());
       if (file) std::printf("  %s\n", file_facts(*file, false).c_str());
-      std::printf("  %s\n", verdict(map, r).c_str());
+      const bool hinge_only = map.kind == MapKind::diverging && kind_of_colors(map.colors) != MapKind::diverging;
+      std::printf("  %s\n",
+                  hinge_only ? "two sides that meet at a value; lightness does not tell how far from it" : verdict(map, r).c_str());
       std::printf("  lightness L* from %s to %s (CIELAB, D65)\n", short_number(r.lowest, 4).c_str(), short_number(r.highest, 4).c_str());
       std::printf("  L* falls in %d of 255 steps (%d after rounding the colours to 8 bits)\n", r.falls_float, r.falls_8bit);
       std::printf("  colour difference per unit of position: %s at most, %s at least (CIEDE2000)\n", short_number(r.steepest, 4).c_str(),

@@ -132,15 +132,14 @@ std::optional<std::string> why_skipped(const std::string& path) {
   const std::string ext = extension_of(path);
   if (ext != "csv" && ext != "tsv" && ext != "txt" && ext != "json" && ext != "gml") return {};
   try {
+    if (ext == "json") return fmt::format("colour maps ({}), for --map", read_colormaps(path).size());
+  } catch (const Error&) {  // none of those
+  }
+  try {
     Context quiet;
     bool any = false;
     for_each_dataset(read_data(path, {}, quiet), [&](const std::string&, const DatasetPtr&) { any = true; });
     return any ? std::nullopt : std::optional<std::string>("a table; table_to_points makes points of its rows");
-  } catch (const Error&) {
-    if (ext != "json") return {};
-  }
-  try {
-    return fmt::format("colour maps ({}), for --map", read_colormaps(path).size());
   } catch (const Error&) {
     return {};
   }

@@ -17,11 +17,12 @@ struct Named {
   std::string_view name;
   int r, g, b;
 };
-constexpr Named x11[] = {{"green", 0, 255, 0},       {"purple", 160, 32, 240},  {"brown", 165, 42, 42},      {"gray", 190, 190, 190},
-                         {"grey", 190, 190, 190},    {"darkorange", 255, 140, 0}, {"lightgray", 211, 211, 211}, {"lightgrey", 211, 211, 211},
-                         {"lightblue", 173, 216, 230}, {"darkgreen", 0, 100, 0},  {"darkblue", 0, 0, 139},      {"darkred", 139, 0, 0},
-                         {"lightgreen", 144, 238, 144}, {"violet", 238, 130, 238}, {"turquoise", 64, 224, 208},  {"khaki", 240, 230, 140},
-                         {"salmon", 250, 128, 114},  {"maroon", 176, 48, 96}};
+constexpr Named x11[] = {{"green", 0, 255, 0},          {"purple", 160, 32, 240},     {"brown", 165, 42, 42},
+                         {"gray", 190, 190, 190},       {"grey", 190, 190, 190},      {"darkorange", 255, 140, 0},
+                         {"lightgray", 211, 211, 211},  {"lightgrey", 211, 211, 211}, {"lightblue", 173, 216, 230},
+                         {"darkgreen", 0, 100, 0},      {"darkblue", 0, 0, 139},      {"darkred", 139, 0, 0},
+                         {"lightgreen", 144, 238, 144}, {"violet", 238, 130, 238},    {"turquoise", 64, 224, 208},
+                         {"khaki", 240, 230, 140},      {"salmon", 250, 128, 114},    {"maroon", 176, 48, 96}};
 
 Vec3f of_bytes(double r, double g, double b) { return {float(r / 255), float(g / 255), float(b / 255)}; }
 
@@ -127,9 +128,7 @@ struct CptParser {
 
   void slice(const std::vector<std::string_view>& w, std::vector<ColorNode>& nodes) const {
     const bool separate = w.size() >= 8;
-    auto color_at = [&](size_t i) {
-      return separate ? color(fmt::format("{}/{}/{}", w[i], w[i + 1], w[i + 2])) : color(w[i]);
-    };
+    auto color_at = [&](size_t i) { return separate ? color(fmt::format("{}/{}/{}", w[i], w[i + 1], w[i + 2])) : color(w[i]); };
     const size_t second = separate ? 4 : 2;
     const double z0 = number(w[0]), z1 = number(w[second]);
     if (!(z1 > z0)) fail(fmt::format("a slice from {} to {}", w[0], w[second]));

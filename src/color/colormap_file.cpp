@@ -158,8 +158,9 @@ FileColormap find_file_colormap(std::string_view name) {
       fail_usage(fmt::format("'{}' holds {} maps", asked->path, maps.size()), "colour map",
                  fmt::format("name one: {}:{} (all: sightglass colormap {})", asked->path, names[0], asked->path));
     if (const std::string near = nearest_name(asked->map, names); names.size() > 20)
-      fail_usage(fmt::format("'{}' holds no map '{}'", asked->path, asked->map), "colour map",
-                 (near.empty() ? "" : "did you mean '" + near + "'? ") + fmt::format("all {}: sightglass colormap {}", names.size(), asked->path));
+      fail_usage(
+          fmt::format("'{}' holds no map '{}'", asked->path, asked->map), "colour map",
+          (near.empty() ? "" : "did you mean '" + near + "'? ") + fmt::format("all {}: sightglass colormap {}", names.size(), asked->path));
     fail_usage(fmt::format("'{}' holds no map '{}'", asked->path, asked->map), "colour map", unknown_name_hint(asked->map, names));
   }
   FileColormap r = std::move(*found);

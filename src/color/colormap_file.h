@@ -13,15 +13,15 @@ namespace sg {
 /// A map of a file with what the file says about it beyond the colours.
 struct FileColormap {
   Colormap map;
-  size_t entries = 0;                       ///< slices, control points or colours that the file lists
-  std::string space;                        ///< between control points: "RGB", "HSV", "CMYK", "Lab", "Diverging"
-  double lo = 0, hi = 1;                    ///< positions of the first and last colour in the file
-  std::optional<double> range_lo, range_hi; ///< values that the file was made for (RANGE, min and max)
-  std::optional<double> hinge;              ///< a position that belongs to the value 0
-  bool hard_hinge = false;                  ///< each side of the hinge is stretched for itself
-  std::optional<Vec3f> below, above, nan;   ///< sRGB
-  std::vector<double> labels;               ///< categorical: the value of each colour, empty when they have none
-  std::vector<std::string> label_names;     ///< categorical: text per colour, or empty
+  size_t entries = 0;                        ///< slices, control points or colours that the file lists
+  std::string space;                         ///< between control points: "RGB", "HSV", "CMYK", "Lab", "Diverging"
+  double lo = 0, hi = 1;                     ///< positions of the first and last colour in the file
+  std::optional<double> range_lo, range_hi;  ///< values that the file was made for (RANGE, min and max)
+  std::optional<double> hinge;               ///< a position that belongs to the value 0
+  bool hard_hinge = false;                   ///< each side of the hinge is stretched for itself
+  std::optional<Vec3f> below, above, nan;    ///< sRGB
+  std::vector<double> labels;                ///< categorical: the value of each colour, empty when they have none
+  std::vector<std::string> label_names;      ///< categorical: text per colour, or empty
 };
 
 /// Whether the name of a map means a file: "FILE.cpt", "FILE.json:NAME", "FILE.css:NAME", each perhaps with "_r".

@@ -53,9 +53,10 @@ struct JsonMaps {
 
   static NodeSpace space_of(const std::string& name) {
     const std::string s = to_lower(name);
-    return s == "hsv" ? NodeSpace::hsv : s.find("lab") != std::string::npos ? NodeSpace::lab
-                                     : s == "diverging"                     ? NodeSpace::diverging
-                                                                            : NodeSpace::rgb;
+    return s == "hsv"                           ? NodeSpace::hsv
+           : s.find("lab") != std::string::npos ? NodeSpace::lab
+           : s == "diverging"                   ? NodeSpace::diverging
+                                                : NodeSpace::rgb;
   }
 
   FileColormap paraview(const Json& o) const {
@@ -98,7 +99,7 @@ struct JsonMaps {
     if (it == o.end() || !it->is_array() || it->size() / 2 < f.entries) return;
     for (size_t i = 0; i < f.entries; ++i) {
       const Json &value = (*it)[2 * i], &text = (*it)[2 * i + 1];
-      const auto v = value.is_number() ? std::optional(value.get<double>())
+      const auto v = value.is_number()   ? std::optional(value.get<double>())
                      : value.is_string() ? parse_double(value.get<std::string>())
                                          : std::nullopt;
       f.labels.push_back(v.value_or(double(i)));

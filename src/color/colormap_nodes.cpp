@@ -55,9 +55,7 @@ Vec3 msh_between(Vec3 lab1, Vec3 lab2, double t) {
   return {m * std::cos(s), m * std::sin(s) * std::cos(h), m * std::sin(s) * std::sin(h)};
 }
 
-Vec3f clamped(Vec3 c) {
-  return {float(std::clamp(c.x, 0.0, 1.0)), float(std::clamp(c.y, 0.0, 1.0)), float(std::clamp(c.z, 0.0, 1.0))};
-}
+Vec3f clamped(Vec3 c) { return {float(std::clamp(c.x, 0.0, 1.0)), float(std::clamp(c.y, 0.0, 1.0)), float(std::clamp(c.z, 0.0, 1.0))}; }
 
 }  // namespace
 

@@ -14,7 +14,7 @@ constexpr uint64_t most_copies = 256;  ///< times the size of the buffers that i
 
 struct Linear {
   Mat3 points, normals;  ///< normals: cofactors, so that a flat scaling is met too
-  bool identity, mirrored;
+  bool identity, moves_only, mirrored;
 };
 
 Linear linear_of(const Mat4& m) {
@@ -32,6 +32,7 @@ Linear linear_of(const Mat4& m) {
     }
   }
   l.identity = m == Mat4();
+  l.moves_only = l.points == Mat3();
   return l;
 }
 
@@ -139,12 +140,9 @@ struct Reader {
       const bool vector = key == "NORMAL" || key == "TANGENT";
       if (vector && a.components() < 3) fail_data(fmt::format("{}: '{}' has {} components", where, key, a.components()), doc.path);
       if (vector) a = a.converted(ElementType::f32);
-      if (key == "NORMAL" && !l.identity) a = moved(a, [&](Vec3 v) { return normalize(l.normals * v); });
-      if (key == "TANGENT" && !l.identity) a = moved(a, [&](Vec3 v) { return normalize(l.points * v); });
-      const Role role = key == "NORMAL"                 ? Role::normals
-                        : key.starts_with("TEXCOORD_") ? Role::tcoords
-                        : color                         ? Role::colors
-                                                        : Role::none;
+      if (key == "NORMAL" && !l.moves_only) a = moved(a, [&](Vec3 v) { return normalize(l.normals * v); });
+      if (key == "TANGENT" && !l.moves_only) a = moved(a, [&](Vec3 v) { return normalize(l.points * v); });
+      const Role role = key == "NORMAL" ? Role::normals : key.starts_with("TEXCOORD_") ? Role::tcoords : color ? Role::colors : Role::none;
       fields.add({name, Association::point, std::move(a), "", role});
     }
   }
@@ -156,17 +154,15 @@ struct Reader {
     if (position < 0) return nullptr;  // allowed: morph targets or an extension give the points
     const GltfAccessor& a = doc.accessors[size_t(position)];
     if (a.components != 3) fail_data(fmt::format("{}: positions have {} components", where, a.components), doc.path);
-    uint64_t indices = p.indices >= 0 ? doc.accessors[size_t(p.indices)].count : 0;
-    taken += std::min<uint64_t>(a.count, UINT32_MAX) * 12 + std::min<uint64_t>(indices, UINT32_MAX) * 4;
-    if (taken > (uint64_t(1) << 28) && taken / most_copies > doc.backed)
-      fail_data("places its meshes so often that they would fill more than a quarter of a GiB", doc.path);
     if (a.count > uint64_t(INT32_MAX)) fail_data(fmt::format("{}: more than 2^31 points", where), doc.path);
 
     const Linear l = linear_of(m);
     SurfaceMesh mesh;
     mesh.points.xyz = gltf_array(doc, position).converted(ElementType::f32);
-    if (!l.identity)
-      mesh.points.xyz = moved(mesh.points.xyz, [&](Vec3 v) { return l.points * v + Vec3(m.m[0][3], m.m[1][3], m.m[2][3]); });
+    taken += mesh.points.xyz.bytes();
+    if (taken > (uint64_t(1) << 28) && taken / most_copies > doc.backed)
+      fail_data("places its meshes so often that they would fill more than a quarter of a GiB", doc.path);
+    if (!l.identity) mesh.points.xyz = moved(mesh.points.xyz, [&](Vec3 v) { return l.points * v + Vec3(m.m[0][3], m.m[1][3], m.m[2][3]); });
     const auto xyz = mesh.points.xyz.view<float>();
     for (size_t i = 0; i < xyz.count; ++i)
       if (!std::isfinite(xyz(i, 0)) || !std::isfinite(xyz(i, 1)) || !std::isfinite(xyz(i, 2)))

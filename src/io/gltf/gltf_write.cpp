@@ -53,8 +53,8 @@ struct Writer {
     view["target"] = target;
     root["bufferViews"].push_back(view);
     const char* shape = a.components() == 1 ? "SCALAR" : a.components() == 2 ? "VEC2" : a.components() == 3 ? "VEC3" : "VEC4";
-    Json accessor = {{"bufferView", root["bufferViews"].size() - 1}, {"componentType", component_type(a.type())}, {"count", a.count()},
-                     {"type", shape}};
+    Json accessor = {
+        {"bufferView", root["bufferViews"].size() - 1}, {"componentType", component_type(a.type())}, {"count", a.count()}, {"type", shape}};
     if (normalized) accessor["normalized"] = true;
     if (with_range) {
       Json lo, hi;
