@@ -47,6 +47,20 @@ double share_of_equal_neighbours(const Field& field, size_t nx, double backgroun
 
 double nice_symmetric(const Range& r) { return std::max(std::abs(r.lo), std::abs(r.hi)); }
 
+// The categories of a file where most values of the data are among them; values without a category of their own take the colours
+// in order. Data with other or more values gets the colours as bands over the range.
+void take_categories(const FileColormap& file, const Field& field, ColorScale& s, Context& context) {
+  const auto is_category = [&](double v) { return std::find(file.labels.begin(), file.labels.end(), v) != file.labels.end(); };
+  const auto met = size_t(std::count_if(s.labels.begin(), s.labels.end(), is_category));
+  if (file.labels.empty() ? s.labels.size() <= file.map.colors.size() : 2 * met >= s.labels.size()) {
+    if (!file.labels.empty()) s.labels = file.labels, s.label_names = file.label_names;
+    return;
+  }
+  s.labels.clear();
+  context.warn(fmt::format("the values of '{}' are not the categories of the colour map '{}'; its {} colours are drawn as bands",
+                           field.name, s.map.name, file.map.colors.size()));
+}
+
 }  // namespace
 
 bool looks_like_labels(const Dataset& data, const Field& field) {
@@ -120,7 +134,7 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
   if (s.kind == ScaleKind::symlog) s.linear_threshold = p.linear_threshold > 0 ? p.linear_threshold : nice_symmetric({s.lo, s.hi}) * 1e-3;
   if (labels) {
     s.labels = distinct_values(field, 4096);
-    if (file && !file->labels.empty()) s.labels = file->labels, s.label_names = file->label_names;
+    if (file) take_categories(*file, field, s, context);
     if (!s.labels.empty()) s.lo = s.labels.front(), s.hi = std::max(s.labels.back(), s.lo + 1);
   }
   if (file) {

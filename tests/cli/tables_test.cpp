@@ -66,7 +66,7 @@ TEST_CASE("colour maps of files: in a picture, its recipe, and the listing") {
       sightglass({"render", "-s", "gyroid size=8", "--show", "surface lit=false map=two.cpt", "-o", "a.png", "-q", "--size", "160x120"}, f);
   INFO(r.err);
   REQUIRE(r.status == 0);
-  const Image a = read_image(f + "a.png");
+  const Image a = read_png(f + "a.png");
   size_t red = 0;
   for (int y = 0; y < a.height; ++y)
     for (int x = 0; x < a.width; ++x) red += a.at(x, y)[0] > 240 && a.at(x, y)[1] < 15 && a.at(x, y)[2] < 15;
