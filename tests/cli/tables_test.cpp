@@ -27,7 +27,7 @@ TEST_CASE("render: a table is refused with the filter that makes points of it") 
   write_file(f + "t.csv", "name,mass,age\na,1,2\nb,3,4\n");
   for (const std::vector<std::string>& args : {std::vector<std::string>{"render", "t.csv", "-o", "t.png"},
                                                {"render", "t.csv", "--show", "points", "-o", "t.png"},
-                                               {"render", "t.csv", "-f", "smooth", "-o", "t.png"}}) {
+                                               {"render", "t.csv", "-f", "faces", "-o", "t.png"}}) {
     const auto r = sightglass(args, f);
     INFO(r.err);
     CHECK(r.status == 2);
