@@ -145,6 +145,8 @@ Shown collect(const PipelineFile& file, const std::vector<Data>& results, const 
   for (size_t i = 0; i < results.size(); ++i) {
     const auto& show = file.show[i];
     s.outlined = s.outlined || show.kind == "outline";
+    if (std::holds_alternative<TablePtr>(results[i]))
+      fail_no_mesh(results[i], file_name_of(origin_of(file, show.of.empty() ? file.steps.back().name : show.of)));
     std::vector<DatasetPtr> parts;
     for_each_dataset(results[i], [&](const std::string&, const DatasetPtr& d) { parts.push_back(d); });
     const auto words = words_of_parts(parts, show);
