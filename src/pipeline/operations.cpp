@@ -11,6 +11,7 @@
 #include "filter/mesh/append.h"
 #include "filter/mesh/components.h"
 #include "filter/mesh/crop.h"
+#include "filter/mesh/extract_ids.h"
 #include "filter/mesh/faces.h"
 #include "filter/mesh/merge_points.h"
 #include "filter/mesh/piece.h"
