@@ -116,9 +116,10 @@ std::vector<std::vector<std::string>> words_of_parts(const std::vector<DatasetPt
   std::vector<size_t> by_size(parts.size());
   std::iota(by_size.begin(), by_size.end(), size_t(0));
   std::stable_sort(by_size.begin(), by_size.end(), [&](size_t a, size_t b) { return parts[a]->point_count() > parts[b]->point_count(); });
-  for (const size_t i : by_size)
-    if (name.empty())
-      if (const Field* f = automatic_field(*parts[i])) name = f->name;
+  for (const bool labels : {false, true})  // a mask or a numbering of the largest part says less than values of another
+    for (const size_t i : by_size)
+      if (name.empty())
+        if (const Field* f = automatic_field(*parts[i]); f && (labels || f->role != Role::labels)) name = f->name;
   if (name.empty()) return words;
   const int component = int(parse_int(word_value(show.words, "component").value_or("-1")).value_or(-1));
   Range all;

@@ -65,7 +65,7 @@ namespace {
 bool is_numbering(const Field& f) {
   if (f.components() != 1) return false;
   const std::string name = to_lower(f.name);
-  for (std::string_view end : {"id", "ids", "nodenums", "elemnums", "number"})
+  for (std::string_view end : {"id", "ids", "nodenums", "elemnums", "number", "valid"})
     if (name.ends_with(end)) return true;
   const size_t n = std::min<size_t>(f.array.count(), 1000);
   if (n < 16) return false;
