@@ -82,9 +82,14 @@ Look choose_looks(PipelineFile& file, const PictureOptions& options, const std::
     for (const auto& [name, id] : built.nodes)
       if (name == end) node = id;
     const Data data = held.emplace_back(built.graph.evaluate(node, {}, context));
+    // The largest part speaks for all; one with values before one with a mask or a numbering alone.
     DatasetPtr largest;
+    bool has_values = false;
     for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) {
-      if (!largest || d->point_count() > largest->point_count()) largest = d;
+      const Field* f = automatic_field(*d);
+      const bool values = f && f->role != Role::labels;
+      if (!largest || (values && !has_values) || (values == has_values && d->point_count() > largest->point_count()))
+        largest = d, has_values = values;
     });
     if (!largest) fail_no_mesh(data, file_name_of(origin_of(file, end)));
     if (!field.empty()) largest->fields().require(field);
