@@ -131,7 +131,10 @@ class BoxCells {
       const auto d = lattice_dims(mesh);
       homes_.push_back({0, 0, {std::max<size_t>(d[0], 2) - 1, std::max<size_t>(d[1], 2) - 1, std::max<size_t>(d[2], 2) - 1}, d});
       axes_ = int(d[0] > 1) + int(d[1] > 1) + int(d[2] > 1);
-      const bool box = !std::holds_alternative<CurvilinearGrid>(mesh);
+      bool box = !std::holds_alternative<CurvilinearGrid>(mesh);
+      if (auto* g = std::get_if<UniformGrid>(&mesh))  // voxels and pixels lie along the axes: those of turned grids do not
+        for (int r = 0; r < 3; ++r)
+          for (int c = 0; c < 3; ++c) box = box && (r == c || g->direction.m[r][c] == 0);
       const CellType types[] = {CellType::vertex, CellType::line, box ? CellType::pixel : CellType::quad,
                                 box ? CellType::voxel : CellType::hexahedron};
       type_ = types[axes_];
