@@ -49,7 +49,8 @@ inline std::string put_seed(const std::string& folder, const std::string& name, 
   const std::vector<BundleFile> files = bundle_files(bytes);
   if (files.empty()) return put(folder + name, bytes), folder + name;
   for (const BundleFile& f : files) {
-    for (size_t k = f.name.find('/'); k != std::string::npos; k = f.name.find('/', k + 1)) ::mkdir((folder + f.name.substr(0, k)).c_str(), 0755);
+    for (size_t k = f.name.find('/'); k != std::string::npos; k = f.name.find('/', k + 1))
+      ::mkdir((folder + f.name.substr(0, k)).c_str(), 0755);
     put(folder + f.name, f.bytes);
   }
   return files[0].name == "." ? folder.substr(0, folder.size() - 1) : folder + files[0].name;
