@@ -148,7 +148,7 @@ void limit_memory(size_t memory) {
 [[noreturn]] void work(int fd, const std::function<Data(Context&)>& read, size_t memory, size_t memory_limit) {
   for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL}) ::signal(signal, SIG_DFL);
   limit_memory(memory);
-  const rlim_t seconds = 8 + (rlim_t(memory) >> 26);  // a damaged file can send a library round and round
+  const rlim_t seconds = 4 + (rlim_t(memory) >> 27);  // a damaged file can send a library round and round
   const struct rlimit limit { seconds, seconds };
   ::setrlimit(RLIMIT_CPU, &limit);
   if (const int nowhere = ::open("/dev/null", O_WRONLY); nowhere >= 0) ::dup2(nowhere, 1), ::dup2(nowhere, 2);
