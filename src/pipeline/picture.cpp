@@ -135,8 +135,15 @@ std::vector<std::vector<std::string>> words_of_parts(const std::vector<DatasetPt
     const Field* f = parts[i]->fields().find(name);
     std::erase_if(words[i], [](const std::string& w) { return w.starts_with("field="); });
     words[i].push_back("field=" + (f ? name : std::string("none")));
-    if (f && !same && !all.empty() && all.lo < all.hi && !word_value(show.words, "range"))
-      words[i].push_back(fmt::format("range={},{}", exact_number(all.lo), exact_number(all.hi)));
+    if (!f || same || !(all.lo < all.hi)) continue;
+    // What choose_scale() does for one mesh, decided once for all.
+    const bool automatic =
+        word_value(show.words, "map").value_or("auto") == "auto" && word_value(show.words, "scale").value_or("linear") != "log";
+    const bool is_signed = all.lo < 0 && all.hi > 0 && std::min(-all.lo, all.hi) > 0.05 * std::max(-all.lo, all.hi);
+    if (automatic) words[i].push_back(is_signed ? "map=coolwarm" : "map=sight");
+    if (word_value(show.words, "range")) continue;
+    const Range r = automatic && is_signed ? Range{-std::max(-all.lo, all.hi), std::max(-all.lo, all.hi)} : all;
+    words[i].push_back(fmt::format("range={},{}", exact_number(r.lo), exact_number(r.hi)));
   }
   return words;
 }
