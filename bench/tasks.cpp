@@ -6,7 +6,6 @@
 #include "filter/field/gradient.h"
 #include "filter/probe/probe.h"
 #include "filter/probe/resample.h"
-#include "filter/scalar/contour.h"
 #include "index/cell_tree.h"
 #include "inputs.h"
 #include "io/io.h"
@@ -48,18 +47,6 @@ Task reading(const std::string& folder, const std::string& name) {
             const std::string path = folder + "/" + name;
             MappedFile warm(path);
             return [=] { return read_all(path); };
-          }};
-}
-
-Task contouring(size_t n) {
-  return {"contour", fmt::format("uniform{}", n), "sightglass:contour(normals=on)", "triangles", [=] {
-            auto grid = field_grid(n);
-            return [=] {
-              Context context;
-              ContourParams p;
-              p.values = {0};
-              return double(contour(grid, p, context)->cell_count());
-            };
           }};
 }
 
@@ -180,7 +167,8 @@ std::vector<Task> tasks(const std::string& folder) {
   for (const char* name : {"f256_raw.vti", "f256_zlib.vti", "f256_legacy.vtk", "tet1M_raw.vtu", "tet1M_zlib.vtu", "tet1M_legacy.vtk",
                            "mesh1M_binary.stl", "mesh1M_binary.ply", "mesh1M.obj", "mesh1M_raw.vtp"})
     t.push_back(reading(folder, name));
-  t.push_back(contouring(256));
+  add_contour_tasks(t);
+  add_cut_tasks(t);
   t.push_back(gradients("grid", "uniform256"));
   t.push_back(gradients("tets", "tet1M"));
   t.push_back(writing(folder));
