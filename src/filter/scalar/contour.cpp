@@ -5,7 +5,7 @@
 
 #include "base/parallel.h"
 #include "base/text.h"
-#include "filter/scalar/contour_parts.h"
+#include "filter/scalar/contour_active.h"
 
 namespace sg {
 
@@ -242,9 +242,10 @@ DatasetPtr contour(const DatasetPtr& input, const ContourParams& params, Context
 
   Job job{*input, choose_samples(field, component), params.normals, false, choose_origin(input->bounds()), context};
   for (const Field& f : input->fields()) job.cells = job.cells || f.association == Association::cell;
+  const std::string key = fmt::format("{} {}", field.name, component);
   std::vector<Piece> pieces;
   if (is_lattice(input->mesh()) && input->point_count() > 0) {
-    LatticeContour lattice(job);
+    LatticeContour lattice(job, lattice_index(job, key, values.size()));
     for (double v : values) pieces.push_back(lattice.run(v));
   } else if (is_lattice(input->mesh())) {
     Piece none;

@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "filter/scalar/cell_cases.h"
+#include "filter/scalar/contour_active.h"
 #include "filter/scalar/contour_parts.h"
 
 namespace sg::contouring {
@@ -66,7 +67,8 @@ Square square_of(uint32_t pattern, size_t p, double value, const LatticeFrame& f
 
 }  // namespace
 
-LatticeContour::LatticeContour(const Job& job) : job_(job), lattice_(job.input.mesh()), frame_(lattice_.view()), sample_(job.samples) {
+LatticeContour::LatticeContour(const Job& job, std::shared_ptr<const LatticeIndex> index)
+    : job_(job), index_(std::move(index)), lattice_(job.input.mesh()), frame_(lattice_.view()), sample_(job.samples) {
   words_ = (frame_.dims[0] + 63) / 64;
   flip_ = !frame_.right_handed();
   const size_t nx = frame_.dims[0], rows = frame_.dims[1] * frame_.dims[2];
@@ -112,27 +114,37 @@ Piece LatticeContour::run(double value) {
   Cuts cuts;
   cuts.value = value;
   cuts.inside.resize(rows * words_);
-  const bool nan = classify(job_.samples, nx, rows, value, cuts.inside.data(), words_, job_.context);
+  std::optional<ActiveWords> where;
+  bool nan = false;
+  if (index_) {
+    where.emplace(*index_, frame_.dims, value);
+    where->classify(job_.samples, cuts.inside.data(), words_, job_.context);
+    if (!index_->missing.empty() && !missing_known_) skip_points(index_->missing);
+    missing_known_ = true;
+  } else {
+    nan = classify(job_.samples, nx, rows, value, cuts.inside.data(), words_, job_.context);
+  }
   if (nan && !missing_known_) {
     std::vector<uint64_t> bad(rows * words_);
     find_missing(job_.samples, nx, rows, bad.data(), words_, job_.context);
     skip_points(bad);
     missing_known_ = true;
   }
-  find_cuts(cuts);
+  find_cuts(cuts, where ? &*where : nullptr);
   if (cuts.vertices > size_t(INT32_MAX))
     fail_usage("the surface has more than 2^31 points", "contour", "contour a part of the grid at a time");
   return generate(cuts);
 }
 
-void LatticeContour::find_cuts(Cuts& cuts) const {
+void LatticeContour::find_cuts(Cuts& cuts, const ActiveWords* where) const {
   const size_t ny = frame_.dims[1], nz = frame_.dims[2], rows = ny * nz;
   for (int a = 0; a < frame_.axes; ++a) cuts.cut[a].resize(rows * words_);
   cuts.rows.resize(rows);
   parallel_for(
       rows, std::max<size_t>(1, 512 / words_),
       [&](size_t begin, size_t end) {
-        for (size_t r = begin; r < end; ++r) count_row(cuts, r % ny, r / ny);
+        for (size_t r = begin; r < end; ++r)
+          if (!where || where->row(r % ny, r / ny)) count_row(cuts, r % ny, r / ny);
       },
       &job_.context);
   for (RowStart& row : cuts.rows) {
