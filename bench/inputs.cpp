@@ -45,7 +45,16 @@ DatasetPtr surface_mesh(size_t n) {
   return contour(field_grid(n), p, context);
 }
 
-DatasetPtr tetrahedra(size_t n) {
+namespace {
+
+double field_at(double x, double y, double z) {
+  constexpr double w = 2 * std::numbers::pi;
+  return std::sin(w * x) * std::cos(w * y) + std::sin(w * y) * std::cos(w * z) + std::sin(w * z) * std::cos(w * x) + x * x + y * y + z * z -
+         0.8;
+}
+
+// The cube of n^3 smoothly displaced hexahedra cut into cells that are given by their corners (bits: x, y, z).
+DatasetPtr displaced_cube(size_t n, CellType type, std::span<const int> corners, int corners_per_cell) {
   const size_t m = n + 1;
   std::vector<float> xyz(m * m * m * 3), f(m * m * m);
   for (size_t k = 0, p = 0; k < m; ++k)
@@ -56,25 +65,35 @@ DatasetPtr tetrahedra(size_t n) {
         xyz[3 * p] = float(x + w * std::sin(5 * y + 3 * z));
         xyz[3 * p + 1] = float(y + w * std::sin(5 * z + 3 * x));
         xyz[3 * p + 2] = float(z + w * std::sin(5 * x + 3 * y));
-        f[p] = float(x * x + y * y + z * z);
+        f[p] = float(field_at(double(xyz[3 * p]), double(xyz[3 * p + 1]), double(xyz[3 * p + 2])));
       }
-  constexpr int kuhn[6][4] = {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}};
   std::vector<int64_t> ids;
-  ids.reserve(24 * n * n * n);
+  ids.reserve(corners.size() * n * n * n);
   for (size_t k = 0; k < n; ++k)
     for (size_t j = 0; j < n; ++j)
       for (size_t i = 0; i < n; ++i)
-        for (const auto& tet : kuhn)
-          for (int corner : tet)
-            ids.push_back(int64_t(i + size_t(corner & 1) + m * (j + size_t(corner >> 1 & 1) + m * (k + size_t(corner >> 2)))));
+        for (int corner : corners)
+          ids.push_back(int64_t(i + size_t(corner & 1) + m * (j + size_t(corner >> 1 & 1) + m * (k + size_t(corner >> 2)))));
   UnstructuredMesh mesh;
   mesh.points.xyz = Array::from_vector(std::move(xyz), 3);
-  mesh.cells.fixed = 4;
+  mesh.cells.fixed = corners_per_cell;
   mesh.cells.connectivity = Array::from_vector(std::move(ids));
-  mesh.single_type = CellType::tetra;
+  mesh.single_type = type;
   FieldSet fields;
   fields.add({"f", Association::point, Array::from_vector(std::move(f)), "", Role::scalars});
   return make_dataset(std::move(mesh), fields);
+}
+
+}  // namespace
+
+DatasetPtr tetrahedra(size_t n) {
+  constexpr int kuhn[] = {0, 1, 3, 7, 0, 3, 2, 7, 0, 2, 6, 7, 0, 6, 4, 7, 0, 4, 5, 7, 0, 5, 1, 7};
+  return displaced_cube(n, CellType::tetra, kuhn, 4);
+}
+
+DatasetPtr hexahedra(size_t n) {
+  constexpr int cube[] = {0, 1, 3, 2, 4, 5, 7, 6};
+  return displaced_cube(n, CellType::hexahedron, cube, 8);
 }
 
 void make_inputs(const std::string& folder) {

@@ -10,5 +10,7 @@ DatasetPtr field_grid(size_t n);
 DatasetPtr surface_mesh(size_t n);
 /// 6 n^3 tetrahedra of a smoothly displaced cube: n = 55 gives a million.
 DatasetPtr tetrahedra(size_t n);
+/// The same cube as n^3 hexahedra.
+DatasetPtr hexahedra(size_t n);
 
 }  // namespace sg::bench

@@ -22,8 +22,8 @@ def main():
         for own in mine:
             # Reading tasks carry the file's name in the peer: compare only the same file.
             name = own["peer"].split(":", 1)[-1]
-            rivals = [r for r in theirs.get(key, []) if key[0] != "read_file" or r["peer"].split(":", 1)[-1] == name]
-            label = key[1] if key[0] != "read_file" else name
+            rivals = [r for r in theirs.get(key, []) if key[0] not in ("read_file", "write_file") or r["peer"].split(":", 1)[-1] == name]
+            label = key[1] if key[0] not in ("read_file", "write_file") else name
             if not rivals:
                 print(f"{key[0]:24} {label:30} {own['median_s'] * 1e3:8.2f}ms {'-':>10} {'-':>7}  {own.get('peak_rss_mb', 0):6.0f}")
                 continue

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is measured, under the names of the peers' records.
 #include "base/file.h"
+#include "base/random.h"
 #include "bench.h"
 #include "filter/field/gradient.h"
-#include "filter/scalar/contour.h"
+#include "filter/probe/probe.h"
+#include "filter/probe/resample.h"
+#include "index/cell_tree.h"
 #include "inputs.h"
 #include "io/io.h"
 #include "render/raster/raster.h"
@@ -47,24 +50,64 @@ Task reading(const std::string& folder, const std::string& name) {
           }};
 }
 
-Task contouring(size_t n) {
-  return {"contour", fmt::format("uniform{}", n), "sightglass:contour(normals=on)", "triangles", [=] {
-            auto grid = field_grid(n);
-            return [=] {
-              Context context;
-              ContourParams p;
-              p.values = {0};
-              return double(contour(grid, p, context)->cell_count());
-            };
-          }};
-}
-
 Task gradients(const char* input, const char* size) {
   return {"gradient", size, "sightglass:gradient", "points", [=] {
             const DatasetPtr d = std::string_view(input) == "grid" ? field_grid(256) : tetrahedra(55);
             return [=] {
               Context context;
               return double(gradient(d, {}, context)->point_count());
+            };
+          }};
+}
+
+// Zlib at the writer's own level; the peer's task of the same name.
+Task writing(const std::string& folder) {
+  return {"write_file", "file", "sightglass:f256_zlib.vti", "points", [=] {
+            const DatasetPtr grid = field_grid(256);
+            return [=] {
+              Context context;
+              WriteOptions o;
+              o.compression = "zlib";
+              write_data(folder + "/ours_zlib.vti", grid, o, context);
+              return double(grid->point_count());
+            };
+          }};
+}
+
+Task resampling() {
+  return {"resample_to_256^3", "tet1M", "sightglass:resample", "valid samples", [=] {
+            const DatasetPtr d = tetrahedra(55);
+            return [=] {
+              Context context;
+              ResampleParams p;
+              p.dims = {256, 256, 256};
+              const DatasetPtr r = resample(d, p, context);
+              return double(r->point_count());
+            };
+          }};
+}
+
+Task probing() {
+  return {"probe_1M_random_points", "tet1M", "sightglass:probe", "samples", [=] {
+            const DatasetPtr d = tetrahedra(55);
+            std::vector<float> xyz(3'000'000);
+            for (size_t i = 0; i < xyz.size(); ++i) xyz[i] = float(2 * random_unit(7, i) - 1);
+            PointCloud cloud;
+            cloud.points.xyz = Array::from_vector(std::move(xyz), 3);
+            const DatasetPtr points = make_dataset(Mesh(cloud));
+            return [=] {
+              Context context;
+              return double(probe(points, d, {}, context)->point_count());
+            };
+          }};
+}
+
+Task tree() {
+  return {"cell_tree", "tet5M", "sightglass:CellTree", "cells", [=] {
+            const DatasetPtr d = tetrahedra(94);
+            return [=] {
+              Context context;
+              return double(CellTree(d, context).order().size());
             };
           }};
 }
@@ -121,12 +164,17 @@ Task volume(const char* what, bool shaded, bool maximum, bool fog) {
 
 std::vector<Task> tasks(const std::string& folder) {
   std::vector<Task> t;
-  for (const char* name :
-       {"f256_raw.vti", "f256_zlib.vti", "tet1M_raw.vtu", "mesh1M_binary.stl", "mesh1M_binary.ply", "mesh1M.obj", "mesh1M_raw.vtp"})
+  for (const char* name : {"f256_raw.vti", "f256_zlib.vti", "f256_legacy.vtk", "tet1M_raw.vtu", "tet1M_zlib.vtu", "tet1M_legacy.vtk",
+                           "mesh1M_binary.stl", "mesh1M_binary.ply", "mesh1M.obj", "mesh1M_raw.vtp"})
     t.push_back(reading(folder, name));
-  t.push_back(contouring(256));
+  add_contour_tasks(t);
+  add_cut_tasks(t);
   t.push_back(gradients("grid", "uniform256"));
   t.push_back(gradients("tets", "tet1M"));
+  t.push_back(writing(folder));
+  t.push_back(resampling());
+  t.push_back(probing());
+  t.push_back(tree());
   t.push_back(surface("1M", 235));
   t.push_back(surface("5M", 526));
   t.push_back(surface("10M", 744));

@@ -1,40 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
 // The fuzz target of every reader: SG_FUZZ_FORMAT names the format (see tools/fuzz). Whatever the bytes are, a reader gives data
-// that can be looked at, or throws sg::Error.
+// that can be looked at, or throws sg::Error. An input may be several files (bundle.h).
+#include "fuzz.h"
+
 #include <fmt/core.h>
 #include <unistd.h>
 
-#include <cstdio>
 #include <cstdlib>
-#include <cstring>
+#include <filesystem>
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "base/text.h"
-#include "io/io.h"
 
 namespace {
 
 const sg::Format* wanted = nullptr;
-std::string path;
+std::string folder;
+const bool verbose = std::getenv("SG_FUZZ_VERBOSE") != nullptr;  // to look at single files
 
-// "VTK XML" -> "vtk-xml": the name of the corpus folder.
-std::string slug(std::string_view name) {
-  std::string s = sg::to_lower(name);
-  for (char& c : s)
-    if (!std::isalnum(static_cast<unsigned char>(c))) c = '-';
-  return s;
-}
-
-// Touches every number, so that the sanitizer sees an array that is longer than its bytes.
-void look_at(const sg::Data& data) {
-  sg::for_each_dataset(data, [](const std::string&, const sg::DatasetPtr& d) {
-    (void)d->bounds();
-    (void)sg::cell_type_counts(d->mesh());
-    for (const sg::Field& f : d->fields()) (void)d->stats(f);
-  });
-  if (auto* table = std::get_if<sg::TablePtr>(&data))
-    for (const sg::Field& f : (*table)->columns) (void)sg::field_stats(f.array);
+void read(const std::string& path, const sg::ReadOptions& options) {
+  sg::Context context;
+  try {
+    if (wanted->times) (void)wanted->times(path, options, context);
+    sg::fuzz::look_at(wanted->read(path, options, context));
+    if (verbose) std::fprintf(stderr, "read\n");
+  } catch (const sg::Error& e) {
+    if (verbose) std::fprintf(stderr, "%s\n", e.what());
+    if (e.kind() != sg::ErrorKind::internal) return;
+    std::fprintf(stderr, "ERROR: internal: %s\n", e.what());  // a broken promise of ours, not of the file
+    std::abort();
+  }
 }
 
 }  // namespace
@@ -42,29 +37,37 @@ void look_at(const sg::Data& data) {
 extern "C" int LLVMFuzzerInitialize(int*, char***) {
   const char* name = std::getenv("SG_FUZZ_FORMAT");
   for (const sg::Format& f : sg::formats()) {
-    if (!name || std::strcmp(name, "list") == 0) std::printf("%s\n", slug(f.name).c_str());
-    else if (slug(f.name) == name && f.read) wanted = &f;
+    const std::string slug = sg::fuzz::slug(f.name);
+    if (!name || std::string_view(name) == "list") std::printf("%s\n", slug.c_str());
+    else if (slug == name && f.read) wanted = &f;
   }
-  if (!wanted) std::exit(name && std::strcmp(name, "list") == 0 ? 0 : 2);
-  const char* folder = std::getenv("TMPDIR");
-  path = fmt::format("{}/sightglass-fuzz-{}.{}", folder ? folder : "/dev/shm", ::getpid(), sg::words(wanted->extensions).empty() ? "bin" : sg::words(wanted->extensions)[0]);
-  std::atexit([] { std::remove(path.c_str()); });
+  if (!wanted) std::exit(name && std::string_view(name) == "list" ? 0 : 2);
+  const char* where = std::getenv("TMPDIR");
+  folder = fmt::format("{}/sightglass-fuzz-{}/", where ? where : "/dev/shm", ::getpid());
+  std::atexit([] {
+    std::error_code ignored;
+    std::filesystem::remove_all(folder, ignored);
+  });
   sg::set_thread_count(1);
   return 0;
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
-  std::FILE* file = std::fopen(path.c_str(), "wb");
-  if (!file) return 0;
-  std::fwrite(bytes, 1, size, file);
-  std::fclose(file);
-  sg::Context context;
-  try {
-    const sg::ReadOptions options;
-    if (wanted->times) (void)wanted->times(path, options, context);
-    look_at(wanted->read(path, options, context));
-  } catch (const sg::Error& e) {
-    if (e.kind() == sg::ErrorKind::internal) std::abort();  // a broken promise of ours, not of the file
+  std::error_code ignored;
+  const std::string_view input(reinterpret_cast<const char*>(bytes), size);
+  static bool dirty = true;
+  if (dirty) std::filesystem::remove_all(folder, ignored), std::filesystem::create_directories(folder, ignored);
+  dirty = input.starts_with("@@ ");
+  const std::string path = sg::fuzz::put_seed(folder, sg::fuzz::file_name(*wanted), input);
+  read(path, sg::fuzz::options_of(*wanted, input));
+  // The rarer ways of reading, one of them for each input.
+  sg::ReadOptions other = sg::fuzz::options_of(*wanted, input);
+  switch (size % 4) {
+    case 0: other.header_only = true; break;
+    case 1: other.region.lo = {1, 0, 0}, other.region.hi = {2, 5, SIZE_MAX}, other.region.stride = {1, 2, 1}; break;
+    case 2: other.step = 1, other.fields = {"T"}; break;
+    default: other.piece = 1, other.pieces = 3, other.ghost_levels = 1;
   }
+  read(path, other);
   return 0;
 }

@@ -50,6 +50,12 @@ std::string partial_name(const std::string& path) {
 }
 }  // namespace
 
+void MappedFile::release(const std::byte* begin, const std::byte* end) const noexcept {
+  const auto page = size_t(::sysconf(_SC_PAGESIZE));
+  const size_t from = (size_t(begin - data_) + page - 1) / page * page, to = size_t(end - data_) / page * page;
+  if (begin >= data_ && end <= data_ + size_ && from < to) ::madvise(const_cast<std::byte*>(data_) + from, to - from, MADV_DONTNEED);
+}
+
 void MappedFile::copy_to(void* to, size_t offset, size_t bytes) const {
   if (offset > size_ || bytes > size_ - offset) fail_internal("copy_to reaches beyond the file", path_);
   parallel_for(bytes, size_t(4) << 20, [&](size_t begin, size_t end) {

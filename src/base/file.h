@@ -25,6 +25,9 @@ class MappedFile {
   /// Copies bytes [offset, offset + bytes) by reading, on all threads: the copy costs no mapped pages. The range must lie in the
   /// file. Throws Error(data) when the file cannot be read (it may have been cut since).
   void copy_to(void* to, size_t offset, size_t bytes) const;
+  /// Lets the system take back the memory of bytes that were looked at (they can still be read). For walks through files larger than
+  /// memory.
+  void release(const std::byte* begin, const std::byte* end) const noexcept;
   /// Keeps the mapping alive; for Buffer::owner.
   std::shared_ptr<const void> owner() const { return owner_; }
 

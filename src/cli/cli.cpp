@@ -10,6 +10,8 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "cli/info.h"
+#include "data/memory_budget.h"
+#include "io/plugin.h"
 
 namespace sg {
 
@@ -24,6 +26,8 @@ void on_interrupt(int) {
 // Messages go to stderr, so that stdout holds results alone.
 void connect(Context& context, const Options& o) {
   context.memory_limit = o.memory;
+  set_memory_limit(o.memory);
+  set_plugin_memory(o.memory);
   context.on_log = [quiet = o.quiet, verbose = o.verbose](LogLevel level, std::string_view text) {
     if (quiet || (level == LogLevel::debug && !verbose)) return;
     std::fprintf(stderr, "%s%.*s\n", level == LogLevel::warning ? "warning: " : "note: ", int(text.size()), text.data());

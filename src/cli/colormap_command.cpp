@@ -2,9 +2,12 @@
 #include <cstdio>
 
 #include "base/error.h"
+#include "base/file.h"
 #include "base/text.h"
 #include "cli/cli.h"
 #include "color/colormap.h"
+#include "color/colormap_file.h"
+#include "color/colormap_nodes.h"
 #include "color/parse_color.h"
 #include "image/codec.h"
 
@@ -47,6 +50,40 @@ std::string verdict(const Colormap& map, const LightnessReport& r) {
   return "";
 }
 
+std::string hex_or_none(const std::optional<Vec3f>& c) { return c ? color_text(*c) : std::string("none"); }
+
+// What a file says beyond the colours, as JSON members or one line of text.
+std::string file_facts(const FileColormap& f, bool json) {
+  if (json) {
+    auto color = [](const std::optional<Vec3f>& c) { return c ? json_string(color_text(*c)) : std::string("null"); };
+    std::string r = fmt::format("\"entries\":{},\"space\":{},\"positions\":[{},{}],\"first\":{},\"last\":{}", f.entries,
+                                json_string(f.space), exact_number(f.lo), exact_number(f.hi), json_string(color_text(f.map.colors.front())),
+                                json_string(color_text(f.map.colors.back())));
+    if (f.range_lo && f.range_hi) r += fmt::format(",\"range\":[{},{}]", exact_number(*f.range_lo), exact_number(*f.range_hi));
+    if (f.hinge) r += fmt::format(",\"hinge\":{},\"hard\":{}", exact_number(*f.hinge), f.hard_hinge);
+    return r + fmt::format(",\"below\":{},\"above\":{},\"nan\":{}", color(f.below), color(f.above), color(f.nan));
+  }
+  std::string r = fmt::format("{} entries in {}, positions {} to {}", f.entries, f.space, short_number(f.lo), short_number(f.hi));
+  if (f.range_lo && f.range_hi) r += fmt::format(", made for {} to {}", short_number(*f.range_lo), short_number(*f.range_hi));
+  if (f.hinge) r += fmt::format(", {} hinge at {}", f.hard_hinge ? "hard" : "soft", short_number(*f.hinge));
+  return r + fmt::format("; below {}, above {}, NaN {}", hex_or_none(f.below), hex_or_none(f.above), hex_or_none(f.nan));
+}
+
+// The maps of a file that holds several.
+void list_file(const std::string& path, const std::vector<FileColormap>& maps, bool json) {
+  std::string text = fmt::format("{{\"file\":{},\"colormaps\":[", json_string(path));
+  for (size_t i = 0; i < maps.size(); ++i) {
+    const FileColormap& f = maps[i];
+    if (json)
+      text += fmt::format("{}{{\"name\":{},\"kind\":\"{}\",{}}}", i ? "," : "", json_string(f.map.name), kind_name(f.map.kind),
+                          file_facts(f, true));
+    else
+      std::printf("  %-44s %-12s %zu %s\n", f.map.name.c_str(), std::string(kind_name(f.map.kind)).c_str(), f.entries,
+                  f.map.categorical() ? "colours" : "entries");
+  }
+  if (json) std::printf("%s]}\n", text.c_str());
+}
+
 }  // namespace
 
 int run_colormap(const Options& o, Context&) {
@@ -66,17 +103,31 @@ int run_colormap(const Options& o, Context&) {
     return 0;
   }
   for (const std::string& name : o.inputs) {
-    const Colormap map = find_colormap(name);
+    std::optional<FileColormap> file;
+    if (names_colormap_file(name)) {
+      if (file_exists(name) && !is_folder(name)) {
+        const std::vector<FileColormap> maps = read_colormaps(name);
+        if (maps.size() > 1) {
+          list_file(name, maps, o.json);
+          continue;
+        }
+      }
+      file = find_file_colormap(name);
+    }
+    const Colormap map = file ? file->map : find_colormap(name);
     const LightnessReport r = lightness_report(map);
     if (o.json) {
       std::printf("{\"name\":%s,\"kind\":\"%s\",\"falls\":%d,\"falls_8bit\":%d,\"lowest\":%s,\"highest\":%s,\"lightness\":[",
                   json_string(map.name).c_str(), std::string(kind_name(map.kind)).c_str(), r.falls_float, r.falls_8bit,
                   exact_number(r.lowest).c_str(), exact_number(r.highest).c_str());
       for (size_t i = 0; i < r.lightness.size(); ++i) std::printf("%s%s", i ? "," : "", short_number(r.lightness[i], 7).c_str());
-      std::printf("]}\n");
+      std::printf("]%s%s}\n", file ? "," : "", file ? file_facts(*file, true).c_str() : "");
     } else {
       std::printf("%s (%s): %s\n", map.name.c_str(), std::string(kind_name(map.kind)).c_str(), map.about.c_str());
-      std::printf("  %s\n", verdict(map, r).c_str());
+      if (file) std::printf("  %s\n", file_facts(*file, false).c_str());
+      const bool hinge_only = map.kind == MapKind::diverging && kind_of_colors(map.colors) != MapKind::diverging;
+      std::printf("  %s\n",
+                  hinge_only ? "two sides that meet at a value; lightness does not tell how far from it" : verdict(map, r).c_str());
       std::printf("  lightness L* from %s to %s (CIELAB, D65)\n", short_number(r.lowest, 4).c_str(), short_number(r.highest, 4).c_str());
       std::printf("  L* falls in %d of 255 steps (%d after rounding the colours to 8 bits)\n", r.falls_float, r.falls_8bit);
       std::printf("  colour difference per unit of position: %s at most, %s at least (CIEDE2000)\n", short_number(r.steepest, 4).c_str(),

@@ -9,6 +9,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "cli/cli.h"
+#include "color/colormap_file.h"
 #include "image/codec.h"
 #include "pipeline/picture.h"
 #include "render/annotate/contact_sheet.h"
@@ -119,9 +120,28 @@ void find_files(const std::string& folder, std::vector<std::string>& found) {
       continue;
     }
     const std::string ext = extension_of(path);
+    bool known = false;
     for (const Format& f : formats())
-      for (std::string_view e : words(f.extensions))
-        if (e == ext && f.name != "raw brick") found.push_back(path);
+      for (std::string_view e : words(f.extensions)) known = known || (e == ext && f.name != "raw brick");
+    if (known) found.push_back(path);
+  }
+}
+
+// Why a file of a folder is passed over: it is a table or a colour map, which no picture shows as it stands. Broken files are not.
+std::optional<std::string> why_skipped(const std::string& path) {
+  const std::string ext = extension_of(path);
+  if (ext != "csv" && ext != "tsv" && ext != "txt" && ext != "json" && ext != "gml") return {};
+  try {
+    if (ext == "json") return fmt::format("colour maps ({}), for --map", read_colormaps(path).size());
+  } catch (const Error&) {  // none of those
+  }
+  try {
+    Context quiet;
+    bool any = false;
+    for_each_dataset(read_data(path, {}, quiet), [&](const std::string&, const DatasetPtr&) { any = true; });
+    return any ? std::nullopt : std::optional<std::string>("a table; table_to_points makes points of its rows");
+  } catch (const Error&) {
+    return {};
   }
 }
 
@@ -129,10 +149,15 @@ int sheet_of_folder(const Options& o, Context& context) {
   std::vector<std::string> files;
   find_files(o.inputs[0], files);
   std::vector<CaptionedImage> pictures;
-  size_t failed = 0;
+  size_t failed = 0, skipped = 0;
   for (const std::string& path : files) {
     CaptionedImage c;
     c.caption = path.substr(o.inputs[0].size() + (o.inputs[0].back() == '/' ? 0 : 1));
+    if (const auto why = why_skipped(path)) {
+      ++skipped;
+      if (!o.quiet) std::printf("%s: skipped: %s\n", c.caption.c_str(), why->c_str());
+      continue;
+    }
     try {
       PipelineFile file;
       file.steps.push_back({"input", "read", {"path=" + path}, {}, 0});
@@ -158,7 +183,8 @@ int sheet_of_folder(const Options& o, Context& context) {
     write_image(path, contact_sheet(part, 6, 400));
     if (!o.quiet) std::printf("%s\n", path.c_str());
   }
-  if (!o.quiet) std::printf("%zu files, %zu refused\n", files.size(), failed);
+  if (!o.quiet) std::printf("%zu files, %zu refused, %zu skipped\n", files.size(), failed, skipped);
+  if (pictures.empty()) fail_data("holds no file that can be drawn", o.inputs[0]);
   return 0;
 }
 

@@ -52,7 +52,7 @@ void add_picture(CLI::App& a, Options& o) {
   a.add_option("--show", o.shows, "How to show it: 'surface|volume|lines|points|outline key=value ...'; may be repeated")
       ->allow_extra_args(false);
   a.add_option("--field", o.field, "Field to colour by");
-  a.add_option("--map", o.map, "Colour map (see: sightglass colormap)");
+  a.add_option("--map", o.map, "Colour map (see: sightglass colormap), or a file: FILE.cpt, FILE.json:NAME, FILE.css:NAME");
   a.add_option("--scale", o.scale, "linear, log or symlog");
   a.add_option("--camera", o.camera, "'top', 'front', 'iso', or key=value words: 'azimuth=30 elevation=10 zoom=1.5'");
   a.add_option("--size", o.size, "Pixels, like 1920x1080");
@@ -170,7 +170,7 @@ const char* const overview =
     "  sightglass run PIPELINE.yaml                                  run a pipeline file\n"
     "  sightglass open PICTURE.png                                   make a picture again from the recipe inside it\n"
     "  sightglass ops [NAME] [--json]                                operations and their parameters\n"
-    "  sightglass colormap [NAME]                                    colour maps and their lightness analysis\n"
+    "  sightglass colormap [NAME or FILE[:NAME]]                 colour maps and their lightness analysis\n"
     "  sightglass demo                                               some pictures of what it can do, into out/\n\n"
     "Each command has --help. Exit codes: 0 done, 2 usage, 3 data, 4 internal.\n";
 

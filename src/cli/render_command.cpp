@@ -71,11 +71,13 @@ void print_explanation(const PipelineFile& file) {
   std::fputs(built.graph.explain(targets_of(built)).c_str(), stdout);
 }
 
-// With --memory, what the steps are expected to hold together is known before any of them runs.
+// With --memory, what the steps are expected to hold together is known before any of them runs. Files in formats of which parts can be
+// read do not count here: they are mapped or cut, and arrays are counted while they are made.
 void check_memory(const PipelineGraph& built, const Options& o) {
   if (o.memory == 0) return;
   uint64_t bytes = 0;
-  for (const PlannedStep& step : built.graph.plan(targets_of(built))) bytes += step.bytes;
+  for (const PlannedStep& step : built.graph.plan(targets_of(built)))
+    if (!step.reads_parts) bytes += step.bytes;
   if (bytes > o.memory)
     fail_usage(fmt::format("the steps are expected to hold {}, more than the {} allowed", human_bytes(bytes), human_bytes(o.memory)),
                "--memory", "--explain shows which; allow more, or read a smaller part");

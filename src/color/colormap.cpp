@@ -5,6 +5,7 @@
 #include <mutex>
 
 #include "base/error.h"
+#include "color/colormap_file.h"
 #include "color/map_construction.h"
 
 namespace sg {
@@ -118,7 +119,7 @@ const Colormap& built(size_t i) {
   for (const Entry& e : entries) names.push_back(e.name);
   const bool reversed = name.size() > 2 && name.ends_with("_r");
   fail_usage(fmt::format("colour map '{}' not found", name), "colour map",
-             unknown_name_hint(reversed ? name.substr(0, name.size() - 2) : name, names));
+             unknown_name_hint(reversed ? name.substr(0, name.size() - 2) : name, names) + "; or a file: .cpt, .json:NAME, .css:NAME");
 }
 
 }  // namespace
@@ -156,6 +157,7 @@ Colormap find_colormap(std::string_view name) {
       std::reverse(map.colors.begin(), map.colors.end());
       return map;
     }
+  if (names_colormap_file(name)) return find_file_colormap(name).map;
   fail_unknown(name);
 }
 

@@ -6,6 +6,7 @@
 #include "base/huge_allocator.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "data/memory_budget.h"
 
 namespace sg {
 
@@ -50,13 +51,18 @@ bool parse_element_type(std::string_view name, ElementType& out) {
 
 Buffer Buffer::allocate(size_t bytes, std::byte** writable) {
   void* p = nullptr;
+  detail::claim_memory(bytes);
   try {
     p = allocate_large(bytes);
   } catch (const std::bad_alloc&) {
+    detail::return_memory(bytes);
     fail_data(fmt::format("not enough memory for {}", human_bytes(bytes)));
   }
   Buffer b;
-  b.owner = std::shared_ptr<const void>(p, [](const void* q) { free_large(const_cast<void*>(q)); });
+  b.owner = std::shared_ptr<const void>(p, [bytes](const void* q) {
+    free_large(const_cast<void*>(q));
+    detail::return_memory(bytes);
+  });
   b.data = static_cast<const std::byte*>(p);
   b.size = bytes;
   *writable = static_cast<std::byte*>(p);

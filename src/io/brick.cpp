@@ -173,10 +173,16 @@ Array load_brick_part(const BrickLayout& l, const LatticePart& part, const std::
     const LatticePart in_row{{part.dims[0], 1, 1}, {part.lo[0], 0, 0}, {part.count[0], 1, 1}, {part.stride[0], 1, 1}};
     parallel_for(part.count[1] * part.count[2], std::max<size_t>(1, (size_t(1) << 18) / std::max<size_t>(out_row, 1)),
                  [&](size_t begin, size_t end) {
+                   size_t seen_file = SIZE_MAX;
+                   const std::byte* seen = nullptr;
                    for (size_t r = begin; r < end; ++r) {
                      const size_t j = part.lo[1] + r % part.count[1] * part.stride[1], k = part.lo[2] + r / part.count[1] * part.stride[2];
                      const size_t at = (j + part.dims[1] * k) * row;
                      copy_part(windows[at / share].data() + at % share, tuple, in_row, out + r * out_row);
+                     // The pages behind: the file may be larger than memory.
+                     const size_t f = at / share;
+                     if (f == seen_file) files[f].file.release(seen, windows[f].data() + at % share);
+                     seen_file = f, seen = windows[f].data() + at % share;
                    }
                  });
   }

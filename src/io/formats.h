@@ -134,5 +134,10 @@ bool sniff_picture_folder(const std::string& path);
 Data read_png_grid(const std::string& path, const ReadOptions& options, Context& context);
 Data read_jpeg_grid(const std::string& path, const ReadOptions& options, Context& context);
 Data read_picture_stack(const std::string& path, const ReadOptions& options, Context& context);
+bool sniff_glb(std::span<const std::byte> head);
+Data read_gltf(const std::string& path, const ReadOptions& options, Context& context);
+void write_gltf(const std::string& path, const Data& data, const WriteOptions& options, Context& context);
+Data read_bpt(const std::string& path, const ReadOptions& options, Context& context);
+Data read_gml(const std::string& path, const ReadOptions& options, Context& context);
 
 }  // namespace sg

@@ -13,6 +13,7 @@
 #include <cstdio>
 
 #include "base/error.h"
+#include "base/parallel.h"
 
 namespace sg {
 
@@ -147,6 +148,9 @@ void limit_memory(size_t memory) {
 [[noreturn]] void work(int fd, const std::function<Data(Context&)>& read, size_t memory, size_t memory_limit) {
   for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL}) ::signal(signal, SIG_DFL);
   limit_memory(memory);
+  const rlim_t seconds = 4 + (rlim_t(memory) >> 27);  // a damaged file can send a library round and round
+  const struct rlimit limit { seconds, seconds };
+  ::setrlimit(RLIMIT_CPU, &limit);
   if (const int nowhere = ::open("/dev/null", O_WRONLY); nowhere >= 0) ::dup2(nowhere, 1), ::dup2(nowhere, 2);
   auto* w = new Writer;  // nothing is destroyed here: destructors of libraries may wait for threads that this process lacks
   auto* logs = new std::vector<std::pair<LogLevel, std::string>>;
@@ -249,6 +253,32 @@ Data read_isolated(const std::string& path, const std::function<Data(Context&)>&
   }
   if (error) throw *error;
   return result;
+}
+
+void try_in_child(const std::string& path, std::string_view library, const std::function<void()>& read) {
+  struct stat st {};
+  const rlim_t seconds = 60 + (::stat(path.c_str(), &st) == 0 ? rlim_t(st.st_size) >> 22 : 0);
+  std::fflush(nullptr);
+  const pid_t child = ::fork();
+  if (child < 0) fail_data(fmt::format("no process can be started to try it in: {}", std::strerror(errno)), path);
+  if (child == 0) {
+    set_thread_count(1);
+    const struct rlimit limit { seconds, seconds }, no_core{0, 0};
+    ::setrlimit(RLIMIT_CPU, &limit);
+    ::setrlimit(RLIMIT_CORE, &no_core);
+    ::alarm(unsigned(std::min<rlim_t>(4 * seconds, 86400)));  // also when it waits for what never comes
+    if (const int nowhere = ::open("/dev/null", O_WRONLY); nowhere >= 0) ::dup2(nowhere, 2), ::dup2(nowhere, 1);
+    try {
+      read();
+    } catch (...) {  // said again, and heard, in the parent
+    }
+    ::_exit(0);
+  }
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
+    fail_data(fmt::format("the {} library does not survive reading it", library), path, "the file is damaged");
 }
 
 }  // namespace sg

@@ -13,4 +13,9 @@ namespace sg {
 /// thread: TBB, and so parallel loops of more than one chunk, must not be used in it. It may use `memory` bytes more than this process.
 Data read_isolated(const std::string& path, const std::function<Data(Context&)>& read, size_t memory, Context& context);
 
+/// Calls read() in a child process with one thread, and forgets what it gives or throws. Throws Error(data) naming `path` when the child
+/// dies or takes more than a minute of its processor and a second for each 4 MiB of the file: then `library` must not see the file in this
+/// process.
+void try_in_child(const std::string& path, std::string_view library, const std::function<void()>& read);
+
 }  // namespace sg

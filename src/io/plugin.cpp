@@ -15,7 +15,9 @@ namespace sg {
 
 namespace {
 
-using EntryPoint = const PluginFormat* (*)(size_t* count, int threads);
+size_t plugin_memory = 0;
+
+using EntryPoint = const PluginFormat* (*)(size_t* count, int threads, size_t memory);
 
 struct Package {
   std::string_view plugin, what, packages;
@@ -69,7 +71,7 @@ Loaded load(std::string_view name) {
     const auto entry = reinterpret_cast<EntryPoint>(::dlsym(handle, "sightglass_plugin"));
     if (!entry) fail_data("is no Sightglass plug-in", folder + file, "remove it, or build it again");
     Loaded l{std::string(name), nullptr, 0};
-    l.formats = entry(&l.count, thread_count());
+    l.formats = entry(&l.count, thread_count(), plugin_memory);
     return l;
   }
   fail_data(fmt::format("the reader for {} ({}) is not installed", package.what, file), "",
@@ -77,6 +79,8 @@ Loaded load(std::string_view name) {
 }
 
 }  // namespace
+
+void set_plugin_memory(size_t bytes) { plugin_memory = bytes; }
 
 const PluginFormat& plugin_format(std::string_view plugin, std::string_view format) {
   static std::mutex mutex;

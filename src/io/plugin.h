@@ -9,6 +9,8 @@
 #pragma once
 #include <algorithm>
 
+#include "base/parallel.h"
+#include "data/memory_budget.h"
 #include "io/io.h"
 
 namespace sg {
@@ -32,6 +34,8 @@ struct PluginFormat {
   PluginArray (*array)(const std::string& path, const PluginSelection&, Context&) = nullptr;
 };
 
+/// What plug-ins are told of set_memory_limit() when they are loaded.
+void set_plugin_memory(size_t bytes);
 /// Loads a plug-in (once) and finds a format in it. Throws Error(data) that names what to install.
 const PluginFormat& plugin_format(std::string_view plugin, std::string_view format);
 
@@ -57,11 +61,13 @@ std::vector<double> plugin_times(const std::string& path, const ReadOptions& opt
 
 }  // namespace sg
 
-/// In one file of a plug-in: what it offers. `threads` is the host's cap on threads (0 = all): a plug-in has its own copy of base.
-#define SG_PLUGIN_FORMATS(...)                                                                                              \
-  extern "C" __attribute__((visibility("default"))) const sg::PluginFormat* sightglass_plugin(size_t* count, int threads) { \
-    static const sg::PluginFormat table[] = {__VA_ARGS__};                                                                  \
-    sg::set_thread_count(threads);                                                                                          \
-    *count = sizeof table / sizeof *table;                                                                                  \
-    return table;                                                                                                           \
+/// In one file of a plug-in: what it offers. It has its own copies of base and data, which take the host's cap on threads (0 = all) and
+/// on the memory of arrays (0 = none).
+#define SG_PLUGIN_FORMATS(...)                                                                                                             \
+  extern "C" __attribute__((visibility("default"))) const sg::PluginFormat* sightglass_plugin(size_t* count, int threads, size_t memory) { \
+    static const sg::PluginFormat table[] = {__VA_ARGS__};                                                                                 \
+    sg::set_thread_count(threads);                                                                                                         \
+    sg::set_memory_limit(memory);                                                                                                          \
+    *count = sizeof table / sizeof *table;                                                                                                 \
+    return table;                                                                                                                          \
   }

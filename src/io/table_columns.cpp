@@ -36,6 +36,9 @@ void TableBuilder::add_row(const std::vector<std::string_view>& cells) {
 void TableBuilder::set(const std::string& name, std::string value) {
   size_t i = 0;
   while (i < columns_.size() && columns_[i].name != name) ++i;
+  // Every row with a name of its own would make a table of nothing but holes.
+  if (++given_, i == columns_.size() && uint64_t(i) * rows_ > 64 * given_ + (uint64_t(1) << 20))
+    fail_data(fmt::format("more than {} columns in {} rows, with hardly a value in them", i, rows_), "table");
   Column& c = column(i);
   c.name = name;
   c.cells.resize(rows_);

@@ -14,7 +14,8 @@ class TableBuilder {
  public:
   /// Cells of one row, in the order of the columns; more cells than columns make new columns.
   void add_row(const std::vector<std::string_view>& cells);
-  /// Sets a cell of the current last row of a named column (made when it is new).
+  /// Sets a cell of the current last row of a named column (made when it is new). Throws Error(data) when the columns get so many
+  /// that most of the table would be empty.
   void set(const std::string& column, std::string value);
   void begin_row() { ++rows_; }
   void name_columns(const std::vector<std::string_view>& names);
@@ -32,6 +33,7 @@ class TableBuilder {
   Column& column(size_t i);
   std::vector<Column> columns_;
   size_t rows_ = 0;
+  uint64_t given_ = 0;  ///< cells that set() was given
 };
 
 /// A cell that says that there is no value.

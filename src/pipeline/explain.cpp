@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What an evaluation would do, and what that may cost.
 #include "base/text.h"
+#include "data/lattice.h"
 #include "pipeline/graph_state.h"
+#include "pipeline/read_part.h"
 
 namespace sg {
 
@@ -9,10 +11,38 @@ namespace {
 
 constexpr double bytes_per_second = 2e9;  // one pass over memory by a simple kernel
 
+// The share of a grid's points that is read; 1 when that is not known without reading.
+double share_read(const ReadNode& read, const Step& s) {
+  if (s.read.region.whole() && !s.request.region) return 1;
+  try {
+    if (!(find_format(read.path, s.read).honours & honours_region)) return 1;
+    ReadOptions look = s.read;
+    look.header_only = true;
+    look.region = {};
+    Context context;
+    const Data header = read_data(read.path, look, context);
+    auto* d = std::get_if<DatasetPtr>(&header);
+    if (!d || !is_lattice((*d)->mesh())) return 1;
+    LatticeRegion r = s.read.region;
+    if (r.whole())
+      if (const auto found = lattice_region((*d)->mesh(), *s.request.region)) r = *found;
+    const auto dims = lattice_dims((*d)->mesh());
+    double share = 1;
+    for (size_t a = 0; a < 3; ++a) {
+      const size_t hi = std::min(r.hi[a], dims[a] - 1);
+      share *= r.lo[a] > hi ? 0 : double((hi - r.lo[a]) / r.stride[a] + 1) / double(dims[a]);
+    }
+    return share;
+  } catch (const Error&) {
+    return 1;  // for the reader to report
+  }
+}
+
 Estimate estimate_of(const Step& s, const Node& node, const std::vector<PlannedStep>& before) {
   if (auto* read = std::get_if<ReadNode>(&node.what)) {
     uint64_t bytes = 0;
     for (const FileState& f : file_and_parts(read->path)) bytes += f.size;
+    bytes = uint64_t(double(bytes) * share_read(*read, s));
     return {bytes, double(bytes) / bytes_per_second};
   }
   if (auto* given = std::get_if<DataNode>(&node.what)) return {data_bytes(given->data), 0};
@@ -23,6 +53,16 @@ Estimate estimate_of(const Step& s, const Node& node, const std::vector<PlannedS
   uint64_t touched = 0, largest = 0;
   for (const uint64_t b : in) touched += b, largest = std::max(largest, b);
   return {largest, double(touched + largest) / bytes_per_second};
+}
+
+bool reads_parts(const Node& node) {
+  auto* read = std::get_if<ReadNode>(&node.what);
+  if (!read) return false;
+  try {
+    return find_format(read->path, read->options).honours & honours_region;
+  } catch (const Error&) {
+    return false;  // for the reader to report
+  }
 }
 
 std::string seconds_text(double s) {
@@ -45,7 +85,8 @@ std::vector<PlannedStep> Graph::plan(std::span<const Target> targets) const {
                   s.request,
                   PlannedStep::State::not_needed,
                   0,
-                  0};
+                  0,
+                  reads_parts(node)};
     const auto cached = state_->cache->peek(s.key);
     if (cached) p.bytes = *cached;
     else {

@@ -51,8 +51,9 @@ struct PlannedStep {
   Key key;
   Request request;
   State state = State::run;
-  uint64_t bytes = 0;  ///< of the result: exact when cached, else expected
-  double seconds = 0;  ///< expected; 0 unless the step runs
+  uint64_t bytes = 0;        ///< of the result: exact when cached, else expected
+  double seconds = 0;        ///< expected; 0 unless the step runs
+  bool reads_parts = false;  ///< reads a file in a format of which parts can be read
 };
 
 /// Adding is for one thread; evaluate and explain are for any number of threads, but not from inside a parallel loop.

@@ -128,7 +128,8 @@ Data map_tree(const Data& data, const std::string& path, const std::function<Dat
 
 Data map_parts(const Data& data, std::string_view who, const std::function<Data(const DatasetPtr&)>& f) {
   if (is_null(data)) fail_internal("got no data", std::string(who));
-  if (std::holds_alternative<TablePtr>(data)) fail_usage("needs a mesh but got a table", std::string(who));
+  if (std::holds_alternative<TablePtr>(data))
+    fail_usage("needs a mesh but got a table", std::string(who), "make points of its rows first: -f 'table_to_points x=... y=...'");
   return map_tree(data, "", f);
 }
 

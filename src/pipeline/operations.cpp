@@ -11,6 +11,7 @@
 #include "filter/mesh/append.h"
 #include "filter/mesh/components.h"
 #include "filter/mesh/crop.h"
+#include "filter/mesh/extract_ids.h"
 #include "filter/mesh/faces.h"
 #include "filter/mesh/merge_points.h"
 #include "filter/mesh/piece.h"
@@ -31,6 +32,26 @@
 #include "simulate/scalar_fields.h"
 
 namespace sg {
+
+namespace {
+
+// A plane across an axis at a known place needs the cells around it alone.
+Request request_of_slice(const ParamSet& params, const Request& wanted) {
+  Request r = detail::request_carried(params, wanted);
+  const auto& p = detail::values_of<SliceParams>(params);
+  int axis = p.axis == "x" ? 0 : p.axis == "y" ? 1 : p.axis == "z" ? 2 : -1;
+  std::optional<double> at = p.position;
+  if (axis < 0 && p.origin)
+    for (int a = 0; a < 3; ++a)
+      if (p.normal[a] != 0 && p.normal[(a + 1) % 3] == 0 && p.normal[(a + 2) % 3] == 0) axis = a, at = (*p.origin)[a];
+  if (axis < 0 || !at) return r;
+  Box3 box{{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, HUGE_VAL, HUGE_VAL}};
+  box.lo[axis] = box.hi[axis] = *at;
+  r.region = box;
+  return r;
+}
+
+}  // namespace
 
 std::span<const Operation> operations() {
   // The first entry only keeps the array from being empty.

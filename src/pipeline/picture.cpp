@@ -116,9 +116,10 @@ std::vector<std::vector<std::string>> words_of_parts(const std::vector<DatasetPt
   std::vector<size_t> by_size(parts.size());
   std::iota(by_size.begin(), by_size.end(), size_t(0));
   std::stable_sort(by_size.begin(), by_size.end(), [&](size_t a, size_t b) { return parts[a]->point_count() > parts[b]->point_count(); });
-  for (const size_t i : by_size)
-    if (name.empty())
-      if (const Field* f = automatic_field(*parts[i])) name = f->name;
+  for (const bool labels : {false, true})  // a mask or a numbering of the largest part says less than values of another
+    for (const size_t i : by_size)
+      if (name.empty())
+        if (const Field* f = automatic_field(*parts[i]); f && (labels || f->role != Role::labels)) name = f->name;
   if (name.empty()) return words;
   const int component = int(parse_int(word_value(show.words, "component").value_or("-1")).value_or(-1));
   Range all;
@@ -134,8 +135,15 @@ std::vector<std::vector<std::string>> words_of_parts(const std::vector<DatasetPt
     const Field* f = parts[i]->fields().find(name);
     std::erase_if(words[i], [](const std::string& w) { return w.starts_with("field="); });
     words[i].push_back("field=" + (f ? name : std::string("none")));
-    if (f && !same && !all.empty() && all.lo < all.hi && !word_value(show.words, "range"))
-      words[i].push_back(fmt::format("range={},{}", exact_number(all.lo), exact_number(all.hi)));
+    if (!f || same || !(all.lo < all.hi)) continue;
+    // What choose_scale() does for one mesh, decided once for all.
+    const bool automatic =
+        word_value(show.words, "map").value_or("auto") == "auto" && word_value(show.words, "scale").value_or("linear") != "log";
+    const bool is_signed = all.lo < 0 && all.hi > 0 && std::min(-all.lo, all.hi) > 0.05 * std::max(-all.lo, all.hi);
+    if (automatic) words[i].push_back(is_signed ? "map=coolwarm" : "map=sight");
+    if (word_value(show.words, "range")) continue;
+    const Range r = automatic && is_signed ? Range{-std::max(-all.lo, all.hi), std::max(-all.lo, all.hi)} : all;
+    words[i].push_back(fmt::format("range={},{}", exact_number(r.lo), exact_number(r.hi)));
   }
   return words;
 }
@@ -145,6 +153,8 @@ Shown collect(const PipelineFile& file, const std::vector<Data>& results, const 
   for (size_t i = 0; i < results.size(); ++i) {
     const auto& show = file.show[i];
     s.outlined = s.outlined || show.kind == "outline";
+    if (std::holds_alternative<TablePtr>(results[i]))
+      fail_no_mesh(results[i], file_name_of(origin_of(file, show.of.empty() ? file.steps.back().name : show.of)));
     std::vector<DatasetPtr> parts;
     for_each_dataset(results[i], [&](const std::string&, const DatasetPtr& d) { parts.push_back(d); });
     const auto words = words_of_parts(parts, show);

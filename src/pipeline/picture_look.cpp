@@ -51,6 +51,23 @@ std::string free_name(const PipelineFile& file, const std::string& wanted) {
 
 }  // namespace
 
+void fail_no_mesh(const Data& data, const std::string& where) {
+  const Table* table = nullptr;
+  std::string parts;
+  if (auto* t = std::get_if<TablePtr>(&data)) table = t->get();
+  if (auto* c = std::get_if<CollectionPtr>(&data))
+    for (const Collection::Part& part : (*c)->parts)
+      if (std::holds_alternative<TablePtr>(part.data)) parts += (parts.empty() ? "" : ", ") + part.name;
+  if (!parts.empty()) fail_usage(fmt::format("holds tables ({}) and no mesh to show", parts), where, "table_to_points needs one table");
+  if (!table) fail_usage("there is no mesh to show", where);
+  std::vector<std::string> numbers;
+  for (size_t i = 0; i < table->columns.size(); ++i)
+    if (!table->words(i)) numbers.push_back(table->columns[i].name);
+  if (numbers.size() < 2) fail_usage("is a table with fewer than two columns of numbers; there is no mesh to show", where);
+  fail_usage("is a table; there is no mesh to show", where,
+             fmt::format("make points of its rows: -f \"table_to_points x='{}' y='{}'\"", numbers[0], numbers[1]));
+}
+
 Look choose_looks(PipelineFile& file, const PictureOptions& options, const std::shared_ptr<Cache>& cache, std::vector<Data>& held,
                   std::vector<std::string>& notes, Context& context) {
   GraphOptions graph_options;
@@ -65,11 +82,16 @@ Look choose_looks(PipelineFile& file, const PictureOptions& options, const std::
     for (const auto& [name, id] : built.nodes)
       if (name == end) node = id;
     const Data data = held.emplace_back(built.graph.evaluate(node, {}, context));
+    // The largest part speaks for all; one with values before one with a mask or a numbering alone.
     DatasetPtr largest;
+    bool has_values = false;
     for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) {
-      if (!largest || d->point_count() > largest->point_count()) largest = d;
+      const Field* f = automatic_field(*d);
+      const bool values = f && f->role != Role::labels;
+      if (!largest || (values && !has_values) || (values == has_values && d->point_count() > largest->point_count()))
+        largest = d, has_values = values;
     });
-    if (!largest) fail_usage("there is no mesh to show", end);
+    if (!largest) fail_no_mesh(data, file_name_of(origin_of(file, end)));
     if (!field.empty()) largest->fields().require(field);
     const Look look = choose_look(*largest, field, extension_of(origin_of(file, end)));
     notes.push_back(ends.size() > 1 ? fmt::format("{}: {}", file_name_of(origin_of(file, end)), look.reason) : look.reason);

@@ -26,6 +26,9 @@ struct StatedPicture {
 /// Throws Error(usage).
 StatedPicture stated_in(const PipelineFile& file);
 
+/// Throws Error(usage) for data without a mesh; of tables it says how to make points.
+[[noreturn]] void fail_no_mesh(const Data& data, const std::string& where);
+
 /// Outlines have one colour; all other ways to show take the words of ColoringParams.
 bool colors_by_field(std::string_view kind);
 /// The file a step's data comes from, for hints by extension; "" for sources.

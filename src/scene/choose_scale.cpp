@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which colours suit a field when nobody says.
 #include "base/text.h"
+#include "color/colormap_file.h"
 #include "color/parse_color.h"
 #include "data/lattice.h"
 #include "scene/show.h"
@@ -46,6 +47,20 @@ double share_of_equal_neighbours(const Field& field, size_t nx, double backgroun
 
 double nice_symmetric(const Range& r) { return std::max(std::abs(r.lo), std::abs(r.hi)); }
 
+// The categories of a file where most values of the data are among them; values without a category of their own take the colours
+// in order. Data with other or more values gets the colours as bands over the range.
+void take_categories(const FileColormap& file, const Field& field, ColorScale& s, Context& context) {
+  const auto is_category = [&](double v) { return std::find(file.labels.begin(), file.labels.end(), v) != file.labels.end(); };
+  const auto met = size_t(std::count_if(s.labels.begin(), s.labels.end(), is_category));
+  if (file.labels.empty() ? s.labels.size() <= file.map.colors.size() : 2 * met >= s.labels.size()) {
+    if (!file.labels.empty()) s.labels = file.labels, s.label_names = file.label_names;
+    return;
+  }
+  s.labels.clear();
+  context.warn(fmt::format("the values of '{}' are not the categories of the colour map '{}'; its {} colours are drawn as bands",
+                           field.name, s.map.name, file.map.colors.size()));
+}
+
 }  // namespace
 
 bool looks_like_labels(const Dataset& data, const Field& field) {
@@ -73,7 +88,9 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
     r = {0, 1};
   }
   const bool automatic = p.map == "auto";
-  const bool labels = automatic ? p.range.empty() && looks_like_labels(data, field) : find_colormap(p.map).categorical();
+  const std::optional<FileColormap> file = names_colormap_file(p.map) ? std::optional(find_file_colormap(p.map)) : std::nullopt;
+  const Colormap asked = automatic ? Colormap{} : file ? file->map : find_colormap(p.map);
+  const bool labels = automatic ? p.range.empty() && looks_like_labels(data, field) : asked.categorical();
   if (!p.range.empty() && (p.range.size() != 2 || !(p.range[0] < p.range[1])))
     fail_usage("range needs two numbers, the lower one first", "range", "like range=0,100");
 
@@ -95,7 +112,7 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
   }
   const bool is_signed = r.lo < 0 && r.hi > 0 && std::min(-r.lo, r.hi) > 0.05 * std::max(-r.lo, r.hi);
   if (automatic) s.map = find_colormap(labels ? "labels" : is_signed && s.kind != ScaleKind::log ? "coolwarm" : "sight");
-  else s.map = find_colormap(p.map);
+  else s.map = asked;
   if (s.map.kind == MapKind::unsafe)
     context.warn(fmt::format(
         "colour map '{}' is not perceptually uniform: its lightness rises and falls, so it shows edges that are not in the data; "
@@ -104,7 +121,7 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
 
   if (!p.range.empty()) {
     s.lo = p.range[0], s.hi = p.range[1];
-  } else if (s.map.kind == MapKind::diverging && is_signed) {
+  } else if (s.map.kind == MapKind::diverging && is_signed && !(file && file->hard_hinge)) {
     s.hi = nice_symmetric(r), s.lo = -s.hi;
   } else {
     s.lo = r.lo, s.hi = r.hi;
@@ -117,7 +134,13 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
   if (s.kind == ScaleKind::symlog) s.linear_threshold = p.linear_threshold > 0 ? p.linear_threshold : nice_symmetric({s.lo, s.hi}) * 1e-3;
   if (labels) {
     s.labels = distinct_values(field, 4096);
+    if (file) take_categories(*file, field, s, context);
     if (!s.labels.empty()) s.lo = s.labels.front(), s.hi = std::max(s.labels.back(), s.lo + 1);
+  }
+  if (file) {
+    s.below = file->below, s.above = file->above;
+    if (file->nan) s.nan = *file->nan;
+    if (file->hard_hinge && s.kind == ScaleKind::linear) s.map = hinged(*file, s.lo, s.hi);
   }
   if (!p.below.empty()) s.below = parse_color(p.below, "below");
   if (!p.above.empty()) s.above = parse_color(p.above, "above");

@@ -83,7 +83,7 @@ void choose_view(const Box3& b, const std::string& extension, Look& look) {
   if (b.empty()) return;
   const Vec3 s = b.size();
   const double most = std::max({s.x, s.y, s.z});
-  const bool graphics = extension == "obj" || extension == "ply";
+  const bool graphics = extension == "obj" || extension == "ply" || extension == "glb" || extension == "gltf";
   const double flat = 1e-6 * most;
   if (s.z <= flat) {
     look.direction = {0, 0, 1}, look.up = {0, 1, 0}, look.parallel = true;

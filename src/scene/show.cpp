@@ -14,7 +14,7 @@ namespace sg {
 void describe(Schema& s, ColoringParams& p) {
   s("field", p.field, "Field to colour by; default: the active scalar; 'none' for one colour.");
   s("component", p.component, "Component of a field with several; -1 is the magnitude.").range(-1, 1e6);
-  s("map", p.map, "Colour map (see: sightglass colormap); 'auto' looks at the data.");
+  s("map", p.map, "Colour map (see: sightglass colormap), or a file: FILE.cpt, FILE.json:NAME; 'auto' looks at the data.");
   s("range", p.range, "Values at the two ends of the map; default: the range of the data.").unit("@field");
   s("scale", p.scale, "How values spread over the map.").choices({"linear", "log", "symlog"});
   s("linear_threshold", p.linear_threshold, "symlog: linear between minus and plus this; 0 chooses a thousandth of the range.").at_least(0);
@@ -66,7 +66,7 @@ namespace {
 bool is_numbering(const Field& f) {
   if (f.components() != 1) return false;
   const std::string name = to_lower(f.name);
-  for (std::string_view end : {"id", "ids", "nodenums", "elemnums", "number"})
+  for (std::string_view end : {"id", "ids", "nodenums", "elemnums", "number", "valid"})
     if (name.ends_with(end)) return true;
   const size_t n = std::min<size_t>(f.array.count(), 1000);
   if (n < 16) return false;

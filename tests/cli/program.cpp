@@ -36,8 +36,10 @@ Ran sightglass(const std::vector<std::string>& args, const std::string& folder, 
     ::_exit(127);
   }
   int status = 0;
-  ::waitpid(child, &status, 0);
+  struct rusage usage {};
+  ::wait4(child, &status, 0, &usage);
   Ran r;
+  r.peak_bytes = size_t(usage.ru_maxrss) * 1024;
   r.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   r.out = std::string(MappedFile(out).text());
   r.err = std::string(MappedFile(err).text());

@@ -9,6 +9,7 @@ namespace sg::test {
 struct Ran {
   int status = -1;  ///< exit code; 128 + signal when it was killed
   std::string out, err;
+  size_t peak_bytes = 0;  ///< most memory it held at a time, mapped files included
 };
 /// Runs `sightglass ARGS...` in `folder` (default: the temporary folder).
 /// `largest_file` > 0 limits the size of files it can write, as a full disk does.

@@ -91,7 +91,7 @@ TEST_CASE("operations: a wrong number of inputs and a table for a mesh are refus
   CHECK(test::error_of([] { run("add", {test::line_of(2)}); }) == "add: takes 2 inputs, not 1");
   CHECK(test::error_of([] { run("ramp", {test::line_of(2)}); }).find("takes 0 inputs") != std::string::npos);
   CHECK(test::error_of([] { run("join", {}); }).find("join: takes") == 0);
-  CHECK(test::error_of([] { run("scale", {TablePtr(std::make_shared<Table>())}); }) == "scale: needs a mesh but got a table");
+  CHECK(test::error_of([] { run("scale", {TablePtr(std::make_shared<Table>())}); }).find("scale: needs a mesh but got a table") == 0);
   CHECK(test::error_of([] { run("scale", {DatasetPtr()}); }) == "scale: got no data");
 }
 

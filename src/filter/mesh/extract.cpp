@@ -131,7 +131,13 @@ class BoxCells {
       const auto d = lattice_dims(mesh);
       homes_.push_back({0, 0, {std::max<size_t>(d[0], 2) - 1, std::max<size_t>(d[1], 2) - 1, std::max<size_t>(d[2], 2) - 1}, d});
       axes_ = int(d[0] > 1) + int(d[1] > 1) + int(d[2] > 1);
-      const bool box = !std::holds_alternative<CurvilinearGrid>(mesh);
+      bool box = !std::holds_alternative<CurvilinearGrid>(mesh);
+      if (auto* g = std::get_if<UniformGrid>(&mesh))  // voxels and pixels lie along the axes: those of turned grids do not
+        for (int r = 0; r < 3; ++r)
+          for (int c = 0; c < 3; ++c) box = box && (r == c || g->direction.m[r][c] == 0);
+      if (auto* g = std::get_if<UniformGrid>(&mesh); g && !box && axes_ == 3)  // no hexahedron is inside out
+        mirrored_ = dot(cross(g->direction.column(0) * g->spacing[0], g->direction.column(1) * g->spacing[1]),
+                        g->direction.column(2) * g->spacing[2]) < 0;
       const CellType types[] = {CellType::vertex, CellType::line, box ? CellType::pixel : CellType::quad,
                                 box ? CellType::voxel : CellType::hexahedron};
       type_ = types[axes_];
@@ -150,7 +156,7 @@ class BoxCells {
     const size_t first = h.first_point + at[0] * stride[0] + at[1] * stride[1] + at[2] * stride[2];
     const bool ring = type_ == CellType::quad || type_ == CellType::hexahedron;
     for (size_t c = 0; c < corners(); ++c) {
-      const size_t x = ring ? (c ^ (c >> 1)) & 1 : c & 1;
+      const size_t x = (ring ? (c ^ (c >> 1)) & 1 : c & 1) ^ size_t(mirrored_);
       size_t id = first;
       if (n > 0) id += x * step[0];
       if (n > 1) id += (c >> 1 & 1) * step[1];
@@ -166,6 +172,7 @@ class BoxCells {
   };
   std::vector<Home> homes_;
   int axes_ = 3;
+  bool mirrored_ = false;
   CellType type_ = CellType::voxel;
 };
 

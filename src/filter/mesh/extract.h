@@ -9,8 +9,9 @@
 namespace sg {
 
 /// The cells of the list (ascending), their points in input order, all fields and ghosts. A SurfaceMesh stays one and a PointCloud
-/// stays one (its "cells" are its points); every other kind becomes an UnstructuredMesh: lattices of hexahedra (voxels, quads,
-/// pixels, lines, vertices), AMR of voxels or pixels; polyhedra keep their faces. `who` names the operation in errors.
+/// stays one (its "cells" are its points); every other kind becomes an UnstructuredMesh: lattices of voxels, pixels (hexahedra, quads
+/// where they are curvilinear or turned), lines, vertices, AMR of voxels or pixels; polyhedra keep their faces. `who` names the operation
+/// in errors.
 DatasetPtr extract_cells(const DatasetPtr& in, std::span<const int64_t> cells, std::string_view who);
 
 }  // namespace sg

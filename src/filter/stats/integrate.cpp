@@ -4,27 +4,13 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "data/cell_map.h"
+#include "filter/stats/stats_parts.h"
 
 namespace sg {
 
 namespace {
 
 constexpr size_t grain = 1 << 12;
-
-// Neumaier's compensated sum: integrals of millions of cells keep their last places.
-struct Sum {
-  double sum = 0, rest = 0;
-  void add(double x) {
-    const double t = sum + x;
-    rest += std::fabs(sum) >= std::fabs(x) ? (sum - t) + x : (x - t) + sum;
-    sum = t;
-  }
-  void add(const Sum& s) {
-    add(s.sum);
-    rest += s.rest;
-  }
-  double value() const { return sum + rest; }
-};
 
 struct Column {
   const Field* field;
@@ -43,9 +29,9 @@ int highest_dimension(const DatasetPtr& d) {
 }
 
 // Sums of the columns, the measure last.
-std::vector<Sum> sums_of(const DatasetPtr& d, int dimension, const std::vector<Column>& columns, Context& ctx) {
+std::vector<ExactSum> sums_of(const DatasetPtr& d, int dimension, const std::vector<Column>& columns, Context& ctx) {
   const size_t n = columns.size() + 1;
-  using Sums = std::vector<Sum>;
+  using Sums = std::vector<ExactSum>;
   return parallel_reduce(
       d->cell_count(), grain, Sums(n),
       [&](size_t begin, size_t end) {
@@ -86,10 +72,10 @@ struct Row {
   Association association;
   int component;
   std::string unit;
-  Sum sum, measure;
+  ExactSum sum, measure;
 };
 
-void add_to(std::vector<Row>& rows, const Field& f, int component, const Sum& sum, const Sum& measure) {
+void add_to(std::vector<Row>& rows, const Field& f, int component, const ExactSum& sum, const ExactSum& measure) {
   for (Row& r : rows)
     if (r.field == f.name && r.association == f.association && r.component == component) {
       r.sum.add(sum), r.measure.add(measure);
@@ -98,13 +84,7 @@ void add_to(std::vector<Row>& rows, const Field& f, int component, const Sum& su
   rows.push_back({f.name, f.association, component, f.unit, sum, measure});
 }
 
-template <class T>
-void add_column(Table& t, const char* name, std::vector<T> values, std::vector<std::string> labels = {}) {
-  t.columns.push_back({name, Association::whole, Array::from_vector(std::move(values)), "", Role::none});
-  t.labels.push_back(std::move(labels));
-}
-
-TablePtr table_of(const std::vector<Row>& rows, const Sum& whole, int dimension) {
+TablePtr table_of(const std::vector<Row>& rows, const ExactSum& whole, int dimension) {
   std::vector<std::string> names;
   std::vector<int32_t> field, association, component;
   std::vector<double> integral, mean, measure;
@@ -138,7 +118,7 @@ TablePtr integrate(const Data& in, const IntegrateParams& p, Context& ctx) {
   });
   if (dimension < 0) fail_usage("has no cell to integrate over", "integrate", "hidden and duplicate cells do not count");
   std::vector<Row> rows;
-  Sum whole;
+  ExactSum whole;
   for (const std::string& name : p.fields) {
     bool found = false;
     for (const DatasetPtr& d : parts) found = found || d->fields().find(name);
@@ -151,7 +131,7 @@ TablePtr integrate(const Data& in, const IntegrateParams& p, Context& ctx) {
       if (asked && f.association != Association::whole)
         for (int c = 0; c < f.components(); ++c) columns.push_back({&f, c});
     }
-    const std::vector<Sum> sums = sums_of(d, dimension, columns, ctx);
+    const std::vector<ExactSum> sums = sums_of(d, dimension, columns, ctx);
     for (size_t k = 0; k < columns.size(); ++k) add_to(rows, *columns[k].field, columns[k].component, sums[k], sums.back());
     whole.add(sums.back());
   }

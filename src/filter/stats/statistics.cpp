@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "data/field_ops.h"
+#include "filter/stats/stats_parts.h"
 
 namespace sg {
 
@@ -40,30 +41,21 @@ std::vector<double> numbers_of(const Array& a, int component, const Array& ghost
   return v;
 }
 
-// Neumaier's sum of f(v) in fixed chunks.
+// The sum of f(v) in fixed chunks.
 template <class F>
 double exact_sum(const std::vector<double>& v, F&& f) {
-  struct Part {
-    double sum = 0, rest = 0;
-    void add(double x) {
-      const double t = sum + x;
-      rest += std::fabs(sum) >= std::fabs(x) ? (sum - t) + x : (x - t) + sum;
-      sum = t;
-    }
-  };
-  const Part total = parallel_reduce(
-      v.size(), grain, Part{},
-      [&](size_t begin, size_t end) {
-        Part p;
-        for (size_t i = begin; i < end; ++i) p.add(f(v[i]));
-        return p;
-      },
-      [](Part a, Part b) {
-        a.add(b.sum);
-        a.rest += b.rest;
-        return a;
-      });
-  return total.sum + total.rest;
+  return parallel_reduce(
+             v.size(), grain, ExactSum{},
+             [&](size_t begin, size_t end) {
+               ExactSum p;
+               for (size_t i = begin; i < end; ++i) p.add(f(v[i]));
+               return p;
+             },
+             [](ExactSum a, const ExactSum& b) {
+               a.add(b);
+               return a;
+             })
+      .value();
 }
 
 double quantile(std::vector<double>& v, double q) {
@@ -108,12 +100,6 @@ void add_row(Rows& rows, const DatasetPtr& in, const Field& f, int component) {
     row[0] = quantile(v, 0), row[1] = quantile(v, 0.25), row[2] = quantile(v, 0.5), row[3] = quantile(v, 0.75), row[4] = quantile(v, 1);
   }
   for (int i = 0; i < 9; ++i) rows.number[i].push_back(row[i]);
-}
-
-template <class T>
-void add_column(Table& t, const char* name, std::vector<T> values, std::vector<std::string> labels = {}) {
-  t.columns.push_back({name, Association::whole, Array::from_vector(std::move(values)), "", Role::none});
-  t.labels.push_back(std::move(labels));
 }
 
 }  // namespace

@@ -27,6 +27,8 @@ class Header {
   }
 
  private:
+  static constexpr uint64_t longest_name = 256;  // NC_MAX_NAME
+
   struct Extent {
     std::string name;
     uint64_t begin, bytes;
@@ -49,6 +51,7 @@ class Header {
   uint64_t count() { return wide_ ? take<uint64_t>() : take<uint32_t>(); }
   std::string name() {
     const uint64_t n = count();
+    if (n > longest_name) fail(fmt::format("a name of {} bytes; {} are allowed", n, longest_name));  // the library copies without a look
     need(n);
     std::string s(file_.text().substr(at_, n));
     skip(n);

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Control points of colour maps, and even samples of them.
+#pragma once
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "color/colormap.h"
+
+namespace sg {
+
+struct ColorNode {
+  double position;
+  Vec3f color;  ///< sRGB
+};
+
+enum class NodeSpace { rgb, hsv, lab, diverging };
+
+/// sRGB between two colours: linear in sRGB, in HSV (hues do not wrap), in CIELAB, or in Msh (Moreland 2009).
+Vec3f between(Vec3f a, Vec3f b, double t, NodeSpace space);
+
+/// Hue in degrees, saturation and value in [0,1].
+Vec3f hsv_to_rgb(double hue, double saturation, double value);
+
+/// Even samples from the first to the last node, which are sorted; two nodes at one place make a step. Evenly spaced nodes without
+/// steps in RGB are taken as they are, others are sampled finely.
+std::vector<Vec3f> sample_nodes(std::span<const ColorNode> nodes, NodeSpace space);
+
+/// What the lightness says: rising or falling, with one extremum near the middle, closed, or none of these (unsafe).
+MapKind kind_of_colors(std::span<const Vec3f> colors);
+
+}  // namespace sg

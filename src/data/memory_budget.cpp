@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "data/memory_budget.h"
+
+#include <atomic>
+
+#include "base/error.h"
+#include "base/text.h"
+
+namespace sg {
+
+namespace {
+std::atomic<size_t> limit{0}, in_use{0};
+}  // namespace
+
+void set_memory_limit(size_t bytes) { limit = bytes; }
+size_t array_memory() { return in_use; }
+
+void detail::claim_memory(size_t bytes) {
+  const size_t before = in_use.fetch_add(bytes);
+  const size_t most = limit;
+  if (most == 0 || before + bytes <= most) return;
+  in_use -= bytes;
+  fail_usage(fmt::format("{} more are needed, {} of the {} allowed are in use", human_bytes(bytes), human_bytes(before), human_bytes(most)),
+             "--memory", "read a smaller part (--region, --stride, --fields, --piece), or allow more; --explain shows the steps");
+}
+
+void detail::return_memory(size_t bytes) noexcept { in_use -= bytes; }
+
+}  // namespace sg

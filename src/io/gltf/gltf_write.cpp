@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+// Surfaces and point clouds as glTF 2.0: one node and mesh per dataset, with a primitive for its triangles, lines and vertices each.
+// Point fields other than normals, texture coordinates and colours become attributes _NAME; glTF has no cell fields. A .gltf holds
+// its buffer as a data: URI.
+#include <nlohmann/json.hpp>
+
+#include "base/file.h"
+#include "io/formats.h"
+#include "io/gltf/gltf_bytes.h"
+#include "io/surface_parts.h"
+
+namespace sg {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+int component_type(ElementType t) {
+  switch (t) {
+    case ElementType::i8: return 5120;
+    case ElementType::u8: return 5121;
+    case ElementType::i16: return 5122;
+    case ElementType::u16: return 5123;
+    case ElementType::u32: return 5125;
+    default: return 5126;
+  }
+}
+
+// Attributes are 8 and 16 bit integers or f32.
+Array as_attribute(const Array& a) {
+  const bool kept = is_float(a.type()) ? a.type() == ElementType::f32 : element_size(a.type()) <= 2;
+  return (kept ? a : a.converted(ElementType::f32)).made_packed();
+}
+
+struct Writer {
+  const std::string& path;
+  Context& context;
+  Json root;
+  std::string bytes{};
+  bool cells_left = false;
+
+  // Elements padded to multiples of four bytes; returns the accessor.
+  int put(const Array& a, int target, bool normalized = false, bool with_range = false) {
+    const size_t size = element_size(a.type()) * size_t(a.components()), stride = target == 34962 ? (size + 3) / 4 * 4 : size;
+    while (bytes.size() % 4) bytes += '\0';
+    const size_t begin = bytes.size();
+    for (size_t i = 0; i < a.count(); ++i) {
+      bytes.append(reinterpret_cast<const char*>(a.raw()) + i * size, size);
+      bytes.append(stride - size, '\0');
+    }
+    Json view = {{"buffer", 0}, {"byteOffset", begin}, {"byteLength", bytes.size() - begin}};
+    if (target == 34962) view["byteStride"] = stride;
+    view["target"] = target;
+    root["bufferViews"].push_back(view);
+    const char* shape = a.components() == 1 ? "SCALAR" : a.components() == 2 ? "VEC2" : a.components() == 3 ? "VEC3" : "VEC4";
+    Json accessor = {
+        {"bufferView", root["bufferViews"].size() - 1}, {"componentType", component_type(a.type())}, {"count", a.count()}, {"type", shape}};
+    if (normalized) accessor["normalized"] = true;
+    if (with_range) {
+      Json lo, hi;
+      const FieldStats s = field_stats(a);
+      for (const Range& r : s.range) lo.push_back(r.empty() ? 0 : r.lo), hi.push_back(r.empty() ? 0 : r.hi);
+      accessor["min"] = lo, accessor["max"] = hi;
+    }
+    root["accessors"].push_back(accessor);
+    return int(root["accessors"].size()) - 1;
+  }
+
+  int put_indices(const std::vector<int64_t>& ids, size_t points) {
+    if (points < 65535) return put(Array::from_vector(std::vector<uint16_t>(ids.begin(), ids.end())), 34963);
+    return put(Array::from_vector(std::vector<uint32_t>(ids.begin(), ids.end())), 34963);
+  }
+
+  Json attributes(const Dataset& d, const Points& points) {
+    Json r;
+    r["POSITION"] = put(points.xyz.converted(ElementType::f32), 34962, false, true);
+    int tcoords = 0, colors = 0;
+    for (const Field& f : d.fields()) {
+      cells_left = cells_left || f.association == Association::cell;
+      if (f.association != Association::point) continue;
+      const int n = f.components();
+      const bool byte = f.array.type() == ElementType::u8;
+      if (f.role == Role::normals && n == 3 && !r.contains("NORMAL")) {
+        r["NORMAL"] = put(f.array.converted(ElementType::f32), 34962);
+      } else if (f.role == Role::tcoords && n == 2) {
+        r[fmt::format("TEXCOORD_{}", tcoords++)] = put(f.array.converted(ElementType::f32), 34962);
+      } else if (f.role == Role::colors && (n == 3 || n == 4) && (byte || is_float(f.array.type()))) {
+        r[fmt::format("COLOR_{}", colors++)] = put(byte ? f.array.made_packed() : f.array.converted(ElementType::f32), 34962, byte);
+      } else if (n <= 4) {
+        r["_" + f.name] = put(as_attribute(f.array), 34962);
+      } else {
+        for (int c = 0; c < n; ++c) r[fmt::format("_{}_{}", f.name, c)] = put(as_attribute(f.array.component(c)), 34962);
+      }
+    }
+    return r;
+  }
+
+  void add(const std::string& name, const Dataset& d) {
+    const auto* cloud = d.as<PointCloud>();
+    const Points& points = cloud ? cloud->points : surface_to_write(d, "glTF", path).points;
+    const size_t n = points.count();
+    if (n == 0) return context.warn(fmt::format("{}: '{}' has no points and is left out", path, name));
+    Json primitives;
+    const Json of_points = attributes(d, points);
+    auto primitive = [&](int mode, const std::vector<int64_t>& ids) {
+      if (!ids.empty()) primitives.push_back({{"attributes", of_points}, {"indices", put_indices(ids, n)}, {"mode", mode}});
+    };
+    if (!cloud) {
+      const auto& mesh = *d.as<SurfaceMesh>();
+      std::vector<int64_t> ids;
+      const CellsView lines = cells_view(mesh.lines), vertices = cells_view(mesh.vertices);
+      primitive(4, surface_triangles(mesh));
+      for (size_t c = 0; c < lines.count; ++c)
+        for (size_t k = 1; k < lines.size(c); ++k) ids.insert(ids.end(), {lines.point(c, k - 1), lines.point(c, k)});
+      primitive(1, ids);
+      ids.clear();
+      for (size_t c = 0; c < vertices.count; ++c)
+        for (size_t k = 0; k < vertices.size(c); ++k) ids.push_back(vertices.point(c, k));
+      primitive(0, ids);
+    }
+    if (primitives.empty()) primitives.push_back({{"attributes", of_points}, {"mode", 0}});
+    root["meshes"].push_back({{"primitives", primitives}});
+    Json node = {{"mesh", root["meshes"].size() - 1}};
+    if (!name.empty()) node["name"] = name;
+    const Vec3 o = points.origin;
+    if (!(o == Vec3())) node["translation"] = {o.x, o.y, o.z};
+    root["nodes"].push_back(node);
+    root["scenes"][0]["nodes"].push_back(root["nodes"].size() - 1);
+  }
+};
+
+void append_word(std::string& s, uint32_t v) { s.append(reinterpret_cast<const char*>(&v), 4); }
+
+}  // namespace
+
+void write_gltf(const std::string& path, const Data& data, const WriteOptions&, Context& context) {
+  Writer w{path, context, {{"asset", {{"version", "2.0"}, {"generator", "sightglass"}}}, {"scene", 0}}};
+  for_each_dataset(data, [&](const std::string& name, const DatasetPtr& d) { w.add(name, *d); });
+  if (w.root["meshes"].empty()) fail_usage("there is no surface to write", path);
+  if (w.cells_left) context.warn(path + ": cell fields are not written; glTF has values at points (filter cell_to_point first)");
+  while (w.bytes.size() % 4) w.bytes += '\0';
+  Json buffer = {{"byteLength", w.bytes.size()}};
+  const bool binary = extension_of(path) == "glb";
+  if (!binary) buffer["uri"] = "data:application/octet-stream;base64," + to_base64(w.bytes);
+  w.root["buffers"].push_back(buffer);
+  std::string json = w.root.dump(-1, ' ', false, Json::error_handler_t::replace);
+  if (!binary) return write_file(path, json);
+  while (json.size() % 4) json += ' ';
+  if (w.bytes.size() + json.size() > UINT32_MAX - 28)
+    fail_usage(fmt::format("{} bytes do not fit into one .glb", w.bytes.size()), path, "4 GiB is its limit; write .vtp");
+  std::string head = "glTF";
+  for (const size_t v : {size_t(2), 28 + json.size() + w.bytes.size(), json.size()}) append_word(head, uint32_t(v));
+  head += "JSON" + json;
+  append_word(head, uint32_t(w.bytes.size()));
+  head.append("BIN\0", 4);
+  AtomicFile file(path);
+  file.write(head);
+  file.write(w.bytes);
+  file.commit();
+}
+
+}  // namespace sg

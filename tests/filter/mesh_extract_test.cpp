@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filter/mesh/extract_ids.h"
+
+#include "filter/field/gradient.h"
+#include "filter/probe/resample.h"
+#include "filter/scalar/contour.h"
+#include "support/test.h"
+
+using namespace sg;
+
+namespace {
+
+DatasetPtr grid(Vec3 origin) {
+  UniformGrid g;
+  g.dims = {9, 9, 9};
+  g.origin = origin;
+  g.spacing = {0.25, 0.25, 0.25};
+  std::vector<float> v;
+  for (size_t i = 0; i < 729; ++i) {
+    const Vec3 p{double(i % 9) - 4, double(i / 9 % 9) - 4, double(i / 81) - 4};
+    v.push_back(float(length(p)));
+  }
+  FieldSet f;
+  f.add({"r", Association::point, Array::from_vector(v), "", Role::scalars});
+  std::vector<int32_t> block(512);
+  for (size_t c = 0; c < 512; ++c) block[c] = int32_t(c / 64);
+  f.add({"block", Association::cell, Array::from_vector(block), "", Role::labels});
+  return make_dataset(g, std::move(f));
+}
+
+}  // namespace
+
+TEST_CASE("extract: cells by their numbers, by a field of ids, by their points, and the others") {
+  const DatasetPtr d = grid({0, 0, 0});
+  Context ctx;
+  const DatasetPtr some = extract(d, {{5, 500}, "cell", {}, false}, ctx);
+  CHECK(some->cell_count() == 2);
+  CHECK(some->fields().require("block").array.get(1) == 500 / 64);
+  CHECK(extract(d, {{5, 500}, "cell", {}, true}, ctx)->cell_count() == 510);
+  CHECK(extract(d, {{2, 3}, "cell", {"block"}, false}, ctx)->cell_count() == 128);
+  CHECK(extract(d, {{0}, "point", {}, false}, ctx)->cell_count() == 1);
+  CHECK(extract(d, {{364}, "point", {}, false}, ctx)->cell_count() == 8);  // the middle
+  CHECK(test::error_of([&] { extract(d, {{512}, "cell", {}, false}, ctx); }).find("0 to 511") != std::string::npos);
+  CHECK(test::error_of([&] { extract(d, {{}, "cell", {}, false}, ctx); }).find("no numbers") != std::string::npos);
+  CHECK(test::error_of([&] { extract(d, {{1}, "cell", {"r"}, false}, ctx); }).size() > 0);
+}
+
+TEST_CASE("far from zero: contours, gradients and resampling at an offset of 1e7 are those at zero, moved") {
+  const Vec3 far{1e7, -2e7, 3e7};
+  const DatasetPtr near_grid = grid({0, 0, 0}), far_grid = grid(far);
+  Context ctx;
+  ContourParams c;
+  c.values = {2.5};
+  const DatasetPtr a = contour(near_grid, c, ctx), b = contour(far_grid, c, ctx);
+  REQUIRE(a->point_count() == b->point_count());
+  const Points &p = a->as<SurfaceMesh>()->points, &q = b->as<SurfaceMesh>()->points;
+  double worst = 0;
+  for (size_t i = 0; i < p.count(); ++i) worst = std::max(worst, length(q.at(i) - far - p.at(i)));
+  CHECK(worst < 2e-7);  // places of f32 offsets from a double origin, not of f32 coordinates of 1e7 (which are 1 apart)
+  const Array g = gradient(near_grid, {{"r"}, "g"}, ctx)->fields().require("g").array,
+              h = gradient(far_grid, {{"r"}, "g"}, ctx)->fields().require("g").array;
+  CHECK(std::memcmp(g.raw(), h.raw(), g.bytes()) == 0);
+  ResampleParams r;
+  r.dims = {6, 7, 5};
+  const DatasetPtr s = resample(near_grid, r, ctx), t = resample(far_grid, r, ctx);
+  const Array &u = s->fields().require("r").array, &v = t->fields().require("r").array;
+  for (size_t i = 0; i < u.count(); ++i) CHECK(v.get(i) == doctest::Approx(u.get(i)).epsilon(1e-6));
+}
