@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/mesh/curved_faces.h"
 
-#include <algorithm>
+#include <climits>
 
 #include "base/parallel.h"
 #include "data/cell_topology.h"
@@ -10,7 +10,7 @@ namespace sg::detail {
 
 namespace {
 
-constexpr int most_segments = 16;
+constexpr int most_segments = 32;
 constexpr size_t grain = 256;
 
 int halvings(int order) {
@@ -31,7 +31,8 @@ bool blends(const Field& f) {
 // Values at the grid's points, each in units of its tolerance: position first.
 struct CurvedSkin::Work {
   size_t width = 3;
-  std::vector<double> nodes, points, n;
+  int known = -1;  // the grid halved so often has values
+  std::vector<double> nodes, points, shares;
   const double* at(size_t p) const { return points.data() + p * width; }
   Vec3 position(size_t p) const { return {at(p)[0], at(p)[1], at(p)[2]}; }
 
@@ -85,7 +86,7 @@ CurvedSkin::CurvedSkin(const Dataset& in, const UnstructuredMesh& mesh, std::vec
       &ctx);
   for (Edge& e : edges_) {
     e.first_point = int64_t(points_);
-    if (e.grid) points_ += size_t(e.grid->finest[0]) + 1;
+    if (e.grid) points_ += e.grid->points(e.level);
   }
   parallel_for(found_.size(), 1, [&](size_t c, size_t) {
     Work w;
@@ -104,10 +105,10 @@ CurvedSkin::CurvedSkin(const Dataset& in, const UnstructuredMesh& mesh, std::vec
       Item& f = found_[c].items[i];
       if (f.level == 0) continue;
       f.first_point = int64_t(points_);
-      faces_.push_back({f.first_point, {c, i}});
-      const ShapeGrid& g = *known_grid(f.type, f.count, f.orders);
-      points_ += g.values.size() / g.shape->nodes();
+      faces_.push_back({f.first_point, {c, i, 0}});
+      points_ += known_grid(f.type, f.count, f.orders)->points(f.level);
     }
+  find_bezier_nodes();
 }
 
 // The sides of a chunk's faces and curves as curves in canonical direction: from the smaller end.
@@ -201,33 +202,48 @@ const ShapeGrid* CurvedSkin::grid(CellType type, size_t nodes, std::array<int, 3
 
 double CurvedSkin::weight(int64_t id) const { return rational_.empty() ? 1 : rational_.get(size_t(id)); }
 
-// Values of a face or curve at all points of its finest grid.
+// The nodes of a face or curve with their weights; its grid still has no values.
 void CurvedSkin::load(std::span<const int64_t> ids, const ShapeGrid& g, Work& w) const {
   w.width = 3;
   for (const Scaled& f : fields_) w.width += size_t(f.array.components());
-  const size_t n = ids.size(), points = g.values.size() / n;
-  w.nodes.resize(n * w.width);
-  w.points.assign(points * w.width, 0.0);
-  w.n.resize(n);
+  w.nodes.resize(ids.size() * w.width);
+  w.points.resize(g.values.size() / ids.size() * w.width);
+  w.known = -1;
+  w.shares.clear();
   const Vec3 first = at_[size_t(ids[0])];
-  for (size_t k = 0; k < n; ++k) {
-    double* to = &w.nodes[k * w.width];
-    const Vec3 p = (at_[size_t(ids[k])] - first) * scale_;
+  double* to = w.nodes.data();
+  for (int64_t id : ids) {
+    const Vec3 p = (at_[size_t(id)] - first) * scale_;
     *to++ = p.x, *to++ = p.y, *to++ = p.z;
     for (const Scaled& f : fields_)
-      for (int c = 0; c < f.array.components(); ++c) *to++ = f.array.get(size_t(ids[k]), c) * f.scale;
+      for (int c = 0; c < f.array.components(); ++c) *to++ = f.array.get(size_t(id), c) * f.scale;
+    if (!rational_.empty() && is_bezier(g.shape->type())) w.shares.push_back(weight(id));
   }
-  const bool rational = !rational_.empty() && is_bezier(g.shape->type());
-  for (size_t p = 0; p < points; ++p) {
-    double sum = 0;
-    for (size_t k = 0; k < n; ++k) sum += w.n[k] = g.values[p * n + k] * (rational ? weight(ids[k]) : 1.0);
+}
+
+// Values at the points of the grid that is halved `level` times.
+void CurvedSkin::evaluate(const ShapeGrid& g, int level, Work& w) const {
+  const size_t n = g.shape->nodes();
+  auto at = [&](size_t p) {
+    const double* shape = &g.values[p * n];
     double* to = &w.points[p * w.width];
+    std::fill(to, to + w.width, 0.0);
+    double sum = 0;
     for (size_t k = 0; k < n; ++k) {
-      if (w.n[k] == 0) continue;
-      const double share = rational ? w.n[k] / sum : w.n[k];
+      const double share = w.shares.empty() ? shape[k] : shape[k] * w.shares[k];
+      sum += share;
+      if (share == 0) continue;
       for (size_t c = 0; c < w.width; ++c) to[c] += share * w.nodes[k * w.width + c];
     }
-  }
+    if (!w.shares.empty())
+      for (size_t c = 0; c < w.width; ++c) to[c] /= sum;
+  };
+  const int si = g.step(0, level), sj = g.step(1, level), known = w.known;
+  const int ki = known < 0 ? INT_MAX : g.step(0, known), kj = known < 0 ? INT_MAX : g.step(1, known);
+  for (int j = 0; j <= g.finest[1]; j += sj)
+    for (int i = 0; i <= g.finest[0] - (g.triangle ? j : 0); i += si)
+      if (known < 0 || i % ki != 0 || j % kj != 0) at(g.index(i, j));
+  w.known = std::max(known, level);
 }
 
 int CurvedSkin::edge_level(const Edge& e, Work& w) const {
@@ -235,7 +251,8 @@ int CurvedSkin::edge_level(const Edge& e, Work& w) const {
   if (!g || g->levels[0] == 0) return 0;
   load({e.nodes, e.count}, *g, w);
   for (int level = 0; level < g->levels[0]; ++level) {
-    const int step = 1 << (g->levels[0] - level);
+    const int step = g->step(0, level);
+    evaluate(*g, level + 1, w);
     bool fine = true;
     for (int i = 0; i < g->finest[0] && fine; i += step)
       fine = !(w.bend(size_t(i), size_t(i + step), size_t(i + step / 2)) > 1 && w.apart(size_t(i), size_t(i + step)) > 2);
@@ -252,7 +269,8 @@ int CurvedSkin::face_level(const ShapeGrid& g, Work& w) const {
     return w.bend(a, b, g.index((i + k) / 2, (j + l) / 2)) > 1 && w.apart(a, b) > 2;
   };
   for (int level = 0; level < top; ++level) {
-    const int si = 1 << (g.levels[0] - std::min(level, g.levels[0])), sj = 1 << (g.levels[1] - std::min(level, g.levels[1]));
+    const int si = g.step(0, level), sj = g.step(1, level);
+    evaluate(g, level + 1, w);
     bool fine = true;
     for (int j = 0; j <= g.finest[1] && fine; j += sj)
       for (int i = 0; i <= g.finest[0] - (g.triangle ? j : 0) && fine; i += si) {
@@ -277,7 +295,7 @@ int64_t CurvedSkin::edge_point(const Edge& e, int i, int segments) const {
   const int per_node = 1 << e.level;
   if (at == own) return e.nodes[1];
   if (at % per_node == 0) return e.nodes[at == 0 ? 0 : at / per_node + 1];
-  return e.first_point + at * (e.grid->finest[0] / own);
+  return e.first_point + at;
 }
 
 void CurvedSkin::emit_curve(const Edge& e, bool reversed, std::vector<int64_t>& out) const {
@@ -321,8 +339,8 @@ void CurvedSkin::emit_face(const CurvedChunk& chunk, const Item& f, Work& w, Cel
   }
   const ShapeGrid& g = *known_grid(f.type, f.count, f.orders);
   load({ids, f.count}, g, w);
-  const int li = std::min(f.level, g.levels[0]), lj = std::min(f.level, g.levels[1]);
-  const int m = g.order[0] << li, n = g.order[1] << lj, si = g.finest[0] / m, sj = g.finest[1] / n;
+  evaluate(g, f.level, w);
+  const int si = g.step(0, f.level), sj = g.step(1, f.level), m = g.finest[0] / si, n = g.finest[1] / sj;
   auto side_point = [&](uint32_t s, int i, int segments) {
     return edge_point(edges_[use(s).edge], use(s).reversed ? segments - i : i, segments);
   };
@@ -336,7 +354,7 @@ void CurvedSkin::emit_face(const CurvedChunk& chunk, const Item& f, Work& w, Cel
       if (j == n) return side_point(2, m - i, m);
       if (i == 0) return side_point(3, n - j, n);
     }
-    return f.first_point + int64_t(g.index(i * si, j * sj));
+    return f.first_point + i + j * (m + 1);
   };
   auto place = [&](int i, int j) { return w.position(g.index(i * si, j * sj)); };
   for (int j = 0; j < n; ++j)
@@ -416,26 +434,57 @@ void CurvedSkin::merge(std::vector<SurfaceChunk>& chunks, bool outlines) const {
   if (outlines) chunks.push_back(std::move(rims));
 }
 
+// A Bezier cell passes through its corners only; its other nodes are control points, drawn where the Bernstein polynomials have their
+// place. On an edge only the edge's own nodes count, so that neighbours agree.
+void CurvedSkin::find_bezier_nodes() {
+  for (uint32_t e = 0; e < edges_.size(); ++e)
+    if (const Edge& edge = edges_[e]; edge.bezier && edge.grid)
+      for (uint32_t k = 2; k < edge.count; ++k)
+        bezier_nodes_.push_back({edge.nodes[k], {no_chunk, e, size_t(k - 1) << edge.grid->levels[0]}});
+  for (uint32_t c = 0; c < found_.size(); ++c)
+    for (uint32_t i = 0; i < found_[c].items.size(); ++i) {
+      const Item& f = found_[c].items[i];
+      if (f.is_curve || f.level > 0 || f.sides == 0 || !is_bezier(f.type)) continue;
+      const ShapeGrid& g = *known_grid(f.type, f.count, f.orders);
+      for (uint32_t k = f.sides; k < f.count; ++k) {  // as many corners as sides
+        const Vec3 at = g.shape->node(k);
+        const size_t point = g.index(int(std::lround(at.x * g.finest[0])), int(std::lround(at.y * g.finest[1])));
+        bezier_nodes_.push_back({found_[c].nodes[f.first_node + k], {c, i, point}});
+      }
+    }
+  std::stable_sort(bezier_nodes_.begin(), bezier_nodes_.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+}
+
 void CurvedSkin::blend(int64_t number, std::vector<int64_t>& ids, std::vector<double>& weights) const {
+  Place place{no_chunk, 0, 0};
   if (size_t(number) < mesh_.points.count()) {
-    ids.push_back(number), weights.push_back(1);
-    return;
+    const auto it =
+        std::lower_bound(bezier_nodes_.begin(), bezier_nodes_.end(), number, [](const auto& b, int64_t x) { return b.first < x; });
+    if (it == bezier_nodes_.end() || it->first != number) {
+      ids.push_back(number), weights.push_back(1);
+      return;
+    }
+    place = it->second;
+  } else if (!faces_.empty() && number >= faces_.front().first) {
+    const auto it = std::upper_bound(faces_.begin(), faces_.end(), number, [](int64_t x, const auto& f) { return x < f.first; }) - 1;
+    const Item& f = found_[it->second.chunk].items[it->second.item];
+    place = it->second;
+    place.at = known_grid(f.type, f.count, f.orders)->index_of(size_t(number - it->first), f.level);
+  } else {
+    const auto it = std::upper_bound(edges_.begin(), edges_.end(), number, [](int64_t x, const Edge& e) { return x < e.first_point; }) - 1;
+    place = {no_chunk, uint32_t(it - edges_.begin()), it->grid->index_of(size_t(number - it->first_point), it->level)};
   }
   std::span<const int64_t> nodes;
   const ShapeGrid* g = nullptr;
-  int64_t first = 0;
-  const auto face = std::upper_bound(faces_.begin(), faces_.end(), number, [](int64_t x, const auto& f) { return x < f.first; });
-  if (face != faces_.begin()) {
-    const auto& [start, where] = face[-1];
-    const CurvedChunk& chunk = found_[where.first];
-    const Item& f = chunk.items[where.second];
-    nodes = {chunk.nodes.data() + f.first_node, f.count}, g = known_grid(f.type, f.count, f.orders), first = start;
+  if (place.chunk == no_chunk) {
+    nodes = {edges_[place.item].nodes, edges_[place.item].count}, g = edges_[place.item].grid;
   } else {
-    const Edge& e = std::upper_bound(edges_.begin(), edges_.end(), number, [](int64_t x, const Edge& y) { return x < y.first_point; })[-1];
-    nodes = {e.nodes, e.count}, g = e.grid, first = e.first_point;
+    const Item& f = found_[place.chunk].items[place.item];
+    nodes = {found_[place.chunk].nodes.data() + f.first_node, f.count}, g = known_grid(f.type, f.count, f.orders);
   }
-  const double* n = &g->values[size_t(number - first) * nodes.size()];
+  const double* n = &g->values[place.at * nodes.size()];
   const bool rational = !rational_.empty() && is_bezier(g->shape->type());
+  const size_t before = weights.size();
   double sum = 0;
   for (size_t k = 0; k < nodes.size(); ++k) {
     if (n[k] == 0) continue;
@@ -443,7 +492,7 @@ void CurvedSkin::blend(int64_t number, std::vector<int64_t>& ids, std::vector<do
     ids.push_back(nodes[k]), weights.push_back(share), sum += share;
   }
   if (rational)
-    for (size_t k = weights.size(); k-- > 0;) weights[k] /= sum;
+    for (size_t k = before; k < weights.size(); ++k) weights[k] /= sum;
 }
 
 }  // namespace sg::detail

@@ -17,68 +17,56 @@ bool is_picked(const Field& f) {
   return !is_float(f.array.type()) || f.role == Role::labels || f.role == Role::global_ids || f.role == Role::colors;
 }
 
-// Points and their fields where some are blends of points of the mesh: new ones, Bezier nodes.
+// Points and their fields where some are blends of points of the mesh: new ones, Bezier nodes. New ones become -1 in `kept`.
 void blend_points(const Dataset& in, const UnstructuredMesh& mesh, const detail::CurvedSkin& curved, std::vector<int64_t>& kept,
                   DatasetParts& out, SurfaceMesh& surface) {
   const size_t old = size_t(std::lower_bound(kept.begin(), kept.end(), int64_t(mesh.points.count())) - kept.begin());
-  const detail::NodeBlend nodes = detail::bezier_blend(in, mesh, std::span(kept).first(old));
-  if (old == kept.size() && nodes.width == 0) {
+  if (old == kept.size() && !curved.moves_nodes()) {
     surface.points = points_of(in.mesh(), kept);
     return carry_gathered(out.fields, in.fields(), Association::point, kept, Association::point);
   }
-  const size_t made = kept.size() - old, chunks = (made + 4095) / 4096;
-  struct Blends {
-    std::vector<int64_t> ids;
-    std::vector<double> weights;
-    std::vector<size_t> end;
+  struct Target {
+    const Array* from;
+    bool picked;
+    std::byte* to = nullptr;
+    Array made() { return Array::make_raw(from->type(), count, from->components(), &to); }
+    size_t count;
   };
-  std::vector<Blends> found(chunks);
-  parallel_for(made, 4096, [&](size_t begin, size_t end) {
-    Blends& b = found[begin / 4096];
-    for (size_t i = begin; i < end; ++i) {
-      std::vector<int64_t> ids;
-      std::vector<double> weights;
-      curved.blend(kept[old + i], ids, weights);
-      b.ids.insert(b.ids.end(), ids.begin(), ids.end());
-      b.weights.insert(b.weights.end(), weights.begin(), weights.end());
-      b.end.push_back(b.ids.size());
-    }
-  });
-  size_t width = std::max<size_t>(nodes.width, 1);
-  for (const Blends& b : found)
-    for (size_t i = 0; i < b.end.size(); ++i) width = std::max(width, b.end[i] - (i ? b.end[i - 1] : 0));
-  std::vector<int64_t> ids(kept.size() * width), nearest(kept.size());
-  std::vector<double> weights(kept.size() * width, 0.0);
-  parallel_for(kept.size(), 4096, [&](size_t begin, size_t end) {
-    for (size_t p = begin; p < end; ++p) {
-      std::span<const int64_t> from;
-      std::span<const double> share;
-      const double one = 1;
-      if (p < old) {
-        from = nodes.width ? std::span(nodes.ids).subspan(p * nodes.width, nodes.width) : std::span<const int64_t>(&kept[p], 1);
-        share = nodes.width ? std::span(nodes.weights).subspan(p * nodes.width, nodes.width) : std::span<const double>(&one, 1);
-      } else {
-        const Blends& b = found[(p - old) / 4096];
-        const size_t i = (p - old) % 4096, first = i ? b.end[i - 1] : 0;
-        from = std::span(b.ids).subspan(first, b.end[i] - first), share = std::span(b.weights).subspan(first, from.size());
-      }
-      size_t best = 0;
-      for (size_t k = 0; k < width; ++k) {
-        ids[p * width + k] = from[k < from.size() ? k : 0];
-        if (k < from.size()) weights[p * width + k] = share[k];
-        if (k < from.size() && share[k] > share[best]) best = k;
-      }
-      nearest[p] = from[best];
-    }
-  });
-  surface.points = {combine(mesh.points.xyz, ids, weights, width), mesh.points.origin};
+  std::vector<Target> targets{{&mesh.points.xyz, false, nullptr, kept.size()}};
+  surface.points = {targets[0].made(), mesh.points.origin};
   for (const Field& f : in.fields()) {
     if (f.association != Association::point) continue;
     Field g = f;
-    g.array = is_picked(f) ? gather(f.array, nearest) : combine(f.array, ids, weights, width);
+    targets.push_back({&f.array, is_picked(f), nullptr, kept.size()});
+    g.array = targets.back().made();
     out.fields.add(std::move(g));
   }
-  for (size_t p = old; p < kept.size(); ++p) kept[p] = -1;
+  parallel_for(kept.size(), 1024, [&](size_t begin, size_t end) {
+    std::vector<int64_t> ids;
+    std::vector<double> weights;
+    std::vector<size_t> first{0}, nearest;
+    for (size_t p = begin; p < end; ++p) {
+      curved.blend(kept[p], ids, weights);
+      nearest.push_back(size_t(ids[size_t(std::max_element(weights.begin() + ptrdiff_t(first.back()), weights.end()) - weights.begin())]));
+      first.push_back(ids.size());
+    }
+    for (const Target& t : targets)
+      dispatch(*t.from, [&](auto v) {
+        using T = std::remove_cvref_t<decltype(v[0])>;
+        T* to = reinterpret_cast<T*>(t.to) + begin * size_t(v.components);
+        for (size_t p = 0; p < end - begin; ++p)
+          for (int c = 0; c < v.components; ++c, ++to) {
+            double sum = 0;
+            if (t.picked || first[p + 1] - first[p] == 1) {
+              *to = v(nearest[p], c);
+              continue;
+            }
+            for (size_t k = first[p]; k < first[p + 1]; ++k) sum += weights[k] * double(v(size_t(ids[k]), c));
+            *to = T(sum);
+          }
+      });
+  });
+  std::fill(kept.begin() + ptrdiff_t(old), kept.end(), -1);
 }
 
 // The assembled surface with its points, fields, notes and time.

@@ -25,7 +25,7 @@ inline void describe(Schema& s, FacesParams& p) {
 /// External faces of any mesh as a SurfaceMesh. A face that two solid cells share disappears; 2D cells pass as polygons, curves
 /// as lines, points as vertices. Faces point outward whatever the orientation of their cell. Curved faces and curves of
 /// high-order cells are split by their own shape functions: edges into their order (1 to 10) times a power of two segments, at most
-/// 16, as the tolerance asks (pieces shorter than twice the tolerance are not split), the same from both sides of a shared edge;
+/// 32, as the tolerance asks (pieces shorter than twice the tolerance are not split), the same from both sides of a shared edge;
 /// straight-sided ones with linear fields keep their nodes only. New points come after those of the mesh; integer, label and colour
 /// fields take the value of the nearest node there. Hidden and refined cells are left out, so that the faces behind
 /// them appear; duplicate ghost cells are left out too, but their shared faces stay internal. AMR: faces between a leaf and
