@@ -11,6 +11,8 @@ namespace sg::detail {
 namespace {
 
 constexpr int most_segments = 32;
+constexpr double shortest = 4;         // tolerances: what is smaller is not split
+constexpr double field_tolerance = 4;  // times the tolerance: colours are coarser than shapes
 constexpr size_t grain = 256;
 
 int halvings(int order) {
@@ -67,7 +69,7 @@ CurvedSkin::CurvedSkin(const Dataset& in, const UnstructuredMesh& mesh, std::vec
       if (r.empty()) continue;
       extent = std::max(extent, r.hi - r.lo), largest = std::max({largest, std::abs(r.lo), std::abs(r.hi)});
     }
-    if (extent > 1e-6 * largest && std::isfinite(extent)) fields_.push_back({f.array, 1 / (tolerance * extent)});
+    if (extent > 1e-6 * largest && std::isfinite(extent)) fields_.push_back({f.array, 1 / (field_tolerance * tolerance * extent)});
   }
   rational_ = mesh.weights;
   if (const Field* w = in.fields().find("RationalWeights", Association::point); rational_.empty() && w && w->components() == 1)
@@ -255,7 +257,7 @@ int CurvedSkin::edge_level(const Edge& e, Work& w) const {
     evaluate(*g, level + 1, w);
     bool fine = true;
     for (int i = 0; i < g->finest[0] && fine; i += step)
-      fine = !(w.bend(size_t(i), size_t(i + step), size_t(i + step / 2)) > 1 && w.apart(size_t(i), size_t(i + step)) > 2);
+      fine = !(w.bend(size_t(i), size_t(i + step), size_t(i + step / 2)) > 1 && w.apart(size_t(i), size_t(i + step)) > shortest);
     if (fine) return level;
   }
   return g->levels[0];
@@ -266,7 +268,7 @@ int CurvedSkin::face_level(const ShapeGrid& g, Work& w) const {
   auto bent = [&](int i, int j, int k, int l) {  // between two points of the grid
     if ((i + k) % 2 || (j + l) % 2) return false;
     const size_t a = g.index(i, j), b = g.index(k, l);
-    return w.bend(a, b, g.index((i + k) / 2, (j + l) / 2)) > 1 && w.apart(a, b) > 2;
+    return w.bend(a, b, g.index((i + k) / 2, (j + l) / 2)) > 1 && w.apart(a, b) > shortest;
   };
   for (int level = 0; level < top; ++level) {
     const int si = g.step(0, level), sj = g.step(1, level);
@@ -280,7 +282,7 @@ int CurvedSkin::face_level(const ShapeGrid& g, Work& w) const {
         else if (fine && right && up && si % 2 == 0 && sj % 2 == 0)
           fine = !(w.bend4(g.index(i, j), g.index(i + si, j), g.index(i, j + sj), g.index(i + si, j + sj),
                            g.index(i + si / 2, j + sj / 2)) > 1 &&
-                   w.apart(g.index(i, j), g.index(i + si, j + sj)) > 2);
+                   w.apart(g.index(i, j), g.index(i + si, j + sj)) > shortest);
       }
     if (fine) return level;
   }

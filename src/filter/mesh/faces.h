@@ -8,14 +8,15 @@
 namespace sg {
 
 struct FacesParams {
-  double tolerance = 1e-3;
+  double tolerance = 2.5e-4;
   bool original_cell = true;
   bool original_point = false;
 };
 
 inline void describe(Schema& s, FacesParams& p) {
   s("tolerance", p.tolerance,
-    "Largest distance between curved cells and their triangles, as a share of the mesh's diagonal and of each point field's range.")
+    "Largest distance between curved cells and their triangles, as a share of the mesh's diagonal; point fields: four times that share "
+    "of their range.")
       .positive();
   s("original_cell", p.original_cell, "Adds the number of the input cell to every face as cell field 'original_cell'.");
   s("original_point", p.original_point,
@@ -25,7 +26,7 @@ inline void describe(Schema& s, FacesParams& p) {
 /// External faces of any mesh as a SurfaceMesh. A face that two solid cells share disappears; 2D cells pass as polygons, curves
 /// as lines, points as vertices. Faces point outward whatever the orientation of their cell. Curved faces and curves of
 /// high-order cells are split by their own shape functions: edges into their order (1 to 10) times a power of two segments, at most
-/// 32, as the tolerance asks (pieces shorter than twice the tolerance are not split), the same from both sides of a shared edge;
+/// 32, as the tolerance asks (pieces shorter than four tolerances are not split), the same from both sides of a shared edge;
 /// straight-sided ones with linear fields keep their nodes only. New points come after those of the mesh; integer, label and colour
 /// fields take the value of the nearest node there. Hidden and refined cells are left out, so that the faces behind
 /// them appear; duplicate ghost cells are left out too, but their shared faces stay internal. AMR: faces between a leaf and
