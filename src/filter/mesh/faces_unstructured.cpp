@@ -12,8 +12,8 @@ namespace {
 // Adds the cells of one chunk to the surface.
 class ChunkWalk {
  public:
-  ChunkWalk(const UnstructuredMesh& mesh, const PointReader& at, SurfaceChunk& out)
-      : mesh_(mesh), cells_(cells_view(mesh.cells)), at_(at), reader_(mesh), out_(out) {}
+  ChunkWalk(const UnstructuredMesh& mesh, const PointReader& at, SurfaceChunk& out, CurvedChunk& curved)
+      : mesh_(mesh), cells_(cells_view(mesh.cells)), at_(at), reader_(mesh), out_(out), curved_(curved) {}
 
   // Faces of a solid cell whose mark is set; outward, whatever the orientation of the cell.
   void solid(size_t cell, const uint8_t* external, size_t n) {
@@ -48,6 +48,8 @@ class ChunkWalk {
     switch (dimension) {
       case 0: return out_.vertices.add(ids_, int64_t(cell));
       case 1:
+        if (is_high_order(type) && ids_.size() > 2 && ids_.size() <= 11)
+          return curved_.add(type, cell_orders(mesh_, cell), int64_t(cell), false, true, ids_, out_.lines.sizes.size());
         curve_order(type, ids_.size(), local_);
         line_.clear();
         for (uint32_t i : local_) line_.push_back(ids_[i]);
@@ -86,7 +88,7 @@ class ChunkWalk {
     out_.polygons.add(ids_, int64_t(cell));
   }
 
-  // A 2D cell with the nodes ids_: linear ones as they are, curved ones and strips as triangles.
+  // A 2D cell with the nodes ids_: linear ones as they are, strips as triangles; curved ones are noted.
   void add_face(CellType type, size_t cell, bool mirrored, std::array<int, 3> orders) {
     if (type == CellType::triangle || type == CellType::quad || type == CellType::polygon)
       return ids_.size() >= 3 ? add_polygon(cell, mirrored) : void();
@@ -94,6 +96,7 @@ class ChunkWalk {
       std::swap(ids_[2], ids_[3]);
       return add_polygon(cell, mirrored);
     }
+    if (is_high_order(type)) return curved_.add(type, orders, int64_t(cell), mirrored, false, ids_, out_.polygons.sizes.size());
     load(ids_);
     local_.clear();
     tessellate_face(type, corner_, local_, orders);
@@ -109,6 +112,7 @@ class ChunkWalk {
   const PointReader& at_;
   CellFaceReader reader_;
   SurfaceChunk& out_;
+  CurvedChunk& curved_;
   std::vector<int64_t> ids_, line_;
   std::vector<Vec3> corner_;
   std::vector<uint32_t> local_;
@@ -116,7 +120,8 @@ class ChunkWalk {
 
 }  // namespace
 
-std::vector<SurfaceChunk> unstructured_faces(const UnstructuredMesh& mesh, const std::vector<uint8_t>& states, const Context& ctx) {
+std::vector<SurfaceChunk> unstructured_faces(const UnstructuredMesh& mesh, const std::vector<uint8_t>& states,
+                                             std::vector<CurvedChunk>& curved, const Context& ctx) {
   const FaceMarks marks = match_faces(mesh, states, ctx);
   const PointReader at(mesh.points);
   const size_t cells = mesh.cells.size();
@@ -124,11 +129,12 @@ std::vector<SurfaceChunk> unstructured_faces(const UnstructuredMesh& mesh, const
   for (size_t t = 0; t < 256; ++t)
     if (const CellTypeInfo* info = cell_type_info(uint8_t(t))) dimension[t] = info->dimension;
   std::vector<SurfaceChunk> chunks(marks.chunk_start.size());
+  curved.assign(chunks.size(), {});
   parallel_for(
       cells, FaceMarks::cells_per_chunk,
       [&](size_t begin, size_t end) {
         const size_t chunk = begin / FaceMarks::cells_per_chunk;
-        ChunkWalk walk(mesh, at, chunks[chunk]);
+        ChunkWalk walk(mesh, at, chunks[chunk], curved[chunk]);
         const uint8_t* external = marks.external.data() + marks.chunk_start[chunk];
         CellFaceReader reader(mesh);
         for (size_t c = begin; c < end; ++c) {
