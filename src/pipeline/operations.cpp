@@ -22,6 +22,7 @@
 #include "filter/mesh/transform.h"
 #include "filter/probe/probe.h"
 #include "filter/probe/resample.h"
+#include "filter/scalar/bands.h"
 #include "filter/scalar/contour.h"
 #include "filter/segment/label_surface.h"
 #include "filter/stats/integrate.h"

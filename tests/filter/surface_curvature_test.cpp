@@ -94,3 +94,25 @@ TEST_CASE("curvature: bad input: no choice, clouds, triangles of no area, fins")
   flat.polygon({0, 1, 2});
   for (double x : values(*curvature(flat.dataset(), {}, ctx), "mean curvature")) CHECK(std::isnan(x));
 }
+
+TEST_CASE("curvature: averaging calms the thin triangles of a contour") {
+  Context ctx;
+  UniformGrid g;
+  g.dims = {33, 33, 33};
+  g.origin = {-1.3, -1.3, -1.3};
+  g.spacing = {2.6 / 32, 2.6 / 32, 2.6 / 32};
+  std::vector<double> f;
+  for (int k = 0; k < 33; ++k)
+    for (int j = 0; j < 33; ++j)
+      for (int i = 0; i < 33; ++i) f.push_back(length(g.origin + g.spacing * Vec3(i, j, k)));
+  FieldSet fields;
+  fields.add({"f", Association::point, Array::from_vector(f), "", Role::scalars});
+  const DatasetPtr s = contour(make_dataset(g, fields), {.field = {}, .values = {1}, .component = {}}, ctx);
+  auto worst = [&](int times) {
+    double w = 0;
+    for (double x : values(*curvature(s, {.average = times}, ctx), "mean curvature")) w = std::max(w, std::abs(std::abs(x) - 1));
+    return w;
+  };
+  CHECK(worst(6) < 0.25);
+  CHECK(worst(6) < 0.5 * worst(0));
+}

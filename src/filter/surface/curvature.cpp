@@ -62,6 +62,20 @@ std::vector<uint8_t> places(const Edges& edges, const std::vector<PointSums>& su
   return r;
 }
 
+// The mean over a point and a sixth of each of its neighbours inside, by their areas.
+void average_inside(std::vector<double>& values, const Edges& edges, const std::vector<uint8_t>& place,
+                    const std::vector<PointSums>& sums) {
+  std::vector<double> sum(values.size(), 0), weight(values.size(), 0);
+  for (size_t e = 0; e < edges.size(); ++e)
+    for (const auto& [p, q] : {std::pair(edges.lo[e], edges.hi[e]), std::pair(edges.hi[e], edges.lo[e])})
+      if (place[p] == inside && place[q] == inside) sum[p] += sums[q].area * values[q], weight[p] += sums[q].area;
+  for (size_t p = 0; p < values.size(); ++p)
+    if (weight[p] > 0) {  // a point of little area says little
+      const double w = weight[p] / 6 + sums[p].area;
+      values[p] = (sums[p].area * values[p] + sum[p] / 6) / w;
+    }
+}
+
 // Points on the border take the mean of their neighbours inside.
 void fill_border(std::vector<double>& values, const Edges& edges, const std::vector<uint8_t>& place) {
   std::vector<double> sum(values.size(), 0);
@@ -99,6 +113,8 @@ DatasetPtr curvature(const DatasetPtr& in, const CurvatureParams& p, Context& ct
     const double h = length(q.laplacian) / (4 * q.area);
     mean[i] = dot(q.laplacian, q.normal) < 0 ? -h : h;
   }
+  for (int k = 0; k < p.average; ++k)
+    for (auto* v : {&gaussian, &mean}) average_inside(*v, edges, place, sums);
   fill_border(gaussian, edges, place);
   fill_border(mean, edges, place);
   auto add = [&](const char* name, std::vector<double> v, const char* unit = "") {
