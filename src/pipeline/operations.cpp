@@ -24,6 +24,8 @@
 #include "filter/probe/resample.h"
 #include "filter/scalar/bands.h"
 #include "filter/scalar/contour.h"
+#include "filter/scalar/isolines.h"
+#include "filter/scalar/line_labels.h"
 #include "filter/segment/label_surface.h"
 #include "filter/stats/integrate.h"
 #include "filter/stats/statistics.h"
