@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the contour kernels hand to each other. Inside filter/scalar only.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -27,13 +28,23 @@ struct Block {
   std::span<const T> span() const { return {data, count}; }
 };
 
-/// One isovalue's surface.
+/// A point inside a lattice cell whose lowest corner is point `base`.
+struct InnerPoint {
+  size_t base;
+  float at[3];  ///< u, v, w in (0,1)
+};
+
+/// One isovalue's surface: the points on edges, then those inside cells.
 struct Piece {
   Array xyz;      ///< f32, relative to Job::origin
   Array normals;  ///< f32, or empty
   Block<EdgePoint> points;
+  Block<InnerPoint> inner;
+  std::array<ptrdiff_t, 3> stride{};           ///< of the inner points' corners
   Array lines, triangles;                      ///< i32 connectivity, 2 and 3 per cell
   Block<uint32_t> line_cells, triangle_cells;  ///< source cell of each; empty when not asked for
+
+  size_t point_count() const { return points.count + inner.count; }
 };
 
 /// The question, for all values.
@@ -42,7 +53,8 @@ struct Job {
   Array samples;  ///< u8, i8, u16, i16, f32 or f64; one component, packed
   bool normals = true;
   bool cells = true;  ///< record source cells
-  Vec3 origin;        ///< of the result's points
+  bool trilinear = true;
+  Vec3 origin;  ///< of the result's points
   Context& context;
 };
 
@@ -72,6 +84,12 @@ inline double crossing(double value, double a, double b) {
   return t >= 0 && t <= 1 ? t : 0.5;
 }
 
+/// Where the edges of a row of points are cut, and where their results go.
+struct RowStart {
+  size_t vertex = 0, cell = 0, inner = 0;  ///< first of the row, after the prefix sum; before it, counts
+  uint32_t cut[3]{};                       ///< cut edges along each axis; results lie in that order
+};
+
 /// Kernels on lattices of two or three axes; make one for all values.
 class LatticeContour {
  public:
@@ -80,11 +98,12 @@ class LatticeContour {
 
  private:
   struct Cuts;
+  struct Slow;
   void skip_points(const std::vector<uint64_t>& bad);
   void find_cuts(Cuts& cuts) const;
   void count_row(Cuts& cuts, size_t j, size_t k) const;
   Piece generate(const Cuts& cuts) const;
-  void triangles_of_row(const Cuts& cuts, size_t j, size_t k, int32_t* out, uint32_t* cells) const;
+  void triangles_of_row(const Cuts& cuts, size_t j, size_t k, int32_t* out, uint32_t* cells, InnerPoint* inner) const;
   void lines_of_row(const Cuts& cuts, size_t j, int32_t* out, uint32_t* cells) const;
 
   const Job& job_;
@@ -94,12 +113,6 @@ class LatticeContour {
   size_t words_ = 0;  ///< 64-bit words per row of bits
   bool missing_known_ = false, flip_ = false;
   std::vector<uint64_t> skip_;  ///< bit per cell that must not be looked at, in rows like the points; empty when all are good
-};
-
-/// Where the edges of a row of points are cut, and where their results go.
-struct RowStart {
-  size_t vertex = 0, cell = 0;  ///< first of the row, after the prefix sum; before it, counts
-  uint32_t cut[3]{};            ///< cut edges along each axis; results lie in that order
 };
 
 /// Fills positions, normals and edge points of all cut edges. `cut[a]` has a bit per edge along axis a.
@@ -115,8 +128,13 @@ struct VertexJob {
   float* normals;  ///< null: none
   EdgePoint* points;
   Context& context;
+  std::span<const InnerPoint> inner;  ///< their positions and normals follow those of the edges
+  size_t inner_first;
 };
 void make_vertices(const VertexJob& job);
+
+/// Point array `a` at the inner points, trilinear, in its own type (integers round to nearest).
+void interpolate_inner(const Array& a, const Piece& piece, std::byte* out);
 
 /// Unstructured and surface meshes.
 Piece contour_cells(const Job& job, double value);

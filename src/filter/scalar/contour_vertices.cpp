@@ -77,9 +77,31 @@ struct Maker {
       done = std::isfinite(dot(g, g));
     }
     if (!done) g = gradient(p, a) * (1 - t) + gradient(q, b) * t;
+    set_normal(v, g);
+  }
+
+  void set_normal(size_t v, Vec3 g) const {
     const double square = dot(g, g);
     const Vec3 n = square > 0 && std::isfinite(square) ? g * (-1 / std::sqrt(square)) : Vec3();
     job.normals[3 * v] = float(n.x), job.normals[3 * v + 1] = float(n.y), job.normals[3 * v + 2] = float(n.z);
+  }
+
+  void inner_point(size_t v, const InnerPoint& point) const {
+    const size_t p = point.base, at[3] = {p % frame.dims[0], p / frame.dims[0] % frame.dims[1], p / frame.dims[0] / frame.dims[1]};
+    Vec3 x, g;
+    for (int c = 0; c < 8; ++c) {
+      double weight = 1;
+      size_t corner[3];
+      for (int a = 0; a < 3; ++a) {
+        const double t = double(point.at[a]);
+        weight *= c >> a & 1 ? t : 1 - t;
+        corner[a] = at[a] + size_t(c >> a & 1);
+      }
+      x += (frame.position(corner[0], corner[1], corner[2]) - job.origin) * weight;
+      if (job.normals) g += gradient(frame.id(corner[0], corner[1], corner[2]), corner) * weight;
+    }
+    job.xyz[3 * v] = float(x.x), job.xyz[3 * v + 1] = float(x.y), job.xyz[3 * v + 2] = float(x.z);
+    if (job.normals) set_normal(v, g);
   }
 
   template <int axis>
@@ -109,6 +131,12 @@ void run(const VertexJob& job) {
         for (size_t r = begin; r < end; ++r) maker.row(r % ny, r / ny);
       },
       &job.context);
+  parallel_for(
+      job.inner.size(), 1024,
+      [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) maker.inner_point(job.inner_first + i, job.inner[i]);
+      },
+      &job.context);
 }
 
 }  // namespace
@@ -122,6 +150,36 @@ void make_vertices(const VertexJob& job) {
     case ElementType::f32: return run<float>(job);
     default: return run<double>(job);
   }
+}
+
+void interpolate_inner(const Array& a, const Piece& piece, std::byte* out) {
+  dispatch(a, [&](auto v) {
+    using T = std::remove_cvref_t<decltype(v[0])>;
+    T* to = reinterpret_cast<T*>(out);
+    const size_t n = size_t(v.components);
+    parallel_for(piece.inner.count, 4096, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) {
+        const InnerPoint& point = piece.inner.data[i];
+        for (size_t c = 0; c < n; ++c) {
+          double sum = 0;
+          for (int corner = 0; corner < 8; ++corner) {
+            double weight = 1;
+            ptrdiff_t p = ptrdiff_t(point.base);
+            for (int axis = 0; axis < 3; ++axis) {
+              const bool far = corner >> axis & 1;
+              weight *= far ? double(point.at[axis]) : 1 - double(point.at[axis]);
+              if (far) p += piece.stride[size_t(axis)];
+            }
+            sum += weight * double(v(size_t(p), int(c)));
+          }
+          if constexpr (std::is_floating_point_v<T>) to[i * n + c] = T(sum);
+          else
+            to[i * n + c] =
+                T(std::nearbyint(std::clamp(sum, double(std::numeric_limits<T>::lowest()), double(std::numeric_limits<T>::max()))));
+        }
+      }
+    });
+  });
 }
 
 }  // namespace sg::contouring
