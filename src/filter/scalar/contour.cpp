@@ -289,8 +289,11 @@ DatasetPtr contour(const DatasetPtr& given, const ContourParams& params, Context
   const bool trilinear = params.topology == "trilinear";
   if (!trilinear && params.topology != "fixed")
     fail_usage(fmt::format("there is no topology '{}'", params.topology), "contour topology", "trilinear or fixed");
-  Job job{*input, choose_samples(field, component), params.normals, false, trilinear, choose_origin(input->bounds()), context};
+  Job job{*input, choose_samples(field, component), params.normals, false, trilinear, true, choose_origin(input->bounds()), context};
   for (const Field& f : input->fields()) job.cells = job.cells || f.association == Association::cell;
+  job.edges = false;
+  for (const Field& f : input->fields())
+    job.edges = job.edges || (f.association == Association::point && !(f.name == field.name && f.components() == 1));
   std::vector<Piece> pieces;
   if (is_lattice(input->mesh()) && input->point_count() > 0) {
     LatticeContour lattice(job);

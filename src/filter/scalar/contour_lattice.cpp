@@ -4,6 +4,7 @@
 // the counts are summed, and all rows are written at the same time, as in the flying edges of Schroeder, Maynard, Geveci 2015.
 #include <bit>
 
+#include "base/huge_allocator.h"
 #include "base/parallel.h"
 #include "filter/scalar/cell_cases.h"
 #include "filter/scalar/contour_parts.h"
@@ -15,8 +16,8 @@ static ptrdiff_t corner_offset(int c, const LatticeFrame& f) { return (c & 1) + 
 
 struct LatticeContour::Cuts {
   double value = 0;
-  std::vector<uint64_t> inside;
-  std::vector<uint64_t> cut[3];
+  Plane<uint64_t> inside;
+  Plane<uint64_t> cut[3];  ///< bits of cut edges, where cells are left out; otherwise they follow from `inside`
   std::vector<RowStart> rows;
   size_t vertices = 0, cells = 0, inner = 0;
 };
@@ -68,6 +69,7 @@ Square square_of(uint32_t pattern, size_t p, double value, const LatticeFrame& f
 LatticeContour::LatticeContour(const Job& job) : job_(job), lattice_(job.input.mesh()), frame_(lattice_.view()), sample_(job.samples) {
   words_ = (frame_.dims[0] + 63) / 64;
   flip_ = !frame_.right_handed();
+  for (uint32_t p = 0; p < 256; ++p) slow_[p] = job.trilinear && needs_trilinear(p);
   const size_t nx = frame_.dims[0], rows = frame_.dims[1] * frame_.dims[2];
   if (const Array& ghost = job.input.point_ghost(); !ghost.empty()) {
     const auto g = ghost.view<uint8_t>();
@@ -126,7 +128,8 @@ Piece LatticeContour::run(double value) {
 
 void LatticeContour::find_cuts(Cuts& cuts) const {
   const size_t ny = frame_.dims[1], nz = frame_.dims[2], rows = ny * nz;
-  for (int a = 0; a < frame_.axes; ++a) cuts.cut[a].resize(rows * words_);
+  if (!skip_.empty())
+    for (int a = 0; a < frame_.axes; ++a) cuts.cut[a].resize(rows * words_);
   cuts.rows.resize(rows);
   parallel_for(
       rows, std::max<size_t>(1, 512 / words_),
@@ -169,7 +172,8 @@ void LatticeContour::count_row(Cuts& cuts, size_t j, size_t k) const {
       cut[2] &= good(0, 0, w, true) | good(1, 0, w, true);
     }
     for (int l = 0; l < frame_.axes; ++l) {
-      cuts.cut[l][r * words_ + w] = cut[l];
+      if (!skip_.empty()) cuts.cut[l][r * words_ + w] = cut[l];
+      if (!cut[l]) continue;
       const uint32_t n = uint32_t(std::popcount(cut[l]));
       row.cut[l] += n;
       row.vertex += n;
@@ -187,7 +191,7 @@ void LatticeContour::count_row(Cuts& cuts, size_t j, size_t k) const {
         continue;
       }
       const uint32_t pattern = low | c.corners(i) << 4 | d.corners(i) << 6;
-      if (job_.trilinear && needs_trilinear(pattern)) [[unlikely]] {
+      if (slow_[pattern]) [[unlikely]] {
         const Slow slow(p, cuts.value, frame_, sample_);
         row.cell += size_t(slow.cell.triangle_count);
         row.inner += size_t(slow.cell.inner_count);
@@ -206,7 +210,8 @@ Piece LatticeContour::generate(const Cuts& cuts) const {
   float *xyz = nullptr, *normals = nullptr;
   piece.xyz = Array::make<float>(cuts.vertices + cuts.inner, 3, &xyz);
   if (job_.normals && corners == 3) piece.normals = Array::make<float>(cuts.vertices + cuts.inner, 3, &normals);
-  piece.points.allocate(cuts.vertices);
+  if (job_.edges) piece.points.allocate(cuts.vertices);
+  piece.points.count = cuts.vertices;
   piece.inner.allocate(cuts.inner);
   piece.stride = frame_.stride;
   int32_t* out = nullptr;
@@ -225,8 +230,8 @@ Piece LatticeContour::generate(const Cuts& cuts) const {
         }
       },
       &job_.context);
-  make_vertices({frame_, job_.samples, cuts.value, job_.origin, words_, cuts.cut, cuts.rows, xyz, normals, piece.points.data, job_.context,
-                 piece.inner.span(), cuts.vertices});
+  make_vertices({frame_, job_.samples, cuts.value, job_.origin, words_, cuts.inside.data(), skip_.empty() ? nullptr : cuts.cut, cuts.rows,
+                 xyz, normals, job_.edges ? piece.points.data : nullptr, job_.context, piece.inner.span(), cuts.vertices});
   return piece;
 }
 
@@ -244,9 +249,7 @@ void LatticeContour::triangles_of_row(const Cuts& cuts, size_t j, size_t k, int3
   };
   uint32_t at[8] = {start(row[0], 0), start(row[1], 0), start(row[2], 0), start(row[3], 0),
                     start(row[0], 1), start(row[2], 1), start(row[0], 2), start(row[1], 2)};
-  const uint64_t* cut[8] = {&cuts.cut[0][row[0] * words_], &cuts.cut[0][row[1] * words_], &cuts.cut[0][row[2] * words_],
-                            &cuts.cut[0][row[3] * words_], &cuts.cut[1][row[0] * words_], &cuts.cut[1][row[2] * words_],
-                            &cuts.cut[2][row[0] * words_], &cuts.cut[2][row[1] * words_]};
+  const bool stored = !skip_.empty();
   uint32_t next_inner = uint32_t(cuts.vertices + cuts.rows[row[0]].inner);
   const int second = flip_ ? 2 : 1, third = flip_ ? 1 : 2;
   for (size_t w = 0; w < words_; ++w) {
@@ -261,7 +264,14 @@ void LatticeContour::triangles_of_row(const Cuts& cuts, size_t j, size_t k, int3
     if (!active) continue;
     const uint64_t skip = skip_.empty() ? 0 : skip_[row[0] * words_ + w];
     uint64_t c[8];
-    for (int s = 0; s < 8; ++s) c[s] = cut[s][w];
+    if (stored) {
+      for (int s = 0; s < 4; ++s) c[s] = cuts.cut[0][row[s] * words_ + w];
+      c[4] = cuts.cut[1][row[0] * words_ + w], c[5] = cuts.cut[1][row[2] * words_ + w];
+      c[6] = cuts.cut[2][row[0] * words_ + w], c[7] = cuts.cut[2][row[1] * words_ + w];
+    } else {
+      for (int s = 0; s < 4; ++s) c[s] = q[s].m ^ q[s].s;
+      c[4] = q[0].m ^ q[1].m, c[5] = q[2].m ^ q[3].m, c[6] = q[0].m ^ q[2].m, c[7] = q[1].m ^ q[3].m;
+    }
     for (; active; active &= active - 1) {
       const int i = std::countr_zero(active);
       uint32_t step[8], edge[TrilinearCell::first_inner + 8];
@@ -277,7 +287,7 @@ void LatticeContour::triangles_of_row(const Cuts& cuts, size_t j, size_t k, int3
           out += 3;
           if (cells) *cells++ = uint32_t(cell_row + 64 * w + size_t(i));
         };
-        if (job_.trilinear && needs_trilinear(pattern)) [[unlikely]] {
+        if (slow_[pattern]) [[unlikely]] {
           const size_t p = row[0] * nx + 64 * w + size_t(i);
           const Slow slow(p, cuts.value, frame_, sample_);
           const TrilinearCell& cut_cell = slow.cell;
@@ -306,10 +316,11 @@ void LatticeContour::lines_of_row(const Cuts& cuts, size_t j, int32_t* out, uint
   for (size_t w = 0; w < words_; ++w) {
     const Pair a(&cuts.inside[j * words_], w, words_), b(&cuts.inside[(j + 1) * words_], w, words_);
     const uint64_t skip = skip_.empty() ? 0 : skip_[j * words_ + w];
+    uint64_t c[3] = {a.m ^ a.s, b.m ^ b.s, a.m ^ b.m};
+    if (!skip_.empty()) c[0] = cuts.cut[0][j * words_ + w], c[1] = cuts.cut[0][(j + 1) * words_ + w], c[2] = cuts.cut[1][j * words_ + w];
     for (uint64_t active = ((a.m | a.s | b.m | b.s) & ~(a.m & a.s & b.m & b.s)) & inner_bits(w, nx); active; active &= active - 1) {
       const int i = std::countr_zero(active);
-      const uint32_t step[3] = {uint32_t(cuts.cut[0][j * words_ + w] >> i & 1), uint32_t(cuts.cut[0][(j + 1) * words_ + w] >> i & 1),
-                                uint32_t(cuts.cut[1][j * words_ + w] >> i & 1)};
+      const uint32_t step[3] = {uint32_t(c[0] >> i & 1), uint32_t(c[1] >> i & 1), uint32_t(c[2] >> i & 1)};
       const uint32_t edge[4] = {at[0], at[1], at[2], at[2] + step[2]};
       if (!(skip >> i & 1)) {
         const size_t p = j * nx + 64 * w + size_t(i);

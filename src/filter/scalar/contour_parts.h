@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/context.h"
+#include "base/huge_allocator.h"
 #include "data/dataset.h"
 #include "data/field_ops.h"
 #include "filter/field/lattice_frame.h"
@@ -54,7 +55,8 @@ struct Job {
   bool normals = true;
   bool cells = true;  ///< record source cells
   bool trilinear = true;
-  Vec3 origin;  ///< of the result's points
+  bool edges = true;  ///< record edge points: there are fields to carry besides the contoured one (lattices only)
+  Vec3 origin;        ///< of the result's points
   Context& context;
 };
 
@@ -112,21 +114,23 @@ class LatticeContour {
   Sample sample_;
   size_t words_ = 0;  ///< 64-bit words per row of bits
   bool missing_known_ = false, flip_ = false;
+  bool slow_[256];              ///< patterns of corners that the table alone cannot cut
   std::vector<uint64_t> skip_;  ///< bit per cell that must not be looked at, in rows like the points; empty when all are good
 };
 
-/// Fills positions, normals and edge points of all cut edges. `cut[a]` has a bit per edge along axis a.
+/// Fills positions, normals and edge points of all cut edges. `cut[a]` has a bit per edge along axis a; null: all edges whose ends differ.
 struct VertexJob {
   const LatticeFrame& frame;
   const Array& samples;
   double value;
   Vec3 origin;
   size_t words;
-  const std::vector<uint64_t>* cut;  ///< 3
+  const uint64_t* inside;
+  const Plane<uint64_t>* cut;  ///< 3, or null
   const std::vector<RowStart>& rows;
   float* xyz;
-  float* normals;  ///< null: none
-  EdgePoint* points;
+  float* normals;     ///< null: none
+  EdgePoint* points;  ///< null: none
   Context& context;
   std::span<const InnerPoint> inner;  ///< their positions and normals follow those of the edges
   size_t inner_first;
