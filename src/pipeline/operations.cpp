@@ -30,6 +30,7 @@
 #include "filter/stats/integrate.h"
 #include "filter/stats/statistics.h"
 #include "filter/stats/table_to_points.h"
+#include "filter/surface/cap.h"
 #include "filter/surface/curvature.h"
 #include "filter/surface/feature_edges.h"
 #include "filter/surface/mass_properties.h"
