@@ -35,6 +35,7 @@
 #include "filter/surface/feature_edges.h"
 #include "filter/surface/mass_properties.h"
 #include "filter/surface/normals.h"
+#include "filter/surface/quality.h"
 #include "simulate/flow_fields.h"
 #include "simulate/point_load.h"
 #include "simulate/scalar_fields.h"
