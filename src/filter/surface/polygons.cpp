@@ -84,6 +84,19 @@ std::vector<Vec3> positions(const Points& points) {
   return at;
 }
 
+std::vector<uint32_t> equal_places(const std::vector<Vec3>& at) {
+  std::vector<uint32_t> order, into(at.size());
+  for (uint32_t i = 0; i < at.size(); ++i) {
+    into[i] = i;
+    if (!std::isnan(at[i].x) && !std::isnan(at[i].y) && !std::isnan(at[i].z)) order.push_back(i);
+  }
+  std::sort(order.begin(), order.end(),
+            [&](uint32_t a, uint32_t b) { return std::tie(at[a].x, at[a].y, at[a].z, a) < std::tie(at[b].x, at[b].y, at[b].z, b); });
+  for (size_t i = 1; i < order.size(); ++i)
+    if (at[order[i]] == at[order[i - 1]]) into[order[i]] = into[order[i - 1]];
+  return into;
+}
+
 Edges edges_of_polygons(const CellsView& polygons, size_t points) {
   // Sides are put in the list of their smaller point; each list is sorted on its own.
   struct Side {

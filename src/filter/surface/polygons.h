@@ -28,6 +28,9 @@ Array id_array(const std::vector<T>& ids) {
 /// Positions of all points, in double.
 std::vector<Vec3> positions(const Points& points);
 
+/// For each point the first one at exactly the same place. NaN is a place of its own.
+std::vector<uint32_t> equal_places(const std::vector<Vec3>& at);
+
 /// The edges of polygons, each once, in order of (smaller point, larger point), with the sides that use it. A corner is a place in the
 /// connectivity; the side from a corner to the next one of its polygon is named by the corner. Sides from a point to itself are left
 /// out. Corners and polygons below 2^31.
