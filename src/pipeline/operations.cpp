@@ -9,6 +9,7 @@
 #include "filter/field/gradient.h"
 #include "filter/field/point_cell.h"
 #include "filter/mesh/append.h"
+#include "filter/mesh/clip.h"
 #include "filter/mesh/components.h"
 #include "filter/mesh/crop.h"
 #include "filter/mesh/extract_ids.h"
@@ -59,6 +60,25 @@ Request request_of_slice(const ParamSet& params, const Request& wanted) {
   Box3 box{{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, {HUGE_VAL, HUGE_VAL, HUGE_VAL}};
   box.lo[axis] = box.hi[axis] = *at;
   r.region = box;
+  return r;
+}
+
+// Operations that take a mesh to cut with as an optional second input.
+template <class P, class F>
+Data with_second_mesh(std::string_view name, const std::vector<Data>& in, const P& p, Context& ctx, F f) {
+  const DatasetPtr second = in.size() > 1 ? single_dataset(in[1], name) : nullptr;
+  return map_parts(in[0], name, [&](const DatasetPtr& d) -> Data { return f(d, second, p, ctx); });
+}
+
+Data clip_with(const std::vector<Data>& in, const ClipParams& p, Context& ctx) {
+  return with_second_mesh("clip", in, p, ctx, [](auto&&... a) { return clip(a...); });
+}
+
+// An expression may name any field.
+Request request_of_clip(const ParamSet& params, const Request& wanted) {
+  Request r = detail::request_carried(params, wanted);
+  const auto& p = detail::values_of<ClipParams>(params);
+  if (!p.function.empty()) return Request{};
   return r;
 }
 
