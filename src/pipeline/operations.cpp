@@ -23,13 +23,17 @@
 #include "filter/probe/probe.h"
 #include "filter/probe/resample.h"
 #include "filter/scalar/contour.h"
+#include "filter/segment/classify.h"
+#include "filter/segment/dice.h"
 #include "filter/segment/label_surface.h"
+#include "filter/segment/otsu.h"
 #include "filter/stats/integrate.h"
 #include "filter/stats/statistics.h"
 #include "filter/stats/table_to_points.h"
 #include "simulate/flow_fields.h"
 #include "simulate/point_load.h"
 #include "simulate/scalar_fields.h"
+#include "simulate/tissue_phantom.h"
 
 namespace sg {
 
