@@ -27,7 +27,15 @@
 #include "filter/scalar/contour.h"
 #include "filter/scalar/isolines.h"
 #include "filter/scalar/line_labels.h"
+#include "filter/segment/classify.h"
+#include "filter/segment/dice.h"
+#include "filter/segment/distance_map.h"
+#include "filter/segment/label_components.h"
 #include "filter/segment/label_surface.h"
+#include "filter/segment/morphology.h"
+#include "filter/segment/otsu.h"
+#include "filter/segment/region_grow.h"
+#include "filter/segment/watershed.h"
 #include "filter/stats/integrate.h"
 #include "filter/stats/statistics.h"
 #include "filter/stats/table_to_points.h"
@@ -42,6 +50,7 @@
 #include "simulate/flow_fields.h"
 #include "simulate/point_load.h"
 #include "simulate/scalar_fields.h"
+#include "simulate/tissue_phantom.h"
 
 namespace sg {
 
