@@ -14,10 +14,19 @@ namespace sg::contouring {
 /// The name of an edge: its lower point number above the higher one.
 inline uint64_t edge_key(int64_t a, int64_t b) { return a < b ? uint64_t(a) << 32 | uint64_t(b) : uint64_t(b) << 32 | uint64_t(a); }
 
-/// Triangles and lines as names of cut edges.
+/// A point inside a cell: shares of its eight corners.
+struct InnerPoint {
+  std::array<uint32_t, 8> ids;
+  std::array<float, 8> weights;
+};
+
+/// Triangles and lines as names of cut edges; inner_key + i names inner[i].
 struct Found {
+  static constexpr uint64_t inner_key = uint64_t(1) << 63;
   std::vector<uint64_t> lines, triangles;
   std::vector<uint32_t> line_cells, triangle_cells;
+  std::vector<InnerPoint> inner;
+  void clear() { lines.clear(), triangles.clear(), line_cells.clear(), triangle_cells.clear(), inner.clear(); }
 };
 
 /// Looks at one cell at a time.
@@ -32,6 +41,48 @@ struct Finder {
   bool skipped(size_t cell) const {
     return cell_ghost.count && (cell_ghost[cell] & (ghost_duplicate | ghost_refined_cell | ghost_hidden_cell));
   }
+  // A tetrahedron, whose triangles are few: a point alone or two by two.
+  void tetra(const CellsView& cells, size_t cell, Found& out) const {
+    static constexpr uint8_t side[6][2] = {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}};
+    static constexpr uint8_t edge[4][4] = {{0, 0, 1, 2}, {0, 0, 3, 4}, {1, 3, 0, 5}, {2, 4, 5, 0}};
+    // For a corner k alone, the other three so that they turn counterclockwise seen from k's far side.
+    static constexpr uint8_t others[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
+    int64_t p[4];
+    uint32_t in = 0;
+    for (size_t k = 0; k < 4; ++k) {
+      p[k] = cells.point(cell, k);
+      in |= uint32_t(f(size_t(p[k])) >= value) << k;
+    }
+    const Vec3 o = points.at(size_t(p[0])), x = points.at(size_t(p[1])) - o, y = points.at(size_t(p[2])) - o,
+               z = points.at(size_t(p[3])) - o;
+    bool flip = dot(x, cross(y, z)) < 0;
+    auto key = [&](uint8_t a, uint8_t b) {
+      const uint8_t* s = side[edge[a][b]];
+      return edge_key(p[s[0]], p[s[1]]);
+    };
+    auto triangle = [&](uint64_t a, uint64_t b, uint64_t c) {
+      if (flip) std::swap(b, c);
+      out.triangles.insert(out.triangles.end(), {a, b, c});
+      out.triangle_cells.push_back(uint32_t(cell));
+    };
+    const int n = std::popcount(in);
+    if (n == 2) {
+      const auto a = uint8_t(std::countr_zero(in)), b = uint8_t(std::countr_zero(in & (in - 1)));
+      const uint32_t rest = 15 ^ in;
+      auto c = uint8_t(std::countr_zero(rest)), d = uint8_t(std::countr_zero(rest & (rest - 1)));
+      // An even order (a, b, c, d) turns like (0, 1, 2, 3).
+      if ((a == 0 && b == 2) || (a == 1 && b == 3)) std::swap(c, d);
+      triangle(key(a, c), key(b, d), key(b, c));
+      triangle(key(a, c), key(a, d), key(b, d));
+      return;
+    }
+    const bool one_in = n == 1;
+    const auto k = uint8_t(std::countr_zero(one_in ? in : 15 ^ in));
+    const uint8_t* q = others[k];
+    flip = flip != one_in;
+    triangle(key(k, q[0]), key(k, q[2]), key(k, q[1]));
+  }
+
   bool bad(int64_t p) const { return std::isnan(f(size_t(p))) || (point_ghost.count && (point_ghost[size_t(p)] & ghost_hidden_point)); }
 
   // Six times the volume when the faces, as listed, turn outwards; negative for a mirrored cell.
@@ -111,6 +162,11 @@ struct Finder {
     if (join) line(exit, first_entry);
   }
 };
+
+/// Faces as lists of point ids.
+using PolyhedronFaces = std::vector<std::vector<int64_t>>;
+/// The faces of a polyhedron, counterclockwise seen from outside also where the file does not keep to that.
+PolyhedronFaces outward_faces(const UnstructuredMesh& mesh, size_t cell);
 
 /// The triangles of polyhedron `cell`, whose corners are good and lie on both sides.
 void cut_polyhedron(const Finder& finder, const UnstructuredMesh& mesh, size_t cell, Found& out);

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filter/scalar/contour_normals.h"
+
+#include <atomic>
+#include <cmath>
+
+#include "base/parallel.h"
+#include "data/cell_topology.h"
+#include "filter/scalar/contour_cell_scan.h"
+#include "filter/scalar/contour_finder.h"
+
+namespace sg::contouring {
+
+namespace {
+
+struct Sum {
+  double g[4] = {};  // integral of the gradient, volume
+  void add(const double* v) {
+    for (int i = 0; i < 4; ++i) g[i] += v[i];
+  }
+};
+
+// Cells and the points at which their gradients are wanted, a run of cells at a time. Each run adds to sums of its own, which are
+// then joined in the order of the runs: the same bytes for any number of threads, and no lists of cells at points.
+class Gradients {
+ public:
+  Gradients(const Job& job, const UnstructuredMesh& mesh) : job_(job), mesh_(mesh), cells_(cells_view(mesh.cells)), f_(job.samples) {
+    xyz_ = mesh.points.xyz.made_packed();
+    floats_ = xyz_.type() == ElementType::f32 ? reinterpret_cast<const float*>(xyz_.raw()) : nullptr;
+    doubles_ = floats_ ? nullptr : reinterpret_cast<const double*>(xyz_.raw());
+    if (!job.input.cell_ghost().empty()) ghost_ = job.input.cell_ghost().view<uint8_t>();
+  }
+
+  Array run(std::span<const EdgePoint> edges) {
+    number_points(edges);
+    sums_.assign(size_t(count_), Sum{});
+    constexpr size_t wave = 32;  // runs at once: bounds the memory of their sums
+    const size_t grain = std::max<size_t>(1 << 14, cells_.count / 128 + 1);
+    for (size_t first = 0; first < cells_.count; first += wave * grain) {
+      const size_t end = std::min(cells_.count, first + wave * grain);
+      std::vector<Run> runs((end - first + grain - 1) / grain);
+      parallel_for(
+          runs.size(), 1, [&](size_t r, size_t) { add_cells(first + r * grain, std::min(end, first + (r + 1) * grain), runs[r]); },
+          &job_.context);
+      parallel_for(sums_.size(), 1 << 13, [&](size_t b, size_t e) {
+        for (const Run& r : runs)
+          for (size_t s = std::max(b, r.first); s < std::min(e, r.first + r.sums.size()); ++s) sums_[s].add(r.sums[s - r.first].g);
+      });
+    }
+    return normals(edges);
+  }
+
+ private:
+  struct Run {
+    size_t first = 0;
+    std::vector<Sum> sums;
+  };
+
+  Vec3 at(size_t p) const {
+    if (floats_) return {double(floats_[3 * p]), double(floats_[3 * p + 1]), double(floats_[3 * p + 2])};
+    return {doubles_[3 * p], doubles_[3 * p + 1], doubles_[3 * p + 2]};
+  }
+
+  // Slots for the ends of the edges, in the order of the points.
+  void number_points(std::span<const EdgePoint> edges) {
+    const size_t n = mesh_.points.count();
+    used_.assign(n + 8, 0);
+    parallel_for(edges.size(), 1 << 14, [&](size_t b, size_t e) {
+      for (size_t i = b; i < e; ++i)
+        for (uint32_t p : {edges[i].a, edges[i].b}) std::atomic_ref<uint8_t>(used_[p]).store(1, std::memory_order_relaxed);
+    });
+    slot_ = std::make_unique_for_overwrite<uint32_t[]>(n);
+    constexpr size_t grain = 1 << 14;
+    std::vector<size_t> first(n / grain + 2, 0);
+    parallel_for(n, grain, [&](size_t b, size_t e) {
+      size_t k = 0;
+      for (size_t p = b; p < e; ++p) k += used_[p];
+      first[b / grain] = k;
+    });
+    count_ = exclusive_scan(first);
+    parallel_for(n, grain, [&](size_t b, size_t e) {
+      uint32_t k = uint32_t(first[b / grain]);
+      for (size_t p = b; p < e; ++p) slot_[p] = k, k += used_[p];
+    });
+  }
+
+  void add_cells(size_t begin, size_t end, Run& run) const {
+    thread_local std::vector<uint32_t> touched;
+    touched.resize(end - begin + 1);
+    const size_t n = scan_cells(cells_, begin, end, used_.data(), touched.data(), [](uint32_t any, uint32_t) { return any != 0; });
+    uint32_t lo = UINT32_MAX, hi = 0;
+    for (size_t i = 0; i < n; ++i)
+      for (size_t k = cells_.begin(touched[i]); k < cells_.end(touched[i]); ++k) {
+        const size_t p = size_t(cells_.connectivity[k]);
+        if (used_[p]) lo = std::min(lo, slot_[p]), hi = std::max(hi, slot_[p]);
+      }
+    if (lo > hi) return;
+    run.first = lo;
+    run.sums.resize(hi - lo + 1);
+    CellFaceReader faces(mesh_);
+    for (size_t i = 0; i < n; ++i) {
+      const size_t c = touched[i];
+      if (ghost_.count && (ghost_[c] & (ghost_hidden_cell | ghost_refined_cell))) continue;
+      double v[4];
+      const CellType type = mesh_.type(c);
+      if (type == CellType::tetra) tetra(c, v);
+      else if (!solid(c, faces, v)) continue;
+      if (v[3] < 0)
+        for (double& x : v) x = -x;  // a cell turned inside out
+      if (!std::isfinite(v[0] + v[1] + v[2])) continue;
+      for (size_t k = cells_.begin(c); k < cells_.end(c); ++k) {
+        const size_t p = size_t(cells_.connectivity[k]);
+        if (used_[p]) run.sums[slot_[p] - lo].add(v);
+      }
+    }
+  }
+
+  void tetra(size_t c, double v[4]) const {
+    const size_t b = cells_.begin(c);
+    size_t p[4];
+    for (size_t k = 0; k < 4; ++k) p[k] = size_t(cells_.connectivity[b + k]);
+    const Vec3 o = at(p[0]), x = at(p[1]) - o, y = at(p[2]) - o, z = at(p[3]) - o;
+    const double f = f_(p[0]), fx = f_(p[1]) - f, fy = f_(p[2]) - f, fz = f_(p[3]) - f;
+    const Vec3 yz = cross(y, z), g = yz * fx + cross(z, x) * fy + cross(x, y) * fz;
+    v[0] = g.x, v[1] = g.y, v[2] = g.z, v[3] = dot(x, yz);
+  }
+
+  // Faces as fans around the mean of their corners; six times everything, as above.
+  bool solid(size_t c, CellFaceReader& faces, double v[4]) const {
+    const bool polyhedron = mesh_.type(c) == CellType::polyhedron;
+    PolyhedronFaces own;
+    if (polyhedron) own = outward_faces(mesh_, c);
+    const size_t n = polyhedron ? own.size() : faces.open(c);
+    if (n == 0) return false;
+    const size_t first = size_t(cells_.connectivity[cells_.begin(c)]);
+    const Vec3 base = at(first);
+    const double zero = f_(first);
+    v[0] = v[1] = v[2] = v[3] = 0;
+    for (size_t k = 0; k < n; ++k) {
+      const std::span<const int64_t> face = polyhedron ? std::span<const int64_t>(own[k]) : faces.corners(k);
+      if (face.size() < 3) continue;
+      Vec3 middle;
+      double mean = 0;
+      for (int64_t p : face) middle += at(size_t(p)) - base, mean += f_(size_t(p)) - zero;
+      middle = middle * (1.0 / double(face.size())), mean /= double(face.size());
+      Vec3 a = at(size_t(face.back())) - base;
+      double fa = f_(size_t(face.back())) - zero;
+      for (int64_t p : face) {
+        const Vec3 b = at(size_t(p)) - base, area = cross(a - middle, b - middle);
+        const double fb = f_(size_t(p)) - zero, f = fa + fb + mean;
+        v[0] += area.x * f, v[1] += area.y * f, v[2] += area.z * f;
+        v[3] += dot(area, middle);
+        a = b, fa = fb;
+      }
+    }
+    return true;
+  }
+
+  Array normals(std::span<const EdgePoint> edges) const {
+    float* out = nullptr;
+    Array a = Array::make<float>(edges.size(), 3, &out);
+    parallel_for(edges.size(), 1 << 13, [&](size_t b, size_t e) {
+      for (size_t i = b; i < e; ++i) {
+        const EdgePoint edge = edges[i];
+        const double *from = sums_[slot_[edge.a]].g, *to = sums_[slot_[edge.b]].g;
+        // A point all of whose cells are flat or lack values: the other end alone.
+        const double s = from[3] > 0 ? (1 - double(edge.t)) / from[3] : 0, t = to[3] > 0 ? double(edge.t) / to[3] : 0;
+        const Vec3 g = Vec3(from[0], from[1], from[2]) * s + Vec3(to[0], to[1], to[2]) * t;
+        const double square = dot(g, g);
+        const double scale = square > 0 && std::isfinite(square) ? -1 / std::sqrt(square) : 0;
+        for (int c = 0; c < 3; ++c) out[3 * i + size_t(c)] = scale != 0 ? float(g[c] * scale) : 0.0f;
+      }
+    });
+    return a;
+  }
+
+  const Job& job_;
+  const UnstructuredMesh& mesh_;
+  CellsView cells_;
+  Sample f_;
+  Array xyz_;
+  const float* floats_ = nullptr;
+  const double* doubles_ = nullptr;
+  View<uint8_t> ghost_;
+  std::vector<uint8_t> used_;
+  std::unique_ptr<uint32_t[]> slot_;
+  size_t count_ = 0;
+  std::vector<Sum> sums_;
+};
+
+}  // namespace
+
+Array cell_normals(const Job& job, const UnstructuredMesh& mesh, std::span<const EdgePoint> edges) {
+  return Gradients(job, mesh).run(edges);
+}
+
+}  // namespace sg::contouring
