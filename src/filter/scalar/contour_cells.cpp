@@ -35,7 +35,7 @@ std::vector<uint8_t> classify_points(const Finder& finder, size_t n) {
 }
 
 // Cells of which some points are inside and some not, all of them usable.
-bool is_cut(uint32_t any, uint32_t every) { return any == inside && every == 0; }
+constexpr auto is_cut = [](uint32_t any, uint32_t every) { return uint32_t(any == inside) & uint32_t(every == 0); };
 
 // Looks at all cells a chunk at a time: cut(cell, found) for those that the surface crosses.
 template <class Cut>
@@ -141,7 +141,7 @@ std::vector<size_t> starts(const std::vector<EdgeChunk>& chunks, Get&& get) {
 Piece contour_cells(const Job& job, double value) {
   const auto* mesh = job.input.as<UnstructuredMesh>();
   const Points& points = mesh ? mesh->points : job.input.as<SurfaceMesh>()->points;
-  const Finder finder{job, points, value};
+  const Finder finder{job, Positions(points), value};
   std::vector<uint8_t> state = classify_points(finder, points.count());
   std::vector<EdgeChunk> chunks = mesh ? find_cells(finder, state, *mesh) : find_cells(finder, state, *job.input.as<SurfaceMesh>());
   std::vector<uint8_t>().swap(state);
@@ -159,7 +159,7 @@ Piece contour_cells(const Job& job, double value) {
       [&](size_t v, uint32_t a, uint32_t b) {
         const double t = crossing(value, finder.f(a), finder.f(b));
         piece.points.data[v] = {a, b, float(t)};
-        const Vec3 from = points.at(a) - job.origin, to = points.at(b) - job.origin;
+        const Vec3 from = finder.points.at(a) - job.origin, to = finder.points.at(b) - job.origin;
         const Vec3 x = from + (to - from) * t;
         for (int c = 0; c < 3; ++c) xyz[3 * v + size_t(c)] = float(x[c]);
       },

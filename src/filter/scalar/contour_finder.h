@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "filter/scalar/cell_cases.h"
+#include "filter/scalar/contour_cell_scan.h"
 #include "filter/scalar/contour_parts.h"
 
 namespace sg::contouring {
@@ -32,7 +33,7 @@ struct Found {
 /// Looks at one cell at a time.
 struct Finder {
   const Job& job;
-  const Points& points;
+  Positions points;
   double value;
   Sample f{job.samples};
   View<uint8_t> point_ghost = job.input.point_ghost().empty() ? View<uint8_t>{} : job.input.point_ghost().view<uint8_t>();

@@ -24,10 +24,7 @@ struct Sum {
 // then joined in the order of the runs: the same bytes for any number of threads, and no lists of cells at points.
 class Gradients {
  public:
-  Gradients(const Job& job, const UnstructuredMesh& mesh) : job_(job), mesh_(mesh), cells_(cells_view(mesh.cells)), f_(job.samples) {
-    xyz_ = mesh.points.xyz.made_packed();
-    floats_ = xyz_.type() == ElementType::f32 ? reinterpret_cast<const float*>(xyz_.raw()) : nullptr;
-    doubles_ = floats_ ? nullptr : reinterpret_cast<const double*>(xyz_.raw());
+  Gradients(const Job& job, const UnstructuredMesh& mesh) : job_(job), mesh_(mesh), cells_(cells_view(mesh.cells)), points_(mesh.points), f_(job.samples) {
     if (!job.input.cell_ghost().empty()) ghost_ = job.input.cell_ghost().view<uint8_t>();
   }
 
@@ -43,8 +40,10 @@ class Gradients {
           runs.size(), 1, [&](size_t r, size_t) { add_cells(first + r * grain, std::min(end, first + (r + 1) * grain), runs[r]); },
           &job_.context);
       parallel_for(sums_.size(), 1 << 13, [&](size_t b, size_t e) {
-        for (const Run& r : runs)
-          for (size_t s = std::max(b, r.first); s < std::min(e, r.first + r.sums.size()); ++s) sums_[s].add(r.sums[s - r.first].g);
+        for (const Run& r : runs) {
+          if (r.sums.empty()) continue;
+          for (size_t s = std::max(b, r.first); s < std::min(e, r.first + r.sums.size() - 1); ++s) sums_[s].add(r.sums[s - r.first + 1].g);
+        }
       });
     }
     return normals(edges);
@@ -56,10 +55,7 @@ class Gradients {
     std::vector<Sum> sums;
   };
 
-  Vec3 at(size_t p) const {
-    if (floats_) return {double(floats_[3 * p]), double(floats_[3 * p + 1]), double(floats_[3 * p + 2])};
-    return {doubles_[3 * p], doubles_[3 * p + 1], doubles_[3 * p + 2]};
-  }
+  Vec3 at(size_t p) const { return points_.offset(p); }
 
   // Slots for the ends of the edges, in the order of the points.
   void number_points(std::span<const EdgePoint> edges) {
@@ -87,16 +83,17 @@ class Gradients {
   void add_cells(size_t begin, size_t end, Run& run) const {
     thread_local std::vector<uint32_t> touched;
     touched.resize(end - begin + 1);
-    const size_t n = scan_cells(cells_, begin, end, used_.data(), touched.data(), [](uint32_t any, uint32_t) { return any != 0; });
-    uint32_t lo = UINT32_MAX, hi = 0;
+    const size_t n = scan_cells(cells_, begin, end, used_.data(), touched.data(), [](uint32_t any, uint32_t) { return uint32_t(any != 0); });
+    if (n == 0) return;
+    uint32_t lo = UINT32_MAX, hi = 0;  // a point that is not wanted has the slot of the next one that is
     for (size_t i = 0; i < n; ++i)
       for (size_t k = cells_.begin(touched[i]); k < cells_.end(touched[i]); ++k) {
-        const size_t p = size_t(cells_.connectivity[k]);
-        if (used_[p]) lo = std::min(lo, slot_[p]), hi = std::max(hi, slot_[p]);
+        const uint32_t s = slot_[size_t(cells_.connectivity[k])];
+        lo = std::min(lo, s), hi = std::max(hi, s);
       }
-    if (lo > hi) return;
+    // The first sum takes what nobody asks for, which spares a branch.
     run.first = lo;
-    run.sums.resize(hi - lo + 1);
+    run.sums.resize(hi - lo + 2);
     CellFaceReader faces(mesh_);
     for (size_t i = 0; i < n; ++i) {
       const size_t c = touched[i];
@@ -110,7 +107,7 @@ class Gradients {
       if (!std::isfinite(v[0] + v[1] + v[2])) continue;
       for (size_t k = cells_.begin(c); k < cells_.end(c); ++k) {
         const size_t p = size_t(cells_.connectivity[k]);
-        if (used_[p]) run.sums[slot_[p] - lo].add(v);
+        run.sums[(slot_[p] - lo + 1) & (0u - used_[p])].add(v);
       }
     }
   }
@@ -177,10 +174,8 @@ class Gradients {
   const Job& job_;
   const UnstructuredMesh& mesh_;
   CellsView cells_;
+  Positions points_;
   Sample f_;
-  Array xyz_;
-  const float* floats_ = nullptr;
-  const double* doubles_ = nullptr;
   View<uint8_t> ghost_;
   std::vector<uint8_t> used_;
   std::unique_ptr<uint32_t[]> slot_;
