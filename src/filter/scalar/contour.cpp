@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "base/text.h"
+#include "filter/scalar/contour_amr.h"
 #include "filter/scalar/contour_parts.h"
 
 namespace sg {
@@ -228,6 +229,7 @@ int mesh_dimension(const Dataset& input) {
 }  // namespace
 
 DatasetPtr contour(const DatasetPtr& input, const ContourParams& params, Context& context) {
+  if (input->as<AmrGrid>()) return contour_amr(input, params, choose_component, context);
   check_mesh(*input);
   const Field& field = choose_field(*input, params.field);
   const int component = choose_component(field, params.component);
