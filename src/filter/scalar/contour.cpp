@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "filter/scalar/contour_amr.h"
+#include "filter/scalar/contour_curved.h"
 #include "filter/scalar/contour_parts.h"
 
 namespace sg {
@@ -14,6 +15,7 @@ void describe(Schema& s, ContourParams& p) {
   s("field", p.field, "Point field to contour; default: the active scalar.");
   s("values", p.values, "Isovalues, one surface each; default: the middle of the range.").unit("@field");
   s("normals", p.normals, "Unit normals from the field's gradient.");
+  s("tolerance", p.tolerance, "Curved cells: largest distance of the triangles from the surface, as a share of the mesh's diagonal.").positive();
   s("component", p.component, "Of a field with several: 0, 1, ..., x, y, z, or magnitude.");
 }
 
@@ -244,6 +246,8 @@ DatasetPtr contour(const DatasetPtr& input, const ContourParams& params, Context
 
   Job job{*input, choose_samples(field, component), params.normals, false, choose_origin(input->bounds()), context};
   for (const Field& f : input->fields()) job.cells = job.cells || f.association == Association::cell;
+  if (has_curved_cells(*input))
+    return contour_curved(input, field, job.samples, values, params.tolerance, params.normals && dimension == 3, job.origin, context);
   std::vector<Piece> pieces;
   if (is_lattice(input->mesh()) && input->point_count() > 0) {
     LatticeContour lattice(job);

@@ -14,6 +14,7 @@ struct ContourParams {
   FieldName field;
   std::vector<double> values;
   bool normals = true;
+  double tolerance = 1e-3;
   std::string component;
 };
 void describe(Schema& s, ContourParams& p);
