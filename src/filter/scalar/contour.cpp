@@ -15,7 +15,8 @@ void describe(Schema& s, ContourParams& p) {
   s("field", p.field, "Point field to contour; default: the active scalar.");
   s("values", p.values, "Isovalues, one surface each; default: the middle of the range.").unit("@field");
   s("normals", p.normals, "Unit normals from the field's gradient.");
-  s("tolerance", p.tolerance, "Curved cells: largest distance of the triangles from the surface, as a share of the mesh's diagonal.").positive();
+  s("tolerance", p.tolerance, "Curved cells: largest distance of the triangles from the surface, as a share of the mesh's diagonal.")
+      .positive();
   s("component", p.component, "Of a field with several: 0, 1, ..., x, y, z, or magnitude.");
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What loops over many cells need to be fast: cells chosen by a byte at each of their points, and positions without a call. Inside filter/scalar only.
+// What loops over many cells need to be fast: cells chosen by a byte at each of their points, and positions without a call. Inside
+// filter/scalar only.
 #pragma once
 #include <cstdint>
 #include <type_traits>

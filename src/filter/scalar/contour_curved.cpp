@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "data/field_ops.h"
 #include "data/cell_topology.h"
+#include "data/field_ops.h"
 #include "filter/scalar/curved_simplices.h"
 
 namespace sg::contouring {
@@ -21,11 +21,11 @@ struct OnEdge {
 };
 
 struct Part {
-  std::vector<OnEdge> edges;          // one for each cut edge and cell, by key and order of the simplices
-  std::vector<size_t> first;          // of each point in edges; one more at the end
+  std::vector<OnEdge> edges;  // one for each cut edge and cell, by key and order of the simplices
+  std::vector<size_t> first;  // of each point in edges; one more at the end
   std::vector<int32_t> lines, triangles;
   std::vector<uint32_t> line_cells, triangle_cells;
-  std::vector<Vec3> rst;              // of the points, in the cell of their first edge
+  std::vector<Vec3> rst;  // of the points, in the cell of their first edge
 };
 
 // Cut edges of a simplex in the order of the corners of its triangles.
@@ -92,7 +92,8 @@ Part find(const CurvedSimplices& cells, double value) {
   std::vector<int32_t> number(uses.size());
   for (size_t i = 0; i < uses.size(); ++i) {
     if (i == 0 || uses[i].edge.key != uses[i - 1].edge.key) part.first.push_back(part.edges.size());
-    if (i == 0 || uses[i].edge.key != uses[i - 1].edge.key || uses[i].edge.cell != uses[i - 1].edge.cell) part.edges.push_back(uses[i].edge);
+    if (i == 0 || uses[i].edge.key != uses[i - 1].edge.key || uses[i].edge.cell != uses[i - 1].edge.cell)
+      part.edges.push_back(uses[i].edge);
     number[uses[i].place] = int32_t(part.first.size() - 1);
   }
   part.first.push_back(part.edges.size());
@@ -129,7 +130,8 @@ double root(CellField& field, const OnEdge& e, double value, double fa, double f
 
 class Surface {
  public:
-  Surface(const DatasetPtr& input, View<double> f, Vec3 origin, Context& context) : input_(input), f_(f), origin_(origin), context_(context) {
+  Surface(const DatasetPtr& input, View<double> f, Vec3 origin, Context& context)
+      : input_(input), f_(f), origin_(origin), context_(context) {
     for (const Field& field : input->fields())
       if (field.association == Association::point) fields_.push_back(&field);
     columns_.resize(fields_.size());

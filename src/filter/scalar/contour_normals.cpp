@@ -24,7 +24,8 @@ struct Sum {
 // then joined in the order of the runs: the same bytes for any number of threads, and no lists of cells at points.
 class Gradients {
  public:
-  Gradients(const Job& job, const UnstructuredMesh& mesh) : job_(job), mesh_(mesh), cells_(cells_view(mesh.cells)), points_(mesh.points), f_(job.samples) {
+  Gradients(const Job& job, const UnstructuredMesh& mesh)
+      : job_(job), mesh_(mesh), cells_(cells_view(mesh.cells)), points_(mesh.points), f_(job.samples) {
     if (!job.input.cell_ghost().empty()) ghost_ = job.input.cell_ghost().view<uint8_t>();
   }
 
@@ -83,7 +84,8 @@ class Gradients {
   void add_cells(size_t begin, size_t end, Run& run) const {
     thread_local std::vector<uint32_t> touched;
     touched.resize(end - begin + 1);
-    const size_t n = scan_cells(cells_, begin, end, used_.data(), touched.data(), [](uint32_t any, uint32_t) { return uint32_t(any != 0); });
+    const size_t n =
+        scan_cells(cells_, begin, end, used_.data(), touched.data(), [](uint32_t any, uint32_t) { return uint32_t(any != 0); });
     if (n == 0) return;
     uint32_t lo = UINT32_MAX, hi = 0;  // a point that is not wanted has the slot of the next one that is
     for (size_t i = 0; i < n; ++i)

@@ -11,7 +11,7 @@ namespace sg::contouring {
 
 namespace {
 
-constexpr size_t most_simplices = size_t(1) << 25;
+constexpr size_t most_simplices = size_t(1) << 22;
 constexpr uint8_t ends[6][2] = {{0, 1}, {0, 2}, {1, 2}, {0, 3}, {1, 3}, {2, 3}};  // the first three: those of a triangle
 int edge_count(const Simplex& s) { return s.corners == 3 ? 3 : 6; }
 
@@ -144,8 +144,7 @@ void CurvedSimplices::start(size_t cell, CellField& field) {
     size_t low = 0;
     for (size_t k = 1; k < face.size(); ++k)
       if (ids[face[k]] < ids[face[low]]) low = k;
-    for (size_t k = 1; k + 1 < face.size(); ++k)
-      emit(face[low], face[(low + k) % face.size()], face[(low + k + 1) % face.size()]);
+    for (size_t k = 1; k + 1 < face.size(); ++k) emit(face[low], face[(low + k) % face.size()], face[(low + k + 1) % face.size()]);
   };
   if (shape->dimension() == 2) {
     s.corners = 3;

@@ -15,8 +15,8 @@ struct Simplex {
   std::array<uint32_t, 4> v{};  ///< numbers in CurvedSimplices::points()
   std::array<Vec3, 4> rst;      ///< where they lie in this cell
   uint32_t cell = 0;
-  uint8_t corners = 4;  ///< 3: a triangle
-  bool flipped = false; ///< the cell is turned inside out
+  uint8_t corners = 4;   ///< 3: a triangle
+  bool flipped = false;  ///< the cell is turned inside out
 };
 
 /// Values of a field at reference places of the cells of one mesh. Not thread-safe: one per thread.
