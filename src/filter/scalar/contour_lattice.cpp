@@ -48,6 +48,13 @@ uint64_t inner_bits(size_t w, size_t n) {
   return from >= last ? 0 : last - from >= 64 ? ~uint64_t(0) : ~uint64_t(0) >> (64 - (last - from));
 }
 
+// std::popcount is a call without the instruction, which not every machine has.
+constexpr uint64_t bit_count(uint64_t x) {
+  x -= x >> 1 & 0x5555555555555555;
+  x = (x & 0x3333333333333333) + (x >> 2 & 0x3333333333333333);
+  return ((x + (x >> 4)) & 0x0F0F0F0F0F0F0F0F) * 0x0101010101010101 >> 56;
+}
+
 // Lines of a square: corners 0 (0,0), 1 (1,0), 2 (0,1), 3 (1,1); edges 0 below, 1 above (along x), 2 left, 3 right. Pairs of edges,
 // the inside on the left. Patterns 6 and 9 have two ways: inside corners apart, then joined.
 struct Square {
@@ -69,7 +76,11 @@ Square square_of(uint32_t pattern, size_t p, double value, const LatticeFrame& f
 LatticeContour::LatticeContour(const Job& job) : job_(job), lattice_(job.input.mesh()), frame_(lattice_.view()), sample_(job.samples) {
   words_ = (frame_.dims[0] + 63) / 64;
   flip_ = !frame_.right_handed();
-  for (uint32_t p = 0; p < 256; ++p) slow_[p] = job.trilinear && needs_trilinear(p);
+  for (uint32_t p = 0; p < 256; ++p) {
+    const auto t = lattice_cases().plain(p);
+    count_[p] = job.trilinear && needs_trilinear(p) ? slow_pattern : uint8_t((t[1] - t[0]) / 3);
+    first_[p] = uint16_t(t[0]);
+  }
   const size_t nx = frame_.dims[0], rows = frame_.dims[1] * frame_.dims[2];
   if (const Array& ghost = job.input.point_ghost(); !ghost.empty()) {
     const auto g = ghost.view<uint8_t>();
@@ -151,7 +162,6 @@ void LatticeContour::count_row(Cuts& cuts, size_t j, size_t k) const {
   const bool up = j + 1 < ny, back = k + 1 < nz;
   const bool solid = frame_.axes == 3;
   const bool cells = up && (back || !solid);
-  const CaseTable& table = lattice_cases();
   RowStart& row = cuts.rows[r];
   // Good cells of the row (dj, dk) before this one, 0 outside the grid; `spread` adds those to the left, for edges across x.
   auto good = [&](size_t dj, size_t dk, size_t w, bool spread) -> uint64_t {
@@ -174,7 +184,7 @@ void LatticeContour::count_row(Cuts& cuts, size_t j, size_t k) const {
     for (int l = 0; l < frame_.axes; ++l) {
       if (!skip_.empty()) cuts.cut[l][r * words_ + w] = cut[l];
       if (!cut[l]) continue;
-      const uint32_t n = uint32_t(std::popcount(cut[l]));
+      const uint32_t n = uint32_t(bit_count(cut[l]));
       row.cut[l] += n;
       row.vertex += n;
     }
@@ -191,14 +201,13 @@ void LatticeContour::count_row(Cuts& cuts, size_t j, size_t k) const {
         continue;
       }
       const uint32_t pattern = low | c.corners(i) << 4 | d.corners(i) << 6;
-      if (slow_[pattern]) [[unlikely]] {
-        const Slow slow(p, cuts.value, frame_, sample_);
-        row.cell += size_t(slow.cell.triangle_count);
-        row.inner += size_t(slow.cell.inner_count);
-      } else {
-        const auto t = table.plain(pattern);
-        row.cell += (t[1] - t[0]) / 3;
+      if (count_[pattern] != slow_pattern) [[likely]] {
+        row.cell += count_[pattern];
+        continue;
       }
+      const Slow slow(p, cuts.value, frame_, sample_);
+      row.cell += size_t(slow.cell.triangle_count);
+      row.inner += size_t(slow.cell.inner_count);
     }
   }
 }
@@ -240,8 +249,7 @@ Piece LatticeContour::generate(const Cuts& cuts) const {
 void LatticeContour::triangles_of_row(const Cuts& cuts, size_t j, size_t k, int32_t* out, uint32_t* cells, InnerPoint* inner) const {
   const size_t nx = frame_.dims[0], ny = frame_.dims[1];
   const size_t row[4] = {j + ny * k, j + 1 + ny * k, j + ny * (k + 1), j + 1 + ny * (k + 1)};
-  const CaseTable& table = lattice_cases();
-  const uint8_t* all = table.triangle_edges();
+  const uint8_t* all = lattice_cases().triangle_edges();
   const size_t cell_row = (nx - 1) * (j + (ny - 1) * k);
   auto start = [&](size_t r, int axis) {
     const RowStart& s = cuts.rows[r];
@@ -287,7 +295,7 @@ void LatticeContour::triangles_of_row(const Cuts& cuts, size_t j, size_t k, int3
           out += 3;
           if (cells) *cells++ = uint32_t(cell_row + 64 * w + size_t(i));
         };
-        if (slow_[pattern]) [[unlikely]] {
+        if (count_[pattern] == slow_pattern) [[unlikely]] {
           const size_t p = row[0] * nx + 64 * w + size_t(i);
           const Slow slow(p, cuts.value, frame_, sample_);
           const TrilinearCell& cut_cell = slow.cell;
@@ -301,8 +309,8 @@ void LatticeContour::triangles_of_row(const Cuts& cuts, size_t j, size_t k, int3
             triangle(edge[name[0]], edge[name[1]], edge[name[2]]);
           }
         } else {
-          const auto t = table.plain(pattern);
-          for (const uint8_t *e = all + t[0], *stop = all + t[1]; e < stop; e += 3) triangle(edge[e[0]], edge[e[1]], edge[e[2]]);
+          const uint8_t* e = all + first_[pattern];
+          for (uint32_t t = count_[pattern]; t > 0; --t, e += 3) triangle(edge[e[0]], edge[e[1]], edge[e[2]]);
         }
       }
       for (int s = 0; s < 8; ++s) at[s] += step[s];

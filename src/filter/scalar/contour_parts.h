@@ -114,7 +114,9 @@ class LatticeContour {
   Sample sample_;
   size_t words_ = 0;  ///< 64-bit words per row of bits
   bool missing_known_ = false, flip_ = false;
-  bool slow_[256];              ///< patterns of corners that the table alone cannot cut
+  static constexpr uint8_t slow_pattern = 255;
+  uint8_t count_[256];          ///< triangles of a pattern of corners, or slow_pattern: the table alone cannot cut it
+  uint16_t first_[256];         ///< where they begin in the table
   std::vector<uint64_t> skip_;  ///< bit per cell that must not be looked at, in rows like the points; empty when all are good
 };
 
