@@ -16,6 +16,8 @@ struct ContourParams {
   bool normals = true;
   double tolerance = 1e-3;
   std::string component;
+  std::string topology = "trilinear";
+  bool from_cells = false;
 };
 void describe(Schema& s, ContourParams& p);
 

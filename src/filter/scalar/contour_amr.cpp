@@ -453,6 +453,7 @@ DatasetPtr contour_amr(const DatasetPtr& input, const ContourParams& params, int
   for (double v : flat.values)
     if (!std::isfinite(v)) fail_usage(fmt::format("{} is no isovalue", v), "contour values", "give finite numbers");
   flat.field.name = field->name;
+  flat.from_cells = false;
   if (field->association == Association::cell) flat.component.clear();
   return contour(amr_cells_near(input, *field, component, flat.values, context), flat, context);
 }

@@ -136,6 +136,27 @@ std::vector<size_t> starts(const std::vector<EdgeChunk>& chunks, Get&& get) {
   return first;
 }
 
+// Points inside cells, in the order of the chunks.
+void inner_points(const Finder& finder, const std::vector<EdgeChunk>& chunks, size_t before, Piece& piece, float* xyz) {
+  const auto first = starts(
+      chunks, [](const EdgeChunk& c) -> const auto& { return c.inner; });
+  piece.inner.allocate(first.back());
+  piece.inner_corners.allocate(first.back());
+  for (size_t i = 0; i < chunks.size(); ++i)
+    for (size_t k = 0; k < chunks[i].inner.size(); ++k) {
+      const CellPoint& p = chunks[i].inner[k];
+      Vec3 x;
+      for (size_t c = 0; c < 8; ++c) {
+        double w = 1;
+        for (size_t a = 0; a < 3; ++a) w *= c >> a & 1 ? p.at[a] : 1 - p.at[a];
+        x += (finder.points.at(p.corners[c]) - finder.job.origin) * w;
+      }
+      piece.inner.data[first[i] + k] = {p.corners[0], {float(p.at[0]), float(p.at[1]), float(p.at[2])}};
+      piece.inner_corners.data[first[i] + k] = p.corners;
+      for (int a = 0; a < 3; ++a) xyz[3 * (before + first[i] + k) + size_t(a)] = float(x[a]);
+    }
+}
+
 }  // namespace
 
 Piece contour_cells(const Job& job, double value) {
@@ -154,7 +175,7 @@ Piece contour_cells(const Job& job, double value) {
   Piece piece;
   float* xyz = nullptr;
   piece.xyz = Array::make<float>(total, 3, &xyz);
-  piece.points.allocate(total);
+  piece.points.allocate(edges.size());
   edges.each(
       [&](size_t v, uint32_t a, uint32_t b) {
         const double t = crossing(value, finder.f(a), finder.f(b));
@@ -164,6 +185,7 @@ Piece contour_cells(const Job& job, double value) {
         for (int c = 0; c < 3; ++c) xyz[3 * v + size_t(c)] = float(x[c]);
       },
       job.context);
+  if (inner > 0) inner_points(finder, chunks, edges.size(), piece, xyz);
   auto connect = [&](auto get, const std::vector<size_t>& first) {
     int32_t* out = nullptr;
     Array a = Array::make<int32_t>(first.back(), 1, &out);
@@ -186,7 +208,8 @@ Piece contour_cells(const Job& job, double value) {
     piece.triangle_cells = joined(chunks, starts(chunks, triangle_cells), triangle_cells);
   }
   std::vector<EdgeChunk>().swap(chunks);
-  if (job.normals && mesh && piece.triangles.count() > 0) piece.normals = cell_normals(job, *mesh, piece.points.span());
+  if (job.normals && mesh && piece.triangles.count() > 0)
+    piece.normals = cell_normals(job, *mesh, piece.points.span(), piece.inner.span(), piece.inner_corners.span());
   return piece;
 }
 

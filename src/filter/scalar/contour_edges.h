@@ -18,7 +18,7 @@ struct EdgeChunk {
   std::array<uint32_t, parts + 1> begin{};
   std::vector<uint32_t> lines, triangles;  ///< places in keys, or inner_bit + place in inner
   std::vector<uint32_t> line_cells, triangle_cells;
-  std::vector<InnerPoint> inner;
+  std::vector<CellPoint> inner;
   size_t first_inner = 0;
 
   /// Takes what was found; `point_count` is that of the mesh. Edges go to the parts by their lower point.

@@ -9,16 +9,17 @@
 #include "filter/scalar/cell_cases.h"
 #include "filter/scalar/contour_cell_scan.h"
 #include "filter/scalar/contour_parts.h"
+#include "filter/scalar/trilinear_cell.h"
 
 namespace sg::contouring {
 
 /// The name of an edge: its lower point number above the higher one.
 inline uint64_t edge_key(int64_t a, int64_t b) { return a < b ? uint64_t(a) << 32 | uint64_t(b) : uint64_t(b) << 32 | uint64_t(a); }
 
-/// A point inside a cell: shares of its eight corners.
-struct InnerPoint {
-  std::array<uint32_t, 8> ids;
-  std::array<float, 8> weights;
+/// A point inside a hexahedron or voxel: its corners in the order of lattices, and (u,v,w).
+struct CellPoint {
+  std::array<uint32_t, 8> corners;
+  std::array<double, 3> at;
 };
 
 /// Triangles and lines as names of cut edges; inner_key + i names inner[i].
@@ -26,7 +27,7 @@ struct Found {
   static constexpr uint64_t inner_key = uint64_t(1) << 63;
   std::vector<uint64_t> lines, triangles;
   std::vector<uint32_t> line_cells, triangle_cells;
-  std::vector<InnerPoint> inner;
+  std::vector<CellPoint> inner;
   void clear() { lines.clear(), triangles.clear(), line_cells.clear(), triangle_cells.clear(), inner.clear(); }
 };
 
@@ -114,6 +115,8 @@ struct Finder {
       if (bad(p[size_t(c)])) return;
       pattern |= uint32_t(f(size_t(p[size_t(c)])) >= value) << c;
     }
+    if (job.trilinear && shape.corners == 8 && shape.edges.size() == 12 && trilinear(&table != &lattice_cases(), p.data(), cell, out))
+      return;
     uint32_t joined = 0;
     for (uint32_t m = table.ambiguous(pattern); m; m &= m - 1) {
       const auto& face = shape.faces[size_t(std::countr_zero(m))];
@@ -124,6 +127,36 @@ struct Finder {
     const auto edges = table.triangles(pattern, joined);
     for (uint8_t e : edges) out.triangles.push_back(edge_key(p[shape.edges[e][0]], p[shape.edges[e][1]]));
     out.triangle_cells.insert(out.triangle_cells.end(), edges.size() / 3, uint32_t(cell));
+  }
+
+  // A hexahedron or voxel whose surface depends on more than the signs; false when the tables will do.
+  bool trilinear(bool hexahedron, const int64_t* p, size_t cell, Found& out) const {
+    uint32_t q[8], pattern = 0;
+    double v[8];
+    for (size_t k = 0; k < 8; ++k) {
+      const size_t c = hexahedron ? hexahedron_corner[k] : k;
+      q[c] = uint32_t(p[k]);
+      v[c] = f(size_t(p[k])) - value;
+      pattern |= uint32_t(v[c] >= 0) << c;
+    }
+    if (!needs_trilinear(pattern)) return false;
+    for (double x : v)
+      if (!std::isfinite(x)) return false;
+    TrilinearCell t;
+    cut_trilinear(v, t);
+    const auto& edges = lattice_cases().shape().edges;
+    for (int i = 0; i < t.triangle_count; ++i)
+      for (uint8_t name : t.triangles[size_t(i)]) {
+        if (name < TrilinearCell::first_inner) out.triangles.push_back(edge_key(q[edges[name][0]], q[edges[name][1]]));
+        else out.triangles.push_back(Found::inner_key + out.inner.size() + name - TrilinearCell::first_inner);
+      }
+    out.triangle_cells.insert(out.triangle_cells.end(), size_t(t.triangle_count), uint32_t(cell));
+    for (int i = 0; i < t.inner_count; ++i) {
+      CellPoint& point = out.inner.emplace_back();
+      std::copy(q, q + 8, point.corners.begin());
+      point.at = t.inner[size_t(i)];
+    }
+    return true;
   }
 
   // A polygon: a line from where the boundary leaves the inside to where it came in, so that the inside lies on the left.

@@ -29,8 +29,9 @@ class Gradients {
     if (!job.input.cell_ghost().empty()) ghost_ = job.input.cell_ghost().view<uint8_t>();
   }
 
-  Array run(std::span<const EdgePoint> edges) {
-    number_points(edges);
+  using Corners = std::span<const std::array<uint32_t, 8>>;
+  Array run(std::span<const EdgePoint> edges, std::span<const InnerPoint> inner, Corners corners) {
+    number_points(edges, corners);
     sums_.assign(size_t(count_), Sum{});
     constexpr size_t wave = 32;  // runs at once: bounds the memory of their sums
     const size_t grain = std::max<size_t>(1 << 14, cells_.count / 128 + 1);
@@ -47,7 +48,7 @@ class Gradients {
         }
       });
     }
-    return normals(edges);
+    return normals(edges, inner, corners);
   }
 
  private:
@@ -59,13 +60,15 @@ class Gradients {
   Vec3 at(size_t p) const { return points_.offset(p); }
 
   // Slots for the ends of the edges, in the order of the points.
-  void number_points(std::span<const EdgePoint> edges) {
+  void number_points(std::span<const EdgePoint> edges, Corners corners) {
     const size_t n = mesh_.points.count();
     used_.assign(n + 8, 0);
     parallel_for(edges.size(), 1 << 14, [&](size_t b, size_t e) {
       for (size_t i = b; i < e; ++i)
         for (uint32_t p : {edges[i].a, edges[i].b}) std::atomic_ref<uint8_t>(used_[p]).store(1, std::memory_order_relaxed);
     });
+    for (const auto& eight : corners)
+      for (uint32_t p : eight) used_[p] = 1;
     slot_ = std::make_unique_for_overwrite<uint32_t[]>(n);
     constexpr size_t grain = 1 << 14;
     std::vector<size_t> first(n / grain + 2, 0);
@@ -155,21 +158,34 @@ class Gradients {
     return true;
   }
 
-  Array normals(std::span<const EdgePoint> edges) const {
+  static void put(Vec3 g, float* out) {
+    const double square = dot(g, g);
+    const double scale = square > 0 && std::isfinite(square) ? -1 / std::sqrt(square) : 0;
+    for (int c = 0; c < 3; ++c) out[c] = scale != 0 ? float(g[c] * scale) : 0.0f;
+  }
+
+  Array normals(std::span<const EdgePoint> edges, std::span<const InnerPoint> inner, Corners corners) const {
     float* out = nullptr;
-    Array a = Array::make<float>(edges.size(), 3, &out);
+    Array a = Array::make<float>(edges.size() + inner.size(), 3, &out);
     parallel_for(edges.size(), 1 << 13, [&](size_t b, size_t e) {
       for (size_t i = b; i < e; ++i) {
         const EdgePoint edge = edges[i];
         const double *from = sums_[slot_[edge.a]].g, *to = sums_[slot_[edge.b]].g;
         // A point all of whose cells are flat or lack values: the other end alone.
         const double s = from[3] > 0 ? (1 - double(edge.t)) / from[3] : 0, t = to[3] > 0 ? double(edge.t) / to[3] : 0;
-        const Vec3 g = Vec3(from[0], from[1], from[2]) * s + Vec3(to[0], to[1], to[2]) * t;
-        const double square = dot(g, g);
-        const double scale = square > 0 && std::isfinite(square) ? -1 / std::sqrt(square) : 0;
-        for (int c = 0; c < 3; ++c) out[3 * i + size_t(c)] = scale != 0 ? float(g[c] * scale) : 0.0f;
+        put(Vec3(from[0], from[1], from[2]) * s + Vec3(to[0], to[1], to[2]) * t, out + 3 * i);
       }
     });
+    for (size_t i = 0; i < inner.size(); ++i) {
+      Vec3 g;
+      for (size_t c = 0; c < 8; ++c) {
+        double w = 1;
+        for (size_t k = 0; k < 3; ++k) w *= c >> k & 1 ? double(inner[i].at[k]) : 1 - double(inner[i].at[k]);
+        const double* at = sums_[slot_[corners[i][c]]].g;
+        if (at[3] > 0) g += Vec3(at[0], at[1], at[2]) * (w / at[3]);
+      }
+      put(g, out + 3 * (edges.size() + i));
+    }
     return a;
   }
 
@@ -187,8 +203,9 @@ class Gradients {
 
 }  // namespace
 
-Array cell_normals(const Job& job, const UnstructuredMesh& mesh, std::span<const EdgePoint> edges) {
-  return Gradients(job, mesh).run(edges);
+Array cell_normals(const Job& job, const UnstructuredMesh& mesh, std::span<const EdgePoint> edges, std::span<const InnerPoint> inner,
+                   std::span<const std::array<uint32_t, 8>> corners) {
+  return Gradients(job, mesh).run(edges, inner, corners);
 }
 
 }  // namespace sg::contouring

@@ -11,6 +11,8 @@ namespace sg::contouring {
 /// a cell comes from its faces by Gauss's theorem. Exact for linear fields; of second order where the cells around a point lie about
 /// evenly (a smoothly bent lattice of any cells), of first order elsewhere and at the border. Along the edge it is interpolated
 /// linearly. Cells with a NaN are left out, hidden and refined ones too; duplicates count, so that pieces with ghost layers agree.
-Array cell_normals(const Job& job, const UnstructuredMesh& mesh, std::span<const EdgePoint> edges);
+/// Inside cells the gradients of the eight corners are interpolated; those points come last.
+Array cell_normals(const Job& job, const UnstructuredMesh& mesh, std::span<const EdgePoint> edges, std::span<const InnerPoint> inner,
+                   std::span<const std::array<uint32_t, 8>> corners);
 
 }  // namespace sg::contouring
