@@ -70,7 +70,7 @@ std::vector<EdgeChunk> find_cells(const Finder& finder, const std::vector<uint8_
   find(finder, state, cells, 0, chunks, [&](size_t c, Found& out) {
     const CellType type = m.type(c);
     if (type == CellType::tetra) return finder.tetra(cells, c, out);
-    if (const CaseTable* table = cell_cases(type)) return finder.solid(*table, cells, c, out);
+    if (cell_cases(type)) return finder.solid(type, cells, c, out);
     const CellTypeInfo& info = cell_type_info(type);
     if (info.dimension < 2) return;
     const size_t n = cells.size(c), b = cells.begin(c);

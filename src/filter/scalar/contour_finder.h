@@ -88,35 +88,34 @@ struct Finder {
   bool bad(int64_t p) const { return std::isnan(f(size_t(p))) || (point_ghost.count && (point_ghost[size_t(p)] & ghost_hidden_point)); }
 
   // Six times the volume when the faces, as listed, turn outwards; negative for a mirrored cell.
-  double volume(const CellShape& shape, const CellsView& cells, size_t cell) const {
-    const Vec3 base = points.at(size_t(cells.point(cell, 0)));
-    auto at = [&](uint8_t c) { return points.at(size_t(cells.point(cell, c))) - base; };
+  double volume(const CellShape& shape, const int64_t* p) const {
+    const Vec3 base = points.at(size_t(p[0]));
+    auto at = [&](uint8_t c) { return points.at(size_t(p[c])) - base; };
     double v = 0;
     for (const auto& face : shape.faces)
       for (size_t k = 1; k + 1 < face.size(); ++k) v += dot(at(face[0]), cross(at(face[k]), at(face[k + 1])));
     return v;
   }
 
-  void solid(const CaseTable& table, const CellsView& cells, size_t cell, Found& out) const {
-    const CellShape& shape = table.shape();
+  // Hexahedra are taken in the order of lattices, so that the same cells give the same triangles whatever they are called.
+  void solid(CellType type, const CellsView& cells, size_t cell, Found& out) const {
+    const bool hexahedron = type == CellType::hexahedron;
+    const CaseTable& table = hexahedron ? lattice_cases() : *cell_cases(type);
     std::array<int64_t, 16> p;
-    uint32_t any = 0, every = 1;
-    for (size_t c = 0; c < size_t(shape.corners); ++c) {
-      p[c] = cells.point(cell, c);
-      const uint32_t in = f(size_t(p[c])) >= value;
-      any |= in, every &= in;
-    }
-    if (!any || every) return;
+    for (size_t c = 0; c < size_t(table.shape().corners); ++c) p[hexahedron ? hexahedron_corner[c] : c] = cells.point(cell, c);
+    solid(table, p, cell, out);
+  }
+
+  void solid(const CaseTable& table, std::array<int64_t, 16> p, size_t cell, Found& out) const {
+    const CellShape& shape = table.shape();
     // The rules for segments and diagonals look at cells from outside, so mirrored ones are turned into proper ones.
-    if (volume(shape, cells, cell) < 0)
-      for (size_t c = 0; c < size_t(shape.corners); ++c) p[c] = cells.point(cell, shape.mirror[c]);
-    uint32_t pattern = 0;
-    for (int c = 0; c < shape.corners; ++c) {
-      if (bad(p[size_t(c)])) return;
-      pattern |= uint32_t(f(size_t(p[size_t(c)])) >= value) << c;
+    if (volume(shape, p.data()) < 0) {
+      const auto given = p;
+      for (size_t c = 0; c < size_t(shape.corners); ++c) p[c] = given[shape.mirror[c]];
     }
-    if (job.trilinear && shape.corners == 8 && shape.edges.size() == 12 && trilinear(&table != &lattice_cases(), p.data(), cell, out))
-      return;
+    uint32_t pattern = 0;
+    for (int c = 0; c < shape.corners; ++c) pattern |= uint32_t(f(size_t(p[size_t(c)])) >= value) << c;
+    if (job.trilinear && &table == &lattice_cases() && trilinear(p.data(), cell, out)) return;
     uint32_t joined = 0;
     for (uint32_t m = table.ambiguous(pattern); m; m &= m - 1) {
       const auto& face = shape.faces[size_t(std::countr_zero(m))];
@@ -130,13 +129,12 @@ struct Finder {
   }
 
   // A hexahedron or voxel whose surface depends on more than the signs; false when the tables will do.
-  bool trilinear(bool hexahedron, const int64_t* p, size_t cell, Found& out) const {
+  bool trilinear(const int64_t* p, size_t cell, Found& out) const {
     uint32_t q[8], pattern = 0;
     double v[8];
-    for (size_t k = 0; k < 8; ++k) {
-      const size_t c = hexahedron ? hexahedron_corner[k] : k;
-      q[c] = uint32_t(p[k]);
-      v[c] = f(size_t(p[k])) - value;
+    for (size_t c = 0; c < 8; ++c) {
+      q[c] = uint32_t(p[c]);
+      v[c] = f(size_t(p[c])) - value;
       pattern |= uint32_t(v[c] >= 0) << c;
     }
     if (!needs_trilinear(pattern)) return false;

@@ -52,6 +52,39 @@ void turn_alike(PolyhedronFaces& faces) {
   }
 }
 
+// The corners of six four-sided faces in the order of lattices, from the lowest number along its neighbours in their order.
+bool as_hexahedron(const PolyhedronFaces& faces, std::array<int64_t, 16>& p) {
+  if (faces.size() != 6) return false;
+  std::vector<int64_t> ids;
+  for (const auto& f : faces) {
+    if (f.size() != 4) return false;
+    ids.insert(ids.end(), f.begin(), f.end());
+  }
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  if (ids.size() != 8) return false;
+  const int64_t low = ids[0];
+  std::vector<int64_t> near;
+  for (const auto& f : faces)
+    for (size_t k = 0; k < 4; ++k)
+      if (f[k] == low) near.push_back(f[(k + 1) % 4]);  // once for each edge, as each is in two faces
+  std::sort(near.begin(), near.end());
+  if (near.size() != 3 || near[0] == near[1] || near[1] == near[2]) return false;
+  std::fill(p.begin(), p.end(), -1);
+  p[0] = low, p[1] = near[0], p[2] = near[1], p[4] = near[2];
+  for (const auto& f : faces)
+    for (size_t k = 0; k < 4; ++k) {
+      if (f[k] != low) continue;
+      size_t place = 0;
+      for (size_t c : {1, 2, 4})
+        if (p[c] == f[(k + 1) % 4] || p[c] == f[(k + 3) % 4]) place |= c;
+      p[place] = f[(k + 2) % 4];
+    }
+  for (int64_t id : ids)
+    if (std::find(p.begin(), p.begin() + 7, id) == p.begin() + 7) p[7] = id;
+  return std::find(p.begin(), p.begin() + 8, -1) == p.begin() + 8;
+}
+
 // A polyhedron of any faces: the rules of cell_cases.h, worked out on the spot.
 class PolyhedronCut {
  public:
@@ -60,6 +93,8 @@ class PolyhedronCut {
   }
 
   void run(Found& out) {
+    std::array<int64_t, 16> corners;
+    if (as_hexahedron(faces_, corners)) return finder_.solid(lattice_cases(), corners, cell_, out);
     for (size_t f = 0; f < faces_.size(); ++f) segments(f);
     while (!next_.empty()) {
       std::vector<uint64_t> loop;
