@@ -23,6 +23,9 @@ class Positions {
     if (floats_) return {double(floats_[3 * p]), double(floats_[3 * p + 1]), double(floats_[3 * p + 2])};
     return {doubles_[3 * p], doubles_[3 * p + 1], doubles_[3 * p + 2]};
   }
+  /// The numbers themselves: one of the two is there.
+  const float* floats() const { return floats_; }
+  const double* doubles() const { return doubles_; }
 
  private:
   Array xyz_;
