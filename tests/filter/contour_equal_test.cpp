@@ -127,6 +127,41 @@ TEST_CASE("contour: the pieces of a mesh with ghost layers give the whole's surf
   }
 }
 
+TEST_CASE("contour: cells give the same bytes for any number of threads, also in a random order, several values at once") {
+  for (const std::string kind : {"tetra", "mixed"}) {
+    const auto ordered = solid_mesh(kind, kind == "tetra" ? 24 : 30, 1, wavy);
+    // The cells in a random order, as mesh generators leave them.
+    DatasetParts parts = ordered->parts();
+    if (kind == "tetra") {
+      auto& m = std::get<UnstructuredMesh>(parts.mesh);
+      const CellsView cells = cells_view(m.cells);
+      std::vector<size_t> order(cells.count);
+      std::iota(order.begin(), order.end(), size_t(0));
+      std::sort(order.begin(), order.end(), [](size_t a, size_t b) { return random_unit(3, a) < random_unit(3, b); });
+      std::vector<int32_t> ids;
+      for (size_t c : order)
+        for (size_t k = 0; k < 4; ++k) ids.push_back(int32_t(cells.point(c, k)));
+      m.cells = {Array::from_vector(std::move(ids)), {}, 4};
+      m.types = {}, m.single_type = CellType::tetra;
+    }
+    const auto d = make_dataset(std::move(parts));
+    Context context;
+    ContourParams p;
+    p.values = {0, 0.4};
+    set_thread_count(1);
+    const auto one = contour(d, p, context), straight = contour(ordered, p, context);
+    set_thread_count(8);
+    const auto eight = contour(d, p, context);
+    set_thread_count(0);
+    CHECK(same_surface(one, eight));
+    CHECK(same_bytes(one->fields().require("Normals", Association::point).array,
+                     eight->fields().require("Normals", Association::point).array));
+    CHECK(Surface(one).triangles.size() == Surface(straight).triangles.size());
+    CHECK(Surface(one).area() == doctest::Approx(Surface(straight).area()));
+    CHECK(Surface(one).components() == Surface(straight).components());
+  }
+}
+
 TEST_CASE("contour: broken cells leave no crash: flat, self-crossing, open and two-point polyhedra") {
   CellsOf m;
   for (int k = 0; k < 2; ++k)
