@@ -129,25 +129,39 @@ void check_mesh(const Dataset& input) {
   }
 }
 
+// One behind the other; pieces that already lie so are not copied.
 template <class Get>
 Array joined(std::vector<Piece>& pieces, int components, Get&& get, bool ids) {
   if (pieces.size() == 1) return get(pieces[0]);
   size_t total = 0;
-  ElementType type = get(pieces[0]).type();
-  for (Piece& p : pieces) {
-    total += get(p).count();
-    if (get(p).count()) type = get(p).type();
+  const Array* any = nullptr;
+  std::vector<Array> arrays;
+  for (Piece& p : pieces) arrays.push_back(get(p));
+  bool in_place = true;
+  size_t before = 0;
+  for (size_t i = 0; i < pieces.size(); ++i) {
+    const Array& a = arrays[i];
+    if (a.count()) {
+      if (!any) any = &a;
+      in_place = in_place && a.buffer().data == any->buffer().data &&
+                 a.raw() == any->buffer().data + total * size_t(components) * element_size(a.type()) &&
+                 (!ids || pieces[i].first_point == before);
+    }
+    total += a.count();
+    before += pieces[i].point_count();
   }
+  if (!any) return arrays[0];
+  if (in_place) return Array(any->buffer(), any->type(), total, components);
   std::byte* out = nullptr;
-  Array r = Array::make_raw(type, total, components, &out);
-  int32_t before = 0;
-  for (Piece& p : pieces) {
-    const Array a = get(p);
+  const Array r = Array::make_raw(any->type(), total, components, &out);
+  before = 0;
+  for (size_t i = 0; i < pieces.size(); ++i) {
+    const Array& a = arrays[i];
     if (a.count()) std::memcpy(out, a.raw(), a.bytes());  // a piece without any surface has no bytes to point at
     if (ids)
-      for (size_t i = 0; i < a.count(); ++i) reinterpret_cast<int32_t*>(out)[i] += before;
+      for (size_t k = 0; k < a.count(); ++k) reinterpret_cast<int32_t*>(out)[k] += int32_t(before - pieces[i].first_point);
     out += a.bytes();
-    before += int32_t(p.point_count());
+    before += pieces[i].point_count();
   }
   return r;
 }
@@ -296,8 +310,7 @@ DatasetPtr contour(const DatasetPtr& given, const ContourParams& params, Context
     job.edges = job.edges || (f.association == Association::point && !(f.name == field.name && f.components() == 1));
   std::vector<Piece> pieces;
   if (is_lattice(input->mesh()) && input->point_count() > 0) {
-    LatticeContour lattice(job);
-    for (double v : values) pieces.push_back(lattice.run(v));
+    pieces = LatticeContour(job).run(values);
   } else if (is_lattice(input->mesh())) {
     Piece none;
     float* p = nullptr;
