@@ -173,22 +173,25 @@ std::vector<T> joined_list(const std::vector<Piece>& pieces, Get&& get) {
   return r;
 }
 
+// One number for each of counts[i] places, one list behind the other.
+template <class T>
+Array repeated(const std::vector<size_t>& counts, const std::vector<double>& numbers) {
+  size_t total = 0;
+  for (size_t n : counts) total += n;
+  T* out = nullptr;
+  const Array a = Array::make<T>(total, 1, &out);
+  for (size_t i = 0; i < counts.size(); ++i) {
+    parallel_for(counts[i], 1 << 16, [&](size_t begin, size_t end) { std::fill(out + begin, out + end, T(numbers[i])); });
+    out += counts[i];
+  }
+  return a;
+}
+
 // One isovalue per point; integer fields become f32, as 0.5 is no integer.
 Array isovalues(const std::vector<Piece>& pieces, const std::vector<double>& values, ElementType type) {
-  size_t total = 0;
-  for (const Piece& p : pieces) total += p.point_count();
-  auto fill = [&]<class T>(T* out, const Array& made) {
-    for (size_t i = 0; i < pieces.size(); ++i) out = std::fill_n(out, pieces[i].point_count(), T(values[i]));
-    return made;
-  };
-  if (type == ElementType::f64) {
-    double* out = nullptr;
-    const Array a = Array::make<double>(total, 1, &out);
-    return fill(out, a);
-  }
-  float* out = nullptr;
-  const Array a = Array::make<float>(total, 1, &out);
-  return fill(out, a);
+  std::vector<size_t> counts;
+  for (const Piece& p : pieces) counts.push_back(p.point_count());
+  return type == ElementType::f64 ? repeated<double>(counts, values) : repeated<float>(counts, values);
 }
 
 // A point field on all points: linear along edges, trilinear inside cells.
@@ -249,10 +252,12 @@ DatasetPtr assemble(const Dataset& input, const Field& field, const std::vector<
     carry_gathered(out, input.fields(), Association::cell, std::span<const uint32_t>(cells), Association::cell);
   }
   if (values.size() > 1) {
-    std::vector<double> which;
-    for (size_t i = 0; i < pieces.size(); ++i) which.insert(which.end(), pieces[i].lines.count() / 2, values[i]);
-    for (size_t i = 0; i < pieces.size(); ++i) which.insert(which.end(), pieces[i].triangles.count() / 3, values[i]);
-    out.add({"contour value", Association::cell, Array::from_vector(std::move(which)), field.unit, Role::none});
+    std::vector<size_t> counts;
+    std::vector<double> numbers = values;
+    for (const Piece& p : pieces) counts.push_back(p.lines.count() / 2);
+    for (const Piece& p : pieces) counts.push_back(p.triangles.count() / 3);
+    numbers.insert(numbers.end(), values.begin(), values.end());
+    out.add({"contour value", Association::cell, repeated<double>(counts, numbers), field.unit, Role::none});
   }
   carry_whole(out, input.fields());
   DatasetParts parts;
