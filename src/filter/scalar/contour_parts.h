@@ -46,6 +46,7 @@ struct Piece {
   Array lines, triangles;                        ///< i32 connectivity, 2 and 3 per cell
   Block<uint32_t> line_cells, triangle_cells;    ///< source cell of each; empty when not asked for
 
+  size_t first_point = 0;  ///< what the connectivity's numbers already count from
   size_t point_count() const { return points.count + inner.count; }
 };
 
@@ -97,17 +98,18 @@ struct RowStart {
 class LatticeContour {
  public:
   explicit LatticeContour(const Job& job);
-  Piece run(double value);
+  std::vector<Piece> run(std::span<const double> values);
 
  private:
   struct Cuts;
+  struct Room;
   struct Slow;
   void skip_points(const std::vector<uint64_t>& bad);
   void find_cuts(Cuts& cuts) const;
   void count_row(Cuts& cuts, size_t j, size_t k) const;
-  Piece generate(const Cuts& cuts) const;
-  void triangles_of_row(const Cuts& cuts, size_t j, size_t k, int32_t* out, uint32_t* cells, InnerPoint* inner) const;
-  void lines_of_row(const Cuts& cuts, size_t j, int32_t* out, uint32_t* cells) const;
+  Piece generate(const Cuts& cuts, Room& room) const;
+  void triangles_of_row(const Cuts& cuts, size_t j, size_t k, uint32_t first_point, int32_t* out, uint32_t* cells, InnerPoint* inner) const;
+  void lines_of_row(const Cuts& cuts, size_t j, uint32_t first_point, int32_t* out, uint32_t* cells) const;
 
   const Job& job_;
   Lattice lattice_;
@@ -146,8 +148,9 @@ void interpolate_inner(const Array& a, const Piece& piece, std::byte* out);
 /// Unstructured and surface meshes.
 Piece contour_cells(const Job& job, double value);
 
-/// Sets bit i of row r for samples >= value. Returns true when a sample was NaN.
-bool classify(const Array& samples, size_t nx, size_t rows, double value, uint64_t* bits, size_t words, Context& context);
+/// Sets bit i of row r of bits[v] for samples >= values[v]. Returns true when a sample was NaN.
+bool classify(const Array& samples, size_t nx, size_t rows, std::span<const double> values, std::span<uint64_t* const> bits, size_t words,
+              Context& context);
 /// Sets the bit of samples that are NaN.
 void find_missing(const Array& samples, size_t nx, size_t rows, uint64_t* bits, size_t words, Context& context);
 
