@@ -6,7 +6,7 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "filter/field/point_cell.h"
-#include "filter/scalar/contour_parts.h"
+#include "filter/scalar/contour_active.h"
 
 namespace sg {
 
@@ -310,12 +310,13 @@ DatasetPtr contour(const DatasetPtr& given, const ContourParams& params, Context
     fail_usage(fmt::format("there is no topology '{}'", params.topology), "contour topology", "trilinear or fixed");
   Job job{*input, choose_samples(field, component), params.normals, false, trilinear, true, choose_origin(input->bounds()), context};
   for (const Field& f : input->fields()) job.cells = job.cells || f.association == Association::cell;
+  const std::string key = fmt::format("{} {}", field.name, component);
   job.edges = false;
   for (const Field& f : input->fields())
     job.edges = job.edges || (f.association == Association::point && !(f.name == field.name && f.components() == 1));
   std::vector<Piece> pieces;
   if (is_lattice(input->mesh()) && input->point_count() > 0) {
-    pieces = LatticeContour(job).run(values);
+    pieces = LatticeContour(job, lattice_index(job, key, values.size())).run(values);
   } else if (is_lattice(input->mesh())) {
     Piece none;
     float* p = nullptr;
