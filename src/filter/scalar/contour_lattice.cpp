@@ -151,17 +151,17 @@ std::vector<Piece> LatticeContour::run(std::span<const double> values) {
     const auto some = values.subspan(begin, std::min(together, values.size() - begin));
     std::vector<Cuts> cuts(some.size());
     std::vector<uint64_t*> bits;
+    std::vector<std::optional<ActiveWords>> where(some.size());
     for (size_t i = 0; i < some.size(); ++i) {
       cuts[i].value = some[i];
       cuts[i].inside.resize(rows * words_);
       bits.push_back(cuts[i].inside.data());
     }
-    std::vector<ActiveWords> where;
     bool nan = false;
     if (index_) {
       for (size_t i = 0; i < some.size(); ++i) {
-        where.emplace_back(*index_, frame_.dims, some[i]);
-        where[i].classify(job_.samples, bits[i], words_, job_.context);
+        where[i].emplace(*index_, frame_.dims, some[i]);
+        where[i]->classify(job_.samples, bits[i], words_, job_.context);
       }
       if (!index_->missing.empty() && !missing_known_) skip_points(index_->missing);
       missing_known_ = true;
@@ -175,8 +175,9 @@ std::vector<Piece> LatticeContour::run(std::span<const double> values) {
       missing_known_ = true;
     }
     Room room;
-    for (Cuts& c : cuts) {
-      find_cuts(c, index_ ? &where[size_t(&c - cuts.data())] : nullptr);
+    for (size_t i = 0; i < cuts.size(); ++i) {
+      Cuts& c = cuts[i];
+      find_cuts(c, where[i] ? &*where[i] : nullptr);
       room.edges += c.vertices, room.inner += c.inner, room.cells += c.cells;
     }
     if (room.edges + room.inner > size_t(INT32_MAX))
