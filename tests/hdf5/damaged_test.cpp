@@ -149,3 +149,21 @@ TEST_CASE("hdf5: layouts of every kind hold the same numbers") {
     }
   }
 }
+
+TEST_CASE("hdf5: groups that hold themselves by links are refused, and end") {
+  for (const bool hard : {false, true}) {
+    H5Sample h("circle.vtkhdf");
+    h.vtkhdf("/VTKHDF", "MultiBlockDataSet");
+    h.group("/VTKHDF/Assembly");
+    if (hard) H5Lcreate_hard(h.id(), "/VTKHDF/Assembly", h.id(), "/VTKHDF/Assembly/again", H5P_DEFAULT, H5P_DEFAULT);
+    else H5Lcreate_soft("/VTKHDF/Assembly", h.id(), "/VTKHDF/Assembly/again", H5P_DEFAULT, H5P_DEFAULT);
+    h.close();
+    CHECK(contains(test::error_of([&] { test::read_any(h.path); }), "too many blocks within each other"));
+  }
+  H5Sample h("soft.vtkhdf");
+  H5Lcreate_soft("/b", h.id(), "/VTKHDF", H5P_DEFAULT, H5P_DEFAULT);
+  H5Lcreate_soft("/VTKHDF", h.id(), "/b", H5P_DEFAULT, H5P_DEFAULT);
+  H5Lcreate_external("soft.vtkhdf", "/c", h.id(), "/c", H5P_DEFAULT, H5P_DEFAULT);
+  h.close();
+  CHECK(refused(h.path));
+}
