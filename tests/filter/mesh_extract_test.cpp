@@ -45,6 +45,62 @@ TEST_CASE("extract: cells by their numbers, by a field of ids, by their points, 
   CHECK(test::error_of([&] { extract(d, {{1}, "cell", {"r"}, false}, ctx); }).size() > 0);
 }
 
+TEST_CASE("extract: by region, type, level and block") {
+  const DatasetPtr d = grid({0, 0, 0});
+  Context ctx;
+  const Box3& b = d->bounds();
+  ExtractParams p;
+  p.region.box = {b.lo.x, b.center().x, b.lo.y, b.hi.y, b.lo.z, b.hi.z};
+  CHECK(extract(d, p, ctx)->cell_count() == 256);
+  p.all_points = false;
+  CHECK(extract(d, p, ctx)->cell_count() == 320);
+  p.all_points = true, p.invert = true;
+  CHECK(extract(d, p, ctx)->cell_count() == 256);
+  p = {};
+  p.region.axis = "x";
+  CHECK(extract(d, p, ctx)->cell_count() == 256);
+  p.ids = {0, 7};
+  CHECK(extract(d, p, ctx)->cell_count() == 1);
+  p = {};
+  p.types = {"voxel"};
+  CHECK(extract(d, p, ctx)->cell_count() == 512);
+  p.types = {"tetra"};
+  CHECK(extract(d, p, ctx)->cell_count() == 0);
+  p.types = {"tetrahedroid"};
+  CHECK(test::error_of([&] { extract(d, p, ctx); }).find("no cell type") != std::string::npos);
+  p = {};
+  p.levels = {0};
+  CHECK(test::error_of([&] { extract(d, p, ctx); }).find("has no levels") != std::string::npos);
+  AmrGrid g;
+  g.levels.resize(2);
+  g.levels[0].ratio = {1, 1, 1};
+  g.levels[0].patches = {{{0, 0, 0}, {3, 3, 3}, 0, 0}};
+  g.levels[1].spacing = {0.5, 0.5, 0.5};
+  g.levels[1].patches = {{{2, 2, 2}, {5, 5, 5}, 64, 125}};
+  p.levels = {1};
+  CHECK(extract(make_dataset(g), p, ctx)->cell_count() == 64);
+  p.levels = {2};
+  CHECK(test::error_of([&] { extract(make_dataset(g), p, ctx); }).find("0 to 1") != std::string::npos);
+  auto c = std::make_shared<Collection>();
+  auto wing = std::make_shared<Collection>();
+  wing->parts.push_back({"left", d});
+  c->parts = {{"hull", d}, {"wing", CollectionPtr(wing)}};
+  p = {};
+  p.blocks = {"wing"};
+  auto count = [&] {
+    size_t n = 0;
+    for_each_dataset(extract_blocks(CollectionPtr(c), p, ctx),
+                     [&](const std::string&, const DatasetPtr& part) { n += part->cell_count(); });
+    return n;
+  };
+  CHECK(count() == 512);
+  p.blocks = {"0", "wing/left"};
+  p.ids = {3};
+  CHECK(count() == 2);
+  p.blocks = {"wings"};
+  CHECK(test::error_of([&] { count(); }).find("did you mean") != std::string::npos);
+}
+
 TEST_CASE("far from zero: contours, gradients and resampling at an offset of 1e7 are those at zero, moved") {
   const Vec3 far{1e7, -2e7, 3e7};
   const DatasetPtr near_grid = grid({0, 0, 0}), far_grid = grid(far);
