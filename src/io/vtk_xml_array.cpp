@@ -176,6 +176,7 @@ XmlFile::BlockTable XmlFile::block_table(const Wanted& want, const Source& s) co
   if (last > block || !multiply(blocks, block, t.total)) damaged(fmt::format("has {} blocks of {} and {} bytes", blocks, block, last));
   if (last > 0 && blocks > 0) t.total -= block - last;
   t.blocks = blocks, t.block = block, t.last = last > 0 ? last : block;
+  if (blocks == 1) t.block = t.last;  // nothing else backs the size of a whole block
   t.starts.assign(blocks + 1, 0);
   const std::string_view rest = s.bytes.substr(used);
   const uint64_t most = s.base64 ? rest.size() / 4 * 3 : rest.size();

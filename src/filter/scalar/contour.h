@@ -15,6 +15,8 @@ struct ContourParams {
   std::vector<double> values;
   bool normals = true;
   std::string component;
+  std::string topology = "trilinear";
+  bool from_cells = false;
 };
 void describe(Schema& s, ContourParams& p);
 

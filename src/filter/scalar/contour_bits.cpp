@@ -66,6 +66,16 @@ T threshold(double value, bool& none) {
   }
 }
 
+// The word that the row fills in part.
+template <class T>
+void last_word(const T* row, size_t nx, T least, uint64_t* out) {
+  const size_t whole = nx / 64, rest = nx % 64;
+  T tail[64];
+  for (size_t i = 0; i < 64; ++i) tail[i] = row[64 * whole + std::min(i, rest - 1)];
+  at_least(tail, 1, least, out + whole);
+  out[whole] &= ~uint64_t(0) >> (64 - rest);
+}
+
 template <class T>
 bool classify_rows(const T* p, size_t nx, size_t begin, size_t end, double value, uint64_t* bits, size_t words) {
   bool none = false, nan = false;
@@ -77,14 +87,9 @@ bool classify_rows(const T* p, size_t nx, size_t begin, size_t end, double value
       std::fill(out, out + words, 0);
       continue;
     }
-    const size_t whole = nx / 64, rest = nx % 64;
+    const size_t whole = nx / 64;
     at_least(row, whole, least, out);
-    if (rest) {
-      T tail[64];
-      for (size_t i = 0; i < 64; ++i) tail[i] = row[64 * whole + std::min(i, rest - 1)];
-      at_least(tail, 1, least, out + whole);
-      out[whole] &= ~uint64_t(0) >> (64 - rest);
-    }
+    if (nx % 64) last_word(row, nx, least, out);
     if constexpr (std::is_floating_point_v<T>) nan = nan || any_nan(row, nx);
   }
   return nan;
@@ -111,6 +116,32 @@ bool classify(const Array& samples, size_t nx, size_t rows, double value, uint64
     return parallel_reduce(
         rows, row_grain(nx), false, [&](size_t begin, size_t end) { return classify_rows(p, nx, begin, end, value, bits, words); },
         [](bool a, bool b) { return a || b; }, &context);
+  });
+}
+
+void classify_words(const Array& samples, size_t nx, size_t row, double value, const uint8_t* wanted, uint64_t* bits, size_t words) {
+  native(samples, [&]<class T>(const T* all) {
+    bool none = false;
+    const T least = threshold<T>(value, none);
+    const T* p = all + row * nx;
+    uint64_t* out = bits + row * words;
+    const size_t whole = nx / 64;
+    for (size_t w = 0; w < words; ++w) {
+      if (!wanted[w]) continue;
+      if (none) out[w] = 0;
+      else if (w == whole) last_word(p, nx, least, out);
+      else at_least(p + 64 * w, 1, least, out + w);
+    }
+  });
+}
+
+bool any_missing(const Array& samples, Context& context) {
+  return native(samples, [&]<class T>(const T* p) {
+    if constexpr (std::is_floating_point_v<T>)
+      return parallel_reduce(
+          samples.count(), 65536, false, [&](size_t begin, size_t end) { return any_nan(p + begin, end - begin); },
+          [](bool a, bool b) { return a || b; }, &context);
+    return false;
   });
 }
 
