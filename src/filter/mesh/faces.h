@@ -30,7 +30,8 @@ inline void describe(Schema& s, FacesParams& p) {
 /// straight-sided ones with linear fields keep their nodes only. New points come after those of the mesh; integer, label and colour
 /// fields take the value of the nearest node there. Hidden and refined cells are left out, so that the faces behind
 /// them appear; duplicate ghost cells are left out too, but their shared faces stay internal. AMR: faces between a leaf and
-/// anything that covers its neighbour, at its level or above, are internal. Only used points are kept, in input order;
+/// anything that fills its neighbour's place, at its level, above or below, are internal; where finer cells fill only a part (some are
+/// hidden), the whole face shows. Only used points are kept, in input order;
 /// all fields are carried. A SurfaceMesh without ghost cells passes unchanged. O(faces), parallel.
 DatasetPtr faces(const DatasetPtr& in, const FacesParams& p, Context& ctx);
 
