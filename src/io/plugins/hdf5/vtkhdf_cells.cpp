@@ -209,7 +209,8 @@ void read_polydata(const Group& g, DatasetParts& parts) {
     cells[k] = lists.cells;
     cell_count += lists.cell_count, cell_offset += lists.cell_offset;
   }
-  if (cell_count == 0 && p.point_count > 0) parts.mesh = PointCloud{std::move(mesh.points)};  // as clouds are written
+  if (cell_count == 0 && g.file.text_attribute(g.path, "Kind").value_or("") == "points")
+    parts.mesh = PointCloud{std::move(mesh.points)};  // as clouds are written
   else parts.mesh = std::move(mesh);
   add_point_fields(g, p, parts);
   for (const std::string& name : field_names(g, "CellData")) {

@@ -266,6 +266,7 @@ void write(const Out& o, const PointCloud& m) {
   SurfaceMesh s;
   s.points = m.points;
   write(o, s);
+  o.w.text(o.at, "Kind", "points");  // ours: a surface without cells is another thing
 }
 
 void write(const Out& o, const AmrGrid& g) {
