@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "data/memo.h"
+#include "filter/mesh/to_unstructured.h"
 #include "filter/scalar/contour.h"
 #include "support/test.h"
 
@@ -112,4 +113,48 @@ TEST_CASE("contour again: many values in one request, with the index or without,
   size_t cells = 0;
   for (double v : values) cells += at(fresh(d), {v})->cell_count();
   CHECK(many->cell_count() == cells);
+}
+
+TEST_CASE("contour again: cells of all kinds, in file order and at random, give the same bytes with their index as without") {
+  Context context;
+  for (bool shuffled : {false, true}) {
+    const DatasetPtr grid24 = grid<double>({25, 20, 17}, 1, true, true);
+    DatasetPtr mesh = to_unstructured(grid24, {}, context);
+    if (shuffled) {
+      std::vector<int64_t> order(mesh->cell_count());
+      for (size_t c = 0; c < order.size(); ++c) order[c] = int64_t(c);
+      std::sort(order.begin(), order.end(), [](int64_t a, int64_t b) { return random_unit(8, uint64_t(a)) < random_unit(8, uint64_t(b)); });
+      UnstructuredMesh m = *mesh->as<UnstructuredMesh>();
+      const CellsView cells = cells_view(m.cells);
+      std::vector<int64_t> ids;
+      for (int64_t c : order)
+        for (size_t k = 0; k < cells.size(size_t(c)); ++k) ids.push_back(cells.point(size_t(c), k));
+      REQUIRE(cells.fixed == 8);
+      m.cells.connectivity = Array::from_vector(std::move(ids));
+      DatasetParts parts = mesh->parts();
+      parts.mesh = std::move(m);
+      parts.cell_ghost = {};
+      mesh = make_dataset(std::move(parts));
+    }
+    check_repeats(mesh, {3, 2.5, 4.25, 1e9});
+  }
+  // A surface: its lines come before its polygons in the numbering of cells.
+  SurfaceMesh s;
+  std::vector<float> xyz, f;
+  for (int j = 0; j < 40; ++j)
+    for (int i = 0; i < 40; ++i) {
+      for (double x : {double(i), double(j), 0.0}) xyz.push_back(float(x));
+      f.push_back(float(std::sin(0.2 * i) + std::cos(0.3 * j)));
+    }
+  std::vector<int32_t> quads, lines;
+  for (int j = 0; j + 1 < 40; ++j)
+    for (int i = 0; i + 1 < 40; ++i)
+      for (int p : {i + 40 * j, i + 1 + 40 * j, i + 41 + 40 * j, i + 40 + 40 * j}) quads.push_back(p);
+  for (int i = 0; i + 1 < 40; ++i) lines.push_back(i), lines.push_back(i + 1);
+  s.points.xyz = Array::from_vector(std::move(xyz), 3);
+  s.polygons.connectivity = Array::from_vector(std::move(quads)), s.polygons.fixed = 4;
+  s.lines.connectivity = Array::from_vector(std::move(lines)), s.lines.fixed = 2;
+  FieldSet fields;
+  fields.add({"f", Association::point, Array::from_vector(std::move(f)), "", Role::scalars});
+  check_repeats(make_dataset(s, fields), {0.1, -0.5, 1.2});
 }

@@ -330,7 +330,8 @@ DatasetPtr contour(const DatasetPtr& given, const ContourParams& params, Context
     none.xyz = Array::make<float>(0, 3, &p);
     pieces.assign(values.size(), none);
   } else {
-    for (double v : values) pieces.push_back(contour_cells(job, v));
+    const auto index = cell_index(job, key, values.size());
+    for (double v : values) pieces.push_back(contour_cells(job, v, index.get()));
   }
   for (size_t i = 0; i < pieces.size(); ++i) {
     if (pieces[i].lines.count() + pieces[i].triangles.count() > 0) continue;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "filter/scalar/contour_active.h"
 #include "filter/scalar/contour_cell_scan.h"
 #include "filter/scalar/contour_edges.h"
 #include "filter/scalar/contour_normals.h"
@@ -37,10 +38,35 @@ std::vector<uint8_t> classify_points(const Finder& finder, size_t n) {
 // Cells of which some points are inside and some not, all of them usable.
 constexpr auto is_cut = [](uint32_t any, uint32_t every) { return uint32_t(any == inside) & uint32_t(every == 0); };
 
-// Looks at all cells a chunk at a time: cut(cell, found) for those that the surface crosses.
+// Where to look: in all cells, or in those items of an index that the value crosses.
+class Places {
+ public:
+  Places(const CellActiveIndex* index, double value) : all_(!index) {
+    if (index) group_ = index->cells_per_item, items_ = index->index.active(value);
+  }
+  // Calls f(begin, end) for parts of [begin, end) of the mesh's cells, ascending.
+  template <class F>
+  void in(size_t begin, size_t end, F&& f) const {
+    if (all_) return f(begin, end);
+    auto item = std::lower_bound(items_.begin(), items_.end(), uint32_t(begin / group_));
+    while (item != items_.end() && *item * group_ < end) {
+      const auto first = item;
+      while (item + 1 != items_.end() && item[1] == *item + 1) ++item;
+      f(std::max(begin, *first * group_), std::min(end, (*item + 1) * group_));
+      ++item;
+    }
+  }
+
+ private:
+  bool all_;
+  size_t group_ = 1;
+  std::vector<uint32_t> items_;
+};
+
+// Looks at cells a chunk at a time: cut(cell, found) for those that the surface crosses. Chunks are the same wherever it looks.
 template <class Cut>
-void find(const Finder& finder, const std::vector<uint8_t>& state, const CellsView& cells, size_t before, std::vector<EdgeChunk>& chunks,
-          Cut&& cut) {
+void find(const Finder& finder, const Places& places, const std::vector<uint8_t>& state, const CellsView& cells, size_t before,
+          std::vector<EdgeChunk>& chunks, Cut&& cut) {
   const size_t grain = std::max<size_t>(1 << 13, cells.count / 1024 + 1), first = chunks.size();
   if (cells.count == 0) return;
   chunks.resize(first + (cells.count + grain - 1) / grain);
@@ -51,7 +77,9 @@ void find(const Finder& finder, const std::vector<uint8_t>& state, const CellsVi
         thread_local Found found;
         active.resize(end - begin + 1);
         found.clear();
-        const size_t n = scan_cells(cells, begin, end, state.data(), active.data(), is_cut);
+        size_t n = 0;
+        places.in(before + begin, before + end,
+                  [&](size_t b, size_t e) { n += scan_cells(cells, b - before, e - before, state.data(), active.data() + n, is_cut); });
         for (size_t i = 0; i < n; ++i)
           if (!finder.skipped(before + active[i])) cut(size_t(active[i]), found);
         if (!found.lines.empty() || !found.triangles.empty()) chunks[first + begin / grain].take(found, state.size());
@@ -64,10 +92,11 @@ void find(const Finder& finder, const std::vector<uint8_t>& state, const CellsVi
              "contours of curved cells are not there yet; slice and faces take them");
 }
 
-std::vector<EdgeChunk> find_cells(const Finder& finder, const std::vector<uint8_t>& state, const UnstructuredMesh& m) {
+std::vector<EdgeChunk> find_cells(const Finder& finder, const Places& places, const std::vector<uint8_t>& state,
+                                  const UnstructuredMesh& m) {
   const CellsView cells = cells_view(m.cells);
   std::vector<EdgeChunk> chunks;
-  find(finder, state, cells, 0, chunks, [&](size_t c, Found& out) {
+  find(finder, places, state, cells, 0, chunks, [&](size_t c, Found& out) {
     const CellType type = m.type(c);
     if (type == CellType::tetra) return finder.tetra(cells, c, out);
     if (cell_cases(type)) return finder.solid(type, cells, c, out);
@@ -96,12 +125,12 @@ std::vector<EdgeChunk> find_cells(const Finder& finder, const std::vector<uint8_
   return chunks;
 }
 
-std::vector<EdgeChunk> find_cells(const Finder& finder, const std::vector<uint8_t>& state, const SurfaceMesh& m) {
+std::vector<EdgeChunk> find_cells(const Finder& finder, const Places& places, const std::vector<uint8_t>& state, const SurfaceMesh& m) {
   std::vector<EdgeChunk> chunks;
   size_t before = m.vertices.size() + m.lines.size();
   for (const CellArray* list : {&m.polygons, &m.strips}) {
     const CellsView cells = cells_view(*list);
-    find(finder, state, cells, before, chunks, [&](size_t c, Found& out) {
+    find(finder, places, state, cells, before, chunks, [&](size_t c, Found& out) {
       const size_t n = cells.size(c);
       std::vector<int64_t> p(n);
       for (size_t k = 0; k < n; ++k) p[k] = cells.point(c, k);
@@ -159,12 +188,14 @@ void inner_points(const Finder& finder, const std::vector<EdgeChunk>& chunks, si
 
 }  // namespace
 
-Piece contour_cells(const Job& job, double value) {
+Piece contour_cells(const Job& job, double value, const CellActiveIndex* index) {
   const auto* mesh = job.input.as<UnstructuredMesh>();
   const Points& points = mesh ? mesh->points : job.input.as<SurfaceMesh>()->points;
   const Finder finder{job, Positions(points), value};
   std::vector<uint8_t> state = classify_points(finder, points.count());
-  std::vector<EdgeChunk> chunks = mesh ? find_cells(finder, state, *mesh) : find_cells(finder, state, *job.input.as<SurfaceMesh>());
+  const Places places(index, value);
+  std::vector<EdgeChunk> chunks =
+      mesh ? find_cells(finder, places, state, *mesh) : find_cells(finder, places, state, *job.input.as<SurfaceMesh>());
   std::vector<uint8_t>().swap(state);
   const EdgePoints edges(chunks, job.context);
   size_t inner = 0;

@@ -13,6 +13,10 @@
 #include "data/field_ops.h"
 #include "filter/field/lattice_frame.h"
 
+namespace sg {
+struct CellActiveIndex;
+}
+
 namespace sg::contouring {
 
 /// Uninitialised numbers: results are written once, in parallel.
@@ -150,8 +154,8 @@ void make_vertices(const VertexJob& job);
 /// Point array `a` at the inner points, trilinear, in its own type (integers round to nearest).
 void interpolate_inner(const Array& a, const Piece& piece, std::byte* out);
 
-/// Unstructured and surface meshes.
-Piece contour_cells(const Job& job, double value);
+/// Unstructured and surface meshes. `index`: what is known from earlier contours, or null.
+Piece contour_cells(const Job& job, double value, const CellActiveIndex* index = nullptr);
 
 /// Sets bit i of row r of bits[v] for samples >= values[v]. Returns true when a sample was NaN.
 bool classify(const Array& samples, size_t nx, size_t rows, std::span<const double> values, std::span<uint64_t* const> bits, size_t words,
