@@ -60,6 +60,8 @@ namespace {
 Request request_of_slice(const ParamSet& params, const Request& wanted) {
   Request r = detail::request_carried(params, wanted);
   const auto& p = detail::values_of<SliceParams>(params);
+  if (!p.function.empty()) return Request{};
+  if (!p.positions.empty() || (p.planes != "none" && !p.planes.empty())) return r;
   int axis = p.axis == "x" ? 0 : p.axis == "y" ? 1 : p.axis == "z" ? 2 : -1;
   std::optional<double> at = p.position;
   if (axis < 0 && p.origin)
@@ -83,12 +85,21 @@ Data clip_with(const std::vector<Data>& in, const ClipParams& p, Context& ctx) {
   return with_second_mesh("clip", in, p, ctx, [](auto&&... a) { return clip(a...); });
 }
 
+Data slice_by(const std::vector<Data>& in, const SliceParams& p, Context& ctx) {
+  return with_second_mesh("slice", in, p, ctx, [](auto&&... a) { return slice(a...); });
+}
+
 // An expression may name any field.
 Request request_of_clip(const ParamSet& params, const Request& wanted) {
   Request r = detail::request_carried(params, wanted);
   const auto& p = detail::values_of<ClipParams>(params);
   if (!p.function.empty()) return Request{};
   return r;
+}
+
+Request request_of_extract(const ParamSet& params, const Request& wanted) {
+  const auto& p = detail::values_of<ExtractParams>(params);
+  return p.region.function.empty() ? detail::request_carried(params, wanted) : Request{};
 }
 
 }  // namespace

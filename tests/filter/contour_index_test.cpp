@@ -96,9 +96,10 @@ TEST_CASE("contour again: missing samples, hidden cells, flat grids and rounded 
   check_repeats(steps, {9, 10, 8.5, 11, 12});
 }
 
-TEST_CASE("contour again: many values in one request use the index at once, for any number of threads") {
+TEST_CASE("contour again: many values in one request, with the index or without, for any number of threads") {
   const DatasetPtr d = grid<float>({131, 67, 41}, 1, true, false);
   const std::vector<double> values{2.2, 2.6, 3, 3.4, 3.8};
+  at(d, {3.3});
   const DatasetPtr many = at(d, values);
   CHECK(d->memo().bytes() > 0);
   set_thread_count(8);

@@ -1,43 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sizes that no file backs, at every place of the fuzz target's seeds: 2^31, 2^63-1 and -1 in each count, whatever its width and order.
-#include <sys/resource.h>
-#include <unistd.h>
-
-#include <cstring>
-
-#include "base/parallel.h"
 #include "corpus.h"
+#include "memory_cap.h"
 
 using namespace sg;
 
 namespace {
-
-// Lets this process have `more` bytes of address space beyond what it has, so that asking for what a hostile size says fails.
-class MemoryCap {
- public:
-  explicit MemoryCap(size_t more) {
-    size_t pages = 0;
-    if (std::FILE* f = std::fopen("/proc/self/statm", "r")) {
-      if (std::fscanf(f, "%zu", &pages) != 1) pages = 0;
-      std::fclose(f);
-    }
-    ::getrlimit(RLIMIT_AS, &before_);
-    rlimit now = before_;
-    now.rlim_cur = std::min<rlim_t>(before_.rlim_max, pages * size_t(::sysconf(_SC_PAGESIZE)) + more);
-    if (pages > 0) ::setrlimit(RLIMIT_AS, &now);
-  }
-  ~MemoryCap() { ::setrlimit(RLIMIT_AS, &before_); }
-  MemoryCap(const MemoryCap&) = delete;
-
- private:
-  rlimit before_{};
-};
-
-struct OneThread {
-  int before = thread_count();
-  OneThread() { set_thread_count(1); }
-  ~OneThread() { set_thread_count(before); }
-};
 
 // Reading may say anything but that there was not enough memory: then it had asked for what the size said.
 void try_it(test::Seed& seed, const std::string& bytes, size_t at) {
@@ -96,10 +64,10 @@ void check_binary_sizes(test::Seed& seed, size_t dense, size_t most, size_t step
 bool is_binary(const std::string& bytes) { return bytes.find('\0') != std::string::npos; }
 
 void check_sizes(std::string_view plugin, size_t numbers, size_t dense, size_t most, size_t step) {
-  const OneThread one;
+  const test::OneThread one;
   // The first reading loads the plug-in and starts what stays.
   test::for_seeds(plugin, [&](test::Seed& seed, const std::string&) { CHECK(seed.read(seed.bytes()) == ""); });
-  const MemoryCap cap(size_t(1) << 30);
+  const test::MemoryCap cap(size_t(1) << 30);
   size_t binary = 0;
   CHECK(test::for_seeds(plugin, [&](test::Seed& seed, const std::string&) {
           check_text_sizes(seed, numbers);

@@ -279,6 +279,7 @@ ClipTable::ClipTable(CellType type) : topology_(linear_topology(type)), place_(p
       if (face.size() == 4 && in(0) == in(2) && in(1) == in(3) && in(0) != in(1)) mask |= 1u << f;
     }
     ambiguous_.push_back(mask);
+    loops_.push_back(open_loops(divided_faces(p, 0, 0).in));
     first_.push_back(uint32_t(sides_.size()));
     uint32_t joined = 0;
     do {

@@ -64,6 +64,8 @@ class ClipTable {
   bool folded(const Sides& sides, const double* h) const;
   /// Pieces that are never inside out: the faces' parts over the middle of the cell, cut along the rays to it. More of them.
   void star_sides(uint32_t pattern, uint32_t joined, uint32_t zero, const double* h, Sides& out) const;
+  /// The cut surface of a pattern without ambiguous faces: cuts as codes, counter-clockwise seen from the inside corners.
+  const std::vector<std::vector<uint8_t>>& loops(uint32_t pattern) const { return loops_[pattern]; }
   int edge(int a, int b) const { return edge_of_[size_t(a)][size_t(b)]; }
 
  private:
@@ -84,6 +86,7 @@ class ClipTable {
   std::array<uint32_t, 8> corner_faces_{};
   std::vector<uint32_t> ambiguous_, first_;
   std::vector<Sides> sides_;
+  std::vector<std::vector<Polygon>> loops_;
 };
 
 /// The table of a tetra, pyramid, wedge, voxel or hexahedron, made on first use; null for all other types.

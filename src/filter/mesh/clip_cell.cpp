@@ -64,7 +64,7 @@ uint16_t CellClipper::cut(uint16_t a, uint16_t b, int level) {
   return add(CellPieces::inner_name + out_.inner.size() - 1, value);
 }
 
-void CellClipper::add_region(const ClipTable& table, const uint16_t* corners, int level, bool last) {
+void CellClipper::add_region(const ClipTable& table, const uint16_t* corners, int level, bool last, int folded) {
   const LinearTopology& topology = table.topology();
   double h[8];
   uint32_t pattern = 0, zero = 0, joined = 0;
@@ -81,7 +81,8 @@ void CellClipper::add_region(const ClipTable& table, const uint16_t* corners, in
   const Sides* sides = &own_;
   if (zero == 0) sides = &table.sides(pattern, joined);
   else table.sides(pattern, joined, zero, own_);
-  if (!keep_.flat && table.folded(*sides, h)) table.star_sides(pattern, joined, zero, h, own_), sides = &own_;
+  folded_ = !keep_.flat && (folded < 0 ? table.folded(*sides, h) : folded > 0);
+  if (folded_) table.star_sides(pattern, joined, zero, h, own_), sides = &own_;
   const Region& region = kept_outside(level) ? sides->out : sides->in;
 
   uint16_t at[max_codes];
@@ -126,11 +127,11 @@ void CellClipper::add_region(const ClipTable& table, const uint16_t* corners, in
   }
 }
 
-const CellPieces& CellClipper::solid(const ClipTable& table, const int64_t* ids, const double* values) {
+const CellPieces& CellClipper::solid(const ClipTable& table, const int64_t* ids, const double* values, int folded) {
   const auto n = size_t(table.topology().corners);
   begin({ids, n}, {values, n});
   const uint16_t corners[8] = {0, 1, 2, 3, 4, 5, 6, 7};
-  if (!keep_.between) return add_region(table, corners, 0, true), out_;
+  if (!keep_.between) return add_region(table, corners, 0, true, folded), out_;
   waiting_.clear();
   add_region(table, corners, 0, false);
   for (size_t i = 0; i < waiting_.size(); ++i) {

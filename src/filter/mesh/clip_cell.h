@@ -66,7 +66,9 @@ class CellClipper {
   /// `position` is asked for polygons that a level crosses more than twice.
   CellClipper(const Keep& keep, std::function<Vec3(size_t)> position) : keep_(keep), position_(std::move(position)) {}
   /// A tetrahedron, pyramid, wedge, voxel or hexahedron. Values in the order of the ids.
-  const CellPieces& solid(const ClipTable& table, const int64_t* ids, const double* values);
+  /// `folded`: what folded() said of this cell before, or -1; it costs a look at each piece.
+  const CellPieces& solid(const ClipTable& table, const int64_t* ids, const double* values, int folded = -1);
+  bool folded() const { return folded_; }
   /// Points in order around.
   const CellPieces& polygon(std::span<const int64_t> ids, std::span<const double> values);
   /// Lines between consecutive points.
@@ -85,7 +87,7 @@ class CellClipper {
   bool kept_outside(int level) const { return level == 0 && keep_.outside; }
   uint16_t add(uint64_t name, double value);
   uint16_t cut(uint16_t a, uint16_t b, int level);
-  void add_region(const ClipTable& table, const uint16_t* corners, int level, bool last);
+  void add_region(const ClipTable& table, const uint16_t* corners, int level, bool last, int folded = -1);
   void clip_ring(const Ring& ring, int level, bool divided, std::vector<Ring>& out);
   std::vector<std::pair<size_t, size_t>> partners(const std::vector<uint16_t>& cuts) const;
   Vec3 place(uint16_t v) const;
@@ -103,6 +105,7 @@ class CellClipper {
   std::vector<double> value_;  // of each vertex
   std::vector<Waiting> waiting_;
   Sides own_;
+  bool folded_ = false;
 };
 
 }  // namespace sg::clipping

@@ -56,7 +56,7 @@ Array carried(const Array& a, const Shares& s) {
           const auto base = double(v(s.build.inner_points[first], int(c)));
           double sum = base;
           for (size_t k = first + 1; k < s.build.inner_first[i + 1]; ++k)
-            sum += double(s.build.inner_weights[k]) * (double(v(s.build.inner_points[k], int(c))) - base);
+            sum += s.build.inner_weights[k] * (double(v(s.build.inner_points[k], int(c))) - base);
           out[(kept + cuts + i) * n + c] = rounded<T>(sum);
         }
     });
@@ -89,8 +89,7 @@ Array places(const At& at, const Build& b, Plane<double>& t, const Job& job) {
     for (size_t i = begin; i < end; ++i) {
       const Vec3 base = at(b.inner_points[b.inner_first[i]]);
       Vec3 sum = base;
-      for (size_t k = b.inner_first[i] + 1; k < b.inner_first[i + 1]; ++k)
-        sum += (at(b.inner_points[k]) - base) * double(b.inner_weights[k]);
+      for (size_t k = b.inner_first[i] + 1; k < b.inner_first[i + 1]; ++k) sum += (at(b.inner_points[k]) - base) * b.inner_weights[k];
       put(kept + cuts + i, sum);
     }
   });

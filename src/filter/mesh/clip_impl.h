@@ -55,7 +55,7 @@ struct Build {
   Plane<uint64_t> cuts;    ///< names of cut edges
   std::vector<size_t> inner_first{0};
   Plane<uint32_t> inner_points;
-  Plane<float> inner_weights;
+  Plane<double> inner_weights;
 };
 
 /// Unstructured meshes.

@@ -135,7 +135,7 @@ class LatticeClip {
     return r;
   }
 
-  const CellPieces& pieces(CellClipper& clipper, size_t i, size_t j, size_t k) const {
+  const CellPieces& pieces(CellClipper& clipper, size_t i, size_t j, size_t k, int folded) const {
     int64_t ids[8];
     double v[8];
     for (size_t c = 0; c < 8; ++c) {
@@ -144,7 +144,7 @@ class LatticeClip {
       ids[c] = int64_t(id);
       v[c] = values_(id);
     }
-    return clipper.solid(table_, ids, v);
+    return clipper.solid(table_, ids, v, folded);
   }
 
   uint32_t cut_number(uint64_t name) const {
@@ -165,16 +165,18 @@ class LatticeClip {
     const size_t chunks = (g_.rows() + grain - 1) / grain;
     std::vector<size_t> cell(chunks);
     std::vector<PieceCounts> piece(chunks);
+    folded_.assign(g_.size(), 0);
     parallel_for(
         g_.rows(), grain,
         [&](size_t begin, size_t end) {
           size_t n = 0;
-          for (size_t w = begin * g_.words; w < end * g_.words; ++w) n += size_t(std::popcount(whole_[w]));
+          for (size_t w = begin * g_.words; w < end * g_.words; ++w) n += count_bits(whole_[w]);
           cell[begin / grain] = n;
           CellClipper clipper(job_.keep, {});
           PieceCounts& counts = piece[begin / grain];
           each_cut(begin, end, [&](size_t i, size_t j, size_t k) {
-            count_pieces(clipper, pieces(clipper, i, j, k), counts, nullptr, [](uint64_t) {});
+            count_pieces(clipper, pieces(clipper, i, j, k, -1), counts, nullptr, [](uint64_t) {});
+            folded_[g_.row(j, k) + (i >> 6)] |= uint64_t(clipper.folded()) << (i & 63);
           });
         },
         &job_.context);
@@ -205,7 +207,8 @@ class LatticeClip {
           writer.at.cells += whole, writer.at.ids += 8 * whole;
           each_cut(begin, end, [&](size_t i, size_t j, size_t k) {
             writer.write(
-                clipper, pieces(clipper, i, j, k), i + (g_.nx - 1) * (j + (g_.ny - 1) * k),
+                clipper, pieces(clipper, i, j, k, int(folded_[g_.row(j, k) + (i >> 6)] >> (i & 63) & 1)),
+                i + (g_.nx - 1) * (j + (g_.ny - 1) * k),
                 [&](uint64_t id) { return points_(size_t(id) / g_.nx * g_.words, size_t(id) % g_.nx); },
                 [&](uint64_t name) { return cut_number(name); });
           });
@@ -234,7 +237,7 @@ class LatticeClip {
   LatticeCellKind kind_;
   const ClipTable& table_;
   bool holes_ = false;  // values that are missing or cells that are hidden
-  Bits kept_, gone_, missing_, whole_, cut_, used_, edges_[3];
+  Bits kept_, gone_, missing_, whole_, cut_, used_, edges_[3], folded_;
   BitRanks points_, ranks_[3];
   size_t cut_start_[3] = {0, 0, 0};
 };

@@ -57,7 +57,7 @@ class ListClip {
     parallel_for(
         cells_.count, grain, [&](size_t begin, size_t end) { find(begin, end, states); }, &job_.context);
     used_.number();
-    CutNumbers numbers = number_names(cuts_, mesh_.points.count());
+    CutNumbers numbers = number_names({cuts_.begin(), cuts_.end()}, mesh_.points.count());
     Build b;
     b.cuts = std::move(numbers.names);
     write(b, numbers.number);

@@ -61,7 +61,7 @@ struct PieceWriter {
         for (size_t k = 0; k < weights.size(); ++k)
           if (weights[k] != 0) {
             build.inner_points[at.inner_ids] = uint32_t(p.names[k]);
-            build.inner_weights[at.inner_ids++] = float(weights[k]);
+            build.inner_weights[at.inner_ids++] = weights[k];
           }
         build.inner_first[at.inner + 1] = at.inner_ids;
         number[v] = uint32_t(first_inner + at.inner++);

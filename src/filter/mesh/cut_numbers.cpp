@@ -37,7 +37,7 @@ struct Seen {
 
 }  // namespace
 
-CutNumbers number_names(const std::vector<std::vector<uint64_t>>& chunks, size_t points) {
+CutNumbers number_names(const std::vector<std::span<const uint64_t>>& chunks, size_t points) {
   CutNumbers r;
   std::vector<size_t> start(chunks.size() + 1);
   for (size_t c = 0; c < chunks.size(); ++c) start[c] = chunks[c].size();

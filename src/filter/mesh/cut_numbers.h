@@ -2,6 +2,7 @@
 // Numbers for points that many cells name alike.
 #pragma once
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "base/huge_allocator.h"
@@ -17,6 +18,6 @@ struct CutNumbers {
   Plane<uint32_t> number;  ///< for the lists of names one after the other
 };
 /// Numbers what the chunks found, the same for any number of threads. Upper halves are below `points`. O(names), parallel.
-CutNumbers number_names(const std::vector<std::vector<uint64_t>>& chunks, size_t points);
+CutNumbers number_names(const std::vector<std::span<const uint64_t>>& chunks, size_t points);
 
 }  // namespace sg

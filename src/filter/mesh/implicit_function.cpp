@@ -75,7 +75,9 @@ ImplicitFunction plane_of(const ImplicitParams& p, const Dataset& in, std::strin
     return std::abs(d) <= snap ? 0.0 : d;
   });
   r.plane = true;
+  r.origin = origin;
   r.normal = normal;
+  r.snap = snap;
   return r;
 }
 

@@ -18,6 +18,9 @@ struct ImplicitParams {
   std::optional<double> position = {};
   std::vector<double> sphere = {}, cylinder = {}, box = {}, quadric = {};
   std::string function = {};
+  // Several planes at once: slice only.
+  std::string planes = "none";
+  std::vector<double> positions = {};
 };
 
 inline void describe_implicit(Schema& s, ImplicitParams& p) {
@@ -36,10 +39,11 @@ inline void describe_implicit(Schema& s, ImplicitParams& p) {
 /// Distances from planes, spheres, cylinders, boxes and meshes; other functions as they are.
 struct ImplicitFunction {
   std::function<void(std::span<const Vec3> at, std::span<double> out)> evaluate;  ///< safe from several threads
-  Array known;         ///< an expression of fields: its f64 values at the points of the mesh; evaluate is empty then
-  bool plane = false;  ///< linear: cuts of edges need no search
-  Vec3 normal;         ///< of the plane
-  std::string text;    ///< "a plane", "a sphere"
+  Array known;          ///< an expression of fields: its f64 values at the points of the mesh; evaluate is empty then
+  bool plane = false;   ///< linear: cuts of edges need no search
+  Vec3 origin, normal;  ///< of the plane
+  double snap = 0;      ///< distances from the plane below this are rounding and count as 0
+  std::string text;     ///< "a plane", "a sphere"
 
   double operator()(Vec3 p) const {
     double r = 0;

@@ -51,7 +51,7 @@ void BitRanks::number(const Bits& b) {
   std::vector<size_t> start((b.size() + chunk - 1) / chunk);
   parallel_for(b.size(), chunk, [&](size_t begin, size_t end) {
     size_t n = 0;
-    for (size_t w = begin; w < end; ++w) n += size_t(std::popcount(b[w]));
+    for (size_t w = begin; w < end; ++w) n += count_bits(b[w]);
     start[begin / chunk] = n;
   });
   total = exclusive_scan(start);
@@ -61,7 +61,7 @@ void BitRanks::number(const Bits& b) {
     auto n = uint32_t(start[begin / chunk]);
     for (size_t w = begin; w < end; ++w) {
       before[w] = n;
-      n += uint32_t(std::popcount(b[w]));
+      n += count_bits(b[w]);
     }
   });
 }

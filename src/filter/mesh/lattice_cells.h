@@ -34,6 +34,13 @@ struct BitRows {
   }
 };
 
+/// Set bits, without a call where the processor's instruction may not be assumed.
+inline uint32_t count_bits(uint64_t v) {
+  v -= v >> 1 & 0x5555555555555555u;
+  v = (v & 0x3333333333333333u) + (v >> 2 & 0x3333333333333333u);
+  return uint32_t(((v + (v >> 4)) & 0x0f0f0f0f0f0f0f0fu) * 0x0101010101010101u >> 56);
+}
+
 /// 64 bytes that are 0 or 1 as bits.
 inline uint64_t packed_bits(const uint8_t* bytes) {
   uint64_t r = 0;
@@ -56,7 +63,7 @@ struct BitRanks {
   void number(const Bits& b);
   uint32_t operator()(size_t row, size_t i) const {
     const size_t w = row + (i >> 6);
-    return before[w] + uint32_t(std::popcount((*bits)[w] & ((uint64_t(1) << (i & 63)) - 1)));
+    return before[w] + count_bits((*bits)[w] & ((uint64_t(1) << (i & 63)) - 1));
   }
   bool has(size_t row, size_t i) const { return (*bits)[row + (i >> 6)] >> (i & 63) & 1; }
 };

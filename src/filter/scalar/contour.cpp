@@ -7,6 +7,8 @@
 #include "base/text.h"
 #include "filter/field/point_cell.h"
 #include "filter/scalar/contour_active.h"
+#include "filter/scalar/contour_amr.h"
+#include "filter/scalar/contour_curved.h"
 
 namespace sg {
 
@@ -19,6 +21,8 @@ void describe(Schema& s, ContourParams& p) {
     "apart on every face.")
       .choices({"trilinear", "fixed"});
   s("from_cells", p.from_cells, "Take a cell field, averaged to the points.");
+  s("tolerance", p.tolerance, "Curved cells: largest distance of the triangles from the surface, as a share of the mesh's diagonal.")
+      .positive();
   s("component", p.component, "Of a field with several: 0, 1, ..., x, y, z, or magnitude.");
 }
 
@@ -129,25 +133,39 @@ void check_mesh(const Dataset& input) {
   }
 }
 
+// One behind the other; pieces that already lie so are not copied.
 template <class Get>
 Array joined(std::vector<Piece>& pieces, int components, Get&& get, bool ids) {
   if (pieces.size() == 1) return get(pieces[0]);
   size_t total = 0;
-  ElementType type = get(pieces[0]).type();
-  for (Piece& p : pieces) {
-    total += get(p).count();
-    if (get(p).count()) type = get(p).type();
+  const Array* any = nullptr;
+  std::vector<Array> arrays;
+  for (Piece& p : pieces) arrays.push_back(get(p));
+  bool in_place = true;
+  size_t before = 0;
+  for (size_t i = 0; i < pieces.size(); ++i) {
+    const Array& a = arrays[i];
+    if (a.count()) {
+      if (!any) any = &a;
+      in_place = in_place && a.buffer().data == any->buffer().data &&
+                 a.raw() == any->buffer().data + total * size_t(components) * element_size(a.type()) &&
+                 (!ids || pieces[i].first_point == before);
+    }
+    total += a.count();
+    before += pieces[i].point_count();
   }
+  if (!any) return arrays[0];
+  if (in_place) return Array(any->buffer(), any->type(), total, components);
   std::byte* out = nullptr;
-  Array r = Array::make_raw(type, total, components, &out);
-  int32_t before = 0;
-  for (Piece& p : pieces) {
-    const Array a = get(p);
+  const Array r = Array::make_raw(any->type(), total, components, &out);
+  before = 0;
+  for (size_t i = 0; i < pieces.size(); ++i) {
+    const Array& a = arrays[i];
     if (a.count()) std::memcpy(out, a.raw(), a.bytes());  // a piece without any surface has no bytes to point at
     if (ids)
-      for (size_t i = 0; i < a.count(); ++i) reinterpret_cast<int32_t*>(out)[i] += before;
+      for (size_t k = 0; k < a.count(); ++k) reinterpret_cast<int32_t*>(out)[k] += int32_t(before - pieces[i].first_point);
     out += a.bytes();
-    before += int32_t(p.point_count());
+    before += pieces[i].point_count();
   }
   return r;
 }
@@ -159,22 +177,25 @@ std::vector<T> joined_list(const std::vector<Piece>& pieces, Get&& get) {
   return r;
 }
 
+// One number for each of counts[i] places, one list behind the other.
+template <class T>
+Array repeated(const std::vector<size_t>& counts, const std::vector<double>& numbers) {
+  size_t total = 0;
+  for (size_t n : counts) total += n;
+  T* out = nullptr;
+  const Array a = Array::make<T>(total, 1, &out);
+  for (size_t i = 0; i < counts.size(); ++i) {
+    parallel_for(counts[i], 1 << 16, [&](size_t begin, size_t end) { std::fill(out + begin, out + end, T(numbers[i])); });
+    out += counts[i];
+  }
+  return a;
+}
+
 // One isovalue per point; integer fields become f32, as 0.5 is no integer.
 Array isovalues(const std::vector<Piece>& pieces, const std::vector<double>& values, ElementType type) {
-  size_t total = 0;
-  for (const Piece& p : pieces) total += p.point_count();
-  auto fill = [&]<class T>(T* out, const Array& made) {
-    for (size_t i = 0; i < pieces.size(); ++i) out = std::fill_n(out, pieces[i].point_count(), T(values[i]));
-    return made;
-  };
-  if (type == ElementType::f64) {
-    double* out = nullptr;
-    const Array a = Array::make<double>(total, 1, &out);
-    return fill(out, a);
-  }
-  float* out = nullptr;
-  const Array a = Array::make<float>(total, 1, &out);
-  return fill(out, a);
+  std::vector<size_t> counts;
+  for (const Piece& p : pieces) counts.push_back(p.point_count());
+  return type == ElementType::f64 ? repeated<double>(counts, values) : repeated<float>(counts, values);
 }
 
 // A point field on all points: linear along edges, trilinear inside cells.
@@ -235,10 +256,12 @@ DatasetPtr assemble(const Dataset& input, const Field& field, const std::vector<
     carry_gathered(out, input.fields(), Association::cell, std::span<const uint32_t>(cells), Association::cell);
   }
   if (values.size() > 1) {
-    std::vector<double> which;
-    for (size_t i = 0; i < pieces.size(); ++i) which.insert(which.end(), pieces[i].lines.count() / 2, values[i]);
-    for (size_t i = 0; i < pieces.size(); ++i) which.insert(which.end(), pieces[i].triangles.count() / 3, values[i]);
-    out.add({"contour value", Association::cell, Array::from_vector(std::move(which)), field.unit, Role::none});
+    std::vector<size_t> counts;
+    std::vector<double> numbers = values;
+    for (const Piece& p : pieces) counts.push_back(p.lines.count() / 2);
+    for (const Piece& p : pieces) counts.push_back(p.triangles.count() / 3);
+    numbers.insert(numbers.end(), values.begin(), values.end());
+    out.add({"contour value", Association::cell, repeated<double>(counts, numbers), field.unit, Role::none});
   }
   carry_whole(out, input.fields());
   DatasetParts parts;
@@ -271,6 +294,7 @@ int mesh_dimension(const Dataset& input) {
 }  // namespace
 
 DatasetPtr contour(const DatasetPtr& given, const ContourParams& params, Context& context) {
+  if (given->as<AmrGrid>()) return contour_amr(given, params, choose_component, context);
   check_mesh(*given);
   DatasetPtr input = given;
   FieldName name = params.field;
@@ -291,14 +315,15 @@ DatasetPtr contour(const DatasetPtr& given, const ContourParams& params, Context
     fail_usage(fmt::format("there is no topology '{}'", params.topology), "contour topology", "trilinear or fixed");
   Job job{*input, choose_samples(field, component), params.normals, false, trilinear, true, choose_origin(input->bounds()), context};
   for (const Field& f : input->fields()) job.cells = job.cells || f.association == Association::cell;
+  if (has_curved_cells(*input))
+    return contour_curved(input, field, job.samples, values, params.tolerance, params.normals && dimension == 3, job.origin, context);
   const std::string key = fmt::format("{} {}", field.name, component);
   job.edges = false;
   for (const Field& f : input->fields())
     job.edges = job.edges || (f.association == Association::point && !(f.name == field.name && f.components() == 1));
   std::vector<Piece> pieces;
   if (is_lattice(input->mesh()) && input->point_count() > 0) {
-    LatticeContour lattice(job, lattice_index(job, key, values.size()));
-    for (double v : values) pieces.push_back(lattice.run(v));
+    pieces = LatticeContour(job, lattice_index(job, key)).run(values);
   } else if (is_lattice(input->mesh())) {
     Piece none;
     float* p = nullptr;

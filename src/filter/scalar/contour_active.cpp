@@ -16,7 +16,6 @@ constexpr std::array<uint64_t, 256> spread = [] {
   return t;
 }();
 
-// True from the second contour on; several at once are worth an index at once.
 bool worth_it(const Job& job, const std::string& key, size_t values) { return job.input.memo().asked(key) > 0 || values > 3; }
 
 template <class T, class Make>
@@ -31,8 +30,8 @@ std::shared_ptr<const T> remembered(const Job& job, const std::string& key, size
 
 }  // namespace
 
-std::shared_ptr<const LatticeIndex> lattice_index(const Job& job, const std::string& key, size_t values) {
-  return remembered<LatticeIndex>(job, "lattice index " + key, values, [&] {
+std::shared_ptr<const LatticeIndex> lattice_index(const Job& job, const std::string& key) {
+  return remembered<LatticeIndex>(job, "lattice index " + key, 1, [&] {
     const auto dims = lattice_dims(job.input.mesh());
     MinMaxBricks bricks = minmax_bricks(job.samples, dims);
     const size_t rows = dims[1] * dims[2], words = (dims[0] + 63) / 64;

@@ -77,22 +77,9 @@ void last_word(const T* row, size_t nx, T least, uint64_t* out) {
 }
 
 template <class T>
-bool classify_rows(const T* p, size_t nx, size_t begin, size_t end, double value, uint64_t* bits, size_t words) {
-  bool none = false, nan = false;
-  const T least = threshold<T>(value, none);
-  for (size_t r = begin; r < end; ++r) {
-    const T* row = p + r * nx;
-    uint64_t* out = bits + r * words;
-    if (none) {
-      std::fill(out, out + words, 0);
-      continue;
-    }
-    const size_t whole = nx / 64;
-    at_least(row, whole, least, out);
-    if (nx % 64) last_word(row, nx, least, out);
-    if constexpr (std::is_floating_point_v<T>) nan = nan || any_nan(row, nx);
-  }
-  return nan;
+void classify_row(const T* row, size_t nx, T least, uint64_t* out) {
+  at_least(row, nx / 64, least, out);
+  if (nx % 64) last_word(row, nx, least, out);
 }
 
 template <class F>
@@ -111,10 +98,31 @@ size_t row_grain(size_t nx) { return std::max<size_t>(1, 65536 / std::max<size_t
 
 }  // namespace
 
-bool classify(const Array& samples, size_t nx, size_t rows, double value, uint64_t* bits, size_t words, Context& context) {
+bool classify(const Array& samples, size_t nx, size_t rows, std::span<const double> values, std::span<uint64_t* const> bits, size_t words,
+              Context& context) {
   return native(samples, [&](const auto* p) {
+    using T = std::remove_cvref_t<decltype(*p)>;
+    std::vector<std::pair<T, bool>> least;  // and whether no sample can be that large
+    for (double v : values) {
+      bool none = false;
+      const T t = threshold<T>(v, none);
+      least.emplace_back(t, none);
+    }
     return parallel_reduce(
-        rows, row_grain(nx), false, [&](size_t begin, size_t end) { return classify_rows(p, nx, begin, end, value, bits, words); },
+        rows, row_grain(nx), false,
+        [&](size_t begin, size_t end) {
+          bool nan = false;
+          for (size_t r = begin; r < end; ++r) {
+            const T* row = p + r * nx;
+            for (size_t v = 0; v < values.size(); ++v) {
+              uint64_t* out = bits[v] + r * words;
+              if (least[v].second) std::fill(out, out + words, 0);
+              else classify_row(row, nx, least[v].first, out);
+            }
+            if constexpr (std::is_floating_point_v<T>) nan = nan || any_nan(row, nx);
+          }
+          return nan;
+        },
         [](bool a, bool b) { return a || b; }, &context);
   });
 }

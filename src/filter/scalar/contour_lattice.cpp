@@ -23,6 +23,27 @@ struct LatticeContour::Cuts {
   size_t vertices = 0, cells = 0, inner = 0;
 };
 
+// Where the results of several values go, one behind the other.
+struct LatticeContour::Room {
+  size_t edges = 0, inner = 0, cells = 0;  // all together
+  size_t points_done = 0, edges_done = 0, inner_done = 0, cells_done = 0;
+  Array xyz, normals, ids;
+  float *xyz_out = nullptr, *normals_out = nullptr;
+  int32_t* ids_out = nullptr;
+  Block<EdgePoint> edge_points;
+  Block<InnerPoint> inner_points;
+  Block<uint32_t> cell_numbers;
+
+  void allocate(const Job& job, int corners) {
+    xyz = Array::make<float>(edges + inner, 3, &xyz_out);
+    if (job.normals && corners == 3) normals = Array::make<float>(edges + inner, 3, &normals_out);
+    ids = Array::make<int32_t>(cells * size_t(corners), 1, &ids_out);
+    if (job.edges) edge_points.allocate(edges);
+    inner_points.allocate(inner);
+    if (job.cells) cell_numbers.allocate(cells);
+  }
+};
+
 // A cell that the table alone cannot cut.
 struct LatticeContour::Slow {
   TrilinearCell cell;
@@ -49,6 +70,13 @@ uint64_t inner_bits(size_t w, size_t n) {
   return from >= last ? 0 : last - from >= 64 ? ~uint64_t(0) : ~uint64_t(0) >> (64 - (last - from));
 }
 
+// std::popcount is a call without the instruction, which not every machine has.
+constexpr uint64_t bit_count(uint64_t x) {
+  x -= x >> 1 & 0x5555555555555555;
+  x = (x & 0x3333333333333333) + (x >> 2 & 0x3333333333333333);
+  return ((x + (x >> 4)) & 0x0F0F0F0F0F0F0F0F) * 0x0101010101010101 >> 56;
+}
+
 // Lines of a square: corners 0 (0,0), 1 (1,0), 2 (0,1), 3 (1,1); edges 0 below, 1 above (along x), 2 left, 3 right. Pairs of edges,
 // the inside on the left. Patterns 6 and 9 have two ways: inside corners apart, then joined.
 struct Square {
@@ -71,7 +99,11 @@ LatticeContour::LatticeContour(const Job& job, std::shared_ptr<const LatticeInde
     : job_(job), index_(std::move(index)), lattice_(job.input.mesh()), frame_(lattice_.view()), sample_(job.samples) {
   words_ = (frame_.dims[0] + 63) / 64;
   flip_ = !frame_.right_handed();
-  for (uint32_t p = 0; p < 256; ++p) slow_[p] = job.trilinear && needs_trilinear(p);
+  for (uint32_t p = 0; p < 256; ++p) {
+    const auto t = lattice_cases().plain(p);
+    count_[p] = job.trilinear && needs_trilinear(p) ? slow_pattern : uint8_t((t[1] - t[0]) / 3);
+    first_[p] = uint16_t(t[0]);
+  }
   const size_t nx = frame_.dims[0], rows = frame_.dims[1] * frame_.dims[2];
   if (const Array& ghost = job.input.point_ghost(); !ghost.empty()) {
     const auto g = ghost.view<uint8_t>();
@@ -110,31 +142,53 @@ void LatticeContour::skip_points(const std::vector<uint64_t>& bad) {
       }
 }
 
-Piece LatticeContour::run(double value) {
+// Several values share one pass over the samples (each needs a bit per sample meanwhile) and one block of memory for the results.
+std::vector<Piece> LatticeContour::run(std::span<const double> values) {
   const size_t nx = frame_.dims[0], rows = frame_.dims[1] * frame_.dims[2];
-  Cuts cuts;
-  cuts.value = value;
-  cuts.inside.resize(rows * words_);
-  std::optional<ActiveWords> where;
-  bool nan = false;
-  if (index_) {
-    where.emplace(*index_, frame_.dims, value);
-    where->classify(job_.samples, cuts.inside.data(), words_, job_.context);
-    if (!index_->missing.empty() && !missing_known_) skip_points(index_->missing);
-    missing_known_ = true;
-  } else {
-    nan = classify(job_.samples, nx, rows, value, cuts.inside.data(), words_, job_.context);
+  const size_t together = std::max<size_t>(8, (size_t(256) << 20) / (8 * rows * words_ + 1));
+  std::vector<Piece> pieces;
+  for (size_t begin = 0; begin < values.size(); begin += together) {
+    const auto some = values.subspan(begin, std::min(together, values.size() - begin));
+    std::vector<Cuts> cuts(some.size());
+    std::vector<uint64_t*> bits;
+    std::vector<std::optional<ActiveWords>> where(some.size());
+    for (size_t i = 0; i < some.size(); ++i) {
+      cuts[i].value = some[i];
+      cuts[i].inside.resize(rows * words_);
+      bits.push_back(cuts[i].inside.data());
+    }
+    bool nan = false;
+    if (index_) {
+      for (size_t i = 0; i < some.size(); ++i) {
+        where[i].emplace(*index_, frame_.dims, some[i]);
+        where[i]->classify(job_.samples, bits[i], words_, job_.context);
+      }
+      if (!index_->missing.empty() && !missing_known_) skip_points(index_->missing);
+      missing_known_ = true;
+    } else {
+      nan = classify(job_.samples, nx, rows, some, bits, words_, job_.context);
+    }
+    if (nan && !missing_known_) {
+      std::vector<uint64_t> bad(rows * words_);
+      find_missing(job_.samples, nx, rows, bad.data(), words_, job_.context);
+      skip_points(bad);
+      missing_known_ = true;
+    }
+    Room room;
+    for (size_t i = 0; i < cuts.size(); ++i) {
+      Cuts& c = cuts[i];
+      find_cuts(c, where[i] ? &*where[i] : nullptr);
+      room.edges += c.vertices, room.inner += c.inner, room.cells += c.cells;
+    }
+    if (room.edges + room.inner > size_t(INT32_MAX))
+      fail_usage("the surfaces have more than 2^31 points", "contour", "contour a part of the grid at a time, or ask for fewer values");
+    room.allocate(job_, frame_.axes);
+    for (Cuts& c : cuts) {
+      pieces.push_back(generate(c, room));
+      c = {};
+    }
   }
-  if (nan && !missing_known_) {
-    std::vector<uint64_t> bad(rows * words_);
-    find_missing(job_.samples, nx, rows, bad.data(), words_, job_.context);
-    skip_points(bad);
-    missing_known_ = true;
-  }
-  find_cuts(cuts, where ? &*where : nullptr);
-  if (cuts.vertices + cuts.inner > size_t(INT32_MAX))
-    fail_usage("the surface has more than 2^31 points", "contour", "contour a part of the grid at a time");
-  return generate(cuts);
+  return pieces;
 }
 
 void LatticeContour::find_cuts(Cuts& cuts, const ActiveWords* where) const {
@@ -163,7 +217,6 @@ void LatticeContour::count_row(Cuts& cuts, size_t j, size_t k) const {
   const bool up = j + 1 < ny, back = k + 1 < nz;
   const bool solid = frame_.axes == 3;
   const bool cells = up && (back || !solid);
-  const CaseTable& table = lattice_cases();
   RowStart& row = cuts.rows[r];
   // Good cells of the row (dj, dk) before this one, 0 outside the grid; `spread` adds those to the left, for edges across x.
   auto good = [&](size_t dj, size_t dk, size_t w, bool spread) -> uint64_t {
@@ -186,7 +239,7 @@ void LatticeContour::count_row(Cuts& cuts, size_t j, size_t k) const {
     for (int l = 0; l < frame_.axes; ++l) {
       if (!skip_.empty()) cuts.cut[l][r * words_ + w] = cut[l];
       if (!cut[l]) continue;
-      const uint32_t n = uint32_t(std::popcount(cut[l]));
+      const uint32_t n = uint32_t(bit_count(cut[l]));
       row.cut[l] += n;
       row.vertex += n;
     }
@@ -203,66 +256,70 @@ void LatticeContour::count_row(Cuts& cuts, size_t j, size_t k) const {
         continue;
       }
       const uint32_t pattern = low | c.corners(i) << 4 | d.corners(i) << 6;
-      if (slow_[pattern]) [[unlikely]] {
-        const Slow slow(p, cuts.value, frame_, sample_);
-        row.cell += size_t(slow.cell.triangle_count);
-        row.inner += size_t(slow.cell.inner_count);
-      } else {
-        const auto t = table.plain(pattern);
-        row.cell += (t[1] - t[0]) / 3;
+      if (count_[pattern] != slow_pattern) [[likely]] {
+        row.cell += count_[pattern];
+        continue;
       }
+      const Slow slow(p, cuts.value, frame_, sample_);
+      row.cell += size_t(slow.cell.triangle_count);
+      row.inner += size_t(slow.cell.inner_count);
     }
   }
 }
 
-Piece LatticeContour::generate(const Cuts& cuts) const {
-  const size_t ny = frame_.dims[1], rows = cuts.rows.size();
+// Writes the surface of one value behind those that are there.
+Piece LatticeContour::generate(const Cuts& cuts, Room& room) const {
+  const size_t ny = frame_.dims[1], rows = cuts.rows.size(), points = cuts.vertices + cuts.inner;
   const int corners = frame_.axes;  // of a line or triangle
   Piece piece;
-  float *xyz = nullptr, *normals = nullptr;
-  piece.xyz = Array::make<float>(cuts.vertices + cuts.inner, 3, &xyz);
-  if (job_.normals && corners == 3) piece.normals = Array::make<float>(cuts.vertices + cuts.inner, 3, &normals);
-  if (job_.edges) piece.points.allocate(cuts.vertices);
-  piece.points.count = cuts.vertices;
-  piece.inner.allocate(cuts.inner);
+  piece.first_point = room.points_done;
   piece.stride = frame_.stride;
-  int32_t* out = nullptr;
-  (corners == 3 ? piece.triangles : piece.lines) = Array::make<int32_t>(cuts.cells * size_t(corners), 1, &out);
-  Block<uint32_t>& from = corners == 3 ? piece.triangle_cells : piece.line_cells;
-  if (job_.cells) from.allocate(cuts.cells);
+  piece.xyz = room.xyz.slice(room.points_done, room.points_done + points);
+  if (room.normals_out) piece.normals = room.normals.slice(room.points_done, room.points_done + points);
+  piece.points = {room.edge_points.bytes, job_.edges ? room.edge_points.data + room.edges_done : nullptr, cuts.vertices};
+  piece.inner = {room.inner_points.bytes, room.inner_points.data + room.inner_done, cuts.inner};
+  (corners == 3 ? piece.triangles : piece.lines) =
+      room.ids.slice(room.cells_done * size_t(corners), (room.cells_done + cuts.cells) * size_t(corners));
+  int32_t* out = room.ids_out + room.cells_done * size_t(corners);
+  uint32_t* from = job_.cells ? room.cell_numbers.data + room.cells_done : nullptr;
+  if (job_.cells) (corners == 3 ? piece.triangle_cells : piece.line_cells) = {room.cell_numbers.bytes, from, cuts.cells};
   parallel_for(
       rows, std::max<size_t>(1, 512 / words_),
       [&](size_t begin, size_t end) {
         for (size_t r = begin; r < end; ++r) {
           const size_t first = cuts.rows[r].cell;
           if ((r + 1 < rows ? cuts.rows[r + 1].cell : cuts.cells) == first) continue;
-          uint32_t* cells = job_.cells ? from.data + first : nullptr;
-          if (corners == 3) triangles_of_row(cuts, r % ny, r / ny, out + 3 * first, cells, piece.inner.data + cuts.rows[r].inner);
-          else lines_of_row(cuts, r, out + 2 * first, cells);
+          uint32_t* cells = from ? from + first : nullptr;
+          if (corners == 3)
+            triangles_of_row(cuts, r % ny, r / ny, uint32_t(piece.first_point), out + 3 * first, cells,
+                             piece.inner.data + cuts.rows[r].inner);
+          else lines_of_row(cuts, r, uint32_t(piece.first_point), out + 2 * first, cells);
         }
       },
       &job_.context);
   make_vertices({frame_, job_.samples, cuts.value, job_.origin, words_, cuts.inside.data(), skip_.empty() ? nullptr : cuts.cut, cuts.rows,
-                 xyz, normals, job_.edges ? piece.points.data : nullptr, job_.context, piece.inner.span(), cuts.vertices});
+                 room.xyz_out + 3 * room.points_done, room.normals_out ? room.normals_out + 3 * room.points_done : nullptr,
+                 piece.points.data, job_.context, piece.inner.span(), cuts.vertices});
+  room.points_done += points, room.edges_done += cuts.vertices, room.inner_done += cuts.inner, room.cells_done += cuts.cells;
   return piece;
 }
 
 // Walks the crossed cells of a row with one counter per row of edges: an edge's number is the number of cut edges before it, and
 // every cut edge of these rows belongs to a crossed cell that is visited.
-void LatticeContour::triangles_of_row(const Cuts& cuts, size_t j, size_t k, int32_t* out, uint32_t* cells, InnerPoint* inner) const {
+void LatticeContour::triangles_of_row(const Cuts& cuts, size_t j, size_t k, uint32_t first_point, int32_t* out, uint32_t* cells,
+                                      InnerPoint* inner) const {
   const size_t nx = frame_.dims[0], ny = frame_.dims[1];
   const size_t row[4] = {j + ny * k, j + 1 + ny * k, j + ny * (k + 1), j + 1 + ny * (k + 1)};
-  const CaseTable& table = lattice_cases();
-  const uint8_t* all = table.triangle_edges();
+  const uint8_t* all = lattice_cases().triangle_edges();
   const size_t cell_row = (nx - 1) * (j + (ny - 1) * k);
   auto start = [&](size_t r, int axis) {
     const RowStart& s = cuts.rows[r];
-    return uint32_t(s.vertex) + (axis > 0 ? s.cut[0] : 0) + (axis > 1 ? s.cut[1] : 0);
+    return first_point + uint32_t(s.vertex) + (axis > 0 ? s.cut[0] : 0) + (axis > 1 ? s.cut[1] : 0);
   };
   uint32_t at[8] = {start(row[0], 0), start(row[1], 0), start(row[2], 0), start(row[3], 0),
                     start(row[0], 1), start(row[2], 1), start(row[0], 2), start(row[1], 2)};
   const bool stored = !skip_.empty();
-  uint32_t next_inner = uint32_t(cuts.vertices + cuts.rows[row[0]].inner);
+  uint32_t next_inner = first_point + uint32_t(cuts.vertices + cuts.rows[row[0]].inner);
   const int second = flip_ ? 2 : 1, third = flip_ ? 1 : 2;
   for (size_t w = 0; w < words_; ++w) {
     Pair q[4];
@@ -299,7 +356,7 @@ void LatticeContour::triangles_of_row(const Cuts& cuts, size_t j, size_t k, int3
           out += 3;
           if (cells) *cells++ = uint32_t(cell_row + 64 * w + size_t(i));
         };
-        if (slow_[pattern]) [[unlikely]] {
+        if (count_[pattern] == slow_pattern) [[unlikely]] {
           const size_t p = row[0] * nx + 64 * w + size_t(i);
           const Slow slow(p, cuts.value, frame_, sample_);
           const TrilinearCell& cut_cell = slow.cell;
@@ -313,8 +370,8 @@ void LatticeContour::triangles_of_row(const Cuts& cuts, size_t j, size_t k, int3
             triangle(edge[name[0]], edge[name[1]], edge[name[2]]);
           }
         } else {
-          const auto t = table.plain(pattern);
-          for (const uint8_t *e = all + t[0], *stop = all + t[1]; e < stop; e += 3) triangle(edge[e[0]], edge[e[1]], edge[e[2]]);
+          const uint8_t* e = all + first_[pattern];
+          for (uint32_t t = count_[pattern]; t > 0; --t, e += 3) triangle(edge[e[0]], edge[e[1]], edge[e[2]]);
         }
       }
       for (int s = 0; s < 8; ++s) at[s] += step[s];
@@ -322,9 +379,10 @@ void LatticeContour::triangles_of_row(const Cuts& cuts, size_t j, size_t k, int3
   }
 }
 
-void LatticeContour::lines_of_row(const Cuts& cuts, size_t j, int32_t* out, uint32_t* cells) const {
+void LatticeContour::lines_of_row(const Cuts& cuts, size_t j, uint32_t first_point, int32_t* out, uint32_t* cells) const {
   const size_t nx = frame_.dims[0];
-  uint32_t at[3] = {uint32_t(cuts.rows[j].vertex), uint32_t(cuts.rows[j + 1].vertex), uint32_t(cuts.rows[j].vertex) + cuts.rows[j].cut[0]};
+  uint32_t at[3] = {first_point + uint32_t(cuts.rows[j].vertex), first_point + uint32_t(cuts.rows[j + 1].vertex),
+                    first_point + uint32_t(cuts.rows[j].vertex) + cuts.rows[j].cut[0]};
   for (size_t w = 0; w < words_; ++w) {
     const Pair a(&cuts.inside[j * words_], w, words_), b(&cuts.inside[(j + 1) * words_], w, words_);
     const uint64_t skip = skip_.empty() ? 0 : skip_[j * words_ + w];

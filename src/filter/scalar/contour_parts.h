@@ -41,10 +41,12 @@ struct Piece {
   Array normals;  ///< f32, or empty
   Block<EdgePoint> points;
   Block<InnerPoint> inner;
-  std::array<ptrdiff_t, 3> stride{};           ///< of the inner points' corners
-  Array lines, triangles;                      ///< i32 connectivity, 2 and 3 per cell
-  Block<uint32_t> line_cells, triangle_cells;  ///< source cell of each; empty when not asked for
+  std::array<ptrdiff_t, 3> stride{};             ///< of the inner points' corners
+  Block<std::array<uint32_t, 8>> inner_corners;  ///< not on lattices: the corners themselves
+  Array lines, triangles;                        ///< i32 connectivity, 2 and 3 per cell
+  Block<uint32_t> line_cells, triangle_cells;    ///< source cell of each; empty when not asked for
 
+  size_t first_point = 0;  ///< what the connectivity's numbers already count from
   size_t point_count() const { return points.count + inner.count; }
 };
 
@@ -100,17 +102,18 @@ class LatticeContour {
  public:
   /// `index`: what is known from earlier contours, or null.
   explicit LatticeContour(const Job& job, std::shared_ptr<const LatticeIndex> index = nullptr);
-  Piece run(double value);
+  std::vector<Piece> run(std::span<const double> values);
 
  private:
   struct Cuts;
+  struct Room;
   struct Slow;
   void skip_points(const std::vector<uint64_t>& bad);
   void find_cuts(Cuts& cuts, const ActiveWords* where) const;
   void count_row(Cuts& cuts, size_t j, size_t k) const;
-  Piece generate(const Cuts& cuts) const;
-  void triangles_of_row(const Cuts& cuts, size_t j, size_t k, int32_t* out, uint32_t* cells, InnerPoint* inner) const;
-  void lines_of_row(const Cuts& cuts, size_t j, int32_t* out, uint32_t* cells) const;
+  Piece generate(const Cuts& cuts, Room& room) const;
+  void triangles_of_row(const Cuts& cuts, size_t j, size_t k, uint32_t first_point, int32_t* out, uint32_t* cells, InnerPoint* inner) const;
+  void lines_of_row(const Cuts& cuts, size_t j, uint32_t first_point, int32_t* out, uint32_t* cells) const;
 
   const Job& job_;
   std::shared_ptr<const LatticeIndex> index_;
@@ -119,7 +122,9 @@ class LatticeContour {
   Sample sample_;
   size_t words_ = 0;  ///< 64-bit words per row of bits
   bool missing_known_ = false, flip_ = false;
-  bool slow_[256];              ///< patterns of corners that the table alone cannot cut
+  static constexpr uint8_t slow_pattern = 255;
+  uint8_t count_[256];          ///< triangles of a pattern of corners, or slow_pattern: the table alone cannot cut it
+  uint16_t first_[256];         ///< where they begin in the table
   std::vector<uint64_t> skip_;  ///< bit per cell that must not be looked at, in rows like the points; empty when all are good
 };
 
@@ -148,8 +153,9 @@ void interpolate_inner(const Array& a, const Piece& piece, std::byte* out);
 /// Unstructured and surface meshes.
 Piece contour_cells(const Job& job, double value);
 
-/// Sets bit i of row r for samples >= value. Returns true when a sample was NaN.
-bool classify(const Array& samples, size_t nx, size_t rows, double value, uint64_t* bits, size_t words, Context& context);
+/// Sets bit i of row r of bits[v] for samples >= values[v]. Returns true when a sample was NaN.
+bool classify(const Array& samples, size_t nx, size_t rows, std::span<const double> values, std::span<uint64_t* const> bits, size_t words,
+              Context& context);
 /// The same for those words of row `row` that `wanted` names.
 void classify_words(const Array& samples, size_t nx, size_t row, double value, const uint8_t* wanted, uint64_t* bits, size_t words);
 /// Whether a sample is NaN.

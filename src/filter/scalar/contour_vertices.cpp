@@ -196,6 +196,7 @@ void interpolate_inner(const Array& a, const Piece& piece, std::byte* out) {
               weight *= far ? double(point.at[axis]) : 1 - double(point.at[axis]);
               if (far) p += piece.stride[size_t(axis)];
             }
+            if (piece.inner_corners.count) p = ptrdiff_t(piece.inner_corners.data[i][size_t(corner)]);
             sum += weight * double(v(size_t(p), int(c)));
           }
           if constexpr (std::is_floating_point_v<T>) to[i * n + c] = T(sum);

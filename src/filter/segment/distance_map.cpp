@@ -158,7 +158,8 @@ DatasetPtr distance_map(const DatasetPtr& in, const DistanceMapParams& p, Contex
     for (size_t i = begin; i < end; ++i)
       distance[i] = !inside[i] && !outside[i] ? NAN : p.both_sides && inside[i] ? -std::sqrt(other[i]) : std::sqrt(distance[i]);
   });
-  if (std::none_of(inside.begin(), inside.end(), [](uint8_t b) { return b != 0; })) context.warn("distance_map: the set is empty, all distances are infinite");
+  if (std::none_of(inside.begin(), inside.end(), [](uint8_t b) { return b != 0; }))
+    context.warn("distance_map: the set is empty, all distances are infinite");
   return with_field(in, std::move(out));
 }
 

@@ -55,7 +55,8 @@ LabelNet::LabelNet(const int32_t* code, std::array<size_t, 3> dims, bool walls, 
       },
       &context_);
   vertices_ = exclusive_scan(first_vertex_), faces_ = exclusive_scan(first_face_);
-  if (vertices_ >= size_t(INT32_MAX)) fail_usage("the surface has more than two billion points", "label_surface", "choose fewer labels, or crop");
+  if (vertices_ >= size_t(INT32_MAX))
+    fail_usage("the surface has more than two billion points", "label_surface", "choose fewer labels, or crop");
 }
 
 int32_t LabelNet::vertex(size_t i, size_t row) const {
@@ -105,7 +106,8 @@ void LabelNet::fill_faces(int32_t* connectivity, int64_t* samples) const {
             auto below = low;
             --below[size_t(axis)];
             const auto id = [&](const std::array<size_t, 3>& s) {
-              return s[0] < dims_[0] && s[1] < dims_[1] && s[2] < dims_[2] ? int64_t(s[0] + dims_[0] * (s[1] + dims_[1] * s[2])) : int64_t(-1);
+              return s[0] < dims_[0] && s[1] < dims_[1] && s[2] < dims_[2] ? int64_t(s[0] + dims_[0] * (s[1] + dims_[1] * s[2]))
+                                                                           : int64_t(-1);
             };
             samples[face * 2] = forward ? id(below) : id(low);
             samples[face * 2 + 1] = forward ? id(low) : id(below);
@@ -122,7 +124,8 @@ void LabelNet::fill_corners(uint32_t* corners) const {
       uint32_t* out = corners + 3 * first_vertex_[row];
       for (size_t w = 0; w < words_; ++w)
         for (uint64_t bits = used_[row * words_ + w]; bits; bits &= bits - 1, out += 3)
-          out[0] = uint32_t(w * 64 + size_t(std::countr_zero(bits))), out[1] = uint32_t(row % corners_[1]), out[2] = uint32_t(row / corners_[1]);
+          out[0] = uint32_t(w * 64 + size_t(std::countr_zero(bits))), out[1] = uint32_t(row % corners_[1]),
+          out[2] = uint32_t(row / corners_[1]);
     }
   });
 }

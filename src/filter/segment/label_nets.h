@@ -38,9 +38,9 @@ class LabelNet {
   bool walls_;
   const Context& context_;
   size_t words_ = 0, vertices_ = 0, faces_ = 0;
-  std::vector<uint64_t> used_;                       // a bit per corner
-  std::vector<uint32_t> rank_;                       // used corners of the row before each word
-  std::vector<size_t> first_vertex_, first_face_;    // of each row of corners
+  std::vector<uint64_t> used_;                     // a bit per corner
+  std::vector<uint32_t> rank_;                     // used corners of the row before each word
+  std::vector<size_t> first_vertex_, first_face_;  // of each row of corners
 };
 
 }  // namespace sg

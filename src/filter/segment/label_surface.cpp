@@ -95,12 +95,20 @@ DatasetPtr label_surface(const DatasetPtr& input, const LabelSurfaceParams& para
   out.time = input->time();
   std::vector<int64_t> first(net.faces());
   for (size_t q = 0; q < net.faces(); ++q) first[q] = samples[q * 2];
-  carry_gathered(out.fields, input->fields(), image.field.association, first, Association::cell);
+  // The labels come first, so that they are what is coloured.
+  FieldSet carried;
+  carried.add(image.field);
+  for (Field f : input->fields()) {
+    if (f.name == image.field.name) continue;
+    if (f.role == Role::scalars) f.role = Role::none;
+    carried.add(std::move(f));
+  }
+  carry_gathered(out.fields, carried, image.field.association, first, Association::cell);
   carry_whole(out.fields, input->fields());
   const bool wide = !codes.table.empty() || std::abs(params.background) > double(INT32_MAX);
   out.fields.add({"sides", Association::cell,
-                  wide ? sides_array<int64_t>(codes, samples, params.background) : sides_array<int32_t>(codes, samples, params.background), "",
-                  Role::none});
+                  wide ? sides_array<int64_t>(codes, samples, params.background) : sides_array<int32_t>(codes, samples, params.background),
+                  "", Role::none});
   if (net.faces() == 0) context.info("label_surface: no sample carries a wanted label; the surface is empty");
   return make_dataset(std::move(out));
 }

@@ -20,7 +20,8 @@ void describe(Schema& s, LabelSurfaceParams& p);
 /// A SurfaceMesh of quads, one per pair of neighbouring samples with different labels; samples outside the image and labels that are not
 /// wanted are background. Points are shared by all labels, so that neighbours share their faces and the faces around each label are
 /// closed. Uniform and rectilinear grids, fields of points or cells.
-///   smooth   surface nets (Gibson 1998, Frisken 2022): each corner of the voxels moves towards the mean of its neighbours on the surface, and
+///   smooth   surface nets (Gibson 1998, Frisken 2022): each corner of the voxels moves towards the mean of its neighbours on the surface,
+///   and
 ///            back again without shrinking (Taubin 1995), but never out of the box between the eight samples around it; where three or
 ///            more labels meet, along the lines where they meet. Otherwise each sample is a box.
 ///   walls    also faces between two wanted labels; otherwise only those towards the background.

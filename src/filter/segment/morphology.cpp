@@ -123,7 +123,9 @@ DatasetPtr morphology(const DatasetPtr& in, const MorphologyParams& p, Context& 
           }
           return c;
         },
-        [](Change a, Change b) { return Change{a.added + b.added, a.removed + b.removed}; });
+        [](Change a, Change b) {
+          return Change{a.added + b.added, a.removed + b.removed};
+        });
   });
   const std::string ball = p.operation == "fill" ? "" : fmt::format(", ball of radius {}", short_number(radius));
   context.info(fmt::format("morphology: {}{}: {} samples added, {} removed", p.operation, ball, change.added, change.removed));

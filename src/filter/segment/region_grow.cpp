@@ -108,12 +108,14 @@ DatasetPtr region_grow(const DatasetPtr& in, const RegionGrowParams& p, Context&
     const Vec3 place{p.seeds[s], p.seeds[s + 1], p.seeds[s + 2]};
     const std::string where = fmt::format("seed {},{},{}", short_number(place.x), short_number(place.y), short_number(place.z));
     std::array<size_t, 3> at{};
-    if (!nearest_sample(*in, image, place, at)) fail_usage(where + " lies outside the grid", "region_grow", "info shows the bounds of the grid");
+    if (!nearest_sample(*in, image, place, at))
+      fail_usage(where + " lies outside the grid", "region_grow", "info shows the bounds of the grid");
     const size_t id = at[0] + image.dims[0] * (at[1] + image.dims[1] * at[2]);
     const double x = image.field.array.get(id);
     if (image.hidden(id) || std::isnan(x)) fail_usage(where + " lies where there is no value", "region_grow");
     if ((p.min && x < *p.min) || (p.max && x > *p.max))
-      fail_usage(fmt::format("{} has the value {}, outside the range", where, short_number(x)), "region_grow", "widen min and max, or move the seed");
+      fail_usage(fmt::format("{} has the value {}, outside the range", where, short_number(x)), "region_grow",
+                 "widen min and max, or move the seed");
     seeds.push_back(id);
   }
   Grower grower{image, context, neighbors_before(p.connectivity)};

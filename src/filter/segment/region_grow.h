@@ -18,8 +18,8 @@ struct RegionGrowParams {
 };
 void describe(Schema& s, RegionGrowParams& p);
 
-/// Adds a label field (u8): 1 for samples that are joined to a seed through samples with values in [min, max]. Without min and max the range
-/// is mean -+ confidence deviations, first of the up to 27 samples around each seed, then `rounds` times of the region so far
+/// Adds a label field (u8): 1 for samples that are joined to a seed through samples with values in [min, max]. Without min and max the
+/// range is mean -+ confidence deviations, first of the up to 27 samples around each seed, then `rounds` times of the region so far
 /// (confidence-connected growing). Logs the range and the size. Uniform and rectilinear grids, point or cell fields. Throws Error(usage)
 /// for no seed, seeds outside the grid, on samples without a value, or outside the range.
 DatasetPtr region_grow(const DatasetPtr& in, const RegionGrowParams& p, Context& context);

@@ -57,7 +57,8 @@ Plane<float> gradient_length(const SampleImage& image, const Plane<float>& f) {
         const size_t id = i + d[0] * row, at[3] = {i, row % d[1], row / d[1]};
         double sum = 0;
         for (size_t a = 0; a < 3; ++a) {
-          const bool low = at[a] > 0 && f[id - stride[a]] == f[id - stride[a]], high = at[a] + 1 < d[a] && f[id + stride[a]] == f[id + stride[a]];
+          const bool low = at[a] > 0 && f[id - stride[a]] == f[id - stride[a]],
+                     high = at[a] + 1 < d[a] && f[id + stride[a]] == f[id + stride[a]];
           if (!low && !high) continue;
           const size_t from = low ? 1 : 0, to = high ? 1 : 0;
           const double rise = double(f[id + to * stride[a]]) - double(f[id - from * stride[a]]);
@@ -223,7 +224,8 @@ DatasetPtr watershed(const DatasetPtr& in, const WatershedParams& p, Context& co
     codes = label_codes(marker_image, 0.0, {}, "watershed", context);
     for (size_t i = 0; i < n; ++i)
       if (codes.code[i] != 0 && key[i] != nobody) label[i] = codes.code[i], shore.push_back(uint32_t(i));
-    if (shore.empty()) fail_usage(fmt::format("field '{}' marks no sample", p.markers.name), "watershed markers", "markers are labels other than 0");
+    if (shore.empty())
+      fail_usage(fmt::format("field '{}' marks no sample", p.markers.name), "watershed markers", "markers are labels other than 0");
   } else {
     shore = deep_minima(key, neighbors, p.min_depth, context);
     for (const uint32_t i : shore) label[i] = int32_t(++basins);
