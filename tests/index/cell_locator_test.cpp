@@ -131,7 +131,8 @@ TEST_CASE("locator: the nearest point is the one that a look at every cell finds
       EveryCell every(model);
       const Box3 b = mesh.data->bounds();
       for (size_t i = begin; i < end; ++i) {
-        const Vec3 x = b.lo + b.size() * (Vec3(random_unit(3, 3 * i), random_unit(3, 3 * i + 1), random_unit(3, 3 * i + 2)) * 1.2 - Vec3(0.1, 0.1, 0.1));
+        const Vec3 x = b.lo + b.size() * (Vec3(random_unit(3, 3 * i), random_unit(3, 3 * i + 1), random_unit(3, 3 * i + 2)) * 1.2 -
+                                          Vec3(0.1, 0.1, 0.1));
         const NearestPlace p = cursor.nearest(x);
         const auto [cell, d2] = every.nearest(x);
         wrong += std::abs(std::sqrt(p.distance2) - std::sqrt(d2)) > (far ? 1e-7 : 1e-9);
