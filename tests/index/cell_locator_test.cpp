@@ -39,7 +39,7 @@ constexpr size_t grain = 1000;
 }  // namespace
 
 TEST_CASE("locator: the cell of 100,000 points is the one that a look at every cell finds, on every mesh kind") {
-  for (const NamedMesh& mesh : search_meshes()) {
+  for (const NamedMesh& mesh : all_meshes()) {
     CAPTURE(mesh.name);
     Context context;
     const CellLocator locator(mesh.data, context);
@@ -119,7 +119,7 @@ TEST_CASE("locator: weights reproduce a linear field in every cell") {
 }
 
 TEST_CASE("locator: the nearest point is the one that a look at every cell finds, on every mesh kind") {
-  for (const NamedMesh& mesh : search_meshes()) {
+  for (const NamedMesh& mesh : all_meshes()) {
     CAPTURE(mesh.name);
     Context context;
     const CellLocator locator(mesh.data, context);
@@ -152,7 +152,7 @@ TEST_CASE("locator: the nearest point is the one that a look at every cell finds
 }
 
 TEST_CASE("locator: the first hit of a ray is the one that a look at every cell finds, on every mesh kind") {
-  for (const NamedMesh& mesh : search_meshes()) {
+  for (const NamedMesh& mesh : all_meshes()) {
     if (mesh.data->as<PointCloud>()) continue;  // no ray meets a point
     CAPTURE(mesh.name);
     Context context;

@@ -326,7 +326,7 @@ inline std::vector<NamedMesh> small_meshes() {
 }
 
 /// Meshes of hundreds to thousands of cells, for depth.
-inline std::vector<NamedMesh> large_meshes() {
+inline std::vector<NamedMesh> search_meshes() {
   return {{"uniform", uniform({11, 12, 9}, false), 20000, 3000},
           {"uniform, turned", uniform({11, 12, 9}, true)},
           {"uniform, blanked", uniform({11, 12, 9}, true, true)},
@@ -347,9 +347,9 @@ inline std::vector<NamedMesh> large_meshes() {
           {"amr, flat", amr(2)},
           {"points", cloud(3000), 10000}};
 }
-inline std::vector<NamedMesh> search_meshes() {
+inline std::vector<NamedMesh> all_meshes() {
   std::vector<NamedMesh> all = small_meshes();
-  for (NamedMesh& m : large_meshes()) all.push_back(std::move(m));
+  for (NamedMesh& m : search_meshes()) all.push_back(std::move(m));
   return all;
 }
 
