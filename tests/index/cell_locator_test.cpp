@@ -39,7 +39,7 @@ constexpr size_t grain = 1000;
 }  // namespace
 
 TEST_CASE("locator: the cell of 100,000 points is the one that a look at every cell finds, on every mesh kind") {
-  for (const NamedMesh& mesh : search_meshes()) {
+  for (const NamedMesh& mesh : all_meshes()) {
     CAPTURE(mesh.name);
     Context context;
     const CellLocator locator(mesh.data, context);
@@ -119,7 +119,7 @@ TEST_CASE("locator: weights reproduce a linear field in every cell") {
 }
 
 TEST_CASE("locator: the nearest point is the one that a look at every cell finds, on every mesh kind") {
-  for (const NamedMesh& mesh : search_meshes()) {
+  for (const NamedMesh& mesh : all_meshes()) {
     CAPTURE(mesh.name);
     Context context;
     const CellLocator locator(mesh.data, context);
@@ -131,7 +131,8 @@ TEST_CASE("locator: the nearest point is the one that a look at every cell finds
       EveryCell every(model);
       const Box3 b = mesh.data->bounds();
       for (size_t i = begin; i < end; ++i) {
-        const Vec3 x = b.lo + b.size() * (Vec3(random_unit(3, 3 * i), random_unit(3, 3 * i + 1), random_unit(3, 3 * i + 2)) * 1.2 - Vec3(0.1, 0.1, 0.1));
+        const Vec3 x = b.lo + b.size() * (Vec3(random_unit(3, 3 * i), random_unit(3, 3 * i + 1), random_unit(3, 3 * i + 2)) * 1.2 -
+                                          Vec3(0.1, 0.1, 0.1));
         const NearestPlace p = cursor.nearest(x);
         const auto [cell, d2] = every.nearest(x);
         wrong += std::abs(std::sqrt(p.distance2) - std::sqrt(d2)) > (far ? 1e-7 : 1e-9);
@@ -151,7 +152,7 @@ TEST_CASE("locator: the nearest point is the one that a look at every cell finds
 }
 
 TEST_CASE("locator: the first hit of a ray is the one that a look at every cell finds, on every mesh kind") {
-  for (const NamedMesh& mesh : search_meshes()) {
+  for (const NamedMesh& mesh : all_meshes()) {
     if (mesh.data->as<PointCloud>()) continue;  // no ray meets a point
     CAPTURE(mesh.name);
     Context context;

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "base/random.h"
-#include "data/cell_topology.h"
 #include "data/dataset.h"
 #include "index/cell_probe.h"
 
@@ -276,22 +275,18 @@ inline DatasetPtr cloud(size_t n) {
   return make_dataset(std::move(c));
 }
 
-/// [-1,1]^3 as four bent Lagrange hexahedra of order 2.
-inline DatasetPtr curved_boxes() {
+/// A bent quadratic tetrahedron in each octant of [-1,1]^3.
+inline DatasetPtr curved_tets() {
   CellList m;
-  for (int k = 0; k < 3; ++k)
-    for (int j = 0; j < 5; ++j)
-      for (int i = 0; i < 5; ++i) {
-        const Vec3 p(i / 2.0 - 1, j / 2.0 - 1, k - 1.0);
-        m.point(p + 0.03 * Vec3(std::sin(4 * p.y), std::sin(4 * p.z + 1), std::sin(4 * p.x + 2)));
-      }
-  for (int c = 0; c < 4; ++c) {
-    std::vector<int64_t> nodes(27);
-    for (int k = 0; k < 3; ++k)
-      for (int j = 0; j < 3; ++j)
-        for (int i = 0; i < 3; ++i)
-          nodes[lattice_node(CellType::lagrange_hexahedron, 2, i, j, k)] = 2 * (c & 1) + i + 5 * ((c & 2) + j + 5 * k);
-    m.cell(CellType::lagrange_hexahedron, nodes);
+  auto bend = [](Vec3 p) { return p + 0.05 * Vec3(std::sin(4 * p.y), std::sin(4 * p.z + 1), std::sin(4 * p.x + 2)); };
+  for (int c = 0; c < 8; ++c) {
+    const Vec3 corner(c & 1 ? 0.0 : -1.0, c & 2 ? 0.0 : -1.0, c & 4 ? 0.0 : -1.0);
+    const Vec3 at[4] = {corner, corner + Vec3(1, 0.1, 0), corner + Vec3(0.2, 1, 0.1), corner + Vec3(0.3, 0.2, 1)};
+    std::vector<int64_t> nodes;
+    for (const Vec3& p : at) nodes.push_back(m.point(bend(p)));
+    constexpr int edges[6][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}};
+    for (const auto& e : edges) nodes.push_back(m.point(bend((at[e[0]] + at[e[1]]) * 0.5)));
+    m.cell(CellType::quadratic_tetra, nodes);
   }
   return m.dataset();
 }
@@ -326,12 +321,12 @@ inline std::vector<NamedMesh> small_meshes() {
           {"small amr", amr_small(), n, n, n},
           {"small points", cloud(60), n, n, 0},
           {"small polyhedra", block_cells("polyhedron", 2, 0.1).dataset(), n, n, n},
-          {"small curved", curved_boxes(), n, 1000, n},
+          {"small curved", curved_tets(), n, 1000, n},
           {"small curved, flat", curved_flat(), 5000, n, 5000}};
 }
 
 /// Meshes of hundreds to thousands of cells, for depth.
-inline std::vector<NamedMesh> large_meshes() {
+inline std::vector<NamedMesh> search_meshes() {
   return {{"uniform", uniform({11, 12, 9}, false), 20000, 3000},
           {"uniform, turned", uniform({11, 12, 9}, true)},
           {"uniform, blanked", uniform({11, 12, 9}, true, true)},
@@ -352,9 +347,9 @@ inline std::vector<NamedMesh> large_meshes() {
           {"amr, flat", amr(2)},
           {"points", cloud(3000), 10000}};
 }
-inline std::vector<NamedMesh> search_meshes() {
+inline std::vector<NamedMesh> all_meshes() {
   std::vector<NamedMesh> all = small_meshes();
-  for (NamedMesh& m : large_meshes()) all.push_back(std::move(m));
+  for (NamedMesh& m : search_meshes()) all.push_back(std::move(m));
   return all;
 }
 

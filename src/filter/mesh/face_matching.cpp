@@ -25,7 +25,7 @@ uint64_t point_hash(uint32_t id) {
 }
 
 constexpr size_t slots_per_point = 4;
-constexpr size_t ahead = 192;  // ids that are asked for ahead of their use
+constexpr size_t ahead = 384;  // ids that are asked for ahead of their use
 constexpr uint32_t no_point = UINT32_MAX;
 
 // A face that may have no partner: its sorted corners, in a pool, and its mark.
@@ -143,6 +143,7 @@ class Matcher {
         *next++ = slot;
         b.slots[slot] ^= slot == none ? 0 : hash();
       });
+      b.left.reserve(b.faces / 5);
       for (uint32_t f = 0; f < b.faces; ++f)
         if (const uint32_t slot = slot_of_face[f]; b.slots[slot] != 0) b.left.push_back({slot, b.mark + f});
     });
@@ -199,7 +200,9 @@ class Matcher {
     Candidates& to = b.found;
     size_t cell = b.begin;
     uint32_t mark = b.mark;  // of the cell's first face
-    for (const auto& l : b.left) {
+    for (size_t i = 0; i < b.left.size(); ++i) {
+      if (i + 16 < b.left.size()) __builtin_prefetch(&b.slots[b.left[i + 16].slot]);
+      const Block::Left& l = b.left[i];
       if (b.slots[l.slot] == 0) continue;
       if (same_ > 0) cell = b.begin + (l.mark - b.mark) / same_, mark = b.mark + uint32_t((cell - b.begin) * same_);
       else

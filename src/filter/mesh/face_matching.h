@@ -20,7 +20,8 @@ struct FaceMarks {
 /// `states` (CellState per cell, or empty): cells that are gone have no faces, duplicates count as neighbours.
 /// Two steps: the 64-bit hashes of all faces are XORed into a few slots per point, where partners cancel; then the faces of slots
 /// that are not zero (those near the surface) are matched exactly. Unequal faces that cancel would need equal hashes: 2^-64 per pair.
-/// O(faces), parallel, 32 to 48 bytes of scratch per point. Throws Error(usage) above 2^31 faces or 2^32 points.
+/// Blocks of cells whose points have near numbers work in slots of their own that are joined where they overlap; cells in any order share
+/// one array. O(faces), parallel, 32 to 64 bytes of scratch per point. Throws Error(usage) above 2^31 faces or 2^32 points.
 FaceMarks match_faces(const UnstructuredMesh& mesh, const std::vector<uint8_t>& states, const Context& ctx);
 
 }  // namespace sg

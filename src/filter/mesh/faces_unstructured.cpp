@@ -15,11 +15,7 @@ namespace {
 class ChunkWalk {
  public:
   ChunkWalk(const UnstructuredMesh& mesh, const PointReader& at, SurfaceChunk& out, CurvedChunk& curved)
-      : mesh_(mesh), cells_(cells_view(mesh.cells)), at_(at), reader_(mesh), out_(out), curved_(curved) {
-    for (size_t t = 0; t < 256; ++t)
-      if (const CellTypeInfo* info = cell_type_info(uint8_t(t)); info && info->dimension == 3)
-        topology_[t] = linear_topology(linear_type(CellType(t)));
-  }
+      : mesh_(mesh), cells_(cells_view(mesh.cells)), at_(at), reader_(mesh), out_(out), curved_(curved) {}
 
   // Faces of a solid cell whose mark is set; outward, whatever the orientation of the cell.
   void solid(size_t cell, const uint8_t* external, size_t n) {
@@ -32,7 +28,7 @@ class ChunkWalk {
       for (size_t i = cells_.begin(cell); i < cells_.end(cell); ++i) middle += at_[size_t(cells_.connectivity[i])];
       middle = middle / double(std::max<size_t>(cells_.size(cell), 1));
     } else {
-      mirrored = volume(cell, *topology_[size_t(mesh_.type(cell))]) < 0;
+      mirrored = volume(cell, *linear_topology(linear_type(mesh_.type(cell)))) < 0;
     }
     for (size_t f = 0; f < n; ++f) {
       if (!external[f]) continue;
@@ -43,6 +39,20 @@ class ChunkWalk {
         mirrored = dot(polygon_vector_area(corner_), corner_.empty() ? Vec3() : corner_[0] - middle) < 0;
       }
       add_face(reader_.face_type(f), cell, mirrored, reader_.face_orders(f));
+    }
+  }
+
+  // Outer cells lie apart in memory: their lists, then their points, are asked for some cells ahead.
+  void expect_cell(size_t cell) const {
+    const size_t at = cells_.begin(cell) * (cells_.connectivity.wide ? 8 : 4);
+    __builtin_prefetch(static_cast<const char*>(cells_.connectivity.data) + at);
+    __builtin_prefetch(static_cast<const char*>(cells_.connectivity.data) + at + 63);
+  }
+  void expect_points(size_t cell) const {
+    for (size_t i = cells_.begin(cell), end = cells_.end(cell); i < end; ++i) {
+      const auto p = size_t(cells_.connectivity[i]);
+      if (at_.f32) __builtin_prefetch(at_.f32 + 3 * p);
+      else __builtin_prefetch(at_.f64 + 3 * p);
     }
   }
 
@@ -116,7 +126,6 @@ class ChunkWalk {
   CellFaceReader reader_;
   SurfaceChunk& out_;
   CurvedChunk& curved_;
-  const LinearTopology* topology_[256] = {};
   std::vector<int64_t> ids_, line_;
   std::vector<Vec3> corner_;
   std::vector<uint32_t> local_;
@@ -147,13 +156,19 @@ std::vector<SurfaceChunk> unstructured_faces(const UnstructuredMesh& mesh, const
         ChunkWalk walk(mesh, at, chunks[chunk], curved[chunk]);
         const uint8_t* external = marks.external.data() + marks.chunk_start[chunk];
         if (same > 0) {  // from mark to mark
+          std::vector<size_t> found;
           const size_t n = same * (end - begin);
           for (size_t at = 0; at < n;) {
             const void* next = std::memchr(external + at, 1, n - at);
             if (!next) break;
             const size_t c = size_t(static_cast<const uint8_t*>(next) - external) / same;
-            if (states.empty() || states[begin + c] == cell_visible) walk.solid(begin + c, external + c * same, same);
+            if (states.empty() || states[begin + c] == cell_visible) found.push_back(c);
             at = (c + 1) * same;
+          }
+          for (size_t i = 0; i < found.size(); ++i) {
+            if (i + 12 < found.size()) walk.expect_cell(begin + found[i + 12]);
+            if (i + 6 < found.size()) walk.expect_points(begin + found[i + 6]);
+            walk.solid(begin + found[i], external + found[i] * same, same);
           }
           return;
         }
