@@ -17,10 +17,10 @@ DatasetPtr run(const DatasetPtr& d, ClassifyParams p = {}) {
   return classify(d, p, context);
 }
 
-DatasetPtr phantom(double noise, double bias, bool mix, int size = 76) {
+DatasetPtr phantom(double noise, double bias, bool mix, int size = 96) {
   TissuePhantomParams p;  // an eighth of the head with 1 mm samples
   p.grid.size = size;
-  p.grid.bounds = {-2, 73, -75, 0, -25, 50};
+  p.grid.bounds = {-10, 85, -85, 10, -30, 65};
   p.noise = noise, p.bias = bias, p.partial_volume = mix;
   Context context;
   return tissue_phantom(p, context);
@@ -66,7 +66,7 @@ TEST_CASE("classify: Dice above 0.97 at 5% noise and 40% bias, partial volume an
 }
 
 TEST_CASE("classify: with tissues that do not mix, labels are all but perfect") {
-  const auto dice = agreement(run(phantom(5, 40, false, 50)));
+  const auto dice = agreement(run(phantom(5, 40, false, 64)));
   REQUIRE(dice.size() == 4);
   for (const double d : dice) CHECK(d > 0.985);
 }
