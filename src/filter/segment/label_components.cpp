@@ -43,13 +43,19 @@ struct RunSets {
   // Runs of two rows that overlap, or with reach 1 touch at corners.
   void join_rows(size_t row, size_t other, uint32_t reach) {
     size_t a = first[row], b = first[other];
+    const auto meet = [&](size_t i, size_t k) {
+      if (i == first[row + 1] || k == first[other + 1]) return;
+      const Run &x = runs[i], &y = runs[k];
+      if (x.code == y.code && x.begin < y.end + reach && y.begin < x.end + reach) join(uint32_t(i), uint32_t(k));
+    };
     while (a < first[row + 1] && b < first[other + 1]) {
-      const Run &x = runs[a], &y = runs[b];
-      if (x.code == y.code && x.begin < y.end + reach && y.begin < x.end + reach) join(uint32_t(a), uint32_t(b));
-      if (x.end < y.end) ++a;
-      else if (y.end < x.end) ++b;
-      else if (reach && a + 1 < first[row + 1] && runs[a + 1].begin < y.end + reach) ++a;  // the next may still touch the other
-      else ++b;
+      meet(a, b);
+      if (runs[a].end < runs[b].end) ++a;
+      else if (runs[b].end < runs[a].end) ++b;
+      else {  // each may still touch the one after the other
+        if (reach) meet(a + 1, b), meet(a, b + 1);
+        ++a, ++b;
+      }
     }
   }
 };
