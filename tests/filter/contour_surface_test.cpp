@@ -146,21 +146,28 @@ TEST_CASE("contour: random closed grids are watertight, manifold and oriented") 
           if (j + 1 < n[1]) cut += in(i, j, k) != in(i, j + 1, k);
           if (k + 1 < n[2]) cut += in(i, j, k) != in(i, j, k + 1);
         }
-    const Surface s(contour_at(grid_of(n, v), 0));
-    CHECK(s.points.size() == cut);
-    CHECK(s.faults() == 0);
-    CHECK(s.every_point_used());
-    CHECK(long(s.triangles.size()) == 2 * (long(s.points.size()) - s.euler()));
-    // Every point has one fan of triangles: as many different neighbours as triangles.
-    std::map<int, std::pair<int, std::set<int>>> fans;
-    for (const auto& t : s.triangles)
-      for (size_t k = 0; k < 3; ++k) {
-        auto& [count, next] = fans[t[k]];
-        ++count;
-        next.insert(t[(k + 1) % 3]);
-        next.insert(t[(k + 2) % 3]);
-      }
-    for (const auto& [p, fan] : fans) CHECK(size_t(fan.first) == fan.second.size());
+    for (const std::string topology : {"fixed", "trilinear"}) {
+      Context context;
+      ContourParams params;
+      params.values = {0};
+      params.topology = topology;
+      const Surface s(contour(grid_of(n, v), params, context));
+      if (topology == "fixed") CHECK(s.points.size() == cut);
+      else CHECK(s.points.size() > cut);
+      CHECK(s.faults() == 0);
+      CHECK(s.every_point_used());
+      CHECK(long(s.triangles.size()) == 2 * (long(s.points.size()) - s.euler()));
+      // Every point has one fan of triangles: as many different neighbours as triangles.
+      std::map<int, std::pair<int, std::set<int>>> fans;
+      for (const auto& t : s.triangles)
+        for (size_t k = 0; k < 3; ++k) {
+          auto& [count, next] = fans[t[k]];
+          ++count;
+          next.insert(t[(k + 1) % 3]);
+          next.insert(t[(k + 2) % 3]);
+        }
+      for (const auto& [p, fan] : fans) CHECK(size_t(fan.first) == fan.second.size());
+    }
   }
 }
 

@@ -14,7 +14,10 @@ struct ContourParams {
   FieldName field;
   std::vector<double> values;
   bool normals = true;
+  double tolerance = 1e-3;
   std::string component;
+  std::string topology = "trilinear";  ///< or "fixed"
+  bool from_cells = false;
 };
 void describe(Schema& s, ContourParams& p);
 
@@ -23,13 +26,19 @@ void describe(Schema& s, ContourParams& p);
 /// Input: uniform, rectilinear and curvilinear grids with two or three axes; unstructured meshes of linear cells and polyhedra;
 /// surface meshes. A sample counts as inside when it is >= the value. There is exactly one point per cut cell edge, also where a
 /// sample equals the value (points may then coincide). Surfaces are closed up to the border of the mesh and every edge has two
-/// triangles: faces that can be cut in two ways are decided by the bilinear function on them (Nielson and Hamann 1991). Triangles and
+/// triangles, wound like the neighbour's. On grids the surface in each cell has the topology of the trilinear function: faces that can
+/// be cut in two ways by the asymptotic decider (Nielson and Hamann 1991), tubes through cells (trilinear_cell.h); cells with a tube or a
+/// long loop have points inside, which follow those on edges. Ties, also at saddles, count as inside: the surface is that of a value
+/// lower by less than any number. topology=fixed: marching cubes' one table, where corners inside are apart on every ambiguous face; it is
+/// closed too, but its number of parts and handles may be wrong. Triangles and
 /// the point field "Normals" (f32, unit) face the smaller values; on lines the larger values lie on the left in x-y meshes.
 /// Cells that touch a NaN or a hidden point, and ghost and blanked cells, leave clean borders.
-/// All fields are carried: point fields interpolated along the edges (the contoured field itself is the isovalue exactly, f32 for
-/// integer fields), cell fields from the cell. With several values the cell
-/// field "contour value" says which. Nothing crossed: an empty mesh with its fields, and a note in the log.
-/// Memory: less than one byte per sample beside the result. Same bytes for any number of threads.
+/// All fields are carried: point fields interpolated along the edges and trilinearly inside cells (the contoured field itself is the
+/// isovalue exactly, f32 for integer fields), cell fields from the cell. With several values, which may come in any order, the surfaces
+/// lie one behind the other and the cell field "contour value" says which. Nothing crossed: an empty mesh with its fields, and a note in
+/// the log. from_cells contours a cell field by its averages at the points (cell_to_point); a point field of the same name is left out.
+/// Memory: less than one byte per sample beside the result (with more than eight values, at most a bit per sample and value up to
+/// 256 MB). Several values share one pass over a grid. Same bytes for any number of threads.
 /// Throws Error(usage) for an unknown field, a cell field, a vector without `component`, and meshes without an interior.
 DatasetPtr contour(const DatasetPtr& input, const ContourParams& params, Context& context);
 

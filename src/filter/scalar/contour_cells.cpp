@@ -1,35 +1,62 @@
 // SPDX-License-Identifier: Apache-2.0
 // Contours of unstructured and surface meshes, cell by cell. A cut edge is known by its two point numbers, so that cells of
-// different kinds share it; the numbers are sorted afterwards to count each edge once.
+// different kinds share it; the edges of all cells are numbered afterwards (contour_edges.h).
 #include <cmath>
 
 #include "base/parallel.h"
-#include "filter/field/gradient_cells.h"
-#include "filter/scalar/contour_finder.h"
+#include "filter/scalar/contour_cell_scan.h"
+#include "filter/scalar/contour_edges.h"
+#include "filter/scalar/contour_normals.h"
 
 namespace sg::contouring {
 
 namespace {
 
-template <class Each>
-Found find(size_t n, const Context& context, Each&& each) {
-  constexpr size_t grain = 4096;
-  std::vector<Found> parts((n + grain - 1) / grain);
+constexpr uint8_t inside = 1, unusable = 2;
+
+// A byte per point.
+std::vector<uint8_t> classify_points(const Finder& finder, size_t n) {
+  std::vector<uint8_t> r(n);
   parallel_for(
-      n, grain,
+      n, 1 << 15,
       [&](size_t begin, size_t end) {
-        for (size_t c = begin; c < end; ++c) each(c, parts[begin / grain]);
+        dispatch(finder.job.samples, [&](auto f) {
+          for (size_t p = begin; p < end; ++p) {
+            const auto x = f.data[p];
+            r[p] = uint8_t((double(x) >= finder.value ? inside : 0) | (x != x ? unusable : 0));
+          }
+        });
+        if (finder.point_ghost.count)
+          for (size_t p = begin; p < end; ++p)
+            if (finder.point_ghost[p] & ghost_hidden_point) r[p] |= unusable;
       },
-      &context);
-  Found all;
-  auto join = [&](auto member) {
-    size_t size = 0;
-    for (const Found& p : parts) size += (p.*member).size();
-    (all.*member).reserve(size);
-    for (const Found& p : parts) (all.*member).insert((all.*member).end(), (p.*member).begin(), (p.*member).end());
-  };
-  join(&Found::lines), join(&Found::triangles), join(&Found::line_cells), join(&Found::triangle_cells);
-  return all;
+      &finder.job.context);
+  return r;
+}
+
+// Cells of which some points are inside and some not, all of them usable.
+constexpr auto is_cut = [](uint32_t any, uint32_t every) { return uint32_t(any == inside) & uint32_t(every == 0); };
+
+// Looks at all cells a chunk at a time: cut(cell, found) for those that the surface crosses.
+template <class Cut>
+void find(const Finder& finder, const std::vector<uint8_t>& state, const CellsView& cells, size_t before, std::vector<EdgeChunk>& chunks,
+          Cut&& cut) {
+  const size_t grain = std::max<size_t>(1 << 13, cells.count / 1024 + 1), first = chunks.size();
+  if (cells.count == 0) return;
+  chunks.resize(first + (cells.count + grain - 1) / grain);
+  parallel_for(
+      cells.count, grain,
+      [&](size_t begin, size_t end) {
+        thread_local std::vector<uint32_t> active;
+        thread_local Found found;
+        active.resize(end - begin + 1);
+        found.clear();
+        const size_t n = scan_cells(cells, begin, end, state.data(), active.data(), is_cut);
+        for (size_t i = 0; i < n; ++i)
+          if (!finder.skipped(before + active[i])) cut(size_t(active[i]), found);
+        if (!found.lines.empty() || !found.triangles.empty()) chunks[first + begin / grain].take(found, state.size());
+      },
+      &finder.job.context);
 }
 
 [[noreturn]] void unsupported(const UnstructuredMesh& m, size_t cell) {
@@ -37,12 +64,13 @@ Found find(size_t n, const Context& context, Each&& each) {
              "contours of curved cells are not there yet; slice and faces take them");
 }
 
-Found find_cells(const Finder& finder, const UnstructuredMesh& m) {
+std::vector<EdgeChunk> find_cells(const Finder& finder, const std::vector<uint8_t>& state, const UnstructuredMesh& m) {
   const CellsView cells = cells_view(m.cells);
-  return find(cells.count, finder.job.context, [&](size_t c, Found& out) {
-    if (finder.skipped(c)) return;
+  std::vector<EdgeChunk> chunks;
+  find(finder, state, cells, 0, chunks, [&](size_t c, Found& out) {
     const CellType type = m.type(c);
-    if (const CaseTable* table = cell_cases(type)) return finder.solid(*table, cells, c, out);
+    if (type == CellType::tetra) return finder.tetra(cells, c, out);
+    if (cell_cases(type)) return finder.solid(type, cells, c, out);
     const CellTypeInfo& info = cell_type_info(type);
     if (info.dimension < 2) return;
     const size_t n = cells.size(c), b = cells.begin(c);
@@ -60,111 +88,73 @@ Found find_cells(const Finder& finder, const UnstructuredMesh& m) {
       for (size_t k = 0; k < n; ++k) around[k] = p(k);
       finder.polygon(around, c, out);
     } else if (type == CellType::polyhedron) {
-      bool any = false, every = true, good = true;
-      for (size_t k = 0; k < n; ++k) {
-        const bool in = finder.f(size_t(p(k))) >= finder.value;
-        any = any || in, every = every && in, good = good && !finder.bad(p(k));
-      }
-      if (any && !every && good) cut_polyhedron(finder, m, c, out);
+      cut_polyhedron(finder, m, c, out);
     } else {
       unsupported(m, c);
     }
   });
+  return chunks;
 }
 
-Found find_cells(const Finder& finder, const SurfaceMesh& m) {
-  const CellsView polygons = cells_view(m.polygons), strips = cells_view(m.strips);
-  const size_t before = m.vertices.size() + m.lines.size();
-  return find(polygons.count + strips.count, finder.job.context, [&](size_t c, Found& out) {
-    if (finder.skipped(before + c)) return;
-    const bool strip = c >= polygons.count;
-    const CellsView& cells = strip ? strips : polygons;
-    const size_t cell = strip ? c - polygons.count : c, n = cells.size(cell);
-    std::vector<int64_t> p(n);
-    for (size_t k = 0; k < n; ++k) p[k] = cells.point(cell, k);
-    if (!strip) return finder.polygon(p, before + c, out);
-    for (size_t k = 0; k + 2 < n; ++k) {
-      const int64_t around[3] = {p[k], p[k + 1 + k % 2], p[k + 2 - k % 2]};
-      finder.polygon(around, before + c, out);
-    }
-  });
-}
-
-// Distinct edges in order of their point numbers, by buckets of the lower one.
-class EdgeNumbers {
- public:
-  EdgeNumbers(size_t points, const Found& found) : start_(points + 1, 0) {
-    for (const auto* keys : {&found.lines, &found.triangles})
-      for (uint64_t k : *keys) ++start_[k >> 32];
-    exclusive_scan(start_);
-    std::vector<uint32_t> other(start_.back());
-    std::vector<size_t> next(start_.begin(), start_.end() - 1);
-    for (const auto* keys : {&found.lines, &found.triangles})
-      for (uint64_t k : *keys) other[next[k >> 32]++] = uint32_t(k);
-    std::vector<size_t> count(points + 1, 0);
-    parallel_for(points, 1 << 14, [&](size_t begin, size_t end) {
-      for (size_t p = begin; p < end; ++p) {
-        const auto b = other.begin() + ptrdiff_t(start_[p]), e = other.begin() + ptrdiff_t(start_[p + 1]);
-        std::sort(b, e);
-        count[p] = size_t(std::unique(b, e) - b);
+std::vector<EdgeChunk> find_cells(const Finder& finder, const std::vector<uint8_t>& state, const SurfaceMesh& m) {
+  std::vector<EdgeChunk> chunks;
+  size_t before = m.vertices.size() + m.lines.size();
+  for (const CellArray* list : {&m.polygons, &m.strips}) {
+    const CellsView cells = cells_view(*list);
+    find(finder, state, cells, before, chunks, [&](size_t c, Found& out) {
+      const size_t n = cells.size(c);
+      std::vector<int64_t> p(n);
+      for (size_t k = 0; k < n; ++k) p[k] = cells.point(c, k);
+      if (list == &m.polygons) return finder.polygon(p, before + c, out);
+      for (size_t k = 0; k + 2 < n; ++k) {
+        const int64_t around[3] = {p[k], p[k + 1 + k % 2], p[k + 2 - k % 2]};
+        finder.polygon(around, before + c, out);
       }
     });
-    std::vector<size_t> first = count;
-    exclusive_scan(first);
-    other_.resize(first.back());
-    parallel_for(points, 1 << 14, [&](size_t begin, size_t end) {
-      for (size_t p = begin; p < end; ++p)
-        std::copy_n(other.begin() + ptrdiff_t(start_[p]), count[p], other_.begin() + ptrdiff_t(first[p]));
-    });
-    start_ = std::move(first);
+    before += cells.count;
   }
-  size_t size() const { return other_.size(); }
-  int32_t operator()(uint64_t key) const {
-    size_t i = start_[key >> 32];
-    while (other_[i] != uint32_t(key)) ++i;
-    return int32_t(i);
-  }
-  template <class F>
-  void each(F&& f) const {  // f(vertex, a, b), in parallel
-    parallel_for(start_.size() - 1, 1 << 14, [&](size_t begin, size_t end) {
-      for (size_t p = begin; p < end; ++p)
-        for (size_t i = start_[p]; i < start_[p + 1]; ++i) f(i, uint32_t(p), other_[i]);
-    });
-  }
-
- private:
-  std::vector<size_t> start_;
-  std::vector<uint32_t> other_;
-};
-
-Array make_normals(const Job& job, const Block<EdgePoint>& edges) {
-  std::vector<uint32_t> points;
-  std::vector<uint32_t> slot(job.input.point_count(), UINT32_MAX);
-  for (size_t i = 0; i < edges.count; ++i)
-    for (uint32_t p : {edges.data[i].a, edges.data[i].b})
-      if (slot[p] == UINT32_MAX) {
-        slot[p] = uint32_t(points.size());
-        points.push_back(p);
-      }
-  std::vector<double> g(points.size() * 3);
-  least_squares_gradients(job.input, points, job.samples.converted(ElementType::f64), g.data(), job.context);
-  float* out = nullptr;
-  Array normals = Array::make<float>(edges.count, 3, &out);
-  for (size_t i = 0; i < edges.count; ++i) {
-    const EdgePoint e = edges.data[i];
-    const double *a = &g[3 * slot[e.a]], *b = &g[3 * slot[e.b]], t = double(e.t);
-    const Vec3 n = Vec3(a[0], a[1], a[2]) * (1 - t) + Vec3(b[0], b[1], b[2]) * t;
-    const double size = length(n);
-    for (int c = 0; c < 3; ++c) out[3 * i + size_t(c)] = size > 0 && std::isfinite(size) ? float(-n[c] / size) : 0.0f;
-  }
-  return normals;
+  return chunks;
 }
 
-Block<uint32_t> cell_block(const std::vector<uint32_t>& v) {
+// Lists of all chunks, one after the other.
+template <class Get>
+Block<uint32_t> joined(const std::vector<EdgeChunk>& chunks, const std::vector<size_t>& first, Get&& get) {
   Block<uint32_t> b;
-  b.allocate(v.size());
-  std::copy(v.begin(), v.end(), b.data);
+  b.allocate(first.back());
+  parallel_for(chunks.size(), 1, [&](size_t i, size_t) {
+    const auto& list = get(chunks[i]);
+    std::copy(list.begin(), list.end(), b.data + first[i]);
+  });
   return b;
+}
+
+template <class Get>
+std::vector<size_t> starts(const std::vector<EdgeChunk>& chunks, Get&& get) {
+  std::vector<size_t> first(chunks.size() + 1, 0);
+  for (size_t i = 0; i < chunks.size(); ++i) first[i] = get(chunks[i]).size();
+  exclusive_scan(first);
+  return first;
+}
+
+// Points inside cells, in the order of the chunks.
+void inner_points(const Finder& finder, const std::vector<EdgeChunk>& chunks, size_t before, Piece& piece, float* xyz) {
+  const auto first = starts(
+      chunks, [](const EdgeChunk& c) -> const auto& { return c.inner; });
+  piece.inner.allocate(first.back());
+  piece.inner_corners.allocate(first.back());
+  for (size_t i = 0; i < chunks.size(); ++i)
+    for (size_t k = 0; k < chunks[i].inner.size(); ++k) {
+      const CellPoint& p = chunks[i].inner[k];
+      Vec3 x;
+      for (size_t c = 0; c < 8; ++c) {
+        double w = 1;
+        for (size_t a = 0; a < 3; ++a) w *= c >> a & 1 ? p.at[a] : 1 - p.at[a];
+        x += (finder.points.at(p.corners[c]) - finder.job.origin) * w;
+      }
+      piece.inner.data[first[i] + k] = {p.corners[0], {float(p.at[0]), float(p.at[1]), float(p.at[2])}};
+      piece.inner_corners.data[first[i] + k] = p.corners;
+      for (int a = 0; a < 3; ++a) xyz[3 * (before + first[i] + k) + size_t(a)] = float(x[a]);
+    }
 }
 
 }  // namespace
@@ -172,36 +162,54 @@ Block<uint32_t> cell_block(const std::vector<uint32_t>& v) {
 Piece contour_cells(const Job& job, double value) {
   const auto* mesh = job.input.as<UnstructuredMesh>();
   const Points& points = mesh ? mesh->points : job.input.as<SurfaceMesh>()->points;
-  const Finder finder{job, points, value};
-  const Found found = mesh ? find_cells(finder, *mesh) : find_cells(finder, *job.input.as<SurfaceMesh>());
-  const EdgeNumbers numbers(points.count(), found);
-  if (numbers.size() > size_t(INT32_MAX))
-    fail_usage("the surface has more than 2^31 points", "contour", "contour a part of the mesh at a time");
+  const Finder finder{job, Positions(points), value};
+  std::vector<uint8_t> state = classify_points(finder, points.count());
+  std::vector<EdgeChunk> chunks = mesh ? find_cells(finder, state, *mesh) : find_cells(finder, state, *job.input.as<SurfaceMesh>());
+  std::vector<uint8_t>().swap(state);
+  const EdgePoints edges(chunks, job.context);
+  size_t inner = 0;
+  for (EdgeChunk& c : chunks) c.first_inner = edges.size() + inner, inner += c.inner.size();
+  const size_t total = edges.size() + inner;
+  if (total > size_t(INT32_MAX)) fail_usage("the surface has more than 2^31 points", "contour", "contour a part of the mesh at a time");
 
   Piece piece;
   float* xyz = nullptr;
-  piece.xyz = Array::make<float>(numbers.size(), 3, &xyz);
-  piece.points.allocate(numbers.size());
-  numbers.each([&](size_t v, uint32_t a, uint32_t b) {
-    const double t = crossing(value, finder.f(a), finder.f(b));
-    piece.points.data[v] = {a, b, float(t)};
-    const Vec3 from = points.at(a) - job.origin, to = points.at(b) - job.origin;
-    const Vec3 x = from + (to - from) * t;
-    for (int c = 0; c < 3; ++c) xyz[3 * v + size_t(c)] = float(x[c]);
-  });
-  auto connect = [&](const std::vector<uint64_t>& keys) {
+  piece.xyz = Array::make<float>(total, 3, &xyz);
+  piece.points.allocate(edges.size());
+  edges.each(
+      [&](size_t v, uint32_t a, uint32_t b) {
+        const double t = crossing(value, finder.f(a), finder.f(b));
+        piece.points.data[v] = {a, b, float(t)};
+        const Vec3 from = finder.points.at(a) - job.origin, to = finder.points.at(b) - job.origin;
+        const Vec3 x = from + (to - from) * t;
+        for (int c = 0; c < 3; ++c) xyz[3 * v + size_t(c)] = float(x[c]);
+      },
+      job.context);
+  if (inner > 0) inner_points(finder, chunks, edges.size(), piece, xyz);
+  auto connect = [&](auto get, const std::vector<size_t>& first) {
     int32_t* out = nullptr;
-    Array a = Array::make<int32_t>(keys.size(), 1, &out);
-    parallel_for(keys.size(), 1 << 15, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i) out[i] = numbers(keys[i]);
+    Array a = Array::make<int32_t>(first.back(), 1, &out);
+    parallel_for(chunks.size(), 1, [&](size_t i, size_t) {
+      const EdgeChunk& c = chunks[i];
+      int32_t* to = out + first[i];
+      for (uint32_t k : get(c))
+        *to++ = int32_t(k & EdgeChunk::inner_bit ? uint32_t(c.first_inner) + (k ^ EdgeChunk::inner_bit) : c.numbers[k]);
     });
     return a;
   };
-  piece.lines = connect(found.lines);
-  piece.triangles = connect(found.triangles);
-  piece.line_cells = cell_block(found.line_cells);
-  piece.triangle_cells = cell_block(found.triangle_cells);
-  if (job.normals && !found.triangles.empty()) piece.normals = make_normals(job, piece.points);
+  auto lines = [](const EdgeChunk& c) -> const auto& { return c.lines; };
+  auto triangles = [](const EdgeChunk& c) -> const auto& { return c.triangles; };
+  auto line_cells = [](const EdgeChunk& c) -> const auto& { return c.line_cells; };
+  auto triangle_cells = [](const EdgeChunk& c) -> const auto& { return c.triangle_cells; };
+  piece.lines = connect(lines, starts(chunks, lines));
+  piece.triangles = connect(triangles, starts(chunks, triangles));
+  if (job.cells) {
+    piece.line_cells = joined(chunks, starts(chunks, line_cells), line_cells);
+    piece.triangle_cells = joined(chunks, starts(chunks, triangle_cells), triangle_cells);
+  }
+  std::vector<EdgeChunk>().swap(chunks);
+  if (job.normals && mesh && piece.triangles.count() > 0)
+    piece.normals = cell_normals(job, *mesh, piece.points.span(), piece.inner.span(), piece.inner_corners.span());
   return piece;
 }
 

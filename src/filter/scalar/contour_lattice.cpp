@@ -4,18 +4,54 @@
 // the counts are summed, and all rows are written at the same time, as in the flying edges of Schroeder, Maynard, Geveci 2015.
 #include <bit>
 
+#include "base/huge_allocator.h"
 #include "base/parallel.h"
 #include "filter/scalar/cell_cases.h"
+#include "filter/scalar/contour_active.h"
 #include "filter/scalar/contour_parts.h"
+#include "filter/scalar/trilinear_cell.h"
 
 namespace sg::contouring {
 
+static ptrdiff_t corner_offset(int c, const LatticeFrame& f) { return (c & 1) + (c >> 1 & 1) * f.stride[1] + (c >> 2) * f.stride[2]; }
+
 struct LatticeContour::Cuts {
   double value = 0;
-  std::vector<uint64_t> inside;
-  std::vector<uint64_t> cut[3];
+  Plane<uint64_t> inside;
+  Plane<uint64_t> cut[3];  ///< bits of cut edges, where cells are left out; otherwise they follow from `inside`
   std::vector<RowStart> rows;
-  size_t vertices = 0, cells = 0;
+  size_t vertices = 0, cells = 0, inner = 0;
+};
+
+// Where the results of several values go, one behind the other.
+struct LatticeContour::Room {
+  size_t edges = 0, inner = 0, cells = 0;  // all together
+  size_t points_done = 0, edges_done = 0, inner_done = 0, cells_done = 0;
+  Array xyz, normals, ids;
+  float *xyz_out = nullptr, *normals_out = nullptr;
+  int32_t* ids_out = nullptr;
+  Block<EdgePoint> edge_points;
+  Block<InnerPoint> inner_points;
+  Block<uint32_t> cell_numbers;
+
+  void allocate(const Job& job, int corners) {
+    xyz = Array::make<float>(edges + inner, 3, &xyz_out);
+    if (job.normals && corners == 3) normals = Array::make<float>(edges + inner, 3, &normals_out);
+    ids = Array::make<int32_t>(cells * size_t(corners), 1, &ids_out);
+    if (job.edges) edge_points.allocate(edges);
+    inner_points.allocate(inner);
+    if (job.cells) cell_numbers.allocate(cells);
+  }
+};
+
+// A cell that the table alone cannot cut.
+struct LatticeContour::Slow {
+  TrilinearCell cell;
+  Slow(size_t p, double value, const LatticeFrame& frame, const Sample& f) {
+    double v[8];
+    for (int c = 0; c < 8; ++c) v[c] = f(size_t(ptrdiff_t(p) + corner_offset(c, frame))) - value;
+    cut_trilinear(v, cell);
+  }
 };
 
 namespace {
@@ -34,18 +70,11 @@ uint64_t inner_bits(size_t w, size_t n) {
   return from >= last ? 0 : last - from >= 64 ? ~uint64_t(0) : ~uint64_t(0) >> (64 - (last - from));
 }
 
-constexpr ptrdiff_t corner_offset(int c, const LatticeFrame& f) { return (c & 1) + (c >> 1 & 1) * f.stride[1] + (c >> 2) * f.stride[2]; }
-
-uint32_t joined_faces(uint32_t ambiguous, size_t p, double value, const LatticeFrame& frame, const Sample& f) {
-  const auto& faces = lattice_cases().shape().faces;
-  uint32_t joined = 0;
-  for (uint32_t m = ambiguous; m; m &= m - 1) {
-    const int face = std::countr_zero(m);
-    double v[4];
-    for (size_t c = 0; c < 4; ++c) v[c] = f(size_t(ptrdiff_t(p) + corner_offset(faces[size_t(face)][c], frame))) - value;
-    joined |= uint32_t(joined_inside(v[0], v[1], v[2], v[3])) << face;
-  }
-  return joined;
+// std::popcount is a call without the instruction, which not every machine has.
+constexpr uint64_t bit_count(uint64_t x) {
+  x -= x >> 1 & 0x5555555555555555;
+  x = (x & 0x3333333333333333) + (x >> 2 & 0x3333333333333333);
+  return ((x + (x >> 4)) & 0x0F0F0F0F0F0F0F0F) * 0x0101010101010101 >> 56;
 }
 
 // Lines of a square: corners 0 (0,0), 1 (1,0), 2 (0,1), 3 (1,1); edges 0 below, 1 above (along x), 2 left, 3 right. Pairs of edges,
@@ -66,9 +95,15 @@ Square square_of(uint32_t pattern, size_t p, double value, const LatticeFrame& f
 
 }  // namespace
 
-LatticeContour::LatticeContour(const Job& job) : job_(job), lattice_(job.input.mesh()), frame_(lattice_.view()), sample_(job.samples) {
+LatticeContour::LatticeContour(const Job& job, std::shared_ptr<const LatticeIndex> index)
+    : job_(job), index_(std::move(index)), lattice_(job.input.mesh()), frame_(lattice_.view()), sample_(job.samples) {
   words_ = (frame_.dims[0] + 63) / 64;
   flip_ = !frame_.right_handed();
+  for (uint32_t p = 0; p < 256; ++p) {
+    const auto t = lattice_cases().plain(p);
+    count_[p] = job.trilinear && needs_trilinear(p) ? slow_pattern : uint8_t((t[1] - t[0]) / 3);
+    first_[p] = uint16_t(t[0]);
+  }
   const size_t nx = frame_.dims[0], rows = frame_.dims[1] * frame_.dims[2];
   if (const Array& ghost = job.input.point_ghost(); !ghost.empty()) {
     const auto g = ghost.view<uint8_t>();
@@ -107,37 +142,71 @@ void LatticeContour::skip_points(const std::vector<uint64_t>& bad) {
       }
 }
 
-Piece LatticeContour::run(double value) {
+// Several values share one pass over the samples (each needs a bit per sample meanwhile) and one block of memory for the results.
+std::vector<Piece> LatticeContour::run(std::span<const double> values) {
   const size_t nx = frame_.dims[0], rows = frame_.dims[1] * frame_.dims[2];
-  Cuts cuts;
-  cuts.value = value;
-  cuts.inside.resize(rows * words_);
-  const bool nan = classify(job_.samples, nx, rows, value, cuts.inside.data(), words_, job_.context);
-  if (nan && !missing_known_) {
-    std::vector<uint64_t> bad(rows * words_);
-    find_missing(job_.samples, nx, rows, bad.data(), words_, job_.context);
-    skip_points(bad);
-    missing_known_ = true;
+  const size_t together = std::max<size_t>(8, (size_t(256) << 20) / (8 * rows * words_ + 1));
+  std::vector<Piece> pieces;
+  for (size_t begin = 0; begin < values.size(); begin += together) {
+    const auto some = values.subspan(begin, std::min(together, values.size() - begin));
+    std::vector<Cuts> cuts(some.size());
+    std::vector<uint64_t*> bits;
+    std::vector<std::optional<ActiveWords>> where(some.size());
+    for (size_t i = 0; i < some.size(); ++i) {
+      cuts[i].value = some[i];
+      cuts[i].inside.resize(rows * words_);
+      bits.push_back(cuts[i].inside.data());
+    }
+    bool nan = false;
+    if (index_) {
+      for (size_t i = 0; i < some.size(); ++i) {
+        where[i].emplace(*index_, frame_.dims, some[i]);
+        where[i]->classify(job_.samples, bits[i], words_, job_.context);
+      }
+      if (!index_->missing.empty() && !missing_known_) skip_points(index_->missing);
+      missing_known_ = true;
+    } else {
+      nan = classify(job_.samples, nx, rows, some, bits, words_, job_.context);
+    }
+    if (nan && !missing_known_) {
+      std::vector<uint64_t> bad(rows * words_);
+      find_missing(job_.samples, nx, rows, bad.data(), words_, job_.context);
+      skip_points(bad);
+      missing_known_ = true;
+    }
+    Room room;
+    for (size_t i = 0; i < cuts.size(); ++i) {
+      Cuts& c = cuts[i];
+      find_cuts(c, where[i] ? &*where[i] : nullptr);
+      room.edges += c.vertices, room.inner += c.inner, room.cells += c.cells;
+    }
+    if (room.edges + room.inner > size_t(INT32_MAX))
+      fail_usage("the surfaces have more than 2^31 points", "contour", "contour a part of the grid at a time, or ask for fewer values");
+    room.allocate(job_, frame_.axes);
+    for (Cuts& c : cuts) {
+      pieces.push_back(generate(c, room));
+      c = {};
+    }
   }
-  find_cuts(cuts);
-  if (cuts.vertices > size_t(INT32_MAX))
-    fail_usage("the surface has more than 2^31 points", "contour", "contour a part of the grid at a time");
-  return generate(cuts);
+  return pieces;
 }
 
-void LatticeContour::find_cuts(Cuts& cuts) const {
+void LatticeContour::find_cuts(Cuts& cuts, const ActiveWords* where) const {
   const size_t ny = frame_.dims[1], nz = frame_.dims[2], rows = ny * nz;
-  for (int a = 0; a < frame_.axes; ++a) cuts.cut[a].resize(rows * words_);
+  if (!skip_.empty())
+    for (int a = 0; a < frame_.axes; ++a) cuts.cut[a].resize(rows * words_);
   cuts.rows.resize(rows);
   parallel_for(
       rows, std::max<size_t>(1, 512 / words_),
       [&](size_t begin, size_t end) {
-        for (size_t r = begin; r < end; ++r) count_row(cuts, r % ny, r / ny);
+        for (size_t r = begin; r < end; ++r)
+          if (!where || where->row(r % ny, r / ny)) count_row(cuts, r % ny, r / ny);
       },
       &job_.context);
   for (RowStart& row : cuts.rows) {
     cuts.vertices += std::exchange(row.vertex, cuts.vertices);
     cuts.cells += std::exchange(row.cell, cuts.cells);
+    cuts.inner += std::exchange(row.inner, cuts.inner);
   }
 }
 
@@ -148,7 +217,6 @@ void LatticeContour::count_row(Cuts& cuts, size_t j, size_t k) const {
   const bool up = j + 1 < ny, back = k + 1 < nz;
   const bool solid = frame_.axes == 3;
   const bool cells = up && (back || !solid);
-  const CaseTable& table = lattice_cases();
   RowStart& row = cuts.rows[r];
   // Good cells of the row (dj, dk) before this one, 0 outside the grid; `spread` adds those to the left, for edges across x.
   auto good = [&](size_t dj, size_t dk, size_t w, bool spread) -> uint64_t {
@@ -169,8 +237,9 @@ void LatticeContour::count_row(Cuts& cuts, size_t j, size_t k) const {
       cut[2] &= good(0, 0, w, true) | good(1, 0, w, true);
     }
     for (int l = 0; l < frame_.axes; ++l) {
-      cuts.cut[l][r * words_ + w] = cut[l];
-      const uint32_t n = uint32_t(std::popcount(cut[l]));
+      if (!skip_.empty()) cuts.cut[l][r * words_ + w] = cut[l];
+      if (!cut[l]) continue;
+      const uint32_t n = uint32_t(bit_count(cut[l]));
       row.cut[l] += n;
       row.vertex += n;
     }
@@ -187,63 +256,70 @@ void LatticeContour::count_row(Cuts& cuts, size_t j, size_t k) const {
         continue;
       }
       const uint32_t pattern = low | c.corners(i) << 4 | d.corners(i) << 6;
-      if (const uint32_t ambiguous = table.ambiguous(pattern)) [[unlikely]] {
-        row.cell += table.triangles(pattern, joined_faces(ambiguous, p, cuts.value, frame_, sample_)).size() / 3;
-      } else {
-        const auto t = table.plain(pattern);
-        row.cell += (t[1] - t[0]) / 3;
+      if (count_[pattern] != slow_pattern) [[likely]] {
+        row.cell += count_[pattern];
+        continue;
       }
+      const Slow slow(p, cuts.value, frame_, sample_);
+      row.cell += size_t(slow.cell.triangle_count);
+      row.inner += size_t(slow.cell.inner_count);
     }
   }
 }
 
-Piece LatticeContour::generate(const Cuts& cuts) const {
-  const size_t ny = frame_.dims[1], rows = cuts.rows.size();
+// Writes the surface of one value behind those that are there.
+Piece LatticeContour::generate(const Cuts& cuts, Room& room) const {
+  const size_t ny = frame_.dims[1], rows = cuts.rows.size(), points = cuts.vertices + cuts.inner;
   const int corners = frame_.axes;  // of a line or triangle
   Piece piece;
-  float *xyz = nullptr, *normals = nullptr;
-  piece.xyz = Array::make<float>(cuts.vertices, 3, &xyz);
-  if (job_.normals && corners == 3) piece.normals = Array::make<float>(cuts.vertices, 3, &normals);
-  piece.points.allocate(cuts.vertices);
-  make_vertices(
-      {frame_, job_.samples, cuts.value, job_.origin, words_, cuts.cut, cuts.rows, xyz, normals, piece.points.data, job_.context});
-
-  int32_t* out = nullptr;
-  (corners == 3 ? piece.triangles : piece.lines) = Array::make<int32_t>(cuts.cells * size_t(corners), 1, &out);
-  Block<uint32_t>& from = corners == 3 ? piece.triangle_cells : piece.line_cells;
-  if (job_.cells) from.allocate(cuts.cells);
+  piece.first_point = room.points_done;
+  piece.stride = frame_.stride;
+  piece.xyz = room.xyz.slice(room.points_done, room.points_done + points);
+  if (room.normals_out) piece.normals = room.normals.slice(room.points_done, room.points_done + points);
+  piece.points = {room.edge_points.bytes, job_.edges ? room.edge_points.data + room.edges_done : nullptr, cuts.vertices};
+  piece.inner = {room.inner_points.bytes, room.inner_points.data + room.inner_done, cuts.inner};
+  (corners == 3 ? piece.triangles : piece.lines) =
+      room.ids.slice(room.cells_done * size_t(corners), (room.cells_done + cuts.cells) * size_t(corners));
+  int32_t* out = room.ids_out + room.cells_done * size_t(corners);
+  uint32_t* from = job_.cells ? room.cell_numbers.data + room.cells_done : nullptr;
+  if (job_.cells) (corners == 3 ? piece.triangle_cells : piece.line_cells) = {room.cell_numbers.bytes, from, cuts.cells};
   parallel_for(
       rows, std::max<size_t>(1, 512 / words_),
       [&](size_t begin, size_t end) {
         for (size_t r = begin; r < end; ++r) {
           const size_t first = cuts.rows[r].cell;
           if ((r + 1 < rows ? cuts.rows[r + 1].cell : cuts.cells) == first) continue;
-          uint32_t* cells = job_.cells ? from.data + first : nullptr;
-          if (corners == 3) triangles_of_row(cuts, r % ny, r / ny, out + 3 * first, cells);
-          else lines_of_row(cuts, r, out + 2 * first, cells);
+          uint32_t* cells = from ? from + first : nullptr;
+          if (corners == 3)
+            triangles_of_row(cuts, r % ny, r / ny, uint32_t(piece.first_point), out + 3 * first, cells,
+                             piece.inner.data + cuts.rows[r].inner);
+          else lines_of_row(cuts, r, uint32_t(piece.first_point), out + 2 * first, cells);
         }
       },
       &job_.context);
+  make_vertices({frame_, job_.samples, cuts.value, job_.origin, words_, cuts.inside.data(), skip_.empty() ? nullptr : cuts.cut, cuts.rows,
+                 room.xyz_out + 3 * room.points_done, room.normals_out ? room.normals_out + 3 * room.points_done : nullptr,
+                 piece.points.data, job_.context, piece.inner.span(), cuts.vertices});
+  room.points_done += points, room.edges_done += cuts.vertices, room.inner_done += cuts.inner, room.cells_done += cuts.cells;
   return piece;
 }
 
 // Walks the crossed cells of a row with one counter per row of edges: an edge's number is the number of cut edges before it, and
 // every cut edge of these rows belongs to a crossed cell that is visited.
-void LatticeContour::triangles_of_row(const Cuts& cuts, size_t j, size_t k, int32_t* out, uint32_t* cells) const {
+void LatticeContour::triangles_of_row(const Cuts& cuts, size_t j, size_t k, uint32_t first_point, int32_t* out, uint32_t* cells,
+                                      InnerPoint* inner) const {
   const size_t nx = frame_.dims[0], ny = frame_.dims[1];
   const size_t row[4] = {j + ny * k, j + 1 + ny * k, j + ny * (k + 1), j + 1 + ny * (k + 1)};
-  const CaseTable& table = lattice_cases();
-  const uint8_t* all = table.triangle_edges();
+  const uint8_t* all = lattice_cases().triangle_edges();
   const size_t cell_row = (nx - 1) * (j + (ny - 1) * k);
   auto start = [&](size_t r, int axis) {
     const RowStart& s = cuts.rows[r];
-    return uint32_t(s.vertex) + (axis > 0 ? s.cut[0] : 0) + (axis > 1 ? s.cut[1] : 0);
+    return first_point + uint32_t(s.vertex) + (axis > 0 ? s.cut[0] : 0) + (axis > 1 ? s.cut[1] : 0);
   };
   uint32_t at[8] = {start(row[0], 0), start(row[1], 0), start(row[2], 0), start(row[3], 0),
                     start(row[0], 1), start(row[2], 1), start(row[0], 2), start(row[1], 2)};
-  const uint64_t* cut[8] = {&cuts.cut[0][row[0] * words_], &cuts.cut[0][row[1] * words_], &cuts.cut[0][row[2] * words_],
-                            &cuts.cut[0][row[3] * words_], &cuts.cut[1][row[0] * words_], &cuts.cut[1][row[2] * words_],
-                            &cuts.cut[2][row[0] * words_], &cuts.cut[2][row[1] * words_]};
+  const bool stored = !skip_.empty();
+  uint32_t next_inner = first_point + uint32_t(cuts.vertices + cuts.rows[row[0]].inner);
   const int second = flip_ ? 2 : 1, third = flip_ ? 1 : 2;
   for (size_t w = 0; w < words_; ++w) {
     Pair q[4];
@@ -257,28 +333,45 @@ void LatticeContour::triangles_of_row(const Cuts& cuts, size_t j, size_t k, int3
     if (!active) continue;
     const uint64_t skip = skip_.empty() ? 0 : skip_[row[0] * words_ + w];
     uint64_t c[8];
-    for (int s = 0; s < 8; ++s) c[s] = cut[s][w];
+    if (stored) {
+      for (int s = 0; s < 4; ++s) c[s] = cuts.cut[0][row[s] * words_ + w];
+      c[4] = cuts.cut[1][row[0] * words_ + w], c[5] = cuts.cut[1][row[2] * words_ + w];
+      c[6] = cuts.cut[2][row[0] * words_ + w], c[7] = cuts.cut[2][row[1] * words_ + w];
+    } else {
+      for (int s = 0; s < 4; ++s) c[s] = q[s].m ^ q[s].s;
+      c[4] = q[0].m ^ q[1].m, c[5] = q[2].m ^ q[3].m, c[6] = q[0].m ^ q[2].m, c[7] = q[1].m ^ q[3].m;
+    }
     for (; active; active &= active - 1) {
       const int i = std::countr_zero(active);
-      uint32_t step[8], edge[12];
+      uint32_t step[8], edge[TrilinearCell::first_inner + 8];
       for (int s = 0; s < 8; ++s) step[s] = uint32_t(c[s] >> i & 1);
       if (!(skip >> i & 1)) {
         for (int s = 0; s < 4; ++s) edge[s] = at[s];
         for (int s = 4; s < 8; ++s) edge[2 * s - 4] = at[s], edge[2 * s - 3] = at[s] + step[s];
         const uint32_t pattern = q[0].corners(i) | q[1].corners(i) << 2 | q[2].corners(i) << 4 | q[3].corners(i) << 6;
-        const uint8_t *e, *stop;
-        if (const uint32_t ambiguous = table.ambiguous(pattern)) [[unlikely]] {
-          const auto t = table.triangles(pattern, joined_faces(ambiguous, row[0] * nx + 64 * w + size_t(i), cuts.value, frame_, sample_));
-          e = t.data(), stop = e + t.size();
-        } else {
-          const auto t = table.plain(pattern);
-          e = all + t[0], stop = all + t[1];
-        }
-        for (; e < stop; e += 3, out += 3) {
-          out[0] = int32_t(edge[e[0]]);
-          out[second] = int32_t(edge[e[1]]);
-          out[third] = int32_t(edge[e[2]]);
+        auto triangle = [&](uint32_t a, uint32_t b, uint32_t c) {
+          out[0] = int32_t(a);
+          out[second] = int32_t(b);
+          out[third] = int32_t(c);
+          out += 3;
           if (cells) *cells++ = uint32_t(cell_row + 64 * w + size_t(i));
+        };
+        if (count_[pattern] == slow_pattern) [[unlikely]] {
+          const size_t p = row[0] * nx + 64 * w + size_t(i);
+          const Slow slow(p, cuts.value, frame_, sample_);
+          const TrilinearCell& cut_cell = slow.cell;
+          for (int n = 0; n < cut_cell.inner_count; ++n) {
+            const auto& u = cut_cell.inner[size_t(n)];
+            edge[TrilinearCell::first_inner + n] = next_inner++;
+            *inner++ = {p, {float(u[0]), float(u[1]), float(u[2])}};
+          }
+          for (int t = 0; t < cut_cell.triangle_count; ++t) {
+            const auto& name = cut_cell.triangles[size_t(t)];
+            triangle(edge[name[0]], edge[name[1]], edge[name[2]]);
+          }
+        } else {
+          const uint8_t* e = all + first_[pattern];
+          for (uint32_t t = count_[pattern]; t > 0; --t, e += 3) triangle(edge[e[0]], edge[e[1]], edge[e[2]]);
         }
       }
       for (int s = 0; s < 8; ++s) at[s] += step[s];
@@ -286,16 +379,18 @@ void LatticeContour::triangles_of_row(const Cuts& cuts, size_t j, size_t k, int3
   }
 }
 
-void LatticeContour::lines_of_row(const Cuts& cuts, size_t j, int32_t* out, uint32_t* cells) const {
+void LatticeContour::lines_of_row(const Cuts& cuts, size_t j, uint32_t first_point, int32_t* out, uint32_t* cells) const {
   const size_t nx = frame_.dims[0];
-  uint32_t at[3] = {uint32_t(cuts.rows[j].vertex), uint32_t(cuts.rows[j + 1].vertex), uint32_t(cuts.rows[j].vertex) + cuts.rows[j].cut[0]};
+  uint32_t at[3] = {first_point + uint32_t(cuts.rows[j].vertex), first_point + uint32_t(cuts.rows[j + 1].vertex),
+                    first_point + uint32_t(cuts.rows[j].vertex) + cuts.rows[j].cut[0]};
   for (size_t w = 0; w < words_; ++w) {
     const Pair a(&cuts.inside[j * words_], w, words_), b(&cuts.inside[(j + 1) * words_], w, words_);
     const uint64_t skip = skip_.empty() ? 0 : skip_[j * words_ + w];
+    uint64_t c[3] = {a.m ^ a.s, b.m ^ b.s, a.m ^ b.m};
+    if (!skip_.empty()) c[0] = cuts.cut[0][j * words_ + w], c[1] = cuts.cut[0][(j + 1) * words_ + w], c[2] = cuts.cut[1][j * words_ + w];
     for (uint64_t active = ((a.m | a.s | b.m | b.s) & ~(a.m & a.s & b.m & b.s)) & inner_bits(w, nx); active; active &= active - 1) {
       const int i = std::countr_zero(active);
-      const uint32_t step[3] = {uint32_t(cuts.cut[0][j * words_ + w] >> i & 1), uint32_t(cuts.cut[0][(j + 1) * words_ + w] >> i & 1),
-                                uint32_t(cuts.cut[1][j * words_ + w] >> i & 1)};
+      const uint32_t step[3] = {uint32_t(c[0] >> i & 1), uint32_t(c[1] >> i & 1), uint32_t(c[2] >> i & 1)};
       const uint32_t edge[4] = {at[0], at[1], at[2], at[2] + step[2]};
       if (!(skip >> i & 1)) {
         const size_t p = j * nx + 64 * w + size_t(i);

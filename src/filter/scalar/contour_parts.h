@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the contour kernels hand to each other. Inside filter/scalar only.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "base/context.h"
+#include "base/huge_allocator.h"
 #include "data/dataset.h"
 #include "data/field_ops.h"
 #include "filter/field/lattice_frame.h"
@@ -27,13 +29,25 @@ struct Block {
   std::span<const T> span() const { return {data, count}; }
 };
 
-/// One isovalue's surface.
+/// A point inside a lattice cell whose lowest corner is point `base`.
+struct InnerPoint {
+  size_t base;
+  float at[3];  ///< u, v, w in (0,1)
+};
+
+/// One isovalue's surface: the points on edges, then those inside cells.
 struct Piece {
   Array xyz;      ///< f32, relative to Job::origin
   Array normals;  ///< f32, or empty
   Block<EdgePoint> points;
-  Array lines, triangles;                      ///< i32 connectivity, 2 and 3 per cell
-  Block<uint32_t> line_cells, triangle_cells;  ///< source cell of each; empty when not asked for
+  Block<InnerPoint> inner;
+  std::array<ptrdiff_t, 3> stride{};             ///< of the inner points' corners
+  Block<std::array<uint32_t, 8>> inner_corners;  ///< not on lattices: the corners themselves
+  Array lines, triangles;                        ///< i32 connectivity, 2 and 3 per cell
+  Block<uint32_t> line_cells, triangle_cells;    ///< source cell of each; empty when not asked for
+
+  size_t first_point = 0;  ///< what the connectivity's numbers already count from
+  size_t point_count() const { return points.count + inner.count; }
 };
 
 /// The question, for all values.
@@ -42,6 +56,8 @@ struct Job {
   Array samples;  ///< u8, i8, u16, i16, f32 or f64; one component, packed
   bool normals = true;
   bool cells = true;  ///< record source cells
+  bool trilinear = true;
+  bool edges = true;  ///< record edge points: there are fields to carry besides the contoured one (lattices only)
   Vec3 origin;        ///< of the result's points
   Context& context;
 };
@@ -72,57 +88,78 @@ inline double crossing(double value, double a, double b) {
   return t >= 0 && t <= 1 ? t : 0.5;
 }
 
+struct LatticeIndex;
+class ActiveWords;
+
+/// Where the edges of a row of points are cut, and where their results go.
+struct RowStart {
+  size_t vertex = 0, cell = 0, inner = 0;  ///< first of the row, after the prefix sum; before it, counts
+  uint32_t cut[3]{};                       ///< cut edges along each axis; results lie in that order
+};
+
 /// Kernels on lattices of two or three axes; make one for all values.
 class LatticeContour {
  public:
-  explicit LatticeContour(const Job& job);
-  Piece run(double value);
+  /// `index`: what is known from earlier contours, or null.
+  explicit LatticeContour(const Job& job, std::shared_ptr<const LatticeIndex> index = nullptr);
+  std::vector<Piece> run(std::span<const double> values);
 
  private:
   struct Cuts;
+  struct Room;
+  struct Slow;
   void skip_points(const std::vector<uint64_t>& bad);
-  void find_cuts(Cuts& cuts) const;
+  void find_cuts(Cuts& cuts, const ActiveWords* where) const;
   void count_row(Cuts& cuts, size_t j, size_t k) const;
-  Piece generate(const Cuts& cuts) const;
-  void triangles_of_row(const Cuts& cuts, size_t j, size_t k, int32_t* out, uint32_t* cells) const;
-  void lines_of_row(const Cuts& cuts, size_t j, int32_t* out, uint32_t* cells) const;
+  Piece generate(const Cuts& cuts, Room& room) const;
+  void triangles_of_row(const Cuts& cuts, size_t j, size_t k, uint32_t first_point, int32_t* out, uint32_t* cells, InnerPoint* inner) const;
+  void lines_of_row(const Cuts& cuts, size_t j, uint32_t first_point, int32_t* out, uint32_t* cells) const;
 
   const Job& job_;
+  std::shared_ptr<const LatticeIndex> index_;
   Lattice lattice_;
   LatticeFrame frame_;
   Sample sample_;
   size_t words_ = 0;  ///< 64-bit words per row of bits
   bool missing_known_ = false, flip_ = false;
+  static constexpr uint8_t slow_pattern = 255;
+  uint8_t count_[256];          ///< triangles of a pattern of corners, or slow_pattern: the table alone cannot cut it
+  uint16_t first_[256];         ///< where they begin in the table
   std::vector<uint64_t> skip_;  ///< bit per cell that must not be looked at, in rows like the points; empty when all are good
 };
 
-/// Where the edges of a row of points are cut, and where their results go.
-struct RowStart {
-  size_t vertex = 0, cell = 0;  ///< first of the row, after the prefix sum; before it, counts
-  uint32_t cut[3]{};            ///< cut edges along each axis; results lie in that order
-};
-
-/// Fills positions, normals and edge points of all cut edges. `cut[a]` has a bit per edge along axis a.
+/// Fills positions, normals and edge points of all cut edges. `cut[a]` has a bit per edge along axis a; null: all edges whose ends differ.
 struct VertexJob {
   const LatticeFrame& frame;
   const Array& samples;
   double value;
   Vec3 origin;
   size_t words;
-  const std::vector<uint64_t>* cut;  ///< 3
+  const uint64_t* inside;
+  const Plane<uint64_t>* cut;  ///< 3, or null
   const std::vector<RowStart>& rows;
   float* xyz;
-  float* normals;  ///< null: none
-  EdgePoint* points;
+  float* normals;     ///< null: none
+  EdgePoint* points;  ///< null: none
   Context& context;
+  std::span<const InnerPoint> inner;  ///< their positions and normals follow those of the edges
+  size_t inner_first;
 };
 void make_vertices(const VertexJob& job);
+
+/// Point array `a` at the inner points, trilinear, in its own type (integers round to nearest).
+void interpolate_inner(const Array& a, const Piece& piece, std::byte* out);
 
 /// Unstructured and surface meshes.
 Piece contour_cells(const Job& job, double value);
 
-/// Sets bit i of row r for samples >= value. Returns true when a sample was NaN.
-bool classify(const Array& samples, size_t nx, size_t rows, double value, uint64_t* bits, size_t words, Context& context);
+/// Sets bit i of row r of bits[v] for samples >= values[v]. Returns true when a sample was NaN.
+bool classify(const Array& samples, size_t nx, size_t rows, std::span<const double> values, std::span<uint64_t* const> bits, size_t words,
+              Context& context);
+/// The same for those words of row `row` that `wanted` names.
+void classify_words(const Array& samples, size_t nx, size_t row, double value, const uint8_t* wanted, uint64_t* bits, size_t words);
+/// Whether a sample is NaN.
+bool any_missing(const Array& samples, Context& context);
 /// Sets the bit of samples that are NaN.
 void find_missing(const Array& samples, size_t nx, size_t rows, uint64_t* bits, size_t words, Context& context);
 

@@ -7,20 +7,94 @@ namespace sg::contouring {
 
 namespace {
 
+uint64_t key_of(const std::vector<int64_t>& face, size_t k) { return edge_key(face[k], face[(k + 1) % face.size()]); }
+
+// Each edge once in both directions?
+bool turn_together(const PolyhedronFaces& faces) {
+  thread_local std::vector<std::pair<uint64_t, int>> edges;
+  edges.clear();
+  for (const auto& face : faces)
+    for (size_t k = 0; k < face.size(); ++k) edges.emplace_back(key_of(face, k), face[k] < face[(k + 1) % face.size()]);
+  std::sort(edges.begin(), edges.end());
+  if (edges.size() % 2) return false;
+  for (size_t i = 0; i < edges.size(); i += 2)
+    if (edges[i].first != edges[i + 1].first || edges[i].second == edges[i + 1].second) return false;
+  return true;
+}
+
+// Makes neighbours agree.
+void turn_alike(PolyhedronFaces& faces) {
+  std::map<uint64_t, std::vector<size_t>> at_edge;
+  for (size_t f = 0; f < faces.size(); ++f)
+    for (size_t k = 0; k < faces[f].size(); ++k) at_edge[key_of(faces[f], k)].push_back(f);
+  auto forward = [&](size_t f, uint64_t edge) {
+    for (size_t k = 0; k < faces[f].size(); ++k)
+      if (key_of(faces[f], k) == edge) return faces[f][k] == int64_t(edge >> 32);
+    return false;
+  };
+  std::vector<char> seen(faces.size());
+  for (size_t first = 0; first < faces.size(); ++first) {
+    std::vector<size_t> todo;
+    if (!seen[first]) todo.push_back(first), seen[first] = 1;
+    while (!todo.empty()) {
+      const size_t f = todo.back();
+      todo.pop_back();
+      for (size_t k = 0; k < faces[f].size(); ++k) {
+        const uint64_t edge = key_of(faces[f], k);
+        for (size_t g : at_edge[edge]) {
+          if (seen[g]) continue;
+          if (forward(f, edge) == forward(g, edge)) std::reverse(faces[g].begin(), faces[g].end());
+          seen[g] = 1;
+          todo.push_back(g);
+        }
+      }
+    }
+  }
+}
+
+// The corners of six four-sided faces in the order of lattices, from the lowest number along its neighbours in their order.
+bool as_hexahedron(const PolyhedronFaces& faces, std::array<int64_t, 16>& p) {
+  if (faces.size() != 6) return false;
+  std::vector<int64_t> ids;
+  for (const auto& f : faces) {
+    if (f.size() != 4) return false;
+    ids.insert(ids.end(), f.begin(), f.end());
+  }
+  std::sort(ids.begin(), ids.end());
+  ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+  if (ids.size() != 8) return false;
+  const int64_t low = ids[0];
+  std::vector<int64_t> near;
+  for (const auto& f : faces)
+    for (size_t k = 0; k < 4; ++k)
+      if (f[k] == low) near.push_back(f[(k + 1) % 4]);  // once for each edge, as each is in two faces
+  std::sort(near.begin(), near.end());
+  if (near.size() != 3 || near[0] == near[1] || near[1] == near[2]) return false;
+  std::fill(p.begin(), p.end(), -1);
+  p[0] = low, p[1] = near[0], p[2] = near[1], p[4] = near[2];
+  for (const auto& f : faces)
+    for (size_t k = 0; k < 4; ++k) {
+      if (f[k] != low) continue;
+      size_t place = 0;
+      for (size_t c : {1, 2, 4})
+        if (p[c] == f[(k + 1) % 4] || p[c] == f[(k + 3) % 4]) place |= c;
+      p[place] = f[(k + 2) % 4];
+    }
+  for (int64_t id : ids)
+    if (std::find(p.begin(), p.begin() + 7, id) == p.begin() + 7) p[7] = id;
+  return std::find(p.begin(), p.begin() + 8, -1) == p.begin() + 8;
+}
+
 // A polyhedron of any faces: the rules of cell_cases.h, worked out on the spot.
 class PolyhedronCut {
  public:
   PolyhedronCut(const Finder& finder, const UnstructuredMesh& m, size_t cell) : finder_(finder), cell_(cell) {
-    const CellsView faces = cells_view(m.faces);
-    const auto of_cell = m.polyhedron_faces.view<int64_t>();
-    for (size_t f = size_t(of_cell[cell]); f < size_t(of_cell[cell + 1]); ++f) {
-      auto& face = faces_.emplace_back(faces.size(f));
-      for (size_t k = 0; k < face.size(); ++k) face[k] = faces.point(f, k);
-    }
+    faces_ = outward_faces(m, cell);
   }
 
   void run(Found& out) {
-    turn_outwards();
+    std::array<int64_t, 16> corners;
+    if (as_hexahedron(faces_, corners)) return finder_.solid(lattice_cases(), corners, cell_, out);
     for (size_t f = 0; f < faces_.size(); ++f) segments(f);
     while (!next_.empty()) {
       std::vector<uint64_t> loop;
@@ -37,45 +111,7 @@ class PolyhedronCut {
   }
 
  private:
-  static uint64_t key(const std::vector<int64_t>& face, size_t k) { return edge_key(face[k], face[(k + 1) % face.size()]); }
-
-  // Files promise outward faces but do not all keep it: make neighbours agree, then look at the volume.
-  void turn_outwards() {
-    std::map<uint64_t, std::vector<size_t>> at_edge;
-    for (size_t f = 0; f < faces_.size(); ++f)
-      for (size_t k = 0; k < faces_[f].size(); ++k) at_edge[key(faces_[f], k)].push_back(f);
-    auto forward = [&](size_t f, uint64_t edge) {
-      for (size_t k = 0; k < faces_[f].size(); ++k)
-        if (key(faces_[f], k) == edge) return faces_[f][k] == int64_t(edge >> 32);
-      return false;
-    };
-    std::vector<char> seen(faces_.size());
-    for (size_t first = 0; first < faces_.size(); ++first) {
-      std::vector<size_t> todo;
-      if (!seen[first]) todo.push_back(first), seen[first] = 1;
-      while (!todo.empty()) {
-        const size_t f = todo.back();
-        todo.pop_back();
-        for (size_t k = 0; k < faces_[f].size(); ++k) {
-          const uint64_t edge = key(faces_[f], k);
-          for (size_t g : at_edge[edge]) {
-            if (seen[g]) continue;
-            if (forward(f, edge) == forward(g, edge)) std::reverse(faces_[g].begin(), faces_[g].end());
-            seen[g] = 1;
-            todo.push_back(g);
-          }
-        }
-      }
-    }
-    double volume = 0;
-    if (faces_.empty() || faces_[0].empty()) return;
-    const Vec3 base = finder_.points.at(size_t(faces_[0][0]));
-    auto place = [&](int64_t p) { return finder_.points.at(size_t(p)) - base; };
-    for (const auto& face : faces_)
-      for (size_t k = 1; k + 1 < face.size(); ++k) volume += dot(place(face[0]), cross(place(face[k]), place(face[k + 1])));
-    if (volume < 0)
-      for (auto& face : faces_) std::reverse(face.begin(), face.end());
-  }
+  static uint64_t key(const std::vector<int64_t>& face, size_t k) { return key_of(face, k); }
 
   void segments(size_t f) {
     const auto& p = faces_[f];
@@ -121,12 +157,34 @@ class PolyhedronCut {
 
   const Finder& finder_;
   size_t cell_;
-  std::vector<std::vector<int64_t>> faces_;
+  PolyhedronFaces faces_;
   std::map<uint64_t, std::pair<uint64_t, size_t>> next_, step_;  // entry edge -> exit edge and the face between
   std::map<uint64_t, std::vector<size_t>> edge_faces_;
 };
 
 }  // namespace
+
+PolyhedronFaces outward_faces(const UnstructuredMesh& mesh, size_t cell) {
+  const CellsView view = cells_view(mesh.faces);
+  const auto of_cell = mesh.polyhedron_faces.view<int64_t>();
+  PolyhedronFaces faces;
+  for (size_t f = size_t(of_cell[cell]); f < size_t(of_cell[cell + 1]); ++f) {
+    if (view.size(f) < 3) continue;
+    auto& face = faces.emplace_back(view.size(f));
+    for (size_t k = 0; k < face.size(); ++k) face[k] = view.point(f, k);
+  }
+  // Files promise outward faces but do not all keep it: make neighbours agree, then look at the volume.
+  if (!turn_together(faces)) turn_alike(faces);
+  if (faces.empty()) return faces;
+  double volume = 0;
+  const Vec3 base = mesh.points.at(size_t(faces[0][0]));
+  auto place = [&](int64_t p) { return mesh.points.at(size_t(p)) - base; };
+  for (const auto& face : faces)
+    for (size_t k = 1; k + 1 < face.size(); ++k) volume += dot(place(face[0]), cross(place(face[k]), place(face[k + 1])));
+  if (volume < 0)
+    for (auto& face : faces) std::reverse(face.begin(), face.end());
+  return faces;
+}
 
 void cut_polyhedron(const Finder& finder, const UnstructuredMesh& mesh, size_t cell, Found& out) {
   PolyhedronCut(finder, mesh, cell).run(out);

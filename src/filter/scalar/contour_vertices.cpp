@@ -45,13 +45,30 @@ struct Maker {
     return m * d;
   }
 
-  // Central differences away from the border of an axis-parallel grid: most points of most contours.
-  Vec3 inner_gradient(const T* q) const {
-    const ptrdiff_t up = frame.stride[1], back = frame.stride[2];
-    return scale * Vec3(double(q[1]) - double(q[-1]), double(q[up]) - double(q[-up]), double(q[back]) - double(q[-back]));
-  }
-  bool is_inner(size_t i, size_t j, size_t k) const {
-    return i >= 1 && i + 2 < frame.dims[0] && j >= 1 && j + 2 < frame.dims[1] && k >= 1 && k + 2 < frame.dims[2];
+  // Away from the border of an axis-parallel grid, with central differences: most points of most contours. False beside NaN.
+  template <int axis>
+  bool plain_edge(size_t v, size_t p, size_t i, size_t j, size_t k) const {
+    const ptrdiff_t up = frame.stride[1], back = frame.stride[2], next = axis == 0 ? 1 : axis == 1 ? up : back;
+    const T *a = f + p, *b = a + next;
+    const double va = double(*a), vb = double(*b), t = crossing(job.value, va, vb);
+    double g[3];
+    if (job.normals) {
+      auto blend = [&](ptrdiff_t step) {
+        const double at_a = double(a[step]) - double(a[-step]), at_b = double(b[step]) - double(b[-step]);
+        return at_a + (at_b - at_a) * t;
+      };
+      g[0] = scale.x * blend(1), g[1] = scale.y * blend(up), g[2] = scale.z * blend(back);
+      const double square = g[0] * g[0] + g[1] * g[1] + g[2] * g[2];
+      if (!(square > 0 && square < HUGE_VAL)) [[unlikely]]
+        return false;
+      const double size = -1 / std::sqrt(square);
+      for (int c = 0; c < 3; ++c) job.normals[3 * v + size_t(c)] = float(g[c] * size);
+    }
+    if (job.points) job.points[v] = {uint32_t(p), uint32_t(ptrdiff_t(p) + next), float(t)};
+    job.xyz[3 * v] = float(first.x + step.x * (double(i) + (axis == 0 ? t : 0.0)));
+    job.xyz[3 * v + 1] = float(first.y + step.y * (double(j) + (axis == 1 ? t : 0.0)));
+    job.xyz[3 * v + 2] = float(first.z + step.z * (double(k) + (axis == 2 ? t : 0.0)));
+    return true;
   }
 
   template <int axis>
@@ -59,7 +76,7 @@ struct Maker {
     const size_t p = frame.id(i, j, k), q = p + size_t(frame.stride[axis]);
     const double va = double(f[p]), vb = double(f[q]);
     const double t = crossing(job.value, va, vb);
-    job.points[v] = {uint32_t(p), uint32_t(q), float(t)};
+    if (job.points) job.points[v] = {uint32_t(p), uint32_t(q), float(t)};
     const size_t a[3] = {i, j, k}, b[3] = {i + (axis == 0), j + (axis == 1), k + (axis == 2)};
     Vec3 x;
     if (plain) {
@@ -70,24 +87,55 @@ struct Maker {
     }
     job.xyz[3 * v] = float(x.x), job.xyz[3 * v + 1] = float(x.y), job.xyz[3 * v + 2] = float(x.z);
     if (!job.normals) return;
-    Vec3 g;
-    bool done = false;
-    if (plain && is_inner(i, j, k)) {
-      g = inner_gradient(f + p) * (1 - t) + inner_gradient(f + q) * t;
-      done = std::isfinite(dot(g, g));
-    }
-    if (!done) g = gradient(p, a) * (1 - t) + gradient(q, b) * t;
+    set_normal(v, gradient(p, a) * (1 - t) + gradient(q, b) * t);
+  }
+
+  void set_normal(size_t v, Vec3 g) const {
     const double square = dot(g, g);
     const Vec3 n = square > 0 && std::isfinite(square) ? g * (-1 / std::sqrt(square)) : Vec3();
     job.normals[3 * v] = float(n.x), job.normals[3 * v + 1] = float(n.y), job.normals[3 * v + 2] = float(n.z);
   }
 
+  void inner_point(size_t v, const InnerPoint& point) const {
+    const size_t p = point.base, at[3] = {p % frame.dims[0], p / frame.dims[0] % frame.dims[1], p / frame.dims[0] / frame.dims[1]};
+    Vec3 x, g;
+    for (int c = 0; c < 8; ++c) {
+      double weight = 1;
+      size_t corner[3];
+      for (int a = 0; a < 3; ++a) {
+        const double t = double(point.at[a]);
+        weight *= c >> a & 1 ? t : 1 - t;
+        corner[a] = at[a] + size_t(c >> a & 1);
+      }
+      x += (frame.position(corner[0], corner[1], corner[2]) - job.origin) * weight;
+      if (job.normals) g += gradient(frame.id(corner[0], corner[1], corner[2]), corner) * weight;
+    }
+    job.xyz[3 * v] = float(x.x), job.xyz[3 * v + 1] = float(x.y), job.xyz[3 * v + 2] = float(x.z);
+    if (job.normals) set_normal(v, g);
+  }
+
+  // The bits of the cut edges along an axis, one word of a row.
+  template <int axis>
+  uint64_t cut(size_t r, size_t w) const {
+    if (job.cut) return job.cut[axis][r * job.words + w];
+    const uint64_t *row = job.inside + r * job.words, here = row[w];
+    if (axis == 1) return here ^ row[w + job.words];
+    if (axis == 2) return here ^ row[w + job.words * frame.dims[1]];
+    const uint64_t next = here >> 1 | (w + 1 < job.words ? row[w + 1] << 63 : 0);
+    const size_t left = frame.dims[0] - 1 - 64 * w;  // edges that exist in this word
+    return (here ^ next) & (left >= 64 ? ~uint64_t(0) : (uint64_t(1) << left) - 1);
+  }
+
   template <int axis>
   void edges_along(size_t v, size_t j, size_t k, size_t r) const {
     if (job.rows[r].cut[axis] == 0) return;
-    const uint64_t* cut = job.cut[axis].data() + r * job.words;
+    const bool inner = plain && j >= 1 && j + 2 < frame.dims[1] && k >= 1 && k + 2 < frame.dims[2];
     for (size_t w = 0; w < job.words; ++w)
-      for (uint64_t m = cut[w]; m; m &= m - 1) edge<axis>(v++, 64 * w + size_t(std::countr_zero(m)), j, k);
+      for (uint64_t m = cut<axis>(r, w); m; m &= m - 1) {
+        const size_t i = 64 * w + size_t(std::countr_zero(m));
+        if (!(inner && i >= 1 && i + 2 < frame.dims[0] && plain_edge<axis>(v, r * frame.dims[0] + i, i, j, k))) edge<axis>(v, i, j, k);
+        ++v;
+      }
   }
 
   void row(size_t j, size_t k) const {
@@ -109,6 +157,12 @@ void run(const VertexJob& job) {
         for (size_t r = begin; r < end; ++r) maker.row(r % ny, r / ny);
       },
       &job.context);
+  parallel_for(
+      job.inner.size(), 1024,
+      [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) maker.inner_point(job.inner_first + i, job.inner[i]);
+      },
+      &job.context);
 }
 
 }  // namespace
@@ -122,6 +176,37 @@ void make_vertices(const VertexJob& job) {
     case ElementType::f32: return run<float>(job);
     default: return run<double>(job);
   }
+}
+
+void interpolate_inner(const Array& a, const Piece& piece, std::byte* out) {
+  dispatch(a, [&](auto v) {
+    using T = std::remove_cvref_t<decltype(v[0])>;
+    T* to = reinterpret_cast<T*>(out);
+    const size_t n = size_t(v.components);
+    parallel_for(piece.inner.count, 4096, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) {
+        const InnerPoint& point = piece.inner.data[i];
+        for (size_t c = 0; c < n; ++c) {
+          double sum = 0;
+          for (int corner = 0; corner < 8; ++corner) {
+            double weight = 1;
+            ptrdiff_t p = ptrdiff_t(point.base);
+            for (int axis = 0; axis < 3; ++axis) {
+              const bool far = corner >> axis & 1;
+              weight *= far ? double(point.at[axis]) : 1 - double(point.at[axis]);
+              if (far) p += piece.stride[size_t(axis)];
+            }
+            if (piece.inner_corners.count) p = ptrdiff_t(piece.inner_corners.data[i][size_t(corner)]);
+            sum += weight * double(v(size_t(p), int(c)));
+          }
+          if constexpr (std::is_floating_point_v<T>) to[i * n + c] = T(sum);
+          else
+            to[i * n + c] =
+                T(std::nearbyint(std::clamp(sum, double(std::numeric_limits<T>::lowest()), double(std::numeric_limits<T>::max()))));
+        }
+      }
+    });
+  });
 }
 
 }  // namespace sg::contouring
