@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "filter/mesh/clip_pieces.h"
+#include "filter/mesh/corner_bits.h"
 #include "filter/mesh/id_set.h"
 #include "filter/mesh/surface_builder.h"
 
@@ -109,13 +110,13 @@ class ListClip {
     CellClipper clip = clipper();
     std::vector<int64_t> ids;
     std::vector<double> v;
+    std::vector<uint8_t> joined(end - begin);
+    any_of_corners(cells_, begin, end, sides_.data(), joined.data());
     for (size_t c = begin; c < end; ++c) {
       if (!states.empty() && states[c] != cell_visible) continue;
       const size_t first = cells_.begin(c), last = cells_.end(c);
-      uint8_t sides = first == last ? uint8_t(side_missing) : uint8_t(0);
-      for (size_t k = first; k < last; ++k) sides |= sides_[size_t(cells_.connectivity[k])];
-      const Fate fate = fate_of(sides, job_.keep.outside);
-      if (fate == Fate::none) continue;
+      const Fate fate = fate_of(joined[c - begin], job_.keep.outside);
+      if (fate == Fate::none || first == last) continue;
       if (fate == Fate::whole) {
         whole_[c >> 6] |= uint64_t(1) << (c & 63);
         ++chunk.whole, chunk.whole_ids += last - first;

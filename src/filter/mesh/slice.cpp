@@ -8,6 +8,7 @@
 #include "data/field_ops.h"
 #include "filter/mesh/append.h"
 #include "filter/mesh/clip_cases.h"
+#include "filter/mesh/corner_bits.h"
 #include "filter/mesh/cut_numbers.h"
 #include "filter/mesh/extract.h"
 #include "filter/mesh/slice_impl.h"
@@ -56,12 +57,6 @@ std::shared_ptr<Listed> listed(const Points& points, Cutter& cutter, Cut& cut) {
 
 constexpr size_t cells_per_chunk = 1 << 13;
 
-// Bits of all corners.
-uint8_t sides_of(const CellsView& v, size_t cell, const std::vector<uint8_t>& side) {
-  uint8_t r = 0;
-  for (size_t i = v.begin(cell), end = v.end(cell); i < end; ++i) r |= side[size_t(v.connectivity[i])];
-  return r;
-}
 bool straddles(uint8_t sides) { return (sides & 11) == 3; }
 
 // A tetrahedron, pyramid, wedge or hexahedron that a plane crosses away from its corners: loops from a table. False when faces need a
@@ -103,11 +98,11 @@ Cut cut_unstructured(const UnstructuredMesh& m, const std::vector<uint8_t>& stat
         PlaneCutter cutter(cut.field, cut.chunks[begin / cells_per_chunk]);
         CellFaceReader reader(m);
         std::vector<int64_t> ids;
-        std::vector<uint32_t> ring;
+        std::vector<uint8_t> joined(end - begin);
+        any_of_corners(v, begin, end, points->side.data(), joined.data());
         for (size_t c = begin; c < end; ++c) {
-          if (!states.empty() && states[c] != cell_visible) continue;
-          const uint8_t sides = sides_of(v, c, points->side);
-          if (!straddles(sides)) continue;
+          const uint8_t sides = joined[c - begin];
+          if (!straddles(sides) || (!states.empty() && states[c] != cell_visible)) continue;
           const CellType type = m.type(c), shape = linear_type(type);
           if (!with.function && !(sides & 4)) {
             if (const clipping::ClipTable* table = clipping::clip_table(type)) {
@@ -154,9 +149,11 @@ Cut cut_surface(const SurfaceMesh& m, const std::vector<uint8_t>& states, Cutter
           [&](size_t begin, size_t end) {
             PlaneCutter cutter(cut.field, cut.chunks[chunk0 + begin / cells_per_chunk]);
             std::vector<int64_t> ids;
+            std::vector<uint8_t> joined(end - begin);
+            any_of_corners(v, begin, end, points->side.data(), joined.data());
             for (size_t c = begin; c < end; ++c) {
               const auto id = int64_t(first + c);
-              if ((!states.empty() && states[size_t(id)] != cell_visible) || !straddles(sides_of(v, c, points->side))) continue;
+              if ((!states.empty() && states[size_t(id)] != cell_visible) || !straddles(joined[c - begin])) continue;
               ids.clear();
               for (size_t i = v.begin(c); i < v.end(c); ++i) ids.push_back(v.connectivity[i]);
               if (part == 1) cutter.cut_curve(ids, id);

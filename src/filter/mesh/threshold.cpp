@@ -6,6 +6,7 @@
 #include "base/text.h"
 #include "data/field_ops.h"
 #include "data/lattice.h"
+#include "filter/mesh/corner_bits.h"
 #include "filter/mesh/extract.h"
 #include "filter/mesh/lattice_cells.h"
 #include "filter/mesh/surface_builder.h"
@@ -74,10 +75,7 @@ bool passes(bool all, const std::vector<uint8_t>& ok, ForEachPoint for_each) {
 
 void cells_of_lists(const CellsView& v, size_t first, bool all, const std::vector<uint8_t>& ok, std::vector<uint8_t>& keep) {
   parallel_for(v.count, grain, [&](size_t begin, size_t end) {
-    for (size_t c = begin; c < end; ++c)
-      keep[first + c] = passes(all, ok, [&](auto&& f) {
-        for (size_t i = v.begin(c); i < v.end(c); ++i) f(size_t(v.connectivity[i]));
-      });
+    (all ? all_of_corners : any_of_corners)(v, begin, end, ok.data(), keep.data() + first + begin);
   });
 }
 
