@@ -194,7 +194,7 @@ std::vector<Piece> LatticeContour::run(std::span<const double> values) {
 void LatticeContour::find_cuts(Cuts& cuts, const ActiveWords* where) const {
   const size_t ny = frame_.dims[1], nz = frame_.dims[2], rows = ny * nz;
   if (!skip_.empty())
-    for (int a = 0; a < frame_.axes; ++a) cuts.cut[a].resize(rows * words_);
+    for (int a = 0; a < frame_.axes; ++a) cuts.cut[a].assign(rows * words_, 0);  // an index leaves rows out
   cuts.rows.resize(rows);
   parallel_for(
       rows, std::max<size_t>(1, 512 / words_),
