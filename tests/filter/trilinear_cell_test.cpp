@@ -209,6 +209,46 @@ TEST_CASE("trilinear cell: 0 of all cells of -1, 0 and 1 and of 10000 of -3 to 3
   CHECK(tunnels > 100);
 }
 
+TEST_CASE("trilinear cell: triangles of a cell never cross, and the counts without places are the same") {
+  auto side = [](Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+    const double v = dot(cross(b - a, c - a), d - a);
+    return v > 1e-9 ? 1 : v < -1e-9 ? -1 : 0;
+  };
+  auto pierces = [&](Vec3 p, Vec3 q, Vec3 a, Vec3 b, Vec3 c) {
+    if (side(a, b, c, p) * side(a, b, c, q) >= 0) return false;
+    const int s = side(p, q, a, b);
+    return s != 0 && s == side(p, q, b, c) && s == side(p, q, c, a);
+  };
+  CHECK(pierces({.2, .2, -1}, {.2, .2, 1}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}));
+  int crossing = 0, tubes = 0;
+  TrilinearCell cell, counts;
+  for (uint64_t i = 0; i < 3000; ++i) {
+    const Values f = random_cell(15, i, false, i % 3 != 0);
+    cut_trilinear(f.data(), cell);
+    cut_trilinear(f.data(), counts, false);
+    CHECK(counts.triangle_count == cell.triangle_count);
+    CHECK(counts.inner_count == cell.inner_count);
+    tubes += cell.tube;
+    Vec3 at[20];
+    for (size_t e = 0; e < 12; ++e) {
+      const auto [a, b] = lattice_cases().shape().edges[e];
+      at[e] = Vec3(a & 1, a >> 1 & 1, a >> 2);
+      at[e][int(e) / 4] = f[a] / (f[a] - f[b]);
+    }
+    for (size_t k = 0; k < size_t(cell.inner_count); ++k) at[12 + k] = Vec3(cell.inner[k][0], cell.inner[k][1], cell.inner[k][2]);
+    for (size_t t = 0; t < size_t(cell.triangle_count); ++t)
+      for (size_t k = 0; k < 3; ++k)
+        for (size_t o = 0; o < size_t(cell.triangle_count); ++o) {
+          const auto &one = cell.triangles[t], &two = cell.triangles[o];
+          const uint8_t p = one[k], q = one[(k + 1) % 3];
+          if (std::any_of(two.begin(), two.end(), [&](uint8_t c) { return c == p || c == q; })) continue;
+          crossing += pierces(at[p], at[q], at[two[0]], at[two[1]], at[two[2]]);
+        }
+  }
+  CHECK(crossing == 0);
+  CHECK(tubes > 10);
+}
+
 TEST_CASE("trilinear cell: inner points lie on the surface, and values that are not finite do no harm") {
   TrilinearCell cell;
   int inner = 0;

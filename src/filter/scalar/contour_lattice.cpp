@@ -47,10 +47,10 @@ struct LatticeContour::Room {
 // A cell that the table alone cannot cut.
 struct LatticeContour::Slow {
   TrilinearCell cell;
-  Slow(size_t p, double value, const LatticeFrame& frame, const Sample& f) {
+  Slow(size_t p, double value, const LatticeFrame& frame, const Sample& f, bool places) {
     double v[8];
     for (int c = 0; c < 8; ++c) v[c] = f(size_t(ptrdiff_t(p) + corner_offset(c, frame))) - value;
-    cut_trilinear(v, cell);
+    cut_trilinear(v, cell, places);
   }
 };
 
@@ -194,7 +194,7 @@ std::vector<Piece> LatticeContour::run(std::span<const double> values) {
 void LatticeContour::find_cuts(Cuts& cuts, const ActiveWords* where) const {
   const size_t ny = frame_.dims[1], nz = frame_.dims[2], rows = ny * nz;
   if (!skip_.empty())
-    for (int a = 0; a < frame_.axes; ++a) cuts.cut[a].resize(rows * words_);
+    for (int a = 0; a < frame_.axes; ++a) cuts.cut[a].assign(rows * words_, 0);  // an index leaves rows out
   cuts.rows.resize(rows);
   parallel_for(
       rows, std::max<size_t>(1, 512 / words_),
@@ -260,7 +260,7 @@ void LatticeContour::count_row(Cuts& cuts, size_t j, size_t k) const {
         row.cell += count_[pattern];
         continue;
       }
-      const Slow slow(p, cuts.value, frame_, sample_);
+      const Slow slow(p, cuts.value, frame_, sample_, false);
       row.cell += size_t(slow.cell.triangle_count);
       row.inner += size_t(slow.cell.inner_count);
     }
@@ -358,7 +358,7 @@ void LatticeContour::triangles_of_row(const Cuts& cuts, size_t j, size_t k, uint
         };
         if (count_[pattern] == slow_pattern) [[unlikely]] {
           const size_t p = row[0] * nx + 64 * w + size_t(i);
-          const Slow slow(p, cuts.value, frame_, sample_);
+          const Slow slow(p, cuts.value, frame_, sample_, true);
           const TrilinearCell& cut_cell = slow.cell;
           for (int n = 0; n < cut_cell.inner_count; ++n) {
             const auto& u = cut_cell.inner[size_t(n)];

@@ -66,12 +66,11 @@ double value_at(const double f[8], Vec3 p) {
 }
 
 Vec3 gradient_at(const double f[8], Vec3 p) {
+  auto mix = [](double a, double b, double t) { return a + (b - a) * t; };
   Vec3 g;
-  for (int a = 0; a < 3; ++a) {
-    Vec3 lo = p, hi = p;
-    lo[a] = 0, hi[a] = 1;
-    g[a] = value_at(f, hi) - value_at(f, lo);
-  }
+  g.x = mix(mix(f[1] - f[0], f[3] - f[2], p.y), mix(f[5] - f[4], f[7] - f[6], p.y), p.z);
+  g.y = mix(mix(f[2] - f[0], f[3] - f[1], p.x), mix(f[6] - f[4], f[7] - f[5], p.x), p.z);
+  g.z = mix(mix(f[4] - f[0], f[5] - f[1], p.x), mix(f[6] - f[2], f[7] - f[3], p.x), p.y);
   return g;
 }
 
@@ -82,7 +81,9 @@ struct Cutter {
   TrilinearCell& out;
   std::array<Vec3, 20> place{};  // of all names
 
-  Cutter(const double values[8], TrilinearCell& result) : f(values), out(result) {
+  const bool places;
+
+  Cutter(const double values[8], TrilinearCell& result, bool with_places) : f(values), out(result), places(with_places) {
     const CellShape& shape = lattice_cases().shape();
     for (uint32_t c = 0; c < 8; ++c) pattern |= uint32_t(f[c] >= 0) << c;
     for (uint32_t m = lattice_cases().ambiguous(pattern); m; m &= m - 1) {
@@ -131,6 +132,10 @@ void Cutter::fill(int l) {
 // The disc of a long loop: a fan round a point of the surface.
 void Cutter::fan(int l) {
   const int n = loops->size(l);
+  if (!places) {
+    out.triangle_count += n, ++out.inner_count;
+    return;
+  }
   Vec3 mean;
   for (int k = 0; k < n; ++k) mean = mean + place[loops->edge(l, k)] * (1.0 / n);
   Vec3 p = mean;
@@ -143,6 +148,7 @@ void Cutter::fan(int l) {
     for (int a = 0; a < 3; ++a) in = in && q[a] > 0.02 && q[a] < 0.98;
     if (!in) break;
     p = q;
+    if (v * v < 1e-18 * square) break;
   }
   const uint8_t center = add_inner(p);
   for (int k = 0; k < n; ++k) triangle(loops->edge(l, k), loops->edge(l, k + 1), center);
@@ -333,9 +339,13 @@ void Cutter::tube_or_discs() {
   Hexagon hexagon(*this);
   out.tube = loops->count > 1 && hexagon.find();
   if (out.tube) {
+    if (!places) {
+      for (int side = 0; side < 2; ++side) out.triangle_count += loops->size(hexagon.loop(side)) + 6;
+      out.inner_count = 6;
+    }
     std::array<uint8_t, 6> names;
-    for (int i = 0; i < 6; ++i) names[size_t(i)] = add_inner(hexagon.point(i));
-    for (int side = 0; side < 2; ++side) strip(*this, hexagon.loop(side), hexagon.ring(side), names);
+    for (int i = 0; i < 6 && places; ++i) names[size_t(i)] = add_inner(hexagon.point(i));
+    for (int side = 0; side < 2 && places; ++side) strip(*this, hexagon.loop(side), hexagon.ring(side), names);
   }
   for (int l = 0; l < loops->count; ++l) {
     if (out.tube && (l == hexagon.loop(0) || l == hexagon.loop(1))) continue;
@@ -346,10 +356,10 @@ void Cutter::tube_or_discs() {
 
 }  // namespace
 
-void cut_trilinear(const double f[8], TrilinearCell& out) {
+void cut_trilinear(const double f[8], TrilinearCell& out, bool places) {
   out.triangle_count = out.inner_count = 0;
   out.tube = false;
-  Cutter cutter(f, out);
+  Cutter cutter(f, out, places);
   if (needs_trilinear(cutter.pattern)) return cutter.tube_or_discs();
   for (int l = 0; l < cutter.loops->count; ++l) cutter.fill(l);
 }

@@ -32,7 +32,8 @@ struct TrilinearCell {
 /// `f`: corner values minus the isovalue; corner c lies at u,v,w = bits 0,1,2 of c (lattices and voxels; a hexahedron's corner k is
 /// c = hexahedron_corner[k]). Inside is >= 0. The triangles have the faces' arcs as border, each inner edge twice and no edge inside
 /// a face of the cell, so that cells put together make a manifold without doubled triangles.
-void cut_trilinear(const double f[8], TrilinearCell& out);
+/// Without `places` only the two counts and `tube` are right: faster, for a first pass.
+void cut_trilinear(const double f[8], TrilinearCell& out, bool places = true);
 inline constexpr std::array<uint8_t, 8> hexahedron_corner{0, 1, 3, 2, 4, 5, 7, 6};
 
 /// Can this pattern of corners (bit c: inside) have a surface other than the one that lattice_cases() lists? All patterns with an
