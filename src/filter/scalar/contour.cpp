@@ -329,7 +329,10 @@ DatasetPtr contour(const DatasetPtr& given, const ContourParams& params, Context
     none.xyz = Array::make<float>(0, 3, &p);
     pieces.assign(values.size(), none);
   } else {
-    for (double v : values) pieces.push_back(contour_cells(job, v));
+    CellRanges ranges;
+    const bool worth = values.size() > 2 && input->as<UnstructuredMesh>();
+    if (worth) ranges = cell_ranges(job);
+    for (double v : values) pieces.push_back(contour_cells(job, v, worth ? &ranges : nullptr));
   }
   for (size_t i = 0; i < pieces.size(); ++i) {
     if (pieces[i].lines.count() + pieces[i].triangles.count() > 0) continue;

@@ -40,8 +40,9 @@ constexpr auto is_cut = [](uint32_t any, uint32_t every) { return uint32_t(any =
 // Looks at all cells a chunk at a time: cut(cell, found) for those that the surface crosses.
 template <class Cut>
 void find(const Finder& finder, const std::vector<uint8_t>& state, const CellsView& cells, size_t before, std::vector<EdgeChunk>& chunks,
-          Cut&& cut) {
-  const size_t grain = std::max<size_t>(1 << 13, cells.count / 1024 + 1), first = chunks.size();
+          const CellRanges* ranges, Cut&& cut) {
+  constexpr size_t block = CellRanges::block;
+  const size_t grain = std::max<size_t>(1 << 13, (cells.count / 1024 / block + 1) * block), first = chunks.size();
   if (cells.count == 0) return;
   chunks.resize(first + (cells.count + grain - 1) / grain);
   parallel_for(
@@ -51,7 +52,12 @@ void find(const Finder& finder, const std::vector<uint8_t>& state, const CellsVi
         thread_local Found found;
         active.resize(end - begin + 1);
         found.clear();
-        const size_t n = scan_cells(cells, begin, end, state.data(), active.data(), is_cut);
+        size_t n = 0;
+        if (!ranges) n = scan_cells(cells, begin, end, state.data(), active.data(), is_cut);
+        else
+          for (size_t b = begin / block; b * block < end; ++b)
+            if (double(ranges->of_block[b][0]) < finder.value && finder.value <= double(ranges->of_block[b][1]))
+              n += scan_cells(cells, b * block, std::min(end, (b + 1) * block), state.data(), active.data() + n, is_cut);
         for (size_t i = 0; i < n; ++i)
           if (!finder.skipped(before + active[i])) cut(size_t(active[i]), found);
         if (!found.lines.empty() || !found.triangles.empty()) chunks[first + begin / grain].take(found, state.size());
@@ -60,14 +66,15 @@ void find(const Finder& finder, const std::vector<uint8_t>& state, const CellsVi
 }
 
 [[noreturn]] void unsupported(const UnstructuredMesh& m, size_t cell) {
-  fail_usage(fmt::format("cell {} is a {}; only linear cells can be contoured", cell, cell_type_info(m.type(cell)).name), "contour",
-             "contours of curved cells are not there yet; slice and faces take them");
+  fail_usage(fmt::format("cell {} is a {}, which cannot be contoured", cell, cell_type_info(m.type(cell)).name), "contour",
+             "remove it first: -f threshold");
 }
 
-std::vector<EdgeChunk> find_cells(const Finder& finder, const std::vector<uint8_t>& state, const UnstructuredMesh& m) {
+std::vector<EdgeChunk> find_cells(const Finder& finder, const std::vector<uint8_t>& state, const UnstructuredMesh& m,
+                                  const CellRanges* ranges) {
   const CellsView cells = cells_view(m.cells);
   std::vector<EdgeChunk> chunks;
-  find(finder, state, cells, 0, chunks, [&](size_t c, Found& out) {
+  find(finder, state, cells, 0, chunks, ranges, [&](size_t c, Found& out) {
     const CellType type = m.type(c);
     if (type == CellType::tetra) return finder.tetra(cells, c, out);
     if (cell_cases(type)) return finder.solid(type, cells, c, out);
@@ -101,7 +108,7 @@ std::vector<EdgeChunk> find_cells(const Finder& finder, const std::vector<uint8_
   size_t before = m.vertices.size() + m.lines.size();
   for (const CellArray* list : {&m.polygons, &m.strips}) {
     const CellsView cells = cells_view(*list);
-    find(finder, state, cells, before, chunks, [&](size_t c, Found& out) {
+    find(finder, state, cells, before, chunks, nullptr, [&](size_t c, Found& out) {
       const size_t n = cells.size(c);
       std::vector<int64_t> p(n);
       for (size_t k = 0; k < n; ++k) p[k] = cells.point(c, k);
@@ -159,12 +166,37 @@ void inner_points(const Finder& finder, const std::vector<EdgeChunk>& chunks, si
 
 }  // namespace
 
-Piece contour_cells(const Job& job, double value) {
+CellRanges cell_ranges(const Job& job) {
+  const CellsView cells = cells_view(job.input.as<UnstructuredMesh>()->cells);
+  constexpr size_t block = CellRanges::block;
+  CellRanges r;
+  r.of_block.resize((cells.count + block - 1) / block);
+  parallel_for(
+      r.of_block.size(), 128,
+      [&](size_t begin, size_t end) {
+        dispatch(job.samples, [&](auto f) {
+          for (size_t b = begin; b < end; ++b) {
+            double lo = HUGE_VAL, hi = -HUGE_VAL;
+            for (size_t k = cells.begin(b * block), e = cells.end(std::min(cells.count, (b + 1) * block) - 1); k < e; ++k) {
+              const auto x = double(f.data[cells.connectivity[k]]);
+              lo = x < lo ? x : lo, hi = x > hi ? x : hi;
+            }
+            // Rounding to single precision may move a bound inwards.
+            auto outwards = [](double x, float to) { return double(float(x)) == x ? float(x) : std::nextafter(float(x), to); };
+            r.of_block[b] = {outwards(lo, -HUGE_VALF), outwards(hi, HUGE_VALF)};
+          }
+        });
+      },
+      &job.context);
+  return r;
+}
+
+Piece contour_cells(const Job& job, double value, const CellRanges* ranges) {
   const auto* mesh = job.input.as<UnstructuredMesh>();
   const Points& points = mesh ? mesh->points : job.input.as<SurfaceMesh>()->points;
   const Finder finder{job, Positions(points), value};
   std::vector<uint8_t> state = classify_points(finder, points.count());
-  std::vector<EdgeChunk> chunks = mesh ? find_cells(finder, state, *mesh) : find_cells(finder, state, *job.input.as<SurfaceMesh>());
+  std::vector<EdgeChunk> chunks = mesh ? find_cells(finder, state, *mesh, ranges) : find_cells(finder, state, *job.input.as<SurfaceMesh>());
   std::vector<uint8_t>().swap(state);
   const EdgePoints edges(chunks, job.context);
   size_t inner = 0;

@@ -33,7 +33,7 @@ class Gradients {
   Array run(std::span<const EdgePoint> edges, std::span<const InnerPoint> inner, Corners corners) {
     number_points(edges, corners);
     sums_.assign(size_t(count_), Sum{});
-    constexpr size_t wave = 32;  // runs at once: bounds the memory of their sums
+    constexpr size_t wave = 32;                                              // runs at once: bounds the memory of their sums
     const size_t grain = std::max<size_t>(1 << 14, cells_.count / 256 + 1);  // read twice: stays in the cache
     for (size_t first = 0; first < cells_.count; first += wave * grain) {
       const size_t end = std::min(cells_.count, first + wave * grain);

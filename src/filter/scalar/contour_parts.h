@@ -146,7 +146,14 @@ void make_vertices(const VertexJob& job);
 void interpolate_inner(const Array& a, const Piece& piece, std::byte* out);
 
 /// Unstructured and surface meshes.
-Piece contour_cells(const Job& job, double value);
+/// Smallest and largest sample of every `block` cells in a row, widened to f32: what a value cannot cross need not be looked at.
+struct CellRanges {
+  static constexpr size_t block = 64;
+  std::vector<std::array<float, 2>> of_block;
+};
+/// Of an unstructured mesh; one pass over its cells, which three values pay for.
+CellRanges cell_ranges(const Job& job);
+Piece contour_cells(const Job& job, double value, const CellRanges* ranges = nullptr);
 
 /// Sets bit i of row r of bits[v] for samples >= values[v]. Returns true when a sample was NaN.
 bool classify(const Array& samples, size_t nx, size_t rows, std::span<const double> values, std::span<uint64_t* const> bits, size_t words,
