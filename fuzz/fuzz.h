@@ -39,6 +39,18 @@ inline ReadOptions options_of(const Format& f, std::string_view bytes) {
   return options;
 }
 
+/// One of the rarer ways of reading, chosen by `which`: the header alone, a region, a step with few fields, a piece.
+inline ReadOptions rarer_options_of(const Format& f, std::string_view bytes, size_t which) {
+  ReadOptions options = options_of(f, bytes);
+  switch (which % 4) {
+    case 0: options.header_only = true; break;
+    case 1: options.region.lo = {1, 0, 0}, options.region.hi = {2, 5, SIZE_MAX}, options.region.stride = {1, 2, 1}; break;
+    case 2: options.step = 1, options.fields = {"T"}; break;
+    default: options.piece = 1, options.pieces = 3, options.ghost_levels = 1;
+  }
+  return options;
+}
+
 /// Touches every number, so that a sanitizer sees an array that is longer than its bytes.
 inline void look_at(const Data& data) {
   for_each_dataset(data, [](const std::string&, const DatasetPtr& d) {

@@ -60,14 +60,6 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t size) {
   dirty = input.starts_with("@@ ");
   const std::string path = sg::fuzz::put_seed(folder, sg::fuzz::file_name(*wanted), input);
   read(path, sg::fuzz::options_of(*wanted, input));
-  // The rarer ways of reading, one of them for each input.
-  sg::ReadOptions other = sg::fuzz::options_of(*wanted, input);
-  switch (size % 4) {
-    case 0: other.header_only = true; break;
-    case 1: other.region.lo = {1, 0, 0}, other.region.hi = {2, 5, SIZE_MAX}, other.region.stride = {1, 2, 1}; break;
-    case 2: other.step = 1, other.fields = {"T"}; break;
-    default: other.piece = 1, other.pieces = 3, other.ghost_levels = 1;
-  }
-  read(path, other);
+  read(path, sg::fuzz::rarer_options_of(*wanted, input, size));
   return 0;
 }

@@ -11,7 +11,10 @@ namespace sg {
 
 /// 64-byte aligned memory; from 4 MB on, on huge pages (a hint to the system). Throws std::bad_alloc.
 void* allocate_large(size_t bytes);
-void free_large(void* p) noexcept;
+/// `bytes` as asked for. Blocks of a megabyte and more may stay with the program for the next one of about that size.
+void free_large(void* p, size_t bytes) noexcept;
+/// How much may stay so; the default is 256 MB. Never more than half of what was in use at once.
+void keep_freed_blocks(size_t bytes);
 
 template <class T>
 struct HugeAllocator {
@@ -23,7 +26,7 @@ struct HugeAllocator {
     if (n > size_t(-1) / 2 / sizeof(T)) throw std::bad_alloc();
     return static_cast<T*>(allocate_large(n * sizeof(T)));
   }
-  void deallocate(T* p, size_t) noexcept { free_large(p); }
+  void deallocate(T* p, size_t n) noexcept { free_large(p, n * sizeof(T)); }
   /// v.resize(n) leaves new elements as they are; v.assign(n, value) writes them.
   template <class U>
   void construct(U* p) noexcept {

@@ -214,6 +214,8 @@ Options parse_options(int argc, char** argv) {
     a.add_option("--encoding", o.write.encoding, "VTK XML")->check(CLI::IsMember({"ascii", "base64", "appended"}));
     a.add_option("--compression", o.write.compression, "VTK XML, NRRD")->check(CLI::IsMember({"none", "zlib", "lz4", "lzma", "gzip"}));
     a.add_flag("!--ascii", o.write.binary, "STL and PLY as text");
+    a.add_option("--pieces", o.write.pieces, ".pvti .pvtr .pvts .pvtu .pvtp .vtm: cut each mesh into so many files")
+        ->check(CLI::Range(1, 100000));
     add_reading(a, o, raw), add_pipeline(a, o);
   } else if (first == "run") {
     a.description("Runs a pipeline file.");

@@ -11,6 +11,7 @@
 #include "base/text.h"
 #include "cli/cli.h"
 #include "cli/info.h"
+#include "filter/mesh/piece.h"
 #include "image/codec.h"
 #include "pipeline/picture.h"
 #include "pipeline/read_params.h"
@@ -204,7 +205,7 @@ int run_convert(const Options& o, Context& context) {
   const PipelineGraph built = build_graph(file);
   check_memory(built, o);
   const Data data = built.graph.evaluate(built.last, {}, context);
-  write_data(o.output, data, o.write, context);
+  write_data(o.output, in_pieces(data, o.write.pieces, context), o.write, context);
   if (!o.quiet)
     for_each_dataset(data, [&](const std::string& part, const DatasetPtr& d) {
       std::printf("%s: %s%s\n", o.output.c_str(), part.empty() ? "" : (part + ": ").c_str(), summary(*d).c_str());

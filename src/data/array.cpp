@@ -60,7 +60,7 @@ Buffer Buffer::allocate(size_t bytes, std::byte** writable) {
   }
   Buffer b;
   b.owner = std::shared_ptr<const void>(p, [bytes](const void* q) {
-    free_large(const_cast<void*>(q));
+    free_large(const_cast<void*>(q), bytes);
     detail::return_memory(bytes);
   });
   b.data = static_cast<const std::byte*>(p);

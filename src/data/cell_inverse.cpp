@@ -237,7 +237,7 @@ Vec3 descend(const CellGeometry& g, Vec3 x, Vec3 rst, Move step_of) {
     if (!better) break;
     const Vec3 moved = next - rst;
     rst = next;
-    if (dot(moved, moved) < 1e-28) break;
+    if (dot(moved, moved) < 1e-23) break;
   }
   return rst;
 }
@@ -289,6 +289,24 @@ bool on_cell(const CellGeometry& g, Vec3 x, Vec3& rst) {
   return false;
 }
 
+// The nearest place of a parallelogram p + r u + s v, 0 <= r, s <= 1.
+Vec3 nearest_on_parallelogram(Vec3 p, Vec3 u, Vec3 v, Vec3 x) {
+  const Vec3 column[3] = {u, v, {0, 0, 0}};
+  const Vec3 inside = in_plane(column, x - p);
+  if (inside.x >= 0 && inside.x <= 1 && inside.y >= 0 && inside.y <= 1) return inside;
+  double best = HUGE_VAL, t;
+  Vec3 rst;
+  auto side = [&](Vec3 a, Vec3 b, auto at) {
+    const Vec3 d = nearest_on_segment(a, b, x, t) - x;
+    if (dot(d, d) < best) best = dot(d, d), rst = at(t);
+  };
+  side(p, p + u, [](double r) { return Vec3(r, 0, 0); });
+  side(p + v, p + v + u, [](double r) { return Vec3(r, 1, 0); });
+  side(p, p + v, [](double s) { return Vec3(0, s, 0); });
+  side(p + u, p + u + v, [](double s) { return Vec3(1, s, 0); });
+  return rst;
+}
+
 }  // namespace
 
 Vec3 nearest_reference(const CellGeometry& g, Vec3 x) {
@@ -303,6 +321,13 @@ Vec3 nearest_reference(const CellGeometry& g, Vec3 x) {
     Vec3 l;
     nearest_on_triangle(g.at[0], g.at[1], g.at[2], x, l);
     return {l.y, l.z, 0};
+  }
+  const bool straight = g.at.size() == 4 && linear_topology(g.shape->type()) && g.shape->dimension() == 2;  // of four corners
+  if (straight) {
+    const Vec3 p = g.at[0], u = g.at[1] - p, v = g.at[g.shape->type() == CellType::pixel ? 2 : 3] - p;
+    const Vec3 off = g.at[g.shape->type() == CellType::pixel ? 3 : 2] - (p + u + v);
+    if (dot(off, off) <= 1e-28 * (dot(u, u) + dot(v, v)) && length(cross(u, v)) > 1e-7 * length(u) * length(v))
+      return nearest_on_parallelogram(p, u, v, x);
   }
   if (Vec3 rst; on_cell(g, x, rst)) return rst;
   const int order = std::max({g.shape->orders()[0], g.shape->orders()[1], 1});
@@ -330,9 +355,12 @@ Vec3 nearest_reference(const CellGeometry& g, Vec3 x) {
   if (g.shape->outside(rst) < -1e-12) return rst;
   // It ended on the rim, where steps across are cut off: the rim's own curves decide.
   double have = distance2(g, rst, x);
-  const LinearTopology& t = *linear_topology(base);
+  const LinearTopology& t = *linear_topology(straight ? g.shape->type() : base);
   for (const auto& e : t.edges) {
-    const Vec3 q = nearest_on_curve(g, x, g.shape->node(e[0]), g.shape->node(e[1]), pieces);
+    const Vec3 from = g.shape->node(e[0]), to = g.shape->node(e[1]);
+    double share = 0;
+    if (straight) nearest_on_segment(g.at[e[0]], g.at[e[1]], x, share);
+    const Vec3 q = straight ? lerp(from, to, share) : nearest_on_curve(g, x, from, to, pieces);
     if (const double d2 = distance2(g, q, x); d2 < have) have = d2, rst = q;
   }
   return descend(g, x, rst, [&](Vec3, const Vec3* column, Vec3 miss) { return in_plane(column, miss); });

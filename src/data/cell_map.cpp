@@ -193,7 +193,23 @@ void CellMap::nearest_of_faces(Vec3 x, CellPlace& place) {
   std::vector<Vec3> corner, dn;
   std::vector<double> w, n;
   double best = HUGE_VAL;
+  // A face lies in the box of its nodes; a curved one bulges beyond it by less than a quarter, as CellReader::box has it. The faces with
+  // the nearest boxes come first, most others need no look.
+  std::vector<std::pair<double, size_t>> order;
   for (size_t f = 0; f < faces.size(); ++f) {
+    Box3 box;
+    for (uint32_t k : faces.face(f)) box.add(at[k]);
+    const double bulge = is_high_order(faces.type[f]) ? 0.25 * box.diagonal() : 0;
+    double apart2 = 0;
+    for (int a = 0; a < 3; ++a) {
+      const double d = std::max({box.lo[a] - bulge - x[a], x[a] - box.hi[a] - bulge, 0.0});
+      apart2 += d * d;
+    }
+    order.emplace_back(apart2, f);
+  }
+  std::sort(order.begin(), order.end());
+  for (const auto& [apart2, f] : order) {
+    if (apart2 > best) break;
     corner.clear(), w.clear();
     for (uint32_t k : faces.face(f)) {
       corner.push_back(at[k]);

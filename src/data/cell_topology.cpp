@@ -269,8 +269,9 @@ const CellFaces& cell_faces(CellType type, size_t nodes, std::array<int, 3> orde
 }
 
 std::array<int, 3> cell_orders(const UnstructuredMesh& mesh, size_t cell) {
+  if (mesh.degrees.empty()) return {0, 0, 0};
   const CellType type = mesh.type(cell), form = linear_type(type);
-  if (mesh.degrees.empty() || type < CellType::lagrange_curve) return {0, 0, 0};
+  if (type < CellType::lagrange_curve) return {0, 0, 0};
   if (form != CellType::quad && form != CellType::hexahedron && form != CellType::wedge) return {0, 0, 0};
   const auto v = mesh.degrees.view<uint8_t>();
   return {v(cell, 0), v(cell, 1), v(cell, 2)};

@@ -3,11 +3,15 @@
 
 #include "base/error.h"
 #include "data/lattice.h"
+#include "data/memo.h"
 
 namespace sg {
 
 Dataset::Dataset(DatasetParts parts)
-    : parts_(std::move(parts)), points_(sg::point_count(parts_.mesh)), cells_(sg::cell_count(parts_.mesh)) {}
+    : parts_(std::move(parts)),
+      points_(sg::point_count(parts_.mesh)),
+      cells_(sg::cell_count(parts_.mesh)),
+      memo_(std::make_shared<Memo>()) {}
 
 DatasetPtr make_dataset(DatasetParts parts) {
   validate(parts.mesh);

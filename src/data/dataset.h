@@ -16,6 +16,7 @@
 namespace sg {
 
 class Dataset;
+class Memo;
 using DatasetPtr = std::shared_ptr<const Dataset>;
 
 /// Bits of ghost arrays, as in VTK files.
@@ -52,6 +53,8 @@ class Dataset {
   const Box3& bounds() const;
   /// Range of the finite, not hidden values; computed once per field, on first use.
   const FieldStats& stats(const Field& field) const;
+  /// Indexes and the like that were made from this dataset and live as long as it does.
+  Memo& memo() const { return *memo_; }
   /// Range of one component, or of the magnitude when component is -1 and there are several.
   Range range(const Field& field, int component = -1) const;
 
@@ -63,6 +66,7 @@ class Dataset {
   mutable std::mutex mutex_;
   mutable std::optional<Box3> bounds_;
   mutable std::vector<std::pair<const std::byte*, std::unique_ptr<FieldStats>>> stats_;
+  std::shared_ptr<Memo> memo_;
 };
 
 /// Validates (mesh, field lengths) and freezes. Throws Error(data).

@@ -4,6 +4,7 @@
 #include <atomic>
 
 #include "base/error.h"
+#include "base/huge_allocator.h"
 #include "base/text.h"
 
 namespace sg {
@@ -12,7 +13,10 @@ namespace {
 std::atomic<size_t> limit{0}, in_use{0};
 }  // namespace
 
-void set_memory_limit(size_t bytes) { limit = bytes; }
+void set_memory_limit(size_t bytes) {
+  limit = bytes;
+  if (bytes) keep_freed_blocks(0);  // what is kept for later counts for the system
+}
 size_t array_memory() { return in_use; }
 
 void detail::claim_memory(size_t bytes) {

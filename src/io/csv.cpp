@@ -136,7 +136,8 @@ std::string cell_text(const Table& t, size_t column, size_t row, int component) 
   if (std::isnan(v)) return "";
   if (a.type() == ElementType::i64) return std::to_string(a.view<int64_t>()(row, component));
   if (a.type() == ElementType::u64) return std::to_string(a.view<uint64_t>()(row, component));
-  return a.type() == ElementType::f32 ? fmt::format("{}", float(v)) : exact_number(v);
+  // The fewest digits that make this f32: read as f64 and written again, they are the same text.
+  return exact_number(a.type() == ElementType::f32 && std::isfinite(v) ? parse_double(fmt::format("{}", float(v))).value_or(v) : v);
 }
 
 // A table as it is; of a mesh, its points with their fields.

@@ -145,6 +145,8 @@ void write_data(const std::string& path, const Data& data, const WriteOptions& o
   if (const Format* p = known) {
     const Format& f = *p;
     if (!f.write) fail_usage(fmt::format("{} files are read but not written", f.name), path, "can write: " + known_extensions(true));
+    if (options.pieces > 1 && f.write != write_vtk_parallel && f.write != write_vtk_multiblock)
+      fail_usage(fmt::format("{} files do not hold pieces", f.name), path, "write .pvti .pvtr .pvts .pvtu .pvtp or .vtm");
     return with_context(fmt::format("writing '{}'", path), [&] { f.write(path, data, options, context); });
   }
   fail_usage(fmt::format("unknown extension '{}'", ext), path, "can write: " + known_extensions(true));

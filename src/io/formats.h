@@ -105,7 +105,8 @@ Data read_openfoam(const std::string& path, const ReadOptions& options, Context&
 std::vector<double> times_openfoam(const std::string& path, const ReadOptions& options, Context& context);
 bool sniff_vtk_parallel(std::span<const std::byte> head);
 Data read_vtk_parallel(const std::string& path, const ReadOptions& options, Context& context);
-/// *.pvtu and *.pvtp: the datasets of a collection are the pieces of one mesh.
+/// *.pvti *.pvtr *.pvts *.pvtu *.pvtp: the datasets of a collection are the pieces of one mesh (or a mesh is the only piece). Pieces go
+/// into a folder of the file's name without its extension. Throws Error(usage) for grids that are not boxes of one grid.
 void write_vtk_parallel(const std::string& path, const Data& data, const WriteOptions& options, Context& context);
 bool sniff_vtk_multiblock(std::span<const std::byte> head);
 Data read_vtk_multiblock(const std::string& path, const ReadOptions& options, Context& context);

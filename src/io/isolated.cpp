@@ -145,10 +145,10 @@ void limit_memory(size_t memory) {
 }
 
 // What the child does; never returns to the caller's code.
-[[noreturn]] void work(int fd, const std::function<Data(Context&)>& read, size_t memory, size_t memory_limit) {
+[[noreturn]] void work(int fd, const std::function<Data(Context&)>& read, size_t file_bytes, size_t memory, size_t memory_limit) {
   for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL}) ::signal(signal, SIG_DFL);
   limit_memory(memory);
-  const rlim_t seconds = 4 + (rlim_t(memory) >> 27);  // a damaged file can send a library round and round
+  const rlim_t seconds = 2 + (rlim_t(memory) >> 29) + (rlim_t(file_bytes) >> 22);  // a damaged file can send a library round and round
   const struct rlimit limit { seconds, seconds };
   ::setrlimit(RLIMIT_CPU, &limit);
   if (const int nowhere = ::open("/dev/null", O_WRONLY); nowhere >= 0) ::dup2(nowhere, 1), ::dup2(nowhere, 2);
@@ -203,12 +203,14 @@ void limit_memory(size_t memory) {
 }  // namespace
 
 Data read_isolated(const std::string& path, const std::function<Data(Context&)>& read, size_t memory, Context& context) {
+  struct stat file {};
+  const size_t file_bytes = ::stat(path.c_str(), &file) == 0 ? size_t(file.st_size) : 0;
   const int fd = ::memfd_create("sightglass", MFD_CLOEXEC);
   if (fd < 0) fail_data("no memory can be shared with a process that reads it", path);
   const std::shared_ptr<const void> closer(nullptr, [fd](const void*) { ::close(fd); });
   const pid_t child = ::fork();
   if (child < 0) fail_data("no process for reading can be started", path);
-  if (child == 0) work(fd, read, memory, context.memory_limit);
+  if (child == 0) work(fd, read, file_bytes, memory, context.memory_limit);
   for (int status = 0;;) {
     const pid_t r = ::waitpid(child, &status, WNOHANG);
     if (r != 0 && !(r < 0 && errno == EINTR)) break;
@@ -263,6 +265,7 @@ void try_in_child(const std::string& path, std::string_view library, const std::
   if (child < 0) fail_data(fmt::format("no process can be started to try it in: {}", std::strerror(errno)), path);
   if (child == 0) {
     set_thread_count(1);
+    for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGALRM, SIGXCPU}) ::signal(signal, SIG_DFL);
     const struct rlimit limit { seconds, seconds }, no_core{0, 0};
     ::setrlimit(RLIMIT_CPU, &limit);
     ::setrlimit(RLIMIT_CORE, &no_core);

@@ -10,7 +10,8 @@ namespace sg {
 
 /// Calls read() in a child process and brings its result here: uniform grids and point clouds with fields and notes, alone or as parts
 /// of one collection. Errors and log lines of the child come along; a child that dies gives Error(data) naming `path`. The child has one
-/// thread: TBB, and so parallel loops of more than one chunk, must not be used in it. It may use `memory` bytes more than this process.
+/// thread: TBB, and so parallel loops of more than one chunk, must not be used in it. It may use `memory` bytes more than this process,
+/// and its processor for 2 s, a second for each 512 MiB of them and one for each 4 MiB of the file.
 Data read_isolated(const std::string& path, const std::function<Data(Context&)>& read, size_t memory, Context& context);
 
 /// Calls read() in a child process with one thread, and forgets what it gives or throws. Throws Error(data) naming `path` when the child

@@ -29,6 +29,13 @@ LatticePart cut_grid(UniformGrid& grid, const LatticeRegion& region) {
   return part;
 }
 
+UniformGrid with_long_axes(const UniformGrid& grid) {
+  UniformGrid g = grid;
+  for (int a = 0; a < 3; ++a)
+    if (g.spacing[a] == 0) g.spacing[a] = 1;
+  return g;
+}
+
 void copy_part(const std::byte* block, size_t tuple, const LatticePart& p, std::byte* out) {
   const size_t row_bytes = p.count[0] * tuple;
   parallel_for(p.count[1] * p.count[2], std::max<size_t>(1, (size_t(1) << 18) / std::max<size_t>(row_bytes, 1)),

@@ -21,6 +21,9 @@ struct LatticePart {
 /// Cuts `grid` to the region and says which points of the file remain. Throws Error(usage) for a region that is empty.
 LatticePart cut_grid(UniformGrid& grid, const LatticeRegion& region);
 
+/// For formats that need a length along every axis: one without gets 1. (Datasets have such axes only where there is a single layer.)
+UniformGrid with_long_axes(const UniformGrid& grid);
+
 /// The wanted points of a block of packed tuples of `tuple` bytes, x fastest; touches their rows only. Parallel.
 void copy_part(const std::byte* block, size_t tuple, const LatticePart& part, std::byte* out);
 

@@ -9,6 +9,7 @@
 #include "data/lattice_crop.h"
 #include "io/formats.h"
 #include "io/inflate.h"
+#include "io/lattice_part.h"
 #include "io/nrrd_header.h"
 #include "io/text_scan.h"
 
@@ -260,12 +261,13 @@ void write_nrrd(const std::string& path, const Data& data, const WriteOptions& o
   if (options.compression != "none" && options.compression != "gzip")
     fail_usage(fmt::format("NRRD cannot be compressed with '{}'", options.compression), path, "none or gzip");
   if (extension_of(path) == "nhdr") fail_usage("detached NRRD headers are read but not written", path, "name it .nrrd");
+  const UniformGrid placed = with_long_axes(*grid);
   const Field& f = field_to_write(*d, path, context);
   const Array a = f.array.made_packed();
   const std::span<const std::byte> bytes(a.raw(), a.bytes());
   const bool gzip = options.compression == "gzip";
   AtomicFile file(path);
-  std::string header = header_text(*grid, f, gzip, d->notes());
+  std::string header = header_text(placed, f, gzip, d->notes());
   // Raw data begin at a multiple of their element size, so that readers can map them.
   if (!gzip) {
     size_t pad = (64 - header.size() % 64) % 64;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // PLY: vertices with their properties as point fields, faces with theirs as cell fields. nx ny nz become "Normals", red green
 // blue [alpha] "RGB" or "RGBA", s t (u v, texture_u texture_v) "TCoords"; every other scalar keeps its name. Lists other than
-// the faces' vertex indices are skipped. Edges are read as lines where there are no faces.
+// the faces' vertex indices are skipped. Edges are read as lines where there are no faces. Our own files keep the names of fields in
+// comments ("field vertex nx 3 Wall normals": three properties from nx on).
 #include "base/bytes.h"
 #include "base/parallel.h"
 #include "base/text.h"
@@ -40,6 +41,8 @@ constexpr Group groups[] = {
 
 void direct(PlyProperty& p, std::byte* out, size_t stride, ElementType type) { p.out = out, p.out_stride = stride, p.out_type = type; }
 
+constexpr std::string_view field_comment = "field";
+
 struct Reader {
   const ReadOptions& options;
   DatasetParts parts;
@@ -50,7 +53,8 @@ struct Reader {
   }
 
   // Makes a field of each property (or group of them) and tells decode_ply to fill it. `used` properties are left out.
-  void add_fields(PlyElement& e, Association association, std::vector<bool> used) {
+  void add_fields(PlyElement& e, Association association, std::vector<bool> used, const PlyHeader& header) {
+    add_named_fields(e, association, used, header);
     for (const Group& g : groups) {
       std::vector<size_t> found;
       for (std::string_view name : g.properties)
@@ -81,7 +85,37 @@ struct Reader {
     }
   }
 
-  void prepare_vertices(PlyElement& e, SurfaceMesh& mesh, const std::string& path) {
+  // Fields whose names stand in comments of our own files. A comment that does not fit the properties is only a comment.
+  void add_named_fields(PlyElement& e, Association association, std::vector<bool>& used, const PlyHeader& header) {
+    for (const auto& [key, text] : header.notes) {
+      const auto w = words(text);
+      if (key != "comment" || w.size() < 5 || w[0] != field_comment || w[1] != e.name) continue;
+      const int first = e.find(w[2]);
+      const auto n = parse_int(w[3]);
+      if (first < 0 || !n || *n < 1 || size_t(*n) > e.properties.size() - size_t(first)) continue;
+      const auto begin = size_t(first), end = begin + size_t(*n);
+      const std::string name(trim(std::string_view(text).substr(size_t(w[4].data() - text.data()))));
+      bool fits = !parts.fields.find(name, association);
+      for (size_t k = begin; k < end; ++k)
+        fits = fits && !used[k] && !e.properties[k].list && e.properties[k].type == e.properties[begin].type;
+      if (!fits) continue;
+      Role role = Role::none;
+      for (const Group& g : groups)
+        if (g.properties[0] == e.properties[begin].name && size_t(*n) == (g.properties[3].empty() ? g.properties[2].empty() ? 2 : 3 : 4))
+          role = g.role;
+      std::fill(used.begin() + ptrdiff_t(begin), used.begin() + ptrdiff_t(end), true);
+      if (!wanted(name)) continue;
+      const ElementType type = e.properties[begin].type;
+      std::byte* out = nullptr;
+      Array a = Array::make_raw(type, e.count, int(*n), &out);
+      for (size_t k = begin; k < end; ++k)
+        direct(e.properties[k], out + (k - begin) * element_size(type), size_t(*n) * element_size(type), type);
+      parts.fields.add({name, association, std::move(a), "", role});
+    }
+  }
+
+  void prepare_vertices(PlyElement& e, SurfaceMesh& mesh, const PlyHeader& header) {
+    const std::string& path = header.path;
     if (e.count > size_t(INT32_MAX)) fail_data(fmt::format("{} vertices are more than a surface can have", e.count), path);
     std::vector<bool> used(e.properties.size(), false);
     ElementType type = ElementType::f32;
@@ -97,7 +131,7 @@ struct Reader {
     std::byte* out = nullptr;
     mesh.points.xyz = Array::make_raw(type, e.count, 3, &out);
     for (size_t a = 0; a < 3; ++a) direct(e.properties[size_t(xyz[a])], out + a * size, 3 * size, type);
-    add_fields(e, Association::point, used);
+    add_fields(e, Association::point, used, header);
   }
 };
 
@@ -153,7 +187,7 @@ Data read_ply(const std::string& path, const ReadOptions& options, Context& cont
 
   Reader r{options, {}};
   SurfaceMesh mesh;
-  r.prepare_vertices(*vertex, mesh, path);
+  r.prepare_vertices(*vertex, mesh, h);
   if (strip) {
     strip->wanted_list = index_list(*strip);
     if (strip->wanted_list < 0) fail_data("the element 'tristrips' has no list 'vertex_indices'", path);
@@ -162,7 +196,7 @@ Data read_ply(const std::string& path, const ReadOptions& options, Context& cont
     face->wanted_list = index_list(*face);
     if (face->wanted_list < 0 && face->count > 0) fail_data("the faces have no list 'vertex_indices'", path);
     // Cell fields are numbered over all cells, so they need faces alone.
-    if (!strip || strip->count == 0) r.add_fields(*face, Association::cell, std::vector<bool>(face->properties.size(), false));
+    if (!strip || strip->count == 0) r.add_fields(*face, Association::cell, std::vector<bool>(face->properties.size(), false), h);
     else context.warn(path + ": face properties are not read beside triangle strips");
   }
   std::byte* ends = nullptr;
@@ -182,6 +216,7 @@ Data read_ply(const std::string& path, const ReadOptions& options, Context& cont
   if (face && face->wanted_list >= 0) mesh.polygons = cells_of(*face);
   if (strip) mesh.strips = strips_of(*strip);
   r.parts.mesh = std::move(mesh);
+  std::erase_if(h.notes, [](const auto& note) { return note.second.starts_with(std::string(field_comment) + " "); });
   r.parts.notes = std::move(h.notes);
   return make_dataset(std::move(r.parts));
 }
@@ -199,7 +234,8 @@ struct Column {
   Array values;  ///< one component, of a type that PLY has
 };
 
-std::vector<Column> columns_of(const Dataset& d, Association association) {
+// `comments` gets the names of the fields that their properties do not tell.
+std::vector<Column> columns_of(const Dataset& d, Association association, std::string& comments) {
   std::vector<Column> r;
   for (const Field& f : d.fields()) {
     if (f.association != association) continue;
@@ -209,6 +245,7 @@ std::vector<Column> columns_of(const Dataset& d, Association association) {
       if (c == ' ' || c == '\t' || c == '\n' || c == '\r') c = '_';
     const bool wide = element_size(f.array.type()) == 8;
     const Array a = wide ? f.array.converted(ElementType::f64) : f.array;
+    const size_t first = r.size();
     for (int c = 0; c < n; ++c) {
       std::string column = n == 1 ? name : fmt::format("{}_{}", name, c);
       if (f.role == Role::normals && n == 3) column = std::string("n") + "xyz"[c];
@@ -218,6 +255,9 @@ std::vector<Column> columns_of(const Dataset& d, Association association) {
                          std::any_of(r.begin(), r.end(), [&](const Column& o) { return o.name == column; });
       r.push_back({taken ? column + "_" : column, a.component(c)});
     }
+    if (n > 0 && (n > 1 || r[first].name != f.name) && f.name.find_first_of("\r\n") == std::string::npos && trim(f.name) == f.name)
+      comments += fmt::format("comment {} {} {} {} {}\n", field_comment, association == Association::point ? "vertex" : "face",
+                              r[first].name, n, f.name);
   }
   return r;
 }
@@ -238,14 +278,16 @@ void write_ply(const std::string& path, const Data& data, const WriteOptions& op
   const SurfaceMesh& mesh = surface_to_write(*d, "PLY", path);
   if (mesh.lines.size() || mesh.vertices.size()) context.warn(path + ": lines and vertices are not written; PLY holds faces");
   const PolygonList faces = surface_polygons(mesh);
-  const std::vector<Column> of_points = columns_of(*d, Association::point), of_faces = columns_of(*d, Association::cell);
+  std::string comments;
+  const std::vector<Column> of_points = columns_of(*d, Association::point, comments),
+                            of_faces = columns_of(*d, Association::cell, comments);
   const Vec3 o = mesh.points.origin;
   const bool wide = mesh.points.xyz.type() == ElementType::f64 || o.x != 0 || o.y != 0 || o.z != 0;
   size_t longest = 0;
   for (size_t c = 0; c + 1 < faces.offsets.size(); ++c) longest = std::max(longest, faces.offsets[c + 1] - faces.offsets[c]);
 
-  std::string text = fmt::format("ply\nformat {} 1.0\ncomment written by sightglass\nelement vertex {}\n",
-                                 options.binary ? "binary_little_endian" : "ascii", d->point_count());
+  std::string text = fmt::format("ply\nformat {} 1.0\ncomment written by sightglass\n{}element vertex {}\n",
+                                 options.binary ? "binary_little_endian" : "ascii", comments, d->point_count());
   for (const char c : {'x', 'y', 'z'}) text += fmt::format("property {} {}\n", wide ? "double" : "float", c);
   for (const Column& c : of_points) text += fmt::format("property {} {}\n", ply_type(c.values.type()), c.name);
   text += fmt::format("element face {}\nproperty list {} int vertex_indices\n", faces.source.size(), longest < 256 ? "uchar" : "uint");

@@ -80,7 +80,7 @@ Array number_column(const std::vector<std::string>& cells) {
     if (!x) return {};
     any = true;
     v.push_back(*x);
-    if (const auto n = parse_int(word)) whole.push_back(*n);
+    if (const auto n = parse_int(word); n && (*n != 0 || !std::signbit(*x))) whole.push_back(*n);  // no whole number is -0
   }
   if (!any) return {};
   if (missing || whole.size() != v.size()) return Array::from_vector(std::move(v));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writing of files that name others: collections as .vtm, or as the pieces of one mesh (.pvtu, .pvtp), overlapping AMR as .vthb.
+// Writing of files that name others: collections as .vtm, overlapping AMR as .vthb.
 // Parts first, then the file that names them.
 #include "base/text.h"
 #include "io/formats.h"
@@ -112,88 +112,8 @@ Array other_ghosts(const Array& ghost) {
   return any ? a : Array();
 }
 
-// The arrays of that association that all pieces have with one type and number of components.
-std::string shared_arrays(const std::vector<DatasetPtr>& pieces, Association association, const char* element) {
-  constexpr std::pair<Role, std::string_view> roles[] = {
-      {Role::scalars, "Scalars"}, {Role::vectors, "Vectors"}, {Role::normals, "Normals"}};
-  std::string text, attributes;
-  for (const Field& f : pieces[0]->fields()) {
-    if (f.association != association) continue;
-    bool all = true;
-    for (const DatasetPtr& d : pieces) {
-      const Field* g = d->fields().find(f.name, association);
-      all = all && g && g->array.type() == f.array.type() && g->components() == f.components();
-    }
-    if (!all) continue;
-    text += fmt::format("      <PDataArray{}/>\n", attributes_text({{"type", std::string(xml_type_name(f.array.type()))},
-                                                                    {"Name", f.name},
-                                                                    {"NumberOfComponents", std::to_string(f.components())}}));
-    for (const auto& [role, name] : roles)
-      if (f.role == role && attributes.find(name) == std::string::npos) attributes += attributes_text({{name, f.name}});
-  }
-  bool ghosts = false;
-  for (const DatasetPtr& d : pieces) ghosts = ghosts || !(association == Association::point ? d->point_ghost() : d->cell_ghost()).empty();
-  if (ghosts) text += "      <PDataArray type=\"UInt8\" Name=\"vtkGhostType\" NumberOfComponents=\"1\"/>\n";
-  return fmt::format("    <{}{}>\n{}    </{}>\n", element, attributes, text, element);
-}
-
-const Points& points_of(const Mesh& mesh) {
-  if (auto* u = std::get_if<UnstructuredMesh>(&mesh)) return u->points;
-  if (auto* s = std::get_if<SurfaceMesh>(&mesh)) return s->points;
-  return std::get<PointCloud>(mesh).points;
-}
-
-// A piece as all pieces are written: points of one type, ghosts in all when they are in one.
-DatasetPtr like_the_others(const DatasetPtr& d, bool wide, bool point_ghosts, bool cell_ghosts) {
-  DatasetParts parts = d->parts();
-  auto widen = [&](auto& m) {
-    if constexpr (requires { m.points.xyz; })
-      if (wide) m.points.xyz = m.points.xyz.converted(ElementType::f64);
-  };
-  std::visit(widen, parts.mesh);
-  auto zeros = [](size_t n) { return Array::from_vector(std::vector<uint8_t>(n, 0)); };
-  if (point_ghosts && parts.point_ghost.empty()) parts.point_ghost = zeros(d->point_count());
-  if (cell_ghosts && parts.cell_ghost.empty()) parts.cell_ghost = zeros(d->cell_count());
-  return make_dataset(std::move(parts));
-}
-
 }  // namespace
 }  // namespace vtk
-
-void write_vtk_parallel(const std::string& path, const Data& data, const WriteOptions& options, Context& context) {
-  const std::string extension = extension_of(path).substr(1);  // of the pieces
-  if (extension != "vtu" && extension != "vtp")
-    fail_usage(fmt::format(".{} files are read but not written", extension_of(path)), path, "write .pvtu or .pvtp");
-  std::vector<DatasetPtr> pieces;
-  bool wide = false, point_ghosts = false, cell_ghosts = false;
-  for_each_dataset(data, [&](const std::string& name, const DatasetPtr& d) {
-    const std::string_view right = vtk::extension_for(d->mesh());
-    if (right != extension && !(right == "vtp" && extension == "vtu"))
-      fail_usage(fmt::format("part '{}' is a mesh of kind {}, which cannot be a piece of a .{}", name, d->kind(), extension_of(path)), path,
-                 "write collections of any meshes to .vtm");
-    const Points& points = vtk::points_of(d->mesh());
-    wide = wide || points.xyz.type() == ElementType::f64 || !(points.origin == Vec3{0, 0, 0});
-    point_ghosts = point_ghosts || !d->point_ghost().empty(), cell_ghosts = cell_ghosts || !d->cell_ghost().empty();
-    pieces.push_back(d);
-  });
-  if (pieces.empty()) fail_usage("there is no mesh to write", path);
-  vtk::PartsFolder folder(path);
-  AtomicFile file(path);
-  const char* element = extension == "vtu" ? "PUnstructuredGrid" : "PPolyData";
-  std::string text =
-      fmt::format("<VTKFile type=\"{}\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n  <{} GhostLevel=\"{}\">\n",
-                  element, element, int(cell_ghosts));
-  text += vtk::shared_arrays(pieces, Association::point, "PPointData") + vtk::shared_arrays(pieces, Association::cell, "PCellData");
-  text += fmt::format("    <PPoints>\n      <PDataArray type=\"{}\" Name=\"Points\" NumberOfComponents=\"3\"/>\n    </PPoints>\n",
-                      wide ? "Float64" : "Float32");
-  for (size_t i = 0; i < pieces.size(); ++i) {
-    vtk::write_dataset(folder.file(i, extension), *vtk::like_the_others(pieces[i], wide, point_ghosts, cell_ghosts), options, context);
-    text += fmt::format("    <Piece Source=\"{}\"/>\n", vtk::escaped_xml(folder.name(i, extension)));
-  }
-  file.write(text + fmt::format("  </{}>\n</VTKFile>\n", element));
-  folder.commit();
-  file.commit();
-}
 
 void write_vtk_multiblock(const std::string& path, const Data& data, const WriteOptions& options, Context& context) {
   vtk::BlockWriter(path, options, context).write(data);

@@ -37,6 +37,10 @@ class XmlFile {
   /// The numbers of a DataArray. With `tuples` there must be at least as many (more are dropped), without all there are.
   /// Little-endian uncompressed appended bytes are not copied when they lie on multiples of the element size.
   Array array(pugi::xml_node element, std::optional<uint64_t> tuples) const;
+  /// The same for point ids: 64-bit numbers that have to be unpacked or copied come as 32-bit ones where all of them fit.
+  Array ids(pugi::xml_node element, std::optional<uint64_t> tuples) const;
+  /// The step s of n offsets s, 2s, 3s, ...; 0 when they are others, or when telling takes an array (text, base64, other byte orders).
+  int equal_steps(pugi::xml_node element, uint64_t n) const;
   /// The part of a lattice that `window` names. Of uncompressed raw bytes only those rows are read, of compressed ones only the
   /// blocks with such rows are unpacked; other encodings are read whole.
   Array block(pugi::xml_node element, const Window& window) const;
@@ -69,6 +73,8 @@ class XmlFile {
   Array plain(const Wanted& want, const Source& source) const;
   Array compressed(const Wanted& want, const Source& source) const;
   Array text(const Wanted& want) const;
+  Array narrowed_blocks(const Wanted& want, const Source& source) const;
+  Array narrowed_plain(const Wanted& want, const Source& source) const;
   uint64_t word(const std::byte* p) const;
   size_t word_bytes() const { return wide_header_ ? 8 : 4; }
   uint64_t bytes_to_read(const Wanted& want, uint64_t available) const;

@@ -176,6 +176,7 @@ XmlFile::BlockTable XmlFile::block_table(const Wanted& want, const Source& s) co
   if (last > block || !multiply(blocks, block, t.total)) damaged(fmt::format("has {} blocks of {} and {} bytes", blocks, block, last));
   if (last > 0 && blocks > 0) t.total -= block - last;
   t.blocks = blocks, t.block = block, t.last = last > 0 ? last : block;
+  if (blocks == 1) t.block = t.last;  // nothing else backs the size of a whole block
   t.starts.assign(blocks + 1, 0);
   const std::string_view rest = s.bytes.substr(used);
   const uint64_t most = s.base64 ? rest.size() / 4 * 3 : rest.size();
@@ -223,6 +224,97 @@ Array XmlFile::compressed(const Wanted& want, const Source& s) const {
   });
   if (!good) fail("cannot be decompressed", want.element, "the file is truncated or damaged");
   return finished(want, b, 0, bytes);
+}
+
+// 64-bit numbers on any byte as 32-bit ones; false when one does not fit.
+static bool narrow(const std::byte* from, size_t n, int32_t* to) {
+  int64_t odd = 0;
+  for (size_t i = 0; i < n; ++i) {
+    const auto v = load<int64_t>(from + 8 * i, false);
+    to[i] = int32_t(v);
+    odd |= v ^ int64_t(to[i]);
+  }
+  return odd == 0;
+}
+
+// Memory of the thread's own for a block on its way, which stays in the cache.
+static std::byte* scratch(size_t bytes) {
+  thread_local std::vector<std::byte> own;
+  if (own.size() < bytes) own.resize(bytes);
+  return own.data();
+}
+constexpr size_t most_scratch = size_t(1) << 20;
+
+// Empty when a number does not fit, or the blocks are of an odd size.
+Array XmlFile::narrowed_blocks(const Wanted& want, const Source& s) const {
+  const BlockTable t = block_table(want, s);
+  const size_t bytes = bytes_to_read(want, t.total);
+  if (t.block == 0 || t.block % 8 != 0 || t.block > most_scratch) return {};
+  int32_t* out = nullptr;
+  Array a = Array::make<int32_t>(bytes / 8, 1, &out);
+  const size_t needed = (bytes + t.block - 1) / t.block, packed = needed ? t.starts[needed] : 0;
+  const size_t grain = packed < size_t(16) << 20 ? 1 : std::max<size_t>(1, needed / (packed >> 20));
+  std::atomic<bool> good{true}, fits{true};
+  parallel_for(needed, grain, [&](size_t begin, size_t end) {
+    std::byte* block = scratch(t.block);
+    for (size_t i = begin; i < end && fits; ++i) {
+      const size_t n = std::min(bytes - i * t.block, t.bytes_of(i)) / 8;
+      if (!t.unpack(codec_, i, block)) good = false;
+      else if (!narrow(block, n, out + i * t.block / 8)) fits = false;
+    }
+    if (grain > 1 && !s.base64) forget_mapped(t.packed + t.starts[begin], t.starts[end] - t.starts[begin]);
+  });
+  return good && fits ? a : Array();
+}
+
+// Empty when a number does not fit, or when the bytes can stay where they are.
+Array XmlFile::narrowed_plain(const Wanted& want, const Source& s) const {
+  const size_t header = word_bytes();
+  const auto* p = reinterpret_cast<const std::byte*>(s.bytes.data());
+  if (s.base64 || s.bytes.size() < header || reinterpret_cast<uintptr_t>(p + header) % 8 == 0) return {};
+  const uint64_t available = word(p);
+  if (available > s.bytes.size() - header) return {};
+  const size_t n = bytes_to_read(want, available) / 8, offset = size_t(p + header - file_.data());
+  int32_t* out = nullptr;
+  Array a = Array::make<int32_t>(n, 1, &out);
+  std::atomic<bool> fits{true};
+  parallel_for(n, size_t(1) << 15, [&](size_t begin, size_t end) {
+    std::byte* block = scratch((end - begin) * 8);
+    file_.copy_to(block, offset + begin * 8, (end - begin) * 8);
+    if (fits && !narrow(block, end - begin, out + begin)) fits = false;
+  });
+  return fits ? a : Array();
+}
+
+Array XmlFile::ids(pugi::xml_node element, std::optional<uint64_t> tuples) const {
+  const Wanted want = wanted(element, tuples);
+  Array a;
+  if (want.type == ElementType::i64 && want.components == 1 && !want.text && !big_endian_)
+    if (const Source s = source(element); !s.bytes.empty()) a = codec_ == Codec::none ? narrowed_plain(want, s) : narrowed_blocks(want, s);
+  return a.empty() ? array(element, tuples) : a;
+}
+
+int XmlFile::equal_steps(pugi::xml_node element, uint64_t n) const {
+  const Wanted want = wanted(element, n);
+  if (n == 0 || codec_ == Codec::none || want.type != ElementType::i64 || want.components != 1 || want.text || big_endian_) return 0;
+  const Source s = source(element);
+  if (s.bytes.empty() || s.base64) return 0;
+  const BlockTable t = block_table(want, s);
+  const size_t bytes = bytes_to_read(want, t.total);
+  if (t.block == 0 || t.block % 8 != 0 || t.block > most_scratch || !t.unpack(codec_, 0, scratch(t.block))) return 0;
+  const auto step = load<int64_t>(scratch(8), false);
+  constexpr int64_t most = 4096;  // larger cells are worth their offsets
+  if (step <= 0 || step > most || n > uint64_t(INT64_MAX / most)) return 0;
+  std::atomic<bool> equal{true};
+  parallel_for((bytes + t.block - 1) / t.block, 1, [&](size_t i, size_t) {
+    std::byte* block = scratch(t.block);
+    if (!equal || !t.unpack(codec_, i, block)) return void(equal = false);
+    int64_t odd = 0, want_next = int64_t(i * t.block / 8) * step;
+    const size_t count = std::min(bytes - i * t.block, t.bytes_of(i)) / 8;
+    for (size_t k = 0; k < count; ++k) odd |= load<int64_t>(block + 8 * k, false) ^ (want_next += step);
+    if (odd) equal = false;
+  });
+  return equal ? int(step) : 0;
 }
 
 // Calls f(bytes from the start of the array, row of the window) for the rows of the planes [begin, end) of a window.

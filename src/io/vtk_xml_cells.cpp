@@ -69,11 +69,12 @@ CellArray read_cells(const XmlFile& file, pugi::xml_node cells, uint64_t n) {
     // Cells of one size: one look at the offsets where they lie, and they need not become an array.
     ElementType type{};
     if (const std::byte* p = file.in_place(offsets, n, type))
-      if (const int size = uniform_size(p, type, n)) return cells_of_size(size, n, file.array(connectivity, n * uint64_t(size)));
+      if (const int size = uniform_size(p, type, n)) return cells_of_size(size, n, file.ids(connectivity, n * uint64_t(size)));
+    if (const int size = file.equal_steps(offsets, n)) return cells_of_size(size, n, file.ids(connectivity, n * uint64_t(size)));
     const Array ends = as_indices(file.array(offsets, n));
     const int64_t last = index_view(ends)[n - 1];
     if (last < 0) file.fail(fmt::format("has the offset {}", last), offsets);
-    return cells_from_ends(ends, file.array(connectivity, uint64_t(last)));
+    return cells_from_ends(ends, file.ids(connectivity, uint64_t(last)));
   });
 }
 

@@ -61,7 +61,13 @@ class XmlWriter {
 
 /// "vti", "vtr", "vts", "vtu", "vtp" or "vthb": the form that holds a mesh of that kind.
 std::string_view extension_for(const Mesh& mesh);
+/// Where a grid lies in the whole of which it is a piece: the index of its first point; for uniform grids the position of index 0 0 0.
+struct GridPlace {
+  std::array<long long, 3> start;
+  Vec3 zero;
+};
 /// One dataset to a file *.vti ... *.vtp; surfaces and point clouds to *.vtu too. Throws Error(usage) for another extension.
-void write_dataset(const std::string& path, const Dataset& dataset, const WriteOptions& options, Context& context);
+void write_dataset(const std::string& path, const Dataset& dataset, const WriteOptions& options, Context& context,
+                   const GridPlace* place = nullptr);
 
 }  // namespace sg::vtk

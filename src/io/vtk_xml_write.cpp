@@ -200,7 +200,7 @@ struct Header {
   XmlAttributes dataset, piece;
 };
 
-Header header_of(const Dataset& d, size_t cells) {
+Header header_of(const Dataset& d, size_t cells, const GridPlace* place) {
   Header h;
   auto extent = [&](const std::array<long long, 3>& lo) {
     const std::string text = extent_text(lattice_dims(d.mesh()), lo);
@@ -208,16 +208,16 @@ Header header_of(const Dataset& d, size_t cells) {
     h.piece.emplace_back("Extent", text);
   };
   if (auto* u = d.as<UniformGrid>()) {
-    const auto zero = origin_of_zero(*u);
-    extent(zero ? u->extent_start : std::array<long long, 3>{0, 0, 0});
+    const auto zero = place ? place->zero : origin_of_zero(*u);
+    extent(place ? place->start : zero ? u->extent_start : std::array<long long, 3>{0, 0, 0});
     std::string direction;
     for (int i = 0; i < 9; ++i) direction += (i ? " " : "") + exact_number(u->direction.m[i / 3][i % 3]);
     h.dataset.insert(h.dataset.end(),
                      {{"Origin", three(zero.value_or(u->origin))}, {"Spacing", three(u->spacing)}, {"Direction", direction}});
   } else if (auto* r = d.as<RectilinearGrid>()) {
-    extent(r->extent_start);
+    extent(place ? place->start : r->extent_start);
   } else if (auto* c = d.as<CurvilinearGrid>()) {
-    extent(c->extent_start);
+    extent(place ? place->start : c->extent_start);
   } else {
     h.piece = {{"NumberOfPoints", std::to_string(d.point_count())}, {"NumberOfCells", std::to_string(cells)}};
   }
@@ -249,7 +249,7 @@ std::string_view extension_for(const Mesh& mesh) {
   return std::visit(Visitor{}, mesh);
 }
 
-void write_dataset(const std::string& path, const Dataset& d, const WriteOptions& options, Context& context) {
+void write_dataset(const std::string& path, const Dataset& d, const WriteOptions& options, Context& context, const GridPlace* place) {
   const std::string ext = extension_of(path);
   const std::string_view right = extension_for(d.mesh());
   if (ext != right && !(ext == "vtu" && right == "vtp"))
@@ -259,7 +259,7 @@ void write_dataset(const std::string& path, const Dataset& d, const WriteOptions
   const bool surface = ext == "vtp", unstructured = ext == "vtu";
   const SurfaceMesh lists = surface ? as_surface(d.mesh()) : SurfaceMesh{};
   const UnstructuredMesh cells = unstructured ? as_unstructured(d.mesh()) : UnstructuredMesh{};
-  Header h = surface ? Header{} : header_of(d, cells.cells.size());
+  Header h = surface ? Header{} : header_of(d, cells.cells.size(), place);
   if (surface) {
     h.piece.emplace_back("NumberOfPoints", std::to_string(d.point_count()));
     for (const auto& kind : surface_lists) h.piece.emplace_back(kind.count, std::to_string((lists.*kind.list).size()));

@@ -9,6 +9,7 @@
 #include "filter/field/gradient.h"
 #include "filter/field/point_cell.h"
 #include "filter/mesh/append.h"
+#include "filter/mesh/clip.h"
 #include "filter/mesh/components.h"
 #include "filter/mesh/crop.h"
 #include "filter/mesh/extract_ids.h"
@@ -22,14 +23,34 @@
 #include "filter/mesh/transform.h"
 #include "filter/probe/probe.h"
 #include "filter/probe/resample.h"
+#include "filter/scalar/bands.h"
 #include "filter/scalar/contour.h"
+#include "filter/scalar/isolines.h"
+#include "filter/scalar/line_labels.h"
+#include "filter/segment/classify.h"
+#include "filter/segment/dice.h"
+#include "filter/segment/distance_map.h"
+#include "filter/segment/label_components.h"
 #include "filter/segment/label_surface.h"
+#include "filter/segment/morphology.h"
+#include "filter/segment/otsu.h"
+#include "filter/segment/region_grow.h"
+#include "filter/segment/watershed.h"
 #include "filter/stats/integrate.h"
 #include "filter/stats/statistics.h"
 #include "filter/stats/table_to_points.h"
+#include "filter/surface/cap.h"
+#include "filter/surface/clean.h"
+#include "filter/surface/curvature.h"
+#include "filter/surface/feature_edges.h"
+#include "filter/surface/mass_properties.h"
+#include "filter/surface/normals.h"
+#include "filter/surface/quality.h"
+#include "filter/surface/smooth.h"
 #include "simulate/flow_fields.h"
 #include "simulate/point_load.h"
 #include "simulate/scalar_fields.h"
+#include "simulate/tissue_phantom.h"
 
 namespace sg {
 
@@ -39,6 +60,8 @@ namespace {
 Request request_of_slice(const ParamSet& params, const Request& wanted) {
   Request r = detail::request_carried(params, wanted);
   const auto& p = detail::values_of<SliceParams>(params);
+  if (!p.function.empty()) return Request{};
+  if (!p.positions.empty() || (p.planes != "none" && !p.planes.empty())) return r;
   int axis = p.axis == "x" ? 0 : p.axis == "y" ? 1 : p.axis == "z" ? 2 : -1;
   std::optional<double> at = p.position;
   if (axis < 0 && p.origin)
@@ -49,6 +72,34 @@ Request request_of_slice(const ParamSet& params, const Request& wanted) {
   box.lo[axis] = box.hi[axis] = *at;
   r.region = box;
   return r;
+}
+
+// Operations that take a mesh to cut with as an optional second input.
+template <class P, class F>
+Data with_second_mesh(std::string_view name, const std::vector<Data>& in, const P& p, Context& ctx, F f) {
+  const DatasetPtr second = in.size() > 1 ? single_dataset(in[1], name) : nullptr;
+  return map_parts(in[0], name, [&](const DatasetPtr& d) -> Data { return f(d, second, p, ctx); });
+}
+
+Data clip_with(const std::vector<Data>& in, const ClipParams& p, Context& ctx) {
+  return with_second_mesh("clip", in, p, ctx, [](auto&&... a) { return clip(a...); });
+}
+
+Data slice_by(const std::vector<Data>& in, const SliceParams& p, Context& ctx) {
+  return with_second_mesh("slice", in, p, ctx, [](auto&&... a) { return slice(a...); });
+}
+
+// An expression may name any field.
+Request request_of_clip(const ParamSet& params, const Request& wanted) {
+  Request r = detail::request_carried(params, wanted);
+  const auto& p = detail::values_of<ClipParams>(params);
+  if (!p.function.empty()) return Request{};
+  return r;
+}
+
+Request request_of_extract(const ParamSet& params, const Request& wanted) {
+  const auto& p = detail::values_of<ExtractParams>(params);
+  return p.region.function.empty() ? detail::request_carried(params, wanted) : Request{};
 }
 
 }  // namespace

@@ -38,6 +38,7 @@ struct SurfaceItem {
   bool flat = false;          ///< face normals
   double feature_angle = 40;  ///< degrees; edges sharper than this are not smoothed when normals are computed
   bool edges = false;         ///< draw the edges of the polygons
+  DatasetPtr edge_lines;      ///< a SurfaceMesh whose lines are drawn instead (of curved cells: see Skin); null = the polygons' edges
   Vec3f edge_color{0.1f, 0.1f, 0.1f};
 };
 

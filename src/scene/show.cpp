@@ -5,6 +5,7 @@
 #include "color/parse_color.h"
 #include "data/field_ops.h"
 #include "data/lattice.h"
+#include "filter/mesh/faces.h"
 #include "filter/mesh/surface.h"
 #include "scene/volume_look.h"
 
@@ -27,7 +28,7 @@ void describe(Schema& s, ColoringParams& p) {
 void describe(Schema& s, SurfaceShow& p) {
   describe(s, p.coloring);
   s("opacity", p.opacity, "1 hides what is behind, 0 is invisible.").range(0, 1);
-  s("edges", p.edges, "Draw the edges of the polygons.");
+  s("edges", p.edges, "Draw the edges of the cells.");
   s("flat", p.flat, "One normal per polygon instead of smooth shading.");
   s("lit", p.lit, "Light the surface; false shows the plain colours.");
   s("feature_angle", p.feature_angle, "Edges sharper than this stay sharp when normals are computed.").unit("deg").range(0, 180);
@@ -152,7 +153,12 @@ std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const Surfa
   SurfaceItem item;
   // Ranges come from the whole input, so that a surface and its volume share colours.
   item.color_by = field_color(*input, p.coloring, context);
-  item.data = surface_of(input, context);
+  if (p.edges) {
+    Skin skin = faces_and_edges(input, {}, context);
+    item.data = std::move(skin.surface), item.edge_lines = std::move(skin.edges);
+  } else {
+    item.data = surface_of(input, context);
+  }
   if (!p.coloring.color.empty()) item.color = parse_color(p.coloring.color, "color");
   item.opacity = p.opacity;
   item.edges = p.edges;

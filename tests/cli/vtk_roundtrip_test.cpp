@@ -47,3 +47,15 @@ TEST_CASE("vtk: VTK reads the conversion of each kind of mesh as it reads the or
     CHECK_MESSAGE(done.out.find("2 the same to the last number") != std::string::npos, done.out);
   }
 }
+
+TEST_CASE("vtk: VTK's parallel readers read our pieces of each kind of mesh as the whole" * doctest::skip(cannot_run())) {
+  const Done done = roundtrip("--pieces BuiltInExample1.vti cth.vtr StructuredGrid.vts cells/Tetra.vtu teapotWithStrips square-disc-nurbs");
+  CHECK_MESSAGE(done.status == 0, done.out);
+  CHECK_MESSAGE(done.out.find("6 sets: 0 the same to the last number, 6 agree") != std::string::npos, done.out);
+}
+
+TEST_CASE("vtk: what our other writers write is read back as it was" * doctest::skip(cannot_run())) {
+  const Done done = roundtrip("--writers square-disc-nurbs brainImageSmooth SyntheticPolyline 00_image texThres");
+  CHECK_MESSAGE(done.status == 0, done.out);
+  CHECK_MESSAGE(done.out.find("5 agree") != std::string::npos, done.out);
+}

@@ -83,3 +83,40 @@ TEST_CASE("piece: a piece that is not there is refused, a single piece is the me
   CHECK(test::error_of([&] { take_piece(d, 3, 3, 0, ctx); }).find("no piece 3 of 3") != std::string::npos);
   CHECK(take_piece(d, 0, 1, 0, ctx) == d);
 }
+
+TEST_CASE("piece: point clouds are cut by points") {
+  std::vector<float> xyz(30);
+  std::iota(xyz.begin(), xyz.end(), 0.f);
+  PointCloud cloud;
+  cloud.points.xyz = Array::from_vector(xyz, 3);
+  const DatasetPtr d = make_dataset(cloud);
+  Context ctx;
+  size_t n = 0;
+  for (int k = 0; k < 3; ++k) {
+    const DatasetPtr part = take_piece(d, k, 3, 1, ctx);
+    REQUIRE(part->as<PointCloud>());
+    for (size_t i = 0; i < part->point_count(); ++i, ++n) CHECK(part->as<PointCloud>()->points.at(i) == cloud.points.at(n));
+  }
+  CHECK(n == 10);
+}
+
+TEST_CASE("pieces: data are a collection of pieces that hold something, whatever they are") {
+  Context ctx;
+  const DatasetPtr d = with_cell_ids(strip(5));
+  CHECK(std::get<DatasetPtr>(in_pieces(d, 1, ctx)) == d);
+  const CollectionPtr three = std::get<CollectionPtr>(in_pieces(d, 3, ctx));
+  REQUIRE(three->parts.size() == 3);
+  CHECK(three->parts[2].name == "2");
+  CHECK(std::get<CollectionPtr>(in_pieces(d, 9, ctx))->parts.size() == 5);  // one cell each
+  UniformGrid g;
+  g.dims = {4, 2, 2};
+  const CollectionPtr grids = std::get<CollectionPtr>(in_pieces(with_cell_ids(g), 9, ctx));
+  REQUIRE(grids->parts.size() == 3);
+  CHECK(std::get<DatasetPtr>(grids->parts[1].data)->as<UniformGrid>()->extent_start[0] == 1);
+  auto both = std::make_shared<Collection>();
+  both->parts = {{"a", d}, {"t", std::make_shared<const Table>()}};
+  const CollectionPtr cut = std::get<CollectionPtr>(in_pieces(CollectionPtr(both), 2, ctx));
+  CHECK(std::get<CollectionPtr>(cut->parts[0].data)->parts.size() == 2);
+  CHECK(std::holds_alternative<TablePtr>(cut->parts[1].data));
+  CHECK(test::error_of([&] { in_pieces(d, 0, ctx); }).find("at least 1") != std::string::npos);
+}

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "filter/mesh/faces.h"
+#include "filter/mesh/to_unstructured.h"
 #include "filter/mesh_meshes.h"
 #include "support/test.h"
 
@@ -110,4 +111,51 @@ TEST_CASE("threshold: mistakes say what would be right") {
   ctx.on_log = [&](LogLevel, std::string_view t) { notes.emplace_back(t); };
   CHECK(threshold(box, {.field = {"f"}, .min = 100}, ctx)->cell_count() == 0);
   REQUIRE(notes.size() == 1);
+}
+
+TEST_CASE("threshold: several ranges, several fields") {
+  Context ctx;
+  const DatasetPtr box = uniform_box(10, 3, 3);
+  ThresholdParams p;
+  p.field = {"c"};
+  p.ranges = {0, 4, 80, 89};
+  CHECK(threshold(box, p, ctx)->cell_count() == 15);
+  p = {};
+  p.fields = {"c", "f"};
+  p.ranges = {-0.75, 5};
+  CHECK(threshold(box, p, ctx)->cell_count() == 3);
+  p.ranges = {5, 0};
+  CHECK(error_of([&] { threshold(box, p, ctx); }).find("is empty") != std::string::npos);
+  p.ranges = {5};
+  CHECK(error_of([&] { threshold(box, p, ctx); }).find("pairs") != std::string::npos);
+  p.ranges = {0, 1}, p.min = 2;
+  CHECK(error_of([&] { threshold(box, p, ctx); }).find("both given") != std::string::npos);
+}
+
+TEST_CASE("threshold: a lattice by bits keeps the cells that a list of them keeps") {
+  Context ctx;
+  for (const size_t nx : {1, 5, 63, 64, 65, 130}) {
+    DatasetParts parts = uniform_box(nx, 6, 5)->parts();
+    std::vector<double> v((nx + 1) * 7 * 6);
+    for (size_t i = 0; i < v.size(); ++i) v[i] = double(i * 2654435761u % 1000);
+    parts.fields.add(make_field("g", Association::point, v));
+    const DatasetPtr d = make_dataset(parts);
+    for (const bool all : {true, false})
+      for (const bool invert : {true, false}) {
+        ThresholdParams p;
+        p.field = {"g"}, p.min = all ? 100 : 800, p.all_points = all, p.invert = invert;
+        const DatasetPtr a = threshold(d, p, ctx), b = threshold(to_unstructured(d), p, ctx);
+        CHECK(a->cell_count() == b->cell_count());
+        CHECK(a->point_count() == b->point_count());
+        for (const char* name : {"g", "c"}) {
+          const Array &x = a->fields().require(name).array, &y = b->fields().require(name).array;
+          for (size_t i = 0; i < x.count(); ++i) REQUIRE(x.get(i) == y.get(i));
+        }
+        const auto &ma = *a->as<UnstructuredMesh>(), &mb = *b->as<UnstructuredMesh>();
+        const CellsView va = cells_view(ma.cells), vb = cells_view(mb.cells);
+        for (size_t c = 0; c < va.count; ++c)
+          for (size_t k = 0; k < 8; ++k) REQUIRE(va.point(c, k) == vb.point(c, k));
+        for (size_t i = 0; i < a->point_count(); ++i) REQUIRE(ma.points.at(i) == mb.points.at(i));
+      }
+  }
 }

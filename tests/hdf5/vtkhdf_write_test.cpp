@@ -172,3 +172,35 @@ TEST_CASE("vtkhdf: what cannot be written says so and leaves nothing") {
   CHECK(!file_exists(path));
   for (const std::string& name : folder_entries(test::temp_folder())) CHECK(!test::contains(name, "partial"));
 }
+
+TEST_CASE("vtkhdf: weights and orders of high-order cells come back into the mesh, and clouds as clouds") {
+  UnstructuredMesh m;
+  m.points.xyz = Array::from_vector(std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 0, 0.5, 0, 0, 0.5, 0.5, 0, 0, 0.5, 0}, 3);
+  m.cells.connectivity = Array::from_vector(std::vector<int32_t>{0, 1, 2, 3, 4, 5}), m.cells.fixed = 6;
+  m.single_type = CellType::bezier_triangle;
+  m.weights = Array::from_vector(std::vector<double>{1, 1, 1, 0.7, 0.7, 0.7});
+  m.degrees = Array::from_vector(std::vector<uint8_t>{2, 2, 2}, 3);
+  const std::string path = test::temp_folder() + "shaped.vtkhdf";
+  write(path, make_dataset(m));
+  Context context;
+  DatasetPtr back = std::get<DatasetPtr>(read_data(path, {}, context));
+  REQUIRE(back->as<UnstructuredMesh>());
+  CHECK(test::same_array(back->as<UnstructuredMesh>()->weights, m.weights));
+  CHECK(test::same_array(back->as<UnstructuredMesh>()->degrees, m.degrees));
+  write(path, back);  // as fields now
+  back = std::get<DatasetPtr>(read_data(path, {}, context));
+  CHECK(test::same_array(back->as<UnstructuredMesh>()->weights, m.weights));
+  CHECK(back->fields().size() == 2);
+
+  DatasetParts p;
+  PointCloud cloud;
+  cloud.points.xyz = Array::from_vector(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0}, 3);
+  p.mesh = cloud;
+  p.fields.add({"T", Association::point, Array::from_vector(std::vector<float>{1, 2, 3}), {}, Role::scalars});
+  const std::string points = test::temp_folder() + "cloud.vtkhdf";
+  write(points, make_dataset(p));
+  back = std::get<DatasetPtr>(read_data(points, {}, context));
+  REQUIRE(back->as<PointCloud>());
+  check_same_fields(*make_dataset(p), *back);
+  CHECK(test::same_array(back->as<PointCloud>()->points.xyz, cloud.points.xyz));
+}

@@ -82,7 +82,8 @@ TEST_CASE("netcdf: only the fields that are asked for are read") {
   o.fields = {"t"};
   CHECK(read_text("some.nc", packed_grid(1).bytes(), o)->fields().names() == std::vector<std::string>{"t"});
   o.header_only = true;
-  CHECK(read_text("some.nc", packed_grid(1).bytes(), o)->fields().empty());
+  check_names_alone(temp_file("some.nc", packed_grid(1).bytes()), o);
+  check_names_alone(temp_file("some.nc", packed_grid(1).bytes()));
 }
 
 TEST_CASE("netcdf: equally spaced axes make a uniform grid, whatever the order of the dimensions") {

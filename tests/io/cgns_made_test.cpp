@@ -153,6 +153,7 @@ TEST_CASE("cgns: rind planes are cut away, 2D velocities become vectors" * docte
   CHECK(v.array.get(1, 1) == 21);
   CHECK(v.array.get(1, 2) == 0);
   CHECK(d->notes().back() == std::pair<std::string, std::string>("family", "inlet"));
+  check_names_alone(path);
 }
 
 TEST_CASE("cgns: a step takes the solution that the zone names for it" * doctest::skip(no_cgns())) {

@@ -177,6 +177,7 @@ TEST_CASE("dicom: slices are ordered along their normal, wherever they lie in th
   o = {};
   o.header_only = true;
   CHECK(read_file(path, o)->point_count() == 24);
+  check_names_alone(path);
 }
 
 TEST_CASE("dicom: missing slices and a leaning gantry are reported") {

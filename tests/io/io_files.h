@@ -26,6 +26,36 @@ inline DatasetPtr read_text(const std::string& name, std::string_view bytes, con
   return read_file(temp_file(name, bytes), options);
 }
 
+/// Reading with header_only gives the same meshes, and fields of the same names, types, sizes, units and roles as reading all. Returns
+/// the number of fields.
+inline size_t check_names_alone(const std::string& path, ReadOptions options = {}) {
+  Context context;
+  std::vector<DatasetPtr> full, quick;
+  for_each_dataset(read_data(path, options, context), [&](const std::string&, const DatasetPtr& d) { full.push_back(d); });
+  options.header_only = true;
+  for_each_dataset(read_data(path, options, context), [&](const std::string&, const DatasetPtr& d) { quick.push_back(d); });
+  REQUIRE(full.size() == quick.size());
+  size_t fields = 0;
+  for (size_t i = 0; i < full.size(); ++i) {
+    CHECK(full[i]->point_count() == quick[i]->point_count());
+    CHECK(full[i]->cell_count() == quick[i]->cell_count());
+    REQUIRE(full[i]->fields().names() == quick[i]->fields().names());
+    for (const Field& f : full[i]->fields()) {
+      CAPTURE(f.name);
+      const Field* g = quick[i]->fields().find(f.name, f.association);
+      REQUIRE(g);
+      CHECK(g->array.type() == f.array.type());
+      CHECK(g->array.count() == f.array.count());
+      CHECK(g->components() == f.components());
+      CHECK(g->unit == f.unit);
+      CHECK(g->role == f.role);
+      ++fields;
+    }
+  }
+  CHECK(fields > 0);
+  return fields;
+}
+
 /// The message of the error that reading gives.
 inline std::string refusal(const std::string& name, std::string_view bytes, const ReadOptions& options = {}) {
   return error_of([&] { read_text(name, bytes, options); });

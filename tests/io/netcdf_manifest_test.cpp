@@ -191,6 +191,17 @@ TEST_CASE("netcdf: the times of the files are those of the manifest" * doctest::
   }
 }
 
+TEST_CASE("netcdf: the headers of the Exodus, netCDF and CGNS files tell every field, without its values" * doctest::skip(no_data())) {
+  size_t fields = 0;
+  for (const Json& set : manifest()["datasets"]) {
+    const std::string path = set["path"];
+    if (!is_ours(path) || set["expect"] != "reads" || extension_of(path) == "mnc") continue;
+    CAPTURE(path);
+    fields += check_names_alone(data_file(path));
+  }
+  CHECK(fields > 60);
+}
+
 TEST_CASE("netcdf: a step of moving eddies reads alike with one thread and with eight" * doctest::skip(no_data())) {
   ReadOptions o;
   o.step = 5;

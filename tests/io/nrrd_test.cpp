@@ -303,3 +303,16 @@ TEST_CASE("nrrd: cut and damaged files give errors, never crashes") {
   write_data(temp_folder() + "gz.nrrd", make_dataset(p), o, context);
   CHECK(cut_and_damage("cut.nrrd", std::string(MappedFile(temp_folder() + "gz.nrrd").text())) == 63);
 }
+
+TEST_CASE("nrrd: an axis without length is written with one, as it has a single layer") {
+  DatasetParts p;
+  UniformGrid g;
+  g.dims = {3, 2, 1}, g.spacing = {0.5, 0.5, 0};
+  p.mesh = g;
+  p.fields.add({"z", Association::point, Array::from_vector(std::vector<float>(6, 1)), "", Role::none});
+  Context context;
+  write_data(temp_folder() + "flat.nrrd", make_dataset(p), {}, context);
+  const DatasetPtr back = read_file(temp_folder() + "flat.nrrd");
+  CHECK(std::get<UniformGrid>(back->mesh()).spacing == Vec3(0.5, 0.5, 1));
+  CHECK(std::get<UniformGrid>(back->mesh()).dims == g.dims);
+}

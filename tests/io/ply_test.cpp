@@ -142,10 +142,19 @@ TEST_CASE("ply: normals, texture coordinates and colours come back under their r
   const auto d = read_file(temp_folder() + "r.ply");
   CHECK(d->cell_count() == 2);
   CHECK(surface(d).points.at(1).x == 1e7 + 1);
-  CHECK(d->fields().require("Normals").array.get(3, 1) == 1);
-  CHECK(d->fields().require("TCoords").array.get(1, 0) == 1);
-  CHECK(d->fields().require("RGB").array.get(3, 2) == 12);
-  CHECK(d->fields().require("a_vector_1").array.get(2) == 6);
+  CHECK(d->fields().require("N").array.get(3, 1) == 1);
+  CHECK(d->fields().require("uv").array.get(1, 0) == 1);
+  CHECK(d->fields().require("col").array.get(3, 2) == 12);
+  CHECK(d->fields().require("a vector").array.get(2, 1) == 6);
+  for (const Field& field : f) CHECK(d->fields().require(field.name).role == field.role);
+  // Without our comments the roles give the names.
+  std::string text(MappedFile(temp_folder() + "r.ply").text());
+  for (size_t at; (at = text.find("comment field")) != std::string::npos;) text.erase(at, text.find('\n', at) + 1 - at);
+  const auto plain = read_text("plain.ply", text);
+  CHECK(plain->fields().require("Normals").array.get(3, 1) == 1);
+  CHECK(plain->fields().require("TCoords").array.get(1, 0) == 1);
+  CHECK(plain->fields().require("RGB").array.get(3, 2) == 12);
+  CHECK(plain->fields().require("a_vector_1").array.get(2) == 6);
 }
 
 TEST_CASE("ply: strips, edges, points alone, and fields on request") {
@@ -228,5 +237,50 @@ TEST_CASE("ply: cut and damaged files give errors, never crashes") {
   for (int encoding = 0; encoding < 3; ++encoding) {
     const std::string all = mixed_file(encoding);
     CHECK(cut_and_damage("cut.ply", all) >= 61);  // the element behind the faces is not needed
+  }
+}
+
+TEST_CASE("ply: fields keep their names and components through our own files, binary and ASCII") {
+  DatasetParts p;
+  SurfaceMesh m;
+  m.points.xyz = Array::from_vector(std::vector<float>{0, 0, 0, 1, 0, 0, 0, 1, 0}, 3);
+  m.polygons.connectivity = Array::from_vector(std::vector<int32_t>{0, 1, 2}), m.polygons.fixed = 3;
+  p.mesh = m;
+  p.fields.add({"wall normals", Association::point, Array::from_vector(std::vector<double>(9, 0.6), 3), "", Role::normals});
+  p.fields.add({"Tensors_", Association::point, Array::from_vector(std::vector<float>(27, 0.25f), 9), "", Role::none});
+  p.fields.add({"a b", Association::cell, Array::from_vector(std::vector<int16_t>{5}), "", Role::none});
+  p.fields.add({"tint", Association::cell, Array::from_vector(std::vector<uint8_t>{1, 2, 3}, 3), "", Role::colors});
+  const DatasetPtr d = make_dataset(p);
+  for (const bool binary : {true, false}) {
+    WriteOptions o;
+    o.binary = binary;
+    Context context;
+    write_data(temp_folder() + "names.ply", d, o, context);
+    const DatasetPtr back = read_file(temp_folder() + "names.ply");
+    CHECK(back->fields().size() == d->fields().size());
+    for (const Field& f : d->fields()) {
+      CAPTURE(f.name);
+      const Field* g = back->fields().find(f.name, f.association);
+      REQUIRE(g);
+      CHECK(g->array.type() == f.array.type());
+      CHECK(g->components() == f.components());
+      CHECK(g->role == f.role);
+      CHECK(g->array.get(0, f.components() - 1) == f.array.get(0, f.components() - 1));
+    }
+    for (const auto& [key, text] : back->notes()) CHECK(text.find("field") == std::string::npos);
+    ReadOptions one;
+    one.fields = {"a b"};
+    Context c;
+    CHECK(std::get<DatasetPtr>(read_data(temp_folder() + "names.ply", one, c))->fields().size() == 1);
+  }
+  // Comments that do not fit the properties are comments.
+  const std::string xyz = "element vertex 1\nproperty float x\nproperty float y\nproperty float z\nproperty float a\nproperty int b\n";
+  for (const char* comment : {"field vertex a 2 ab", "field vertex a 900 ab", "field vertex x 3 ab", "field vertex q 1 ab",
+                              "field vertex a 0 ab", "field vertex a -1 ab", "field face a 1 ab", "field vertex a", "field"}) {
+    CAPTURE(comment);
+    const DatasetPtr plain = read_file(temp_file("c.ply", header("ascii", std::string("comment ") + comment + "\n" + xyz) + "0 0 0 1 2\n"));
+    CHECK(plain->fields().find("a"));
+    CHECK(plain->fields().find("b"));
+    CHECK(!plain->fields().find("ab"));
   }
 }

@@ -161,3 +161,21 @@ TEST_CASE("tables of the data folder have the rows, columns and ranges of the ma
     CHECK(t->columns[0].array.count() == 5);
   }
 }
+
+TEST_CASE("csv: a table written, read and written again has the same bytes") {
+  auto t = std::make_shared<Table>();
+  t->columns.push_back(
+      {"f32", Association::whole, Array::from_vector(std::vector<float>{-0.0002f, 4e5f, 0.1f, 1e-30f, -0.0f}), "", Role::none});
+  t->columns.push_back({"zeros", Association::whole, Array::from_vector(std::vector<float>{0, -0.0f, 0, 0, 0}), "", Role::none});
+  t->columns.push_back({"f64", Association::whole, Array::from_vector(std::vector<double>{-2e-4, 4e5, 0.1, NAN, 1.0 / 3}), "", Role::none});
+  t->columns.push_back({"large", Association::whole, Array::from_vector(std::vector<float>{1, INFINITY, -INFINITY, 2, 3}), "", Role::none});
+  Context context;
+  const std::string a = test::temp_folder() + "first.csv", b = test::temp_folder() + "second.csv";
+  write_data(a, TablePtr(t), {}, context);
+  const Data back = read_data(a, {}, context);
+  write_data(b, back, {}, context);
+  CHECK(MappedFile(a).text() == MappedFile(b).text());
+  const Array& f = std::get<TablePtr>(back)->columns[0].array;
+  for (size_t i = 0; i < 5; ++i) CHECK(float(f.get(i)) == float(t->columns[0].array.get(i)));
+  CHECK(std::signbit(std::get<TablePtr>(back)->columns[1].array.get(1)));
+}

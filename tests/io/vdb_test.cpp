@@ -124,3 +124,16 @@ TEST_CASE("vdb: smoke and points of the data folder" * doctest::skip(no_data()))
   for (size_t i = 0; i < sphere->point_count(); i += 97)
     CHECK(length(sphere->as<PointCloud>()->points.at(i)) == doctest::Approx(1).epsilon(1e-3));
 }
+
+TEST_CASE("vdb: an axis without length is written with one, as it has a single layer") {
+  DatasetParts p;
+  UniformGrid g;
+  g.dims = {3, 2, 1}, g.spacing = {0.5, 0.25, 0};
+  p.mesh = g;
+  p.fields.add({"z", Association::point, Array::from_vector(std::vector<float>(6, 1)), "", Role::none});
+  Context context;
+  write_data(temp_folder() + "flat.vdb", make_dataset(p), {}, context);
+  const DatasetPtr back = read_file(temp_folder() + "flat.vdb");
+  CHECK(lattice_dims(back->mesh()) == g.dims);
+  CHECK(back->bounds().hi == Vec3(1, 0.25, 0));
+}

@@ -260,6 +260,6 @@ TEST_CASE("vtk parallel: a collection is written as the pieces of one mesh") {
   CHECK(d->cell_ghost().get(0) == 0);
   CHECK(d->as<UnstructuredMesh>()->points.xyz.type() == ElementType::f64);
   CHECK(error_of([&] { write_data(temp("no.pvtp"), CollectionPtr(c), {}, context); }).find("part 'a'") != std::string::npos);
-  CHECK(error_of([&] { write_data(temp("no.pvti"), CollectionPtr(c), {}, context); }).find(".pvtu") != std::string::npos);
+  CHECK(error_of([&] { write_data(temp("no.pvti"), CollectionPtr(c), {}, context); }).find(".vtm") != std::string::npos);
   CHECK(!file_exists(temp("no")));
 }

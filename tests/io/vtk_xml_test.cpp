@@ -237,3 +237,57 @@ TEST_CASE("vtk xml: polyhedra of version 2.3 files have their faces as lists") {
   CHECK(cells_view(m.faces).point(0, 0) == 2);
   CHECK(cells_view(m.faces).point(1, 0) == 0);
 }
+
+TEST_CASE("vtk xml: 64-bit ids come as 32-bit ones when they are unpacked or lie on odd bytes, and none is cut") {
+  DatasetParts p;
+  UnstructuredMesh m = tetra_mesh(3000);  // several blocks
+  m.cells.connectivity = m.cells.connectivity.converted(ElementType::i64);
+  p.mesh = m;
+  const DatasetPtr d = make_dataset(p);
+  auto ids_of = [](const DatasetPtr& x) { return x->as<UnstructuredMesh>()->cells; };
+  for (const char* compression : {"none", "zlib", "lz4"}) {
+    CAPTURE(compression);
+    Context context;
+    write_data(temp("ids.vtu"), d, {"appended", compression}, context);
+    const bool plain = std::string_view(compression) == "none";
+    const std::string text(MappedFile(temp("ids.vtu")).text());
+    for (const size_t shift : {0, 1, 8, 13}) {
+      CAPTURE(shift);
+      std::string moved = text;
+      moved.insert(8, std::string(shift, ' '));  // behind "<VTKFile"
+      write_file(temp("moved.vtu"), moved);
+      for (const int threads : {1, 8}) {
+        set_thread_count(threads);
+        const DatasetPtr back = read(temp("moved.vtu"));
+        set_thread_count(0);
+        check_same_cells(ids_of(d), ids_of(back));
+        CHECK(ids_of(back).fixed == 4);
+        CHECK(ids_of(back).connectivity.type() == (plain && shift % 8 == 0 ? ElementType::i64 : ElementType::i32));
+      }
+    }
+    // 2^32 is no 0: an id that 32 bits cannot hold is refused as what it is.
+    std::vector<int64_t> ids(m.cells.connectivity.count());
+    for (size_t i = 0; i < ids.size(); ++i) ids[i] = int64_t(m.cells.connectivity.get(i));
+    ids[7777] += int64_t(1) << 32;
+    DatasetParts q;
+    q.mesh = m;
+    q.fields.add({"connectivity copy", Association::whole, Array::from_vector(ids), {}, Role::none});
+    write_data(temp("copy.vtu"), make_dataset(q), {"appended", compression}, context);
+    std::string swapped(MappedFile(temp("copy.vtu")).text());
+    const size_t good_name = swapped.find("\"connectivity\""), copy_name = swapped.find("\"connectivity copy\"");
+    REQUIRE(good_name != std::string::npos);
+    REQUIRE(copy_name != std::string::npos);
+    // The array of that name is the copy now: same length, one id too large.
+    auto offset_of = [&](size_t name) {
+      const size_t at = swapped.find("offset=\"", name) + 8;
+      return std::pair(at, swapped.substr(at, swapped.find('"', at) - at));
+    };
+    const auto [good_at, good] = offset_of(good_name);
+    const std::string copy = offset_of(copy_name).second;
+    swapped.replace(good_at, good.size(), copy);
+    if (copy.size() < good.size()) swapped.insert(swapped.find("/>", good_at), good.size() - copy.size(), ' ');
+    write_file(temp("swapped.vtu"), swapped);
+    const std::string error = error_of([&] { read(temp("swapped.vtu")); });
+    CHECK(error.find(std::to_string(ids[7777])) != std::string::npos);
+  }
+}

@@ -167,3 +167,22 @@ TEST_CASE("outline: twelve edges of the grid's own box, turned with it") {
   CHECK(item.data->bounds().lo == Vec3(-2, 0, 0));
   CHECK(item.data->bounds().hi == Vec3(0, 2, 2));
 }
+
+TEST_CASE("surface with edges: a curved cell shows its own four sides, a linear one those of its polygon") {
+  UnstructuredMesh m;
+  m.points.xyz =
+      Array::from_vector(std::vector<float>{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, .5f, -.2f, 0, 1.2f, .5f, 0, .5f, 1.2f, 0, -.2f, .5f, 0}, 3);
+  m.cells = {Array::from_vector(std::vector<int32_t>{0, 1, 2, 3, 4, 5, 6, 7}), {}, 8};
+  m.single_type = CellType::quadratic_quad;
+  Context context;
+  Scene scene;
+  find_show("surface").add(scene, make_dataset(m), {"edges=true"}, context);
+  const auto& curved = std::get<SurfaceItem>(scene.items.at(0));
+  REQUIRE(curved.edge_lines);
+  CHECK(curved.edge_lines->as<SurfaceMesh>()->lines.size() == 4);
+  CHECK(curved.data->as<SurfaceMesh>()->polygons.size() > 100);
+  m.cells = {Array::from_vector(std::vector<int32_t>{0, 1, 2, 3}), {}, 4};
+  m.single_type = CellType::quad;
+  find_show("surface").add(scene, make_dataset(m), {"edges=true"}, context);
+  CHECK_FALSE(std::get<SurfaceItem>(scene.items.at(1)).edge_lines);
+}

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "data/cell_reader.h"
 #include "filter/mesh/extract.h"
+#include "filter/mesh/surface_builder.h"
 
 namespace sg {
 
@@ -27,13 +28,29 @@ class UnionFind {
   std::vector<size_t> parent_;
 };
 
+// Patches have points of their own.
+void join_equal_places(const Dataset& in, UnionFind& sets) {
+  std::vector<int64_t> order(in.point_count());
+  std::iota(order.begin(), order.end(), 0);
+  const Points at = points_of(in.mesh(), order);
+  auto key = [&](int64_t i) { return std::tuple(at.xyz.get(size_t(i), 0), at.xyz.get(size_t(i), 1), at.xyz.get(size_t(i), 2)); };
+  std::stable_sort(order.begin(), order.end(), [&](int64_t a, int64_t b) { return key(a) < key(b); });
+  for (size_t i = 1; i < order.size(); ++i)
+    if (key(order[i]) == key(order[i - 1])) sets.join(size_t(order[i]), size_t(order[i - 1]));
+}
+
 }  // namespace
 
 DatasetPtr components(const DatasetPtr& in, const ComponentsParams& p, Context& ctx) {
   CellReader reader(in);
   const size_t n = reader.count();
-  if (p.keep > 0 && p.at) fail_usage("keep and at are two ways to choose", "components", "give one of them");
+  if ((p.keep > 0) + p.at.has_value() + !p.points.empty() > 1)
+    fail_usage("keep, at and points are different ways to choose", "components", "give one of them");
+  for (int64_t i : p.points)
+    if (i < 0 || size_t(i) >= in->point_count())
+      fail_usage(fmt::format("there is no point {}", i), "components points", fmt::format("the mesh has {} points", in->point_count()));
   UnionFind sets(in->point_count());
+  if (in->as<AmrGrid>()) join_equal_places(*in, sets);
   std::vector<int64_t> first(n, -1);  // a point of each cell
   double nearest = HUGE_VAL;
   int64_t chosen = -1;
@@ -64,17 +81,23 @@ DatasetPtr components(const DatasetPtr& in, const ComponentsParams& p, Context& 
   std::vector<int32_t> component(n, -1);
   for (size_t c = 0; c < n; ++c)
     if (first[c] >= 0) component[c] = rank[size_t(number[sets.root(size_t(first[c]))])];
-  const int32_t wanted = chosen >= 0 ? rank[size_t(number[sets.root(size_t(chosen))])] : -1;
+  std::vector<uint8_t> wanted(rank.size(), 0);
+  for (int32_t k = 0; k < std::min(p.keep, int(rank.size())); ++k) wanted[size_t(k)] = 1;
+  auto want = [&](int64_t point) {  // points of no visible cell choose nothing
+    if (const int64_t k = number[sets.root(size_t(point))]; k >= 0) wanted[size_t(rank[size_t(k)])] = 1;
+  };
+  if (chosen >= 0) want(chosen);
+  for (int64_t i : p.points) want(i);
 
   std::vector<int64_t> cells;
   for (size_t c = 0; c < n; ++c)
-    if (p.at ? component[c] == wanted && wanted >= 0 : component[c] >= 0 && component[c] < p.keep) cells.push_back(int64_t(c));
+    if (component[c] >= 0 && wanted[size_t(component[c])]) cells.push_back(int64_t(c));
   DatasetParts parts = in->parts();
   const bool cloud = in->as<PointCloud>();
   parts.fields.add(
       {"component", cloud ? Association::point : Association::cell, Array::from_vector(std::move(component)), "", Role::labels});
   const DatasetPtr all = make_dataset(std::move(parts));
-  return p.keep > 0 || p.at ? extract_cells(all, cells, "components") : all;
+  return p.keep > 0 || p.at || !p.points.empty() ? extract_cells(all, cells, "components") : all;
 }
 
 }  // namespace sg

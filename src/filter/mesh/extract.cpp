@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/mesh/extract.h"
 
-#include <functional>
-
 #include "base/error.h"
 #include "base/parallel.h"
 #include "data/field_ops.h"
 #include "data/lattice.h"
 #include "filter/mesh/id_set.h"
+#include "filter/mesh/lattice_cells.h"
 #include "filter/mesh/surface_builder.h"
 
 namespace sg {
@@ -17,9 +16,8 @@ namespace {
 constexpr size_t grain = 1 << 13;
 
 // Chosen lists of a CellArray, their ids in a new numbering.
-template <class Number>
-CellArray chosen_lists(const CellsView& v, size_t count, const std::function<size_t(size_t)>& cell_of, const Number& number,
-                       std::string_view who) {
+template <class CellOf, class Number>
+CellArray chosen_lists(const CellsView& v, size_t count, const CellOf& cell_of, const Number& number, std::string_view who) {
   CellArray r;
   if (count == 0) return r;
   std::vector<size_t> start((count + grain - 1) / grain);
@@ -208,7 +206,108 @@ void extract_boxes(const Dataset& in, std::span<const int64_t> cells, DatasetPar
   out.mesh = std::move(r);
 }
 
+// Boxes of a lattice of three axes, by bits: runs of cells need no look at each.
+void extract_lattice(const Dataset& in, const Bits& cells, DatasetParts& out, Plane<uint32_t>& points, Plane<uint32_t>& ids,
+                     std::string_view who) {
+  const BitRows g(lattice_dims(in.mesh()));
+  Bits used;
+  used_points(g, cells, used);
+  BitRanks rank;
+  rank.number(used);
+  constexpr size_t rows = 64;
+  std::vector<size_t> first((g.rows() + rows - 1) / rows);
+  parallel_for(g.rows(), rows, [&](size_t begin, size_t end) {
+    size_t n = 0;
+    for (size_t w = begin * g.words; w < end * g.words; ++w) n += count_bits(cells[w]);
+    first[begin / rows] = n;
+  });
+  const size_t count = exclusive_scan(first);
+  if (count * 8 > size_t(INT32_MAX)) fail_usage("the result has more than 2^31 corners", std::string(who), "take a part of the mesh first");
+  points.resize(rank.total);
+  write_lattice_points(g, rank, points.data());
+  ids.resize(count);
+  const LatticeCellKind kind = lattice_cell_kind(in.mesh());
+  int32_t* to = nullptr;
+  UnstructuredMesh r;
+  r.cells.connectivity = Array::make<int32_t>(count * 8, 1, &to);
+  r.cells.fixed = 8;
+  r.single_type = kind.type;
+  parallel_for(g.rows(), rows, [&](size_t begin, size_t end) {
+    const size_t at = first[begin / rows];
+    write_lattice_cells(g, kind, cells, rank, begin, end, to + 8 * at, ids.data() + at);
+  });
+  if (auto* c = std::get_if<CurvilinearGrid>(&in.mesh())) {
+    r.points = {gather(c->points.xyz, std::span<const uint32_t>(points)), c->points.origin};
+  } else {
+    const Lattice lattice(in.mesh());
+    const LatticeView& v = lattice.view();
+    const auto nx = uint32_t(v.dims[0]), ny = uint32_t(v.dims[1]);
+    double* xyz = nullptr;
+    r.points.xyz = Array::make<double>(points.size(), 3, &xyz);
+    parallel_for(points.size(), grain, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) {
+        const uint32_t row = points[i] / nx;
+        const Vec3 p = v.position(points[i] - row * nx, row % ny, row / ny);
+        xyz[3 * i] = p.x, xyz[3 * i + 1] = p.y, xyz[3 * i + 2] = p.z;
+      }
+    });
+  }
+  out.mesh = std::move(r);
+}
+
+// The cells whose byte is not zero, ascending.
+std::vector<int64_t> chosen_cells(const std::vector<uint8_t>& keep) {
+  std::vector<size_t> start((keep.size() + grain - 1) / grain);
+  parallel_for(keep.size(), grain, [&](size_t begin, size_t end) {
+    size_t n = 0;
+    for (size_t c = begin; c < end; ++c) n += keep[c] != 0;
+    start[begin / grain] = n;
+  });
+  std::vector<int64_t> r(exclusive_scan(start));
+  parallel_for(keep.size(), grain, [&](size_t begin, size_t end) {
+    size_t at = start[begin / grain];
+    for (size_t c = begin; c < end; ++c)
+      if (keep[c]) r[at++] = int64_t(c);
+  });
+  return r;
+}
+
 }  // namespace
+
+DatasetPtr extract_marked(const DatasetPtr& in, const std::vector<uint8_t>& keep, std::string_view who) {
+  const auto d = lattice_dims(in->mesh());
+  if (!is_lattice(in->mesh()) || d[0] < 2 || d[1] < 2 || d[2] < 2 || in->point_count() > size_t(INT32_MAX))
+    return extract_cells(in, chosen_cells(keep), who);
+  const BitRows g(d);
+  Bits cells(g.size());
+  parallel_for(g.rows(), 64, [&](size_t begin, size_t end) {
+    for (size_t row = begin; row < end; ++row) {
+      const size_t j = row % g.ny, k = row / g.ny;
+      const bool any = j + 1 < g.ny && k + 1 < g.nz;
+      const uint8_t* from = keep.data() + (any ? (g.nx - 1) * (j + (g.ny - 1) * k) : 0);
+      for (size_t w = 0; w < g.words; ++w) {
+        uint8_t bytes[64] = {};
+        for (size_t i = 0; any && i < 64 && 64 * w + i + 1 < g.nx; ++i) bytes[i] = from[64 * w + i] != 0;
+        cells[row * g.words + w] = packed_bits(bytes);
+      }
+    }
+  });
+  return extract_lattice_cells(in, cells, who);
+}
+
+DatasetPtr extract_lattice_cells(const DatasetPtr& in, const Bits& cells, std::string_view who) {
+  DatasetParts out;
+  Plane<uint32_t> points, ids;
+  extract_lattice(*in, cells, out, points, ids, who);
+  carry_gathered(out.fields, in->fields(), Association::point, std::span<const uint32_t>(points), Association::point);
+  carry_gathered(out.fields, in->fields(), Association::cell, std::span<const uint32_t>(ids), Association::cell);
+  carry_whole(out.fields, in->fields());
+  if (!in->point_ghost().empty()) out.point_ghost = gather(in->point_ghost(), std::span<const uint32_t>(points));
+  if (!in->cell_ghost().empty()) out.cell_ghost = gather(in->cell_ghost(), std::span<const uint32_t>(ids));
+  out.notes = in->notes();
+  out.time = in->time();
+  return make_dataset(std::move(out));
+}
 
 DatasetPtr extract_cells(const DatasetPtr& in, std::span<const int64_t> cells, std::string_view who) {
   DatasetParts out;

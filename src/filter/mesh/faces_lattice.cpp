@@ -166,29 +166,60 @@ class AmrWalk {
             const int axis = side / 2;
             const bool up = side % 2;
             const bool rim = up ? cell[axis] == int64_t(n[size_t(axis)]) - 1 : cell[axis] == 0;
-            if (!rim && present(up ? id + stride[axis] : id - stride[axis])) continue;
+            if (!rim && filler(up ? id + stride[axis] : id - stride[axis]) == Filler::cell) continue;
             auto next = at;
             next[size_t(axis)] += up ? 1 : -1;
-            if (!covered(l, next)) add_side(out, points, {i, j, k}, int64_t(patch.point_offset), side, mirrored, int64_t(id));
+            if (!filled(l, next, size_t(axis), up))
+              add_side(out, points, {i, j, k}, int64_t(patch.point_offset), side, mirrored, int64_t(id));
           }
         }
   }
 
  private:
-  // A cell that fills its place: seen here or in another patch, refined (finer cells fill it). Hidden cells leave a hole.
-  bool present(size_t id) const {
-    if (states_.empty() || states_[id] != cell_gone) return true;
-    return !ghost_.empty() && (ghost_.view<uint8_t>()[id] & (ghost_refined_cell | ghost_hidden_cell)) == ghost_refined_cell;
+  // What fills the place of a cell: itself (here or in another patch), finer cells, nothing.
+  enum class Filler : uint8_t { nothing, finer, cell };
+  Filler filler(size_t id) const {
+    if (states_.empty() || states_[id] != cell_gone) return Filler::cell;
+    if (ghost_.empty()) return Filler::nothing;
+    return (ghost_.view<uint8_t>()[id] & (ghost_refined_cell | ghost_hidden_cell)) == ghost_refined_cell ? Filler::finer : Filler::nothing;
   }
-  // Is the place of a cell of level l filled by a cell of that level or of a coarser one?
-  bool covered(size_t l, std::array<long long, 3> c) const {
-    for (;; --l) {
-      const auto& patches = grid_.levels[l].patches;
-      if (index_[l].any(c, [&](size_t p, size_t local) { return present(patches[p].cell_offset + local); })) return true;
-      if (l == 0) return false;
+  Filler filler(size_t l, const std::array<long long, 3>& c) const {
+    Filler found = Filler::nothing;
+    index_[l].any(c, [&](size_t p, size_t local) {
+      found = std::max(found, filler(grid_.levels[l].patches[p].cell_offset + local));
+      return found == Filler::cell;
+    });
+    return found;
+  }
+  // Is a place of level l full along its lower (`low`) or upper side of an axis: by a cell of that level, of a coarser one, or by finer
+  // ones?
+  bool filled(size_t l, std::array<long long, 3> c, size_t axis, bool low) const {
+    const Filler here = filler(l, c);
+    if (here == Filler::finer) return filled_by_finer(l, c, axis, low);
+    if (here == Filler::cell) return true;
+    while (l > 0) {
       for (size_t a = 0; a < 3; ++a) c[a] = floor_div(c[a], std::max(grid_.levels[l].ratio[a], 1));
+      if (filler(--l, c) == Filler::cell) return true;
     }
+    return false;
   }
+  bool filled_by_finer(size_t l, const std::array<long long, 3>& c, size_t axis, bool low) const {
+    if (l + 1 >= grid_.levels.size()) return false;
+    long long n[3], first[3];
+    for (size_t a = 0; a < 3; ++a) {
+      n[a] = std::max(grid_.levels[l + 1].ratio[a], 1), first[a] = c[a] * n[a];
+      if (a == axis) first[a] += low ? 0 : n[a] - 1, n[a] = 1;
+    }
+    for (long long k = 0; k < n[2]; ++k)
+      for (long long j = 0; j < n[1]; ++j)
+        for (long long i = 0; i < n[0]; ++i) {
+          const std::array<long long, 3> fine{first[0] + i, first[1] + j, first[2] + k};
+          const Filler f = filler(l + 1, fine);
+          if (f == Filler::nothing || (f == Filler::finer && !filled_by_finer(l + 1, fine, axis, low))) return false;
+        }
+    return true;
+  }
+
   const AmrGrid& grid_;
   const std::vector<uint8_t>& states_;
   const Array& ghost_;

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cstring>
+
 #include "base/error.h"
 #include "base/parallel.h"
 #include "data/cell_topology.h"
@@ -12,8 +14,12 @@ namespace {
 // Adds the cells of one chunk to the surface.
 class ChunkWalk {
  public:
-  ChunkWalk(const UnstructuredMesh& mesh, const PointReader& at, SurfaceChunk& out)
-      : mesh_(mesh), cells_(cells_view(mesh.cells)), at_(at), reader_(mesh), out_(out) {}
+  ChunkWalk(const UnstructuredMesh& mesh, const PointReader& at, SurfaceChunk& out, CurvedChunk& curved)
+      : mesh_(mesh), cells_(cells_view(mesh.cells)), at_(at), reader_(mesh), out_(out), curved_(curved) {
+    for (size_t t = 0; t < 256; ++t)
+      if (const CellTypeInfo* info = cell_type_info(uint8_t(t)); info && info->dimension == 3)
+        topology_[t] = linear_topology(linear_type(CellType(t)));
+  }
 
   // Faces of a solid cell whose mark is set; outward, whatever the orientation of the cell.
   void solid(size_t cell, const uint8_t* external, size_t n) {
@@ -26,7 +32,7 @@ class ChunkWalk {
       for (size_t i = cells_.begin(cell); i < cells_.end(cell); ++i) middle += at_[size_t(cells_.connectivity[i])];
       middle = middle / double(std::max<size_t>(cells_.size(cell), 1));
     } else {
-      mirrored = volume(n) < 0;
+      mirrored = volume(cell, *topology_[size_t(mesh_.type(cell))]) < 0;
     }
     for (size_t f = 0; f < n; ++f) {
       if (!external[f]) continue;
@@ -48,6 +54,8 @@ class ChunkWalk {
     switch (dimension) {
       case 0: return out_.vertices.add(ids_, int64_t(cell));
       case 1:
+        if (is_high_order(type) && ids_.size() > 2 && ids_.size() <= 11)
+          return curved_.add(type, cell_orders(mesh_, cell), int64_t(cell), false, true, ids_, out_.lines.sizes.size());
         curve_order(type, ids_.size(), local_);
         line_.clear();
         for (uint32_t i : local_) line_.push_back(ids_[i]);
@@ -64,19 +72,16 @@ class ChunkWalk {
   }
 
   // Six times the signed volume that the linear faces enclose, from the first corner.
-  double volume(size_t faces) {
+  double volume(size_t cell, const LinearTopology& t) {
+    Vec3 at[12];
+    const size_t begin = cells_.begin(cell);
+    for (size_t i = 0; i < size_t(t.corners); ++i) at[i] = at_[size_t(cells_.connectivity[begin + i])];
+    const Vec3 base = at[t.face_corners[0]];
     double sum = 0;
-    Vec3 base;
-    for (size_t f = 0; f < faces; ++f) {
-      const auto c = reader_.corners(f);
-      const Vec3 a = at_[size_t(c[0])];
-      if (f == 0) base = a;
-      Vec3 b = at_[size_t(c[1])];
-      for (size_t i = 2; i < c.size(); ++i) {
-        const Vec3 d = at_[size_t(c[i])];
-        sum += dot(a - base, cross(b - base, d - base));
-        b = d;
-      }
+    for (size_t f = 0; f < t.face_count(); ++f) {
+      const auto c = t.face(f);
+      const Vec3 a = at[c[0]];
+      for (size_t i = 1; i + 1 < c.size(); ++i) sum += dot(a - base, cross(at[c[i]] - base, at[c[i + 1]] - base));
     }
     return sum;
   }
@@ -86,7 +91,7 @@ class ChunkWalk {
     out_.polygons.add(ids_, int64_t(cell));
   }
 
-  // A 2D cell with the nodes ids_: linear ones as they are, curved ones and strips as triangles.
+  // A 2D cell with the nodes ids_: linear ones as they are, strips as triangles; curved ones are noted.
   void add_face(CellType type, size_t cell, bool mirrored, std::array<int, 3> orders) {
     if (type == CellType::triangle || type == CellType::quad || type == CellType::polygon)
       return ids_.size() >= 3 ? add_polygon(cell, mirrored) : void();
@@ -94,6 +99,7 @@ class ChunkWalk {
       std::swap(ids_[2], ids_[3]);
       return add_polygon(cell, mirrored);
     }
+    if (is_high_order(type)) return curved_.add(type, orders, int64_t(cell), mirrored, false, ids_, out_.polygons.sizes.size());
     load(ids_);
     local_.clear();
     tessellate_face(type, corner_, local_, orders);
@@ -109,6 +115,8 @@ class ChunkWalk {
   const PointReader& at_;
   CellFaceReader reader_;
   SurfaceChunk& out_;
+  CurvedChunk& curved_;
+  const LinearTopology* topology_[256] = {};
   std::vector<int64_t> ids_, line_;
   std::vector<Vec3> corner_;
   std::vector<uint32_t> local_;
@@ -116,29 +124,48 @@ class ChunkWalk {
 
 }  // namespace
 
-std::vector<SurfaceChunk> unstructured_faces(const UnstructuredMesh& mesh, const std::vector<uint8_t>& states, const Context& ctx) {
+std::vector<SurfaceChunk> unstructured_faces(const UnstructuredMesh& mesh, const std::vector<uint8_t>& states,
+                                             std::vector<CurvedChunk>& curved, const Context& ctx) {
   const FaceMarks marks = match_faces(mesh, states, ctx);
   const PointReader at(mesh.points);
   const size_t cells = mesh.cells.size();
   std::array<int, 256> dimension{};  // looked up once per type, not per cell
+  std::array<size_t, 256> faces{};
   for (size_t t = 0; t < 256; ++t)
-    if (const CellTypeInfo* info = cell_type_info(uint8_t(t))) dimension[t] = info->dimension;
+    if (const CellTypeInfo* info = cell_type_info(uint8_t(t))) {
+      dimension[t] = info->dimension;
+      if (const LinearTopology* l = info->dimension == 3 ? linear_topology(linear_type(CellType(t))) : nullptr) faces[t] = l->face_count();
+    }
+  const int64_t* polyhedron_faces = mesh.polyhedron_faces.empty() ? nullptr : mesh.polyhedron_faces.view<int64_t>().data;
+  const size_t same = mesh.types.empty() ? faces[size_t(mesh.single_type)] : 0;  // faces of each cell
   std::vector<SurfaceChunk> chunks(marks.chunk_start.size());
+  curved.assign(chunks.size(), {});
   parallel_for(
       cells, FaceMarks::cells_per_chunk,
       [&](size_t begin, size_t end) {
         const size_t chunk = begin / FaceMarks::cells_per_chunk;
-        ChunkWalk walk(mesh, at, chunks[chunk]);
+        ChunkWalk walk(mesh, at, chunks[chunk], curved[chunk]);
         const uint8_t* external = marks.external.data() + marks.chunk_start[chunk];
-        CellFaceReader reader(mesh);
+        if (same > 0) {  // from mark to mark
+          const size_t n = same * (end - begin);
+          for (size_t at = 0; at < n;) {
+            const void* next = std::memchr(external + at, 1, n - at);
+            if (!next) break;
+            const size_t c = size_t(static_cast<const uint8_t*>(next) - external) / same;
+            if (states.empty() || states[begin + c] == cell_visible) walk.solid(begin + c, external + c * same, same);
+            at = (c + 1) * same;
+          }
+          return;
+        }
         for (size_t c = begin; c < end; ++c) {
           const bool visible = states.empty() || states[c] == cell_visible;
-          if (dimension[size_t(mesh.type(c))] == 3) {
-            const size_t n = reader.open(c);
+          const CellType type = mesh.type(c);
+          if (dimension[size_t(type)] == 3) {
+            const size_t n = type == CellType::polyhedron ? size_t(polyhedron_faces[c + 1] - polyhedron_faces[c]) : faces[size_t(type)];
             if (visible) walk.solid(c, external, n);
             external += n;
           } else if (visible) {
-            walk.other(c, dimension[size_t(mesh.type(c))]);
+            walk.other(c, dimension[size_t(type)]);
           }
         }
       },

@@ -71,7 +71,8 @@ void each_point(const DatasetPtr& d, size_t cell, F&& f) {
 }
 
 DatasetPtr listed_piece(const DatasetPtr& in, int piece, int pieces, int ghosts) {
-  const size_t n = in->cell_count();
+  const bool cloud = in->as<PointCloud>() != nullptr;
+  const size_t n = cloud ? in->point_count() : in->cell_count();
   const Run own = share(n, piece, pieces);
   std::vector<uint8_t> taken(n, 0), touched(in->point_count(), 0);
   std::fill(taken.begin() + ptrdiff_t(own.begin), taken.begin() + ptrdiff_t(own.end), uint8_t(1));
@@ -86,7 +87,7 @@ DatasetPtr listed_piece(const DatasetPtr& in, int piece, int pieces, int ghosts)
   for (size_t c = 0; c < n; ++c)
     if (taken[c]) cells.push_back(int64_t(c)), duplicate.push_back(c < own.begin || c >= own.end);
   DatasetPtr part = extract_cells(in, cells, "piece");
-  return ghosts > 0 && part->cell_count() == duplicate.size() ? with_ghosts(part, duplicate) : part;
+  return ghosts > 0 && !cloud && part->cell_count() == duplicate.size() ? with_ghosts(part, duplicate) : part;
 }
 
 }  // namespace
@@ -95,6 +96,36 @@ DatasetPtr take_piece(const DatasetPtr& in, int piece, int pieces, int ghost_lev
   if (piece < 0 || piece >= pieces) fail_usage(fmt::format("there is no piece {} of {}", piece, pieces), "piece", "pieces count from 0");
   if (pieces == 1) return in;
   return is_lattice(in->mesh()) ? lattice_piece(in, piece, pieces, size_t(ghost_levels)) : listed_piece(in, piece, pieces, ghost_levels);
+}
+
+namespace {
+
+// What is shared out: cells, or the points of a cloud.
+size_t parts_of(const Dataset& d) { return d.as<PointCloud>() ? d.point_count() : d.cell_count(); }
+
+Data cut(const Data& data, int pieces, Context& context) {
+  auto parts = std::make_shared<Collection>();
+  if (auto* c = std::get_if<CollectionPtr>(&data)) {
+    if (*c)
+      for (const Collection::Part& p : (*c)->parts) parts->parts.push_back({p.name, cut(p.data, pieces, context)});
+    return parts;
+  }
+  auto* d = std::get_if<DatasetPtr>(&data);
+  if (!d || !*d || parts_of(**d) < 2) return data;  // tables, and what cannot be cut
+  const int most = int(std::min<size_t>(size_t(pieces), parts_of(**d)));
+  for (int k = 0; k < most; ++k) {
+    context.check();
+    DatasetPtr part = take_piece(*d, k, most, 0, context);
+    if (parts_of(*part) > 0) parts->parts.push_back({std::to_string(k), std::move(part)});
+  }
+  return parts;
+}
+
+}  // namespace
+
+Data in_pieces(const Data& data, int pieces, Context& context) {
+  if (pieces < 1) fail_usage(fmt::format("{} pieces", pieces), "pieces", "at least 1");
+  return pieces == 1 ? data : cut(data, pieces, context);
 }
 
 }  // namespace sg

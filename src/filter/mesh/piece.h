@@ -20,12 +20,16 @@ inline void describe(Schema& s, PieceParams& p) {
 }
 
 /// Piece `piece` of `pieces`: the own cells of all pieces together are the cells of the mesh, each once. Grids are cut along their
-/// longest axis and stay grids; other meshes by runs of cell ids. A ghost layer holds every cell that shares a point with the layer
-/// before; its cells carry ghost_duplicate in cell_ghost. AMR: by runs of cell ids, as an UnstructuredMesh. A piece without cells
-/// is an empty unstructured mesh (grids: null Dataset is never returned). Throws Error(usage) for a piece that is not there.
+/// longest axis and stay grids; point clouds by runs of point ids, other meshes by runs of cell ids. A ghost layer holds every cell that
+/// shares a point with the layer before; its cells carry ghost_duplicate in cell_ghost. AMR: by runs of cell ids, as an UnstructuredMesh. A
+/// piece without cells is an empty unstructured mesh (grids: null Dataset is never returned). Throws Error(usage) for a piece that is not
+/// there.
 DatasetPtr take_piece(const DatasetPtr& in, int piece, int pieces, int ghost_levels, Context& context);
 inline DatasetPtr piece(const DatasetPtr& in, const PieceParams& p, Context& context) {
   return take_piece(in, p.piece, p.pieces, p.ghost_levels, context);
 }
+
+/// Each mesh as a collection of its pieces, named by their numbers, without those that have no cells; with 1 piece the data as they are.
+Data in_pieces(const Data& data, int pieces, Context& context);
 
 }  // namespace sg

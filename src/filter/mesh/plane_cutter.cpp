@@ -78,8 +78,13 @@ void PlaneCutter::close_loop(int64_t cell) {
     area += sg::cross(before, here);
     before = here;
   }
-  if (dot(area, plane_.normal) < 0) std::reverse(loop_.begin(), loop_.end());
-  out_.polygons.add(loop_, cell);
+  const Vec3 normal = plane_.normal_at ? plane_.normal_at(base) : plane_.normal;
+  if (dot(area, normal) < 0) std::reverse(loop_.begin(), loop_.end());
+  if (!plane_.normal_at) return out_.polygons.add(loop_, cell);
+  for (size_t k = 1; k + 1 < loop_.size(); ++k) {
+    const int64_t triangle[3] = {loop_[0], loop_[k], loop_[k + 1]};
+    out_.polygons.add(triangle, cell);
+  }
 }
 
 void PlaneCutter::end_solid(int64_t cell) {

@@ -19,7 +19,8 @@ inline uint32_t key_b(int64_t key) { return uint32_t(key); }
 struct PlaneField {
   std::function<double(size_t)> distance;
   std::function<Vec3(size_t)> position;
-  Vec3 normal;  ///< of the polygons
+  Vec3 normal;                               ///< of the polygons
+  std::function<Vec3(Vec3)> normal_at = {};  ///< the same for a shape that is not flat; its polygons become triangles
   /// A crossing on the edge of a key, the same for each cell that asks: share of the second end, and place.
   double share(int64_t key) const;
   Vec3 place(int64_t key) const;

@@ -4,100 +4,99 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "data/cell_reader.h"
 #include "data/field_ops.h"
+#include "filter/mesh/append.h"
+#include "filter/mesh/clip_cases.h"
+#include "filter/mesh/cut_numbers.h"
 #include "filter/mesh/extract.h"
 #include "filter/mesh/slice_impl.h"
+#include "filter/mesh/tessellate_cells.h"
 
 namespace sg {
-
-std::vector<double> detail::distances(size_t n, SlicePlane& plane, const std::function<Vec3(size_t)>& at) {
-  std::vector<double> d(n);
-  const double lowest = parallel_reduce(
-      n, 1 << 14, HUGE_VAL,
-      [&](size_t begin, size_t end) {
-        double low = HUGE_VAL;
-        for (size_t i = begin; i < end; ++i) {
-          d[i] = plane.raw(at(i));
-          low = std::min(low, d[i]);
-        }
-        return low;
-      },
-      [](double a, double b) { return std::min(a, b); });
-  if (lowest == 0) {
-    plane.sign = -1;
-    for (double& x : d) x = -x;
-  }
-  return d;
-}
 
 namespace {
 
 using namespace detail;
 
-SlicePlane plane_of(const Dataset& in, const SliceParams& p) {
-  SlicePlane r;
-  const Box3& box = in.bounds();
-  const bool shorthand = p.axis != "none" && !p.axis.empty();
-  if (p.position && !shorthand)
-    fail_usage("position needs an axis", "slice", fmt::format("write axis=z position={}", short_number(*p.position)));
-  if (shorthand && p.origin)
-    fail_usage("axis and origin say the same thing twice", "slice", "give axis and position, or origin and normal");
-  r.origin = p.origin.value_or(box.empty() ? Vec3() : box.center());
-  r.normal = p.normal;
-  if (shorthand) {
-    const int a = p.axis == "x" ? 0 : p.axis == "y" ? 1 : p.axis == "z" ? 2 : -1;
-    if (a < 0) fail_usage(fmt::format("'{}' is no axis", p.axis), "slice axis", "x, y, z or none");
-    r.normal = {};
-    r.normal[a] = 1;
-    if (p.position) r.origin[a] = *p.position;
-  }
-  // Dividing by the largest part first keeps tiny and huge normals from vanishing in the square.
-  const double largest = std::max({std::abs(r.normal.x), std::abs(r.normal.y), std::abs(r.normal.z)});
-  if (!(largest > 0) || !std::isfinite(largest)) fail_usage("the normal is zero", "slice normal", "give a direction, e.g. normal=0,0,1");
-  r.normal = normalize(r.normal / largest);
-  double reach = 0;
-  for (int a = 0; a < 3; ++a)
-    if (!box.empty())
-      reach = std::max({reach, std::abs(box.lo[a] - r.origin[a]), std::abs(box.hi[a] - r.origin[a]), std::abs(r.origin[a])});
-  r.snap = 4 * std::numeric_limits<double>::epsilon() * reach;
-  return r;
-}
-
 // ---- what the cells give ------------------------------------------------------------------------------------------------
-
-bool straddles(const CellsView& v, size_t cell, const std::vector<double>& d) {
-  const size_t begin = v.begin(cell), end = v.end(cell);
-  if (begin == end) return false;
-  bool front = false, behind = false;
-  for (size_t i = begin; i < end; ++i) {
-    const double x = d[size_t(v.connectivity[i])];
-    if (x != x) return false;  // a corner without a position
-    front |= x >= 0, behind |= x < 0;
-  }
-  return front && behind;
-}
 
 struct Listed {
   PointReader at;
   std::vector<double> d;
+  std::vector<uint8_t> side;  // 1 in front, 2 behind, 4 in the surface (too), 8 no position
 };
 
-std::shared_ptr<Listed> listed(const Points& points, SlicePlane& plane, Cut& cut) {
-  auto l = std::make_shared<Listed>(Listed{PointReader(points), {}});
-  l->d = distances(points.count(), plane, [&](size_t i) { return l->at[i]; });
-  cut.field = {[p = l.get()](size_t i) { return p->d[i]; }, [p = l.get()](size_t i) { return p->at[i]; }, plane.normal};
+// What cuts: a plane, or any function with its values at the points.
+struct Cutter {
+  SlicePlane plane;
+  const ImplicitFunction* function = nullptr;  // null: the plane
+  Array values;                                // of the function
+  double step = 0;                             // for its gradient
+};
+
+std::shared_ptr<Listed> listed(const Points& points, Cutter& cutter, Cut& cut) {
+  auto l = std::make_shared<Listed>(Listed{PointReader(points), {}, {}});
+  if (cutter.function) {
+    const auto v = cutter.values.view<double>();
+    l->d.assign(v.data, v.data + v.count);
+  } else {
+    l->d = distances(points.count(), cutter.plane, [&](size_t i) { return l->at[i]; });
+  }
+  l->side.resize(l->d.size());
+  parallel_for(l->d.size(), 1 << 15, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) l->side[i] = uint8_t((l->d[i] >= 0 ? 1 : l->d[i] < 0 ? 2 : 8) | (l->d[i] == 0 ? 4 : 0));
+  });
+  cut.field = {[p = l.get()](size_t i) { return p->d[i]; }, [p = l.get()](size_t i) { return p->at[i]; }, cutter.plane.normal};
+  if (const ImplicitFunction* f = cutter.function)
+    cut.field.normal_at = [f, step = cutter.step](Vec3 x) { return f->evaluate ? f->gradient(x, step) : Vec3(); };
   cut.keep = l;
   return l;
 }
 
 constexpr size_t cells_per_chunk = 1 << 13;
 
-Cut cut_unstructured(const UnstructuredMesh& m, const std::vector<uint8_t>& states, SlicePlane plane, Context& ctx) {
+// Bits of all corners.
+uint8_t sides_of(const CellsView& v, size_t cell, const std::vector<uint8_t>& side) {
+  uint8_t r = 0;
+  for (size_t i = v.begin(cell), end = v.end(cell); i < end; ++i) r |= side[size_t(v.connectivity[i])];
+  return r;
+}
+bool straddles(uint8_t sides) { return (sides & 11) == 3; }
+
+// A tetrahedron, pyramid, wedge or hexahedron that a plane crosses away from its corners: loops from a table. False when faces need a
+// decision, or when the cell is inside out.
+bool cut_by_table(const clipping::ClipTable& table, const int64_t* ids, const Listed& points, Vec3 normal, int64_t cell,
+                  SurfaceChunk& out) {
+  uint32_t pattern = 0;
+  const auto n = size_t(table.topology().corners);
+  for (size_t c = 0; c < n; ++c) pattern |= uint32_t(points.side[size_t(ids[c])] & 1) << c;
+  if (table.ambiguous(pattern)) return false;
+  const auto& loops = table.loops(pattern);
+  const auto& edges = table.topology().edges;
+  int64_t ring[12];
+  for (const auto& loop : loops) {
+    Vec3 at[3];
+    for (size_t k = 0; k < loop.size(); ++k) {
+      const auto [a, b] = edges[size_t(loop[k] - clipping::first_cut)];
+      const auto p = uint32_t(ids[a]), q = uint32_t(ids[b]);
+      ring[k] = crossing_key(p, q);
+      if (k < 3) {
+        const double da = points.d[std::min(p, q)], db = points.d[std::max(p, q)];
+        at[k] = lerp(points.at[std::min(p, q)], points.at[std::max(p, q)], da / (da - db));
+      }
+    }
+    if (dot(cross(at[1] - at[0], at[2] - at[0]), normal) < 0) std::reverse(ring, ring + loop.size());
+    out.polygons.add({ring, loop.size()}, cell);
+  }
+  return true;
+}
+
+Cut cut_unstructured(const UnstructuredMesh& m, const std::vector<uint8_t>& states, Cutter with, Context& ctx) {
   Cut cut;
-  const auto points = listed(m.points, plane, cut);
+  const auto points = listed(m.points, with, cut);
   const CellsView v = cells_view(m.cells);
   cut.chunks.resize((v.count + cells_per_chunk - 1) / cells_per_chunk);
-  std::vector<uint8_t> curved(cut.chunks.size());
   parallel_for(
       v.count, cells_per_chunk,
       [&](size_t begin, size_t end) {
@@ -107,9 +106,16 @@ Cut cut_unstructured(const UnstructuredMesh& m, const std::vector<uint8_t>& stat
         std::vector<uint32_t> ring;
         for (size_t c = begin; c < end; ++c) {
           if (!states.empty() && states[c] != cell_visible) continue;
-          if (!straddles(v, c, points->d)) continue;
+          const uint8_t sides = sides_of(v, c, points->side);
+          if (!straddles(sides)) continue;
           const CellType type = m.type(c), shape = linear_type(type);
-          curved[begin / cells_per_chunk] |= is_high_order(type);
+          if (!with.function && !(sides & 4)) {
+            if (const clipping::ClipTable* table = clipping::clip_table(type)) {
+              ids.clear();
+              for (size_t k = v.begin(c); k < v.end(c); ++k) ids.push_back(v.connectivity[k]);
+              if (cut_by_table(*table, ids.data(), *points, with.plane.normal, int64_t(c), cut.chunks[begin / cells_per_chunk])) continue;
+            }
+          }
           const int dimension = cell_type_info(type).dimension;
           if (dimension == 3) {
             cutter.begin_solid();
@@ -130,13 +136,12 @@ Cut cut_unstructured(const UnstructuredMesh& m, const std::vector<uint8_t>& stat
         }
       },
       &ctx);
-  if (std::find(curved.begin(), curved.end(), 1) != curved.end()) ctx.info("slice: curved cells are cut as their corners span them");
   return cut;
 }
 
-Cut cut_surface(const SurfaceMesh& m, const std::vector<uint8_t>& states, SlicePlane plane, Context& ctx) {
+Cut cut_surface(const SurfaceMesh& m, const std::vector<uint8_t>& states, Cutter with, Context& ctx) {
   Cut cut;
-  const auto points = listed(m.points, plane, cut);
+  const auto points = listed(m.points, with, cut);
   const CellArray* parts[4] = {&m.vertices, &m.lines, &m.polygons, &m.strips};
   size_t first = 0;
   for (int part = 0; part < 4; ++part) {
@@ -151,7 +156,7 @@ Cut cut_surface(const SurfaceMesh& m, const std::vector<uint8_t>& states, SliceP
             std::vector<int64_t> ids;
             for (size_t c = begin; c < end; ++c) {
               const auto id = int64_t(first + c);
-              if ((!states.empty() && states[size_t(id)] != cell_visible) || !straddles(v, c, points->d)) continue;
+              if ((!states.empty() && states[size_t(id)] != cell_visible) || !straddles(sides_of(v, c, points->side))) continue;
               ids.clear();
               for (size_t i = v.begin(c); i < v.end(c); ++i) ids.push_back(v.connectivity[i]);
               if (part == 1) cutter.cut_curve(ids, id);
@@ -196,66 +201,59 @@ std::vector<int64_t> near_cells(const Dataset& in, const std::vector<uint8_t>& s
 
 // ---- putting it together ------------------------------------------------------------------------------------------------
 
-// Distinct keys in ascending order; a bucket per range of first ends, so that sorting and looking up stay small.
-class KeyNumbers {
- public:
-  KeyNumbers(const std::vector<SurfaceChunk>& chunks, size_t points) : width_(points / buckets + 1), sorted_(buckets), start_(buckets + 1) {
-    std::vector<std::vector<int64_t>> found(buckets);
-    for (const SurfaceChunk& c : chunks)
-      for (const CellList* l : {&c.vertices, &c.lines, &c.polygons})
-        for (int64_t k : l->ids) found[detail::key_a(k) / width_].push_back(k);
-    parallel_for(buckets, 1, [&](size_t b, size_t) {
-      auto& s = sorted_[b] = std::move(found[b]);
-      std::sort(s.begin(), s.end(), [](int64_t a, int64_t c) { return uint64_t(a) < uint64_t(c); });
-      s.erase(std::unique(s.begin(), s.end()), s.end());
-    });
-    for (size_t b = 0; b < buckets; ++b) start_[b] = sorted_[b].size();
-    exclusive_scan(start_);
-  }
-  size_t size() const { return start_[buckets]; }
-  int32_t operator()(int64_t key) const {
-    const size_t b = detail::key_a(key) / width_;
-    const auto at =
-        std::lower_bound(sorted_[b].begin(), sorted_[b].end(), key, [](int64_t a, int64_t c) { return uint64_t(a) < uint64_t(c); });
-    return int32_t(start_[b] + size_t(at - sorted_[b].begin()));
-  }
-  std::vector<int64_t> keys() const {
-    std::vector<int64_t> r;
-    for (const auto& s : sorted_) r.insert(r.end(), s.begin(), s.end());
-    return r;
-  }
-
- private:
-  static constexpr size_t buckets = 1024;
-  size_t width_;
-  std::vector<std::vector<int64_t>> sorted_;
-  std::vector<size_t> start_;
-};
-
-DatasetPtr finish(const Dataset& in, const Cut& cut) {
-  const KeyNumbers number(cut.chunks, in.point_count());
+DatasetPtr finish(const Dataset& in, const Cut& cut, const ImplicitFunction* function = nullptr) {
+  std::vector<std::span<const uint64_t>> lists;
+  CellList SurfaceChunk::*const members[3] = {&SurfaceChunk::vertices, &SurfaceChunk::lines, &SurfaceChunk::polygons};
+  for (auto member : members)
+    for (const SurfaceChunk& c : cut.chunks)
+      lists.emplace_back(reinterpret_cast<const uint64_t*>((c.*member).ids.data()), (c.*member).ids.size());
+  const CutNumbers numbers = number_names(lists, in.point_count());
+  if (numbers.names.size() > size_t(INT32_MAX)) fail_usage("the cut has more than 2^31 points", "slice", "take a part of the mesh first");
   SurfaceMesh mesh;
+  CellArray* arrays[3] = {&mesh.vertices, &mesh.lines, &mesh.polygons};
   std::vector<int64_t> cells;
-  auto join = [&](CellList SurfaceChunk::*member) {
-    std::vector<const CellList*> lists;
+  size_t at = 0;
+  for (int kind = 0; kind < 3; ++kind) {
+    size_t count = 0, ids = 0, first = 0;
+    bool same = true;
+    uint32_t size = 0;
     for (const SurfaceChunk& c : cut.chunks) {
-      if ((c.*member).sizes.empty()) continue;
-      lists.push_back(&(c.*member));
-      cells.insert(cells.end(), (c.*member).sources.begin(), (c.*member).sources.end());
+      const CellList& l = c.*members[kind];
+      count += l.sizes.size(), ids += l.ids.size();
+      for (const uint32_t n : l.sizes) same = same && (size == 0 || n == size), size = n;
+      cells.insert(cells.end(), l.sources.begin(), l.sources.end());
     }
-    return cell_array(lists, [&](int64_t key) { return number(key); });
-  };
-  mesh.vertices = join(&SurfaceChunk::vertices);
-  mesh.lines = join(&SurfaceChunk::lines);
-  mesh.polygons = join(&SurfaceChunk::polygons);
-  const std::vector<int64_t> keys = number.keys();
+    if (count == 0) continue;
+    int32_t *to = nullptr, *offset = nullptr;
+    arrays[kind]->connectivity = Array::make<int32_t>(ids, 1, &to);
+    std::copy_n(numbers.number.begin() + ptrdiff_t(at), ids, to);
+    at += ids;
+    if (same) {
+      arrays[kind]->fixed = int(size);
+      continue;
+    }
+    arrays[kind]->offsets = Array::make<int32_t>(count + 1, 1, &offset);
+    for (const SurfaceChunk& c : cut.chunks)
+      for (const uint32_t n : (c.*members[kind]).sizes) *offset++ = int32_t(first), first += n;
+    *offset = int32_t(first);
+  }
+  const Plane<uint64_t>& keys = numbers.names;
   std::vector<EdgePoint> edges(keys.size());
   double* xyz = nullptr;
   mesh.points.xyz = Array::make<double>(keys.size(), 3, &xyz);
   parallel_for(keys.size(), 1 << 12, [&](size_t begin, size_t end) {
+    std::vector<Vec3> from(end - begin), to(end - begin);
+    std::vector<double> t(end - begin);
     for (size_t i = begin; i < end; ++i) {
-      edges[i] = {detail::key_a(keys[i]), detail::key_b(keys[i]), float(cut.field.share(keys[i]))};
-      const Vec3 p = cut.field.place(keys[i]);
+      const auto key = int64_t(keys[i]);
+      from[i - begin] = cut.field.position(key_a(key)), to[i - begin] = cut.field.position(key_b(key));
+      t[i - begin] = cut.field.share(key);
+    }
+    if (function) find_zeros(*function, from, to, t);
+    for (size_t i = begin; i < end; ++i) {
+      const auto key = int64_t(keys[i]);
+      edges[i] = {key_a(key), key_b(key), float(t[i - begin])};
+      const Vec3 p = key_a(key) == key_b(key) ? from[i - begin] : lerp(from[i - begin], to[i - begin], t[i - begin]);
       xyz[3 * i] = p.x, xyz[3 * i + 1] = p.y, xyz[3 * i + 2] = p.z;
     }
   });
@@ -272,10 +270,14 @@ DatasetPtr finish(const Dataset& in, const Cut& cut) {
 
 DatasetPtr slice_with(const DatasetPtr& in, const SlicePlane& plane, Context& ctx) {
   const std::vector<uint8_t> states = cell_states(*in);
-  if (auto* m = in->as<UnstructuredMesh>()) return finish(*in, cut_unstructured(*m, states, plane, ctx));
-  if (auto* m = in->as<SurfaceMesh>()) return finish(*in, cut_surface(*m, states, plane, ctx));
+  if (auto* m = in->as<UnstructuredMesh>()) return finish(*in, cut_unstructured(*m, states, {plane, nullptr, {}, 0}, ctx));
+  if (auto* m = in->as<SurfaceMesh>()) return finish(*in, cut_surface(*m, states, {plane, nullptr, {}, 0}, ctx));
   const auto d = lattice_dims(in->mesh());
-  if (is_lattice(in->mesh()) && d[0] > 1 && d[1] > 1 && d[2] > 1) return finish(*in, cut_lattice(in->mesh(), states, plane, ctx));
+  if (is_lattice(in->mesh()) && d[0] > 1 && d[1] > 1 && d[2] > 1) {
+    if (states.empty())
+      if (const DatasetPtr r = slice_rows(*in, plane, ctx)) return r;
+    return finish(*in, cut_lattice(in->mesh(), states, plane, ctx));
+  }
   const std::vector<int64_t> cells = near_cells(*in, states, plane);
   DatasetParts part = extract_cells(in, cells, "slice")->parts();
   part.fields.add(id_field("original_cell", Association::cell, cells));
@@ -283,13 +285,112 @@ DatasetPtr slice_with(const DatasetPtr& in, const SlicePlane& plane, Context& ct
   return slice_with(make_dataset(std::move(part)), plane, ctx);
 }
 
+// A shape that is not a plane: lists of cells, whatever the mesh was.
+DatasetPtr slice_shape(const DatasetPtr& in, const ImplicitParams& p, const DatasetPtr& surface, Context& ctx) {
+  DatasetPtr mesh = in;
+  if (!in->as<UnstructuredMesh>() && !in->as<SurfaceMesh>()) {
+    // Only cells near the surface become lists.
+    const std::vector<uint8_t> states = cell_states(*in);
+    std::vector<int64_t> cells;
+    if (in->as<AmrGrid>()) {
+      for (size_t c = 0; c < in->cell_count(); ++c)
+        if (states.empty() || states[c] == cell_visible) cells.push_back(int64_t(c));
+    } else {
+      const ImplicitFunction f = implicit_function(p, in, surface, "slice", ctx);
+      const Array values = values_at_points(f, in, ctx);
+      const auto d = values.view<double>();
+      CellReader reader(in);
+      for (size_t c = 0; c < in->cell_count(); ++c) {
+        if (!states.empty() && states[c] != cell_visible) continue;
+        reader.open(c);
+        bool front = false, behind = false;
+        for (const int64_t id : reader.ids()) front |= d[size_t(id)] >= 0, behind |= d[size_t(id)] < 0;
+        if (front && behind) cells.push_back(int64_t(c));
+      }
+    }
+    DatasetParts part = extract_cells(in, cells, "slice")->parts();
+    part.fields.add(id_field("original_cell", Association::cell, cells));
+    part.cell_ghost = {};
+    mesh = make_dataset(std::move(part));
+  }
+  const ImplicitFunction f = implicit_function(p, mesh, surface, "slice", ctx);
+  Cutter cutter;
+  cutter.function = &f;
+  cutter.values = values_at_points(f, mesh, ctx);
+  cutter.step = 1e-6 * std::max(mesh->bounds().diagonal(), 1e-300);
+  const std::vector<uint8_t> states = cell_states(*mesh);
+  if (auto* m = mesh->as<UnstructuredMesh>()) return finish(*mesh, cut_unstructured(*m, states, cutter, ctx), &f);
+  return finish(*mesh, cut_surface(*mesh->as<SurfaceMesh>(), states, cutter, ctx), &f);
+}
+
+bool has_curved_cells(const Dataset& in) {
+  const auto* m = in.as<UnstructuredMesh>();
+  if (!m) return false;
+  if (m->types.empty()) return is_high_order(m->single_type);
+  const auto types = m->types.view<uint8_t>();
+  for (size_t i = 0; i < types.count; ++i)
+    if (is_high_order(CellType(types[i]))) return true;
+  return false;
+}
+
+DatasetPtr slice_one(const DatasetPtr& in, const DatasetPtr& surface, const ImplicitParams& p, Context& ctx) {
+  if (surface || !p.function.empty() || !p.sphere.empty() || !p.cylinder.empty() || !p.box.empty() || !p.quadric.empty())
+    return slice_shape(in, p, surface, ctx);
+  const ImplicitFunction f = implicit_function(p, in, nullptr, "slice", ctx);
+  return slice_with(in, {f.origin, f.normal, f.snap, 1}, ctx);
+}
+
+// The planes that the parameters ask for, one after the other.
+std::vector<ImplicitParams> planes_of(const Dataset& in, const SliceParams& p) {
+  std::vector<ImplicitParams> r;
+  const bool several = p.planes != "none" && !p.planes.empty();
+  if (several && !p.positions.empty()) fail_usage("planes and positions are both given", "slice", "one of them at a time");
+  if (!p.positions.empty()) {
+    if (p.axis == "none" || p.axis.empty()) fail_usage("positions need an axis", "slice", "like axis=z positions=1,2,3");
+    if (p.position) fail_usage("position and positions are both given", "slice", "one of them at a time");
+    for (const double x : p.positions) r.emplace_back(p).position = x;
+  } else if (several) {
+    if (p.axis != "none" && !p.axis.empty()) fail_usage("planes and axis are both given", "slice", "one of them at a time");
+    const Box3& box = in.bounds();
+    const Vec3 middle = p.origin.value_or(box.empty() ? Vec3() : box.center());
+    for (const char a : p.planes) {
+      if (a < 'x' || a > 'z') fail_usage(fmt::format("'{}' is no list of axes", p.planes), "slice planes", "like planes=xyz");
+      ImplicitParams& plane = r.emplace_back(p);
+      plane.origin.reset();
+      plane.axis = std::string(1, a);
+      plane.position = middle[a - 'x'];
+    }
+  }
+  return r;
+}
+
 }  // namespace
 
-DatasetPtr slice(const DatasetPtr& in, const SliceParams& p, Context& ctx) {
+DatasetPtr slice(const DatasetPtr& in, const DatasetPtr& surface, const SliceParams& p, Context& ctx) {
   if (in->as<PointCloud>())
-    fail_usage("a plane cuts no cells of a point cloud", "slice", "keep points by value with threshold, or show the points as they are");
+    fail_usage("a surface cuts no cells of a point cloud", "slice", "keep points by value with threshold, or show the points as they are");
   if (in->point_count() >= UINT32_MAX) fail_usage("the mesh has more than 2^32 points", "slice", "take a part of it first");
-  const DatasetPtr out = slice_with(in, plane_of(*in, p), ctx);
+  DatasetPtr mesh = in;
+  if (has_curved_cells(*in)) {
+    ctx.info("slice: curved cells are made linear first");
+    mesh = tessellate(in, {}, ctx);
+  }
+  const std::vector<ImplicitParams> planes = planes_of(*mesh, p);
+  DatasetPtr out;
+  if (planes.empty()) {
+    out = slice_one(mesh, surface, p, ctx);
+  } else {
+    std::vector<Data> parts;
+    for (size_t i = 0; i < planes.size(); ++i) {
+      DatasetParts part = slice_one(mesh, surface, planes[i], ctx)->parts();
+      const size_t n = cell_count(part.mesh);
+      part.fields.add({"plane", Association::cell, Array::from_vector(std::vector<int32_t>(n, int32_t(i))), {}, Role::labels});
+      parts.emplace_back(make_dataset(std::move(part)));
+    }
+    AppendParams join;
+    join.part = false;
+    out = append(parts, join, ctx);
+  }
   if (out->cell_count() == 0) ctx.info("slice: the plane cuts no cell");
   return out;
 }

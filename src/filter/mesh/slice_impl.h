@@ -2,6 +2,7 @@
 // What the parts of slice() share.
 #pragma once
 #include "base/context.h"
+#include "base/parallel.h"
 #include "filter/mesh/plane_cutter.h"
 
 namespace sg::detail {
@@ -24,7 +25,29 @@ struct Cut {
 };
 
 /// Distances of listed points; turns the plane around when nothing lies behind it.
-std::vector<double> distances(size_t n, SlicePlane& plane, const std::function<Vec3(size_t)>& at);
+template <class At>
+std::vector<double> distances(size_t n, SlicePlane& plane, const At& at) {
+  std::vector<double> d(n);
+  const double lowest = parallel_reduce(
+      n, 1 << 14, HUGE_VAL,
+      [&](size_t begin, size_t end) {
+        double low = HUGE_VAL;
+        for (size_t i = begin; i < end; ++i) {
+          d[i] = plane.raw(at(i));
+          low = std::min(low, d[i]);
+        }
+        return low;
+      },
+      [](double a, double b) { return std::min(a, b); });
+  if (lowest == 0) {
+    plane.sign = -1;
+    for (double& x : d) x = -x;
+  }
+  return d;
+}
+
+/// The cut of a plane through a uniform or rectilinear grid without hidden cells; null where it takes the general way.
+DatasetPtr slice_rows(const Dataset& in, const SlicePlane& plane, Context& ctx);
 
 /// Cuts a lattice of dimension 3.
 Cut cut_lattice(const Mesh& mesh, const std::vector<uint8_t>& states, SlicePlane plane, Context& ctx);

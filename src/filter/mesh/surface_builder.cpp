@@ -51,25 +51,26 @@ CellArray cell_array(const std::vector<const CellList*>& lists, const std::funct
 AssembledSurface assemble(const std::vector<SurfaceChunk>& chunks, size_t point_count) {
   IdSet used(point_count);
   parallel_for(chunks.size(), 1, [&](size_t c, size_t) {
-    for (const CellList* l : {&chunks[c].vertices, &chunks[c].lines, &chunks[c].polygons})
+    for (const CellList* l : {&chunks[c].vertices, &chunks[c].lines, &chunks[c].polygons, &chunks[c].outlines})
       for (int64_t id : l->ids) used.add(size_t(id));
   });
   used.number();
   AssembledSurface r;
   r.points = used.members();
   auto number = [&](int64_t id) { return int32_t(used.rank(size_t(id))); };
-  auto join = [&](CellList SurfaceChunk::*member) {
+  auto join = [&](CellList SurfaceChunk::*member, bool cells = true) {
     std::vector<const CellList*> lists;
     for (const SurfaceChunk& c : chunks) {
       if ((c.*member).sizes.empty()) continue;
       lists.push_back(&(c.*member));
-      r.cells.insert(r.cells.end(), (c.*member).sources.begin(), (c.*member).sources.end());
+      if (cells) r.cells.insert(r.cells.end(), (c.*member).sources.begin(), (c.*member).sources.end());
     }
     return cell_array(lists, number);
   };
   r.mesh.vertices = join(&SurfaceChunk::vertices);
   r.mesh.lines = join(&SurfaceChunk::lines);
   r.mesh.polygons = join(&SurfaceChunk::polygons);
+  r.outlines = join(&SurfaceChunk::outlines, false);
   return r;
 }
 

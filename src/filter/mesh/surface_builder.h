@@ -37,10 +37,12 @@ struct CellList {
 };
 struct SurfaceChunk {
   CellList vertices, lines, polygons;
+  CellList outlines;  ///< edges to draw; no cells of the surface
 };
 
 struct AssembledSurface {
   SurfaceMesh mesh;             ///< without its points
+  CellArray outlines;           ///< over the same points
   std::vector<int64_t> points;  ///< input point of each point, ascending
   std::vector<int64_t> cells;   ///< input cell of each cell: vertices, lines, polygons
 };

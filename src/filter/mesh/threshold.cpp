@@ -7,6 +7,7 @@
 #include "data/field_ops.h"
 #include "data/lattice.h"
 #include "filter/mesh/extract.h"
+#include "filter/mesh/lattice_cells.h"
 #include "filter/mesh/surface_builder.h"
 
 namespace sg {
@@ -15,9 +16,25 @@ namespace {
 
 constexpr size_t grain = 1 << 14;
 
+using Ranges = std::vector<std::pair<double, double>>;
+
+Ranges ranges_of(const ThresholdParams& p) {
+  if (p.ranges.empty()) return {{p.min.value_or(-HUGE_VAL), p.max.value_or(HUGE_VAL)}};
+  if (p.min || p.max) fail_usage("ranges and min or max are both given", "threshold", "put all limits into ranges");
+  if (p.ranges.size() % 2 != 0)
+    fail_usage(fmt::format("needs pairs of numbers, not {}", p.ranges.size()), "threshold ranges", "like ranges=0,1,5,9");
+  Ranges r;
+  for (size_t i = 0; i < p.ranges.size(); i += 2) {
+    if (!(p.ranges[i] <= p.ranges[i + 1]))
+      fail_usage(fmt::format("the range {} to {} is empty", short_number(p.ranges[i]), short_number(p.ranges[i + 1])), "threshold ranges",
+                 "smaller number first");
+    r.emplace_back(p.ranges[i], p.ranges[i + 1]);
+  }
+  return r;
+}
+
 // One byte per tuple: is its value in range? Compared in the field's own precision, widened to double.
-std::vector<uint8_t> in_range(const Field& field, const ThresholdParams& p) {
-  const double lo = p.min.value_or(-HUGE_VAL), hi = p.max.value_or(HUGE_VAL);
+std::vector<uint8_t> in_range(const Field& field, const ThresholdParams& p, const Ranges& ranges) {
   const int components = field.components();
   if (p.component >= components)
     fail_usage(fmt::format("field '{}' has {} components, not component {}", field.name, components, p.component), "threshold",
@@ -27,6 +44,12 @@ std::vector<uint8_t> in_range(const Field& field, const ThresholdParams& p) {
   const int c = std::max(p.component, 0);
   dispatch(field.array, [&](auto v) {
     parallel_for(v.count, grain, [&](size_t begin, size_t end) {
+      if (!magnitude && v.stride == 1 && ranges.size() == 1) {
+        const auto [lo, hi] = ranges[0];
+        const auto* x = v.data;
+        for (size_t i = begin; i < end; ++i) r[i] = uint8_t(double(x[i]) >= lo) & uint8_t(double(x[i]) <= hi);
+        return;
+      }
       for (size_t i = begin; i < end; ++i) {
         double x = double(v(i, c));
         if (magnitude) {
@@ -34,7 +57,7 @@ std::vector<uint8_t> in_range(const Field& field, const ThresholdParams& p) {
           for (int k = 0; k < components; ++k) x += double(v(i, k)) * double(v(i, k));
           x = std::sqrt(x);
         }
-        r[i] = x >= lo && x <= hi;
+        for (const auto& [lo, hi] : ranges) r[i] |= x >= lo && x <= hi;
       }
     });
   });
@@ -97,17 +120,58 @@ std::vector<uint8_t> cells_by_points(const Dataset& in, bool all, const std::vec
   return keep;
 }
 
-const Field& chosen_field(const Dataset& in, const ThresholdParams& p) {
-  const Field* field = nullptr;
-  if (p.field.empty()) {
-    field = in.fields().active(1);
-    if (!field) fail_usage("the mesh has no scalar field", "threshold", "name one: field=NAME");
-  } else {
-    field = with_context("threshold", [&] { return &in.fields().require(p.field.name); });
+const Field& usable(const Field& field) {
+  if (field.association == Association::whole)
+    fail_usage(fmt::format("field '{}' belongs to the whole mesh, not to points or cells", field.name), "threshold");
+  return field;
+}
+
+std::vector<const Field*> chosen_fields(const Dataset& in, const ThresholdParams& p) {
+  std::vector<const Field*> r;
+  if (!p.fields.empty()) {
+    if (!p.field.empty()) fail_usage("field and fields are both given", "threshold", "name all in fields");
+    for (const std::string& name : p.fields)
+      r.push_back(&usable(with_context("threshold", [&]() -> const Field& { return in.fields().require(name); })));
+    return r;
   }
-  if (field->association == Association::whole)
-    fail_usage(fmt::format("field '{}' belongs to the whole mesh, not to points or cells", field->name), "threshold");
-  return *field;
+  if (!p.field.empty()) return {&usable(with_context("threshold", [&]() -> const Field& { return in.fields().require(p.field.name); }))};
+  const Field* field = in.fields().active(1);
+  if (!field) fail_usage("the mesh has no scalar field", "threshold", "name one: field=NAME");
+  return {&usable(*field)};
+}
+
+// Rows of bits from a byte a point: which cells of a lattice have all points (or any) in range.
+Bits lattice_cells_by_points(const BitRows& g, bool all, bool invert, const std::vector<uint8_t>& ok) {
+  Bits points(g.size()), cells(g.size());
+  parallel_for(g.rows(), 64, [&](size_t begin, size_t end) {
+    for (size_t row = begin; row < end; ++row)
+      for (size_t w = 0; w < g.words; ++w) {
+        const uint8_t* from = ok.data() + row * g.nx + 64 * w;
+        if (64 * w + 64 <= g.nx) {
+          points[row * g.words + w] = packed_bits(from);
+          continue;
+        }
+        uint8_t rest[64] = {};
+        std::copy(from, from + (g.nx - 64 * w), rest);
+        points[row * g.words + w] = packed_bits(rest);
+      }
+  });
+  parallel_for(g.rows(), 64, [&](size_t begin, size_t end) {
+    for (size_t row = begin; row < end; ++row) {
+      const size_t j = row % g.ny, k = row / g.ny;
+      for (size_t w = 0; w < g.words; ++w) {
+        uint64_t& cell = cells[row * g.words + w] = 0;
+        if (j + 1 >= g.ny || k + 1 >= g.nz) continue;
+        uint64_t every = ~uint64_t(0), some = 0;
+        for (const size_t r : {g.row(j, k), g.row(j + 1, k), g.row(j, k + 1), g.row(j + 1, k + 1)}) {
+          const uint64_t here = points[r + w], next = here >> 1 | (w + 1 < g.words ? points[r + w + 1] << 63 : 0);
+          every &= here & next, some |= here | next;
+        }
+        cell = ((all ? every : some) ^ (invert ? ~uint64_t(0) : 0)) & g.cell_mask(w);
+      }
+    }
+  });
+  return cells;
 }
 
 }  // namespace
@@ -116,21 +180,34 @@ DatasetPtr threshold(const DatasetPtr& in, const ThresholdParams& p, Context& ct
   if (p.min && p.max && *p.min > *p.max)
     fail_usage(fmt::format("min {} is above max {}", short_number(*p.min), short_number(*p.max)), "threshold",
                "swap them, or use invert=true");
-  const Field& field = chosen_field(*in, p);
-  std::vector<uint8_t> keep = in_range(field, p);
+  const Ranges ranges = ranges_of(p);
+  const std::vector<const Field*> fields = chosen_fields(*in, p);
+  const Field& field = *fields[0];
+  auto tell = [&](const DatasetPtr& out) {
+    if (out->cell_count() == 0 && (!out->as<PointCloud>() || out->point_count() == 0))
+      ctx.info(fmt::format("threshold: nothing is left, '{}' runs from {} to {}", field.name, short_number(in->range(field).lo),
+                           short_number(in->range(field).hi)));
+    return out;
+  };
+  std::vector<uint8_t> keep = in_range(field, p, ranges);
   ctx.check();
   const bool cloud = in->as<PointCloud>() != nullptr;
-  if (!cloud && field.association == Association::point) keep = cells_by_points(*in, p.all_points, keep);
-  if (p.invert)
-    for (uint8_t& k : keep) k = !k;
   const std::vector<uint8_t> states = cloud ? std::vector<uint8_t>() : cell_states(*in);
-  std::vector<int64_t> cells;
-  for (size_t c = 0; c < keep.size(); ++c)
-    if (keep[c] && (states.empty() || states[c] == cell_visible)) cells.push_back(int64_t(c));
-  if (cells.empty())
-    ctx.info(fmt::format("threshold: nothing is left, '{}' runs from {} to {}", field.name, short_number(in->range(field).lo),
-                         short_number(in->range(field).hi)));
-  return extract_cells(in, cells, "threshold");
+  const auto d = lattice_dims(in->mesh());
+  if (is_lattice(in->mesh()) && d[0] > 1 && d[1] > 1 && d[2] > 1 && fields.size() == 1 && states.empty() &&
+      field.association == Association::point && in->point_count() <= size_t(INT32_MAX))
+    return tell(extract_lattice_cells(in, lattice_cells_by_points(BitRows(d), p.all_points, p.invert, keep), "threshold"));
+  if (!cloud && field.association == Association::point) keep = cells_by_points(*in, p.all_points, keep);
+  for (size_t f = 1; f < fields.size(); ++f) {
+    std::vector<uint8_t> also = in_range(*fields[f], p, ranges);
+    if (!cloud && fields[f]->association == Association::point) also = cells_by_points(*in, p.all_points, also);
+    for (size_t c = 0; c < keep.size(); ++c) keep[c] &= also[c];
+  }
+  if (p.invert || !states.empty())
+    parallel_for(keep.size(), grain, [&](size_t begin, size_t end) {
+      for (size_t c = begin; c < end; ++c) keep[c] = (keep[c] != 0) != p.invert && (states.empty() || states[c] == cell_visible);
+    });
+  return tell(extract_marked(in, keep, "threshold"));
 }
 
 }  // namespace sg

@@ -13,6 +13,8 @@ struct ThresholdParams {
   std::optional<double> min = {}, max = {};
   bool all_points = true;
   bool invert = false;
+  std::vector<double> ranges = {};
+  std::vector<std::string> fields = {};
 };
 
 inline void describe(Schema& s, ThresholdParams& p) {
@@ -22,12 +24,15 @@ inline void describe(Schema& s, ThresholdParams& p) {
   s("max", p.max, "Largest value that is kept; default: no limit.").unit("@field");
   s("all_points", p.all_points, "With a point field: a cell stays when all of its points are in range, not just one.");
   s("invert", p.invert, "Keeps the cells that would go.");
+  s("ranges", p.ranges, "Several ranges in place of min and max: lo,hi,lo,hi,... ; a value in any of them is kept.").unit("@field");
+  s("fields", p.fields,
+    "Several fields in place of one, all of points or cells alike or mixed: a cell stays when each of them lets it stay.");
 }
 
-/// Keeps the cells (of a PointCloud: the points) whose value lies in [min, max]. NaN is in no range; hidden, refined and duplicate
-/// cells never stay, inverted or not. A SurfaceMesh stays one, a PointCloud stays one, every other kind becomes an
-/// UnstructuredMesh. Only used points are kept; all fields are carried, polyhedra keep their faces.
-/// Throws Error(usage) for unknown fields, fields of the whole, an empty range (min > max). O(cells), parallel.
+/// Keeps the cells (of a PointCloud: the points) whose value lies in [min, max], or in one of several ranges, for each of the fields. NaN
+/// is in no range; hidden, refined and duplicate cells never stay, inverted or not. A SurfaceMesh stays one, a PointCloud stays one, every
+/// other kind becomes an UnstructuredMesh. Only used points are kept; all fields are carried, polyhedra keep their faces. Throws
+/// Error(usage) for unknown fields, fields of the whole, an empty range (min > max), ranges that are no pairs. O(cells), parallel.
 DatasetPtr threshold(const DatasetPtr& in, const ThresholdParams& p, Context& ctx);
 
 }  // namespace sg

@@ -6,9 +6,9 @@
 #include "base/parallel.h"
 #include "base/text.h"
 #include "filter/field/point_cell.h"
+#include "filter/scalar/contour_active.h"
 #include "filter/scalar/contour_amr.h"
 #include "filter/scalar/contour_curved.h"
-#include "filter/scalar/contour_parts.h"
 
 namespace sg {
 
@@ -317,12 +317,13 @@ DatasetPtr contour(const DatasetPtr& given, const ContourParams& params, Context
   for (const Field& f : input->fields()) job.cells = job.cells || f.association == Association::cell;
   if (has_curved_cells(*input))
     return contour_curved(input, field, job.samples, values, params.tolerance, params.normals && dimension == 3, job.origin, context);
+  const std::string key = fmt::format("{} {}", field.name, component);
   job.edges = false;
   for (const Field& f : input->fields())
     job.edges = job.edges || (f.association == Association::point && !(f.name == field.name && f.components() == 1));
   std::vector<Piece> pieces;
   if (is_lattice(input->mesh()) && input->point_count() > 0) {
-    pieces = LatticeContour(job).run(values);
+    pieces = LatticeContour(job, lattice_index(job, key)).run(values);
   } else if (is_lattice(input->mesh())) {
     Piece none;
     float* p = nullptr;

@@ -66,15 +66,20 @@ T threshold(double value, bool& none) {
   }
 }
 
+// The word that the row fills in part.
 template <class T>
-void classify_row(const T* row, size_t nx, T least, uint64_t* out) {
+void last_word(const T* row, size_t nx, T least, uint64_t* out) {
   const size_t whole = nx / 64, rest = nx % 64;
-  at_least(row, whole, least, out);
-  if (!rest) return;
   T tail[64];
   for (size_t i = 0; i < 64; ++i) tail[i] = row[64 * whole + std::min(i, rest - 1)];
   at_least(tail, 1, least, out + whole);
   out[whole] &= ~uint64_t(0) >> (64 - rest);
+}
+
+template <class T>
+void classify_row(const T* row, size_t nx, T least, uint64_t* out) {
+  at_least(row, nx / 64, least, out);
+  if (nx % 64) last_word(row, nx, least, out);
 }
 
 template <class F>
@@ -119,6 +124,32 @@ bool classify(const Array& samples, size_t nx, size_t rows, std::span<const doub
           return nan;
         },
         [](bool a, bool b) { return a || b; }, &context);
+  });
+}
+
+void classify_words(const Array& samples, size_t nx, size_t row, double value, const uint8_t* wanted, uint64_t* bits, size_t words) {
+  native(samples, [&]<class T>(const T* all) {
+    bool none = false;
+    const T least = threshold<T>(value, none);
+    const T* p = all + row * nx;
+    uint64_t* out = bits + row * words;
+    const size_t whole = nx / 64;
+    for (size_t w = 0; w < words; ++w) {
+      if (!wanted[w]) continue;
+      if (none) out[w] = 0;
+      else if (w == whole) last_word(p, nx, least, out);
+      else at_least(p + 64 * w, 1, least, out + w);
+    }
+  });
+}
+
+bool any_missing(const Array& samples, Context& context) {
+  return native(samples, [&]<class T>(const T* p) {
+    if constexpr (std::is_floating_point_v<T>)
+      return parallel_reduce(
+          samples.count(), 65536, false, [&](size_t begin, size_t end) { return any_nan(p + begin, end - begin); },
+          [](bool a, bool b) { return a || b; }, &context);
+    return false;
   });
 }
 

@@ -7,6 +7,7 @@
 #include "base/huge_allocator.h"
 #include "base/parallel.h"
 #include "filter/scalar/cell_cases.h"
+#include "filter/scalar/contour_active.h"
 #include "filter/scalar/contour_parts.h"
 #include "filter/scalar/trilinear_cell.h"
 
@@ -94,7 +95,8 @@ Square square_of(uint32_t pattern, size_t p, double value, const LatticeFrame& f
 
 }  // namespace
 
-LatticeContour::LatticeContour(const Job& job) : job_(job), lattice_(job.input.mesh()), frame_(lattice_.view()), sample_(job.samples) {
+LatticeContour::LatticeContour(const Job& job, std::shared_ptr<const LatticeIndex> index)
+    : job_(job), index_(std::move(index)), lattice_(job.input.mesh()), frame_(lattice_.view()), sample_(job.samples) {
   words_ = (frame_.dims[0] + 63) / 64;
   flip_ = !frame_.right_handed();
   for (uint32_t p = 0; p < 256; ++p) {
@@ -149,12 +151,23 @@ std::vector<Piece> LatticeContour::run(std::span<const double> values) {
     const auto some = values.subspan(begin, std::min(together, values.size() - begin));
     std::vector<Cuts> cuts(some.size());
     std::vector<uint64_t*> bits;
+    std::vector<std::optional<ActiveWords>> where(some.size());
     for (size_t i = 0; i < some.size(); ++i) {
       cuts[i].value = some[i];
       cuts[i].inside.resize(rows * words_);
       bits.push_back(cuts[i].inside.data());
     }
-    const bool nan = classify(job_.samples, nx, rows, some, bits, words_, job_.context);
+    bool nan = false;
+    if (index_) {
+      for (size_t i = 0; i < some.size(); ++i) {
+        where[i].emplace(*index_, frame_.dims, some[i]);
+        where[i]->classify(job_.samples, bits[i], words_, job_.context);
+      }
+      if (!index_->missing.empty() && !missing_known_) skip_points(index_->missing);
+      missing_known_ = true;
+    } else {
+      nan = classify(job_.samples, nx, rows, some, bits, words_, job_.context);
+    }
     if (nan && !missing_known_) {
       std::vector<uint64_t> bad(rows * words_);
       find_missing(job_.samples, nx, rows, bad.data(), words_, job_.context);
@@ -162,8 +175,9 @@ std::vector<Piece> LatticeContour::run(std::span<const double> values) {
       missing_known_ = true;
     }
     Room room;
-    for (Cuts& c : cuts) {
-      find_cuts(c);
+    for (size_t i = 0; i < cuts.size(); ++i) {
+      Cuts& c = cuts[i];
+      find_cuts(c, where[i] ? &*where[i] : nullptr);
       room.edges += c.vertices, room.inner += c.inner, room.cells += c.cells;
     }
     if (room.edges + room.inner > size_t(INT32_MAX))
@@ -177,7 +191,7 @@ std::vector<Piece> LatticeContour::run(std::span<const double> values) {
   return pieces;
 }
 
-void LatticeContour::find_cuts(Cuts& cuts) const {
+void LatticeContour::find_cuts(Cuts& cuts, const ActiveWords* where) const {
   const size_t ny = frame_.dims[1], nz = frame_.dims[2], rows = ny * nz;
   if (!skip_.empty())
     for (int a = 0; a < frame_.axes; ++a) cuts.cut[a].resize(rows * words_);
@@ -185,7 +199,8 @@ void LatticeContour::find_cuts(Cuts& cuts) const {
   parallel_for(
       rows, std::max<size_t>(1, 512 / words_),
       [&](size_t begin, size_t end) {
-        for (size_t r = begin; r < end; ++r) count_row(cuts, r % ny, r / ny);
+        for (size_t r = begin; r < end; ++r)
+          if (!where || where->row(r % ny, r / ny)) count_row(cuts, r % ny, r / ny);
       },
       &job_.context);
   for (RowStart& row : cuts.rows) {

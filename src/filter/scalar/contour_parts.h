@@ -88,6 +88,9 @@ inline double crossing(double value, double a, double b) {
   return t >= 0 && t <= 1 ? t : 0.5;
 }
 
+struct LatticeIndex;
+class ActiveWords;
+
 /// Where the edges of a row of points are cut, and where their results go.
 struct RowStart {
   size_t vertex = 0, cell = 0, inner = 0;  ///< first of the row, after the prefix sum; before it, counts
@@ -97,7 +100,8 @@ struct RowStart {
 /// Kernels on lattices of two or three axes; make one for all values.
 class LatticeContour {
  public:
-  explicit LatticeContour(const Job& job);
+  /// `index`: what is known from earlier contours, or null.
+  explicit LatticeContour(const Job& job, std::shared_ptr<const LatticeIndex> index = nullptr);
   std::vector<Piece> run(std::span<const double> values);
 
  private:
@@ -105,13 +109,14 @@ class LatticeContour {
   struct Room;
   struct Slow;
   void skip_points(const std::vector<uint64_t>& bad);
-  void find_cuts(Cuts& cuts) const;
+  void find_cuts(Cuts& cuts, const ActiveWords* where) const;
   void count_row(Cuts& cuts, size_t j, size_t k) const;
   Piece generate(const Cuts& cuts, Room& room) const;
   void triangles_of_row(const Cuts& cuts, size_t j, size_t k, uint32_t first_point, int32_t* out, uint32_t* cells, InnerPoint* inner) const;
   void lines_of_row(const Cuts& cuts, size_t j, uint32_t first_point, int32_t* out, uint32_t* cells) const;
 
   const Job& job_;
+  std::shared_ptr<const LatticeIndex> index_;
   Lattice lattice_;
   LatticeFrame frame_;
   Sample sample_;
@@ -158,6 +163,10 @@ Piece contour_cells(const Job& job, double value, const CellRanges* ranges = nul
 /// Sets bit i of row r of bits[v] for samples >= values[v]. Returns true when a sample was NaN.
 bool classify(const Array& samples, size_t nx, size_t rows, std::span<const double> values, std::span<uint64_t* const> bits, size_t words,
               Context& context);
+/// The same for those words of row `row` that `wanted` names.
+void classify_words(const Array& samples, size_t nx, size_t row, double value, const uint8_t* wanted, uint64_t* bits, size_t words);
+/// Whether a sample is NaN.
+bool any_missing(const Array& samples, Context& context);
 /// Sets the bit of samples that are NaN.
 void find_missing(const Array& samples, size_t nx, size_t rows, uint64_t* bits, size_t words, Context& context);
 

@@ -1,133 +1,115 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/segment/label_surface.h"
 
-#include <type_traits>
+#include <algorithm>
 
 #include "base/parallel.h"
-#include "data/lattice.h"
+#include "data/field_ops.h"
+#include "filter/segment/label_nets.h"
+#include "filter/segment/samples.h"
 
 namespace sg {
 
 void describe(Schema& s, LabelSurfaceParams& p) {
-  s("field", p.field, "Point field of labels; default: the active scalar.");
+  s("field", p.field, "Field of labels; default: the first label field, else the active scalar.");
   s("background", p.background, "Label that is nothing.");
   s("labels", p.labels, "Only these labels; default: all but the background.");
+  s("smooth", p.smooth, "Smooth surfaces instead of the boxes of the voxels.");
+  s("iterations", p.iterations, "Steps of smoothing.").range(0, 10000);
+  s("walls", p.walls, "Also the faces between two labels.");
 }
 
 namespace {
 
-struct Face {
-  uint32_t i, j, k;  // wanted sample
-  uint8_t side;      // 2*axis + (0 towards lower, 1 towards higher index)
-};
+// Place of a corner moved by `offset`: between the samples before and after it, and half a step beyond the outermost.
+double place(const std::vector<double>& at, uint32_t corner, float offset) {
+  const size_t n = at.size();
+  if (n == 1) return at[0] + (double(corner) - 0.5 + double(offset));
+  const double t = double(corner) - 0.5 + double(offset);
+  const size_t i = size_t(std::clamp(t, 0.0, double(n - 2)));
+  return at[i] + (at[i + 1] - at[i]) * (t - double(i));
+}
 
-// Corners of the face of sample (i,j,k) on `side` in the lattice of voxel corners, outward order.
-void corner_indices(const Face& f, std::array<uint32_t, 3> (&corner)[4]) {
-  const int axis = f.side / 2, u = (axis + 1) % 3, v = (axis + 2) % 3;
-  const bool high = f.side & 1;
-  for (int c = 0; c < 4; ++c) {
-    const int step = high ? c : 3 - c;
-    std::array<uint32_t, 3> p{f.i, f.j, f.k};
-    p[size_t(axis)] += high ? 1 : 0;
-    p[size_t(u)] += step == 1 || step == 2 ? 1 : 0;
-    p[size_t(v)] += step >= 2 ? 1 : 0;
-    corner[c] = p;
-  }
+Points place_vertices(const Dataset& in, const SampleImage& image, const LabelNet& net, const std::vector<float>& offset) {
+  std::vector<uint32_t> corner(net.vertices() * 3);
+  net.fill_corners(corner.data());
+  const auto* uniform = in.as<UniformGrid>();
+  const Vec3 center = in.bounds().empty() ? Vec3{} : in.bounds().center();
+  Points points;
+  points.origin = center;
+  float* xyz = nullptr;
+  points.xyz = Array::make<float>(net.vertices(), 3, &xyz);
+  parallel_for(net.vertices(), 1 << 14, [&](size_t begin, size_t end) {
+    for (size_t v = begin; v < end; ++v) {
+      Vec3 p;
+      for (int a = 0; a < 3; ++a) p[a] = place(image.at[size_t(a)], corner[v * 3 + size_t(a)], offset[v * 3 + size_t(a)]);
+      p = (uniform ? uniform->origin + uniform->direction * p : p) - center;
+      for (int a = 0; a < 3; ++a) xyz[v * 3 + size_t(a)] = float(p[a]);
+    }
+  });
+  return points;
+}
+
+// Does a grid with these axes turn counterclockwise into clockwise?
+bool mirrored(const Dataset& in, const SampleImage& image) {
+  double sign = 1;
+  for (const auto& x : image.at) sign *= x.size() > 1 && x.back() < x.front() ? -1 : 1;
+  if (const auto* uniform = in.as<UniformGrid>()) sign *= determinant(uniform->direction);
+  return sign < 0;
+}
+
+template <class T>
+Array sides_array(const LabelCodes& codes, const std::vector<int64_t>& samples, double background) {
+  T* out = nullptr;
+  Array a = Array::make<T>(samples.size() / 2, 2, &out);
+  parallel_for(samples.size(), 1 << 15, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const int32_t c = samples[i] < 0 ? 0 : codes.code[size_t(samples[i])];
+      out[i] = c == 0 ? T(background) : T(codes.label(c));
+    }
+  });
+  return a;
 }
 
 }  // namespace
 
 DatasetPtr label_surface(const DatasetPtr& input, const LabelSurfaceParams& params, Context& context) {
-  const auto* grid = input->as<UniformGrid>();
-  if (!grid)
-    fail_usage(fmt::format("works on uniform grids, this is {}", input->kind()), "label_surface",
-               "use threshold and faces for other meshes");
-  const Field* field = params.field.empty() ? input->fields().active(1) : &input->fields().require(params.field.name, Association::point);
-  if (!field || field->association != Association::point || field->components() != 1)
-    fail_usage("needs a point field with one component", "label_surface");
-  const auto d = grid->dims;
-  if (d[0] >= UINT32_MAX || d[1] >= UINT32_MAX || d[2] >= UINT32_MAX) fail_usage("the grid is too large", "label_surface");
+  if (!(params.background == std::floor(params.background)) || !(std::abs(params.background) < 0x1p53))
+    fail_usage("the background is no whole number", "label_surface background");
+  const SampleImage image = sample_image(*input, params.field, "label_surface", true);
+  const LabelCodes codes = label_codes(image, params.background, params.labels, "label_surface", context);
+  const LabelNet net(codes.code.data(), image.dims, params.walls, context);
 
-  // Which samples are wanted, then one pass per slice for the faces; slices are joined in order.
-  std::vector<std::vector<Face>> slices(d[2]);
-  dispatch(field->array, [&](auto v) {
-    using T = std::remove_cvref_t<decltype(v[0])>;
-    auto wanted = [&](T x) {
-      if (double(x) == params.background || !(x == x)) return false;
-      return params.labels.empty() || std::find(params.labels.begin(), params.labels.end(), int64_t(x)) != params.labels.end();
-    };
-    parallel_for(
-        d[2], 1,
-        [&](size_t begin, size_t end) {
-          for (size_t k = begin; k < end; ++k)
-            for (size_t j = 0; j < d[1]; ++j)
-              for (size_t i = 0; i < d[0]; ++i) {
-                const size_t id = i + d[0] * (j + d[1] * k);
-                if (!wanted(v[id])) continue;
-                const size_t index[3] = {i, j, k}, stride[3] = {1, d[0], d[0] * d[1]};
-                for (size_t side = 0; side < 6; ++side) {
-                  const size_t a = side / 2;
-                  const bool border = side & 1 ? index[a] + 1 == d[a] : index[a] == 0;
-                  if (border || !wanted(v[side & 1 ? id + stride[a] : id - stride[a]]))
-                    slices[k].push_back({uint32_t(i), uint32_t(j), uint32_t(k), uint8_t(side)});
-                }
-              }
-        },
-        &context);
-  });
-  std::vector<size_t> offset(slices.size() + 1);
-  for (size_t k = 0; k < slices.size(); ++k) offset[k] = slices[k].size();
-  const size_t faces = exclusive_scan(offset);
-  if (faces * 4 > INT32_MAX) fail_usage("the surface has more than 500 million faces", "label_surface", "choose fewer labels");
-
-  // Corners are numbered in the order of their lattice index, shared between faces: two layers of ids at a time.
-  const size_t layer = (d[0] + 1) * (d[1] + 1);
-  std::vector<int32_t> ids[2] = {std::vector<int32_t>(layer, -1), std::vector<int32_t>(layer, -1)};
-  int32_t* connectivity = nullptr;
   SurfaceMesh mesh;
+  int32_t* connectivity = nullptr;
   mesh.polygons.fixed = 4;
-  mesh.polygons.connectivity = Array::make<int32_t>(faces * 4, 1, &connectivity);
-  std::vector<float> xyz;
-  std::vector<int64_t> sample(faces);
-  const Vec3 center = input->bounds().empty() ? Vec3{} : input->bounds().center();
-  mesh.points.origin = center;
-  for (size_t k = 0, at = 0; k < d[2]; ++k) {
-    context.check();
-    for (const Face& f : slices[k]) {
-      std::array<uint32_t, 3> corner[4];
-      corner_indices(f, corner);
-      for (int c = 0; c < 4; ++c) {
-        int32_t& id = ids[(corner[c][2] - k)][corner[c][0] + (d[0] + 1) * size_t(corner[c][1])];
-        if (id < 0) {
-          id = int32_t(xyz.size() / 3);
-          const Vec3 index{double(corner[c][0]) - 0.5, double(corner[c][1]) - 0.5, double(corner[c][2]) - 0.5};
-          const Vec3 p = grid->origin + grid->direction * (grid->spacing * index) - center;
-          xyz.insert(xyz.end(), {float(p.x), float(p.y), float(p.z)});
-        }
-        connectivity[at * 4 + size_t(c)] = id;
-      }
-      sample[at++] = int64_t(f.i + d[0] * (f.j + d[1] * size_t(f.k)));
-    }
-    std::swap(ids[0], ids[1]);
-    std::fill(ids[1].begin(), ids[1].end(), -1);
-  }
-  if (determinant(grid->direction) * grid->spacing.x * grid->spacing.y * grid->spacing.z < 0)  // a mirrored grid turns faces inside out
-    for (size_t q = 0; q < faces; ++q) std::reverse(connectivity + q * 4, connectivity + q * 4 + 4);
-  mesh.points.xyz = Array::from_vector(std::move(xyz), 3);
+  mesh.polygons.connectivity = Array::make<int32_t>(net.faces() * 4, 1, &connectivity);
+  std::vector<int64_t> samples(net.faces() * 2);
+  net.fill_faces(connectivity, samples.data());
+  if (mirrored(*input, image))
+    for (size_t q = 0; q < net.faces(); ++q) std::reverse(connectivity + q * 4, connectivity + q * 4 + 4);
+  mesh.points = place_vertices(*input, image, net, net.relaxed(params.smooth ? params.iterations : 0));
+
   DatasetParts out;
   out.mesh = std::move(mesh);
-  for (const Field& f : input->fields()) {
-    if (f.association != Association::point) continue;
-    std::byte* bytes = nullptr;
-    Field carried{f.name, Association::cell, Array::make_raw(f.array.type(), faces, f.components(), &bytes), f.unit, f.role};
-    dispatch(f.array, [&](auto v) {
-      using T = std::remove_cvref_t<decltype(v[0])>;
-      for (size_t q = 0; q < faces; ++q)
-        for (int c = 0; c < v.components; ++c) reinterpret_cast<T*>(bytes)[q * size_t(v.components) + size_t(c)] = v(size_t(sample[q]), c);
-    });
-    out.fields.add(std::move(carried));
+  out.time = input->time();
+  std::vector<int64_t> first(net.faces());
+  for (size_t q = 0; q < net.faces(); ++q) first[q] = samples[q * 2];
+  // The labels come first, so that they are what is coloured.
+  FieldSet carried;
+  carried.add(image.field);
+  for (Field f : input->fields()) {
+    if (f.name == image.field.name) continue;
+    if (f.role == Role::scalars) f.role = Role::none;
+    carried.add(std::move(f));
   }
-  if (faces == 0) context.info("label_surface: no sample carries a wanted label; the surface is empty");
+  carry_gathered(out.fields, carried, image.field.association, first, Association::cell);
+  carry_whole(out.fields, input->fields());
+  const bool wide = !codes.table.empty() || std::abs(params.background) > double(INT32_MAX);
+  out.fields.add({"sides", Association::cell,
+                  wide ? sides_array<int64_t>(codes, samples, params.background) : sides_array<int32_t>(codes, samples, params.background),
+                  "", Role::none});
+  if (net.faces() == 0) context.info("label_surface: no sample carries a wanted label; the surface is empty");
   return make_dataset(std::move(out));
 }
 

@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "data/field_ops.h"
 #include "data/lattice.h"
+#include "filter/mesh/faces.h"
 #include "filter/mesh/surface.h"
 #include "render/raster/prepared.h"
 
@@ -157,8 +158,10 @@ class Preparation {
     if (!given.data) fail_usage("the item has no data", "surface");
     if (!(given.opacity > 0)) return;
     SurfaceItem s = given;
-    if (!s.data->as<SurfaceMesh>())  // any other mesh shows its outer faces
-      s.data = *derived<DatasetPtr>(given.data, "outer faces", [&] { return surface_of(given.data, context_); });
+    if (!s.data->as<SurfaceMesh>()) {  // any other mesh shows its outer faces
+      const auto skin = derived<Skin>(given.data, "outer faces", [&] { return faces_and_edges(given.data, {}, context_); });
+      s.data = skin->surface, s.edge_lines = skin->edges;
+    }
     const SurfaceMesh& mesh = surface_mesh(s.data, "surface");
     PreparedItem p = start(PreparedItem::Kind::surface, s.data, s.opacity);
     bool any = false;
@@ -172,6 +175,14 @@ class Preparation {
     if (p.triangles.count > 0) push(std::move(p), p.triangles.count);
     if (!s.edges || !any) return;
     PreparedItem e = start(PreparedItem::Kind::lines, s.data, s.opacity);
+    if (s.edge_lines) {
+      const SurfaceMesh& lines = surface_mesh(s.edge_lines, "surface");
+      e.segments = derived<SegmentSet>(s.edge_lines, "segments", [&] { return line_segments(*s.edge_lines, lines); });
+      e.color = color_source(s.data, std::nullopt, s.edge_color, "surface");
+      const Positions own = packed_positions(s.edge_lines, lines.points);
+      e.positions = own.xyz, e.origin = own.origin, e.width = 1;
+      return push(std::move(e), e.segments->count());
+    }
     e.segments = derived<SegmentSet>(s.data, "edges", [&] { return polygon_edges(*s.data, mesh); });
     e.color = color_source(s.data, std::nullopt, s.edge_color, "surface");
     e.positions = positions, e.origin = origin, e.width = 1;

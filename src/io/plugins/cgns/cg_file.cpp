@@ -130,7 +130,7 @@ void CgFile::check_size(const Node& node, size_t element) const {
     fail(fmt::format("{} numbers are more than a file of {} bytes can hold", node.count(), file_size_), node);
 }
 
-Array CgFile::numbers(const Node& node) const {
+ElementType CgFile::number_type(const Node& node) const {
   const ElementType type = node.type == "I4"                        ? ElementType::i32
                            : node.type == "I8"                      ? ElementType::i64
                            : node.type == "U4"                      ? ElementType::u32
@@ -141,6 +141,11 @@ Array CgFile::numbers(const Node& node) const {
                            : node.type == "I1"                      ? ElementType::i8
                                                                     : ElementType::u16;
   if (type == ElementType::u16) fail(fmt::format("holds no numbers (data type '{}')", node.type), node);
+  return type;
+}
+
+Array CgFile::numbers(const Node& node) const {
+  const ElementType type = number_type(node);
   check_size(node, element_size(type));
   std::byte* out = nullptr;
   Array a = Array::make_raw(type, node.count(), 1, &out);

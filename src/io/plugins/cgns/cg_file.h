@@ -37,6 +37,8 @@ class CgFile {
   static const Node* named(const std::vector<Node>& nodes, std::string_view name);
   static const Node* labelled(const std::vector<Node>& nodes, std::string_view label);
 
+  /// The type of the node's numbers. Throws Error(data) when it holds none.
+  ElementType number_type(const Node& node) const;
   /// All numbers, packed, in the node's own type. Throws Error(data) when it holds none or more than the file can back.
   Array numbers(const Node& node) const;
   /// The same as 64-bit integers.

@@ -6,6 +6,7 @@
 #include "data/lattice_crop.h"
 #include "io/component_names.h"
 #include "io/plugins/cgns/cgns_elements.h"
+#include "io/unread.h"
 
 namespace sg::cg {
 
@@ -56,8 +57,8 @@ std::vector<size_t> rind_of(const CgFile& file, const std::vector<Node>& parts, 
   return rind;
 }
 
-/// The numbers of a node without its rind; empty when its size does not fit `n`.
-Array inner(const CgFile& file, const Node& node, const std::vector<size_t>& n, const std::vector<size_t>& rind) {
+/// The numbers of a node without its rind (or stand-ins for them); empty when its size does not fit `n`.
+Array inner(const CgFile& file, const Node& node, const std::vector<size_t>& n, const std::vector<size_t>& rind, bool header_only = false) {
   std::vector<size_t> whole = n;
   bool cut = false;
   for (size_t a = 0; a < n.size(); ++a) {
@@ -67,6 +68,7 @@ Array inner(const CgFile& file, const Node& node, const std::vector<size_t>& n, 
     cut = cut || rind[2 * a] || rind[2 * a + 1];
   }
   if (node.count() != ZoneSize::product(whole)) return {};
+  if (header_only) return unread_values(file.number_type(node), ZoneSize::product(n));
   const Array all = file.numbers(node);
   if (!cut) return all;
   std::array<size_t, 3> dims{1, 1, 1}, lo{0, 0, 0}, count{1, 1, 1};
@@ -75,12 +77,13 @@ Array inner(const CgFile& file, const Node& node, const std::vector<size_t>& n, 
 }
 
 /// Components side by side, as many as there are or three; of one type.
-Array grouped(const std::vector<Array>& members) {
+Array grouped(const std::vector<Array>& members, bool header_only = false) {
   if (members.size() == 1) return members[0];
   ElementType type = members[0].type();
   for (const Array& a : members)
     if (a.type() != type) type = ElementType::f64;
   const size_t n = members[0].count(), width = std::max<size_t>(members.size(), 3), size = element_size(type);
+  if (header_only) return unread_values(type, n, int(width));
   std::byte* out = nullptr;
   Array r = Array::make_raw(type, n, int(width), &out);
   std::vector<Array> from;
@@ -154,7 +157,7 @@ class Fields {
       if (!wanted(group, names)) continue;
       std::vector<Array> members;
       for (const size_t k : group.members) {
-        Array a = inner(file_, *nodes[k], n, rind);
+        Array a = inner(file_, *nodes[k], n, rind, options_.header_only);
         // An unstructured mesh may hold fewer cells than its zone says: those of lower dimension are left out.
         const size_t expected = association == Association::point ? ZoneSize::product(size_.points) : cells_;
         if (a.count() == expected && expected > 0) members.push_back(std::move(a));
@@ -166,7 +169,7 @@ class Fields {
       const Role role = members.size() == 1 ? Role::none : members.size() <= 3 ? Role::vectors : Role::tensors;
       std::string name = group.name;
       if (fields.find(name, association)) name += " of " + solution.name;  // several solutions at once
-      fields.add({std::move(name), association, grouped(members), unit_of(*nodes[group.members[0]]), role});
+      fields.add({std::move(name), association, grouped(members, options_.header_only), unit_of(*nodes[group.members[0]]), role});
     }
   }
 
@@ -174,7 +177,6 @@ class Fields {
 
  private:
   bool wanted(const NameGroup& group, const std::vector<std::string>& names) const {
-    if (options_.header_only) return false;
     if (options_.fields.empty()) return true;
     for (const std::string& f : options_.fields) {
       if (f == group.name || f.starts_with(group.name + " of ")) return true;

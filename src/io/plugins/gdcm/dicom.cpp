@@ -9,6 +9,7 @@
 #include "io/lattice_part.h"
 #include "io/plugin.h"
 #include "io/plugins/gdcm/dicom_picture.h"
+#include "io/unread.h"
 
 namespace sg {
 
@@ -132,7 +133,7 @@ DatasetPtr make_volume(const std::vector<Slice>& v, bool placed, const std::stri
   out.mesh = grid;
   const bool wanted =
       options.fields.empty() || std::find(options.fields.begin(), options.fields.end(), "DICOMImage") != options.fields.end();
-  if (options.header_only || !wanted) return make_dataset(std::move(out));
+  if (!wanted) return make_dataset(std::move(out));
 
   bool same_scale = true;
   int most_bits = p.bits_stored;
@@ -144,6 +145,12 @@ DatasetPtr make_volume(const std::vector<Slice>& v, bool placed, const std::stri
   widest.bits_stored = most_bits;
   const ElementType type = dicom_type(widest, !same_scale);
   const size_t tuple = element_size(type) * size_t(p.components()), slice = p.rows * p.columns * tuple;
+  auto add_field = [&](Array values) {
+    const Role role = values.components() >= 3 && values.type() == ElementType::u8 ? Role::colors : Role::scalars;
+    out.fields.add({"DICOMImage", Association::point, std::move(values), p.notes.empty() || p.notes[0].second != "CT" ? "" : "HU", role});
+    return make_dataset(std::move(out));
+  };
+  if (options.header_only) return add_field(unread_values(type, part.points(), p.components()));
   uint64_t total = 0;
   if (!multiply(part.points(), tuple, total) || total > uint64_t(1) << 46) fail_data("the volume is too large", where);
   std::byte* to = nullptr;
@@ -174,9 +181,7 @@ DatasetPtr make_volume(const std::vector<Slice>& v, bool placed, const std::stri
   }
   parallel_for(
       runs.size(), 1, [&](size_t i, size_t) { read(runs[i].first, runs[i].second); }, &context);
-  const Role role = a.components() >= 3 && a.type() == ElementType::u8 ? Role::colors : Role::scalars;
-  out.fields.add({"DICOMImage", Association::point, std::move(a), p.notes.empty() || p.notes[0].second != "CT" ? "" : "HU", role});
-  return make_dataset(std::move(out));
+  return add_field(std::move(a));
 }
 
 bool is_dicom_name(const std::string& name) {

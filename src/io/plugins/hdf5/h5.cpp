@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "io/plugins/hdf5/guarded.h"
+#include "io/plugins/hdf5/h5_probe.h"
 
 namespace sg::h5 {
 
@@ -43,9 +44,16 @@ constexpr size_t most_children = 1000000;
 
 }  // namespace
 
-File::File(const std::string& path) : path_(path) {
-  silence();
+static const std::string& probed(const std::string& path) {
   if (!file_exists(path) || is_folder(path)) MappedFile missing(path);  // says why it cannot be read
+  probe(path);
+  return path;
+}
+
+File::File(const std::string& path) : File(probed(path), unprobed) {}
+
+File::File(const std::string& path, Unprobed) : path_(path) {
+  silence();
   const Handle access(H5Pcreate(H5P_FILE_ACCESS));
   H5Pset_file_locking(access, false, true);  // reading needs no lock, and some shared folders have none
   H5Pset_fclose_degree(access, H5F_CLOSE_SEMI);

@@ -56,6 +56,9 @@ class File {
  public:
   /// Throws Error(data) for a file that is missing, no HDF5 file, truncated or damaged.
   explicit File(const std::string& path);
+  enum Unprobed { unprobed };
+  /// Without a look at all of it in a child process first (h5_probe.h).
+  File(const std::string& path, Unprobed);
 
   const std::string& path() const { return path_; }
   uint64_t size() const { return size_; }

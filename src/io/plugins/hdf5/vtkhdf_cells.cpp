@@ -155,6 +155,13 @@ void add_point_fields(const Group& g, const Partitions& p, DatasetParts& parts) 
         field_of(g, "PointData", name, Association::point, read_field(g, "PointData", name, p.point_offset, 0, p.point_count)));
 }
 
+// What shapes high-order cells: the field that the attribute of that name names, else the field of that name.
+const Field* shaping_field(const Group& g, const std::string& data, const char* attribute, Association association,
+                           const DatasetParts& parts) {
+  const auto named = g.file.is_group(g.at(data)) ? g.file.text_attribute(g.at(data), attribute) : std::nullopt;
+  return parts.fields.find(named.value_or(attribute), association);
+}
+
 }  // namespace
 
 void read_unstructured(const Group& g, DatasetParts& parts) {
@@ -174,11 +181,13 @@ void read_unstructured(const Group& g, DatasetParts& parts) {
       read_faces(g, p, cells, mesh);
     }
   }
-  parts.mesh = std::move(mesh);
   add_point_fields(g, p, parts);
   for (const std::string& name : field_names(g, "CellData"))
     parts.fields.add(
         field_of(g, "CellData", name, Association::cell, read_field(g, "CellData", name, cells.cell_offset, 0, cells.cell_count)));
+  if (const Field* f = shaping_field(g, "PointData", "RationalWeights", Association::point, parts)) vtk::set_weights(mesh, *f);
+  if (const Field* f = shaping_field(g, "CellData", "HigherOrderDegrees", Association::cell, parts)) vtk::set_degrees(mesh, *f);
+  parts.mesh = std::move(mesh);
 }
 
 void read_polydata(const Group& g, DatasetParts& parts) {
@@ -200,9 +209,11 @@ void read_polydata(const Group& g, DatasetParts& parts) {
     cells[k] = lists.cells;
     cell_count += lists.cell_count, cell_offset += lists.cell_offset;
   }
-  parts.mesh = std::move(mesh);
+  if (cell_count == 0 && p.point_count > 0) parts.mesh = PointCloud{std::move(mesh.points)};  // as clouds are written
+  else parts.mesh = std::move(mesh);
   add_point_fields(g, p, parts);
   for (const std::string& name : field_names(g, "CellData")) {
+    if (cell_count == 0) break;
     Array a = read_field(g, "CellData", name, cell_offset, 0, cell_count);
     if (p.size() > 1) {  // the file goes partition by partition, the mesh kind by kind
       std::vector<Array> slices[4];

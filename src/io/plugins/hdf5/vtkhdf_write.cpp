@@ -159,6 +159,14 @@ void write_fields(const Out& o, const std::string& group, Association associatio
     for (const auto& [role, attribute] : roles)
       if (f.role == role && o.d.fields().with_role(role) == &f) o.w.text(o(group), attribute, name);
   }
+  // What shapes high-order cells: the mesh's own, unless the file that was read kept it as a field.
+  const auto* u = o.d.as<UnstructuredMesh>();
+  const Array shape = !u || association == Association::whole ? Array() : association == Association::point ? u->weights : u->degrees;
+  const char* shaping = association == Association::point ? "RationalWeights" : "HigherOrderDegrees";
+  if (!shape.empty()) {
+    if (!o.d.fields().find(shaping, association)) put(shaping, shape.converted(ElementType::f64));
+    o.w.text(o(group), shaping, shaping);
+  }
   const Array& ghost = association == Association::point ? o.d.point_ghost() : o.d.cell_ghost();
   if (association != Association::whole && !ghost.empty()) put("vtkGhostType", ghost);
 }

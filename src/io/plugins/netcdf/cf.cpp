@@ -5,6 +5,7 @@
 #include "base/text.h"
 #include "data/lattice.h"
 #include "data/lattice_crop.h"
+#include "io/unread.h"
 
 namespace sg::nc {
 
@@ -55,7 +56,8 @@ struct Span {
 
 /// The numbers of one step, in the file's order of the variable's axes; `n` receives their lengths. `spans`: one for each axis; none =
 /// all of it. Along the slowest axis only what is wanted is read, along the others the range that holds it.
-Array read_step(const NcFile& file, const CfVariable& c, size_t step, const std::vector<Span>& spans, std::vector<size_t>& n) {
+Array read_step(const NcFile& file, const CfVariable& c, size_t step, const std::vector<Span>& spans, std::vector<size_t>& n,
+                bool header_only) {
   const Variable& v = *c.v;
   std::vector<size_t> start(v.shape.size(), 0), count(v.shape.size(), 1);
   std::array<size_t, 3> box{1, 1, 1}, kept{1, 1, 1}, stride{1, 1, 1};  // fastest first
@@ -72,6 +74,7 @@ Array read_step(const NcFile& file, const CfVariable& c, size_t step, const std:
     n.push_back(s.count);
     total *= s.count;
   }
+  if (header_only) return unread_values(decoded_type(file, v), total);
   if (c.time >= 0) start[size_t(c.time)] = std::min(step, v.shape[size_t(c.time)] - 1);
   if (!sparse) return decoded(file, v, file.read(v, start, count, v.element()));
   const auto slowest = size_t(c.axes[0]);
@@ -122,8 +125,8 @@ DatasetPtr read_grid(const NcFile& file, const CfModel& model, const CfGrid& gri
       for (size_t a = 0; a < 3; ++a)
         if (own[a] == int(k)) spans[k] = region[a];
     }
-    Array a = read_step(file, c, step, spans, n);
-    a = permuted(a, n, own);
+    Array a = read_step(file, c, step, spans, n, options.header_only);
+    if (!options.header_only) a = permuted(a, n, own);
     parts.fields.add({c.v->name, mesh.association, std::move(a), unit_of(file, *c.v), Role::none});
     if (!c.first.empty()) {
       std::string held;
@@ -137,14 +140,15 @@ DatasetPtr read_grid(const NcFile& file, const CfModel& model, const CfGrid& gri
   for (const bool last : {false, true})
     for (const CfVariable& c : grid.variables) {
       const bool is_coordinate = std::find(coordinates.begin(), coordinates.end(), c.v->name) != coordinates.end();
-      if (options.header_only || is_coordinate != last || !wanted(options, c.v->name)) continue;
+      if (is_coordinate != last || !wanted(options, c.v->name)) continue;
       if (std::find(mesh.used.begin(), mesh.used.end(), c.v) == mesh.used.end()) add(c);
     }
-  if (main && !options.header_only)
+  if (main)
     for (const CfVariable& c : model.loose()) {
       if (!wanted(options, c.v->name)) continue;
       std::vector<size_t> n;
-      parts.fields.add({c.v->name, Association::whole, read_step(file, c, step, {}, n), unit_of(file, *c.v), Role::none});
+      parts.fields.add(
+          {c.v->name, Association::whole, read_step(file, c, step, {}, n, options.header_only), unit_of(file, *c.v), Role::none});
     }
   parts.mesh = std::move(mesh.mesh);
   parts.point_ghost = mesh.point_ghost, parts.cell_ghost = mesh.cell_ghost;

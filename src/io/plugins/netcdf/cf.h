@@ -60,6 +60,8 @@ class CfModel {
 /// The numbers of a variable as they are meant: unpacked (scale_factor, add_offset), with NaN for missing ones. Integers without
 /// packing and missing values stay what they are.
 Array decoded(const NcFile& file, const Variable& v, const Array& stored);
+/// The type that decoded() gives to the values of a variable.
+ElementType decoded_type(const NcFile& file, const Variable& v);
 
 /// A mesh, and how the variables' numbers go on it.
 struct CfMesh {

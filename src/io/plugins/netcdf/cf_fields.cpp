@@ -56,25 +56,36 @@ Array decode(const View<T>& in, const Coding& c) {
   return r;
 }
 
+bool is_unsigned(const NcFile& file, const Variable& v) { return equal_ignoring_case(file.text(&v, "_Unsigned"), "true"); }
+
+ElementType unsigned_of(ElementType t) {
+  return t == ElementType::i8 ? ElementType::u8 : t == ElementType::i16 ? ElementType::u16 : t == ElementType::i32 ? ElementType::u32 : t;
+}
+
+// f32 where it holds every value that small stored numbers can stand for.
+bool narrow(const Coding& c, ElementType stored) {
+  const bool small = element_size(stored) <= 2 || stored == ElementType::f32;
+  const auto single = [](double x) { return double(float(x)) == x; };
+  return small && single(c.scale) && single(c.offset);
+}
+
 }  // namespace
+
+ElementType decoded_type(const NcFile& file, const Variable& v) {
+  const ElementType stored = is_unsigned(file, v) ? unsigned_of(v.element()) : v.element();
+  const Coding c = coding_of(file, v);
+  return c.plain() ? stored : narrow(c, stored) ? ElementType::f32 : ElementType::f64;
+}
 
 Array decoded(const NcFile& file, const Variable& v, const Array& read) {
   Array stored = read;
-  if (const std::string u = file.text(&v, "_Unsigned"); equal_ignoring_case(u, "true") && !is_float(read.type())) {
-    const ElementType t = read.type() == ElementType::i8    ? ElementType::u8
-                          : read.type() == ElementType::i16 ? ElementType::u16
-                          : read.type() == ElementType::i32 ? ElementType::u32
-                                                            : read.type();
-    stored = Array(read.buffer(), t, read.count());
-  }
+  if (is_unsigned(file, v) && !is_float(read.type())) stored = Array(read.buffer(), unsigned_of(read.type()), read.count());
   const Coding c = coding_of(file, v);
   if (c.plain()) return stored;
-  const bool small = element_size(stored.type()) <= 2 || stored.type() == ElementType::f32;
-  const auto single = [](double x) { return double(float(x)) == x; };
-  const bool narrow = small && single(c.scale) && single(c.offset);
+  const bool single = narrow(c, stored.type());
   return dispatch(stored, [&](const auto& in) {
     using T = std::remove_cvref_t<decltype(in[0])>;
-    return narrow ? decode<T, float>(in, c) : decode<T, double>(in, c);
+    return single ? decode<T, float>(in, c) : decode<T, double>(in, c);
   });
 }
 

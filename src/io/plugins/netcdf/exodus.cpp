@@ -2,6 +2,7 @@
 #include "io/plugins/netcdf/exodus.h"
 
 #include "base/text.h"
+#include "io/unread.h"
 
 namespace sg::nc {
 
@@ -85,8 +86,9 @@ ExodusMesh::ExodusMesh(const NcFile& file, const ReadOptions& options, Context& 
   // Global variables: one number each at this step.
   const Variable* names = file.find("name_glo_var");
   const Variable* v = file.find("vals_glo_var");
-  if (!options.header_only && names && names->is_text() && v && v->is_number() && v->shape.size() == 2 && step_ < v->shape[0]) {
-    const Array all = file.read(*v, {step_, 0}, {1, v->shape[1]}, ElementType::f64);
+  if (names && names->is_text() && v && v->is_number() && v->shape.size() == 2 && step_ < v->shape[0]) {
+    const Array all =
+        options.header_only ? unread_values(ElementType::f64, v->shape[1]) : file.read(*v, {step_, 0}, {1, v->shape[1]}, ElementType::f64);
     const std::vector<std::string> words = file.strings(*names);
     for (size_t i = 0; i < std::min(words.size(), all.count()); ++i)
       if (wanted(words[i])) whole_.add({words[i], Association::whole, all.slice(i, i + 1), {}, Role::none});

@@ -3,6 +3,7 @@
 #include "base/parallel.h"
 #include "io/component_names.h"
 #include "io/plugins/netcdf/exodus.h"
+#include "io/unread.h"
 
 namespace sg::nc {
 
@@ -44,11 +45,13 @@ std::optional<Array> ExodusMesh::values(const ObjectKind& kind, size_t i, const 
   if (v) {
     if (!v->is_number() || v->shape.size() != 2 || v->shape[1] != n) file_.fail(fmt::format("must hold {} numbers a step", n), v->name);
     if (step_ >= v->shape[0]) return {};
+    if (options_.header_only) return unread_values(ElementType::f64, n);
     return file_.read(*v, {step_, 0}, {1, n}, ElementType::f64);
   }
   if (o) return {};
   v = file_.find("vals_nod_var");  // older files: all variables together
   if (!v || !v->is_number() || v->shape.size() != 3 || v->shape[2] != n || i >= v->shape[1] || step_ >= v->shape[0]) return {};
+  if (options_.header_only) return unread_values(ElementType::f64, n);
   return file_.read(*v, {step_, i, 0}, {1, 1, n}, ElementType::f64);
 }
 
@@ -56,6 +59,7 @@ std::optional<Array> ExodusMesh::values(const ObjectKind& kind, size_t i, const 
 Array ExodusMesh::grouped(const std::vector<Array>& members) const {
   if (members.size() == 1) return members[0];
   const size_t n = members[0].count(), width = std::max<size_t>(members.size(), 3);
+  if (options_.header_only) return unread_values(ElementType::f64, n, int(width));
   double* out = nullptr;
   Array r = Array::make<double>(n, int(width), &out);
   parallel_for(n, grain, [&](size_t begin, size_t end) {
@@ -70,7 +74,7 @@ Array ExodusMesh::grouped(const std::vector<Array>& members) const {
 FieldSet ExodusMesh::object_fields(const ExodusObject& o, size_t cells) {
   FieldSet fields;
   const Association a = Association::cell;
-  if (!options_.header_only && cells == o.size) {
+  if (cells == o.size) {
     const std::vector<std::string> names = variable_names(*o.kind);
     for (const NameGroup& group : group_components(names, space_ == 2)) {
       bool any = wanted(group.name);
@@ -94,7 +98,7 @@ FieldSet ExodusMesh::object_fields(const ExodusObject& o, size_t cells) {
     std::fill(out, out + cells, int32_t(o.id));
     fields.add({"ObjectId", a, std::move(id), {}, Role::labels});
   }
-  if (o.kind == &element_blocks && !options_.header_only) {
+  if (o.kind == &element_blocks) {
     add_map(fields, a, "elem_num_map", "GlobalElementId", o.first, o.size, true, nullptr);
     for (size_t i = 1; i <= file_.dim("num_elem_maps").value_or(0); ++i) {
       const Variable* names = file_.find("emap_names");
@@ -122,7 +126,6 @@ void ExodusMesh::add_map(FieldSet& fields, Association a, const char* variable, 
 }
 
 void ExodusMesh::add_point_fields(FieldSet& fields, const std::vector<int64_t>* nodes) {
-  if (options_.header_only) return;
   if (!node_fields_) {
     static const ObjectKind nodal{"nodes", "", "", "", "", "nod", "", false};
     node_fields_.emplace();
@@ -147,7 +150,8 @@ void ExodusMesh::add_point_fields(FieldSet& fields, const std::vector<int64_t>* 
   }
   for (const Field& f : *node_fields_) {
     Field copy = f;
-    if (nodes) copy.array = gathered(f.array, *nodes);
+    const bool unread = options_.header_only && is_float(f.array.type());  // maps are read: only so one knows whether they say anything
+    if (nodes) copy.array = unread ? unread_values(f.array.type(), nodes->size(), f.components()) : gathered(f.array, *nodes);
     fields.add(std::move(copy));
   }
 }

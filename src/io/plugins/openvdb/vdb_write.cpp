@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "io/lattice_part.h"
 #include "io/plugins/openvdb/vdb.h"
 
 namespace sg {
@@ -36,10 +37,11 @@ openvdb::GridBase::Ptr sparse(const Array& values, const openvdb::CoordBBox& box
 void write_vdb(const std::string& path, const Data& data, const WriteOptions&, Context& context) {
   start_openvdb();
   const DatasetPtr d = single_dataset(data, "writing OpenVDB");
-  const UniformGrid* g = d->as<UniformGrid>();
-  if (!g)
+  const UniformGrid* grid_of_data = d->as<UniformGrid>();
+  if (!grid_of_data)
     fail_usage(fmt::format("an OpenVDB file holds uniform grids, not a {} mesh", d->kind()), path,
                "sample it on a grid first: -f 'resample'");
+  const UniformGrid placed = with_long_axes(*grid_of_data), *g = &placed;
   for (const size_t n : g->dims)
     if (n > size_t(1) << 30) fail_usage(fmt::format("{} points along an axis", n), path);
   const openvdb::Coord last(int(g->dims[0]) - 1, int(g->dims[1]) - 1, int(g->dims[2]) - 1);

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: Apache-2.0
+// Clips unstructured meshes: whole cells by a bit each, cut ones cell by cell, twice: to count, and to write.
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "filter/mesh/clip_pieces.h"
+#include "filter/mesh/id_set.h"
+#include "filter/mesh/surface_builder.h"
+
+namespace sg::clipping {
+
+void allocate(Build& b, size_t whole_cells, size_t whole_ids, const PieceCounts& pieces, int32_t** connectivity, int32_t** offsets,
+              uint8_t** types) {
+  const size_t cells = whole_cells + pieces.cells, ids = whole_ids + pieces.ids;
+  if (ids > size_t(INT32_MAX)) fail_usage("the result has more than 2^31 corners", "clip", "take a part of the mesh first");
+  b.connectivity = Array::make<int32_t>(ids, 1, connectivity);
+  b.offsets = Array::make<int32_t>(cells + 1, 1, offsets);
+  b.types = Array::make<uint8_t>(cells, 1, types);
+  (*offsets)[cells] = int32_t(ids);
+  b.source.resize(cells);
+  b.inner_first.assign(pieces.inner + 1, 0);
+  b.inner_points.resize(pieces.inner_ids);
+  b.inner_weights.resize(pieces.inner_ids);
+}
+
+namespace {
+
+constexpr size_t grain = 1 << 13;  // a multiple of 64
+
+struct Chunk {
+  std::vector<uint32_t> cut_cells;
+  size_t whole = 0, whole_ids = 0;
+  PieceCounts pieces;
+  std::vector<uint32_t> face_counts, face_sizes;  // of polyhedra among the pieces; zeros for other pieces
+  std::vector<int32_t> face_ids;
+  bool polyhedra = false;
+};
+
+class ListClip {
+ public:
+  explicit ListClip(const Job& job)
+      : job_(job),
+        mesh_(*job.in->as<UnstructuredMesh>()),
+        cells_(cells_view(mesh_.cells)),
+        faces_(cells_view(mesh_.faces)),
+        values_(job.values()),
+        used_(mesh_.points.count()),
+        whole_((cells_.count + 63) / 64),
+        chunks_((cells_.count + grain - 1) / grain),
+        cuts_(chunks_.size()),
+        reader_(mesh_.points) {}
+
+  Build run() {
+    classify_points();
+    const std::vector<uint8_t> states = cell_states(*job_.in);
+    parallel_for(
+        cells_.count, grain, [&](size_t begin, size_t end) { find(begin, end, states); }, &job_.context);
+    used_.number();
+    CutNumbers numbers = number_names({cuts_.begin(), cuts_.end()}, mesh_.points.count());
+    Build b;
+    b.cuts = std::move(numbers.names);
+    write(b, numbers.number);
+    take_faces(b);
+    return b;
+  }
+
+ private:
+  void classify_points() {
+    sides_.resize(mesh_.points.count());
+    parallel_for(sides_.size(), 1 << 15, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) sides_[i] = side_of(values_(i), job_.keep);
+    });
+  }
+
+  // Pieces of cell c, whatever it is.
+  const CellPieces& pieces(CellClipper& clipper, size_t c, std::vector<int64_t>& ids, std::vector<double>& v) const {
+    const CellType type = mesh_.type(c);
+    ids.clear(), v.clear();
+    for (size_t k = cells_.begin(c); k < cells_.end(c); ++k) ids.push_back(cells_.connectivity[k]);
+    if (type == CellType::pixel) std::swap(ids[2], ids[3]);
+    for (const int64_t id : ids) v.push_back(values_(size_t(id)));
+    if (const ClipTable* table = clip_table(type)) return clipper.solid(*table, ids.data(), v.data());
+    const int dimension = cell_type_info(type).dimension;
+    if (dimension == 2) return clipper.polygon(ids, v);
+    if (dimension == 1) return clipper.chain(ids, v);
+    if (dimension == 0) return clipper.dots(ids, v);
+    std::vector<std::vector<uint16_t>> faces;
+    if (type == CellType::polyhedron) {
+      const auto of_cell = mesh_.polyhedron_faces.view<int64_t>();
+      for (size_t f = size_t(of_cell[c]); f < size_t(of_cell[c + 1]); ++f) {
+        auto& face = faces.emplace_back();
+        for (size_t k = 0; k < faces_.size(f); ++k)
+          face.push_back(uint16_t(std::find(ids.begin(), ids.end(), faces_.point(f, k)) - ids.begin()));
+      }
+    } else if (const LinearTopology* t = linear_topology(type)) {  // prisms
+      for (size_t f = 0; f < t->face_count(); ++f) faces.emplace_back(t->face(f).begin(), t->face(f).end());
+    }
+    return clipper.polyhedron(ids, v, std::move(faces));
+  }
+
+  CellClipper clipper() const {
+    return {job_.keep, [this](size_t i) { return reader_[i]; }};
+  }
+
+  void find(size_t begin, size_t end, const std::vector<uint8_t>& states) {
+    Chunk& chunk = chunks_[begin / grain];
+    std::vector<uint64_t>& cuts = cuts_[begin / grain];
+    CellClipper clip = clipper();
+    std::vector<int64_t> ids;
+    std::vector<double> v;
+    for (size_t c = begin; c < end; ++c) {
+      if (!states.empty() && states[c] != cell_visible) continue;
+      const size_t first = cells_.begin(c), last = cells_.end(c);
+      uint8_t sides = first == last ? uint8_t(side_missing) : uint8_t(0);
+      for (size_t k = first; k < last; ++k) sides |= sides_[size_t(cells_.connectivity[k])];
+      const Fate fate = fate_of(sides, job_.keep.outside);
+      if (fate == Fate::none) continue;
+      if (fate == Fate::whole) {
+        whole_[c >> 6] |= uint64_t(1) << (c & 63);
+        ++chunk.whole, chunk.whole_ids += last - first;
+        for (size_t k = first; k < last; ++k) used_.add(size_t(cells_.connectivity[k]));
+        if (mesh_.type(c) == CellType::polyhedron) chunk.polyhedra = true;
+        continue;
+      }
+      const CellPieces& p = pieces(clip, c, ids, v);
+      if (p.types.empty()) continue;
+      chunk.cut_cells.push_back(uint32_t(c));
+      count_pieces(clip, p, chunk.pieces, &cuts, [&](uint64_t id) { used_.add(size_t(id)); });
+      chunk.polyhedra = chunk.polyhedra || !p.face_sizes.empty();
+    }
+  }
+
+  void write(Build& b, const Plane<uint32_t>& number) {
+    // Where each chunk's results go.
+    std::vector<size_t> cell(chunks_.size() + 1), id(chunks_.size() + 1), name(chunks_.size() + 1);
+    std::vector<PieceCounts> piece(chunks_.size());
+    PieceCounts sum;
+    for (size_t i = 0; i < chunks_.size(); ++i) {
+      cell[i] = chunks_[i].whole, id[i] = chunks_[i].whole_ids, name[i] = cuts_[i].size();
+      piece[i] = sum;
+      sum.add(chunks_[i].pieces);
+      polyhedra_ = polyhedra_ || chunks_[i].polyhedra;
+    }
+    const size_t whole = exclusive_scan(cell), whole_ids = exclusive_scan(id);
+    exclusive_scan(name);
+    whole_count_ = whole;
+    int32_t *connectivity = nullptr, *offsets = nullptr;
+    uint8_t* types = nullptr;
+    allocate(b, whole, whole_ids, sum, &connectivity, &offsets, &types);
+    const std::vector<int64_t> members = used_.members();
+    b.points.resize(members.size());
+    for (size_t i = 0; i < members.size(); ++i) b.points[i] = uint32_t(members[i]);
+    const size_t points = members.size() + b.cuts.size() + sum.inner;
+    if (points > size_t(INT32_MAX)) fail_usage("the result has more than 2^31 points", "clip", "take a part of the mesh first");
+
+    parallel_for(
+        chunks_.size(), 1,
+        [&](size_t i, size_t) {
+          size_t at = cell[i], to = id[i];
+          const size_t words = std::min(whole_.size(), (i + 1) * grain / 64);
+          for (size_t w = i * grain / 64; w < words; ++w)
+            for (uint64_t left = whole_[w]; left; left &= left - 1) {
+              const size_t c = w * 64 + size_t(std::countr_zero(left));
+              b.source[at] = uint32_t(c);
+              types[at] = uint8_t(mesh_.type(c));
+              offsets[at++] = int32_t(to);
+              for (size_t k = cells_.begin(c), end = cells_.end(c); k < end; ++k)
+                connectivity[to++] = int32_t(used_.rank(size_t(cells_.connectivity[k])));
+            }
+          CellClipper clip = clipper();
+          PieceWriter writer{b, connectivity, offsets, types, members.size(), members.size() + b.cuts.size(), piece[i], {}, {}};
+          writer.at.cells += whole, writer.at.ids += whole_ids;
+          std::vector<int64_t> ids;
+          std::vector<double> v;
+          size_t next = name[i];
+          for (const uint32_t c : chunks_[i].cut_cells) {
+            const CellPieces& p = pieces(clip, c, ids, v);
+            writer.write(
+                clip, p, c, [&](uint64_t point) { return used_.rank(size_t(point)); }, [&](uint64_t) { return number[next++]; });
+            if (!polyhedra_) continue;
+            Chunk& chunk = chunks_[i];
+            chunk.face_counts.insert(chunk.face_counts.end(), p.face_count.begin(), p.face_count.end());
+            chunk.face_sizes.insert(chunk.face_sizes.end(), p.face_sizes.begin(), p.face_sizes.end());
+            for (const uint16_t k : p.face_vertices) chunk.face_ids.push_back(int32_t(writer.number[k]));
+          }
+        },
+        &job_.context);
+  }
+
+  // Faces of polyhedra, whole ones first.
+  void take_faces(Build& b) {
+    if (!polyhedra_) return;
+    std::vector<int64_t> begin(1, 0);
+    std::vector<int64_t> offsets(1, 0);
+    std::vector<int32_t> ids;
+    int64_t faces = 0;
+    const bool listed = !mesh_.polyhedron_faces.empty();
+    for (size_t i = 0; i < whole_count_; ++i) {
+      if (listed) {
+        const auto of_cell = mesh_.polyhedron_faces.view<int64_t>();
+        for (auto f = size_t(of_cell[b.source[i]]); f < size_t(of_cell[b.source[i] + 1]); ++f, ++faces) {
+          for (size_t k = 0; k < faces_.size(f); ++k) ids.push_back(int32_t(used_.rank(size_t(faces_.point(f, k)))));
+          offsets.push_back(int64_t(ids.size()));
+        }
+      }
+      begin.push_back(faces);
+    }
+    for (const Chunk& c : chunks_) {
+      size_t face = 0, id = 0;
+      for (const uint32_t n : c.face_counts) {
+        for (uint32_t f = 0; f < n; ++f, ++face, ++faces) {
+          for (uint32_t k = 0; k < c.face_sizes[face]; ++k) ids.push_back(c.face_ids[id++]);
+          offsets.push_back(int64_t(ids.size()));
+        }
+        begin.push_back(faces);
+      }
+    }
+    b.faces.connectivity = Array::from_vector(std::move(ids));
+    b.faces.offsets = Array::from_vector(std::move(offsets));
+    b.polyhedron_faces = Array::from_vector(std::move(begin));
+  }
+
+  const Job& job_;
+  const UnstructuredMesh& mesh_;
+  CellsView cells_, faces_;
+  Values values_;
+  IdSet used_;
+  Plane<uint8_t> sides_;
+  std::vector<uint64_t> whole_;
+  std::vector<Chunk> chunks_;
+  std::vector<std::vector<uint64_t>> cuts_;
+  PointReader reader_;
+  bool polyhedra_ = false;
+  size_t whole_count_ = 0;
+};
+
+}  // namespace
+
+Build clip_lists(const Job& job) { return ListClip(job).run(); }
+
+}  // namespace sg::clipping

@@ -1,0 +1,500 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filter/mesh/curved_faces.h"
+
+#include <climits>
+
+#include "base/parallel.h"
+#include "data/cell_topology.h"
+
+namespace sg::detail {
+
+namespace {
+
+constexpr int most_segments = 32;
+constexpr double shortest = 4;         // tolerances: what is smaller is not split
+constexpr double field_tolerance = 4;  // times the tolerance: colours are coarser than shapes
+constexpr size_t grain = 256;
+
+int halvings(int order) {
+  if (order < 2) return 0;  // a straight side: its neighbour may be a linear cell
+  int n = 0;
+  while (order << (n + 1) <= most_segments) ++n;
+  return n;
+}
+
+// Is a field one that pictures blend? Numberings and weights are not.
+bool blends(const Field& f) {
+  return f.association == Association::point && is_float(f.array.type()) && f.role != Role::global_ids && f.role != Role::labels &&
+         f.name != "RationalWeights";
+}
+
+}  // namespace
+
+// Values at the grid's points, each in units of its tolerance: position first.
+struct CurvedSkin::Work {
+  size_t width = 3;
+  int known = -1;  // the grid halved so often has values
+  std::vector<double> nodes, points, shares;
+  const double* at(size_t p) const { return points.data() + p * width; }
+  Vec3 position(size_t p) const { return {at(p)[0], at(p)[1], at(p)[2]}; }
+
+  // How far the middle m lies from the middle of a and b.
+  double bend(size_t a, size_t b, size_t m) const { return bend(0.5, at(a), at(b), at(a), at(b), at(m)); }
+  double bend4(size_t a, size_t b, size_t c, size_t d, size_t m) const { return bend(0.25, at(a), at(b), at(c), at(d), at(m)); }
+  double apart(size_t a, size_t b) const { return length(position(a) - position(b)); }
+
+ private:
+  double bend(double share, const double* a, const double* b, const double* c, const double* d, const double* m) const {
+    double worst = 0, far2 = 0;
+    for (size_t k = 0; k < width; ++k) {
+      const double mean = share == 0.5 ? 0.5 * (a[k] + b[k]) : 0.25 * (a[k] + b[k] + c[k] + d[k]);
+      const double off = std::abs(m[k] - mean);
+      if (k < 3) far2 += off * off;
+      else if (off > worst) worst = off;
+    }
+    return std::max(worst, std::sqrt(far2));
+  }
+};
+
+CurvedSkin::CurvedSkin(const Dataset& in, const UnstructuredMesh& mesh, std::vector<CurvedChunk> found, double tolerance,
+                       const Context& ctx)
+    : mesh_(mesh), at_(mesh.points), found_(std::move(found)), points_(mesh.points.count()) {
+  const double diagonal = in.bounds().empty() ? 0 : length(in.bounds().hi - in.bounds().lo);
+  scale_ = diagonal > 0 ? 1 / (tolerance * diagonal) : 0;
+  for (const Field& f : in.fields()) {
+    if (!blends(f)) continue;
+    double extent = 0, largest = 0;
+    for (int c = 0; c < f.components(); ++c) {
+      const Range r = in.range(f, c);
+      if (r.empty()) continue;
+      extent = std::max(extent, r.hi - r.lo), largest = std::max({largest, std::abs(r.lo), std::abs(r.hi)});
+    }
+    if (extent > 1e-6 * largest && std::isfinite(extent)) fields_.push_back({f.array, 1 / (field_tolerance * tolerance * extent)});
+  }
+  rational_ = mesh.weights;
+  if (const Field* w = in.fields().find("RationalWeights", Association::point); rational_.empty() && w && w->components() == 1)
+    rational_ = w->array;
+
+  std::vector<Side> sides;
+  edge_nodes_.resize(found_.size());
+  for (uint32_t c = 0; c < found_.size(); ++c) add_sides(c, sides);
+  join_edges(sides);
+  parallel_for(
+      edges_.size(), grain,
+      [&](size_t begin, size_t end) {
+        Work w;
+        for (size_t e = begin; e < end; ++e) edges_[e].level = edge_level(edges_[e], w);
+      },
+      &ctx);
+  for (Edge& e : edges_) {
+    e.first_point = int64_t(points_);
+    if (e.grid) points_ += e.grid->points(e.level);
+  }
+  parallel_for(found_.size(), 1, [&](size_t c, size_t) {
+    Work w;
+    CurvedChunk& chunk = found_[c];
+    for (Item& f : chunk.items) {
+      if (f.is_curve || f.sides == 0) continue;
+      const ShapeGrid* g = known_grid(f.type, f.count, f.orders);
+      if (!g) continue;
+      load({chunk.nodes.data() + f.first_node, f.count}, *g, w);
+      f.level = face_level(*g, w);
+      for (uint32_t s = 0; s < f.sides; ++s) f.level = std::max(f.level, edges_[chunk.uses[f.first_use + s].edge].level);
+    }
+  });
+  for (uint32_t c = 0; c < found_.size(); ++c)
+    for (uint32_t i = 0; i < found_[c].items.size(); ++i) {
+      Item& f = found_[c].items[i];
+      if (f.level == 0) continue;
+      f.first_point = int64_t(points_);
+      faces_.push_back({f.first_point, {c, i, 0}});
+      points_ += known_grid(f.type, f.count, f.orders)->points(f.level);
+    }
+  find_bezier_nodes();
+}
+
+// The sides of a chunk's faces and curves as curves in canonical direction: from the smaller end.
+void CurvedSkin::add_sides(uint32_t c, std::vector<Side>& sides) {
+  CurvedChunk& chunk = found_[c];
+  std::vector<uint32_t> ring;
+  std::vector<int64_t> along;
+  for (Item& f : chunk.items) {
+    const int64_t* ids = chunk.nodes.data() + f.first_node;
+    uint32_t corners = 2;
+    if (f.is_curve) {
+      curve_order(f.type, f.count, ring);
+    } else {
+      grid(f.type, f.count, f.orders);
+      if (!known_grid(f.type, f.count, f.orders) && f.type != CellType::quadratic_polygon) continue;
+      face_outline(f.type, f.count, ring, f.orders);
+      corners = f.type == CellType::quadratic_polygon ? f.count / 2 : linear_type(f.type) == CellType::triangle ? 3 : 4;
+      ring.push_back(ring.empty() ? 0 : ring.front());
+    }
+    f.first_use = uint32_t(chunk.uses.size());
+    for (size_t begin = 0, end; begin + 1 < ring.size(); begin = end) {
+      for (end = begin + 1; end + 1 < ring.size() && ring[end] >= corners;) ++end;
+      along.clear();
+      for (size_t k = begin; k <= end; ++k) along.push_back(ids[ring[k]]);
+      const size_t n = along.size();
+      const bool against = along.front() > along.back() || (along.front() == along.back() && n > 2 && along[1] > along[n - 2]);
+      if (against) std::reverse(along.begin(), along.end());
+      auto& pool = edge_nodes_[c];
+      const bool bezier = is_bezier(f.type) && n > 2;
+      sides.push_back({c, uint32_t(chunk.uses.size()), bezier, !f.is_curve, uint32_t(pool.size()), uint32_t(n)});
+      pool.push_back(along.front());
+      pool.push_back(along.back());
+      pool.insert(pool.end(), along.begin() + 1, along.end() - 1);
+      chunk.uses.push_back({0, against});
+      ++f.sides;
+      grid(bezier ? CellType::bezier_curve : CellType::lagrange_curve, n, {0, 0, 0});
+    }
+  }
+}
+
+void CurvedSkin::join_edges(std::vector<Side>& sides) {
+  auto ids = [&](const Side& s) { return std::span(edge_nodes_[s.chunk].data() + s.first, s.count); };
+  auto before = [&](const Side& a, const Side& b) {
+    if (a.bezier != b.bezier) return a.bezier < b.bezier;
+    const auto x = ids(a), y = ids(b);
+    return std::lexicographical_compare(x.begin(), x.end(), y.begin(), y.end());
+  };
+  std::vector<uint32_t> order(sides.size());
+  for (uint32_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+    if (before(sides[a], sides[b])) return true;
+    if (before(sides[b], sides[a])) return false;
+    return a < b;
+  });
+  for (size_t k = 0; k < order.size(); ++k) {
+    const Side& s = sides[order[k]];
+    if (k == 0 || before(sides[order[k - 1]], s)) {
+      edges_.push_back({ids(s).data(), s.count, s.bezier, false});
+      edges_.back().grid = known_grid(s.bezier ? CellType::bezier_curve : CellType::lagrange_curve, s.count, {0, 0, 0});
+    }
+    edges_.back().of_face |= s.of_face;
+    found_[s.chunk].uses[s.use].edge = uint32_t(edges_.size() - 1);
+  }
+}
+
+const ShapeGrid* CurvedSkin::known_grid(CellType type, size_t nodes, std::array<int, 3> orders) const {
+  const auto it = grids_.find({int(type), int(nodes), orders[0], orders[1], orders[2]});
+  return it == grids_.end() ? nullptr : it->second.get();
+}
+
+const ShapeGrid* CurvedSkin::grid(CellType type, size_t nodes, std::array<int, 3> orders) {
+  auto& kept = grids_[{int(type), int(nodes), orders[0], orders[1], orders[2]}];
+  if (kept) return kept.get();
+  const CellShape* shape = CellShape::find(type, nodes, orders);
+  if (!shape) return nullptr;
+  auto g = std::make_unique<ShapeGrid>();
+  g->shape = shape;
+  g->triangle = shape->base() == CellType::triangle;
+  g->order = {shape->orders()[0], shape->dimension() == 2 ? shape->orders()[g->triangle ? 0 : 1] : 0};
+  if (type == CellType::quadratic_linear_quad) g->order = {2, 1};
+  for (size_t a = 0; a < 2; ++a) g->levels[a] = halvings(g->order[a]), g->finest[a] = g->order[a] << g->levels[a];
+  for (int j = 0; j <= g->finest[1]; ++j)
+    for (int i = 0; i <= g->finest[0] - (g->triangle ? j : 0); ++i) {
+      const size_t at = g->values.size();
+      g->values.resize(at + nodes);
+      shape->values({double(i) / g->finest[0], g->finest[1] > 0 ? double(j) / g->finest[1] : 0, 0}, &g->values[at]);
+    }
+  kept = std::move(g);
+  return kept.get();
+}
+
+double CurvedSkin::weight(int64_t id) const { return rational_.empty() ? 1 : rational_.get(size_t(id)); }
+
+// The nodes of a face or curve with their weights; its grid still has no values.
+void CurvedSkin::load(std::span<const int64_t> ids, const ShapeGrid& g, Work& w) const {
+  w.width = 3;
+  for (const Scaled& f : fields_) w.width += size_t(f.array.components());
+  w.nodes.resize(ids.size() * w.width);
+  w.points.resize(g.values.size() / ids.size() * w.width);
+  w.known = -1;
+  w.shares.clear();
+  const Vec3 first = at_[size_t(ids[0])];
+  double* to = w.nodes.data();
+  for (int64_t id : ids) {
+    const Vec3 p = (at_[size_t(id)] - first) * scale_;
+    *to++ = p.x, *to++ = p.y, *to++ = p.z;
+    for (const Scaled& f : fields_)
+      for (int c = 0; c < f.array.components(); ++c) *to++ = f.array.get(size_t(id), c) * f.scale;
+    if (!rational_.empty() && is_bezier(g.shape->type())) w.shares.push_back(weight(id));
+  }
+}
+
+// Values at the points of the grid that is halved `level` times.
+void CurvedSkin::evaluate(const ShapeGrid& g, int level, Work& w) const {
+  const size_t n = g.shape->nodes();
+  auto at = [&](size_t p) {
+    const double* shape = &g.values[p * n];
+    double* to = &w.points[p * w.width];
+    std::fill(to, to + w.width, 0.0);
+    double sum = 0;
+    for (size_t k = 0; k < n; ++k) {
+      const double share = w.shares.empty() ? shape[k] : shape[k] * w.shares[k];
+      sum += share;
+      if (share == 0) continue;
+      for (size_t c = 0; c < w.width; ++c) to[c] += share * w.nodes[k * w.width + c];
+    }
+    if (!w.shares.empty())
+      for (size_t c = 0; c < w.width; ++c) to[c] /= sum;
+  };
+  const int si = g.step(0, level), sj = g.step(1, level), known = w.known;
+  const int ki = known < 0 ? INT_MAX : g.step(0, known), kj = known < 0 ? INT_MAX : g.step(1, known);
+  for (int j = 0; j <= g.finest[1]; j += sj)
+    for (int i = 0; i <= g.finest[0] - (g.triangle ? j : 0); i += si)
+      if (known < 0 || i % ki != 0 || j % kj != 0) at(g.index(i, j));
+  w.known = std::max(known, level);
+}
+
+int CurvedSkin::edge_level(const Edge& e, Work& w) const {
+  const ShapeGrid* g = e.grid;
+  if (!g || g->levels[0] == 0) return 0;
+  load({e.nodes, e.count}, *g, w);
+  for (int level = 0; level < g->levels[0]; ++level) {
+    const int step = g->step(0, level);
+    evaluate(*g, level + 1, w);
+    bool fine = true;
+    for (int i = 0; i < g->finest[0] && fine; i += step)
+      fine = !(w.bend(size_t(i), size_t(i + step), size_t(i + step / 2)) > 1 && w.apart(size_t(i), size_t(i + step)) > shortest);
+    if (fine) return level;
+  }
+  return g->levels[0];
+}
+
+int CurvedSkin::face_level(const ShapeGrid& g, Work& w) const {
+  const int top = std::max(g.levels[0], g.levels[1]);
+  auto bent = [&](int i, int j, int k, int l) {  // between two points of the grid
+    if ((i + k) % 2 || (j + l) % 2) return false;
+    const size_t a = g.index(i, j), b = g.index(k, l);
+    return w.bend(a, b, g.index((i + k) / 2, (j + l) / 2)) > 1 && w.apart(a, b) > shortest;
+  };
+  for (int level = 0; level < top; ++level) {
+    const int si = g.step(0, level), sj = g.step(1, level);
+    evaluate(g, level + 1, w);
+    bool fine = true;
+    for (int j = 0; j <= g.finest[1] && fine; j += sj)
+      for (int i = 0; i <= g.finest[0] - (g.triangle ? j : 0) && fine; i += si) {
+        const bool right = i + si <= g.finest[0] - (g.triangle ? j : 0), up = j + sj <= g.finest[1] - (g.triangle ? i : 0);
+        fine = !(right && bent(i, j, i + si, j)) && !(up && bent(i, j, i, j + sj));
+        if (g.triangle) fine = fine && !(right && up && bent(i + si, j, i, j + sj));
+        else if (fine && right && up && si % 2 == 0 && sj % 2 == 0)
+          fine = !(w.bend4(g.index(i, j), g.index(i + si, j), g.index(i, j + sj), g.index(i + si, j + sj),
+                           g.index(i + si / 2, j + sj / 2)) > 1 &&
+                   w.apart(g.index(i, j), g.index(i + si, j + sj)) > shortest);
+      }
+    if (fine) return level;
+  }
+  return top;
+}
+
+// The number of point i of `segments` on an edge, in its canonical direction; where the edge has fewer, the nearest it has.
+int64_t CurvedSkin::edge_point(const Edge& e, int i, int segments) const {
+  const int order = int(e.count) - 1, own = order << e.level, k = segments / own;
+  const int low = i / k, rest = i % k;  // halves go to the nearer end, so that corners stay simple
+  const int at = 2 * rest > k || (2 * rest == k && 2 * i > segments) ? low + 1 : low;
+  const int per_node = 1 << e.level;
+  if (at == own) return e.nodes[1];
+  if (at % per_node == 0) return e.nodes[at == 0 ? 0 : at / per_node + 1];
+  return e.first_point + at;
+}
+
+void CurvedSkin::emit_curve(const Edge& e, bool reversed, std::vector<int64_t>& out) const {
+  const int n = (int(e.count) - 1) << e.level;
+  for (int i = 0; i <= n; ++i) out.push_back(edge_point(e, reversed ? n - i : i, n));
+}
+
+void CurvedSkin::emit_face(const CurvedChunk& chunk, const Item& f, Work& w, CellList& out) const {
+  const int64_t* ids = chunk.nodes.data() + f.first_node;
+  auto add = [&](int64_t a, int64_t b, int64_t c) {
+    if (a == b || b == c || c == a) return;
+    const int64_t tri[3] = {a, f.mirrored ? c : b, f.mirrored ? b : c};
+    out.add(tri, f.cell);
+  };
+  auto use = [&](uint32_t s) { return chunk.uses[f.first_use + s]; };
+  std::vector<uint32_t> local;
+  std::vector<Vec3> at;
+  if (f.type == CellType::quadratic_polygon && f.sides > 0) {
+    std::vector<int64_t> ring;
+    for (uint32_t s = 0; s < f.sides; ++s) emit_curve(edges_[use(s).edge], use(s).reversed, ring), ring.pop_back();
+    std::vector<int64_t> from;
+    std::vector<double> share;
+    for (int64_t id : ring) {
+      from.clear(), share.clear();
+      blend(id, from, share);
+      at.push_back({0, 0, 0});
+      for (size_t k = 0; k < from.size(); ++k) at.back() += at_[size_t(from[k])] * share[k];
+    }
+    triangulate_polygon(at, local);
+    for (size_t t = 0; t + 2 < local.size(); t += 3) add(ring[local[t]], ring[local[t + 1]], ring[local[t + 2]]);
+    return;
+  }
+  if (f.level == 0) {
+    for (uint32_t k = 0; k < f.count; ++k) at.push_back(at_[size_t(ids[k])]);
+    tessellate_face(f.type, at, local, f.orders);
+    for (size_t t = 0; t + 2 < local.size(); t += 3) {
+      const int64_t tri[3] = {ids[local[t]], ids[local[t + (f.mirrored ? 2 : 1)]], ids[local[t + (f.mirrored ? 1 : 2)]]};
+      out.add(tri, f.cell);
+    }
+    return;
+  }
+  const ShapeGrid& g = *known_grid(f.type, f.count, f.orders);
+  load({ids, f.count}, g, w);
+  evaluate(g, f.level, w);
+  const int si = g.step(0, f.level), sj = g.step(1, f.level), m = g.finest[0] / si, n = g.finest[1] / sj;
+  auto side_point = [&](uint32_t s, int i, int segments) {
+    return edge_point(edges_[use(s).edge], use(s).reversed ? segments - i : i, segments);
+  };
+  auto number = [&](int i, int j) -> int64_t {
+    if (j == 0) return side_point(0, i, m);
+    if (g.triangle) {
+      if (i + j == m) return side_point(1, j, m);
+      if (i == 0) return side_point(2, m - j, m);
+    } else {
+      if (i == m) return side_point(1, j, n);
+      if (j == n) return side_point(2, m - i, m);
+      if (i == 0) return side_point(3, n - j, n);
+    }
+    return f.first_point + i + j * (m + 1);
+  };
+  auto place = [&](int i, int j) { return w.position(g.index(i * si, j * sj)); };
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < (g.triangle ? m - j : m); ++i) {
+      const int64_t a = number(i, j), b = number(i + 1, j), d = number(i, j + 1);
+      if (g.triangle) {
+        add(a, b, d);
+        if (i + j + 1 < m) add(b, number(i + 1, j + 1), d);
+      } else {
+        const int64_t c = number(i + 1, j + 1);
+        if (first_diagonal_fits(place(i, j), place(i + 1, j), place(i + 1, j + 1), place(i, j + 1))) add(a, b, c), add(a, c, d);
+        else add(a, b, d), add(b, c, d);
+      }
+    }
+}
+
+// A list of the chunk with its curved items at their places.
+void CurvedSkin::rebuild(const CurvedChunk& chunk, bool curves, CellList& list) const {
+  CellList out;
+  Work w;
+  size_t cell = 0, id = 0;
+  std::vector<int64_t> line;
+  auto copy_until = [&](size_t end) {
+    for (; cell < end; id += list.sizes[cell++]) out.add(std::span(list.ids).subspan(id, list.sizes[cell]), list.sources[cell]);
+  };
+  bool any = false;
+  for (const Item& f : chunk.items) {
+    if (f.is_curve != curves) continue;
+    any = true;
+    copy_until(f.before);
+    if (!curves) {
+      emit_face(chunk, f, w, out);
+      continue;
+    }
+    line.clear();
+    const auto use = chunk.uses[f.first_use];
+    emit_curve(edges_[use.edge], use.reversed, line);
+    out.add(line, f.cell);
+  }
+  if (!any) return;
+  copy_until(list.sizes.size());
+  list = std::move(out);
+}
+
+void CurvedSkin::merge(std::vector<SurfaceChunk>& chunks, bool outlines) const {
+  SurfaceChunk rims;
+  if (outlines) {
+    std::vector<std::pair<int64_t, int64_t>> straight;
+    auto add = [&](int64_t a, int64_t b) { straight.emplace_back(std::min(a, b), std::max(a, b)); };
+    for (const SurfaceChunk& c : chunks) {
+      size_t at = 0;
+      for (uint32_t n : c.polygons.sizes) {
+        for (size_t k = 0; k < n; ++k) add(c.polygons.ids[at + k], c.polygons.ids[at + (k + 1) % n]);
+        at += n;
+      }
+    }
+    std::vector<int64_t> line;
+    for (const Edge& e : edges_) {
+      if (!e.of_face) continue;
+      if (e.count == 2) {
+        add(e.nodes[0], e.nodes[1]);
+        continue;
+      }
+      line.clear();
+      emit_curve(e, false, line);
+      rims.outlines.add(line, 0);
+    }
+    std::sort(straight.begin(), straight.end());
+    straight.erase(std::unique(straight.begin(), straight.end()), straight.end());
+    for (const auto& [a, b] : straight)
+      if (const int64_t ends[2] = {a, b}; a != b) rims.outlines.add(ends, 0);
+  }
+  parallel_for(chunks.size(), 1, [&](size_t c, size_t) {
+    rebuild(found_[c], false, chunks[c].polygons);
+    rebuild(found_[c], true, chunks[c].lines);
+  });
+  if (outlines) chunks.push_back(std::move(rims));
+}
+
+// A Bezier cell passes through its corners only; its other nodes are control points, drawn where the Bernstein polynomials have their
+// place. On an edge only the edge's own nodes count, so that neighbours agree.
+void CurvedSkin::find_bezier_nodes() {
+  for (uint32_t e = 0; e < edges_.size(); ++e)
+    if (const Edge& edge = edges_[e]; edge.bezier && edge.grid)
+      for (uint32_t k = 2; k < edge.count; ++k)
+        bezier_nodes_.push_back({edge.nodes[k], {no_chunk, e, size_t(k - 1) << edge.grid->levels[0]}});
+  for (uint32_t c = 0; c < found_.size(); ++c)
+    for (uint32_t i = 0; i < found_[c].items.size(); ++i) {
+      const Item& f = found_[c].items[i];
+      if (f.is_curve || f.level > 0 || f.sides == 0 || !is_bezier(f.type)) continue;
+      const ShapeGrid& g = *known_grid(f.type, f.count, f.orders);
+      for (uint32_t k = f.sides; k < f.count; ++k) {  // as many corners as sides
+        const Vec3 at = g.shape->node(k);
+        const size_t point = g.index(int(std::lround(at.x * g.finest[0])), int(std::lround(at.y * g.finest[1])));
+        bezier_nodes_.push_back({found_[c].nodes[f.first_node + k], {c, i, point}});
+      }
+    }
+  std::stable_sort(bezier_nodes_.begin(), bezier_nodes_.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+}
+
+void CurvedSkin::blend(int64_t number, std::vector<int64_t>& ids, std::vector<double>& weights) const {
+  Place place{no_chunk, 0, 0};
+  if (size_t(number) < mesh_.points.count()) {
+    const auto it =
+        std::lower_bound(bezier_nodes_.begin(), bezier_nodes_.end(), number, [](const auto& b, int64_t x) { return b.first < x; });
+    if (it == bezier_nodes_.end() || it->first != number) {
+      ids.push_back(number), weights.push_back(1);
+      return;
+    }
+    place = it->second;
+  } else if (!faces_.empty() && number >= faces_.front().first) {
+    const auto it = std::upper_bound(faces_.begin(), faces_.end(), number, [](int64_t x, const auto& f) { return x < f.first; }) - 1;
+    const Item& f = found_[it->second.chunk].items[it->second.item];
+    place = it->second;
+    place.at = known_grid(f.type, f.count, f.orders)->index_of(size_t(number - it->first), f.level);
+  } else {
+    const auto it = std::upper_bound(edges_.begin(), edges_.end(), number, [](int64_t x, const Edge& e) { return x < e.first_point; }) - 1;
+    place = {no_chunk, uint32_t(it - edges_.begin()), it->grid->index_of(size_t(number - it->first_point), it->level)};
+  }
+  std::span<const int64_t> nodes;
+  const ShapeGrid* g = nullptr;
+  if (place.chunk == no_chunk) {
+    nodes = {edges_[place.item].nodes, edges_[place.item].count}, g = edges_[place.item].grid;
+  } else {
+    const Item& f = found_[place.chunk].items[place.item];
+    nodes = {found_[place.chunk].nodes.data() + f.first_node, f.count}, g = known_grid(f.type, f.count, f.orders);
+  }
+  const double* n = &g->values[place.at * nodes.size()];
+  const bool rational = !rational_.empty() && is_bezier(g->shape->type());
+  const size_t before = weights.size();
+  double sum = 0;
+  for (size_t k = 0; k < nodes.size(); ++k) {
+    if (n[k] == 0) continue;
+    const double share = rational ? n[k] * weight(nodes[k]) : n[k];
+    ids.push_back(nodes[k]), weights.push_back(share), sum += share;
+  }
+  if (rational)
+    for (size_t k = before; k < weights.size(); ++k) weights[k] /= sum;
+}
+
+}  // namespace sg::detail

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// Regions and surfaces by a formula: planes, spheres, boxes, quadrics, another mesh, any expression. Declared once for all operations that
+// cut along them.
+#pragma once
+#include <functional>
+#include <span>
+
+#include "base/context.h"
+#include "base/schema.h"
+#include "data/dataset.h"
+
+namespace sg {
+
+struct ImplicitParams {
+  std::optional<Vec3> origin = {};
+  Vec3 normal{0, 0, 1};
+  std::string axis = "none";
+  std::optional<double> position = {};
+  std::vector<double> sphere = {}, cylinder = {}, box = {}, quadric = {};
+  std::string function = {};
+  // Several planes at once: slice only.
+  std::string planes = "none";
+  std::vector<double> positions = {};
+};
+
+inline void describe_implicit(Schema& s, ImplicitParams& p) {
+  s("origin", p.origin, "A point of the plane; default: the middle of the mesh.");
+  s("normal", p.normal, "Direction across the plane.");
+  s("axis", p.axis, "Short for a normal along x, y or z.").choices({"none", "x", "y", "z"});
+  s("position", p.position, "With axis: the coordinate along it at which the plane lies; default: the middle.");
+  s("sphere", p.sphere, "A sphere in place of the plane: x,y,z of its centre and its radius.");
+  s("cylinder", p.cylinder, "An endless cylinder: x,y,z of a point of its axis, the axis' direction, its radius.");
+  s("box", p.box, "A box: x0,x1,y0,y1,z0,z1.");
+  s("quadric", p.quadric, "Where a0 x^2 + a1 y^2 + a2 z^2 + a3 xy + a4 yz + a5 xz + a6 x + a7 y + a8 z + a9 is zero: ten numbers.");
+  s("function", p.function, "Where an expression of x, y, z (or of point fields) is zero, like x^2+y^2-1; see calc.");
+}
+
+/// A function of place that is negative inside: behind a plane, in a sphere, cylinder, box or closed mesh, where an expression is negative.
+/// Distances from planes, spheres, cylinders, boxes and meshes; other functions as they are.
+struct ImplicitFunction {
+  std::function<void(std::span<const Vec3> at, std::span<double> out)> evaluate;  ///< safe from several threads
+  Array known;          ///< an expression of fields: its f64 values at the points of the mesh; evaluate is empty then
+  bool plane = false;   ///< linear: cuts of edges need no search
+  Vec3 origin, normal;  ///< of the plane
+  double snap = 0;      ///< distances from the plane below this are rounding and count as 0
+  std::string text;     ///< "a plane", "a sphere"
+
+  double operator()(Vec3 p) const {
+    double r = 0;
+    evaluate({&p, 1}, {&r, 1});
+    return r;
+  }
+  /// Direction of growth, not of unit length.
+  Vec3 gradient(Vec3 p, double step) const;
+};
+
+/// Which function the parameters mean for this mesh. `surface` (a second input) is a closed surface or a solid mesh, else null; `who` names
+/// the operation. Throws Error(usage) for a zero normal, an empty box, a radius that is not positive, numbers that are not finite, a wrong
+/// count of numbers, two shapes at once.
+ImplicitFunction implicit_function(const ImplicitParams& p, const DatasetPtr& in, const DatasetPtr& surface, std::string_view who,
+                                   Context& ctx);
+
+/// Its values at the points of a mesh (not AMR): f64. Parallel.
+Array values_at_points(const ImplicitFunction& f, const DatasetPtr& in, Context& ctx);
+
+/// Moves each share t of the way from one place to another to where the function is zero; it has different signs at both ends, or the share
+/// stays. By false position with halved weights (Illinois). Parallel.
+void find_zeros(const ImplicitFunction& f, std::span<const Vec3> from, std::span<const Vec3> to, std::span<double> t);
+
+}  // namespace sg

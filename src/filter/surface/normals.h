@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Normals of surfaces: smooth, with sharp edges kept sharp.
+#pragma once
+#include "base/context.h"
+#include "base/schema.h"
+#include "data/dataset.h"
+
+namespace sg {
+
+struct NormalsParams {
+  double feature_angle = 30;
+  std::string orient = "consistent";
+  bool flip = false;
+  bool cell_normals = false;
+};
+inline void describe(Schema& s, NormalsParams& p) {
+  s("feature_angle", p.feature_angle, "Edges where the surface bends by more than this stay sharp: their points are doubled; 180: none.")
+      .range(0, 180)
+      .unit("deg");
+  s("orient", p.orient, "keep: as the polygons are; consistent: neighbours agree; outward: closed pieces also face outward.")
+      .choices({"keep", "consistent", "outward"});
+  s("flip", p.flip, "Turns all polygons and normals round.");
+  s("cell_normals", p.cell_normals, "Adds the normal of each polygon as cell field 'Cell normals'.");
+}
+
+/// Point field "Normals" (f32, unit, role normals): the mean of the normals of the polygons at a point, weighted by their angle
+/// there (Thuermer and Wuethrich 1998), so that it does not depend on how a face is cut into triangles. Points on edges sharper than the
+/// feature angle, on edges of more than two polygons and where two pieces touch in a point are doubled, behind the points of the input:
+/// one per smooth piece of surface around it. Polygons of no area have no say; a point with no others gets the zero vector.
+/// Consistent orientation follows edges of two polygons; in each piece most polygons stay as they are. All fields are carried;
+/// vertices and lines pass. Other mesh kinds: their surface (see surface::polygon_surface). O(corners).
+DatasetPtr normals(const DatasetPtr& in, const NormalsParams& p, Context& ctx);
+
+}  // namespace sg
