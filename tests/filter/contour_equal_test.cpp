@@ -159,6 +159,12 @@ TEST_CASE("contour: cells give the same bytes for any number of threads, also in
     CHECK(Surface(one).triangles.size() == Surface(straight).triangles.size());
     CHECK(Surface(one).area() == doctest::Approx(Surface(straight).area()));
     CHECK(Surface(one).components() == Surface(straight).components());
+    // Three values and more skip blocks of cells by their ranges; the surfaces stay what they are one by one.
+    p.values = {-5, 0, 0.4, 0.7};
+    const auto several = contour(d, p, context);
+    size_t triangles = 0;
+    for (double v : p.values) triangles += contour_at(d, v)->cell_count();
+    CHECK(several->cell_count() == triangles);
   }
 }
 

@@ -23,16 +23,17 @@ void describe(Schema& s, ContourParams& p);
 
 /// The surface mesh where the field equals each value: triangles where cells are solids, lines where they are faces.
 ///
-/// Input: uniform, rectilinear and curvilinear grids with two or three axes; unstructured meshes of linear cells and polyhedra;
-/// surface meshes. A sample counts as inside when it is >= the value. There is exactly one point per cut cell edge, also where a
-/// sample equals the value (points may then coincide). Surfaces are closed up to the border of the mesh and every edge has two
-/// triangles, wound like the neighbour's. On grids the surface in each cell has the topology of the trilinear function: faces that can
-/// be cut in two ways by the asymptotic decider (Nielson and Hamann 1991), tubes through cells (trilinear_cell.h); cells with a tube or a
-/// long loop have points inside, which follow those on edges. Ties, also at saddles, count as inside: the surface is that of a value
-/// lower by less than any number. topology=fixed: marching cubes' one table, where corners inside are apart on every ambiguous face; it is
-/// closed too, but its number of parts and handles may be wrong. Triangles and
-/// the point field "Normals" (f32, unit) face the smaller values; on lines the larger values lie on the left in x-y meshes.
-/// Cells that touch a NaN or a hidden point, and ghost and blanked cells, leave clean borders.
+/// Input: uniform, rectilinear and curvilinear grids with two or three axes; unstructured meshes of any cells; surface meshes; AMR
+/// grids, also by a field of their cells, whose leaves are joined across levels without cracks. Quadratic, Lagrange and Bezier cells are
+/// divided until the triangles lie within `tolerance` (a share of the mesh's diagonal) of the true surface, on which all points lie. A
+/// sample counts as inside when it is >= the value. There is exactly one point per cut cell edge, also where a sample equals the value
+/// (points may then coincide). Surfaces are closed up to the border of the mesh and every edge has two triangles, wound like the
+/// neighbour's. On grids the surface in each cell has the topology of the trilinear function: faces that can be cut in two ways by the
+/// asymptotic decider (Nielson and Hamann 1991), tubes through cells (trilinear_cell.h); cells with a tube or a long loop have points
+/// inside, which follow those on edges. Ties, also at saddles, count as inside: the surface is that of a value lower by less than any
+/// number. topology=fixed: marching cubes' one table, where corners inside are apart on every ambiguous face; it is closed too, but its
+/// number of parts and handles may be wrong. Triangles and the point field "Normals" (f32, unit) face the smaller values; on lines the
+/// larger values lie on the left in x-y meshes. Cells that touch a NaN or a hidden point, and ghost and blanked cells, leave clean borders.
 /// All fields are carried: point fields interpolated along the edges and trilinearly inside cells (the contoured field itself is the
 /// isovalue exactly, f32 for integer fields), cell fields from the cell. With several values, which may come in any order, the surfaces
 /// lie one behind the other and the cell field "contour value" says which. Nothing crossed: an empty mesh with its fields, and a note in

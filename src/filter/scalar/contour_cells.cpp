@@ -88,8 +88,8 @@ void find(const Finder& finder, const Places& places, const std::vector<uint8_t>
 }
 
 [[noreturn]] void unsupported(const UnstructuredMesh& m, size_t cell) {
-  fail_usage(fmt::format("cell {} is a {}; only linear cells can be contoured", cell, cell_type_info(m.type(cell)).name), "contour",
-             "contours of curved cells are not there yet; slice and faces take them");
+  fail_usage(fmt::format("cell {} is a {}, which cannot be contoured", cell, cell_type_info(m.type(cell)).name), "contour",
+             "remove it first: -f threshold");
 }
 
 std::vector<EdgeChunk> find_cells(const Finder& finder, const Places& places, const std::vector<uint8_t>& state,

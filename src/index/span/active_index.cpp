@@ -93,10 +93,11 @@ size_t ActiveIndex::bytes() const {
 }
 
 CellActiveIndex cell_active_index(const Dataset& mesh, const Array& samples, const Context& context) {
-  const Spans cells = cell_spans(mesh, samples, 1, context);
-  const Spans groups = grouped(cells, group_size);
-  const bool near = total_length(groups) * double(group_size) <= most_cells_per_crossed_one * total_length(cells);
-  return {ActiveIndex(near ? groups : cells, ActiveIndexKind::span_lattice, context), near ? group_size : 1, cells.size()};
+  double cells = 0;
+  const Spans groups = cell_spans(mesh, samples, group_size, context, &cells);
+  const bool near = total_length(groups) * double(group_size) <= most_cells_per_crossed_one * cells;
+  return {ActiveIndex(near ? groups : cell_spans(mesh, samples, 1, context), ActiveIndexKind::span_lattice, context), near ? group_size : 1,
+          mesh.cell_count()};
 }
 
 }  // namespace sg

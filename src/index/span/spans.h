@@ -22,9 +22,7 @@ struct Spans {
 
 /// Items are the cells of an unstructured or surface mesh, `group` consecutive ones each, by their points' `samples` (packed, one
 /// component, one per point). NaN counts as no value. Throws an internal Error for other meshes. One parallel pass.
-Spans cell_spans(const Dataset& mesh, const Array& samples, size_t group, const Context& context);
-
-/// The same items, `group` of them as one.
-Spans grouped(const Spans& spans, size_t group);
+/// `length_of_cells`: where to put the sum of hi - lo over the single cells.
+Spans cell_spans(const Dataset& mesh, const Array& samples, size_t group, const Context& context, double* length_of_cells = nullptr);
 
 }  // namespace sg
