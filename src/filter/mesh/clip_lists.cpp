@@ -150,6 +150,7 @@ class ListClip {
     uint8_t* types = nullptr;
     allocate(b, whole, whole_ids, sum, &connectivity, &offsets, &types);
     const std::vector<int64_t> members = used_.members();
+    b.kept = members.size();
     b.points.resize(members.size());
     for (size_t i = 0; i < members.size(); ++i) b.points[i] = uint32_t(members[i]);
     const size_t points = members.size() + b.cuts.size() + sum.inner;
