@@ -251,7 +251,7 @@ ClipTable::Faces ClipTable::divided_faces(uint32_t pattern, uint32_t joined, uin
 }
 
 // Closes what the faces leave open on the inside; the outside gets the same polygons the other way round.
-void ClipTable::add_cut(Faces faces, Sides& out) const {
+void ClipTable::add_cut(Faces faces, uint32_t zero, Sides& out) const {
   std::vector<Polygon> cut;
   for (const Polygon& loop : open_loops(faces.in)) divide_loop(loop, cut);
   for (const Polygon& p : cut) {
@@ -261,7 +261,7 @@ void ClipTable::add_cut(Faces faces, Sides& out) const {
   out = {};
   fill(faces.in, out.in);
   fill(faces.out, out.out);
-  find_cones(out);
+  find_cones(zero, out);
 }
 
 ClipTable::ClipTable(CellType type) : topology_(linear_topology(type)), place_(places_of(type)) {
@@ -284,7 +284,7 @@ ClipTable::ClipTable(CellType type) : topology_(linear_topology(type)), place_(p
     first_.push_back(uint32_t(sides_.size()));
     uint32_t joined = 0;
     do {
-      add_cut(divided_faces(p, joined, 0), sides_.emplace_back());
+      add_cut(divided_faces(p, joined, 0), 0, sides_.emplace_back());
       joined = (joined - mask) & mask;
     } while (joined != 0);
   }
@@ -297,11 +297,11 @@ uint32_t ClipTable::variant(uint32_t pattern, uint32_t joined) const {
 }
 
 void ClipTable::sides(uint32_t pattern, uint32_t joined, uint32_t zero, Sides& out) const {
-  add_cut(divided_faces(pattern, joined, zero), out);
+  add_cut(divided_faces(pattern, joined, zero), zero, out);
 }
 
-// Which corners have a share in inner points, and cones whose base lies in no face of the cell.
-void ClipTable::find_cones(Sides& s) const {
+// Which corners have a share in inner points, and cones that are not for certain over a part of the cell's own faces.
+void ClipTable::find_cones(uint32_t zero, Sides& s) const {
   for (Region* r : {&s.in, &s.out}) {
     for (Inner& inner : r->inner)
       for (const uint8_t v : inner.of) {
@@ -312,8 +312,9 @@ void ClipTable::find_cones(Sides& s) const {
     for (const Piece& p : r->pieces) {
       if (p.v[p.count - 1] < first_inner) continue;
       uint32_t faces = ~0u;
-      for (int k = 0; k + 1 < p.count; ++k) faces &= faces_of(p.v[k]);
-      if (faces) continue;
+      bool corner = false;  // one that the cut surface cannot have
+      for (int k = 0; k + 1 < p.count; ++k) faces &= faces_of(p.v[k]), corner = corner || p.v[k] < first_cut;
+      if (!zero && faces && corner) continue;
       Cone c{uint8_t(p.count - 1), {}, p.v[p.count - 1], r == &s.in};
       std::copy(p.v, p.v + c.count, c.v);
       s.cones.push_back(c);

@@ -86,9 +86,9 @@ class ClipTable {
   };
   void divide(std::span<const uint8_t> face, uint32_t pattern, bool joined, uint32_t zero, Faces& faces) const;
   Faces divided_faces(uint32_t pattern, uint32_t joined, uint32_t zero) const;
-  void add_cut(Faces faces, Sides& out) const;
+  void add_cut(Faces faces, uint32_t zero, Sides& out) const;
   void divide_loop(const Polygon& loop, std::vector<Polygon>& out) const;
-  void find_cones(Sides& s) const;
+  void find_cones(uint32_t zero, Sides& s) const;
   Vec3 middle_of(uint8_t code) const;
   uint32_t faces_of(uint8_t code) const;
 
