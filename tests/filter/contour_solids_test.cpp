@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The checks of isosurfaces on grids, on lists of cells (correctness.md, I1 to I6, I8, I9, I11, I13).
 #include "filter/cell_meshes.h"
+#include "filter/known_surfaces.h"
 #include "filter/mesh/to_unstructured.h"
 #include "filter/mesh_meshes.h"
 
@@ -8,13 +9,6 @@ using namespace sg;
 using namespace sg::test;
 
 namespace {
-
-double sphere(Vec3 p) { return length(p) - 1; }
-double torus(Vec3 p) { return std::hypot(std::hypot(p.x, p.y) - 1, p.z) - 0.4; }
-double tangle(Vec3 p) {
-  auto q = [](double x) { return x * x * x * x - 5 * x * x; };
-  return q(p.x) + q(p.y) + q(p.z) + 11.8;
-}
 
 const char* const cubes[] = {"hexahedron", "voxel", "polyhedron"};
 

@@ -11,17 +11,6 @@
 
 namespace sg::contouring {
 
-namespace {
-
-// std::popcount is a call without the instruction, which not every machine has.
-constexpr uint64_t bit_count(uint64_t x) {
-  x -= x >> 1 & 0x5555555555555555;
-  x = (x & 0x3333333333333333) + (x >> 2 & 0x3333333333333333);
-  return ((x + (x >> 4)) & 0x0F0F0F0F0F0F0F0F) * 0x0101010101010101 >> 56;
-}
-
-}  // namespace
-
 LatticeContour::LatticeContour(const Job& job, std::shared_ptr<const LatticeIndex> index)
     : job_(job), index_(std::move(index)), lattice_(job.input.mesh()), frame_(lattice_.view()), sample_(job.samples) {
   words_ = (frame_.dims[0] + 63) / 64;
@@ -149,12 +138,12 @@ void LatticeContour::count_row(Cuts& cuts, size_t j, size_t k) const {
   auto good = [&](size_t dj, size_t dk, size_t w, bool spread) -> uint64_t {
     if (j < dj || k < dk || j - dj + 1 >= ny || (solid && k - dk + 1 >= nz) || (!solid && dk)) return 0;
     const uint64_t* s = skip_.data() + (j - dj + ny * (k - dk)) * words_;
-    const uint64_t here = ~s[w] & inner_bits(w, nx);
-    return spread ? here | here << 1 | (w ? (~s[w - 1] & inner_bits(w - 1, nx)) >> 63 : 0) : here;
+    const uint64_t here = ~s[w] & cell_bits(w, nx);
+    return spread ? here | here << 1 | (w ? (~s[w - 1] & cell_bits(w - 1, nx)) >> 63 : 0) : here;
   };
   for (size_t w = 0; w < words_; ++w) {
     const Pair a(inside + r * words_, w, words_);
-    const uint64_t inner = inner_bits(w, nx);
+    const uint64_t inner = cell_bits(w, nx);
     const Pair b = up ? Pair(inside + (r + 1) * words_, w, words_) : a;
     const Pair c = back ? Pair(inside + (r + ny) * words_, w, words_) : a;
     uint64_t cut[3] = {(a.m ^ a.s) & inner, a.m ^ b.m, a.m ^ c.m};
@@ -166,7 +155,7 @@ void LatticeContour::count_row(Cuts& cuts, size_t j, size_t k) const {
     for (int l = 0; l < frame_.axes; ++l) {
       if (!skip_.empty()) cuts.cut[l][r * words_ + w] = cut[l];
       if (!cut[l]) continue;
-      const uint32_t n = uint32_t(bit_count(cut[l]));
+      const uint32_t n = count_bits(cut[l]);
       row.cut[l] += n;
       row.vertex += n;
     }

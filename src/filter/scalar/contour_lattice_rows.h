@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the two passes of LatticeContour share: rows of bits, cells that the table cannot cut, squares. Inside filter/scalar only.
 #pragma once
+#include "base/bits.h"
 #include "base/huge_allocator.h"
 #include "filter/scalar/cell_cases.h"
 #include "filter/scalar/contour_parts.h"
@@ -56,12 +57,6 @@ struct Pair {
   Pair(const uint64_t* row, size_t w, size_t words) : m(row[w]), s(row[w] >> 1 | (w + 1 < words ? row[w + 1] << 63 : 0)) {}
   uint32_t corners(int b) const { return uint32_t(m >> b & 1) | uint32_t(s >> b & 1) << 1; }
 };
-
-// Bits of the edges (and cells) along x that exist in word w: point i and i+1 < n.
-inline uint64_t inner_bits(size_t w, size_t n) {
-  const size_t from = 64 * w, last = n - 1;
-  return from >= last ? 0 : last - from >= 64 ? ~uint64_t(0) : ~uint64_t(0) >> (64 - (last - from));
-}
 
 // Lines of a square: corners 0 (0,0), 1 (1,0), 2 (0,1), 3 (1,1); edges 0 below, 1 above (along x), 2 left, 3 right. Pairs of edges,
 // the inside on the left. Patterns 6 and 9 have two ways: inside corners apart, then joined.

@@ -69,7 +69,7 @@ void LatticeContour::triangles_of_row(const Cuts& cuts, size_t j, size_t k, uint
       any |= q[s].m | q[s].s;
       every &= q[s].m & q[s].s;
     }
-    uint64_t active = any & ~every & inner_bits(w, nx);
+    uint64_t active = any & ~every & cell_bits(w, nx);
     if (!active) continue;
     const uint64_t skip = skip_.empty() ? 0 : skip_[row[0] * words_ + w];
     uint64_t c[8];
@@ -128,7 +128,7 @@ void LatticeContour::lines_of_row(const Cuts& cuts, size_t j, uint32_t first_poi
     const uint64_t skip = skip_.empty() ? 0 : skip_[j * words_ + w];
     uint64_t c[3] = {a.m ^ a.s, b.m ^ b.s, a.m ^ b.m};
     if (!skip_.empty()) c[0] = cuts.cut[0][j * words_ + w], c[1] = cuts.cut[0][(j + 1) * words_ + w], c[2] = cuts.cut[1][j * words_ + w];
-    for (uint64_t active = ((a.m | a.s | b.m | b.s) & ~(a.m & a.s & b.m & b.s)) & inner_bits(w, nx); active; active &= active - 1) {
+    for (uint64_t active = ((a.m | a.s | b.m | b.s) & ~(a.m & a.s & b.m & b.s)) & cell_bits(w, nx); active; active &= active - 1) {
       const int i = std::countr_zero(active);
       const uint32_t step[3] = {uint32_t(c[0] >> i & 1), uint32_t(c[1] >> i & 1), uint32_t(c[2] >> i & 1)};
       const uint32_t edge[4] = {at[0], at[1], at[2], at[2] + step[2]};
