@@ -3,12 +3,11 @@
 #pragma once
 #include <array>
 #include <bit>
-#include <functional>
 
 #include "base/bits.h"
 #include "base/huge_allocator.h"
 #include "data/cell_type.h"
-#include "data/mesh.h"
+#include "data/lattice.h"
 
 namespace sg {
 
@@ -43,6 +42,17 @@ inline uint64_t packed_bits(const uint8_t* bytes) {
   return r;
 }
 
+/// Calls f(first, count) for each run of set bits.
+template <class F>
+void each_run(uint64_t left, F&& f) {
+  while (left) {
+    const int first = std::countr_zero(left), count = std::countr_one(left >> first);
+    f(size_t(first), size_t(count));
+    if (first + count >= 64) return;
+    left &= ~uint64_t(0) << (first + count);
+  }
+}
+
 /// Points of the cells in `cells`, a bit each.
 void used_points(const BitRows& g, const Bits& cells, Bits& points);
 
@@ -62,7 +72,8 @@ struct BitRanks {
 /// Writes the connectivity (eight ids a cell) and, where asked for, the cell numbers of the set bits of the cell rows [first, last).
 void write_lattice_cells(const BitRows& g, const LatticeCellKind& kind, const Bits& cells, const BitRanks& points, size_t first_row,
                          size_t last_row, int32_t* connectivity, uint32_t* source);
-/// Ids of the points whose bits are set. Parallel.
-void write_lattice_points(const BitRows& g, const BitRanks& points, uint32_t* ids);
+/// Values, and positions, of the points whose bits are set, one after the other. Parallel.
+void copy_lattice_points(const Array& a, const BitRows& g, const BitRanks& points, std::byte* out);
+void write_lattice_positions(const LatticeView& v, const BitRows& g, const BitRanks& points, double* xyz);
 
 }  // namespace sg
