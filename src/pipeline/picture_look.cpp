@@ -79,10 +79,12 @@ std::string made_field(const PipelineFile& file, const std::string& end, const D
   for (; at < file.steps.size(); --at) {
     const auto& s = file.steps[at];
     if (!s.from.empty() || s.operation == "read") return "";
-    for (const Maker& m : makers) {
-      if (m.operation != s.operation) continue;
-      std::string name = m.word.empty() ? std::string(m.name) : word_value(s.words, m.word).value_or(std::string(m.name));
-      name = name.substr(0, name.find(','));  // the first of several
+    const auto maker = std::find_if(std::begin(makers), std::end(makers), [&](const Maker& m) { return m.operation == s.operation; });
+    if (maker != std::end(makers)) {
+      std::string name = maker->word.empty() ? "" : word_value(s.words, maker->word).value_or("");
+      if (name.empty()) name = maker->name;
+      name = name.substr(0, name.find(','));                      // the first of several
+      if (name.empty() && s.operation == "morphology") continue;  // in place of labels that an earlier step made
       const Field* f = name.empty() ? nullptr : d.fields().find(name);
       if (!f || f->association == Association::whole || f->role == Role::global_ids) return "";
       const Range r = d.range(*f, f->components() > 1 ? -1 : 0);
