@@ -59,6 +59,8 @@ struct PointsItem {
   double opacity = 1;
   double size = 4;     ///< pixels across
   bool shaded = true;  ///< as little spheres
+  /// Point fields of normals (3 components) and radii (world lengths): with both, and opaque, the points are oriented discs.
+  std::string disc_normals, disc_radius;
 };
 
 /// A scalar field of a lattice, seen through.

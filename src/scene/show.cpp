@@ -53,6 +53,7 @@ void describe(Schema& s, PointsShow& p) {
   describe(s, p.coloring);
   s("opacity", p.opacity, "1 hides what is behind, 0 is invisible.").range(0, 1);
   s("size", p.size, "Diameter of the dots.").unit("pixels").positive();
+  s("discs", p.discs, "Draws points that have normals and a field 'radius' as discs in space (see surfels); they hide what is behind.");
 }
 
 void describe(Schema& s, OutlineShow& p) {
@@ -238,6 +239,12 @@ std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const Point
   if (item.color_by && item.color_by->association == Association::cell) {
     context.info("points take their colours from point fields; cell field '" + item.color_by->field + "' is not shown on them");
     item.color_by.reset();
+  }
+  if (const Field *normals = input->fields().with_role(Role::normals), *radius = input->fields().find("radius", Association::point);
+      p.discs && p.opacity >= 1 && normals && normals->association == Association::point && normals->components() == 3 && radius &&
+      radius->components() == 1) {
+    item.disc_normals = normals->name, item.disc_radius = radius->name;
+    item.color = SurfaceItem().color;
   }
   if (!p.coloring.color.empty()) item.color = parse_color(p.coloring.color, "color");
   item.opacity = p.opacity;

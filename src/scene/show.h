@@ -47,6 +47,7 @@ struct LinesShow {
 struct PointsShow {
   ColoringParams coloring;
   double opacity = 1, size = 4;
+  bool discs = true;
 };
 struct OutlineShow {
   std::string color = "#707078";
