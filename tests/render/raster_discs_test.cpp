@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <doctest/doctest.h>
 
+#include "filter/surface/surfels.h"
 #include "raster_support.h"
 
 using namespace sg;
@@ -98,4 +99,60 @@ TEST_CASE("discs: hide and are hidden, tiny ones show, one seen from behind is l
   CHECK(test::error_of([&] { picture(s, true, 8); }).find("components") != std::string::npos);
   std::get<PointsItem>(s.items[0]).disc_radius = "radii";
   CHECK(test::error_of([&] { picture(s, true, 8); }).find("radius") != std::string::npos);
+}
+
+TEST_CASE("discs: one seen at an angle covers pi r^2 cos(theta), lies in its plane and is lit by its own normal") {
+  const int n = 800;
+  const double scale = n / 3.0, r = 0.9;
+  for (double theta : {0.0, 35.0, 60.0, 80.0}) {
+    const double t = theta * test::pi / 180;
+    const Vec3 normal{std::sin(t), 0, std::cos(t)};
+    FieldSet f;
+    f.add(
+        {"Normals", Association::point, Array::from_vector(std::vector<float>{float(normal.x), 0, float(normal.z)}, 3), "", Role::normals});
+    f.add({"radius", Association::point, Array::from_vector(std::vector<float>{float(r)}), "", Role::none});
+    const DatasetPtr one = make_dataset(Mesh(PointCloud{{Array::from_vector(std::vector<float>{0.1f, 0.2f, 0.3f}, 3), {}}}), f);
+    const Frame p = picture(scene_of(one), true, n);
+    size_t covered = 0;
+    double worst = 0;
+    for (int y = 0; y < n; ++y)
+      for (int x = 0; x < n; ++x) {
+        const size_t at = size_t(y) * size_t(n) + size_t(x);
+        if (p.ids[at] == 0) continue;
+        ++covered;
+        // The plane through the place, in the picture's x; the viewer stands at z = 6.
+        const double wx = (x + 0.5 - 0.5 * n) / scale - 0.1, wz = 0.3 - std::tan(t) * wx;
+        worst = std::max(worst, std::abs(double(p.depth[at]) - (6 - wz)));
+      }
+    CHECK(double(covered) == doctest::Approx(test::pi * r * r * std::cos(t) * scale * scale).epsilon(0.004));
+    CHECK(worst < 1e-3);
+  }
+}
+
+TEST_CASE("discs: surfels of a ball on a grid leave no hole in its picture") {
+  Context ctx;
+  for (int cells : {12, 40}) {
+    UniformGrid g;
+    g.dims = {cells + 1, cells + 1, cells + 1};
+    g.origin = {-1.2, -1.2, -1.2};
+    g.spacing = Vec3{2.4, 2.4, 2.4} * (1.0 / cells);
+    std::vector<double> f;
+    for (int k = 0; k <= cells; ++k)
+      for (int j = 0; j <= cells; ++j)
+        for (int i = 0; i <= cells; ++i) f.push_back(length(g.origin + g.spacing * Vec3(i, j, k)));
+    FieldSet fields;
+    fields.add({"f", Association::point, Array::from_vector(std::move(f)), "", Role::scalars});
+    const DatasetPtr d = surfels(make_dataset(g, fields), {.field = {"f"}, .value = 1}, ctx);
+    const int n = 300;
+    for (bool parallel : {true, false}) {
+      const Frame p = picture(scene_of(d), parallel, n);
+      // Seen from (0, 0, 6), the ball's rim lies on a circle: of radius 1 in parallel, of tangent 1/sqrt(35) in perspective.
+      const double rim = parallel ? n / 3.0 : 0.5 * n / std::tan(15 * test::pi / 180) / std::sqrt(35.0);
+      size_t holes = 0;
+      for (int y = 0; y < n; ++y)
+        for (int x = 0; x < n; ++x)
+          holes += std::hypot(x + 0.5 - 0.5 * n, y + 0.5 - 0.5 * n) < 0.985 * rim && p.ids[size_t(y) * size_t(n) + size_t(x)] == 0;
+      CHECK(holes == 0);
+    }
+  }
 }
