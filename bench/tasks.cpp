@@ -138,9 +138,10 @@ Task surface(const char* name, size_t n) {
 Task isosurface_picture(size_t n, bool discs) {
   return {"isosurface_picture", fmt::format("uniform{}, 1280x720", n), discs ? "sightglass:surfels" : "sightglass:contour",
           "pixels covered", [=] {
-            const DatasetPtr d = field_grid(n);
+            const DatasetPtr kept = field_grid(n);
             return [=] {
               Context context;
+              const DatasetPtr d = make_dataset(kept->parts());  // knows nothing from the run before
               Scene scene;
               if (discs) {
                 PointsItem item;
