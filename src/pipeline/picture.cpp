@@ -78,7 +78,8 @@ void check_shows(const PipelineFile& file) {
 }
 
 bool same_legend(const ColorScale& a, const ColorScale& b) {
-  return a.title == b.title && a.map.name == b.map.name && a.lo == b.lo && a.hi == b.hi && a.kind == b.kind && a.labels == b.labels;
+  return a.title == b.title && a.map.name == b.map.name && a.lo == b.lo && a.hi == b.hi && a.kind == b.kind && a.labels == b.labels &&
+         a.limits == b.limits;
 }
 
 bool has_nan(const Scene& scene) {
@@ -121,6 +122,7 @@ std::vector<std::vector<std::string>> words_of_parts(const std::vector<DatasetPt
       if (name.empty())
         if (const Field* f = automatic_field(*parts[i]); f && (labels || f->role != Role::labels)) name = f->name;
   if (name.empty()) return words;
+  if (name == "band" && is_banded(*parts[by_size[0]])) name = "band low";  // bands of parts differ; their values can be compared
   const int component = int(parse_int(word_value(show.words, "component").value_or("-1")).value_or(-1));
   Range all;
   bool same = true, any = false;

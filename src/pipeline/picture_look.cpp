@@ -6,7 +6,7 @@
 
 namespace sg {
 
-bool colors_by_field(std::string_view kind) { return kind != "outline"; }
+bool colors_by_field(std::string_view kind) { return kind != "outline" && kind != "labels"; }
 
 std::string origin_of(const PipelineFile& file, std::string step) {
   for (int hops = 0; hops < 1000; ++hops) {
