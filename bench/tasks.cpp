@@ -6,6 +6,8 @@
 #include "filter/field/gradient.h"
 #include "filter/probe/probe.h"
 #include "filter/probe/resample.h"
+#include "filter/scalar/contour.h"
+#include "filter/surface/surfels.h"
 #include "index/cell_tree.h"
 #include "inputs.h"
 #include "io/io.h"
@@ -132,6 +134,36 @@ Task surface(const char* name, size_t n) {
           }};
 }
 
+// From the field in memory to a frame of its isosurface: as triangles with normals, or as discs.
+Task isosurface_picture(size_t n, bool discs) {
+  return {"isosurface_picture", fmt::format("uniform{}, 1280x720", n), discs ? "sightglass:surfels" : "sightglass:contour",
+          "pixels covered", [=] {
+            const DatasetPtr kept = field_grid(n);
+            return [=] {
+              Context context;
+              const DatasetPtr d = make_dataset(kept->parts());  // knows nothing from the run before
+              Scene scene;
+              if (discs) {
+                PointsItem item;
+                item.data = surfels(d, {.field = {}, .value = 0}, context);
+                item.disc_normals = "Normals", item.disc_radius = "radius";
+                item.color = SurfaceItem().color;
+                scene.items.emplace_back(item);
+              } else {
+                ContourParams p;
+                p.values = {0};
+                SurfaceItem item;
+                item.data = contour(d, p, context);
+                scene.items.emplace_back(item);
+              }
+              RenderOptions o;
+              o.width = 1280, o.height = 720, o.samples = 1;
+              const Frame f = render(scene, peers_camera(0), o, context);
+              return double(std::count_if(f.ids.begin(), f.ids.end(), [](uint32_t id) { return id > 0; }));
+            };
+          }};
+}
+
 Task volume(const char* what, bool shaded, bool maximum, bool fog) {
   return {"volume_render", "float32 256^3, 1024x1024", fmt::format("sightglass:raycast({})", what), "pixels covered", [=] {
             Scene scene;
@@ -179,6 +211,8 @@ std::vector<Task> tasks(const std::string& folder) {
   t.push_back(surface("1M", 235));
   t.push_back(surface("5M", 526));
   t.push_back(surface("10M", 744));
+  for (size_t n : {256, 400})
+    for (bool discs : {false, true}) t.push_back(isosurface_picture(n, discs));
   t.push_back(volume("composite", false, false, false));
   t.push_back(volume("composite,shaded", true, false, false));
   t.push_back(volume("MIP", false, true, false));

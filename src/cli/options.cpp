@@ -49,7 +49,7 @@ void add_pipeline(CLI::App& a, Options& o) {
 }
 
 void add_picture(CLI::App& a, Options& o) {
-  a.add_option("--show", o.shows, "How to show it: 'surface|volume|lines|points|outline key=value ...'; may be repeated")
+  a.add_option("--show", o.shows, "How to show it: 'surface|volume|lines|points|labels|outline key=value ...'; may be repeated")
       ->allow_extra_args(false);
   a.add_option("--field", o.field, "Field to colour by");
   a.add_option("--map", o.map, "Colour map (see: sightglass colormap), or a file: FILE.cpt, FILE.json:NAME, FILE.css:NAME");
@@ -163,7 +163,7 @@ void finish_raw(const RawText& raw, Options& o) {
 
 const char* const overview =
     "Sightglass: from the numbers of simulations and scanners to pictures that can be trusted.\n\n"
-    "  sightglass render IN... [-f 'OP key=value ...']... [--show 'surface|volume|lines|points|outline key=value ...']...\n"
+    "  sightglass render IN... [-f 'OP key=value ...']... [--show 'surface|volume|lines|points|labels|outline key=value ...']...\n"
     "             [--camera ...] [--size 1920x1080] [-o OUT.png]      a picture; without options it looks at the data and chooses\n"
     "  sightglass info IN [--json] [--quick] [--all-times]           what is in a file\n"
     "  sightglass convert IN [-f ...]... -o OUT.vtu                  filter and write data\n"

@@ -22,6 +22,8 @@ struct ColorScale {
   bool clamp = true;                     ///< false: values out of range are not drawn (transparent)
   std::vector<double> labels;            ///< categorical: the values, in order; a value takes the colour of its place
   std::vector<std::string> label_names;  ///< categorical: text per label, may be empty
+  /// With labels that stand for neighbouring bands of values: their borders, one more than labels; the legend shows these.
+  std::vector<double> limits;
   std::string title, unit;
 
   /// Position on the map, may lie outside [0,1] (below, above), NaN for NaN and, on a log scale, for values <= 0.
@@ -68,5 +70,8 @@ struct TickLabel {
 };
 /// About `wanted` round values in [lo, hi] with texts that tell them apart; powers of ten on a log scale.
 std::vector<TickLabel> nice_ticks(double lo, double hi, int wanted, ScaleKind kind = ScaleKind::linear, double linear_threshold = 0);
+
+/// The shortest texts (up to 8 digits) that tell the values apart to a hundredth of their smallest distance.
+std::vector<std::string> distinct_texts(const std::vector<double>& values);
 
 }  // namespace sg

@@ -147,4 +147,23 @@ std::vector<TickLabel> nice_ticks(double lo, double hi, int wanted, ScaleKind ki
   return linear_ticks(lo, hi, wanted);
 }
 
+std::vector<std::string> distinct_texts(const std::vector<double>& values) {
+  std::vector<double> sorted = values;
+  std::sort(sorted.begin(), sorted.end());
+  double least = HUGE_VAL;
+  for (size_t i = 1; i < sorted.size(); ++i)
+    if (sorted[i] > sorted[i - 1]) least = std::min(least, sorted[i] - sorted[i - 1]);
+  std::vector<std::string> texts;
+  for (int digits = 3; digits <= 8; ++digits) {
+    texts.clear();
+    double worst = 0;
+    for (double v : values) {
+      texts.push_back(short_number(v, digits));
+      worst = std::max(worst, std::abs(parse_double(texts.back()).value_or(v) - v));
+    }
+    if (worst <= 0.01 * least) break;
+  }
+  return texts;
+}
+
 }  // namespace sg

@@ -78,7 +78,8 @@ void check_shows(const PipelineFile& file) {
 }
 
 bool same_legend(const ColorScale& a, const ColorScale& b) {
-  return a.title == b.title && a.map.name == b.map.name && a.lo == b.lo && a.hi == b.hi && a.kind == b.kind && a.labels == b.labels;
+  return a.title == b.title && a.map.name == b.map.name && a.lo == b.lo && a.hi == b.hi && a.kind == b.kind && a.labels == b.labels &&
+         a.limits == b.limits;
 }
 
 bool has_nan(const Scene& scene) {
@@ -121,6 +122,7 @@ std::vector<std::vector<std::string>> words_of_parts(const std::vector<DatasetPt
       if (name.empty())
         if (const Field* f = automatic_field(*parts[i]); f && (labels || f->role != Role::labels)) name = f->name;
   if (name.empty()) return words;
+  if (name == "band" && is_banded(*parts[by_size[0]])) name = "band low";  // bands of parts differ; their values can be compared
   const int component = int(parse_int(word_value(show.words, "component").value_or("-1")).value_or(-1));
   Range all;
   bool same = true, any = false;
@@ -162,6 +164,7 @@ Shown collect(const PipelineFile& file, const std::vector<Data>& results, const 
       const DatasetPtr& d = parts[k];
       s.any_points = s.any_points || d->point_count() > 0;
       s.box.add(d->bounds());
+      if (parts.size() > 1 && d->point_count() == 0) continue;                                             // what a filter left nothing of
       if (parts.size() > 1 && show.kind == "volume" && word_value(words[k], "field") == "none") continue;  // nothing to see through
       const auto legend = find_show(show.kind).add(s.scene, d, words[k], context);
       if (!legend || !stated.picture.legend) continue;

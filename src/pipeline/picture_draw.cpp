@@ -18,6 +18,18 @@ void place_left(const Frame& part, Frame& whole) {
   }
 }
 
+// The texts whose places are seen: nothing lies before them by more than a hair of the scene's size.
+std::vector<TextItem> seen_texts(const Scene& scene, const Projection& p, const Frame& frame) {
+  const double hair = scene.texts.empty() ? 0 : 0.005 * scene_bounds(scene).diagonal();
+  std::vector<TextItem> seen;
+  for (const TextItem& t : scene.texts) {
+    const Vec3 at = p.to_pixel(t.at);
+    if (!(at.z > p.near_plane && at.z < p.far_plane) || !(at.x >= 0 && at.x < frame.width && at.y >= 0 && at.y < frame.height)) continue;
+    if (double(frame.depth[size_t(at.y) * size_t(frame.width) + size_t(at.x)]) >= at.z - hair) seen.push_back(t);
+  }
+  return seen;
+}
+
 }  // namespace
 
 // The edges of the box that do not lie in front of the data: those with a face turned away from the camera.
@@ -61,6 +73,8 @@ Image draw_picture(const Scene& scene, const Camera& camera, const StatedPicture
   options.width = width_beside_legends(annotation, s), options.height = s.height, options.samples = s.picture.samples;
   Frame frame = render(scene, camera, options, context);
   const Projection projection = make_projection(camera, options.width, options.height);
+  Annotation with_texts = annotation;
+  with_texts.texts = seen_texts(scene, projection, frame);
   if (options.width < s.width) {
     Frame whole(s.width, s.height);
     // The last column may hold data; take the background's own colour there.
@@ -76,7 +90,7 @@ Image draw_picture(const Scene& scene, const Camera& camera, const StatedPicture
     frame = std::move(whole);
   }
   Image image = to_image(frame, scene.transparent);
-  annotate(image, annotation, projection);
+  annotate(image, with_texts, projection);
   return image;
 }
 

@@ -51,7 +51,7 @@ struct PipelineFile {
 
 /// The words that may stand in a file, for "did you mean". An empty list lets everything pass.
 struct PipelineVocabulary {
-  std::vector<std::string> show{"surface", "volume", "lines", "points", "glyphs", "outline"};
+  std::vector<std::string> show{"surface", "volume", "lines", "points", "labels", "glyphs", "outline"};
   std::vector<std::string> picture{"size", "camera", "output", "background", "background_top", "transparent", "title", "legend", "axes"};
 };
 

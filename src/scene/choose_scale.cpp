@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which colours suit a field when nobody says.
+#include <map>
+
 #include "base/text.h"
 #include "color/colormap_file.h"
 #include "color/parse_color.h"
@@ -61,7 +63,83 @@ void take_categories(const FileColormap& file, const Field& field, ColorScale& s
                            field.name, s.map.name, file.map.colors.size()));
 }
 
+// The point field whose values lie within the limits of every polygon's band: what the bands are of. Null when there is none.
+const Field* banded_field(const Dataset& d, const Field& low, const Field& high) {
+  const auto* mesh = d.as<SurfaceMesh>();
+  if (!mesh || mesh->vertices.size() + mesh->lines.size() + mesh->strips.size() > 0) return nullptr;
+  const CellsView c = cells_view(mesh->polygons);
+  const auto fits = [&](const Field& f) {
+    for (size_t cell = 0; cell < c.count; ++cell)
+      for (size_t k = 0; k < c.size(cell); ++k) {
+        const double v = f.array.get(size_t(c.point(cell, k)));
+        if (v < low.array.get(cell) || v > high.array.get(cell)) return false;
+      }
+    return true;
+  };
+  for (const Field& f : d.fields())
+    if (f.association == Association::point && f.components() == 1 && fits(f)) return &f;
+  return nullptr;
+}
+
+// Filled contours: a colour for each band, and a legend of the limits between them.
+ColorScale band_scale(const Dataset& d, const Field& band, const ColoringParams& p) {
+  const Field &low = d.fields().require("band low", Association::cell), &high = d.fields().require("band high", Association::cell);
+  std::map<double, std::pair<double, double>> bands;
+  for (size_t c = 0; c < band.array.count(); ++c) bands.try_emplace(band.array.get(c), low.array.get(c), high.array.get(c));
+  ColorScale s;
+  const Field* of = banded_field(d, low, high);
+  s.title = of ? of->name : "band";
+  s.unit = low.unit;
+  std::vector<double> limits;
+  bool neighbours = true;
+  for (const auto& [number, ends] : bands) {
+    neighbours = neighbours && (limits.empty() || limits.back() == ends.first);
+    if (limits.empty()) limits.push_back(ends.first);
+    limits.push_back(ends.second);
+    s.labels.push_back(number);
+    const auto texts = distinct_texts({ends.first, ends.second});
+    s.label_names.push_back(texts[0] + " \u2026 " + texts[1]);
+  }
+  if (s.labels.empty()) s.labels = {0}, s.label_names = {""};
+  else if (neighbours) s.limits = limits;
+  // The colours of values: evenly from band to band, or where range, scale or a middle at zero ask for places.
+  Range r;
+  for (double v : limits) r.add({v, v});
+  if (r.empty()) r = {0, 1};
+  const bool is_signed = r.lo < 0 && r.hi > 0 && std::min(-r.lo, r.hi) > 0.05 * std::max(-r.lo, r.hi);
+  const std::optional<FileColormap> file = names_colormap_file(p.map) ? std::optional(find_file_colormap(p.map)) : std::nullopt;
+  s.map = file ? file->map : find_colormap(p.map != "auto" ? p.map : is_signed && p.scale != "log" ? "coolwarm" : "sight");
+  ColorScale by_value;
+  by_value.kind = p.scale == "log" ? ScaleKind::log : p.scale == "symlog" ? ScaleKind::symlog : ScaleKind::linear;
+  by_value.linear_threshold = p.linear_threshold;
+  const bool centred = s.map.kind == MapKind::diverging && is_signed;
+  by_value.lo = r.lo, by_value.hi = r.hi;
+  if (centred) by_value.hi = nice_symmetric(r), by_value.lo = -by_value.hi;
+  if (!p.range.empty()) by_value.lo = p.range[0], by_value.hi = p.range[1];
+  if (!s.map.categorical()) {
+    std::vector<Vec3f> colors;
+    const size_t n = s.labels.size();
+    for (const auto& [number, ends] : bands) {
+      double t = n > 1 ? double(colors.size()) / double(n - 1) : 0.5;
+      if (centred || !p.range.empty() || by_value.kind != ScaleKind::linear)
+        t = 0.5 * (by_value.position(ends.first) + by_value.position(ends.second));
+      colors.push_back(s.map.at(std::isfinite(t) ? std::clamp(t, 0.0, 1.0) : 0));
+    }
+    if (!colors.empty()) s.map.colors = colors, s.map.kind = MapKind::categorical;
+  }
+  s.lo = s.labels.front(), s.hi = std::max(s.labels.back(), s.lo + 1);
+  if (!p.nan.empty()) s.nan = parse_color(p.nan, "nan");
+  return s;
+}
+
 }  // namespace
+
+bool is_banded(const Dataset& d) {
+  const Field* band = d.fields().find("band", Association::cell);
+  const Field *low = d.fields().find("band low", Association::cell), *high = d.fields().find("band high", Association::cell);
+  return band && low && high && band->components() == 1 && !is_float(band->array.type()) && low->components() == 1 &&
+         high->components() == 1;
+}
 
 bool looks_like_labels(const Dataset& data, const Field& field) {
   if (is_float(field.array.type()) || field.components() != 1 || field.array.count() < 2) return false;
@@ -71,7 +149,7 @@ bool looks_like_labels(const Dataset& data, const Field& field) {
   const auto values = distinct_values(field, most_labels);
   if (values.size() > most_labels || values.size() < 2) return false;
   if (!is_lattice(data.mesh())) return values.size() * 2 <= field.array.count() + 2;
-  if (values.size() == 2) return true;
+  if (values.size() == 2 || field.role == Role::labels) return true;
   const auto d = lattice_dims(data.mesh());
   const size_t nx = field.association == Association::point ? d[0] : std::max<size_t>(d[0], 2) - 1;
   return share_of_equal_neighbours(field, nx, values[0]) > 0.7;
@@ -87,13 +165,13 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
     context.warn(fmt::format("field '{}' has no finite value; it is drawn in the colour of NaN", field.name));
     r = {0, 1};
   }
+  if (!p.range.empty() && (p.range.size() != 2 || !(p.range[0] < p.range[1])))
+    fail_usage("range needs two numbers, the lower one first", "range", "like range=0,100");
+  if (field.name == "band" && field.association == Association::cell && is_banded(data)) return band_scale(data, field, p);
   const bool automatic = p.map == "auto";
   const std::optional<FileColormap> file = names_colormap_file(p.map) ? std::optional(find_file_colormap(p.map)) : std::nullopt;
   const Colormap asked = automatic ? Colormap{} : file ? file->map : find_colormap(p.map);
   const bool labels = automatic ? p.range.empty() && looks_like_labels(data, field) : asked.categorical();
-  if (!p.range.empty() && (p.range.size() != 2 || !(p.range[0] < p.range[1])))
-    fail_usage("range needs two numbers, the lower one first", "range", "like range=0,100");
-
   s.kind = p.scale == "log" ? ScaleKind::log : p.scale == "symlog" ? ScaleKind::symlog : ScaleKind::linear;
   if (s.kind == ScaleKind::log && p.range.empty() && r.lo <= 0) {
     // Zeros and negative values have no place on a log scale: start at the smallest positive value.

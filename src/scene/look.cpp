@@ -99,8 +99,9 @@ void choose_view(const Box3& b, const std::string& extension, Look& look) {
 Look choose_look(const Dataset& d, const std::string& field, const std::string& extension) {
   Look look;
   choose_view(d.bounds(), extension, look);
-  if (!look.parallel)
-    if (const auto normal = plane_normal(d, look.direction)) look.direction = *normal;
+  bool flat = look.parallel;
+  if (!flat)
+    if (const auto normal = plane_normal(d, look.direction)) look.direction = *normal, flat = true;
   if (d.point_count() == 0) {
     look.reason = "there are no points: an empty picture";
     return look;
@@ -117,9 +118,16 @@ Look choose_look(const Dataset& d, const std::string& field, const std::string& 
     look_at_grid(d, *scalar, look);
     return look;
   }
+  if (is_line_labels(d)) {
+    look.shows.push_back({"labels", {}, true});
+    look.reason = "places along lines: their values as text";
+    return look;
+  }
   if (d.as<PointCloud>() || (d.cell_count() == 0 && !is_lattice(d.mesh()))) {
     const double size = d.point_count() > 200000 ? 1.5 : d.point_count() > 5000 ? 3 : 7;
     look.shows.push_back({"points", {"size=" + short_number(size)}, true});
+    if (d.fields().with_role(Role::normals) && field.empty() && !automatic_field(d))
+      look.shows.back().words.push_back("color=#c8c8cc");  // lit
     look.reason = fmt::format("points only: dots, {}", field_reason(d, field));
     return look;
   }
@@ -133,7 +141,8 @@ Look choose_look(const Dataset& d, const std::string& field, const std::string& 
   const bool bare_map = look.parallel && d.fields().empty() && d.as<SurfaceMesh>();  // nothing but its edges tells its parts apart
   const bool show_edges = (simulation && d.cell_count() <= 12000) || (bare_map && d.cell_count() <= 2000);
   if (show_edges) words.push_back("edges=true");
-  if (look.parallel && box_grid) words.push_back("lit=false");  // an image: its colours as they are
+  const bool filled_contours = flat && field.empty() && is_banded(d);
+  if ((look.parallel && box_grid) || filled_contours) words.push_back("lit=false");  // an image: its colours as they are
   look.shows.push_back({"surface", words, true});
   if (is_lattice(d.mesh()) && !box_grid) look.shows.push_back({"outline", {}, true});
   look.reason = fmt::format("{} mesh: its outer surface{}, {}", d.kind(), show_edges ? " with cell edges" : "", field_reason(d, field));

@@ -59,6 +59,8 @@ struct PointsItem {
   double opacity = 1;
   double size = 4;     ///< pixels across
   bool shaded = true;  ///< as little spheres
+  /// Point fields of normals (3 components) and radii (world lengths): with both, and opaque, the points are oriented discs.
+  std::string disc_normals, disc_radius;
 };
 
 /// A scalar field of a lattice, seen through.
@@ -75,6 +77,15 @@ struct VolumeItem {
   double step = 0;  ///< world length; 0 = half the smallest cell edge
 };
 
+/// Text at a place, over the picture where nothing hides the place.
+struct TextItem {
+  Vec3 at;
+  Vec3 along;  ///< world direction of reading, turned round where it would be upside down; zero = along the picture's rows
+  std::string text;
+  double size = 1;             ///< times the size of the picture's other numbers
+  std::optional<Vec3f> color;  ///< sRGB; empty = that of the other texts
+};
+
 using Item = std::variant<SurfaceItem, LinesItem, PointsItem, VolumeItem>;
 
 struct Light {
@@ -85,6 +96,7 @@ struct Light {
 
 struct Scene {
   std::vector<Item> items;
+  std::vector<TextItem> texts;
   std::vector<Light> lights;            ///< empty = one light over the viewer's left shoulder and a weak one from the right
   Vec3f background{1, 1, 1};            ///< sRGB, bottom
   std::optional<Vec3f> background_top;  ///< sRGB; a vertical gradient when set

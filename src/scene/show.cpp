@@ -7,6 +7,7 @@
 #include "data/lattice.h"
 #include "filter/mesh/faces.h"
 #include "filter/mesh/surface.h"
+#include "scene/show_labels.h"
 #include "scene/volume_look.h"
 
 namespace sg {
@@ -53,6 +54,7 @@ void describe(Schema& s, PointsShow& p) {
   describe(s, p.coloring);
   s("opacity", p.opacity, "1 hides what is behind, 0 is invisible.").range(0, 1);
   s("size", p.size, "Diameter of the dots.").unit("pixels").positive();
+  s("discs", p.discs, "Draws points that have normals and a field 'radius' as discs in space (see surfels); they hide what is behind.");
 }
 
 void describe(Schema& s, OutlineShow& p) {
@@ -84,6 +86,7 @@ const Field* automatic_field(const Dataset& d) {
     return r.empty() || r.lo < r.hi;
   };
   auto plain = [](Role r) { return r != Role::normals && r != Role::tcoords && r != Role::global_ids; };
+  if (is_banded(d)) return d.fields().find("band", Association::cell);
   if (const Field* f = d.fields().with_role(Role::scalars); f && f->components() == 1 && varies(*f)) return f;
   if (const Field* f = d.fields().with_role(Role::colors)) return f;
   for (const bool numberings : {false, true})
@@ -239,6 +242,12 @@ std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const Point
     context.info("points take their colours from point fields; cell field '" + item.color_by->field + "' is not shown on them");
     item.color_by.reset();
   }
+  if (const Field* normals = input->fields().with_role(Role::normals), *radius = input->fields().find("radius", Association::point);
+      p.discs && p.opacity >= 1 && normals && normals->association == Association::point && normals->components() == 3 && radius &&
+      radius->components() == 1) {
+    item.disc_normals = normals->name, item.disc_radius = radius->name;
+    item.color = SurfaceItem().color;
+  }
   if (!p.coloring.color.empty()) item.color = parse_color(p.coloring.color, "color");
   item.opacity = p.opacity;
   item.size = p.size;
@@ -315,6 +324,7 @@ std::span<const ShowKind> show_kinds() {
       kind<VolumeShow>("volume", "A scalar field of a grid, seen through."),
       kind<LinesShow>("lines", "Lines of constant width."),
       kind<PointsShow>("points", "Every point as a dot."),
+      kind<LabelsShow>("labels", "Numbers at points, turned along their lines (see line_labels)."),
       kind<OutlineShow>("outline", "The box around the data."),
   };
   return kinds;

@@ -47,6 +47,12 @@ struct LinesShow {
 struct PointsShow {
   ColoringParams coloring;
   double opacity = 1, size = 4;
+  bool discs = true;
+};
+struct LabelsShow {
+  FieldName field;
+  double size = 1;
+  std::string color;
 };
 struct OutlineShow {
   std::string color = "#707078";
@@ -56,6 +62,7 @@ void describe(Schema& s, SurfaceShow& p);
 void describe(Schema& s, VolumeShow& p);
 void describe(Schema& s, LinesShow& p);
 void describe(Schema& s, PointsShow& p);
+void describe(Schema& s, LabelsShow& p);
 void describe(Schema& s, OutlineShow& p);
 
 /// One way to show, as the command line, pipeline files and help see it.
@@ -73,12 +80,18 @@ std::span<const ShowKind> show_kinds();
 const ShowKind& find_show(std::string_view name);
 
 /// The colour scale for a field: map and range as asked, or chosen from the data (categorical for labels, diverging and
-/// symmetric when signed about zero, else sequential).
+/// symmetric when signed about zero, else sequential; the field 'band' of filled contours: one colour a band, with its limits).
 ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringParams& params, Context& context);
 
-/// The field that colours a dataset when none is named: its scalars when they vary, else its own colours, else the first field
-/// that varies, points before cells, scalars before vectors, numberings last. Null when there is none.
+/// The field that colours a dataset when none is named: the bands of filled contours, its scalars when they vary, else its own colours,
+/// else the first field that varies, points before cells, scalars before vectors, numberings last. Null when there is none.
 const Field* automatic_field(const Dataset& data);
+
+/// A point cloud with point fields 'value', 'angle' and 'line', as the operation line_labels makes it.
+bool is_line_labels(const Dataset& data);
+
+/// Has the cell fields 'band', 'band low' and 'band high' that the operation bands makes: filled contours.
+bool is_banded(const Dataset& data);
 
 /// Integer values that name things: few distinct ones, in pieces. For fields of lattices, points and cells.
 bool looks_like_labels(const Dataset& data, const Field& field);

@@ -299,6 +299,7 @@ TEST_CASE("clip: NaN and hidden cells stay out, one-cell and empty meshes are fi
   CHECK(none->cell_count() == 0);
   CHECK(none->fields().find("f", Association::point));
   CHECK(note.find("nothing is left") != std::string::npos);
+  CHECK(none->fields().require("original_cell").role == Role::global_ids);  // numbers, nothing to colour by
   p.value = 0;
   for (const DatasetPtr& d :
        {box_lattice(0, 40, [](Vec3 x) { return noise(x); }), solid_mesh("mixed", 14, 1.0, [](Vec3 x) { return noise(x); })}) {

@@ -145,7 +145,7 @@ DatasetPtr finish(const Job& job, Build b) {
   carry_gathered(out.fields, in.fields(), Association::cell, b.source, Association::cell);
   carry_whole(out.fields, in.fields());
   if (!in.fields().find("original_cell", Association::cell))
-    out.fields.add({"original_cell", Association::cell, id_array(std::move(b.source), in.cell_count()), {}, Role::labels});
+    out.fields.add({"original_cell", Association::cell, id_array(std::move(b.source), in.cell_count()), {}, Role::global_ids});
   out.notes = in.notes();
   out.time = in.time();
   return make_trusted_dataset(std::move(out));

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 
+#include "base/bits.h"
 #include "base/huge_allocator.h"
 #include "data/cell_type.h"
 #include "data/lattice.h"
@@ -27,18 +28,8 @@ struct BitRows {
   size_t size() const { return rows() * words; }
   size_t row(size_t j, size_t k) const { return (j + ny * k) * words; }
   /// Bits of the cells of a row.
-  uint64_t cell_mask(size_t w) const {
-    const size_t left = nx - 1 > w * 64 ? nx - 1 - w * 64 : 0;
-    return left >= 64 ? ~uint64_t(0) : (uint64_t(1) << left) - 1;
-  }
+  uint64_t cell_mask(size_t w) const { return cell_bits(w, nx); }
 };
-
-/// Set bits, without a call where the processor's instruction may not be assumed.
-inline uint32_t count_bits(uint64_t v) {
-  v -= v >> 1 & 0x5555555555555555u;
-  v = (v & 0x3333333333333333u) + (v >> 2 & 0x3333333333333333u);
-  return uint32_t(((v + (v >> 4)) & 0x0f0f0f0f0f0f0f0fu) * 0x0101010101010101u >> 56);
-}
 
 /// 64 bytes that are 0 or 1 as bits.
 inline uint64_t packed_bits(const uint8_t* bytes) {

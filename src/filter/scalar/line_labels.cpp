@@ -48,14 +48,6 @@ struct Labels {
   std::vector<int32_t> line;
 };
 
-// Right and up of the page for a reader in direction n.
-std::pair<Vec3, Vec3> page(Vec3 n) {
-  n = normalize(n);
-  const Vec3 vertical = std::abs(n.z) > 0.9 ? Vec3(0, 1, 0) : Vec3(0, 0, 1);
-  const Vec3 up = normalize(vertical - n * dot(n, vertical));
-  return {cross(up, n), up};
-}
-
 void label(const Course& line, int32_t number, double spacing, double width, Vec3 right, Vec3 up, Labels& out) {
   if (line.size() < 2 * width || !(line.size() > 0)) return;
   const auto stretches = size_t(std::max(1.0, std::floor(line.size() / spacing)));
@@ -85,6 +77,13 @@ void label(const Course& line, int32_t number, double spacing, double width, Vec
 
 }  // namespace
 
+std::pair<Vec3, Vec3> label_page(Vec3 n) {
+  n = normalize(n);
+  const Vec3 vertical = std::abs(n.z) > 0.9 ? Vec3(0, 1, 0) : Vec3(0, 0, 1);
+  const Vec3 up = normalize(vertical - n * dot(n, vertical));
+  return {cross(up, n), up};
+}
+
 DatasetPtr line_labels(const DatasetPtr& in, const LineLabelsParams& p, Context& ctx) {
   if (!(length(p.normal) > 0) || !std::isfinite(length(p.normal)))
     fail_usage("the normal has no length", "line_labels normal", "for example normal=0,0,1");
@@ -107,7 +106,7 @@ DatasetPtr line_labels(const DatasetPtr& in, const LineLabelsParams& p, Context&
   const Field& closed = lines->fields().require("closed", Association::cell);
   const double diagonal = in->bounds().diagonal();
   const double spacing = p.spacing > 0 ? p.spacing : diagonal / 3, width = p.width > 0 ? p.width : diagonal * 0.05;
-  const auto [right, up] = page(p.normal);
+  const auto [right, up] = label_page(p.normal);
   Labels labels;
   for (size_t l = 0; l < cells.count; ++l) {
     if (l % 1024 == 0) ctx.check();
@@ -130,6 +129,8 @@ DatasetPtr line_labels(const DatasetPtr& in, const LineLabelsParams& p, Context&
   out.fields.add({"angle", Association::point, Array::from_vector(std::move(labels.angle)), "deg", Role::none});
   out.fields.add({"line", Association::point, Array::from_vector(std::move(labels.line)), "", Role::labels});
   carry_whole(out.fields, in->fields());
+  out.fields.add(
+      {"normal", Association::whole, Array::from_vector(std::vector<double>{p.normal.x, p.normal.y, p.normal.z}, 3), "", Role::none});
   out.mesh = std::move(cloud);
   out.notes = in->notes();
   out.time = in->time();

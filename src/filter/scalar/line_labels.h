@@ -20,10 +20,13 @@ inline void describe(Schema& s, LineLabelsParams& p) {
   s("normal", p.normal, "Towards the reader; letters stand upright seen from there.");
 }
 
+/// Right and up of the page for a reader in direction `normal`: up is z, or y for a reader above or below.
+std::pair<Vec3, Vec3> label_page(Vec3 normal);
+
 /// Places for labels along the lines of a mesh, as a point cloud: fields 'value' (f64), 'angle' (f64, degrees from the reader's right,
-/// above -90 up to 90, so that text is never upside down) and 'line' (i32, number of the joined line). Each line (see polylines) is cut
-/// into equal stretches of about the spacing; a label sits in the straightest place of its stretch, at ties nearest to its middle, at
-/// least 1.2 widths from all labels before it. Throws Error(usage) for meshes without lines and a normal of no length.
+/// above -90 up to 90, so that text is never upside down) and 'line' (i32, number of the joined line), and 'normal' of the whole. Each line
+/// (see polylines) is cut into equal stretches of about the spacing; a label sits in the straightest place of its stretch, at ties nearest
+/// to its middle, at least 1.2 widths from all labels before it. Throws Error(usage) for meshes without lines and a normal of no length.
 DatasetPtr line_labels(const DatasetPtr& in, const LineLabelsParams& p, Context& ctx);
 
 }  // namespace sg

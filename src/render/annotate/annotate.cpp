@@ -8,6 +8,7 @@
 #include "render/annotate/axes.h"
 #include "render/annotate/legend.h"
 #include "render/annotate/overlay.h"
+#include "render/annotate/texts.h"
 
 namespace sg {
 namespace {
@@ -71,6 +72,7 @@ void annotate(Image& image, const Annotation& a, const Projection& projection) {
   const bool room_for_triad = a.triad && triad.width < 0.45 * image.width && triad.height < 0.45 * image.height;
   if (room_for_triad) taken.push_back(triad);
   overlay.keep_clear(taken);
+  draw_texts(overlay, a.texts, projection, 0.88 * p.font, taken);
   draw_box_axes(overlay, a, projection, p.font, taken);
   overlay.keep_clear({});
   if (room_for_triad) draw_triad(overlay, a, projection, p.font);

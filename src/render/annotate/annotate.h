@@ -8,6 +8,7 @@
 #include "color/color_scale.h"
 #include "image/image.h"
 #include "scene/camera.h"
+#include "scene/scene.h"
 
 namespace sg {
 
@@ -19,6 +20,7 @@ struct Annotation {
   std::optional<Box3> box;  ///< bounding box with numbered axes (the box lines themselves are scene lines)
   std::string axis_names[3] = {"x", "y", "z"};
   std::string length_unit;
+  std::vector<TextItem> texts;      ///< earlier ones first: those that would touch another text, a legend or the border are left out
   bool triad = true;                ///< orientation axes, lower left
   bool show_nan_in_legend = false;  ///< NaN swatch (the data has NaN)
   bool dark_background = false;     ///< light text

@@ -31,6 +31,14 @@ std::string name_of_label(const ColorScale& s, size_t i) {
 std::vector<LegendLayout::Tick> ticks_of(const ColorScale& s, const Rect& bar, double line_height) {
   std::vector<LegendLayout::Tick> ticks;
   const double last = bar.height - 1;
+  if (s.limits.size() > 1) {
+    // Every border of the bands, or every second, third, ... so that the numbers stay apart.
+    const std::vector<std::string> texts = distinct_texts(s.limits);
+    const size_t n = s.limits.size(), every = size_t(std::ceil(1.15 * line_height * double(n - 1) / std::max(last, 1.0)));
+    for (size_t i = 0; i < n; i += std::max<size_t>(every, 1))
+      ticks.push_back({s.limits[i], typeset_number(texts[i]), int(bar.y + std::lround((1 - double(i) / double(n - 1)) * last))});
+    return ticks;
+  }
   const auto offer = [&](double value, const std::string& text) {
     const double t = s.position(value);
     if (!(t >= 0 && t <= 1)) return;
@@ -91,7 +99,8 @@ LegendLayout layout_one(const Overlay& o, const ColorScale& s, const Rect& area,
   double y = top + title_height, bottom = top + height - nan_height;
 
   double labels = nan ? o.measure("NaN", style).width : 0;
-  if (!s.labels.empty()) {
+  const bool bar = s.labels.empty() || !s.limits.empty();
+  if (!bar) {
     l.row_height = std::ceil(1.15 * line_height);
     const size_t room = size_t(std::max(1.0, std::floor((bottom - y) / l.row_height)));
     l.swatches = s.labels.size() <= room ? s.labels.size() : room - 1;
@@ -107,7 +116,7 @@ LegendLayout layout_one(const Overlay& o, const ColorScale& s, const Rect& area,
     y += 0.5 * line_height, bottom -= 0.5 * line_height;  // for the half of a number that stands beyond the bar
   }
   l.bar = {0, std::round(y), std::round(bar_width * font), std::max(2.0, std::round(bottom) - std::round(y))};
-  if (s.labels.empty()) {
+  if (bar) {
     l.ticks = ticks_of(s, l.bar, line_height);
     for (const auto& t : l.ticks) labels = std::max(labels, o.measure(t.text, style).width);
   }
@@ -137,7 +146,7 @@ void draw_bar(Image& image, Overlay& overlay, const ColorScale& s, const LegendL
     double value = s.value_at(1 - double(i) / (n - 1));
     // The row of a number shows exactly the colour of that number.
     for (const auto& t : l.ticks)
-      if (t.row == first + i) value = t.value;
+      if (t.row == first + i && s.limits.empty()) value = t.value;
     fill(image, {l.bar.x, double(first + i), l.bar.width, 1}, s.color(value));
   }
   overlay.frame({l.bar.x - 0.5, l.bar.y - 0.5, l.bar.width + 1, l.bar.height + 1}, 0.35);
@@ -204,7 +213,7 @@ void draw_legend(Image& image, Overlay& overlay, const ColorScale& s, const Lege
                            l.title_style);
     else overlay.text(l.title, l.column.x, l.column.y, l.title_style, true);
   }
-  if (s.labels.empty()) draw_bar(image, overlay, s, l);
+  if (s.labels.empty() || !s.limits.empty()) draw_bar(image, overlay, s, l);
   else draw_rows(image, overlay, s, l);
   if (l.nan) {
     const TextStyle style = sized(l.font);

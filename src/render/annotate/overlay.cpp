@@ -124,7 +124,7 @@ void Overlay::show(const std::string& text, const TextStyle& style, bool halo, V
   pango_cairo_layout_path(cr, layout.get());
   if (halo) {
     use(cr, rim(), 0.75);
-    cairo_set_line_width(cr, std::max(2.0, 0.2 * style.size));
+    cairo_set_line_width(cr, std::max(2.0, style.rim * style.size));
     cairo_set_line_join(cr, CAIRO_LINE_JOIN_BEVEL);
     cairo_set_tolerance(cr, 0.3);
     cairo_stroke_preserve(cr);
@@ -164,6 +164,17 @@ void Overlay::text_upwards(const std::string& text, double x, double y, const Te
   cairo_rotate(cr, -1.57079632679489662);
   cairo_move_to(cr, 0, 0);
   show(text, style, true, ink());
+  cairo_restore(cr);
+}
+
+void Overlay::text_turned(const std::string& text, Vec2 center, double angle, const TextStyle& style, const Vec3f* color) {
+  cairo_t* cr = parts_->cr.get();
+  const TextExtent e = measure(text, style);
+  cairo_save(cr);
+  cairo_translate(cr, center.x, center.y);
+  cairo_rotate(cr, -angle);
+  cairo_move_to(cr, -0.5 * e.width, -0.5 * e.height);
+  show(text, style, true, color ? *color : ink());
   cairo_restore(cr);
 }
 

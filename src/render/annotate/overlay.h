@@ -28,6 +28,7 @@ struct TextStyle {
   bool ellipsize = false;   ///< with wrap: one line, cut with "..." instead of broken
   bool centred = false;     ///< lines among each other
   bool bold = false;
+  double rim = 0.2;  ///< width of a halo's stroke, in sizes
 };
 
 struct TextExtent {
@@ -55,6 +56,9 @@ class Overlay {
   void text(const std::string& text, double x, double y, const TextStyle& style, bool halo = false);
   /// Turned by 90 degrees, read upwards; (x, y) is the top left corner of the turned box (width and height swapped).
   void text_upwards(const std::string& text, double x, double y, const TextStyle& style);
+
+  /// Turned by an angle (radians, anticlockwise) about its middle at `center`, with a halo.
+  void text_turned(const std::string& text, Vec2 center, double angle, const TextStyle& style, const Vec3f* color = nullptr);
 
   /// Nothing is drawn within these rectangles until the next call; an empty list lifts that.
   void keep_clear(const std::vector<Rect>& rects);

@@ -213,6 +213,17 @@ class Preparation {
     const Positions positions = positions_of(s.data);
     p.positions = positions.xyz, p.origin = positions.origin;
     p.points = derived<std::vector<uint32_t>>(s.data, "points", [&] { return chosen_points(*s.data); });
+    if (!s.disc_normals.empty() && !s.disc_radius.empty() && s.opacity >= 1 && !p.color.translucent) {
+      auto numbers = [&](const std::string& name, int components) {
+        const Field& f = s.data->fields().require(name, Association::point);
+        if (f.components() != components)
+          fail_usage(fmt::format("field '{}' has {} components, not {}", name, f.components(), components), "points");
+        if (f.array.type() == ElementType::f32 && f.array.packed()) return f.array;
+        return *derived<Array>(s.data, "discs/" + name, [&] { return f.array.converted(ElementType::f32).made_packed(); });
+      };
+      p.disc_normals = numbers(s.disc_normals, 3), p.disc_radius = numbers(s.disc_radius, 1);
+      p.discs = true;
+    }
     push(std::move(p), p.points->size());
   }
 

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "render/raster/bins.h"
+#include "render/raster/discs.h"
 #include "render/raster/marks.h"
 #include "render/raster/shade.h"
 
@@ -82,6 +83,17 @@ class Drawing {
       if (item.kind == PreparedItem::Kind::surface) {
         if (!item.translucent) only_ = opaque_items++ ? no_item : uint32_t(&item - scene_.items.data());
         draw_surface(item, views_.back(), item.translucent ? translucent_ : opaque_);
+      } else if (item.discs) {
+        only_ = opaque_items++ ? no_item : uint32_t(&item - scene_.items.data());
+        const DiscJob job{views_.back(),
+                          reinterpret_cast<const float*>(item.positions.raw()),
+                          reinterpret_cast<const float*>(item.disc_normals.raw()),
+                          reinterpret_cast<const float*>(item.disc_radius.raw()),
+                          item.points->data(),
+                          item.first_primitive,
+                          keys_.data()};
+        parallel_for(
+            item.primitives, triangle_chunk, [&](size_t begin, size_t end) { draw_discs(job, begin, end); }, &context_);
       } else {
         const std::vector<MarkRecord> m = mark_records(item, uint32_t(&item - scene_.items.data()), projection_, pixel_scale_);
         marks_.insert(marks_.end(), m.begin(), m.end());
@@ -161,7 +173,8 @@ class Drawing {
         if (s.item != number) break;
         batch.pixel[batch.n] = s.pixel, batch.triangle[batch.n] = s.primitive - item.first_primitive;
       }
-      shade(shade_job(item, views_[number], lights_), batch);
+      if (item.discs) shade_discs(item, views_[number], lights_, keys_.data(), batch);
+      else shade(shade_job(item, views_[number], lights_), batch);
       f(item, batch, first);
     }
   }
@@ -195,7 +208,8 @@ class Drawing {
       }
       batch.n = n;
       if (n + tile_size < shade_batch && y < box.y1) continue;
-      shade(job, batch);
+      if (item.discs) shade_discs(item, views_[number], lights_, keys_.data(), batch);
+      else shade(job, batch);
       store_opaque(item, batch, box);
       batch.n = 0;
     }

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Oriented discs (surfels): each pixel shows the nearest disc that its ray meets, with the disc's own normal. Internal to raster/.
+#pragma once
+#include "render/raster/shade.h"
+
+namespace sg::raster {
+
+struct DiscJob {
+  EyeView view;
+  const float *xyz, *normals, *radius;
+  const uint32_t* points;
+  uint32_t first_primitive;
+  uint64_t* keys;  ///< one per pixel of the picture
+};
+
+/// Draws discs begin..end into the visibility buffer with an atomic minimum. Discs smaller than a pixel take the one at their centre.
+void draw_discs(const DiscJob& job, size_t begin, size_t end);
+
+/// Like shade(), for the pixels of a disc item; `triangle` of the batch holds the disc. Depth comes from the keys.
+void shade_discs(const PreparedItem& item, const EyeView& view, const std::vector<WorldLight>& lights, const uint64_t* keys, ShadeBatch& b);
+
+}  // namespace sg::raster
