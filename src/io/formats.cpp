@@ -2,6 +2,8 @@
 // The table of formats and the choice among them.
 #include "io/formats.h"
 
+#include <set>
+
 #include "base/file.h"
 #include "base/text.h"
 #include "data/lattice.h"
@@ -28,10 +30,12 @@ bool has_extension(const Format& f, const std::string& path) {
 }
 
 std::string known_extensions(bool writable) {
+  std::set<std::string_view> named;  // several formats share one
   std::string r;
   for (const Format& f : formats())
     if (writable ? f.write != nullptr : f.read != nullptr)
-      for (std::string_view e : words(f.extensions)) r += (r.empty() ? "" : " ") + std::string(e);
+      for (std::string_view e : words(f.extensions))
+        if (named.insert(e).second) r += (r.empty() ? "" : " ") + std::string(e);
   return r;
 }
 

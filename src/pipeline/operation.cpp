@@ -103,34 +103,4 @@ std::string ops_json(std::span<const Operation> table) {
   return r + "\n]}\n";
 }
 
-namespace {
-
-bool is_null(const Data& data) {
-  return std::visit([](const auto& p) { return p == nullptr; }, data);
-}
-
-Data map_tree(const Data& data, const std::string& path, const std::function<Data(const DatasetPtr&)>& f) {
-  if (auto* dataset = std::get_if<DatasetPtr>(&data)) {
-    if (!*dataset) return data;
-    return path.empty() ? f(*dataset) : with_context(fmt::format("in part '{}'", path), [&] { return f(*dataset); });
-  }
-  auto* collection = std::get_if<CollectionPtr>(&data);
-  if (!collection || !*collection) return data;
-  auto out = std::make_shared<Collection>();
-  for (const Collection::Part& part : (*collection)->parts) {
-    Data mapped = map_tree(part.data, path.empty() ? part.name : path + "/" + part.name, f);
-    if (!is_null(mapped)) out->parts.push_back({part.name, std::move(mapped)});
-  }
-  return CollectionPtr(out);
-}
-
-}  // namespace
-
-Data map_parts(const Data& data, std::string_view who, const std::function<Data(const DatasetPtr&)>& f) {
-  if (is_null(data)) fail_internal("got no data", std::string(who));
-  if (std::holds_alternative<TablePtr>(data))
-    fail_usage("needs a mesh but got a table", std::string(who), "make points of its rows first: -f 'table_to_points x=... y=...'");
-  return map_tree(data, "", f);
-}
-
 }  // namespace sg

@@ -63,7 +63,9 @@ std::string ops_help(std::string_view name = {}, std::span<const Operation> tabl
 std::string ops_json(std::span<const Operation> table = operations());
 
 /// Same tree with f applied to every dataset; an Error that leaves f names the part. Null results are dropped. A lone table
-/// is an Error(usage) naming `who`.
-Data map_parts(const Data& data, std::string_view who, const std::function<Data(const DatasetPtr&)>& f);
+/// is an Error(usage) naming `who`. In a collection, a part of points and lines alone that f refuses (Error(usage)) is left out
+/// with a note while f takes any other part; what f tells of parts of which nothing is left is told only when nothing is left
+/// of any; and equal notes are told once.
+Data map_parts(const Data& data, std::string_view who, Context& context, const std::function<Data(const DatasetPtr&, Context&)>& f);
 
 }  // namespace sg

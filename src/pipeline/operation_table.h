@@ -47,10 +47,10 @@ Data run_filter(F f, std::string_view name, const std::vector<Data>& inputs, con
   else if constexpr (takes_whole<P, F>) return f(inputs[0], p, context);
   else if constexpr (takes_two<P, F>) {
     const DatasetPtr second = single_dataset(inputs[1], name);
-    return map_parts(inputs[0], name, [&](const DatasetPtr& d) -> Data { return f(d, second, p, context); });
+    return map_parts(inputs[0], name, context, [&](const DatasetPtr& d, Context& part) -> Data { return f(d, second, p, part); });
   } else {
     static_assert(takes_part<P, F>, "see the shapes in pipeline/operation_table.h");
-    return map_parts(inputs[0], name, [&](const DatasetPtr& d) -> Data { return f(d, p, context); });
+    return map_parts(inputs[0], name, context, [&](const DatasetPtr& d, Context& part) -> Data { return f(d, p, part); });
   }
 }
 

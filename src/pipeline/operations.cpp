@@ -79,7 +79,7 @@ Request request_of_slice(const ParamSet& params, const Request& wanted) {
 template <class P, class F>
 Data with_second_mesh(std::string_view name, const std::vector<Data>& in, const P& p, Context& ctx, F f) {
   const DatasetPtr second = in.size() > 1 ? single_dataset(in[1], name) : nullptr;
-  return map_parts(in[0], name, [&](const DatasetPtr& d) -> Data { return f(d, second, p, ctx); });
+  return map_parts(in[0], name, ctx, [&](const DatasetPtr& d, Context& part) -> Data { return f(d, second, p, part); });
 }
 
 Data clip_with(const std::vector<Data>& in, const ClipParams& p, Context& ctx) {

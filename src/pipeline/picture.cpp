@@ -164,6 +164,7 @@ Shown collect(const PipelineFile& file, const std::vector<Data>& results, const 
       const DatasetPtr& d = parts[k];
       s.any_points = s.any_points || d->point_count() > 0;
       s.box.add(d->bounds());
+      if (parts.size() > 1 && d->point_count() == 0) continue;                                             // what a filter left nothing of
       if (parts.size() > 1 && show.kind == "volume" && word_value(words[k], "field") == "none") continue;  // nothing to see through
       const auto legend = find_show(show.kind).add(s.scene, d, words[k], context);
       if (!legend || !stated.picture.legend) continue;

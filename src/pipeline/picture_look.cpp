@@ -49,6 +49,54 @@ std::string free_name(const PipelineFile& file, const std::string& wanted) {
   }
 }
 
+// Operations whose result is a new field: the parameter that names it, and its name when nothing is said.
+struct Maker {
+  std::string_view operation, word, name;
+};
+constexpr Maker makers[] = {
+    {"calc", "name", "result"},
+    {"otsu", "name", "otsu"},
+    {"classify", "", "label"},
+    {"label_components", "", "component"},
+    {"components", "", "component"},
+    {"distance_map", "name", "distance"},
+    {"region_grow", "name", "region"},
+    {"watershed", "name", "watershed"},
+    {"morphology", "name", ""},
+    {"quality", "measures", "scaled_jacobian"},
+    {"curvature", "", "mean curvature"},
+    {"bands", "", "band low"},
+    {"divergence", "as", ""},
+    {"gradient", "as", ""},
+    {"curl", "as", ""},
+};
+
+// The field that the last steps were made for, when `d` has it; "" = the data decides.
+std::string made_field(const PipelineFile& file, const std::string& end, const Dataset& d) {
+  size_t at = file.steps.size();
+  for (size_t i = 0; i < file.steps.size(); ++i)
+    if (file.steps[i].name == end) at = i;
+  for (; at < file.steps.size(); --at) {
+    const auto& s = file.steps[at];
+    if (!s.from.empty() || s.operation == "read") return "";
+    const auto maker = std::find_if(std::begin(makers), std::end(makers), [&](const Maker& m) { return m.operation == s.operation; });
+    if (maker != std::end(makers)) {
+      std::string name = maker->word.empty() ? "" : word_value(s.words, maker->word).value_or("");
+      if (name.empty()) name = maker->name;
+      name = name.substr(0, name.find(','));                      // the first of several
+      if (name.empty() && s.operation == "morphology") continue;  // in place of labels that an earlier step made
+      const Field* f = name.empty() ? nullptr : d.fields().find(name);
+      if (!f || f->association == Association::whole || f->role == Role::global_ids) return "";
+      const Range r = d.range(*f, f->components() > 1 ? -1 : 0);
+      return r.lo < r.hi ? name : "";  // one value everywhere shows nothing
+    }
+    const auto known = operations();
+    const auto op = std::find_if(known.begin(), known.end(), [&](const Operation& o) { return o.name == s.operation; });
+    if (op == known.end() || (op->family != "mesh" && op->family != "surface")) return "";  // a surface of other values
+  }
+  return "";
+}
+
 }  // namespace
 
 void fail_no_mesh(const Data& data, const std::string& where) {
@@ -65,7 +113,9 @@ void fail_no_mesh(const Data& data, const std::string& where) {
     if (!table->words(i)) numbers.push_back(table->columns[i].name);
   if (numbers.size() < 2) fail_usage("is a table with fewer than two columns of numbers; there is no mesh to show", where);
   fail_usage("is a table; there is no mesh to show", where,
-             fmt::format("make points of its rows: -f \"table_to_points x='{}' y='{}'\"", numbers[0], numbers[1]));
+             fmt::format("read it with `sightglass info`, keep it with `sightglass convert -o NAME.csv`, or make points of its rows: "
+                         "-f \"table_to_points x='{}' y='{}'\"",
+                         numbers[0], numbers[1]));
 }
 
 Look choose_looks(PipelineFile& file, const PictureOptions& options, const std::shared_ptr<Cache>& cache, std::vector<Data>& held,
@@ -73,7 +123,7 @@ Look choose_looks(PipelineFile& file, const PictureOptions& options, const std::
   GraphOptions graph_options;
   graph_options.cache = cache;
   const PipelineGraph built = build_graph(file, graph_options);
-  const std::string field = word_value(options.coloring, "field").value_or("");
+  const std::string stated = word_value(options.coloring, "field").value_or("");
   Look first;
   bool have = false;
   const std::vector<std::string> ends = open_ends(file);
@@ -92,7 +142,10 @@ Look choose_looks(PipelineFile& file, const PictureOptions& options, const std::
         largest = d, has_values = values;
     });
     if (!largest) fail_no_mesh(data, file_name_of(origin_of(file, end)));
-    if (!field.empty()) largest->fields().require(field);
+    if (!stated.empty()) largest->fields().require(stated);
+    const std::string field = stated.empty() ? made_field(file, end, *largest) : stated;
+    std::vector<std::string> coloring = options.coloring;
+    if (field != stated) coloring.push_back("field=" + field);
     const Look look = choose_look(*largest, field, extension_of(origin_of(file, end)));
     notes.push_back(ends.size() > 1 ? fmt::format("{}: {}", file_name_of(origin_of(file, end)), look.reason) : look.reason);
     std::string result = end;
@@ -102,7 +155,7 @@ Look choose_looks(PipelineFile& file, const PictureOptions& options, const std::
     }
     for (const Look::Show& s : look.shows) {
       std::vector<std::string> words = s.words;
-      if (colors_by_field(s.kind)) words.insert(words.end(), options.coloring.begin(), options.coloring.end());
+      if (colors_by_field(s.kind)) words.insert(words.end(), coloring.begin(), coloring.end());
       file.show.push_back({s.kind, words, s.of_input ? end : result, 0});
     }
     if (!have) first = look;

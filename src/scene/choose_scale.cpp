@@ -149,7 +149,7 @@ bool looks_like_labels(const Dataset& data, const Field& field) {
   const auto values = distinct_values(field, most_labels);
   if (values.size() > most_labels || values.size() < 2) return false;
   if (!is_lattice(data.mesh())) return values.size() * 2 <= field.array.count() + 2;
-  if (values.size() == 2) return true;
+  if (values.size() == 2 || field.role == Role::labels) return true;
   const auto d = lattice_dims(data.mesh());
   const size_t nx = field.association == Association::point ? d[0] : std::max<size_t>(d[0], 2) - 1;
   return share_of_equal_neighbours(field, nx, values[0]) > 0.7;

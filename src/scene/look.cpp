@@ -126,6 +126,8 @@ Look choose_look(const Dataset& d, const std::string& field, const std::string& 
   if (d.as<PointCloud>() || (d.cell_count() == 0 && !is_lattice(d.mesh()))) {
     const double size = d.point_count() > 200000 ? 1.5 : d.point_count() > 5000 ? 3 : 7;
     look.shows.push_back({"points", {"size=" + short_number(size)}, true});
+    if (d.fields().with_role(Role::normals) && field.empty() && !automatic_field(d))
+      look.shows.back().words.push_back("color=#c8c8cc");  // lit
     look.reason = fmt::format("points only: dots, {}", field_reason(d, field));
     return look;
   }

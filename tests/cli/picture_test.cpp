@@ -157,3 +157,17 @@ TEST_CASE("large coordinates: at an offset of 1e7 the picture of a surface is th
   const ImageDifference d = compare(near, far);
   CHECK(d.rms < 0.5);
 }
+
+TEST_CASE("pictures: without a word about fields, what the last steps made is coloured; else the file's values") {
+  must({"convert", "--source", "tangle size=16", "-o", "made.vti"});
+  auto told = [](std::vector<std::string> words) {
+    words.insert(words.begin(), {"render", "made.vti", "--size", "160x120", "-o", "made.png"});
+    const auto r = sightglass(words);
+    CHECK(r.status == 0);
+    return r.out;
+  };
+  CHECK(told({"-f", "slice axis=z", "-f", "calc expr=x*y name=xy"}).find("coloured by 'xy'") != std::string::npos);
+  CHECK(told({"-f", "slice axis=z", "-f", "bands count=4", "-f", "clip axis=x"}).find("coloured by 'band low'") != std::string::npos);
+  CHECK(told({"-f", "otsu", "-f", "morphology operation=open"}).find("'otsu'") != std::string::npos);      // in place
+  CHECK(told({"-f", "slice axis=z", "-f", "calc expr=3 name=same"}).find("'same'") == std::string::npos);  // shows nothing
+}

@@ -5,9 +5,11 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "data/trusted.h"
 #include "filter/cell_meshes.h"
 #include "filter/mesh/faces.h"
 #include "filter/mesh/slice.h"
+#include "filter/mesh/threshold.h"
 #include "filter/mesh/to_unstructured.h"
 #include "filter/mesh_meshes.h"
 #include "filter/stats/integrate.h"
@@ -297,6 +299,7 @@ TEST_CASE("clip: NaN and hidden cells stay out, one-cell and empty meshes are fi
   CHECK(none->cell_count() == 0);
   CHECK(none->fields().find("f", Association::point));
   CHECK(note.find("nothing is left") != std::string::npos);
+  CHECK(none->fields().require("original_cell").role == Role::global_ids);  // numbers, nothing to colour by
   p.value = 0;
   for (const DatasetPtr& d :
        {box_lattice(0, 40, [](Vec3 x) { return noise(x); }), solid_mesh("mixed", 14, 1.0, [](Vec3 x) { return noise(x); })}) {
@@ -406,4 +409,59 @@ TEST_CASE("slice: rows of a lattice give what its cells give as lists") {
         }
         for (size_t i = 0; i < a->point_count(); ++i) REQUIRE(std::abs(m.points.at(i).x - carried.get(i, 0)) < 1e-6);
       }
+}
+
+TEST_CASE("clip: meshes taken without a second check pass it, values on the level and single ones on it included") {
+  Context ctx;
+  for (const auto& f : {+[](Vec3 p) { return noise(p); }, +[](Vec3 p) { return std::floor(4 * noise(p)); }, +[](Vec3 p) { return p.x; }})
+    for (const DatasetPtr& d :
+         {box_lattice(0, 70, f), box_lattice(2, 9, f), solid_mesh("tetra", 9, 1.0, f), solid_mesh("mixed", 5, 1.0, f)}) {
+      ClipParams p;
+      p.value = 0.0;
+      const auto [in, out] = halves(d, p);
+      CHECK_NOTHROW(validate(in->mesh()));
+      CHECK_NOTHROW(validate(out->mesh()));
+      CHECK(in->cell_count() > 0);
+      CHECK(out->cell_count() > 0);
+      ThresholdParams q;
+      q.min = 0.0;
+      const DatasetPtr t = threshold(d, q, ctx);
+      CHECK_NOTHROW(validate(t->mesh()));
+      CHECK(t->range(t->fields().require("f")).lo >= 0);
+    }
+}
+
+TEST_CASE("clip: tetrahedra, alone or among other cells, and rows of a lattice are the same bytes for one and eight threads") {
+  Context ctx;
+  ClipParams p;
+  p.value = 0.0;
+  for (const DatasetPtr& d :
+       {solid_mesh("tetra", 14, 1.0, [](Vec3 x) { return noise(x); }), box_lattice(1, 70, [](Vec3 x) { return noise(x); })})
+    for (const char* keep : {"inside", "outside"}) {
+      p.keep = keep;
+      set_thread_count(1);
+      const DatasetPtr a = std::get<DatasetPtr>(clip(d, p, ctx));
+      set_thread_count(8);
+      const DatasetPtr b = std::get<DatasetPtr>(clip(d, p, ctx));
+      set_thread_count(0);
+      const auto &ma = *a->as<UnstructuredMesh>(), &mb = *b->as<UnstructuredMesh>();
+      CHECK(same_bytes(ma.points.xyz, mb.points.xyz));
+      CHECK(same_bytes(ma.cells.connectivity, mb.cells.connectivity));
+      CHECK(same_bytes(ma.cells.offsets, mb.cells.offsets));
+      CHECK(same_bytes(ma.types, mb.types));
+      CHECK(same_bytes(a->fields().require("original_cell").array, b->fields().require("original_cell").array));
+    }
+}
+
+TEST_CASE("trusted datasets: sizes of fields are looked at all the same, and only their own mesh goes unchecked") {
+  DatasetParts parts = box_lattice(0, 2, [](Vec3 x) { return x.x; })->parts();
+  FieldSet wrong;
+  wrong.add(meshes::make_field("f", Association::point, std::vector<double>(5, 0.0)));
+  parts.fields = wrong;
+  CHECK(error_of([&] { make_trusted_dataset(parts); }).find("5 tuples") != std::string::npos);
+  UnstructuredMesh broken;
+  broken.points.xyz = Array::from_vector(std::vector<double>(12, 0.0), 3);
+  broken.cells = {Array::from_vector(std::vector<int32_t>{0, 1, 2, 4}), {}, 4};
+  broken.single_type = CellType::tetra;
+  CHECK(error_of([&] { make_dataset(broken); }).find("point id 4") != std::string::npos);  // also after a call that threw
 }

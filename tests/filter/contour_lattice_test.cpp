@@ -3,18 +3,12 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "filter/contour_support.h"
+#include "filter/known_surfaces.h"
 
 using namespace sg;
 using namespace sg::test;
 
 namespace {
-
-double sphere(Vec3 p) { return length(p) - 1; }
-double torus(Vec3 p) { return std::hypot(std::hypot(p.x, p.y) - 1, p.z) - 0.4; }
-double tangle(Vec3 p) {
-  auto q = [](double x) { return x * x * x * x - 5 * x * x; };
-  return q(p.x) + q(p.y) + q(p.z) + 11.8;
-}
 
 DatasetPtr run(const DatasetPtr& d, const ContourParams& p) {
   Context c;

@@ -169,8 +169,10 @@ TEST_CASE("contour: hexahedra and the lattice agree, also on random values, and 
     CHECK(!s.triangles.empty());
     CHECK(s.faults() == 0);
     if (kind != "hexahedron" && kind != "voxel" && kind != "polyhedron") continue;
-    CHECK(s.points.size() <= lattice.points.size());  // lattices have points inside cells with tubes and long loops
-    CHECK(s.volume() == doctest::Approx(lattice.volume()).epsilon(0.05));
+    CHECK(s.points.size() == lattice.points.size());
+    CHECK(s.triangles.size() == lattice.triangles.size());
+    CHECK(s.euler() == lattice.euler());
+    CHECK(s.volume() == doctest::Approx(lattice.volume()).epsilon(1e-6));
   }
 }
 

@@ -3,19 +3,13 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "filter/contour_support.h"
+#include "filter/known_surfaces.h"
 #include "filter/scalar/cell_cases.h"
 
 using namespace sg;
 using namespace sg::test;
 
 namespace {
-
-double sphere(Vec3 p) { return length(p) - 1; }
-double torus(Vec3 p) { return std::hypot(std::hypot(p.x, p.y) - 1, p.z) - 0.4; }
-double tangle(Vec3 p) {
-  auto q = [](double x) { return x * x * x * x - 5 * x * x; };
-  return q(p.x) + q(p.y) + q(p.z) + 11.8;
-}
 
 // Sum over the points of 2 pi minus the angles of the triangles there.
 double angle_defects(const Surface& s) {

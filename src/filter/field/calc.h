@@ -14,7 +14,8 @@ struct CalcParams {
 };
 
 inline void describe(Schema& s, CalcParams& p) {
-  s("expr", p.expr, "What to compute, like mag(velocity)*rho; names of fields as they are, or in \"quotes\".");
+  s("expr", p.expr,
+    "What to compute, like mag(velocity)*rho; names of fields as they are, or in \"quotes\"; also x, y, z, position, time, pi.");
   s("name", p.name, "Name of the new field.");
   s("on", p.on, "Where: auto follows the fields of the expression (points when it has none).").choices({"auto", "point", "cell"});
 }

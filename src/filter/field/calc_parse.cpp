@@ -308,7 +308,8 @@ class Parser {
       const int r = emit({Op::position, 3}, {});
       return name == "position" ? r : emit({Op::component, 1, r, -1, -1, double(name[0] - 'x')}, {});
     }
-    fail("is no field", unknown_name_hint(std::string(name), names_), place);
+    std::string hint = unknown_name_hint(std::string(name), names_);
+    fail("is no field", hint + (hint.empty() ? "" : "; ") + "also x, y, z, position, time, pi, e", place);
   }
   int call(std::string_view name, size_t place) {
     std::vector<int> a;

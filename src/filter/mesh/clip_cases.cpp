@@ -251,7 +251,7 @@ ClipTable::Faces ClipTable::divided_faces(uint32_t pattern, uint32_t joined, uin
 }
 
 // Closes what the faces leave open on the inside; the outside gets the same polygons the other way round.
-void ClipTable::add_cut(Faces faces, Sides& out) const {
+void ClipTable::add_cut(Faces faces, uint32_t zero, Sides& out) const {
   std::vector<Polygon> cut;
   for (const Polygon& loop : open_loops(faces.in)) divide_loop(loop, cut);
   for (const Polygon& p : cut) {
@@ -261,6 +261,7 @@ void ClipTable::add_cut(Faces faces, Sides& out) const {
   out = {};
   fill(faces.in, out.in);
   fill(faces.out, out.out);
+  find_cones(zero, out);
 }
 
 ClipTable::ClipTable(CellType type) : topology_(linear_topology(type)), place_(places_of(type)) {
@@ -283,46 +284,77 @@ ClipTable::ClipTable(CellType type) : topology_(linear_topology(type)), place_(p
     first_.push_back(uint32_t(sides_.size()));
     uint32_t joined = 0;
     do {
-      add_cut(divided_faces(p, joined, 0), sides_.emplace_back());
+      add_cut(divided_faces(p, joined, 0), 0, sides_.emplace_back());
       joined = (joined - mask) & mask;
     } while (joined != 0);
   }
 }
 
-const Sides& ClipTable::sides(uint32_t pattern, uint32_t joined) const {
+uint32_t ClipTable::variant(uint32_t pattern, uint32_t joined) const {
   uint32_t at = 0, place = 0;
   for (uint32_t mask = ambiguous_[pattern]; mask; mask &= mask - 1, ++place) at |= uint32_t((joined & (mask & (0u - mask))) != 0) << place;
-  return sides_[first_[pattern] + at];
+  return first_[pattern] + at;
 }
 
 void ClipTable::sides(uint32_t pattern, uint32_t joined, uint32_t zero, Sides& out) const {
-  add_cut(divided_faces(pattern, joined, zero), out);
+  add_cut(divided_faces(pattern, joined, zero), zero, out);
+}
+
+// Which corners have a share in inner points, and cones that are not for certain over a part of the cell's own faces.
+void ClipTable::find_cones(uint32_t zero, Sides& s) const {
+  for (Region* r : {&s.in, &s.out}) {
+    for (Inner& inner : r->inner)
+      for (const uint8_t v : inner.of) {
+        if (v < first_cut) inner.corners |= uint8_t(1u << v);
+        else
+          for (const uint8_t c : topology_->edges[size_t(v - first_cut)]) inner.corners |= uint8_t(1u << c);
+      }
+    for (const Piece& p : r->pieces) {
+      if (p.v[p.count - 1] < first_inner) continue;
+      uint32_t faces = ~0u;
+      bool corner = false;  // one that the cut surface cannot have
+      for (int k = 0; k + 1 < p.count; ++k) faces &= faces_of(p.v[k]), corner = corner || p.v[k] < first_cut;
+      if (!zero && faces && corner) continue;
+      Cone c{uint8_t(p.count - 1), {}, p.v[p.count - 1], r == &s.in};
+      std::copy(p.v, p.v + c.count, c.v);
+      s.cones.push_back(c);
+    }
+  }
 }
 
 bool ClipTable::folded(const Sides& sides, const double* h) const {
-  if (sides.in.inner.empty() && sides.out.inner.empty()) return false;
-  Vec3 at[max_codes];
-  for (size_t c = 0; c < place_.size(); ++c) at[c] = Vec3(place_[c][0], place_[c][1], place_[c][2]);
+  if (sides.cones.empty()) return false;
+  double at[max_codes][3];
+  for (size_t c = 0; c < place_.size(); ++c)
+    for (size_t a = 0; a < 3; ++a) at[c][a] = place_[c][a];
   for (uint32_t left = (sides.in.used | sides.out.used) >> first_cut; left; left &= left - 1) {
     const auto e = size_t(std::countr_zero(left));
     const auto [a, b] = topology_->edges[e];
-    at[first_cut + e] = lerp(at[a], at[b], h[a] / (h[a] - h[b]));
+    const double t = h[a] / (h[a] - h[b]);
+    for (size_t k = 0; k < 3; ++k) at[first_cut + e][k] = at[a][k] + (at[b][k] - at[a][k]) * t;
   }
-  for (const Region* r : {&sides.in, &sides.out}) {
-    for (size_t k = 0; k < r->inner.size(); ++k) {
-      Vec3 sum;
-      for (const uint8_t v : r->inner[k].of) sum += at[v];
-      at[first_inner + k] = sum / double(r->inner[k].of.size());
+  uint8_t apex = 0;
+  bool side = false;
+  for (const Cone& c : sides.cones) {
+    double* top = at[c.apex];
+    if (c.apex != apex || c.inside != side) {
+      apex = c.apex, side = c.inside;
+      const Inner& inner = (side ? sides.in : sides.out).inner[size_t(apex - first_inner)];
+      top[0] = top[1] = top[2] = 0;
+      for (const uint8_t v : inner.of)
+        for (size_t k = 0; k < 3; ++k) top[k] += at[v][k];
+      const double share = 1 / double(inner.of.size());
+      for (size_t k = 0; k < 3; ++k) top[k] *= share;
     }
-    for (const Piece& p : r->pieces) {
-      if (p.v[p.count - 1] < first_inner) continue;
-      const Vec3 apex = at[p.v[p.count - 1]];
-      auto negative = [&](int a, int b, int c) {
-        return dot(cross(at[p.v[b]] - at[p.v[a]], at[p.v[c]] - at[p.v[a]]), apex - at[p.v[a]]) < 0;
-      };
-      if (negative(0, 1, 2)) return true;
-      if (p.count == 5 && (negative(0, 2, 3) || negative(0, 1, 3) || negative(1, 2, 3))) return true;
-    }
+    auto negative = [&](int i, int j, int k) {
+      const double *p = at[c.v[i]], *q = at[c.v[j]], *r = at[c.v[k]];
+      const double a[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]}, b[3] = {r[0] - p[0], r[1] - p[1], r[2] - p[2]};
+      return (a[1] * b[2] - a[2] * b[1]) * (top[0] - p[0]) + (a[2] * b[0] - a[0] * b[2]) * (top[1] - p[1]) +
+                 (a[0] * b[1] - a[1] * b[0]) * (top[2] - p[2]) <
+             0;
+    };
+    if (negative(0, 1, 2)) return true;
+    if (c.count == 4 && (negative(0, 2, 3) || negative(0, 1, 3) || negative(1, 2, 3))) return true;
   }
   return false;
 }

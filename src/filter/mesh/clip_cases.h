@@ -37,6 +37,7 @@ struct Piece {
 struct Inner {
   std::vector<uint8_t> of;
   double t = -1;
+  uint8_t corners = 0;  ///< bit per corner of the cell that has a share in it
 };
 /// One side of a cell.
 struct Region {
@@ -45,8 +46,14 @@ struct Region {
   uint32_t used = 0;  ///< bit per code below first_inner
   uint32_t ids = 0;   ///< vertices of all pieces
 };
+/// A face of a cut surface and the inner point over it; count is 3 or 4.
+struct Cone {
+  uint8_t count, v[4], apex;
+  bool inside;
+};
 struct Sides {
   Region in, out;
+  std::vector<Cone> cones;  ///< that could be inside out
 };
 
 /// All patterns of a tetrahedron, pyramid, wedge, voxel or hexahedron.
@@ -57,10 +64,14 @@ class ClipTable {
   /// Faces of four corners that alternate; bit = face number.
   uint32_t ambiguous(uint32_t pattern) const { return ambiguous_[pattern]; }
   /// `joined` says of each ambiguous face whether its inside corners are joined. No value is zero.
-  const Sides& sides(uint32_t pattern, uint32_t joined) const;
+  const Sides& sides(uint32_t pattern, uint32_t joined) const { return sides_[variant(pattern, joined)]; }
+  /// Place of that among all of them, and what is there.
+  uint32_t variant(uint32_t pattern, uint32_t joined) const;
+  const Sides& at(uint32_t variant) const { return sides_[variant]; }
   /// The same where some values are zero (these corners are in the pattern): cuts at them are the corners themselves.
   void sides(uint32_t pattern, uint32_t joined, uint32_t zero, Sides& out) const;
-  /// Can some piece over an inner point be inside out, for the values `h` of the corners? Seen in the regular cell.
+  /// Can some piece over an inner point be inside out, for the values `h` of the corners? Seen in the regular cell, where parts of the
+  /// cell's own faces never are.
   bool folded(const Sides& sides, const double* h) const;
   /// Pieces that are never inside out: the faces' parts over the middle of the cell, cut along the rays to it. More of them.
   void star_sides(uint32_t pattern, uint32_t joined, uint32_t zero, const double* h, Sides& out) const;
@@ -75,8 +86,9 @@ class ClipTable {
   };
   void divide(std::span<const uint8_t> face, uint32_t pattern, bool joined, uint32_t zero, Faces& faces) const;
   Faces divided_faces(uint32_t pattern, uint32_t joined, uint32_t zero) const;
-  void add_cut(Faces faces, Sides& out) const;
+  void add_cut(Faces faces, uint32_t zero, Sides& out) const;
   void divide_loop(const Polygon& loop, std::vector<Polygon>& out) const;
+  void find_cones(uint32_t zero, Sides& s) const;
   Vec3 middle_of(uint8_t code) const;
   uint32_t faces_of(uint8_t code) const;
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <map>
 
 namespace sg::clipping {
 
@@ -80,7 +79,11 @@ void CellClipper::add_region(const ClipTable& table, const uint16_t* corners, in
   }
   const Sides* sides = &own_;
   if (zero == 0) sides = &table.sides(pattern, joined);
-  else table.sides(pattern, joined, zero, own_);
+  else {
+    const auto [it, fresh] = zeros_[&table].try_emplace(pattern | zero << 8 | joined << 16);
+    if (fresh) table.sides(pattern, joined, zero, it->second);
+    sides = &it->second;
+  }
   folded_ = !keep_.flat && (folded < 0 ? table.folded(*sides, h) : folded > 0);
   if (folded_) table.star_sides(pattern, joined, zero, h, own_), sides = &own_;
   const Region& region = kept_outside(level) ? sides->out : sides->in;

@@ -2,7 +2,9 @@
 // One cell of any linear kind and one or two levels of a function: the pieces that are kept.
 #pragma once
 #include <functional>
+#include <map>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "filter/mesh/clip_cases.h"
@@ -105,6 +107,7 @@ class CellClipper {
   std::vector<double> value_;  // of each vertex
   std::vector<Waiting> waiting_;
   Sides own_;
+  std::map<const ClipTable*, std::unordered_map<uint32_t, Sides>> zeros_;  // by pattern, corners that are zero, and joined faces
   bool folded_ = false;
 };
 

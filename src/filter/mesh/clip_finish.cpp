@@ -5,6 +5,7 @@
 #include "base/parallel.h"
 #include "data/field_ops.h"
 #include "data/lattice.h"
+#include "data/trusted.h"
 #include "filter/mesh/clip_impl.h"
 #include "filter/mesh/surface_builder.h"
 
@@ -27,20 +28,22 @@ T rounded(double v) {
 
 // A point field: kept values, blends along cut edges, blends inside cells.
 Array carried(const Array& a, const Shares& s) {
-  const size_t kept = s.build.points.size(), cuts = s.build.cuts.size(), inner = s.build.inner_first.size() - 1;
+  const size_t kept = s.build.kept, cuts = s.build.cuts.size(), inner = s.build.inner_first.size() - 1;
   std::byte* bytes = nullptr;
   Array r = Array::make_raw(a.type(), kept + cuts + inner, a.components(), &bytes);
   dispatch(a, [&](auto v) {
     using T = std::remove_cvref_t<decltype(v[0])>;
     const auto n = size_t(v.components);
     T* out = reinterpret_cast<T*>(bytes);
-    parallel_for(kept, grain, [&](size_t begin, size_t end) {
-      if (n == 1)
-        for (size_t i = begin; i < end; ++i) out[i] = v[s.build.points[i]];
-      else
-        for (size_t i = begin; i < end; ++i)
-          for (size_t c = 0; c < n; ++c) out[i * n + c] = v(s.build.points[i], int(c));
-    });
+    if (s.build.rows) copy_lattice_points(a, s.build.rows->grid, s.build.rows->ranks, bytes);
+    else
+      parallel_for(kept, grain, [&](size_t begin, size_t end) {
+        if (n == 1)
+          for (size_t i = begin; i < end; ++i) out[i] = v[s.build.points[i]];
+        else
+          for (size_t i = begin; i < end; ++i)
+            for (size_t c = 0; c < n; ++c) out[i * n + c] = v(s.build.points[i], int(c));
+      });
     parallel_for(cuts, grain, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) {
         const uint64_t name = s.build.cuts[i], p = name >> 32, q = name & 0xffffffffu;
@@ -66,15 +69,17 @@ Array carried(const Array& a, const Shares& s) {
 
 template <class At>
 Array places(const At& at, const Build& b, Plane<double>& t, const Job& job) {
-  const size_t kept = b.points.size(), cuts = b.cuts.size(), inner = b.inner_first.size() - 1;
+  const size_t kept = b.kept, cuts = b.cuts.size(), inner = b.inner_first.size() - 1;
   double* xyz = nullptr;
   Array r = Array::make<double>(kept + cuts + inner, 3, &xyz);
   auto put = [&](size_t i, Vec3 p) { xyz[3 * i] = p.x, xyz[3 * i + 1] = p.y, xyz[3 * i + 2] = p.z; };
   const Values values = job.values();
   t.resize(cuts);
-  parallel_for(kept, grain, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) put(i, at(b.points[i]));
-  });
+  if (b.rows) write_lattice_positions(Lattice(job.in->mesh()).view(), b.rows->grid, b.rows->ranks, xyz);
+  else
+    parallel_for(kept, grain, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) put(i, at(b.points[i]));
+    });
   parallel_for(cuts, grain, [&](size_t begin, size_t end) {
     std::vector<Vec3> from(end - begin), to(end - begin);
     for (size_t i = begin; i < end; ++i) {
@@ -140,10 +145,10 @@ DatasetPtr finish(const Job& job, Build b) {
   carry_gathered(out.fields, in.fields(), Association::cell, b.source, Association::cell);
   carry_whole(out.fields, in.fields());
   if (!in.fields().find("original_cell", Association::cell))
-    out.fields.add({"original_cell", Association::cell, id_array(std::move(b.source), in.cell_count()), {}, Role::labels});
+    out.fields.add({"original_cell", Association::cell, id_array(std::move(b.source), in.cell_count()), {}, Role::global_ids});
   out.notes = in.notes();
   out.time = in.time();
-  return make_dataset(std::move(out));
+  return make_trusted_dataset(std::move(out));
 }
 
 }  // namespace sg::clipping

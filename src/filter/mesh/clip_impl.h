@@ -4,6 +4,7 @@
 #include "base/context.h"
 #include "data/dataset.h"
 #include "filter/mesh/clip_cell.h"
+#include "filter/mesh/lattice_cells.h"
 
 namespace sg::clipping {
 
@@ -43,6 +44,13 @@ inline Fate fate_of(uint8_t sides, bool outside) {
   return low && high ? Fate::cut : Fate::none;
 }
 
+/// Points of a lattice, a bit each, and their numbers.
+struct LatticePoints {
+  BitRows grid;
+  Bits bits;
+  BitRanks ranks;
+};
+
 /// The kept cells: first those that stay whole, in input order, then pieces. Points: kept ones, cut edges, inner vertices.
 struct Build {
   Array connectivity, offsets, types;  ///< i32; i32, or empty when all have `fixed` points; u8, or empty when all are of `single`
@@ -50,9 +58,11 @@ struct Build {
   CellType single = CellType::empty;
   CellArray faces;
   Array polyhedron_faces;
-  Plane<uint32_t> source;  ///< input cell of each
-  Plane<uint32_t> points;  ///< input points that are kept
-  Plane<uint64_t> cuts;    ///< names of cut edges
+  Plane<uint32_t> source;                     ///< input cell of each
+  size_t kept = 0;                            ///< input points that are kept:
+  Plane<uint32_t> points;                     ///< which, ...
+  std::shared_ptr<const LatticePoints> rows;  ///< or bits of rows of a lattice
+  Plane<uint64_t> cuts;                       ///< names of cut edges
   std::vector<size_t> inner_first{0};
   Plane<uint32_t> inner_points;
   Plane<double> inner_weights;

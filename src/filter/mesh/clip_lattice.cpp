@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Clips lattices: sides of points, whole and cut cells, kept points and cut edges are bits of rows, 64 at a time; a number is a count of
-// bits. Only cut cells are looked at one by one, twice: to count their pieces, and to write them.
+// bits. Only cut cells are looked at one by one: once to find their case and count its pieces, once to write them by that case.
 #include "base/error.h"
 #include "base/parallel.h"
 #include "data/lattice.h"
 #include "filter/mesh/clip_pieces.h"
 #include "filter/mesh/lattice_cells.h"
+#include "filter/mesh/row_bits.h"
 #include "filter/mesh/surface_builder.h"
 
 namespace sg::clipping {
@@ -21,7 +22,21 @@ class LatticeClip {
         values_(job.values()),
         g_(lattice_dims(job.in->mesh())),
         kind_(lattice_cell_kind(job.in->mesh())),
-        table_(*clip_table(kind_.type)) {}
+        table_(*clip_table(kind_.type)),
+        rows_(std::make_shared<LatticePoints>(LatticePoints{g_, {}, {}})),
+        used_(rows_->bits),
+        points_(rows_->ranks) {
+    // Patterns of a lattice's own order of corners as patterns of the table; a cell's edges by axis and first corner.
+    for (size_t p = 0; p < 256; ++p) {
+      pattern_[p] = 0;
+      for (size_t c = 0; c < 8; ++c) pattern_[p] |= uint8_t((p >> kind_.corner[c] & 1) << c);
+    }
+    const auto edges = table_.topology().edges;
+    for (size_t e = 0; e < 12; ++e) {
+      const int a = kind_.corner[edges[e][0]], b = kind_.corner[edges[e][1]];
+      edge_[e] = {uint8_t((a ^ b) >> 1), uint8_t(a & b)};
+    }
+  }
 
   Build run() {
     classify();
@@ -42,21 +57,15 @@ class LatticeClip {
           g_.rows(), grain, false,
           [&](size_t begin, size_t end) {
             bool holes = false;
-            uint8_t more[64], less[64];
-            for (size_t row = begin; row < end; ++row)
-              for (size_t w = 0; w < g_.words; ++w) {
-                const size_t n = std::min<size_t>(64, g_.nx - 64 * w);
-                const auto* x = v + row * g_.nx + 64 * w;
-                if (n < 64) std::fill_n(more, 64, uint8_t(0)), std::fill_n(less, 64, uint8_t(0));
-                bool nan = false;
-                for (size_t i = 0; i < n; ++i) more[i] = double(x[i]) > level, less[i] = double(x[i]) < level, nan |= x[i] != x[i];
-                const size_t at = row * g_.words + w;
-                kept_[at] = packed_bits(above ? more : less);
-                gone_[at] = packed_bits(above ? less : more);
-                missing_[at] = 0;
-                for (size_t i = 0; nan && i < n; ++i) missing_[at] |= uint64_t(x[i] != x[i]) << i;
-                holes |= nan;
-              }
+            for (size_t row = begin; row < end; ++row) {
+              const auto* x = v + row * g_.nx;
+              uint64_t *missing = missing_.data() + row * g_.words, *kept = kept_.data() + row * g_.words,
+                       *gone = gone_.data() + row * g_.words;
+              std::fill_n(missing, g_.words, 0);
+              if (!compare_row(x, g_.nx, level, above ? kept : gone, above ? gone : kept)) continue;
+              for (size_t i = 0; i < g_.nx; ++i) missing[i >> 6] |= uint64_t(x[i] != x[i]) << (i & 63);
+              holes = true;
+            }
             return holes;
           },
           [](bool a, bool b) { return a || b; }, &job_.context);
@@ -157,27 +166,150 @@ class LatticeClip {
   void each_cut(size_t first_row, size_t last_row, F&& f) const {
     for (size_t row = first_row; row < last_row; ++row)
       for (size_t w = 0; w < g_.words; ++w)
-        for (uint64_t left = cut_[row * g_.words + w]; left; left &= left - 1)
-          f(w * 64 + size_t(std::countr_zero(left)), row % g_.ny, row / g_.ny);
+        if (const uint64_t cut = cut_[row * g_.words + w]) f(row % g_.ny, row / g_.ny, w, cut);
+  }
+
+  // The case of each cut cell of some rows: a variant of the table; from `listed` on, one by one.
+  static constexpr uint16_t listed = 0xfffe, folded = 0xffff;
+  void count_cut(size_t begin, size_t end, PieceCounts& n, std::vector<uint16_t>& cases) const {
+    CellClipper clipper(job_.keep, {});
+    each_cut(begin, end, [&](size_t j, size_t k, size_t w, uint64_t left) {
+      const size_t rows[4] = {g_.row(j, k), g_.row(j + 1, k), g_.row(j, k + 1), g_.row(j + 1, k + 1)};
+      const Bits& inside = job_.keep.outside ? gone_ : kept_;
+      uint64_t in[8], zero = 0;
+      for (size_t q = 0; q < 4; ++q) {
+        const size_t r = rows[q];
+        in[2 * q] = inside[r + w], in[2 * q + 1] = next_point(inside, r, w);
+        zero |= ~(kept_[r + w] | gone_[r + w]) | ~(next_point(kept_, r, w) | next_point(gone_, r, w));
+      }
+      for (; left; left &= left - 1) {
+        const auto bit = size_t(std::countr_zero(left)), i = w * 64 + bit;
+        uint16_t found = zero >> bit & 1 ? listed : 0;
+        if (found == 0) {
+          size_t p = 0;
+          for (size_t q = 0; q < 8; ++q) p |= (in[q] >> bit & 1) << q;
+          found = find_case(pattern_[p], i, j, k);
+        }
+        if (found < listed) {
+          const Region& r = region(found);
+          n.cells += r.pieces.size(), n.ids += r.ids, n.inner += r.inner.size();
+          for (const Inner& inner : r.inner) n.inner_ids += count_bits(inner.corners);
+        } else {
+          count_pieces(clipper, pieces(clipper, i, j, k, found == folded ? 1 : -1), n, nullptr, [](uint64_t) {});
+          found = clipper.folded() ? folded : listed;
+        }
+        cases.push_back(found);
+      }
+    });
+  }
+
+  const Region& region(uint16_t found) const { return job_.keep.outside ? table_.at(found).out : table_.at(found).in; }
+
+  // Heights of the corners over the level in the order of the table.
+  void heights(size_t i, size_t j, size_t k, double* h) const {
+    const size_t first = i + g_.nx * (j + g_.ny * k);
+    for (size_t c = 0; c < 8; ++c) {
+      const size_t q = kind_.corner[c];
+      h[c] = job_.keep.sign * (values_(first + (q & 1) + g_.nx * ((q >> 1 & 1) + g_.ny * (q >> 2))) - job_.keep.level);
+    }
+  }
+
+  uint16_t find_case(uint32_t pattern, size_t i, size_t j, size_t k) const {
+    double h[8];
+    uint32_t joined = 0;
+    const uint32_t ambiguous = table_.ambiguous(pattern);
+    if (ambiguous) heights(i, j, k, h);
+    for (uint32_t left = ambiguous; left; left &= left - 1) {
+      const auto f = size_t(std::countr_zero(left));
+      const auto face = table_.topology().face(f);
+      joined |= uint32_t(joined_across(h[face[0]], h[face[1]], h[face[2]], h[face[3]])) << f;
+    }
+    const uint32_t found = table_.variant(pattern, joined);
+    if (job_.keep.flat || table_.at(found).cones.empty()) return uint16_t(found);
+    if (!ambiguous) heights(i, j, k, h);
+    return table_.folded(table_.at(found), h) ? folded : uint16_t(found);
+  }
+
+  // Numbers of everything on a cell: its corners and the cuts of its edges, whether they are used or not.
+  struct Codes {
+    uint32_t at[max_codes];
+  };
+  void number_codes(size_t i, size_t j, size_t k, Codes& codes) const {
+    const size_t rows[4] = {g_.row(j, k), g_.row(j + 1, k), g_.row(j, k + 1), g_.row(j + 1, k + 1)};
+    auto both = [&](const BitRanks& ranks, size_t row, uint32_t* first, uint32_t* second) {
+      *first = ranks(row, i);
+      *second = *first + uint32_t((*ranks.bits)[row + (i >> 6)] >> (i & 63) & 1);
+    };
+    uint32_t corner[8], cut[3][8];
+    for (size_t q = 0; q < 4; ++q) {
+      both(points_, rows[q], corner + 2 * q, corner + 2 * q + 1);
+      cut[0][2 * q] = ranks_[0](rows[q], i);
+    }
+    both(ranks_[1], rows[0], cut[1], cut[1] + 1);
+    both(ranks_[1], rows[2], cut[1] + 4, cut[1] + 5);
+    both(ranks_[2], rows[0], cut[2], cut[2] + 1);
+    both(ranks_[2], rows[1], cut[2] + 2, cut[2] + 3);
+    for (size_t c = 0; c < 8; ++c) codes.at[c] = corner[kind_.corner[c]];
+    for (size_t e = 0; e < 12; ++e)
+      codes.at[first_cut + e] = uint32_t(points_.total + cut_start_[edge_[e].axis]) + cut[edge_[e].axis][edge_[e].corner];
+  }
+
+  // Shares of the cell's corners in an inner point that is the mean of others.
+  void write_inner(const Inner& inner, const double* h, size_t first, PieceWriter& to) const {
+    double weight[8] = {};
+    const double share = 1 / double(inner.of.size());
+    for (const uint8_t code : inner.of) {
+      if (code < first_cut) weight[code] += share;
+      else {
+        const auto e = table_.topology().edges[size_t(code - first_cut)];
+        const double t = h[e[0]] / (h[e[0]] - h[e[1]]);
+        weight[e[0]] += share * (1 - t), weight[e[1]] += share * t;
+      }
+    }
+    for (uint32_t left = inner.corners; left; left &= left - 1) {
+      const auto c = size_t(std::countr_zero(left)), q = size_t(kind_.corner[c]);
+      to.build.inner_points[to.at.inner_ids] = uint32_t(first + (q & 1) + g_.nx * ((q >> 1 & 1) + g_.ny * (q >> 2)));
+      to.build.inner_weights[to.at.inner_ids++] = weight[c];
+    }
+    to.build.inner_first[++to.at.inner] = to.at.inner_ids;
+  }
+
+  void write_case(uint16_t found, size_t i, size_t j, size_t k, PieceWriter& to) const {
+    const Region& r = region(found);
+    Codes codes;
+    number_codes(i, j, k, codes);
+    if (!r.inner.empty()) {
+      double h[8];
+      heights(i, j, k, h);
+      for (size_t n = 0; n < r.inner.size(); ++n) {
+        codes.at[first_inner + n] = uint32_t(to.first_inner + to.at.inner);
+        write_inner(r.inner[n], h, i + g_.nx * (j + g_.ny * k), to);
+      }
+    }
+    const auto cell = uint32_t(i + (g_.nx - 1) * (j + (g_.ny - 1) * k));
+    int32_t* ids = to.connectivity + to.at.ids;
+    for (const Piece& p : r.pieces) {
+      to.build.source[to.at.cells] = cell;
+      to.types[to.at.cells] = uint8_t(p.type);
+      to.offsets[to.at.cells++] = int32_t(ids - to.connectivity);
+      for (size_t c = 0; c < p.count; ++c) *ids++ = int32_t(codes.at[p.v[c]]);
+    }
+    to.at.ids = size_t(ids - to.connectivity);
   }
 
   Build write() {
     const size_t chunks = (g_.rows() + grain - 1) / grain;
     std::vector<size_t> cell(chunks);
     std::vector<PieceCounts> piece(chunks);
-    folded_.assign(g_.size(), 0);
+    std::vector<std::vector<uint16_t>> cases(chunks);
     parallel_for(
         g_.rows(), grain,
         [&](size_t begin, size_t end) {
-          size_t n = 0;
-          for (size_t w = begin * g_.words; w < end * g_.words; ++w) n += count_bits(whole_[w]);
+          size_t n = 0, cut = 0;
+          for (size_t w = begin * g_.words; w < end * g_.words; ++w) n += count_bits(whole_[w]), cut += count_bits(cut_[w]);
           cell[begin / grain] = n;
-          CellClipper clipper(job_.keep, {});
-          PieceCounts& counts = piece[begin / grain];
-          each_cut(begin, end, [&](size_t i, size_t j, size_t k) {
-            count_pieces(clipper, pieces(clipper, i, j, k, -1), counts, nullptr, [](uint64_t) {});
-            folded_[g_.row(j, k) + (i >> 6)] |= uint64_t(clipper.folded()) << (i & 63);
-          });
+          cases[begin / grain].reserve(cut);
+          count_cut(begin, end, piece[begin / grain], cases[begin / grain]);
         },
         &job_.context);
     const size_t whole = exclusive_scan(cell);
@@ -205,17 +337,22 @@ class LatticeClip {
           CellClipper clipper(job_.keep, {});
           PieceWriter writer{b, connectivity, offsets, types, points_.total, points_.total + cuts, piece[chunk], {}, {}};
           writer.at.cells += whole, writer.at.ids += 8 * whole;
-          each_cut(begin, end, [&](size_t i, size_t j, size_t k) {
-            writer.write(
-                clipper, pieces(clipper, i, j, k, int(folded_[g_.row(j, k) + (i >> 6)] >> (i & 63) & 1)),
-                i + (g_.nx - 1) * (j + (g_.ny - 1) * k),
-                [&](uint64_t id) { return points_(size_t(id) / g_.nx * g_.words, size_t(id) % g_.nx); },
-                [&](uint64_t name) { return cut_number(name); });
+          const uint16_t* next = cases[chunk].data();
+          each_cut(begin, end, [&](size_t j, size_t k, size_t w, uint64_t left) {
+            for (; left; left &= left - 1, ++next) {
+              const size_t i = w * 64 + size_t(std::countr_zero(left));
+              if (*next < listed) write_case(*next, i, j, k, writer);
+              else
+                writer.write(
+                    clipper, pieces(clipper, i, j, k, *next == folded), i + (g_.nx - 1) * (j + (g_.ny - 1) * k),
+                    [&](uint64_t id) { return points_(size_t(id) / g_.nx * g_.words, size_t(id) % g_.nx); },
+                    [&](uint64_t name) { return cut_number(name); });
+            }
           });
         },
         &job_.context);
-    b.points.resize(points_.total);
-    write_lattice_points(g_, points_, b.points.data());
+    b.kept = points_.total;
+    b.rows = rows_;
     b.cuts.resize(cuts);
     const size_t step[3] = {1, g_.nx, g_.nx * g_.ny};
     for (size_t a = 0; a < 3; ++a)
@@ -237,8 +374,16 @@ class LatticeClip {
   LatticeCellKind kind_;
   const ClipTable& table_;
   bool holes_ = false;  // values that are missing or cells that are hidden
-  Bits kept_, gone_, missing_, whole_, cut_, used_, edges_[3], folded_;
-  BitRanks points_, ranks_[3];
+  struct Edge {
+    uint8_t axis, corner;
+  };
+  uint8_t pattern_[256];
+  Edge edge_[12];
+  Bits kept_, gone_, missing_, whole_, cut_, edges_[3];
+  std::shared_ptr<LatticePoints> rows_;
+  Bits& used_;
+  BitRanks& points_;
+  BitRanks ranks_[3];
   size_t cut_start_[3] = {0, 0, 0};
 };
 

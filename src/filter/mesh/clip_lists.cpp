@@ -31,6 +31,7 @@ constexpr size_t grain = 1 << 13;  // a multiple of 64
 
 struct Chunk {
   std::vector<uint32_t> cut_cells;
+  std::vector<uint8_t> cases;  // of tetrahedra, in a mesh of nothing else
   size_t whole = 0, whole_ids = 0;
   PieceCounts pieces;
   std::vector<uint32_t> face_counts, face_sizes;  // of polyhedra among the pieces; zeros for other pieces
@@ -50,13 +51,21 @@ class ListClip {
         whole_((cells_.count + 63) / 64),
         chunks_((cells_.count + grain - 1) / grain),
         cuts_(chunks_.size()),
-        reader_(mesh_.points) {}
+        reader_(mesh_.points),
+        tets_(mesh_.types.empty() && mesh_.single_type == CellType::tetra && cells_.fixed == 4 && !job.keep.between
+                  ? clip_table(CellType::tetra)
+                  : nullptr) {}
 
   Build run() {
     classify_points();
     const std::vector<uint8_t> states = cell_states(*job_.in);
     parallel_for(
-        cells_.count, grain, [&](size_t begin, size_t end) { find(begin, end, states); }, &job_.context);
+        cells_.count, grain,
+        [&](size_t begin, size_t end) {
+          if (tets_) cells_.connectivity.wide ? find_tets<int64_t>(begin, end, states) : find_tets<int32_t>(begin, end, states);
+          else find(begin, end, states);
+        },
+        &job_.context);
     used_.number();
     CutNumbers numbers = number_names({cuts_.begin(), cuts_.end()}, mesh_.points.count());
     Build b;
@@ -132,6 +141,88 @@ class ListClip {
     }
   }
 
+  // Tetrahedra have no inner points and no faces to decide about: a cell's case is the pattern of its corners.
+  static constexpr uint8_t listed = 0xff;  // a value is the level's
+  const Region& tet_region(uint8_t pattern) const {
+    const Sides& s = tets_->sides(pattern, 0);
+    return job_.keep.outside ? s.out : s.in;
+  }
+
+  template <class Id>
+  void find_tets(size_t begin, size_t end, const std::vector<uint8_t>& states) {
+    Chunk& chunk = chunks_[begin / grain];
+    std::vector<uint64_t>& cuts = cuts_[begin / grain];
+    CellClipper clip = clipper();
+    std::vector<int64_t> ids;
+    std::vector<double> v;
+    const uint8_t flip = job_.keep.outside ? 15 : 0;
+    const auto edges = tets_->topology().edges;
+    const Id* corner = static_cast<const Id*>(cells_.connectivity.data) + 4 * begin;
+    for (size_t c = begin; c < end; ++c, corner += 4) {
+      if (!states.empty() && states[c] != cell_visible) continue;
+      const uint8_t side[4] = {sides_[size_t(corner[0])], sides_[size_t(corner[1])], sides_[size_t(corner[2])], sides_[size_t(corner[3])]};
+      const auto joined = uint8_t(side[0] | side[1] | side[2] | side[3]);
+      const Fate fate = fate_of(joined, job_.keep.outside);
+      if (fate == Fate::none) continue;
+      if (fate == Fate::whole) {
+        whole_[c >> 6] |= uint64_t(1) << (c & 63);
+        ++chunk.whole, chunk.whole_ids += 4;
+        for (int k = 0; k < 4; ++k) used_.add(size_t(corner[k]));
+        continue;
+      }
+      if (joined & side_on_low) {
+        const CellPieces& p = pieces(clip, c, ids, v);
+        if (p.types.empty()) continue;
+        chunk.cut_cells.push_back(uint32_t(c)), chunk.cases.push_back(listed);
+        count_pieces(clip, p, chunk.pieces, &cuts, [&](uint64_t id) { used_.add(size_t(id)); });
+        continue;
+      }
+      uint8_t pattern = flip;
+      for (int k = 0; k < 4; ++k) pattern ^= uint8_t((side[k] & side_kept) << k);
+      chunk.cut_cells.push_back(uint32_t(c)), chunk.cases.push_back(pattern);
+      const Region& r = tet_region(pattern);
+      chunk.pieces.cells += r.pieces.size(), chunk.pieces.ids += r.ids;
+      for (uint32_t left = r.used & 15; left; left &= left - 1) used_.add(size_t(corner[std::countr_zero(left)]));
+      for (uint32_t left = r.used >> first_cut; left; left &= left - 1) {
+        const auto e = edges[size_t(std::countr_zero(left))];
+        const auto p = uint64_t(corner[e[0]]), q = uint64_t(corner[e[1]]);
+        cuts.push_back(edge_name(std::min(p, q), std::max(p, q)));
+      }
+    }
+  }
+
+  // The pieces of a tetrahedron; `cut` are the numbers of its cuts in the order of find_tets().
+  void write_tet(uint8_t pattern, size_t c, const uint32_t*& cut, PieceWriter& to) const {
+    const Region& r = tet_region(pattern);
+    uint32_t at[max_codes];
+    for (uint32_t left = r.used & 15; left; left &= left - 1) {
+      const auto k = size_t(std::countr_zero(left));
+      at[k] = rank_[size_t(cells_.connectivity[4 * c + k])];
+    }
+    for (uint32_t left = r.used & ~15u; left; left &= left - 1) at[std::countr_zero(left)] = uint32_t(to.first_cut) + *cut++;
+    int32_t* ids = to.connectivity + to.at.ids;
+    for (const Piece& p : r.pieces) {
+      to.build.source[to.at.cells] = uint32_t(c);
+      to.types[to.at.cells] = uint8_t(p.type);
+      to.offsets[to.at.cells++] = int32_t(ids - to.connectivity);
+      for (size_t k = 0; k < p.count; ++k) *ids++ = int32_t(at[p.v[k]]);
+    }
+    to.at.ids = size_t(ids - to.connectivity);
+  }
+
+  template <class Id>
+  void write_whole_tets(size_t first_word, size_t last_word, size_t at, Build& b, int32_t* to, int32_t* offsets) const {
+    const Id* ids = static_cast<const Id*>(cells_.connectivity.data);
+    to += 4 * at;
+    for (size_t w = first_word; w < last_word; ++w)
+      for (uint64_t left = whole_[w]; left; left &= left - 1, ++at, to += 4) {
+        const size_t c = w * 64 + size_t(std::countr_zero(left));
+        b.source[at] = uint32_t(c);
+        offsets[at] = int32_t(4 * at);
+        for (size_t k = 0; k < 4; ++k) to[k] = int32_t(rank_[size_t(ids[4 * c + k])]);
+      }
+  }
+
   void write(Build& b, const Plane<uint32_t>& number) {
     // Where each chunk's results go.
     std::vector<size_t> cell(chunks_.size() + 1), id(chunks_.size() + 1), name(chunks_.size() + 1);
@@ -150,8 +241,12 @@ class ListClip {
     uint8_t* types = nullptr;
     allocate(b, whole, whole_ids, sum, &connectivity, &offsets, &types);
     const std::vector<int64_t> members = used_.members();
+    b.kept = members.size();
     b.points.resize(members.size());
-    for (size_t i = 0; i < members.size(); ++i) b.points[i] = uint32_t(members[i]);
+    rank_.resize(mesh_.points.count());
+    parallel_for(members.size(), 1 << 14, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) b.points[i] = uint32_t(members[i]), rank_[size_t(members[i])] = uint32_t(i);
+    });
     const size_t points = members.size() + b.cuts.size() + sum.inner;
     if (points > size_t(INT32_MAX)) fail_usage("the result has more than 2^31 points", "clip", "take a part of the mesh first");
 
@@ -160,25 +255,35 @@ class ListClip {
         [&](size_t i, size_t) {
           size_t at = cell[i], to = id[i];
           const size_t words = std::min(whole_.size(), (i + 1) * grain / 64);
-          for (size_t w = i * grain / 64; w < words; ++w)
+          if (tets_) {
+            std::fill_n(types + at, chunks_[i].whole, uint8_t(CellType::tetra));
+            if (cells_.connectivity.wide) write_whole_tets<int64_t>(i * grain / 64, words, at, b, connectivity, offsets);
+            else write_whole_tets<int32_t>(i * grain / 64, words, at, b, connectivity, offsets);
+          }
+          for (size_t w = i * grain / 64; !tets_ && w < words; ++w)
             for (uint64_t left = whole_[w]; left; left &= left - 1) {
               const size_t c = w * 64 + size_t(std::countr_zero(left));
               b.source[at] = uint32_t(c);
               types[at] = uint8_t(mesh_.type(c));
               offsets[at++] = int32_t(to);
               for (size_t k = cells_.begin(c), end = cells_.end(c); k < end; ++k)
-                connectivity[to++] = int32_t(used_.rank(size_t(cells_.connectivity[k])));
+                connectivity[to++] = int32_t(rank_[size_t(cells_.connectivity[k])]);
             }
           CellClipper clip = clipper();
           PieceWriter writer{b, connectivity, offsets, types, members.size(), members.size() + b.cuts.size(), piece[i], {}, {}};
           writer.at.cells += whole, writer.at.ids += whole_ids;
           std::vector<int64_t> ids;
           std::vector<double> v;
-          size_t next = name[i];
-          for (const uint32_t c : chunks_[i].cut_cells) {
+          const uint32_t* next = number.data() + name[i];
+          for (size_t n = 0; n < chunks_[i].cut_cells.size(); ++n) {
+            const uint32_t c = chunks_[i].cut_cells[n];
+            if (tets_ && chunks_[i].cases[n] != listed) {
+              write_tet(chunks_[i].cases[n], c, next, writer);
+              continue;
+            }
             const CellPieces& p = pieces(clip, c, ids, v);
             writer.write(
-                clip, p, c, [&](uint64_t point) { return used_.rank(size_t(point)); }, [&](uint64_t) { return number[next++]; });
+                clip, p, c, [&](uint64_t point) { return rank_[size_t(point)]; }, [&](uint64_t) { return *next++; });
             if (!polyhedra_) continue;
             Chunk& chunk = chunks_[i];
             chunk.face_counts.insert(chunk.face_counts.end(), p.face_count.begin(), p.face_count.end());
@@ -232,6 +337,8 @@ class ListClip {
   std::vector<Chunk> chunks_;
   std::vector<std::vector<uint64_t>> cuts_;
   PointReader reader_;
+  const ClipTable* tets_;  // when all cells are tetrahedra
+  Plane<uint32_t> rank_;   // of kept points
   bool polyhedra_ = false;
   size_t whole_count_ = 0;
 };

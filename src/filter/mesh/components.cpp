@@ -2,6 +2,7 @@
 #include "filter/mesh/components.h"
 
 #include "base/error.h"
+#include "base/union_find.h"
 #include "data/cell_reader.h"
 #include "filter/mesh/extract.h"
 #include "filter/mesh/surface_builder.h"
@@ -10,26 +11,8 @@ namespace sg {
 
 namespace {
 
-class UnionFind {
- public:
-  explicit UnionFind(size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), size_t(0)); }
-  size_t root(size_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  // The smaller root stays, so that the result does not depend on the order of joins.
-  void join(size_t a, size_t b) {
-    a = root(a), b = root(b);
-    if (a < b) parent_[b] = a;
-    else parent_[a] = b;
-  }
-
- private:
-  std::vector<size_t> parent_;
-};
-
 // Patches have points of their own.
-void join_equal_places(const Dataset& in, UnionFind& sets) {
+void join_equal_places(const Dataset& in, UnionFind<size_t>& sets) {
   std::vector<int64_t> order(in.point_count());
   std::iota(order.begin(), order.end(), 0);
   const Points at = points_of(in.mesh(), order);
@@ -49,7 +32,7 @@ DatasetPtr components(const DatasetPtr& in, const ComponentsParams& p, Context& 
   for (int64_t i : p.points)
     if (i < 0 || size_t(i) >= in->point_count())
       fail_usage(fmt::format("there is no point {}", i), "components points", fmt::format("the mesh has {} points", in->point_count()));
-  UnionFind sets(in->point_count());
+  UnionFind<size_t> sets(in->point_count());
   if (in->as<AmrGrid>()) join_equal_places(*in, sets);
   std::vector<int64_t> first(n, -1);  // a point of each cell
   double nearest = HUGE_VAL;

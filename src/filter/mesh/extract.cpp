@@ -5,6 +5,7 @@
 #include "base/parallel.h"
 #include "data/field_ops.h"
 #include "data/lattice.h"
+#include "data/trusted.h"
 #include "filter/mesh/id_set.h"
 #include "filter/mesh/lattice_cells.h"
 #include "filter/mesh/surface_builder.h"
@@ -206,14 +207,9 @@ void extract_boxes(const Dataset& in, std::span<const int64_t> cells, DatasetPar
   out.mesh = std::move(r);
 }
 
-// Boxes of a lattice of three axes, by bits: runs of cells need no look at each.
-void extract_lattice(const Dataset& in, const Bits& cells, DatasetParts& out, Plane<uint32_t>& points, Plane<uint32_t>& ids,
-                     std::string_view who) {
-  const BitRows g(lattice_dims(in.mesh()));
-  Bits used;
-  used_points(g, cells, used);
-  BitRanks rank;
-  rank.number(used);
+// Boxes of a lattice of three axes, by bits: runs of cells need no look at each. `ids` of the cells are written where `listed`.
+void extract_lattice(const Dataset& in, const BitRows& g, const Bits& cells, const BitRanks& rank, bool listed, UnstructuredMesh& r,
+                     Plane<uint32_t>& ids, std::string_view who) {
   constexpr size_t rows = 64;
   std::vector<size_t> first((g.rows() + rows - 1) / rows);
   parallel_for(g.rows(), rows, [&](size_t begin, size_t end) {
@@ -223,36 +219,24 @@ void extract_lattice(const Dataset& in, const Bits& cells, DatasetParts& out, Pl
   });
   const size_t count = exclusive_scan(first);
   if (count * 8 > size_t(INT32_MAX)) fail_usage("the result has more than 2^31 corners", std::string(who), "take a part of the mesh first");
-  points.resize(rank.total);
-  write_lattice_points(g, rank, points.data());
-  ids.resize(count);
+  if (listed) ids.resize(count);
   const LatticeCellKind kind = lattice_cell_kind(in.mesh());
   int32_t* to = nullptr;
-  UnstructuredMesh r;
   r.cells.connectivity = Array::make<int32_t>(count * 8, 1, &to);
   r.cells.fixed = 8;
   r.single_type = kind.type;
   parallel_for(g.rows(), rows, [&](size_t begin, size_t end) {
     const size_t at = first[begin / rows];
-    write_lattice_cells(g, kind, cells, rank, begin, end, to + 8 * at, ids.data() + at);
+    write_lattice_cells(g, kind, cells, rank, begin, end, to + 8 * at, listed ? ids.data() + at : nullptr);
   });
-  if (auto* c = std::get_if<CurvilinearGrid>(&in.mesh())) {
-    r.points = {gather(c->points.xyz, std::span<const uint32_t>(points)), c->points.origin};
-  } else {
-    const Lattice lattice(in.mesh());
-    const LatticeView& v = lattice.view();
-    const auto nx = uint32_t(v.dims[0]), ny = uint32_t(v.dims[1]);
-    double* xyz = nullptr;
-    r.points.xyz = Array::make<double>(points.size(), 3, &xyz);
-    parallel_for(points.size(), grain, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i) {
-        const uint32_t row = points[i] / nx;
-        const Vec3 p = v.position(points[i] - row * nx, row % ny, row / ny);
-        xyz[3 * i] = p.x, xyz[3 * i + 1] = p.y, xyz[3 * i + 2] = p.z;
-      }
-    });
-  }
-  out.mesh = std::move(r);
+}
+
+// The chosen points' share of an array of all points.
+Array chosen_points(const Array& a, const BitRows& g, const BitRanks& rank) {
+  std::byte* to = nullptr;
+  Array r = Array::make_raw(a.type(), rank.total, a.components(), &to);
+  copy_lattice_points(a, g, rank, to);
+  return r;
 }
 
 // The cells whose byte is not zero, ascending.
@@ -296,17 +280,34 @@ DatasetPtr extract_marked(const DatasetPtr& in, const std::vector<uint8_t>& keep
 }
 
 DatasetPtr extract_lattice_cells(const DatasetPtr& in, const Bits& cells, std::string_view who) {
+  const BitRows g(lattice_dims(in->mesh()));
+  Bits used;
+  used_points(g, cells, used);
+  BitRanks rank;
+  rank.number(used);
+  bool listed = !in->cell_ghost().empty();
+  for (const Field& f : in->fields()) listed = listed || f.association == Association::cell;
   DatasetParts out;
-  Plane<uint32_t> points, ids;
-  extract_lattice(*in, cells, out, points, ids, who);
-  carry_gathered(out.fields, in->fields(), Association::point, std::span<const uint32_t>(points), Association::point);
+  UnstructuredMesh mesh;
+  Plane<uint32_t> ids;
+  extract_lattice(*in, g, cells, rank, listed, mesh, ids, who);
+  if (auto* c = in->as<CurvilinearGrid>()) {
+    mesh.points = {chosen_points(c->points.xyz, g, rank), c->points.origin};
+  } else {
+    double* xyz = nullptr;
+    mesh.points.xyz = Array::make<double>(rank.total, 3, &xyz);
+    write_lattice_positions(Lattice(in->mesh()).view(), g, rank, xyz);
+  }
+  out.mesh = std::move(mesh);
+  for (const Field& f : in->fields())
+    if (f.association == Association::point) out.fields.add({f.name, f.association, chosen_points(f.array, g, rank), f.unit, f.role});
   carry_gathered(out.fields, in->fields(), Association::cell, std::span<const uint32_t>(ids), Association::cell);
   carry_whole(out.fields, in->fields());
-  if (!in->point_ghost().empty()) out.point_ghost = gather(in->point_ghost(), std::span<const uint32_t>(points));
+  if (!in->point_ghost().empty()) out.point_ghost = chosen_points(in->point_ghost(), g, rank);
   if (!in->cell_ghost().empty()) out.cell_ghost = gather(in->cell_ghost(), std::span<const uint32_t>(ids));
   out.notes = in->notes();
   out.time = in->time();
-  return make_dataset(std::move(out));
+  return make_trusted_dataset(std::move(out));
 }
 
 DatasetPtr extract_cells(const DatasetPtr& in, std::span<const int64_t> cells, std::string_view who) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/mesh/id_set.h"
 
+#include <bit>
+
 #include "base/error.h"
 #include "base/parallel.h"
 
@@ -17,7 +19,7 @@ void IdSet::number() {
   std::vector<size_t> start((words + grain - 1) / grain);
   parallel_for(words, grain, [&](size_t begin, size_t end) {
     size_t n = 0;
-    for (size_t w = begin; w < end; ++w) n += size_t(std::popcount(bits_[w]));
+    for (size_t w = begin; w < end; ++w) n += count_bits(bits_[w]);
     start[begin / grain] = n;
   });
   size_ = exclusive_scan(start);
@@ -27,7 +29,7 @@ void IdSet::number() {
     auto n = uint32_t(start[begin / grain]);
     for (size_t w = begin; w < end; ++w) {
       before_[w] = n;
-      n += uint32_t(std::popcount(bits_[w]));
+      n += count_bits(bits_[w]);
     }
   });
 }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // A set of ids that numbers its members: an eighth of a byte per possible id, ranks in constant time.
 #pragma once
-#include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
+
+#include "base/bits.h"
 
 namespace sg {
 
@@ -25,7 +26,7 @@ class IdSet {
   /// Place of a member among the members in ascending order.
   uint32_t rank(size_t id) const {
     const uint64_t below = bits_[id >> 6] & ((uint64_t(1) << (id & 63)) - 1);
-    return before_[id >> 6] + uint32_t(std::popcount(below));
+    return before_[id >> 6] + count_bits(below);
   }
   /// All members in ascending order. Parallel.
   std::vector<int64_t> members() const;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/mesh/lattice_cells.h"
 
+#include <cstring>
+
 #include "base/error.h"
 #include "base/parallel.h"
 
@@ -67,39 +69,59 @@ void BitRanks::number(const Bits& b) {
 }
 
 void write_lattice_cells(const BitRows& g, const LatticeCellKind& kind, const Bits& cells, const BitRanks& points, size_t first_row,
-                         size_t last_row, int32_t* connectivity, uint32_t* source) {
+                         size_t last_row, int32_t* __restrict connectivity, uint32_t* __restrict source) {
   for (size_t row = first_row; row < last_row; ++row) {
     const size_t j = row % g.ny, k = row / g.ny;
     if (j + 1 >= g.ny || k + 1 >= g.nz) continue;
     const size_t rows[4] = {g.row(j, k), g.row(j + 1, k), g.row(j, k + 1), g.row(j + 1, k + 1)};
     const size_t first_cell = (g.nx - 1) * (j + (g.ny - 1) * k);
-    int32_t from[4] = {0, 0, 0, 0};
-    for (size_t w = 0; w < g.words; ++w) {
-      size_t expected = SIZE_MAX;
-      for (uint64_t left = cells[row * g.words + w]; left; left &= left - 1) {
-        const size_t i = w * 64 + size_t(std::countr_zero(left));
+    for (size_t w = 0; w < g.words; ++w)
+      each_run(cells[row * g.words + w], [&](size_t bit, size_t n) {
         // Both ends of a kept cell are kept, so numbers go on by one along a run of cells.
-        for (int q = 0; q < 4; ++q) from[q] = i == expected ? from[q] + 1 : int32_t(points(rows[q], i));
-        expected = i + 1;
-        if (kind.type == CellType::voxel) {
-          for (int q = 0; q < 4; ++q) connectivity[2 * q] = from[q], connectivity[2 * q + 1] = from[q] + 1;
-        } else {
-          for (int c = 0; c < 8; ++c) connectivity[c] = from[kind.corner[size_t(c)] >> 1] + (kind.corner[size_t(c)] & 1);
-        }
-        connectivity += 8;
-        if (source) *source++ = uint32_t(first_cell + i);
-      }
-    }
+        const size_t i = w * 64 + bit;
+        int32_t first[8];
+        for (size_t c = 0; c < 8; ++c) first[c] = int32_t(points(rows[kind.corner[c] >> 1], i)) + (kind.corner[c] & 1);
+        for (size_t m = 0; m < n; ++m, connectivity += 8)
+          for (size_t c = 0; c < 8; ++c) connectivity[c] = first[c] + int32_t(m);
+        if (!source) return;
+        for (size_t m = 0; m < n; ++m) source[m] = uint32_t(first_cell + i + m);
+        source += n;
+      });
   }
 }
 
-void write_lattice_points(const BitRows& g, const BitRanks& points, uint32_t* ids) {
+void copy_lattice_points(const Array& a, const BitRows& g, const BitRanks& points, std::byte* out) {
+  const Array packed = a.made_packed();
+  const size_t size = element_size(a.type()) * size_t(a.components());
+  const std::byte* from = packed.raw();
   parallel_for(g.rows(), grain, [&](size_t begin, size_t end) {
-    for (size_t row = begin; row < end; ++row) {
-      uint32_t at = points.before[row * g.words];
+    std::byte* to = out + size * points.before[begin * g.words];
+    for (size_t row = begin; row < end; ++row)
       for (size_t w = 0; w < g.words; ++w)
-        for (uint64_t left = (*points.bits)[row * g.words + w]; left; left &= left - 1)
-          ids[at++] = uint32_t(row * g.nx + w * 64 + size_t(std::countr_zero(left)));
+        each_run((*points.bits)[row * g.words + w], [&](size_t bit, size_t n) {
+          std::memcpy(to, from + size * (row * g.nx + w * 64 + bit), n * size);
+          to += n * size;
+        });
+  });
+}
+
+void write_lattice_positions(const LatticeView& v, const BitRows& g, const BitRanks& points, double* xyz) {
+  Plane<Vec3> along(v.mode == LatticeView::Mode::affine ? g.nx : 0);
+  for (size_t i = 0; i < along.size(); ++i) along[i] = v.origin + v.step[0] * double(i);
+  parallel_for(g.rows(), grain, [&](size_t begin, size_t end) {
+    double* to = xyz + 3 * size_t(points.before[begin * g.words]);
+    auto put = [&](Vec3 p) { to[0] = p.x, to[1] = p.y, to[2] = p.z, to += 3; };
+    for (size_t row = begin; row < end; ++row) {
+      const size_t j = row % g.ny, k = row / g.ny;
+      const Vec3 y = v.step[1] * double(j), z = v.step[2] * double(k);
+      for (size_t w = 0; w < g.words; ++w)
+        each_run((*points.bits)[row * g.words + w], [&](size_t bit, size_t n) {
+          const size_t first = w * 64 + bit, last = first + n;
+          if (!along.empty())
+            for (size_t i = first; i < last; ++i) put(along[i] + y + z);  // the sums of LatticeView::position()
+          else
+            for (size_t i = first; i < last; ++i) put(v.position(i, j, k));
+        });
     }
   });
 }

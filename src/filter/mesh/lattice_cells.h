@@ -3,11 +3,11 @@
 #pragma once
 #include <array>
 #include <bit>
-#include <functional>
 
+#include "base/bits.h"
 #include "base/huge_allocator.h"
 #include "data/cell_type.h"
-#include "data/mesh.h"
+#include "data/lattice.h"
 
 namespace sg {
 
@@ -28,18 +28,8 @@ struct BitRows {
   size_t size() const { return rows() * words; }
   size_t row(size_t j, size_t k) const { return (j + ny * k) * words; }
   /// Bits of the cells of a row.
-  uint64_t cell_mask(size_t w) const {
-    const size_t left = nx - 1 > w * 64 ? nx - 1 - w * 64 : 0;
-    return left >= 64 ? ~uint64_t(0) : (uint64_t(1) << left) - 1;
-  }
+  uint64_t cell_mask(size_t w) const { return cell_bits(w, nx); }
 };
-
-/// Set bits, without a call where the processor's instruction may not be assumed.
-inline uint32_t count_bits(uint64_t v) {
-  v -= v >> 1 & 0x5555555555555555u;
-  v = (v & 0x3333333333333333u) + (v >> 2 & 0x3333333333333333u);
-  return uint32_t(((v + (v >> 4)) & 0x0f0f0f0f0f0f0f0fu) * 0x0101010101010101u >> 56);
-}
 
 /// 64 bytes that are 0 or 1 as bits.
 inline uint64_t packed_bits(const uint8_t* bytes) {
@@ -50,6 +40,17 @@ inline uint64_t packed_bits(const uint8_t* bytes) {
     r |= (v * 0x0102040810204080u >> 56) << (8 * i);
   }
   return r;
+}
+
+/// Calls f(first, count) for each run of set bits.
+template <class F>
+void each_run(uint64_t left, F&& f) {
+  while (left) {
+    const int first = std::countr_zero(left), count = std::countr_one(left >> first);
+    f(size_t(first), size_t(count));
+    if (first + count >= 64) return;
+    left &= ~uint64_t(0) << (first + count);
+  }
 }
 
 /// Points of the cells in `cells`, a bit each.
@@ -71,7 +72,8 @@ struct BitRanks {
 /// Writes the connectivity (eight ids a cell) and, where asked for, the cell numbers of the set bits of the cell rows [first, last).
 void write_lattice_cells(const BitRows& g, const LatticeCellKind& kind, const Bits& cells, const BitRanks& points, size_t first_row,
                          size_t last_row, int32_t* connectivity, uint32_t* source);
-/// Ids of the points whose bits are set. Parallel.
-void write_lattice_points(const BitRows& g, const BitRanks& points, uint32_t* ids);
+/// Values, and positions, of the points whose bits are set, one after the other. Parallel.
+void copy_lattice_points(const Array& a, const BitRows& g, const BitRanks& points, std::byte* out);
+void write_lattice_positions(const LatticeView& v, const BitRows& g, const BitRanks& points, double* xyz);
 
 }  // namespace sg

@@ -388,7 +388,11 @@ DatasetPtr slice(const DatasetPtr& in, const DatasetPtr& surface, const SlicePar
     join.part = false;
     out = append(parts, join, ctx);
   }
-  if (out->cell_count() == 0) ctx.info("slice: the plane cuts no cell");
+  if (out->cell_count() == 0) {
+    const Box3 b = mesh->bounds();
+    ctx.info(fmt::format("slice: the surface cuts no cell; the mesh reaches over x {} .. {}, y {} .. {}, z {} .. {}", short_number(b.lo.x),
+                         short_number(b.hi.x), short_number(b.lo.y), short_number(b.hi.y), short_number(b.lo.z), short_number(b.hi.z)));
+  };
   return out;
 }
 

@@ -339,7 +339,7 @@ class Tessellation {
     carry_whole(out.fields, in_->fields());
     if (!in_->cell_ghost().empty()) out.cell_ghost = gather(in_->cell_ghost(), from_);
     if (!out.fields.find("original_cell", Association::cell))
-      out.fields.add({"original_cell", Association::cell, Array::from_vector(std::move(from_)), "", Role::labels});
+      out.fields.add({"original_cell", Association::cell, Array::from_vector(std::move(from_)), "", Role::global_ids});
     out.notes = in_->notes();
     out.time = in_->time();
     return make_dataset(std::move(out));

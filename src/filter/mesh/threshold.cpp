@@ -9,6 +9,7 @@
 #include "filter/mesh/corner_bits.h"
 #include "filter/mesh/extract.h"
 #include "filter/mesh/lattice_cells.h"
+#include "filter/mesh/row_bits.h"
 #include "filter/mesh/surface_builder.h"
 
 namespace sg {
@@ -138,22 +139,36 @@ std::vector<const Field*> chosen_fields(const Dataset& in, const ThresholdParams
   return {&usable(*field)};
 }
 
-// Rows of bits from a byte a point: which cells of a lattice have all points (or any) in range.
-Bits lattice_cells_by_points(const BitRows& g, bool all, bool invert, const std::vector<uint8_t>& ok) {
-  Bits points(g.size()), cells(g.size());
+// Points of a lattice in range, a bit each; without a pass over bytes for plain floats.
+Bits lattice_points_in_range(const BitRows& g, const Field& field, const ThresholdParams& p, const Ranges& ranges) {
+  Bits points(g.size());
+  const Array& a = field.array;
+  if (is_float(a.type()) && a.packed() && a.components() == 1 && p.component <= 0 && ranges.size() == 1) {
+    auto rows = [&](const auto* x) {
+      parallel_for(g.rows(), 64, [&](size_t begin, size_t end) {
+        for (size_t row = begin; row < end; ++row)
+          range_row(x + row * g.nx, g.nx, ranges[0].first, ranges[0].second, points.data() + row * g.words);
+      });
+    };
+    if (a.type() == ElementType::f32) rows(a.view<float>().data);
+    else rows(a.view<double>().data);
+    return points;
+  }
+  const std::vector<uint8_t> ok = in_range(field, p, ranges);
   parallel_for(g.rows(), 64, [&](size_t begin, size_t end) {
     for (size_t row = begin; row < end; ++row)
       for (size_t w = 0; w < g.words; ++w) {
-        const uint8_t* from = ok.data() + row * g.nx + 64 * w;
-        if (64 * w + 64 <= g.nx) {
-          points[row * g.words + w] = packed_bits(from);
-          continue;
-        }
-        uint8_t rest[64] = {};
-        std::copy(from, from + (g.nx - 64 * w), rest);
-        points[row * g.words + w] = packed_bits(rest);
+        uint8_t bytes[64] = {};
+        std::copy_n(ok.data() + row * g.nx + 64 * w, std::min<size_t>(64, g.nx - 64 * w), bytes);
+        points[row * g.words + w] = packed_bits(bytes);
       }
   });
+  return points;
+}
+
+// Which cells of a lattice have all points (or any) in range.
+Bits lattice_cells_by_points(const BitRows& g, bool all, bool invert, const Bits& points) {
+  Bits cells(g.size());
   parallel_for(g.rows(), 64, [&](size_t begin, size_t end) {
     for (size_t row = begin; row < end; ++row) {
       const size_t j = row % g.ny, k = row / g.ny;
@@ -187,14 +202,16 @@ DatasetPtr threshold(const DatasetPtr& in, const ThresholdParams& p, Context& ct
                            short_number(in->range(field).hi)));
     return out;
   };
-  std::vector<uint8_t> keep = in_range(field, p, ranges);
-  ctx.check();
   const bool cloud = in->as<PointCloud>() != nullptr;
   const std::vector<uint8_t> states = cloud ? std::vector<uint8_t>() : cell_states(*in);
   const auto d = lattice_dims(in->mesh());
   if (is_lattice(in->mesh()) && d[0] > 1 && d[1] > 1 && d[2] > 1 && fields.size() == 1 && states.empty() &&
       field.association == Association::point && in->point_count() <= size_t(INT32_MAX))
-    return tell(extract_lattice_cells(in, lattice_cells_by_points(BitRows(d), p.all_points, p.invert, keep), "threshold"));
+    return tell(extract_lattice_cells(
+        in, lattice_cells_by_points(BitRows(d), p.all_points, p.invert, lattice_points_in_range(BitRows(d), field, p, ranges)),
+        "threshold"));
+  std::vector<uint8_t> keep = in_range(field, p, ranges);
+  ctx.check();
   if (!cloud && field.association == Association::point) keep = cells_by_points(*in, p.all_points, keep);
   for (size_t f = 1; f < fields.size(); ++f) {
     std::vector<uint8_t> also = in_range(*fields[f], p, ranges);

@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "data/field_ops.h"
 #include "filter/scalar/amr_leaves.h"
+#include "filter/scalar/amr_outline.h"
 
 namespace sg::contouring {
 
@@ -68,7 +69,7 @@ class Builder {
       if (!is_cut(leaf)) continue;
       if (taken[leaf.cell]++ == 0) ring.push_back(leaf);
       // All that touch its corners, whose gradients make the normals.
-      for (const Place& corner : corners_)
+      for (const Place& corner : outline_.corners)
         each_around(corner, [&](const Leaf& other) {
           if (taken[other.cell]++ == 0) ring.push_back(other);
         });
@@ -237,111 +238,15 @@ class Builder {
     return int64_t(p.point_offset) + i[0] + int64_t(n[0] + 1) * (i[1] + int64_t(n[1] + 1) * i[2]);
   }
 
-  // ---- faces ----
-
-  // Corners on the edge of `level` that starts at `from`, its end left out.
-  void split_edge(Place from, size_t axis, size_t level, std::vector<Place>& out) const {
-    out.push_back(from);
-    if (level + 1 >= leaves_.grid().levels.size()) return;
-    const int64_t step = leaves_.size(level + 1)[axis], parts = leaves_.size(level)[axis] / step;
-    bool finer = false;
-    for (int64_t t = 0; t < parts && !finer; ++t)
-      for (int q = 0; q < (flat_ ? 2 : 4) && !finer; ++q) {
-        Place at = from;
-        at[axis] += t * step;
-        const size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
-        if (flat_) {
-          at[axis == 0 ? 1 : 0] -= q;
-        } else {
-          at[u] -= q & 1, at[v] -= q >> 1;
-        }
-        const Leaf leaf = leaves_.at(at);
-        finer = leaf.cell >= 0 && leaf.level > level;
-      }
-    if (!finer) return;
-    out.pop_back();
-    for (int64_t t = 0; t < parts; ++t) {
-      Place at = from;
-      at[axis] += t * step;
-      split_edge(at, axis, level + 1, out);
-    }
-  }
-
-  // The outline of a rectangle of `level` at `lo` across `axis`, counterclockwise seen from its high side.
-  std::vector<Place> rectangle(const Place& lo, size_t axis, size_t level) const {
-    const size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
-    const Place& s = leaves_.size(level);
-    Place right = lo, up = lo;
-    right[u] += s[u], up[v] += s[v];
-    std::vector<Place> r, part;
-    Place far = right;
-    far[v] += s[v];
-    auto backwards = [&](const Place& from, size_t along, const Place& end) {
-      part.clear();
-      split_edge(from, along, level, part);
-      part.push_back(end);
-      r.insert(r.end(), part.rbegin(), part.rend() - 1);
-    };
-    split_edge(lo, u, level, r);
-    split_edge(right, v, level, r);
-    backwards(up, u, far);
-    backwards(lo, v, up);
-    return r;
-  }
-
-  // The pieces of a face of `level`: those of finer leaves behind it, if there are any.
-  void split_face(const Place& lo, size_t axis, bool high, size_t level, std::vector<std::vector<Place>>& out) const {
-    const size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
-    bool finer = false;
-    if (level + 1 < leaves_.grid().levels.size()) {
-      const Place &s = leaves_.size(level), &t = leaves_.size(level + 1);
-      auto behind = [&](int64_t i, int64_t j) {
-        Place at = lo;
-        at[axis] -= high ? 0 : 1;
-        at[u] += i * t[u], at[v] += j * t[v];
-        return at;
-      };
-      for (int64_t j = 0; j < s[v] / t[v] && !finer; ++j)
-        for (int64_t i = 0; i < s[u] / t[u] && !finer; ++i) {
-          const Leaf leaf = leaves_.at(behind(i, j));
-          finer = leaf.cell >= 0 && leaf.level > level;
-        }
-      if (finer)
-        for (int64_t j = 0; j < s[v] / t[v]; ++j)
-          for (int64_t i = 0; i < s[u] / t[u]; ++i) {
-            Place at = lo;
-            at[u] += i * t[u], at[v] += j * t[v];
-            split_face(at, axis, high, level + 1, out);
-          }
-    }
-    if (finer) return;
-    out.push_back(rectangle(lo, axis, level));
-    if (!high) std::reverse(out.back().begin(), out.back().end());
-  }
-
-  // Fills faces_ (2D: the outline as one) and corners_ (distinct).
-  void open(const Leaf& leaf) {
-    faces_.clear(), corners_.clear();
-    const Place& s = leaves_.size(leaf.level);
-    if (flat_) faces_.push_back(rectangle(leaf.lo, 2, leaf.level));
-    for (size_t axis = 0; axis < 3 && !flat_; ++axis)
-      for (int side = 0; side < 2; ++side) {
-        Place lo = leaf.lo;
-        if (side) lo[axis] += s[axis];
-        split_face(lo, axis, side == 1, leaf.level, faces_);
-      }
-    for (const auto& f : faces_) corners_.insert(corners_.end(), f.begin(), f.end());
-    std::sort(corners_.begin(), corners_.end());
-    corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
-  }
+  // ---- cells ----
 
   bool usable(const Leaf& leaf) const { return !of_cells_ || !std::isnan(f_[size_t(leaf.cell)]); }
 
   bool is_cut(const Leaf& leaf) {
-    open(leaf);
+    outline_.open(leaf);
     if (!usable(leaf)) return false;
     double lo = HUGE_VAL, hi = -HUGE_VAL;
-    for (const Place& at : corners_) {
+    for (const Place& at : outline_.corners) {
       const double x = corner(at).value;
       if (std::isnan(x)) return false;
       lo = std::min(lo, x), hi = std::max(hi, x);
@@ -350,7 +255,7 @@ class Builder {
   }
 
   void add(const Leaf& leaf) {
-    open(leaf);
+    outline_.open(leaf);
     if (!usable(leaf)) return;
     auto number = [&](const Place& at) {
       Corner& c = corner(at);
@@ -363,18 +268,18 @@ class Builder {
       }
       return c.number;
     };
-    const bool plain = flat_ ? corners_.size() == 4 : corners_.size() == 8;
+    const bool plain = flat_ ? outline_.corners.size() == 4 : outline_.corners.size() == 8;
     if (plain || !flat_)  // voxels and pixels list their corners x fastest
-      std::sort(corners_.begin(), corners_.end(),
+      std::sort(outline_.corners.begin(), outline_.corners.end(),
                 [](const Place& a, const Place& b) { return std::tie(a[2], a[1], a[0]) < std::tie(b[2], b[1], b[0]); });
     if (flat_ && !plain)
-      for (const Place& at : faces_[0]) ids_.push_back(number(at));
+      for (const Place& at : outline_.faces[0]) ids_.push_back(number(at));
     else
-      for (const Place& at : corners_) ids_.push_back(number(at));
+      for (const Place& at : outline_.corners) ids_.push_back(number(at));
     offsets_.push_back(int64_t(ids_.size()));
     types_.push_back(uint8_t(flat_ ? plain ? CellType::pixel : CellType::polygon : plain ? CellType::voxel : CellType::polyhedron));
     if (!flat_ && !plain)
-      for (const auto& face : faces_) {
+      for (const auto& face : outline_.faces) {
         for (const Place& at : face) face_ids_.push_back(number(at));
         face_offsets_.push_back(int64_t(face_ids_.size()));
       }
@@ -417,8 +322,7 @@ class Builder {
   View<double> f_;
   std::unordered_map<int64_t, Vec3> gradients_;
   std::unordered_map<Place, Corner, PlaceHash> corners_known_;
-  std::vector<std::vector<Place>> faces_;
-  std::vector<Place> corners_;
+  AmrOutline outline_{leaves_};
   std::vector<double> xyz_, point_values_;
   std::vector<int64_t> sources_, ids_, offsets_{0}, face_ids_, face_offsets_{0}, cell_faces_{0}, from_;
   std::vector<uint8_t> types_;

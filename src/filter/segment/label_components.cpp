@@ -2,9 +2,9 @@
 #include "filter/segment/label_components.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "base/parallel.h"
+#include "base/union_find.h"
 #include "filter/segment/samples.h"
 
 namespace sg {
@@ -26,27 +26,18 @@ struct Run {
   int32_t code;
 };
 
-// Runs of equal code in each row, and sets of them. The smaller root stays, so that numbers do not depend on the order of joins.
+// Runs of equal code in each row, and sets of them.
 struct RunSets {
   std::vector<Run> runs;
   std::vector<size_t> first;  // of each row
-  std::vector<uint32_t> parent;
-  uint32_t root(uint32_t r) {
-    while (parent[r] != r) r = parent[r] = parent[parent[r]];
-    return r;
-  }
-  void join(uint32_t a, uint32_t b) {
-    a = root(a), b = root(b);
-    if (a < b) parent[b] = a;
-    else parent[a] = b;
-  }
+  UnionFind<> sets{0};
   // Runs of two rows that overlap, or with reach 1 touch at corners.
   void join_rows(size_t row, size_t other, uint32_t reach) {
     size_t a = first[row], b = first[other];
     const auto meet = [&](size_t i, size_t k) {
       if (i == first[row + 1] || k == first[other + 1]) return;
       const Run &x = runs[i], &y = runs[k];
-      if (x.code == y.code && x.begin < y.end + reach && y.begin < x.end + reach) join(uint32_t(i), uint32_t(k));
+      if (x.code == y.code && x.begin < y.end + reach && y.begin < x.end + reach) sets.join(uint32_t(i), uint32_t(k));
     };
     while (a < first[row + 1] && b < first[other + 1]) {
       meet(a, b);
@@ -82,8 +73,8 @@ RunSets find_runs(const int32_t* code, std::array<size_t, 3> d, bool by_label, c
       &context);
   const size_t total = exclusive_scan(s.first);
   if (total >= UINT32_MAX) fail_usage("the labels change too often", "label_components", "crop the image");
-  s.runs.resize(total), s.parent.resize(total);
-  std::iota(s.parent.begin(), s.parent.end(), 0u);
+  s.runs.resize(total);
+  s.sets = UnionFind<>(total);
   parallel_for(rows, 64, [&](size_t begin, size_t end) {
     for (size_t row = begin; row < end; ++row) {
       size_t at = s.first[row];
@@ -126,7 +117,7 @@ CodeComponents code_components(const int32_t* code, std::array<size_t, 3> d, int
   std::vector<int64_t> samples(s.runs.size(), 0);
   std::vector<uint32_t> roots;
   for (uint32_t r = 0; r < s.runs.size(); ++r) {
-    const uint32_t root = s.root(r);
+    const uint32_t root = s.sets.root(r);
     if (root == r) roots.push_back(r);
     samples[root] += s.runs[r].end - s.runs[r].begin;
   }
@@ -136,7 +127,7 @@ CodeComponents code_components(const int32_t* code, std::array<size_t, 3> d, int
   CodeComponents out;
   for (size_t i = 0; i < roots.size(); ++i) number[roots[i]] = int32_t(i + 1), out.size.push_back(samples[roots[i]]);
   out.component.resize(d[0] * d[1] * d[2]);
-  for (uint32_t r = 0; r < s.runs.size(); ++r) number[r] = number[s.root(r)];
+  for (uint32_t r = 0; r < s.runs.size(); ++r) number[r] = number[s.sets.root(r)];
   parallel_for(d[1] * d[2], 64, [&](size_t begin, size_t end) {
     for (size_t row = begin; row < end; ++row) {
       int32_t* c = out.component.data() + row * d[0];

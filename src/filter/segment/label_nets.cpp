@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 
+#include "base/bits.h"
 #include "base/error.h"
 #include "base/parallel.h"
 
@@ -46,7 +47,7 @@ LabelNet::LabelNet(const int32_t* code, std::array<size_t, 3> dims, bool walls, 
             last = here, last_even = even;
           }
           uint32_t count = 0;
-          for (size_t w = 0; w < words_; ++w) rank_[row * words_ + w] = count, count += uint32_t(std::popcount(bits[w]));
+          for (size_t w = 0; w < words_; ++w) rank_[row * words_ + w] = count, count += count_bits(bits[w]);
           first_vertex_[row] = count;
           size_t faces = 0;
           if (count) for_faces_of_row(row, [&](size_t, int, int32_t, int32_t) { ++faces; });
@@ -62,7 +63,7 @@ LabelNet::LabelNet(const int32_t* code, std::array<size_t, 3> dims, bool walls, 
 int32_t LabelNet::vertex(size_t i, size_t row) const {
   const size_t w = row * words_ + i / 64;
   const uint64_t below = used_[w] & ((uint64_t(1) << (i % 64)) - 1);
-  return int32_t(first_vertex_[row] + rank_[w] + size_t(std::popcount(below)));
+  return int32_t(first_vertex_[row] + rank_[w] + count_bits(below));
 }
 
 // f(i, axis, code below, code above) for the faces that have corner (i, row) as their lowest, in the order of i, then axis.

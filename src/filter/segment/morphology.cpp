@@ -83,7 +83,13 @@ DatasetPtr morphology(const DatasetPtr& in, const MorphologyParams& p, Context& 
   double radius = 0;
   for (size_t a = 0; a < 3; ++a)
     if (image.dims[a] > 1) radius = std::max(radius, image.spacing(a));
+  double least = HUGE_VAL;
+  for (size_t a = 0; a < 3; ++a)
+    if (image.dims[a] > 1) least = std::min(least, image.spacing(a));
   if (p.radius) radius = *p.radius;
+  if (p.operation != "fill" && radius < least && least < HUGE_VAL)
+    context.warn(fmt::format("morphology: a ball of radius {} reaches no neighbour; the nearest are {} away", short_number(radius),
+                             short_number(least)));
 
   Mask set(n);
   Work work{image, context, Mask(n)};

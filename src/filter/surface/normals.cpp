@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "base/union_find.h"
 #include "data/field_ops.h"
 #include "filter/surface/polygons.h"
 
@@ -21,22 +22,8 @@ double corner_angle(Vec3 before, Vec3 here, Vec3 after, Vec3 normal) {
   return dot(n, normal) < 0 ? 2 * pi - angle : angle;
 }
 
-// Corners of a point that belong to one smooth piece have the same root.
-struct Corners {
-  std::vector<uint32_t> parent;
-  explicit Corners(size_t n) : parent(n) { std::iota(parent.begin(), parent.end(), 0u); }
-  uint32_t root(uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  }
-  void join(uint32_t a, uint32_t b) {
-    a = root(a), b = root(b);
-    if (a < b) parent[b] = a;
-    else parent[a] = b;
-  }
-};
-
-void join_across_smooth_edges(Corners& corners, const CellsView& polygons, const Edges& edges, const std::vector<Vec3>& normal,
+// Corners of a point that belong to one smooth piece come into one set.
+void join_across_smooth_edges(UnionFind<>& corners, const CellsView& polygons, const Edges& edges, const std::vector<Vec3>& normal,
                               double feature_angle) {
   const double cosine = std::cos(feature_angle * pi / 180);
   for (size_t e = 0; e < edges.size(); ++e) {
@@ -68,7 +55,7 @@ SplitPoints split_points(const CellsView& polygons, const Edges& edges, const st
     for (size_t c = 0; c < n; ++c) r.of_corner[c] = uint32_t(polygons.connectivity[c]);
     return r;
   }
-  Corners corners(n);
+  UnionFind<> corners(n);
   join_across_smooth_edges(corners, polygons, edges, normal, feature_angle);
   std::vector<uint8_t> taken(points, 0);  // the first piece keeps the point
   for (uint32_t c = 0; c < n; ++c) {

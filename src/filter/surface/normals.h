@@ -14,7 +14,9 @@ struct NormalsParams {
   bool cell_normals = false;
 };
 inline void describe(Schema& s, NormalsParams& p) {
-  s("feature_angle", p.feature_angle, "Edges where the surface bends by more than this stay sharp: their points are doubled; 180: none.")
+  s("feature_angle", p.feature_angle,
+    "Edges where the surface bends by more than this stay sharp: their points are doubled; 180: none. Doubled points of the file (often in "
+    ".obj) part the surface: clean first.")
       .range(0, 180)
       .unit("deg");
   s("orient", p.orient, "keep: as the polygons are; consistent: neighbours agree; outward: closed pieces also face outward.")
