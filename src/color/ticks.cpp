@@ -154,7 +154,10 @@ std::vector<std::string> distinct_texts(const std::vector<double>& values) {
   for (size_t i = 1; i < sorted.size(); ++i)
     if (sorted[i] > sorted[i - 1]) least = std::min(least, sorted[i] - sorted[i - 1]);
   std::vector<std::string> texts;
-  for (int digits = 3; digits <= 8; ++digits) {
+  int fewest = 3;  // 1000 stays 1000: no power of ten below a million
+  for (double v : values)
+    while (fewest < 6 && std::abs(v) >= decimal(1, fewest) && std::abs(v) < 1e6) ++fewest;
+  for (int digits = fewest; digits <= 8; ++digits) {
     texts.clear();
     double worst = 0;
     for (double v : values) {

@@ -9,6 +9,7 @@
 #include "image/codec.h"
 #include "render/annotate/axes.h"
 #include "render/annotate/legend.h"
+#include "render/annotate/texts.h"
 #include "support/test.h"
 
 using namespace sg;
@@ -357,4 +358,49 @@ TEST_CASE("annotate: without any font the error names the package") {
   const std::string command =
       fmt::format("SG_TEST_WITHOUT_FONTS=1 FONTCONFIG_FILE='{}' '{}' -tc='annotate child*' >/dev/null 2>&1", config, self);
   CHECK(std::system(command.c_str()) == 0);
+}
+
+TEST_CASE("texts: turned as their direction is seen, never upside down; those that meet another are left out") {
+  const Projection p = look({0, 0, 1}, unit_box, 400, 300, true);
+  const double degree = 3.14159265358979323846 / 180;
+  CHECK(text_angle({{}, {1, 0, 0}, "1"}, p) == doctest::Approx(0));
+  CHECK(text_angle({{}, {1, 1, 0}, "1"}, p) == doctest::Approx(45 * degree));
+  CHECK(text_angle({{}, {-1, 1, 0}, "1"}, p) == doctest::Approx(-45 * degree));
+  CHECK(text_angle({{}, {0, -1, 0}, "1"}, p) == doctest::Approx(90 * degree));
+  CHECK(text_angle({{}, {0, 0, 1}, "1"}, p) == 0);
+  const auto dark = [&](const std::vector<TextItem>& texts) {
+    Annotation a;
+    a.triad = false, a.texts = texts;
+    Image image = blank(400, 300);
+    annotate(image, a, p);
+    return std::count_if(image.pixels.begin(), image.pixels.end(), [](uint8_t c) { return c < 100; });
+  };
+  const Vec3 middle = unit_box.center();
+  const auto one = dark({{middle, {1, 0.5, 0}, "988"}});
+  CHECK(one > 30);
+  CHECK(dark({{middle, {1, 0.5, 0}, "988"}, {middle, {0, 1, 0}, "992"}}) == one);
+  CHECK(dark({{middle + Vec3(1000, 0, 0), {1, 0, 0}, "988"}}) == 0);
+}
+
+TEST_CASE("legend: bands show their limits, each band in its own colour") {
+  ColorScale s;
+  s.map = find_colormap("sight");
+  s.labels = {0, 1, 2}, s.limits = {988, 992, 996, 1000}, s.title = "pressure";
+  const Overlay o(1, 1, false);
+  const auto l = layout_legends(o, {s}, {0, 0, 640, 480}, 12, false);
+  REQUIRE(l.size() == 1);
+  REQUIRE(l[0].ticks.size() == 4);
+  CHECK(l[0].ticks[0].text == "988");
+  CHECK(l[0].ticks[3].text == "1000");
+  CHECK(l[0].ticks[3].row == int(l[0].bar.y));
+  Annotation a;
+  a.legends = {s}, a.triad = false;
+  Image image = blank(640, 480);
+  annotate(image, a, look({0, 0, 1}, unit_box, 640, 480));
+  for (int band = 0; band < 3; ++band) {
+    size_t found = 0;
+    for (int y = 0; y < 480; ++y)
+      for (int x = 0; x < 640; ++x) found += same(image.at(x, y), s.color(band));
+    CHECK(found > 500);
+  }
 }

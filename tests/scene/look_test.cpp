@@ -3,6 +3,7 @@
 #include "scene/look.h"
 
 #include "color/parse_color.h"
+#include "filter/scalar/bands.h"
 #include "scene/volume_look.h"
 #include "support/test.h"
 
@@ -185,4 +186,50 @@ TEST_CASE("surface with edges: a curved cell shows its own four sides, a linear 
   m.single_type = CellType::quad;
   find_show("surface").add(scene, make_dataset(m), {"edges=true"}, context);
   CHECK_FALSE(std::get<SurfaceItem>(scene.items.at(1)).edge_lines);
+}
+
+TEST_CASE("choose_look: filled contours are coloured by band, unlit on a plane, with the limits in the legend") {
+  Context ctx;
+  UniformGrid g;
+  g.dims = {9, 9, 1};
+  std::vector<float> v;
+  for (int j = 0; j < 9; ++j)
+    for (int i = 0; i < 9; ++i) v.push_back(float(i));
+  FieldSet fields;
+  fields.add({"t", Association::point, Array::from_vector(std::move(v)), "K", Role::scalars});
+  const DatasetPtr d = bands(make_dataset(g, fields), {.values = {2, 4, 6}}, ctx);
+  CHECK(automatic_field(*d)->name == "band");
+  const Look look = choose_look(*d, "", "");
+  REQUIRE(look.shows.size() == 1);
+  CHECK(look.shows[0].words == std::vector<std::string>{"lit=false"});
+  const ColorScale s = choose_scale(*d, *automatic_field(*d), {}, ctx);
+  CHECK(s.title == "t");
+  CHECK(s.unit == "K");
+  CHECK(s.labels == std::vector<double>{0, 1, 2, 3});
+  CHECK(s.limits == std::vector<double>{0, 2, 4, 6, 8});
+  CHECK(s.color(0) == Vec4f{find_colormap("sight").at(0).x, find_colormap("sight").at(0).y, find_colormap("sight").at(0).z, 1});
+  CHECK_FALSE(s.color(1) == s.color(2));
+  CHECK(choose_look(*d, "t", "").shows[0].words.empty());
+}
+
+TEST_CASE("labels: a cloud of line labels becomes texts that lie along their lines") {
+  Context ctx;
+  FieldSet f;
+  f.add({"value", Association::point, Array::from_vector(std::vector<double>{988, 992.25}), "hPa", Role::scalars});
+  f.add({"angle", Association::point, Array::from_vector(std::vector<double>{30, -90}), "deg", Role::none});
+  f.add({"line", Association::point, Array::from_vector(std::vector<int32_t>{0, 1}), "", Role::labels});
+  const DatasetPtr d = make_dataset(Mesh(PointCloud{{Array::from_vector(std::vector<double>{1, 2, 0, 3, 4, 0}, 3), {}}}), f);
+  CHECK(is_line_labels(*d));
+  const Look look = choose_look(*d, "", "");
+  REQUIRE(look.shows.size() == 1);
+  CHECK(look.shows[0].kind == "labels");
+  Scene scene;
+  find_show("labels").add(scene, d, {}, ctx);
+  REQUIRE(scene.texts.size() == 2);
+  CHECK(scene.texts[0].text == "988");
+  CHECK(scene.texts[1].text == "992.25");
+  CHECK(scene.texts[1].at == Vec3(3, 4, 0));
+  CHECK(length(scene.texts[0].along - Vec3(std::sqrt(0.75), 0.5, 0)) < 1e-12);
+  CHECK(length(scene.texts[1].along - Vec3(0, -1, 0)) < 1e-12);
+  CHECK(test::error_of([&] { find_show("labels").add(scene, d, {"field=none such"}, ctx); }).find("none such") != std::string::npos);
 }

@@ -77,7 +77,7 @@ struct PreparedItem {
   std::shared_ptr<const std::vector<uint32_t>> points;  ///< numbers of the dots that are drawn
   Array positions;                                      ///< f32 x 3 packed
   Vec3 origin;
-  bool discs = false;                ///< points as oriented discs: opaque, drawn like triangles
+  bool discs = false;               ///< points as oriented discs: opaque, drawn like triangles
   Array disc_normals, disc_radius;  ///< f32 packed, per point of the dataset
 };
 
