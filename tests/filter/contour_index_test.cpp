@@ -55,7 +55,9 @@ DatasetPtr at(const DatasetPtr& d, std::vector<double> values) {
   Context context;
   ContourParams p;
   p.values = std::move(values);
-  return contour(d, p, context);
+  const DatasetPtr r = contour(d, p, context);
+  validate(r->mesh());
+  return r;
 }
 
 // The same data that knows nothing yet.

@@ -57,7 +57,9 @@ inline DatasetPtr contour_at(const DatasetPtr& d, double value) {
   Context context;
   ContourParams p;
   p.values = {value};
-  return contour(d, p, context);
+  const DatasetPtr r = contour(d, p, context);
+  validate(r->mesh());  // contour vouches for it without a look
+  return r;
 }
 
 struct Surface {

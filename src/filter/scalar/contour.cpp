@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "base/text.h"
+#include "data/trusted.h"
 #include "filter/field/point_cell.h"
 #include "filter/scalar/contour_active.h"
 #include "filter/scalar/contour_amr.h"
@@ -269,7 +270,7 @@ DatasetPtr assemble(const Dataset& input, const Field& field, const std::vector<
   parts.fields = std::move(out);
   parts.notes = input.notes();
   parts.time = input.time();
-  return make_dataset(std::move(parts));
+  return make_trusted_dataset(std::move(parts));
 }
 
 // Has the mesh solids (or, failing that, faces) to cut?
