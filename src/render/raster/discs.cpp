@@ -44,7 +44,8 @@ void draw_discs(const DiscJob& job, size_t begin, size_t end) {
     // A disc that leans towards the viewer reaches further on the picture than its radius at the centre's depth.
     const float grown = v.parallel || !(e.z > 2 * r) ? reach * (v.parallel ? 1.0f : 4.0f) : reach * e.z / (e.z - r);
     const int x0 = int(std::max(std::ceil(cx - grown - 0.5f), 0.0f)), x1 = int(std::min(std::floor(cx + grown - 0.5f), float(v.width - 1)));
-    const int y0 = int(std::max(std::ceil(cy - grown - 0.5f), 0.0f)), y1 = int(std::min(std::floor(cy + grown - 0.5f), float(v.height - 1)));
+    const int y0 = int(std::max(std::ceil(cy - grown - 0.5f), 0.0f)),
+              y1 = int(std::min(std::floor(cy + grown - 0.5f), float(v.height - 1)));
     const float plane = n[0] * e.x + n[1] * e.y + n[2] * e.z, inverse = 1 / v.scale, r2 = r * r;
     for (int y = y0; y <= y1; ++y)
       for (int x = x0; x <= x1; ++x) {
