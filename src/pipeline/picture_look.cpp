@@ -65,7 +65,6 @@ constexpr Maker makers[] = {
     {"morphology", "name", ""},
     {"quality", "measures", "scaled_jacobian"},
     {"curvature", "", "mean curvature"},
-    {"bands", "", "band low"},
     {"divergence", "as", ""},
     {"gradient", "as", ""},
     {"curl", "as", ""},

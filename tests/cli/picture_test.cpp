@@ -167,7 +167,7 @@ TEST_CASE("pictures: without a word about fields, what the last steps made is co
     return r.out;
   };
   CHECK(told({"-f", "slice axis=z", "-f", "calc expr=x*y name=xy"}).find("coloured by 'xy'") != std::string::npos);
-  CHECK(told({"-f", "slice axis=z", "-f", "bands count=4", "-f", "clip axis=x"}).find("coloured by 'band low'") != std::string::npos);
+  CHECK(told({"-f", "slice axis=z", "-f", "bands count=4", "-f", "clip axis=x"}).find("coloured by 'band'") != std::string::npos);
   CHECK(told({"-f", "otsu", "-f", "morphology operation=open"}).find("'otsu'") != std::string::npos);      // in place
   CHECK(told({"-f", "slice axis=z", "-f", "calc expr=3 name=same"}).find("'same'") == std::string::npos);  // shows nothing
 }
