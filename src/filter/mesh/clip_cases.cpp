@@ -232,15 +232,15 @@ void ClipTable::divide_loop(const Polygon& loop, std::vector<Polygon>& out) cons
         if (c < best[a * n + b] - 1e-9) best[a * n + b] = c, apex[a * n + b] = m;
       }
     }
-  std::vector<std::pair<size_t, size_t>> todo{{0, n - 1}};
-  while (!todo.empty()) {
-    const auto [a, b] = todo.back();
-    todo.pop_back();
+  std::vector<std::pair<size_t, size_t>> pending{{0, n - 1}};
+  while (!pending.empty()) {
+    const auto [a, b] = pending.back();
+    pending.pop_back();
     if (b - a < 2) continue;
     const size_t m = apex[a * n + b];
     out.push_back({loop[a], loop[m], loop[b]});
-    todo.emplace_back(a, m);
-    todo.emplace_back(m, b);
+    pending.emplace_back(a, m);
+    pending.emplace_back(m, b);
   }
 }
 

@@ -362,18 +362,18 @@ const CellPieces& CellClipper::polyhedron(std::span<const int64_t> ids, std::spa
   std::vector<char> seen(faces.size(), 0);
   for (size_t first = 0; first < faces.size(); ++first) {
     if (seen[first]) continue;
-    std::vector<size_t> todo{first};
+    std::vector<size_t> pending{first};
     seen[first] = 1;
-    while (!todo.empty()) {
-      const size_t f = todo.back();
-      todo.pop_back();
+    while (!pending.empty()) {
+      const size_t f = pending.back();
+      pending.pop_back();
       for (size_t k = 0; k < faces[f].size(); ++k) {
         const std::pair<uint16_t, uint16_t> e = edge(faces[f], k);
         for (const size_t g : at_edge[e]) {
           if (seen[g]) continue;
           if (forward(f, e) == forward(g, e)) std::reverse(faces[g].begin(), faces[g].end());
           seen[g] = 1;
-          todo.push_back(g);
+          pending.push_back(g);
         }
       }
     }

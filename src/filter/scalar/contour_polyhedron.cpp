@@ -34,18 +34,18 @@ void turn_alike(PolyhedronFaces& faces) {
   };
   std::vector<char> seen(faces.size());
   for (size_t first = 0; first < faces.size(); ++first) {
-    std::vector<size_t> todo;
-    if (!seen[first]) todo.push_back(first), seen[first] = 1;
-    while (!todo.empty()) {
-      const size_t f = todo.back();
-      todo.pop_back();
+    std::vector<size_t> pending;
+    if (!seen[first]) pending.push_back(first), seen[first] = 1;
+    while (!pending.empty()) {
+      const size_t f = pending.back();
+      pending.pop_back();
       for (size_t k = 0; k < faces[f].size(); ++k) {
         const uint64_t edge = key_of(faces[f], k);
         for (size_t g : at_edge[edge]) {
           if (seen[g]) continue;
           if (forward(f, edge) == forward(g, edge)) std::reverse(faces[g].begin(), faces[g].end());
           seen[g] = 1;
-          todo.push_back(g);
+          pending.push_back(g);
         }
       }
     }

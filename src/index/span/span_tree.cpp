@@ -2,6 +2,7 @@
 #include "index/span/span_tree.h"
 
 #include <algorithm>
+#include <functional>
 #include <tuple>
 
 #include "base/parallel.h"
