@@ -176,7 +176,7 @@ Task volume(const char* what, bool shaded, bool maximum, bool fog) {
             if (fog) item.opacity.points = {{-3, .002}, {4, .01}};
             if (maximum) item.mode = VolumeItem::Mode::maximum;
             item.unit_distance = 2.0 / 255;
-            item.step = 1.0 / 255;
+            item.sampling.step = 1.0 / 255;
             item.shaded = shaded;
             scene.items.emplace_back(item);
             auto turn = std::make_shared<double>(0);

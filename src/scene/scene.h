@@ -9,14 +9,10 @@
 #include "color/color_scale.h"
 #include "data/dataset.h"
 #include "scene/camera.h"
+#include "scene/material.h"
+#include "scene/volume_item.h"
 
 namespace sg {
-
-/// Phong terms in linear light. Surfaces are lit on both sides.
-struct Material {
-  float ambient = 0.12f, diffuse = 0.88f, specular = 0.18f, power = 32;
-  bool lit = true;
-};
 
 /// Colour by a field of the item's dataset. One component -> `scale`; `direct`: components are RGB(A) (u8 0..255 or float 0..1).
 struct FieldColor {
@@ -61,20 +57,6 @@ struct PointsItem {
   bool shaded = true;  ///< as little spheres
   /// Point fields of normals (3 components) and radii (world lengths): with both, and opaque, the points are oriented discs.
   std::string disc_normals, disc_radius;
-};
-
-/// A scalar field of a lattice, seen through.
-struct VolumeItem {
-  DatasetPtr data;
-  std::string field;
-  Association association = Association::point;
-  int component = -1;
-  ColorScale color;
-  OpacityCurve opacity;      ///< over values
-  double unit_distance = 0;  ///< length to which opacity refers; 0 = 1/100 of the diagonal of the bounds
-  enum class Mode { composite, maximum } mode = Mode::composite;
-  bool shaded = true;
-  double step = 0;  ///< world length; 0 = half the smallest cell edge
 };
 
 /// Text at a place, over the picture where nothing hides the place.

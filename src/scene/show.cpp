@@ -213,7 +213,7 @@ std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const Volum
   item.mode = p.mode == "maximum" ? VolumeItem::Mode::maximum : VolumeItem::Mode::composite;
   item.shaded = p.shaded;
   item.unit_distance = p.unit;
-  item.step = p.step;
+  item.sampling.step = p.step;
   item.color = choose_scale(*input, *f, p.coloring, context);
   if (p.opacity == "auto") choose_volume_look(*input, *f, p.coloring, item);
   else item.opacity = parse_opacity(p.opacity, item.color.lo, item.color.hi);

@@ -237,11 +237,11 @@ TEST_CASE("volume: what cannot be shown is said, with what would be right") {
   v = item(d, grey(0, 1), {});
   v.component = 2;
   CHECK(error(v).find("has 1 components") != std::string::npos);
-  v.component = -1, v.step = -1;
+  v.component = -1, v.sampling.step = -1;
   CHECK(error(v).find("step") != std::string::npos);
-  v.step = 1e-9;
+  v.sampling.step = 1e-9;
   CHECK(error(v).find("longer step") != std::string::npos);
-  v.step = 0, v.unit_distance = NAN;
+  v.sampling.step = 0, v.unit_distance = NAN;
   CHECK(error(v).find("unit distance") != std::string::npos);
   v.unit_distance = 1, v.data = nullptr;
   CHECK(error(v).find("no dataset") != std::string::npos);

@@ -2,7 +2,7 @@
 // Skipping, termination, threads, maxima, gradients, transfer tables and picking.
 #include "volume_support.h"
 
-#include "render/volume/runs.h"
+#include "render/volume/lattice/runs.h"
 
 using namespace sg;
 using namespace sg::test;
@@ -64,7 +64,7 @@ TEST_CASE("volume: skipping works for rectilinear grids, tiny steps and axis-par
   volume::Knobs with, without;
   with.stop_below = without.stop_below = 0, without.skip_empty = false;
   for (const double step : {0.013, 0.0007}) {
-    std::get<VolumeItem>(scene.items[0]).step = step;
+    std::get<VolumeItem>(scene.items[0]).sampling.step = step;
     for (const Projection& p :
          {perspective_view(12, 12, 20, {1.5, 1.1, 3}, {0, 0, 0}), parallel_view(9, 9, 4.5), parallel_view(9, 9, 4.5, {-1, 0, 0})})
       CHECK(same_bytes(draw(scene, p, with), draw(scene, p, without)));

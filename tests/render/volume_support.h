@@ -7,7 +7,7 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "render/volume/volume.h"
-#include "render/volume/volume_internal.h"
+#include "render/volume/lattice/lattice_volume.h"
 #include "support/test.h"
 
 namespace sg::test {
@@ -68,7 +68,7 @@ inline OpacityCurve density_is_value(double lo, double hi, int n = 4000) {
 inline VolumeItem item(DatasetPtr data, ColorScale color, OpacityCurve opacity, double step = 0) {
   VolumeItem v;
   v.data = std::move(data), v.field = "f", v.color = std::move(color), v.opacity = std::move(opacity);
-  v.unit_distance = 1, v.shaded = false, v.step = step;
+  v.unit_distance = 1, v.shaded = false, v.sampling.step = step;
   return v;
 }
 

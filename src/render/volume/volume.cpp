@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "render/volume/volume_internal.h"
+#include "render/volume/lattice/lattice_volume.h"
 
 namespace sg::volume {
 

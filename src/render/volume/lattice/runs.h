@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Runs of samples in any kind of volume: values with holes, gradients.
 #pragma once
-#include "render/volume/volume_internal.h"
+#include "render/volume/lattice/lattice_volume.h"
 
 namespace sg::volume {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The kernels with gathers, for volumes whose offsets fit 32 bits; the same bits as kernels.cpp (no fused multiply-add).
-#include "render/volume/kernels.h"
+#include "render/volume/lattice/kernels.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "render/volume/kernels_simd.cpp"
+#define HWY_TARGET_INCLUDE "render/volume/lattice/kernels_simd.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 

@@ -10,8 +10,8 @@
 
 #include "index/minmax_bricks.h"
 #include "render/composite/over.h"
-#include "render/volume/kernels.h"
-#include "render/volume/transfer.h"
+#include "render/volume/lattice/kernels.h"
+#include "render/volume/optics/transfer.h"
 #include "scene/scene.h"
 
 namespace sg::volume {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The scalar reference of the kernels, and the way for volumes beyond 32-bit offsets.
-#include "render/volume/kernels.h"
+#include "render/volume/lattice/kernels.h"
 
 #include <algorithm>
 #include <cmath>

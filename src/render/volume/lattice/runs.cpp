@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/volume/runs.h"
+#include "render/volume/lattice/runs.h"
 
 namespace sg::volume {
 

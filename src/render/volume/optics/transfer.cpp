@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/volume/transfer.h"
+#include "render/volume/optics/transfer.h"
 
 #include <algorithm>
 #include <cmath>

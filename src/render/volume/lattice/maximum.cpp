@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The maximum of the trilinear field along a ray. Within a cell the field along a ray is a cubic, so its maximum is found
 // exactly; cells and bricks whose largest corner is not above the best so far are passed over.
-#include "render/volume/runs.h"
+#include "render/volume/lattice/runs.h"
 
 namespace sg::volume {
 

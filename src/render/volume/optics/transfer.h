@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "color/color_scale.h"
-#include "render/volume/kernels.h"
+#include "render/volume/lattice/kernels.h"
 
 namespace sg::volume {
 

@@ -4,7 +4,7 @@
 #include "base/parallel.h"
 #include "data/field_ops.h"
 #include "data/lattice.h"
-#include "render/volume/volume_internal.h"
+#include "render/volume/lattice/lattice_volume.h"
 
 namespace sg::volume {
 
@@ -29,8 +29,8 @@ void check(const VolumeItem& item) {
   if (!item.data->as<UniformGrid>() && !item.data->as<RectilinearGrid>())
     fail_usage(fmt::format("a {} mesh cannot be looked through as a volume", item.data->kind()), "volume",
                "volumes are grids so far; show its surface: --show surface");
-  if (!(item.step >= 0) || !std::isfinite(item.step))
-    fail_usage(fmt::format("the step {} is no length", item.step), "volume", "give a length above 0, or 0 for half a cell");
+  if (!(item.sampling.step >= 0) || !std::isfinite(item.sampling.step))
+    fail_usage(fmt::format("the step {} is no length", item.sampling.step), "volume", "give a length above 0, or 0 for half a cell");
   if (!(item.unit_distance >= 0) || !std::isfinite(item.unit_distance))
     fail_usage(fmt::format("the unit distance {} is no length", item.unit_distance), "volume",
                "give a length above 0, or 0 for 1/100 of the diagonal");
@@ -246,7 +246,7 @@ Volume prepare(const VolumeItem& item, uint32_t id, const Knobs& knobs) {
 
   // Lengths: step and the length to which opacity refers.
   const double diagonal = std::max(item.data->bounds().diagonal(), smallest);
-  v.step = item.step > 0 ? item.step : 0.5 * smallest;
+  v.step = item.sampling.step > 0 ? item.sampling.step : 0.5 * smallest;
   const double unit = item.unit_distance > 0 ? item.unit_distance : 0.01 * diagonal;
   if (diagonal / v.step > 1e7)
     fail_usage(fmt::format("a step of {} takes {:.0f} samples through a volume of size {}", v.step, diagonal / v.step, diagonal), "volume",

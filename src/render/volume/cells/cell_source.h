@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rays through curvilinear grids, unstructured meshes (linear, polyhedral and curved cells) and AMR grids.
+#pragma once
+#include <memory>
+
+#include "base/context.h"
+#include "render/volume/optics/stretch.h"
+#include "scene/scene.h"
+
+namespace sg::volume {
+
+/// A source for every mesh that is no uniform or rectilinear grid. Throws Error(usage) for what has no volume (surfaces, points).
+std::unique_ptr<RaySource> cell_source(const VolumeItem& item, Context& context);
+
+}  // namespace sg::volume

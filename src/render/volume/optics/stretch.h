@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// What every kind of mesh turns a ray into: stretches on which the field is a cubic. Ray functions and the integral read nothing else.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "base/vec.h"
+
+namespace sg::volume {
+
+/// A part of a ray on which the field is a cubic polynomial of the length t (exactly so in a trilinear cell or a tetrahedron; in
+/// curved cells up to the error that its source states).
+struct Stretch {
+  double from, to;    ///< world length from the ray's origin, from < to
+  float b[4];         ///< Bernstein coefficients of the stored value over [from, to]: b[0] at from, b[3] at to, all within the hull
+  uint64_t cell = 0;  ///< for the source's own use (gradients, other fields)
+
+  /// Value at t by de Casteljau's scheme.
+  float value(double t) const {
+    const float f = float((t - from) / (to - from)), g = 1 - f;
+    const float b01 = g * b[0] + f * b[1], b12 = g * b[1] + f * b[2], b23 = g * b[2] + f * b[3];
+    return g * (g * b01 + f * b12) + f * (g * b12 + f * b23);
+  }
+  float lowest() const { return std::min(std::min(b[0], b[1]), std::min(b[2], b[3])); }
+  float highest() const { return std::max(std::max(b[0], b[1]), std::max(b[2], b[3])); }
+};
+
+/// Bernstein coefficients of the cubic with values v[i] at from + i/3 (to - from).
+inline void bernstein_from_thirds(const float v[4], float b[4]) {
+  b[0] = v[0], b[3] = v[3];
+  b[1] = (-5 * v[0] + 18 * v[1] - 9 * v[2] + 2 * v[3]) / 6;
+  b[2] = (2 * v[0] - 9 * v[1] + 18 * v[2] - 5 * v[3]) / 6;
+}
+
+/// Values of the field that draw nothing whatever happens there: a source may leave out stretches that lie wholly in such values.
+/// Bit-compatible with "no knowledge": an empty one leaves out nothing.
+struct Invisible {
+  bool (*clear)(const void* what, float lo, float hi) = nullptr;  ///< may all values in [lo, hi] be left out?
+  const void* what = nullptr;
+  bool operator()(float lo, float hi) const { return clear && clear(what, lo, hi); }
+};
+
+/// One thread's walker through one volume.
+class RayField {
+ public:
+  virtual ~RayField() = default;
+  /// The ray origin + t direction (unit length), t in [from, to].
+  virtual void start(Vec3 origin, Vec3 direction, double from, double to) = 0;
+  /// The next stretches from near to far, at most out.size(); 0 = no more. Between two stretches there may be a gap, which draws
+  /// nothing (no cell, no value, or left out as invisible).
+  virtual size_t next(std::span<Stretch> out) = 0;
+  /// World gradient of the stored value at t of a stretch that `next` gave last or before.
+  virtual Vec3f gradient(const Stretch& stretch, double t) = 0;
+  /// Value of the second field there (TransferDetail::second_field); 0 where the source has none.
+  virtual float second(const Stretch&, double) { return 0; }
+};
+
+/// A prepared volume of any mesh kind; walkers share it.
+class RaySource {
+ public:
+  virtual ~RaySource() = default;
+  virtual std::unique_ptr<RayField> walker() const = 0;
+  /// value = stored + base
+  float base = 0;
+  /// World box of what is drawn.
+  Box3 bounds;
+  /// Smallest edge that matters: the step of fixed sampling is half of it by default.
+  double edge = 1;
+  /// Set before walkers are made.
+  Invisible invisible;
+};
+
+}  // namespace sg::volume
