@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "render/volume/lattice/lattice_volume.h"
+#include "render/volume/lattice/packets.h"
 
 namespace sg::volume {
 
@@ -124,6 +124,15 @@ void pixel(const Picture& picture, int x, int y, Scratch& s) {
     picture.frame.depth[p] = float(first_depth + state.surface * per_length), picture.frame.ids[p] = state.surface_id;
 }
 
+bool any_fragments(const FragmentLists& fragments, const Frame& frame, int x0, int y0, int x1, int y1) {
+  if (fragments.empty()) return false;
+  for (int y = y0; y < y1; ++y) {
+    const size_t row = size_t(y) * size_t(frame.width);
+    if (fragments.start[row + size_t(x0)] < fragments.start[row + size_t(x1)]) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 Course course(const Volume& v, Vec3 origin, Vec3 direction, double from, double to) {
@@ -162,6 +171,11 @@ void composite_volumes(const Scene& scene, const Projection& projection, const F
                                     : l.direction;
     picture.lamps.push_back({normalize(d), l.intensity});
   }
+  // One volume alone goes in packets of rays.
+  PacketPlan plan{picture.volumes[0], projection, knobs, {}, {}};
+  if (picture.shaded)
+    for (const Picture::Lamp& l : picture.lamps) plan.lamps.push_back({l.direction, l.intensity});
+  const bool packets = picture.volumes.size() == 1 && in_packets(plan);
   const size_t across = size_t(frame.width + tile - 1) / tile, down = size_t(frame.height + tile - 1) / tile;
   parallel_for(
       across * down, 1,
@@ -169,8 +183,13 @@ void composite_volumes(const Scene& scene, const Projection& projection, const F
         Scratch scratch;
         for (size_t t = begin; t < end; ++t) {
           const int x0 = int(t % across) * tile, y0 = int(t / across) * tile;
-          for (int y = y0; y < std::min(y0 + tile, frame.height); ++y)
-            for (int x = x0; x < std::min(x0 + tile, frame.width); ++x) pixel(picture, x, y, scratch);
+          const int x1 = std::min(x0 + tile, frame.width), y1 = std::min(y0 + tile, frame.height);
+          if (packets && !any_fragments(fragments, frame, x0, y0, x1, y1)) {
+            march_tile(plan, x0, y0, x1, y1, frame);
+            continue;
+          }
+          for (int y = y0; y < y1; ++y)
+            for (int x = x0; x < x1; ++x) pixel(picture, x, y, scratch);
         }
       },
       &context);
