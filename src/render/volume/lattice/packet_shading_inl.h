@@ -172,7 +172,7 @@ class ShadeQueue {
     const F square = hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
     const auto bent = hn::And(hn::Gt(square, zero), hn::Lt(square, hn::Set(d, 1e30f)));
     const F surface = hn::Min(hn::Mul(g.per_cell, hn::Set(d, plan_.volume.shade_plan.per_scale)), one);
-    const auto lane = hn::IndicesFromVec(d, hn::ConvertTo(IntTag<D>(), hn::Load(d, queue_[at_lane])));
+    const auto lane = hn::IndicesFromVec(d, to_int(d, hn::Load(d, queue_[at_lane])));
     const auto away = hn::Gt(dot(x, y, z, of_lanes(rays_.direction[0], lane), of_lanes(rays_.direction[1], lane), of_lanes(rays_.direction[2], lane)), zero);
     const F side = hn::Div(hn::IfThenElse(away, hn::Set(d, -1.0f), one), hn::Sqrt(square));
     F diffuse = zero, specular = zero;

@@ -25,6 +25,42 @@ HWY_INLINE hn::Vec<D> mixed(D, hn::Vec<D> a, hn::Vec<D> b, hn::Vec<D> f) {
   return hn::Add(a, hn::Mul(f, hn::Sub(b, a)));
 }
 
+/// Truncated; |v| < 2^31 (hn::ConvertTo looks after larger ones in four more instructions).
+template <class D>
+HWY_INLINE Int<D> to_int(D, hn::Vec<D> v) {
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
+  if constexpr (lanes_of<D> == 16) return Int<D>{_mm512_cvttps_epi32(v.raw)};
+#endif
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2
+  if constexpr (lanes_of<D> == 8) return Int<D>{_mm256_cvttps_epi32(v.raw)};
+#endif
+  return hn::ConvertTo(IntTag<D>(), v);
+}
+
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
+// A gather of all lanes whose mask the compiler cannot see through: it would leave out the zeros, and then each gather waits for
+// what its register held before.
+HWY_INLINE __m512i gather_longs(const void* data, __m256i at) {
+  __mmask8 all = 0xFF;
+  asm("" : "+Yk"(all));
+  return _mm512_mask_i32gather_epi64(_mm512_setzero_si512(), all, at, data, 4);
+}
+HWY_INLINE __m512i gather_ints(const void* data, __m512i at) {
+  __mmask16 all = 0xFFFF;
+  asm("" : "+Yk"(all));
+  return _mm512_mask_i32gather_epi32(_mm512_setzero_si512(), all, at, data, 1);
+}
+#endif
+
+/// The 32-bit word that begins at byte at[n] of the data.
+template <class D>
+HWY_INLINE Int<D> gather_words(D, const void* data, Int<D> at) {
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
+  if constexpr (lanes_of<D> == 16) return Int<D>{gather_ints(data, at.raw)};
+#endif
+  return hn::GatherOffset(IntTag<D>(), static_cast<const int32_t*>(data), at);
+}
+
 /// Two values that are neighbours in memory.
 template <class D>
 struct Pair {
@@ -39,12 +75,13 @@ HWY_INLINE Pair<D> gather_pair(D d, const float* data, Int<D> at) {
     // One 64-bit load brings both; then even and odd places are told apart.
     const hn::Repartition<int64_t, D> d64;
     const hn::Half<IntTag<D>> half;
-    const auto* wide = reinterpret_cast<const long long*>(data);
     using V64 = hn::Vec<decltype(d64)>;
+    const auto below = hn::LowerHalf(half, at).raw, above = hn::UpperHalf(half, at).raw;
 #if HWY_TARGET <= HWY_AVX3
-    const V64 lo{_mm512_i32gather_epi64(hn::LowerHalf(half, at).raw, wide, 4)}, hi{_mm512_i32gather_epi64(hn::UpperHalf(half, at).raw, wide, 4)};
+    const V64 lo{gather_longs(data, below)}, hi{gather_longs(data, above)};
 #else
-    const V64 lo{_mm256_i32gather_epi64(wide, hn::LowerHalf(half, at).raw, 4)}, hi{_mm256_i32gather_epi64(wide, hn::UpperHalf(half, at).raw, 4)};
+    const auto* wide = reinterpret_cast<const long long*>(data);
+    const V64 lo{_mm256_i32gather_epi64(wide, below, 4)}, hi{_mm256_i32gather_epi64(wide, above, 4)};
 #endif
     return {hn::ConcatEven(d, hn::BitCast(d, hi), hn::BitCast(d, lo)), hn::ConcatOdd(d, hn::BitCast(d, hi), hn::BitCast(d, lo))};
   }
@@ -62,7 +99,7 @@ HWY_INLINE Pair<D> gather_pair(D d, const T* data, Int<D> at, Int<D> last_load) 
   const auto from = hn::Min(byte, last_load);
   const auto skipped = hn::ShiftLeft<3>(hn::Sub(byte, from));
   const auto word = hn::BitCast(
-      di, hn::Shr(hn::BitCast(du, hn::GatherOffset(di, reinterpret_cast<const int32_t*>(data), from)), hn::BitCast(du, skipped)));
+      di, hn::Shr(hn::BitCast(du, gather_words(d, data, from)), hn::BitCast(du, skipped)));
   if constexpr (std::is_signed_v<T>) {
     const auto a = hn::ShiftRight<32 - bits>(hn::ShiftLeft<32 - bits>(word)),
                b = hn::ShiftRight<32 - bits>(hn::ShiftLeft<32 - 2 * bits>(word));
@@ -99,9 +136,8 @@ struct Source {
   }
   HWY_INLINE Place<D> place(int axis, hn::Vec<D> u) const {
     const D d;
-    const IntTag<D> di;
     const auto x = hn::Max(hn::Zero(d), hn::Min(u, top[axis]));
-    const auto cell = hn::Min(hn::ConvertTo(di, x), last_cell[axis]);
+    const auto cell = hn::Min(to_int(d, x), last_cell[axis]);
     return {cell, hn::Sub(x, hn::ConvertTo(d, cell))};
   }
   HWY_INLINE Int<D> offset(Int<D> i, Int<D> j, Int<D> k) const {

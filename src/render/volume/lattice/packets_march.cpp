@@ -22,11 +22,11 @@ constexpr int samples_per_look = 4;
 /// Bricks that draw nothing, ready for gathers.
 template <class D>
 struct Space {
-  const int32_t* distance;
+  const uint8_t* distance;
   Int<D> row, layer, last[3];
   hn::Vec<D> margin, edges[3];
 
-  HWY_INLINE explicit Space(const Volume& v) : distance(reinterpret_cast<const int32_t*>(v.distance.data())) {
+  HWY_INLINE explicit Space(const Volume& v) : distance(v.distance.data()) {
     const D d;
     const IntTag<D> di;
     const auto& dims = v.bricks().dims;
@@ -62,12 +62,12 @@ HWY_INLINE void leap(const Source<D, T>& source, const Space<D>& space, Lanes<D>
     hn::Vec<D> brick[3];
     auto id = hn::Zero(di);
     for (int a = 2; a >= 0; --a) {
-      const auto cell = hn::ConvertTo(di, hn::Max(zero, hn::Min(lanes.u(a), source.top[a])));
+      const auto cell = to_int(d, hn::Max(zero, hn::Min(lanes.u(a), source.top[a])));
       const auto b = hn::Min(hn::ShiftRight<MinMaxBricks::shift>(cell), space.last[a]);
       brick[a] = hn::ConvertTo(d, b);
       id = hn::Add(id, a == 2 ? hn::Mul(b, space.layer) : a == 1 ? hn::Mul(b, space.row) : b);
     }
-    const auto free = hn::And(hn::GatherOffset(di, space.distance, id), hn::Set(di, 255));
+    const auto free = hn::And(gather_words(d, space.distance, id), hn::Set(di, 255));
     looking = hn::And(looking, hn::RebindMask(d, hn::Gt(free, hn::Zero(di))));
     if (hn::AllFalse(d, looking)) return;
     // All bricks nearer than that are empty: leave their cube, but for a margin wider than rounding errors.
@@ -106,7 +106,7 @@ struct Entries {
     const IntTag<D> di;
     const auto zero = hn::Zero(d);
     const auto place = hn::Mul(hn::Sub(value, first), per_axis);
-    auto e = hn::Add(hn::Min(hn::ConvertTo(di, hn::Max(hn::Min(place, count), zero)), below_count), hn::Set(di, 1));
+    auto e = hn::Add(hn::Min(to_int(d, hn::Max(hn::Min(place, count), zero)), below_count), hn::Set(di, 1));
     e = hn::IfThenElse(hn::RebindMask(di, hn::Gt(place, count)), above, e);
     e = hn::IfThenElseZero(hn::RebindMask(di, hn::Ge(place, zero)), e);
     e = hn::IfThenElse(hn::RebindMask(di, hn::Eq(value, value)), e, none);
@@ -119,7 +119,7 @@ template <class D>
 HWY_INLINE hn::Vec<D> absorbed(D d, hn::Vec<D> x) {
   const IntTag<D> di;
   x = hn::Min(x, hn::Set(d, 80.0f));
-  const auto k = hn::ConvertTo(di, hn::Add(hn::Mul(x, hn::Set(d, 1.44269504f)), hn::Set(d, 0.5f)));
+  const auto k = to_int(d, hn::Add(hn::Mul(x, hn::Set(d, 1.44269504f)), hn::Set(d, 0.5f)));
   const auto kf = hn::ConvertTo(d, k);
   // r = x - k ln 2 in two parts; e = 1 - exp(-r) by its series.
   const auto r = hn::Sub(hn::Sub(x, hn::Mul(kf, hn::Set(d, 0.693145752f))), hn::Mul(kf, hn::Set(d, 1.42860677e-6f)));
@@ -147,36 +147,30 @@ HWY_INLINE void march_packet(const PacketPlan& plan, const RayPacket& rays, Pack
   F r = hn::Zero(d), g = r, b = r, pass = one, seen_half = hn::Set(d, -1.0f);
   ShadeQueue<D, T> queue(plan, rays, result);
   while (true) {
-    auto active = hn::And(hn::Lt(lanes.s, lanes.end), hn::Ge(pass, stop));
-    if (hn::AllFalse(d, active)) break;
-    if (skip) {
-      leap(source, space, lanes, active);
-      active = hn::And(active, hn::Lt(lanes.s, lanes.end));
-    }
+    const auto on = hn::And(hn::Lt(lanes.s, lanes.end), hn::Ge(pass, stop));
+    if (hn::AllFalse(d, on)) break;
+    if (skip) leap(source, space, lanes, on);
+    // Places do not wait for what was found at those before: lanes that are through count on.
     for (int look = 0; look < samples_per_look; ++look) {
-      if (hn::AllFalse(d, active)) break;
       const F x = lanes.u(0), y = lanes.u(1), z = lanes.u(2);
       const F value = source.value(source.place(0, x), source.place(1, y), source.place(2, z));
       const auto entry = entries.at(value);
       const Pair<D> b_pass = gather_pair(d, steps + 2, entry);
+      const auto active = hn::And(hn::Lt(lanes.s, lanes.end), hn::Ge(pass, stop));
       const auto drawn = hn::And(active, hn::Lt(b_pass.b, one));
       seen_half = hn::IfThenElse(hn::And(active, hn::Ge(pass, half)), lanes.s, seen_half);
-      if (!hn::AllFalse(d, drawn)) {
-        const Pair<D> r_g = gather_pair(d, steps, entry);
-        const F weight = hn::IfThenElseZero(drawn, pass);
-        const F wr = hn::Mul(weight, r_g.a), wg = hn::Mul(weight, r_g.b), wb = hn::Mul(weight, b_pass.a);
-        if constexpr (shaded) queue.push(drawn, x, y, z, value, wr, wg, wb, hn::Mul(weight, hn::Sub(one, b_pass.b)));
-        else r = hn::Add(r, wr), g = hn::Add(g, wg), b = hn::Add(b, wb);
-        pass = hn::IfThenElse(drawn, hn::Mul(pass, b_pass.b), pass);
-      }
-      lanes.s = hn::IfThenElse(active, hn::Add(lanes.s, one), lanes.s);
-      active = hn::And(active, hn::And(hn::Lt(lanes.s, lanes.end), hn::Ge(pass, stop)));
+      lanes.s = hn::Add(lanes.s, one);
+      if (hn::AllFalse(d, drawn)) continue;
+      const Pair<D> r_g = gather_pair(d, steps, entry);
+      const F weight = hn::IfThenElseZero(drawn, pass);
+      const F wr = hn::Mul(weight, r_g.a), wg = hn::Mul(weight, r_g.b), wb = hn::Mul(weight, b_pass.a);
+      if constexpr (shaded) queue.push(drawn, x, y, z, value, wr, wg, wb, hn::Mul(weight, hn::Sub(one, b_pass.b)));
+      else r = hn::Add(r, wr), g = hn::Add(g, wg), b = hn::Add(b, wb);
+      pass = hn::IfThenElse(drawn, hn::Mul(pass, b_pass.b), pass);
     }
   }
-  const auto half_before = hn::Lt(pass, half);
   alignas(64) float at_half[most_lanes], before[most_lanes];
   hn::Store(seen_half, d, at_half), hn::Store(pass, d, before);
-  (void)half_before;
 
   // The last step has what length is left.
   const F rest = hn::Load(d, rays.rest);

@@ -138,9 +138,9 @@ class Climb {
     const D d;
     const IntTag<D> di;
     const auto& dims = volume_.bricks().dims;
-    const auto id = hn::Add(hn::ConvertTo(di, w.box[0]), hn::Add(hn::Mul(hn::ConvertTo(di, w.box[1]), hn::Set(di, int(dims[0]))),
-                                                                 hn::Mul(hn::ConvertTo(di, w.box[2]), hn::Set(di, int(dims[0] * dims[1])))));
-    return hn::GatherIndex(d, &volume_.bricks().ranges[0].hi, hn::Add(id, id));
+    const auto id = hn::Add(to_int(d, w.box[0]), hn::Add(hn::Mul(to_int(d, w.box[1]), hn::Set(di, int(dims[0]))),
+                                                                 hn::Mul(to_int(d, w.box[2]), hn::Set(di, int(dims[0] * dims[1])))));
+    return hn::BitCast(d, gather_words(d, &volume_.bricks().ranges[0].hi, hn::ShiftLeft<3>(id)));
   }
 
   /// Cells between the lengths; -1 and the number of cells are the halves beyond the outermost samples, where values are clamped.
@@ -159,7 +159,7 @@ class Climb {
     const F zero = hn::Zero(d), one = hn::Set(d, 1.0f);
     F low[3];
     Int<D> at[3];
-    for (int a = 0; a < 3; ++a) low[a] = clamped_to<D>(w.box[a], zero, last_cell_[a]), at[a] = hn::ConvertTo(di, low[a]);
+    for (int a = 0; a < 3; ++a) low[a] = clamped_to<D>(w.box[a], zero, last_cell_[a]), at[a] = to_int(d, low[a]);
     const auto p = source_.offset(at[0], at[1], at[2]);
     const auto above = hn::Add(p, source_.layer);
     const Pair<D> c[4] = {source_.pair(p), source_.pair(hn::Add(p, source_.row)), source_.pair(above), source_.pair(hn::Add(above, source_.row))};
