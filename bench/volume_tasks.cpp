@@ -63,11 +63,14 @@ VolumeItem volume_item(Look look, size_t n, bool bytes) {
   return item;
 }
 
-Task volume(const char* label, Look look, size_t n, bool bytes) {
-  return {"volume_render", fmt::format("{} {}^3, 1024x1024", bytes ? "uint8" : "float32", n), fmt::format("sightglass:raycast({})", label),
+/// tolerance 0: fixed half-voxel steps, as the peers.
+Task volume(const char* label, Look look, size_t n, bool bytes, double tolerance = 0) {
+  return {"volume_render", fmt::format("{} {}^3, 1024x1024", bytes ? "uint8" : "float32", n), fmt::format("sightglass:raycast({}{})", label, tolerance > 0 ? ",tolerance" : ""),
           "pixels covered", [=] {
             Scene scene;
-            scene.items.emplace_back(volume_item(look, n, bytes));
+            VolumeItem item = volume_item(look, n, bytes);
+            if (tolerance > 0) item.sampling.step = 0, item.sampling.tolerance = tolerance;
+            scene.items.emplace_back(std::move(item));
             auto turn = std::make_shared<double>(0);
             auto shared = std::make_shared<Scene>(std::move(scene));
             return [=] {
@@ -101,6 +104,11 @@ void add_volume_tasks(std::vector<Task>& t) {
     for (const bool bytes : {true, false}) {
       t.push_back(volume("composite", Look::composite, n, bytes));
       t.push_back(volume("composite,shaded", Look::shaded, n, bytes));
+      if (!bytes) {
+        t.push_back(volume("composite", Look::composite, n, bytes, 1.0 / 512));
+        t.push_back(volume("composite,shaded", Look::shaded, n, bytes, 1.0 / 512));
+        t.push_back(volume("composite,fog(no skipping)", Look::fog, n, bytes, 1.0 / 512));
+      }
       t.push_back(volume("MIP", Look::maximum, n, bytes));
       if (!bytes) t.push_back(volume("composite,fog(no skipping)", Look::fog, n, bytes));
     }

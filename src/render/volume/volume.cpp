@@ -76,10 +76,16 @@ void pixel(const Picture& picture, int x, int y, Scratch& s) {
     picture.frame.depth[p] = float(first_depth + state.surface * per_length), picture.frame.ids[p] = state.surface_id;
 }
 
-/// Nothing but what packets know: the maximum, or emission and absorption in fixed steps.
-bool plain(const VolumeItem& item) {
-  const bool steps = item.mode == RayFunction::composite && item.sampling.step > 0 && item.sampling.classify == "post" && !item.sampling.jitter;
-  return (steps || item.mode == RayFunction::maximum) && item.clip.empty();
+/// How one volume alone is drawn.
+enum class Way { by_rays, in_steps, within_tolerance };
+
+Way way_of(const CastVolume& volume, const PacketPlan& plan) {
+  const VolumeItem& item = *volume.item;
+  if (!item.clip.empty()) return Way::by_rays;
+  const bool composite = item.mode == RayFunction::composite, steps = volume.step > 0;
+  if (composite && !steps) return in_tolerant_packets(plan) ? Way::within_tolerance : Way::by_rays;
+  const bool plain = composite ? item.sampling.classify == "post" && !item.sampling.jitter : item.mode == RayFunction::maximum;
+  return plain && in_packets(plan) ? Way::in_steps : Way::by_rays;
 }
 
 bool any_fragments(const FragmentLists& fragments, const Frame& frame, int x0, int y0, int x1, int y1) {
@@ -132,11 +138,13 @@ void composite_volumes(const Scene& scene, const Projection& projection, const F
   }
   // One volume alone goes in packets of rays, where they can draw it.
   std::optional<PacketPlan> plan;
+  Way way = Way::by_rays;
   if (picture.volumes.size() == 1 && picture.lattices[0]) {
-    plan.emplace(PacketPlan{*picture.lattices[0], projection, knobs, {}, picture.volumes[0].material});
+    const CastVolume& only = picture.volumes[0];
+    plan.emplace(PacketPlan{*picture.lattices[0], projection, knobs, {}, only.material, only.medium.get(), only.budget, float(only.source->edge)});
     if (picture.shaded)
       for (const Picture::Lamp& l : picture.lamps) plan->lamps.push_back({l.direction, l.intensity});
-    if (!plain(*picture.volumes[0].item) || !in_packets(*plan)) plan.reset();
+    way = way_of(only, *plan);
   }
   const size_t across = size_t(frame.width + tile - 1) / tile, down = size_t(frame.height + tile - 1) / tile;
   parallel_for(
@@ -146,8 +154,8 @@ void composite_volumes(const Scene& scene, const Projection& projection, const F
         for (size_t t = begin; t < end; ++t) {
           const int x0 = int(t % across) * tile, y0 = int(t / across) * tile;
           const int x1 = std::min(x0 + tile, frame.width), y1 = std::min(y0 + tile, frame.height);
-          if (plan && !any_fragments(fragments, frame, x0, y0, x1, y1)) {
-            march_tile(*plan, x0, y0, x1, y1, frame);
+          if (way != Way::by_rays && !any_fragments(fragments, frame, x0, y0, x1, y1)) {
+            (way == Way::in_steps ? march_tile : cast_tile)(*plan, x0, y0, x1, y1, frame);
             continue;
           }
           for (int y = y0; y < y1; ++y)

@@ -104,6 +104,7 @@ void Medium::make_lines(const ColorScale& scale, const OpacityCurve& curve, cons
   bound();
   // Beyond the data nothing is asked, but for rounding errors.
   lines_.front().lo = -HUGE_VALF, lines_.back().hi = HUGE_VALF;
+  for (const Line& l : lines_) columns_.hi.push_back(l.hi);
   slice();
 }
 
@@ -167,17 +168,15 @@ void Medium::make_colors(const ColorScale& scale, const Plan& plan) {
 
 void Medium::bound() {
   const size_t n = lines_.size();
-  std::vector<float> tau(n), slope(n);
-  for (size_t i = 0; i < n; ++i) tau[i] = std::max(lines_[i].at, lines_[i](lines_[i].hi)), slope[i] = std::abs(lines_[i].slope);
-  const auto build = [n](std::vector<float> first, std::vector<std::vector<float>>& out) {
-    out.push_back(std::move(first));
-    for (size_t k = 0, width = 2; width <= n; ++k, width *= 2) {
-      std::vector<float> next(n - width + 1);
-      for (size_t i = 0; i < next.size(); ++i) next[i] = std::max(out[k][i], out[k][i + width / 2]);
-      out.push_back(std::move(next));
+  for (const Line& l : lines_) {
+    columns_.origin.push_back(l.origin), columns_.at.push_back(l.at), columns_.slope.push_back(l.slope);
+    columns_.most_tau.push_back(std::max(l.at, l(l.hi))), columns_.most_slope.push_back(std::abs(l.slope));
+  }
+  for (std::vector<float>* table : {&columns_.most_tau, &columns_.most_slope})
+    for (size_t width = 2, row = n; width <= n; width *= 2, row += n) {
+      table->resize(row + n);
+      for (size_t i = 0; i + width <= n; ++i) (*table)[row + i] = std::max((*table)[row - n + i], (*table)[row - n + i + width / 2]);
     }
-  };
-  build(std::move(tau), tau_), build(std::move(slope), slope_);
 }
 
 void Medium::slice() {
@@ -195,10 +194,10 @@ void Medium::slice() {
   }
 }
 
-float Medium::most(const std::vector<std::vector<float>>& table, float lo, float hi) const {
-  const size_t a = size_t(line_of(lo)), b = std::max(a, size_t(line_of(hi)));
+float Medium::most(const std::vector<float>& table, float lo, float hi) const {
+  const size_t n = lines_.size(), a = size_t(line_of(lo)), b = std::max(a, size_t(line_of(hi)));
   const size_t k = size_t(std::bit_width(b - a + 1) - 1);
-  return std::max(table[k][a], table[k][b + 1 - (size_t(1) << k)]);
+  return std::max(table[k * n + a], table[k * n + b + 1 - (size_t(1) << k)]);
 }
 
 }  // namespace sg::volume

@@ -59,10 +59,10 @@ class Medium {
   Optics at(float v) const { return {tau(v), color(v)}; }
 
   /// Is tau zero on all of [lo, hi]?
-  bool clear(float lo, float hi) const { return !(lo <= hi) || most(tau_, lo, hi) == 0; }
+  bool clear(float lo, float hi) const { return !(lo <= hi) || most(columns_.most_tau, lo, hi) == 0; }
   /// Largest tau and largest |d tau/d v| over [lo, hi].
-  float most_tau(float lo, float hi) const { return most(tau_, lo, hi); }
-  float most_slope(float lo, float hi) const { return most(slope_, lo, hi); }
+  float most_tau(float lo, float hi) const { return most(columns_.most_tau, lo, hi); }
+  float most_slope(float lo, float hi) const { return most(columns_.most_slope, lo, hi); }
 
   /// Colours lie evenly on an axis: the value itself, or on log and symlog scales a piecewise-linear logarithm read off the bits of the
   /// float. A change of the axis by `color_width` bends them by less than the accuracy.
@@ -77,7 +77,12 @@ class Medium {
   /// Largest |change of a colour| per change of the axis.
   float color_slope() const { return color_slope_; }
 
-  // For vector code: the table itself (r, g, b, 0 as u16 per node), its axis, and the slices of lines.
+  /// For vector code: the lines by columns, and the largest tau and |slope| of 2^k lines from line i on, at [k * lines + i].
+  struct Columns {
+    std::vector<float> origin, hi, at, slope, most_tau, most_slope;
+  };
+  const Columns& columns() const { return columns_; }
+  // The colours themselves (r, g, b, 0 as u16 per node), their axis, and the slices of lines.
   static constexpr int nodes = 8192, slices = 2048;
   bool linear() const { return kind_ == ScaleKind::linear; }
   const uint16_t* colors() const { return colors_.data(); }
@@ -99,12 +104,12 @@ class Medium {
   void make_colors(const ColorScale& scale, const Plan& plan);
   void bound();
   void slice();
-  float most(const std::vector<std::vector<float>>& table, float lo, float hi) const;
+  float most(const std::vector<float>& table, float lo, float hi) const;
 
   std::vector<Line> lines_;
   std::vector<uint16_t> first_;  // by equal slices of the value (and beyond them): the line in which the slice begins
   float slice_lo_ = 0, per_slice_ = 0;
-  std::vector<std::vector<float>> tau_, slope_;  // [k][i]: the largest of lines i .. i + 2^k
+  Columns columns_;
 
   ScaleKind kind_ = ScaleKind::linear;
   std::vector<uint16_t> colors_;
