@@ -223,95 +223,86 @@ class TolerantPacket {
     const F lo = hn::Min(hn::Min(f.b[0], f.b[1]), hn::Min(f.b[2], f.b[3])), hi = hn::Max(hn::Max(f.b[0], f.b[1]), hn::Max(f.b[2], f.b[3]));
     const F total = hn::Add(hn::Add(f.b[0], f.b[1]), hn::Add(f.b[2], f.b[3]));
     look = hn::And(look, hn::Eq(total, total));  // no hole
-    const I first = medium_.line_of(lo), last = medium_.line_of(hi);
+    const I first = medium_.line_of(f.b[0]);
     const typename MediumLanes<D>::Line line = medium_.line(first);
-    const M same = hn::RebindMask(d, hn::Eq(first, last));
+    const M same = hn::And(hn::Ge(lo, line.lo), hn::Le(hi, line.hi));
     const M dark = hn::And(same, hn::And(hn::Eq(line.at, zero), hn::Eq(line.slope, zero)));
     look = hn::AndNot(dark, look);
     if (hn::AllFalse(d, look)) return;
-    integrate(f, lo, hi, first, last, line, same, corner, inside, from, way, t, hn::Sub(leave, t), look);
+    integrate(f, lo, hi, first, line, same, corner, inside, from, way, t, hn::Sub(leave, t), look);
   }
 
-  HWY_INLINE void integrate(const Cubic<D>& f, F lo, F hi, I first, I last, const typename MediumLanes<D>::Line& line, M same, I corner, const I inside[3],
+  HWY_INLINE void integrate(const Cubic<D>& f, F lo, F hi, I at, const typename MediumLanes<D>::Line& line, M same, I corner, const I inside[3],
                             const F from[3], const F way[3], F t, F length, M look) {
     const D d;
-    const F zero = hn::Zero(d), one = hn::Set(d, 1.0f), quarter = hn::Set(d, 0.25f);
+    const IntTag<D> di;
+    const F zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
     const Medium& m = medium_.medium;
     const float tolerance = float(plan_.budget.tolerance);
-    F most_tau = hn::Max(line.tau(lo), line.tau(hi)), most_slope = hn::Abs(line.slope);
+    const F mean = hn::Mul(hn::Set(d, 0.25f), hn::Add(hn::Add(f.b[0], f.b[1]), hn::Add(f.b[2], f.b[3])));
+    F most = hn::Max(line.tau(lo), line.tau(hi)), slope = hn::Abs(line.slope), tau_mean = line.tau(mean);
     if (!hn::AllFalse(d, hn::AndNot(same, look))) {
-      most_tau = hn::IfThenElse(same, most_tau, medium_.most(medium_.columns.most_tau, first, last));
-      most_slope = hn::IfThenElse(same, most_slope, medium_.most(medium_.columns.most_slope, first, last));
+      const I first = medium_.line_of(lo), last = medium_.line_of(hi);
+      most = hn::IfThenElse(same, most, medium_.most(medium_.columns.most_tau, first, last));
+      slope = hn::IfThenElse(same, slope, medium_.most(medium_.columns.most_slope, first, last));
+      tau_mean = hn::IfThenElse(same, tau_mean, medium_.line(medium_.line_of(mean)).tau(mean));
+      look = hn::And(look, hn::Gt(most, zero));
+      if (hn::AllFalse(d, look)) return;
     }
     // The errors of optics/integrate.cpp, Pieces::whole.
-    const F mean = hn::Mul(quarter, hn::Add(hn::Add(f.b[0], f.b[1]), hn::Add(f.b[2], f.b[3])));
-    const F two = hn::Set(d, 2.0f), per_three = hn::Set(d, 1.0f / 3);
-    const F bend = hn::Max(hn::Abs(hn::Sub(f.b[1], hn::Mul(hn::Add(hn::Mul(two, f.b[0]), f.b[3]), per_three))),
-                           hn::Abs(hn::Sub(f.b[2], hn::Mul(hn::Add(f.b[0], hn::Mul(two, f.b[3])), per_three))));
-    const F pass = sum_.pass, most = hn::Min(one, hn::Mul(length, most_tau)), range = hn::Sub(hi, lo);
-    const F colors = hn::Set(d, m.color_slope()), widths = hn::Mul(range, hn::Set(d, 1 / m.color_width()));
-    const F change = hn::Min(one, hn::Mul(range, colors));
-    F error = hn::Mul(hn::Mul(most, hn::Set(d, 0.25f * tolerance)), hn::Mul(widths, widths));
-    const F bent_depth = hn::Mul(hn::Mul(length, most_slope), bend);
-    error = hn::Add(error, hn::Mul(change, hn::Min(one, hn::Mul(hn::Mul(hn::Mul(length, length), hn::Mul(most_tau, most_slope)), hn::Mul(range, hn::Set(d, 0.05f))))));
-    error = hn::Add(error, hn::Mul(hn::Mul(most, bend), colors));
+    const F pass = sum_.pass, taken = hn::Min(one, hn::Mul(length, most)), range = hn::Sub(hi, lo);
+    const F widths = hn::Mul(range, hn::Set(d, 1 / m.color_width())), change = hn::Min(one, hn::Mul(range, hn::Set(d, m.color_slope())));
+    const F beyond = hn::Max(hn::Sub(hi, hn::Max(f.b[0], f.b[3])), hn::Sub(hn::Min(f.b[0], f.b[3]), lo));
+    const F deep = hn::Mul(hn::Mul(hn::Mul(length, length), hn::Mul(most, slope)), hn::Mul(range, hn::Set(d, 0.05f)));
+    F error = hn::Mul(hn::Mul(taken, hn::Set(d, 0.25f * tolerance)), hn::Mul(widths, widths));
+    error = hn::Add(error, hn::Mul(change, hn::Min(one, deep)));
+    error = hn::Add(error, hn::IfThenElseZero(hn::Not(same), hn::Mul(beyond, hn::Mul(length, slope))));
     error = hn::Mul(error, pass);
-    F tau_mean = line.tau(mean);
-    if (!hn::AllFalse(d, hn::AndNot(same, look))) tau_mean = hn::IfThenElse(same, tau_mean, medium_.line(medium_.line_of(mean)).tau(mean));
     const F share = hn::Mul(pass, hn::Min(one, hn::Mul(length, tau_mean)));
     const F allowed = hn::Mul(hn::Set(d, tolerance), hn::Add(hn::Mul(length, hn::Set(d, float(0.15 / plan_.budget.length))), hn::Mul(share, hn::Set(d, 0.3f))));
-    M smooth = hn::And(same, hn::Le(error, allowed));
-    error = hn::IfThenElse(smooth, zero, hn::Add(error, hn::Mul(pass, bent_depth)));
     if constexpr (shaded) {
       light_.cell(source_, corner, inside, look);
-      const F lit_error = light_.error(from, way, hn::Mul(pass, most));
-      const M uneven = hn::Gt(lit_error, allowed);
-      error = hn::Max(error, hn::IfThenElse(hn::And(uneven, smooth), hn::Add(lit_error, hn::Mul(pass, bent_depth)), lit_error));
-      smooth = hn::AndNot(uneven, smooth);
+      error = hn::Max(error, light_.error(from, way, hn::Mul(pass, taken)));
     }
     const F count = hn::Max(one, hn::Min(hn::Ceil(hn::Sqrt(hn::Div(error, hn::Max(allowed, hn::Set(d, 1e-30f))))), hn::Set(d, 64.0f)));
-    const F per_count = hn::Div(one, count), step = hn::Mul(length, per_count), stop = hn::Set(d, plan_.budget.stop_below);
+    const F per_count = hn::Div(one, count), stop = hn::Set(d, plan_.budget.stop_below);
 
-    // Pieces on which the value goes straight, cut at the knots.
-    F k = zero, v = f.b[0], piece_from = v, here = t;
-    F piece_to = hn::IfThenElse(hn::Eq(count, one), f.b[3], f.at(per_count));
-    I at = first;
-    const M falls_first = hn::Ne(v, lo);
-    if (!hn::AllFalse(d, hn::And(look, falls_first))) at = hn::IfThenElse(hn::RebindMask(IntTag<D>(), falls_first), medium_.line_of(v), at);
-    while (!hn::AllFalse(d, look)) {
-      const typename MediumLanes<D>::Line l = medium_.line(at);
-      const M up = hn::Ge(piece_to, v);
-      const M ends = hn::Or(hn::And(up, hn::Le(piece_to, l.hi)), hn::AndNot(up, hn::Ge(piece_to, l.lo)));
-      const F next = hn::IfThenElse(ends, piece_to, hn::IfThenElse(up, l.hi, l.lo));
-      const F rise = hn::Abs(hn::Sub(piece_to, piece_from));
-      const F part = hn::IfThenElse(hn::Gt(rise, zero), hn::Mul(hn::Abs(hn::Sub(next, v)), hn::Div(step, hn::Max(rise, hn::Set(d, 1e-37f)))), step);
-      const F t0 = l.tau(v), t1 = l.tau(next), both = hn::Add(t0, t1);
-      const M some = hn::Gt(both, zero);
-      F weight = hn::IfThenElse(some, hn::Div(hn::Add(t0, hn::Mul(two, t1)), hn::Max(hn::Mul(hn::Set(d, 3.0f), both), hn::Set(d, 1e-37f))), hn::Set(d, 0.5f));
-      F depth = hn::Mul(part, hn::Mul(hn::Set(d, 0.5f), both)), middle = hn::Add(v, hn::Mul(hn::Sub(next, v), weight));
-      if (!hn::AllFalse(d, smooth)) {
-        // The whole cubic on one line: optical depth by its mean, mean value by emission.
-        const F d0 = hn::Sub(f.b[0], mean), d1 = hn::Sub(f.b[1], mean), d2 = hn::Sub(f.b[2], mean), d3 = hn::Sub(f.b[3], mean);
-        const auto times = [](F a, F b) HWY_ATTR { return hn::Mul(a, b); };
-        F spread = hn::Mul(hn::Set(d, 10.0f), hn::Add(hn::Add(times(d0, d0), times(d3, d3)), hn::Add(times(d0, d1), times(d2, d3))));
-        spread = hn::Add(spread, hn::Mul(hn::Set(d, 6.0f), hn::Add(times(d1, d1), times(d2, d2))));
-        spread = hn::Add(spread, hn::Mul(hn::Set(d, 4.0f), hn::Add(times(d0, d2), times(d1, d3))));
-        spread = hn::Add(spread, hn::Add(hn::Mul(hn::Set(d, 9.0f), times(d1, d2)), times(d0, d3)));
-        const F by = hn::Add(mean, hn::Div(hn::Mul(l.slope, hn::Mul(spread, hn::Set(d, 1.0f / 70))), hn::Max(tau_mean, hn::Set(d, 1e-37f))));
-        depth = hn::IfThenElse(smooth, hn::Mul(length, tau_mean), depth), middle = hn::IfThenElse(smooth, by, middle);
+    // Pieces, cut where the value meets the knots.
+    F k = zero, v = f.b[0], s = zero;
+    F end = hn::IfThenElse(hn::Eq(count, one), one, per_count), target = hn::IfThenElse(hn::Eq(count, one), f.b[3], f.at(per_count));
+    typename MediumLanes<D>::Line l = line;
+    for (;;) {
+      const M up = hn::Ge(target, v);
+      const M ends = hn::Or(hn::And(up, hn::Le(target, l.hi)), hn::AndNot(up, hn::Ge(target, l.lo)));
+      F to = end, next = target;
+      const M cut = hn::AndNot(ends, look);
+      if (!hn::AllFalse(d, cut)) {
+        const F knot = hn::IfThenElse(up, l.hi, l.lo);
+        const F rise = hn::Sub(target, v);
+        const F run = hn::Div(hn::Sub(end, s), hn::IfThenElse(hn::Eq(rise, zero), one, rise));
+        F meet = hn::Add(s, hn::Mul(hn::Sub(knot, v), run));
+        for (int i = 0; i < 2; ++i) meet = hn::Max(s, hn::Min(hn::Sub(meet, hn::Mul(hn::Sub(f.at(meet), knot), run)), end));
+        to = hn::IfThenElse(cut, meet, to), next = hn::IfThenElse(cut, knot, next);
       }
-      segment(look, here, part, depth, v, next, middle, weight, t, length, from, way);
+      const F middle = f.at(hn::Mul(half, hn::Add(s, to))), part = hn::Mul(length, hn::Sub(to, s));
+      const F t0 = l.tau(v), tm = hn::Mul(hn::Set(d, 4.0f), l.tau(middle)), t1 = l.tau(next), all = hn::Add(hn::Add(t0, tm), t1);
+      const F per_all = hn::Div(one, hn::Max(all, hn::Set(d, 1e-37f)));
+      const F by_emission = hn::Mul(hn::Add(hn::Add(hn::Mul(t0, v), hn::Mul(tm, middle)), hn::Mul(t1, next)), per_all);
+      const F weight = hn::Mul(hn::Add(hn::Mul(half, tm), t1), per_all);
+      segment(look, hn::Add(t, hn::Mul(length, s)), part, hn::Mul(part, hn::Mul(all, hn::Set(d, 1.0f / 6))), v, next, by_emission, weight, t, length, from, way);
       // On to the next line, or to the next piece.
-      at = hn::IfThenElse(hn::RebindMask(IntTag<D>(), ends), at,
-                          hn::Add(at, hn::IfThenElse(hn::RebindMask(IntTag<D>(), up), hn::Set(IntTag<D>(), 1), hn::Set(IntTag<D>(), -1))));
-      v = next;
       k = hn::IfThenElse(ends, hn::Add(k, one), k);
-      here = hn::IfThenElse(ends, hn::Add(t, hn::Mul(k, step)), hn::Add(here, part));
       look = hn::And(look, hn::And(hn::Lt(k, count), hn::Ge(sum_.pass, stop)));
-      if (hn::AllFalse(d, look)) break;
-      piece_from = hn::IfThenElse(ends, piece_to, piece_from);
-      const F after = hn::Add(k, one);
-      piece_to = hn::IfThenElse(ends, hn::IfThenElse(hn::Ge(after, count), f.b[3], f.at(hn::Mul(after, per_count))), piece_to);
+      if (hn::AllFalse(d, look)) return;
+      v = next, s = to;
+      if (!hn::AllFalse(d, cut)) {
+        at = hn::IfThenElse(hn::RebindMask(di, cut), hn::Add(at, hn::IfThenElse(hn::RebindMask(di, up), hn::Set(di, 1), hn::Set(di, -1))), at);
+        l = medium_.line(at);
+      }
+      const F after = hn::Add(k, one), there = hn::Mul(after, per_count);
+      const M final_piece = hn::Ge(after, count);
+      end = hn::IfThenElse(ends, hn::IfThenElse(final_piece, one, there), end);
+      target = hn::IfThenElse(ends, hn::IfThenElse(final_piece, f.b[3], f.at(there)), target);
     }
   }
 

@@ -82,75 +82,69 @@ class Pieces {
     }
   }
 
-  /// The value straight from a to b, tau too.
-  void linear(double t, float length, float a, float b, const Medium::Line& line) {
-    const float t0 = line(a), t1 = line(b), both = t0 + t1;
-    if (!(both > 0)) return;
-    const float weight = (t0 + 2 * t1) / (3 * both);
-    segment(t, length, length * 0.5f * both, a, b, a + (b - a) * weight, weight);
+  /// The shares [f0, f1] of a stretch of which `line` is the medium. Simpson's rule: exact for the optical depth of a cubic.
+  void piece(const Stretch& s, float f0, float f1, float a, float b, const Medium::Line& line) {
+    const float middle = value(s, 0.5f * (f0 + f1)), length = float(s.to - s.from) * (f1 - f0);
+    const float t0 = line(a), tm = 4 * line(middle), t1 = line(b), all = t0 + tm + t1;
+    if (!(all > 0)) return;
+    const float mean = (t0 * a + tm * middle + t1 * b) / all, weight = (0.5f * tm + t1) / all;
+    segment(s.from + (s.to - s.from) * double(f0), length, length * (all * (1.0f / 6)), a, b, mean, weight);
   }
 
-  /// A piece on which the value goes straight from a to b: cut at the knots of the medium.
-  void straight(double t, float length, float a, float b) {
+  static float value(const Stretch& s, float f) {
+    const float g = 1 - f;
+    const float b01 = g * s.b[0] + f * s.b[1], b12 = g * s.b[1] + f * s.b[2], b23 = g * s.b[2] + f * s.b[3];
+    return g * (g * b01 + f * b12) + f * (g * b12 + f * b23);
+  }
+
+  /// The share [f0, f1], on which the value goes one way from a to b: cut where it meets the knots of the medium.
+  void monotone(const Stretch& s, float f0, float f1, float a, float b) {
     const std::vector<Medium::Line>& lines = look_.medium.lines();
     int i = look_.medium.line_of(a);
-    if (a == b) return linear(t, length, a, a, lines[size_t(i)]);
-    const float per_value = length / std::abs(b - a);
-    const bool up = b > a;
+    const bool up = b >= a;
     if (!up && i > 0 && lines[size_t(i)].lo == a) --i;
-    for (float v = a;;) {
+    for (float f = f0, v = a;;) {
       const Medium::Line& line = lines[size_t(i)];
       const bool last = up ? b <= line.hi : b >= line.lo;
-      const float next = last ? b : up ? line.hi : line.lo;
-      const float way = std::abs(next - v) * per_value;
-      linear(t, way, v, next, line);
-      if (last) return;
-      t += double(way), v = next, i += up ? 1 : -1;
+      if (last) return piece(s, f, f1, v, b, line);
+      const float knot = up ? line.hi : line.lo;
+      const float at = meets(s, f, f1, v, b, knot);
+      piece(s, f, at, v, knot, line);
+      f = at, v = knot, i += up ? 1 : -1;
     }
   }
 
-  /// A stretch whose values lie on one line of the medium and in colours that are as good as straight.
-  void smooth(const Stretch& s, const Medium::Line& line) {
-    const float length = float(s.to - s.from), mean = 0.25f * (s.b[0] + s.b[1] + s.b[2] + s.b[3]), tau = line(mean);
-    if (!(tau > 0)) return;
-    // The mean value by emission: integral of f tau(f) = tau(mean) mean + tau' (integral of f^2 - mean^2), f - mean in Bernstein form.
-    const float d0 = s.b[0] - mean, d1 = s.b[1] - mean, d2 = s.b[2] - mean, d3 = s.b[3] - mean;
-    const float spread =
-        (10 * (d0 * d0 + d3 * d3) + 6 * (d1 * d1 + d2 * d2) + 10 * (d0 * d1 + d2 * d3) + 4 * (d0 * d2 + d1 * d3) + 9 * d1 * d2 + d0 * d3) *
-        (1.0f / 70);
-    const float t0 = line(s.b[0]), t1 = line(s.b[3]), both = t0 + t1;
-    segment(s.from, length, length * tau, s.b[0], s.b[3], mean + line.slope * spread / tau, both > 0 ? (t0 + 2 * t1) / (3 * both) : 0.5f);
+  /// Where the value meets a knot between f0 and f1: false position, twice corrected.
+  static float meets(const Stretch& s, float f0, float f1, float a, float b, float knot) {
+    const float slope = (f1 - f0) / (b - a);
+    float f = f0 + (knot - a) * slope;
+    for (int i = 0; i < 2; ++i) f = std::clamp(f - (value(s, f) - knot) * slope, f0, f1);
+    return f;
   }
 
   void whole(const Stretch& s, float lo, float hi) {
     const Medium& medium = look_.medium;
-    const int first = medium.line_of(lo), last = medium.line_of(hi);
-    const double length = s.to - s.from;
-    // What straight pieces get wrong: the cubic leaves the line between its ends by at most `bend`, the colours theirs by the accuracy on
-    // a width. Both fall with the square of the number of pieces.
-    const float bend = std::max(std::abs(s.b[1] - (2 * s.b[0] + s.b[3]) / 3), std::abs(s.b[2] - (s.b[0] + 2 * s.b[3]) / 3));
-    const double pass = double(state_.sum.transmittance), most = std::min(1.0, length * double(medium.most_tau(lo, hi)));
-    const double widths = double(medium.axis(hi) - medium.axis(lo)) / double(medium.color_width());
-    const double slope = double(medium.most_slope(lo, hi)), colors = double(medium.color_slope());
-    const double change = std::min(1.0, double(medium.axis(hi) - medium.axis(lo)) * colors);
-    double error = pass * most * 0.25 * look_.budget.tolerance * widths * widths;
-    // In a deep piece the front shows more of its own colour than a constant tau would have it.
-    error += pass * change * std::min(1.0, 0.05 * length * length * double(medium.most_tau(lo, hi)) * slope * double(hi - lo));
-    error += pass * most * double(medium.axis(lo + bend) - medium.axis(lo)) * colors;
-    const double allowed =
-        look_.budget.tolerance * (0.15 * length / look_.budget.length +
-                                  0.3 * pass * std::min(1.0, length * double(medium.tau(0.25f * (s.b[0] + s.b[1] + s.b[2] + s.b[3])))));
-    if (first == last && error <= allowed) return smooth(s, medium.lines()[size_t(first)]);
-    error += pass * double(bend) * length * slope;
-    int n = 1;
-    while (n < 64 && error > allowed * n * n) ++n;
-    const double step = length / n;
-    float a = s.b[0];
-    for (int k = 0; k < n; ++k) {
-      const float b = k + 1 == n ? s.b[3] : s.value(s.from + (k + 1) * step);
-      straight(s.from + k * step, float(step), a, b);
+    const float a = s.b[0], b = s.b[3], length = float(s.to - s.from), pass = state_.sum.transmittance;
+    const float tolerance = float(look_.budget.tolerance);
+    const float most = medium.most_tau(lo, hi), slope = medium.most_slope(lo, hi), taken = std::min(1.0f, length * most);
+    const float widths = (medium.axis(hi) - medium.axis(lo)) / medium.color_width();
+    const float change = std::min(1.0f, (medium.axis(hi) - medium.axis(lo)) * medium.color_slope());
+    // What one piece gets wrong: colours bend on a width; in a deep piece the front shows more of its own colour than a constant tau would
+    // have it; and the value may turn beyond its ends, where there may be knots. All fall with the square of the number of pieces.
+    const float beyond = std::max(hi - std::max(a, b), std::min(a, b) - lo);
+    float error = taken * (0.25f * tolerance) * widths * widths;
+    error += change * std::min(1.0f, 0.05f * length * length * most * slope * (hi - lo));
+    error += beyond * length * slope;
+    error *= pass;
+    const float share = pass * std::min(1.0f, length * medium.tau(0.25f * (s.b[0] + s.b[1] + s.b[2] + s.b[3])));
+    const float allowed = tolerance * (float(0.15 / look_.budget.length) * length + 0.3f * share);
+    const float n = std::clamp(std::ceil(std::sqrt(error / allowed)), 1.0f, 64.0f);
+    float v = a, f = 0;
+    for (float k = 1; k <= n; ++k) {
+      const float to = k == n ? 1 : k / n, next = k == n ? b : value(s, to);
+      monotone(s, f, to, v, next);
       if (state_.sum.transmittance < look_.budget.stop_below) return;
-      a = b;
+      v = next, f = to;
     }
   }
 
@@ -200,7 +194,8 @@ void composite_straight(const Look& look, double from, double to, float a, float
   Pieces pieces(look, state);
   LitPart part;
   if (lit) part = {from, to, *lit, *lit}, pieces.lit = &part;
-  pieces.straight(from, float(to - from), a, b);
+  const float third = (b - a) / 3;
+  pieces.monotone({from, to, {a, a + third, b - third, b}}, 0, 1, a, b);
 }
 
 void composite_sample(const Look& look, double from, double length, float value, const Lit* lit, RayState& state) {

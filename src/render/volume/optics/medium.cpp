@@ -163,7 +163,7 @@ void Medium::make_colors(const ColorScale& scale, const Plan& plan) {
     for (size_t i = 0; i + width <= size_t(nodes) && all; i += width / 2) all = straight(i, i + width);
     if (all) break;
   }
-  color_width_ = float(double(width) * per), color_slope_ = float(steepest * double(per_node_));
+  color_width_ = per > 0 ? float(double(width) * per) : 1e30f, color_slope_ = float(steepest * double(per_node_));
 }
 
 void Medium::bound() {
