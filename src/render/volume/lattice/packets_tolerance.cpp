@@ -129,6 +129,8 @@ class TolerantPacket {
       per_along_[a] = hn::IfThenElseZero(hn::Not(still_[a]), hn::Div(hn::Set(d, 1.0f), along_[a]));
     }
     end_ = hn::Load(d, rays.length);
+    at_ = hn::Zero(IntTag<D>());
+    line_ = medium_.line(at_);
   }
 
   HWY_INLINE void run(PacketResult& result, const RayPacket& rays) {
@@ -208,6 +210,11 @@ class TolerantPacket {
     const I above = hn::Add(corner, source_.layer);
     const Pair<D> p00 = source_.pair(corner), p01 = source_.pair(hn::Add(corner, source_.row));
     const Pair<D> p10 = source_.pair(above), p11 = source_.pair(hn::Add(above, source_.row));
+    // No place in the cell lies outside the range of its corners.
+    const F least = hn::Min(hn::Min(hn::Min(p00.a, p00.b), hn::Min(p01.a, p01.b)), hn::Min(hn::Min(p10.a, p10.b), hn::Min(p11.a, p11.b)));
+    const F largest = hn::Max(hn::Max(hn::Max(p00.a, p00.b), hn::Max(p01.a, p01.b)), hn::Max(hn::Max(p10.a, p10.b), hn::Max(p11.a, p11.b)));
+    const M clear_line = hn::And(hn::Eq(line_.at, zero), hn::Eq(line_.slope, zero));
+    if (hn::AllFalse(d, hn::AndNot(hn::And(clear_line, hn::And(hn::Ge(least, line_.lo), hn::Le(largest, line_.hi))), look))) return;
     F value[4];
     for (int i = 0; i < 4; ++i) {
       const F s = hn::Set(d, float(i) * (1.0f / 3));
@@ -223,21 +230,23 @@ class TolerantPacket {
     const F lo = hn::Min(hn::Min(f.b[0], f.b[1]), hn::Min(f.b[2], f.b[3])), hi = hn::Max(hn::Max(f.b[0], f.b[1]), hn::Max(f.b[2], f.b[3]));
     const F total = hn::Add(hn::Add(f.b[0], f.b[1]), hn::Add(f.b[2], f.b[3]));
     look = hn::And(look, hn::Eq(total, total));  // no hole
-    const I first = medium_.line_of(f.b[0]);
-    const typename MediumLanes<D>::Line line = medium_.line(first);
+    const M strange = hn::AndNot(hn::And(hn::Ge(f.b[0], line_.lo), hn::Le(f.b[0], line_.hi)), look);
+    if (!hn::AllFalse(d, strange)) at_ = medium_.line_of(f.b[0]), line_ = medium_.line(at_);
+    const typename MediumLanes<D>::Line& line = line_;
     const M same = hn::And(hn::Ge(lo, line.lo), hn::Le(hi, line.hi));
     const M dark = hn::And(same, hn::And(hn::Eq(line.at, zero), hn::Eq(line.slope, zero)));
     look = hn::AndNot(dark, look);
     if (hn::AllFalse(d, look)) return;
-    integrate(f, lo, hi, first, line, same, corner, inside, from, way, t, hn::Sub(leave, t), look);
+    integrate(f, lo, hi, same, corner, inside, from, way, t, hn::Sub(leave, t), look);
   }
 
-  HWY_INLINE void integrate(const Cubic<D>& f, F lo, F hi, I at, const typename MediumLanes<D>::Line& line, M same, I corner, const I inside[3],
+  HWY_INLINE void integrate(const Cubic<D>& f, F lo, F hi, M same, I corner, const I inside[3],
                             const F from[3], const F way[3], F t, F length, M look) {
     const D d;
     const IntTag<D> di;
     const F zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
     const Medium& m = medium_.medium;
+    const typename MediumLanes<D>::Line& line = line_;
     const float tolerance = float(plan_.budget.tolerance);
     const F mean = hn::Mul(hn::Set(d, 0.25f), hn::Add(hn::Add(f.b[0], f.b[1]), hn::Add(f.b[2], f.b[3])));
     F most = hn::Max(line.tau(lo), line.tau(hi)), slope = hn::Abs(line.slope), tau_mean = line.tau(mean);
@@ -259,7 +268,7 @@ class TolerantPacket {
     error = hn::Add(error, hn::IfThenElseZero(hn::Not(same), hn::Mul(beyond, hn::Mul(length, slope))));
     error = hn::Mul(error, pass);
     const F share = hn::Mul(pass, hn::Min(one, hn::Mul(length, tau_mean)));
-    const F allowed = hn::Mul(hn::Set(d, tolerance), hn::Add(hn::Mul(length, hn::Set(d, float(0.15 / plan_.budget.length))), hn::Mul(share, hn::Set(d, 0.3f))));
+    const F allowed = hn::Mul(hn::Set(d, tolerance), hn::Add(hn::Mul(length, hn::Set(d, float(0.3 / plan_.budget.length))), hn::Mul(share, hn::Set(d, 0.6f))));
     if constexpr (shaded) {
       light_.cell(source_, corner, inside, look);
       error = hn::Max(error, light_.error(from, way, hn::Mul(pass, taken)));
@@ -270,7 +279,7 @@ class TolerantPacket {
     // Pieces, cut where the value meets the knots.
     F k = zero, v = f.b[0], s = zero;
     F end = hn::IfThenElse(hn::Eq(count, one), one, per_count), target = hn::IfThenElse(hn::Eq(count, one), f.b[3], f.at(per_count));
-    typename MediumLanes<D>::Line l = line;
+    typename MediumLanes<D>::Line& l = line_;
     for (;;) {
       const M up = hn::Ge(target, v);
       const M ends = hn::Or(hn::And(up, hn::Le(target, l.hi)), hn::AndNot(up, hn::Ge(target, l.lo)));
@@ -296,8 +305,8 @@ class TolerantPacket {
       if (hn::AllFalse(d, look)) return;
       v = next, s = to;
       if (!hn::AllFalse(d, cut)) {
-        at = hn::IfThenElse(hn::RebindMask(di, cut), hn::Add(at, hn::IfThenElse(hn::RebindMask(di, up), hn::Set(di, 1), hn::Set(di, -1))), at);
-        l = medium_.line(at);
+        at_ = hn::IfThenElse(hn::RebindMask(di, cut), hn::Add(at_, hn::IfThenElse(hn::RebindMask(di, up), hn::Set(di, 1), hn::Set(di, -1))), at_);
+        l = medium_.line(at_);
       }
       const F after = hn::Add(k, one), there = hn::Mul(after, per_count);
       const M final_piece = hn::Ge(after, count);
@@ -361,6 +370,9 @@ class TolerantPacket {
   F start_[3], along_[3], per_along_[3], end_;
   M still_[3], up_[3];
   Gathering<D> sum_;
+  // The line of the medium on which each lane's value was last: most often it is there still.
+  I at_;
+  typename MediumLanes<D>::Line line_;
 };
 
 template <class D, class T, bool shaded>

@@ -137,7 +137,7 @@ class Pieces {
     error += beyond * length * slope;
     error *= pass;
     const float share = pass * std::min(1.0f, length * medium.tau(0.25f * (s.b[0] + s.b[1] + s.b[2] + s.b[3])));
-    const float allowed = tolerance * (float(0.15 / look_.budget.length) * length + 0.3f * share);
+    const float allowed = tolerance * (float(0.3 / look_.budget.length) * length + 0.6f * share);
     const float n = std::clamp(std::ceil(std::sqrt(error / allowed)), 1.0f, 64.0f);
     float v = a, f = 0;
     for (float k = 1; k <= n; ++k) {

@@ -38,7 +38,7 @@ class Curve {
       bool straight = true;
       for (double f : {0.5, 0.25, 0.75, 0.1, 0.9}) {
         const Sample m = at(a.value + f * (b.value - a.value));
-        straight = straight && std::abs(a.tau + f * (b.tau - a.tau) - m.tau) <= plan_.accuracy * std::max(m.tau, plan_.faint);
+        straight = straight && std::abs(a.tau + f * (b.tau - a.tau) - m.tau) <= 3 * plan_.accuracy * std::max(m.tau, plan_.faint);
       }
       if (!straight) {
         refine(a, at(middle), depth - 1, out);
