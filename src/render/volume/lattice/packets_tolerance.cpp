@@ -39,8 +39,16 @@ struct MediumLanes {
   const Medium::Columns& columns;
 
   struct Line {
-    F lo, hi, origin, at, slope;
-    HWY_INLINE F tau(F v) const { return hn::Max(hn::Zero(D()), hn::Add(at, hn::Mul(slope, hn::Sub(v, origin)))); }
+    F lo, hi, origin, at, slope, curve;
+    HWY_INLINE F tau(F v) const {
+      const F x = hn::Sub(v, origin);
+      return hn::Max(hn::Zero(D()), hn::Add(at, hn::Mul(x, hn::Add(slope, hn::Mul(x, curve)))));
+    }
+    HWY_INLINE F slope_at(F v) const { return hn::Abs(hn::Add(slope, hn::Mul(hn::Add(curve, curve), hn::Sub(v, origin)))); }
+    HWY_INLINE hn::Mask<D> dark() const {
+      const F zero = hn::Zero(D());
+      return hn::And(hn::Eq(at, zero), hn::And(hn::Eq(slope, zero), hn::Eq(curve, zero)));
+    }
   };
   HWY_INLINE explicit MediumLanes(const Medium& m) : medium(m), columns(m.columns()) {}
   HWY_INLINE Line line(I i) const {
@@ -48,6 +56,7 @@ struct MediumLanes {
     Line l;
     l.origin = hn::GatherIndex(d, columns.origin.data(), i), l.hi = hn::GatherIndex(d, columns.hi.data(), i);
     l.at = hn::GatherIndex(d, columns.at.data(), i), l.slope = hn::GatherIndex(d, columns.slope.data(), i);
+    l.curve = hn::GatherIndex(d, columns.curve.data(), i);
     l.lo = hn::IfThenElse(hn::RebindMask(d, hn::Eq(i, hn::Zero(IntTag<D>()))), hn::Set(d, -HUGE_VALF), l.origin);
     return l;
   }
@@ -213,7 +222,7 @@ class TolerantPacket {
     // No place in the cell lies outside the range of its corners.
     const F least = hn::Min(hn::Min(hn::Min(p00.a, p00.b), hn::Min(p01.a, p01.b)), hn::Min(hn::Min(p10.a, p10.b), hn::Min(p11.a, p11.b)));
     const F largest = hn::Max(hn::Max(hn::Max(p00.a, p00.b), hn::Max(p01.a, p01.b)), hn::Max(hn::Max(p10.a, p10.b), hn::Max(p11.a, p11.b)));
-    const M clear_line = hn::And(hn::Eq(line_.at, zero), hn::Eq(line_.slope, zero));
+    const M clear_line = line_.dark();
     if (hn::AllFalse(d, hn::AndNot(hn::And(clear_line, hn::And(hn::Ge(least, line_.lo), hn::Le(largest, line_.hi))), look))) return;
     F value[4];
     for (int i = 0; i < 4; ++i) {
@@ -232,9 +241,8 @@ class TolerantPacket {
     look = hn::And(look, hn::Eq(total, total));  // no hole
     const M strange = hn::AndNot(hn::And(hn::Ge(f.b[0], line_.lo), hn::Le(f.b[0], line_.hi)), look);
     if (!hn::AllFalse(d, strange)) at_ = medium_.line_of(f.b[0]), line_ = medium_.line(at_);
-    const typename MediumLanes<D>::Line& line = line_;
-    const M same = hn::And(hn::Ge(lo, line.lo), hn::Le(hi, line.hi));
-    const M dark = hn::And(same, hn::And(hn::Eq(line.at, zero), hn::Eq(line.slope, zero)));
+    const M same = hn::And(hn::Ge(lo, line_.lo), hn::Le(hi, line_.hi));
+    const M dark = hn::And(same, line_.dark());
     look = hn::AndNot(dark, look);
     if (hn::AllFalse(d, look)) return;
     integrate(f, lo, hi, same, corner, inside, from, way, t, hn::Sub(leave, t), look);
@@ -249,7 +257,8 @@ class TolerantPacket {
     const typename MediumLanes<D>::Line& line = line_;
     const float tolerance = float(plan_.budget.tolerance);
     const F mean = hn::Mul(hn::Set(d, 0.25f), hn::Add(hn::Add(f.b[0], f.b[1]), hn::Add(f.b[2], f.b[3])));
-    F most = hn::Max(line.tau(lo), line.tau(hi)), slope = hn::Abs(line.slope), tau_mean = line.tau(mean);
+    F tau_mean = line.tau(mean), most = hn::Max(hn::Max(line.tau(lo), line.tau(hi)), tau_mean);
+    F slope = hn::Max(line.slope_at(lo), line.slope_at(hi));
     if (!hn::AllFalse(d, hn::AndNot(same, look))) {
       const I first = medium_.line_of(lo), last = medium_.line_of(hi);
       most = hn::IfThenElse(same, most, medium_.most(medium_.columns.most_tau, first, last));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Medium: extinction as straight lines over the value, on as few knots as their accuracy allows, and colour as a fine table.
+// Medium: extinction as parabolas over the value, on as few knots as their accuracy allows, and colour as a fine table.
 #pragma once
 #include <bit>
 #include <cstdint>
@@ -19,12 +19,12 @@ struct Optics {
 
 class Medium {
  public:
-  /// tau = at + slope (v - origin) for v in [lo, hi].
+  /// tau = at + slope d + curve d^2, d = v - origin, for v in [lo, hi].
   struct Line {
     float lo, hi;  ///< infinite at the ends
-    float origin, at, slope;
+    float origin, at, slope, curve;
     float operator()(float v) const {
-      const float t = at + slope * (v - origin);
+      const float d = v - origin, t = at + d * (slope + d * curve);
       return t > 0 ? t : 0;
     }
   };
@@ -38,7 +38,7 @@ class Medium {
     double faint = 0.01;       ///< a tau that makes no difference
     double most_tau = 1e6;     ///< stands for that of opacity 1, which has none
   };
-  /// Samples -log(1 - opacity)/unit until straight lines between the knots are right to the accuracy. Every point of the curve is a
+  /// Samples -log(1 - opacity)/unit until parabolas between the knots are right to the accuracy. Every point of the curve is a
   /// knot, and so is every jump of colour. Values that the scale does not draw have tau 0.
   Medium(const ColorScale& scale, const OpacityCurve& curve, const Plan& plan);
 
@@ -79,7 +79,7 @@ class Medium {
 
   /// For vector code: the lines by columns, and the largest tau and |slope| of 2^k lines from line i on, at [k * lines + i].
   struct Columns {
-    std::vector<float> origin, hi, at, slope, most_tau, most_slope;
+    std::vector<float> origin, hi, at, slope, curve, most_tau, most_slope;
   };
   const Columns& columns() const { return columns_; }
   // The colours themselves (r, g, b, 0 as u16 per node), their axis, and the slices of lines.
