@@ -1,0 +1,263 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/volume/cells/tet_rays.h"
+
+#include "base/parallel.h"
+#include "render/volume/cells/tet_walk.h"
+
+namespace sg::volume {
+
+namespace {
+
+constexpr int slices = 2048;
+constexpr int block = 4;  // pixels of a packet along each side
+static_assert(block * block == TetPacket::lanes);
+
+}  // namespace
+
+TetMedium::TetMedium(std::span<const Medium::Knot> knots) {
+  const auto add = [&](float lo, float hi, const Optics& a, const Optics& b) {
+    Interval i{lo, hi, {a.tau, a.r, a.g, a.b}, {}, {}};
+    if (hi > lo) {
+      const float to[4] = {b.tau, b.r, b.g, b.b};
+      for (int k = 0; k < 4; ++k) i.slope[k] = (to[k] - i.at[k]) / (hi - lo);
+    }
+    intervals.push_back(i);
+  };
+  const Optics nothing{0, 0, 0, 0};
+  const float lo = knots.empty() ? 0 : knots.front().value, hi = knots.empty() ? 0 : knots.back().value;
+  const Optics low = knots.empty() ? nothing : knots.front().at, high = knots.empty() ? nothing : knots.back().at;
+  // Beyond the ends values are constant: from the place itself, so that no digits are lost.
+  add(-1e30f, lo, low, low);
+  for (size_t k = 0; k + 1 < knots.size(); ++k)
+    if (knots[k + 1].value > knots[k].value) add(knots[k].value, knots[k + 1].value, knots[k].at, knots[k + 1].at);
+  add(hi, 1e30f, high, high);
+
+  // Slice 0 lies below, the last one above, those between have equal width.
+  slice_lo = lo, per_slice = hi > lo ? float(slices) / (hi - lo) : 0;
+  if (!std::isfinite(per_slice)) per_slice = 0;
+  const size_t count = slices + 2;
+  first.assign(count, 0);
+  std::vector<uint8_t> lit(count);
+  const double width = (double(hi) - double(lo)) / slices;
+  for (size_t s = 0, i = 0; s < count; ++s) {
+    const double begin = s < 2 ? -1e30 : double(lo) + (double(s) - 2) * width;
+    while (i + 1 < intervals.size() && double(intervals[i].hi) <= begin) ++i;
+    first[s] = int32_t(i);
+    const double end = s + 1 >= count ? 1e30 : double(lo) + (double(s) + 1) * width;
+    for (size_t k = i; k < intervals.size() && double(intervals[k].lo) <= end; ++k) {
+      const Interval& v = intervals[k];
+      lit[s] = lit[s] || v.at[0] > 0 || v.slope[0] > 0;
+    }
+  }
+  seen.assign(count + 1, 0);
+  for (size_t s = 0; s < count; ++s) seen[s + 1] = seen[s] + lit[s];
+}
+
+struct TetRays::Scratch {
+  std::vector<Hit> found, hits;  // hits: by pixel, then by depth
+  std::array<uint32_t, tile * tile + 1> first{};
+};
+
+bool TetRays::fits(const CellVolume& volume) {
+  if (volume.by_cell || volume.mesh->all_tets) return true;
+  const Plane<uint32_t>& cells = volume.mesh->cells;
+  for (size_t t = 1; t < cells.size(); ++t)
+    if (cells[t] == cells[t - 1]) return false;
+  return true;
+}
+
+TetRays::TetRays(const CellVolume& volume, const Projection& projection, std::span<const Medium::Knot> knots, Context& context,
+                 float stop_below)
+    : volume_(volume), projection_(projection), medium_(knots), stop_below_(stop_below) {
+  const TetMesh& mesh = *volume.mesh;
+  const Vec3 eye = mesh.origin - projection.eye;
+  const Vec3 at(dot(eye, projection.right), dot(eye, projection.up), dot(eye, projection.forward));
+  middle_depth_ = at.z;
+  eye_.resize(4 * mesh.at.size());
+  parallel_for(
+      mesh.at.size(), 16384,
+      [&](size_t begin, size_t end) {
+        for (size_t v = begin; v < end; ++v) {
+          const Vec3 p = mesh.at[v];
+          float* e = &eye_[4 * v];
+          e[0] = float(dot(p, projection.right) + at.x), e[1] = float(dot(p, projection.up) + at.y),
+          e[2] = float(dot(p, projection.forward));
+          e[3] = volume.by_cell ? 0 : volume.values[v];
+        }
+      },
+      &context);
+  bin();
+}
+
+/// Faces of the boundary by the tiles that their shadows may touch; those through the plane of the eye by all.
+void TetRays::bin() {
+  across_ = (projection_.width + tile - 1) / tile, down_ = (projection_.height + tile - 1) / tile;
+  const TetMesh& mesh = *volume_.mesh;
+  struct Box {
+    int x0, y0, x1, y1;
+  };
+  std::vector<Box> boxes(mesh.boundary.size());
+  parallel_for(boxes.size(), 4096, [&](size_t begin, size_t end) {
+    for (size_t f = begin; f < end; ++f) {
+      double lo[2] = {HUGE_VAL, HUGE_VAL}, hi[2] = {-HUGE_VAL, -HUGE_VAL};
+      int before = 0, behind = 0;
+      for (uint32_t v : mesh.boundary[f].v) {
+        const float* e = &eye_[4 * v];
+        const double z = double(e[2]) + middle_depth_, size = std::abs(double(e[0])) + std::abs(double(e[1])) + 1e-30;
+        const double s = projection_.parallel ? projection_.scale : projection_.scale / z;
+        // Near the eye's plane a shadow has no end.
+        before += z > 1e-4 * size, behind += z < -1e-4 * size;
+        const double p[2] = {0.5 * projection_.width + s * double(e[0]), 0.5 * projection_.height + projection_.shift_y - s * double(e[1])};
+        for (int a = 0; a < 2; ++a) lo[a] = std::min(lo[a], p[a]), hi[a] = std::max(hi[a], p[a]);
+      }
+      const bool whole = !projection_.parallel && before < 3 && behind < 3;
+      // A hundredth of a pixel is far more than floats leave uncertain.
+      const auto tile_of = [&](double p, int count) { return int(std::floor(std::clamp(p / tile, -1.0, double(count)))); };
+      boxes[f] = whole ? Box{0, 0, across_ - 1, down_ - 1}
+                       : Box{std::max(tile_of(lo[0] - 0.6, across_), 0), std::max(tile_of(lo[1] - 0.6, down_), 0),
+                             std::min(tile_of(hi[0] + 0.6, across_), across_ - 1), std::min(tile_of(hi[1] + 0.6, down_), down_ - 1)};
+    }
+  });
+  std::vector<size_t> count(size_t(across_) * size_t(down_) + 1);
+  const auto each = [&](auto&& act) {
+    for (size_t f = 0; f < boxes.size(); ++f)
+      for (int y = boxes[f].y0; y <= boxes[f].y1; ++y)
+        for (int x = boxes[f].x0; x <= boxes[f].x1; ++x) act(size_t(y) * size_t(across_) + size_t(x), f);
+  };
+  each([&](size_t t, size_t) { ++count[t]; });
+  faces_.resize(exclusive_scan(count));
+  first_face_.assign(count.begin(), count.end());
+  each([&](size_t t, size_t f) { faces_[count[t]++] = uint32_t(f); });
+}
+
+void TetRays::place(TetPacket& p, int lane, double px, double py) const {
+  const double sx = (px - 0.5 * projection_.width) / projection_.scale;
+  const double sy = -(py - 0.5 * projection_.height - projection_.shift_y) / projection_.scale;
+  const bool flat = projection_.parallel;
+  p.dx[lane] = flat ? 0 : float(sx), p.dy[lane] = flat ? 0 : float(sy);
+  p.x0[lane] = float(flat ? sx : sx * middle_depth_), p.y0[lane] = float(flat ? sy : sy * middle_depth_);
+  p.length[lane] = flat ? 1 : float(std::sqrt(1 + sx * sx + sy * sy));
+}
+
+/// Where each pixel's line crosses the boundary, by the same tests as the walk.
+void TetRays::find_hits(int x0, int y0, int width, int height, Scratch& s) const {
+  const TetMesh& mesh = *volume_.mesh;
+  s.found.clear();
+  s.first.fill(0);
+  // Lines of the tile: x depends on the column alone, y on the row.
+  TetPacket columns, rows;
+  for (int k = 0; k < tile; ++k) place(columns, k, x0 + k + 0.5, 0), place(rows, k, 0, y0 + k + 0.5);
+  const size_t t = size_t(y0 / tile) * size_t(across_) + size_t(x0 / tile);
+  for (size_t i = first_face_[t]; i < first_face_[t + 1]; ++i) {
+    const auto& v = mesh.boundary[faces_[i]].v;
+    const float *a = &eye_[4 * v[0]], *b = &eye_[4 * v[1]], *c = &eye_[4 * v[2]];
+    float x[3][tile], y[3][tile];
+    int begin = width, end = 0, top = height, bottom = 0;
+    for (int k = 0; k < width; ++k) {
+      x[0][k] = (a[0] - columns.x0[k]) - columns.dx[k] * a[2];
+      x[1][k] = (b[0] - columns.x0[k]) - columns.dx[k] * b[2];
+      x[2][k] = (c[0] - columns.x0[k]) - columns.dx[k] * c[2];
+      if (std::min(x[0][k], std::min(x[1][k], x[2][k])) <= 0 && std::max(x[0][k], std::max(x[1][k], x[2][k])) >= 0)
+        begin = std::min(begin, k), end = k + 1;
+    }
+    for (int k = 0; k < height; ++k) {
+      y[0][k] = (a[1] - rows.y0[k]) - rows.dy[k] * a[2];
+      y[1][k] = (b[1] - rows.y0[k]) - rows.dy[k] * b[2];
+      y[2][k] = (c[1] - rows.y0[k]) - rows.dy[k] * c[2];
+      if (std::min(y[0][k], std::min(y[1][k], y[2][k])) <= 0 && std::max(y[0][k], std::max(y[1][k], y[2][k])) >= 0)
+        top = std::min(top, k), bottom = k + 1;
+    }
+    for (int r = top; r < bottom; ++r)
+      for (int k = begin; k < end; ++k) {
+        const float ab0 = x[0][k] * y[1][r], ab1 = y[0][r] * x[1][k], bc0 = x[1][k] * y[2][r], bc1 = y[1][r] * x[2][k];
+        const float ca0 = x[2][k] * y[0][r], ca1 = y[2][r] * x[0][k];
+        bool ab = ab0 > ab1, bc = bc0 > bc1, ca = ca0 > ca1;
+        if (ab0 == ab1 || bc0 == bc1 || ca0 == ca1) {
+          const auto left = [&](int p, int q) { return turns_left(double(x[p][k]), double(y[p][r]), double(x[q][k]), double(y[q][r])); };
+          ab = left(0, 1), bc = left(1, 2), ca = left(2, 0);
+        }
+        if (ab != bc || bc != ca) continue;
+        const float wa = std::abs(bc0 - bc1), wb = std::abs(ca0 - ca1), wc = std::abs(ab0 - ab1), all = wa + wb + wc;
+        const float depth = all > 0 ? (wa * a[2] + wb * b[2] + wc * c[2]) / all : (a[2] + b[2] + c[2]) / 3;
+        // `used` holds the turn until the hit is sorted in.
+        s.found.push_back({depth, faces_[i], uint8_t(r * tile + k), uint8_t(ab)});
+        ++s.first[size_t(r * tile + k) + 1];
+      }
+  }
+  for (size_t p = 0; p < size_t(tile * tile); ++p) s.first[p + 1] += s.first[p];
+  s.hits.resize(s.found.size());
+  auto next = s.first;
+  for (const Hit& h : s.found) {
+    uint32_t k = next[h.pixel]++;
+    for (; k > s.first[h.pixel] && h.depth < s.hits[k - 1].depth; --k) s.hits[k] = s.hits[k - 1];
+    s.hits[k] = h;
+  }
+}
+
+void TetRays::draw(int x0, int y0, int width, int height, const float* limit, Pixel* out) const {
+  thread_local Scratch s;
+  find_hits(x0, y0, width, height, s);
+  const TetMesh& mesh = *volume_.mesh;
+  const TetTables tables{
+      mesh.links.data(), eye_.data(), volume_.by_cell ? volume_.values.data() : nullptr, mesh.cells.empty() ? nullptr : mesh.cells.data(),
+      &medium_,          stop_below_};
+  constexpr uint8_t gone = 2;  // in Hit::used: this end of a path is done with
+  TetPacket p;
+  for (int by = 0; by < height; by += block)
+    for (int bx = 0; bx < width; bx += block) {
+      bool any = false;
+      const auto pixel_of = [&](int lane) { return size_t((by + lane / block) * tile + bx + lane % block); };
+      const auto inside = [&](int lane) { return bx + lane % block < width && by + lane / block < height; };
+      for (int lane = 0; lane < TetPacket::lanes; ++lane) {
+        place(p, lane, x0 + bx + lane % block + 0.5, y0 + by + lane / block + 0.5);
+        p.r[lane] = p.g[lane] = p.b[lane] = 0, p.pass[lane] = 1, p.half[lane] = NAN, p.last[lane] = -1;
+        p.done[lane] = float(projection_.near_plane - middle_depth_);
+        p.limit[lane] = float(projection_.far_plane - middle_depth_);
+        if (!inside(lane)) {
+          p.limit[lane] = p.done[lane];
+          continue;
+        }
+        if (limit)
+          p.limit[lane] = std::min(p.limit[lane], float(double(limit[(by + lane / block) * width + bx + lane % block]) - middle_depth_));
+      }
+      for (;;) {
+        bool more = false;
+        for (int lane = 0; lane < TetPacket::lanes; ++lane) {
+          p.tet[lane] = -1;
+          for (int k = 0; k < 3; ++k) p.id[k][lane] = 0;
+          if (!(p.done[lane] < p.limit[lane]) || p.pass[lane] < stop_below_) continue;
+          const size_t pixel = pixel_of(lane);
+          for (uint32_t h = s.first[pixel]; h < s.first[pixel + 1]; ++h) {
+            Hit& hit = s.hits[h];
+            if (hit.used & gone) continue;
+            const TetMesh::Face& face = mesh.boundary[hit.face];
+            const int turn = hit.used;
+            hit.used = gone;
+            if (hit.depth >= p.limit[lane]) break;
+            p.tet[lane] = int32_t(face.tet);
+            for (int k = 0; k < 3; ++k) p.id[k][lane] = int32_t(face.v[size_t(turn || k == 0 ? k : 3 - k)]);
+            more = any = true;
+            break;
+          }
+        }
+        if (!more) break;
+        walk_tets(tables, p);
+        for (int lane = 0; lane < TetPacket::lanes; ++lane) {
+          if (p.last[lane] < 0 || !inside(lane)) continue;
+          const size_t pixel = pixel_of(lane);
+          for (uint32_t h = s.first[pixel]; h < s.first[pixel + 1]; ++h) {
+            const TetMesh::Face& face = mesh.boundary[s.hits[h].face];
+            if (face.tet == uint32_t(p.last[lane]) && face.apex == uint32_t(p.gone[lane])) s.hits[h].used = gone;
+          }
+        }
+      }
+      for (int lane = 0; lane < TetPacket::lanes; ++lane)
+        if (inside(lane)) {
+          Pixel& o = out[(by + lane / block) * width + bx + lane % block];
+          o = Pixel{};
+          if (any) o = {p.r[lane], p.g[lane], p.b[lane], p.pass[lane], float(double(p.half[lane]) + middle_depth_)};
+        }
+    }
+}
+
+}  // namespace sg::volume

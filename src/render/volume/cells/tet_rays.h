@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// TetRays: emission and absorption of a field that is linear in each tetrahedron, for a whole picture: the fast way.
+//
+// All pixels of a block walk at the same time, one lane each, as TetWalk does it, in floats relative to the eye and the middle depth of
+// the mesh. In a tetrahedron value, extinction and colour are linear between the medium's knots: the optical depth of each such piece is
+// exact, h (tau0 + tau1) / 2; its colour is the exact integral with the mean transparency by Simpson's rule (error below depth^5/2880 of
+// the change of colour).
+#pragma once
+#include <span>
+#include <vector>
+
+#include "render/volume/cells/cell_volume.h"
+#include "render/volume/optics/medium.h"
+
+namespace sg::volume {
+
+/// The knots of a medium as the kernel reads them.
+struct TetMedium {
+  /// Between two knots: value of the lower and the upper one, then tau, r, g, b at the lower one, then their slopes. Constant beyond the
+  /// ends.
+  struct alignas(64) Interval {
+    float lo, hi, at[4], slope[4], unused[6];
+  };
+  std::vector<Interval> intervals;
+  std::vector<int32_t> first;  ///< per slice of the value: the interval of the slice before
+  std::vector<int32_t> seen;   ///< slices before this one in which tau is not zero
+  float slice_lo = 0, per_slice = 0;
+
+  explicit TetMedium(std::span<const Medium::Knot> knots);
+};
+
+/// 16 rays: what they have gathered, and where each of them is.
+struct alignas(64) TetPacket {
+  static constexpr int lanes = 16;
+  // The line of a ray: x = (eye x - x0) - dx * depth, the same for y, is (0, 0) on it.
+  float x0[lanes], y0[lanes], dx[lanes], dy[lanes];
+  float length[lanes];              ///< ray length per depth
+  float done[lanes], limit[lanes];  ///< depths: what lies before the one is drawn, beyond the other hidden
+  int32_t tet[lanes];               ///< -1: this lane has nothing to do
+  int32_t id[3][lanes];             ///< corners of the face where it enters, to the left around the line
+  int32_t gone[lanes];              ///< result: the corner behind at the path's end
+  int32_t last[lanes];              ///< result: the last tetrahedron, when the path ended at the boundary; else -1
+  float r[lanes], g[lanes], b[lanes], pass[lanes];
+  float half[lanes];  ///< depth at which half of the light was gone; NaN before
+};
+
+/// What the kernel reads.
+struct TetTables {
+  const TetLink* links;
+  const float* eye;          ///< x, y, depth, value of each vertex
+  const float* cell_values;  ///< of cell fields, else null
+  const uint32_t* cells;     ///< of tetrahedra; null: their own number
+  const TetMedium* medium;
+  float stop_below;
+};
+
+/// From the boundary to the boundary, in each lane. The same bits for any width of vectors.
+void walk_tets(const TetTables& tables, TetPacket& packet);
+
+class TetRays {
+ public:
+  static constexpr int tile = 16;
+  struct Pixel {
+    float r = 0, g = 0, b = 0, transmittance = 1;  ///< premultiplied linear colour
+    float half = NAN;                              ///< depth at which half of the light was gone; NaN: nowhere
+  };
+
+  /// Is this picture that of the field, and not only one of straight pieces in its place?
+  static bool fits(const CellVolume& volume);
+  /// Values are stored ones. Keeps references to `volume`.
+  TetRays(const CellVolume& volume, const Projection& projection, std::span<const Medium::Knot> knots, Context& context,
+          float stop_below = 1.0f / 4096);
+
+  /// Pixels [x0, x0 + width) x [y0, y0 + height), x0 and y0 multiples of `tile`, width and height at most that. `limit`: depth per pixel,
+  /// row by row, beyond which nothing is drawn; null = the far plane.
+  void draw(int x0, int y0, int width, int height, const float* limit, Pixel* out) const;
+
+ private:
+  struct Hit {
+    float depth;
+    uint32_t face;
+    uint8_t pixel, used;
+  };
+  struct Scratch;
+  void find_hits(int x0, int y0, int width, int height, Scratch& s) const;
+  void place(TetPacket& packet, int lane, double px, double py) const;
+  void bin();
+
+  const CellVolume& volume_;
+  const Projection projection_;
+  TetMedium medium_;
+  float stop_below_;
+  double middle_depth_ = 0;
+  Plane<float> eye_;
+  int across_ = 0, down_ = 0;
+  std::vector<uint32_t> first_face_, faces_;  // boundary faces by tile
+};
+
+}  // namespace sg::volume
