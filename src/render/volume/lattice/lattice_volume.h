@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "index/minmax_bricks.h"
-#include "render/composite/over.h"
 #include "render/volume/lattice/kernels.h"
+#include "render/volume/optics/ray_state.h"
 #include "render/volume/optics/transfer.h"
 #include "scene/scene.h"
 
@@ -34,6 +34,8 @@ struct Volume {
   Voxels voxels;
   float base = 0;                  ///< value = stored + base
   double step = 1;                 ///< world length
+  double edge = 1;                 ///< world length of the smallest cell edge
+  Box3 bounds;                     ///< world
   std::vector<Transfer> transfer;  ///< one
   Kernels kernels{};
   bool direct = false;  ///< affine, a linear table, no holes to look after: kernels.entries does all
@@ -71,12 +73,6 @@ struct Course {
   double enter = 0, leave = -1;  ///< inside the box, and within the limits asked for
 };
 Course course(const Volume& volume, Vec3 origin, Vec3 direction, double from, double to);
-
-struct RayState {
-  Gathered sum;
-  double surface = -1;  ///< t at which half of the light was gone; -1 = nowhere yet
-  uint32_t surface_id = 0;
-};
 
 /// Integrates [from, to] of one volume or, in common steps (the shortest of theirs), of several that overlap there. Samples lie in the
 /// middle of their steps; the last step has what length is left. Stops when less than knobs.stop_below of the light passes.

@@ -4,6 +4,7 @@
 #include "base/parallel.h"
 #include "data/field_ops.h"
 #include "data/lattice.h"
+#include "render/volume/prepare_cast.h"
 #include "render/volume/lattice/lattice_volume.h"
 
 namespace sg::volume {
@@ -11,30 +12,6 @@ namespace sg::volume {
 namespace {
 
 constexpr uint8_t not_drawn = ghost_duplicate | ghost_refined_cell | ghost_hidden_cell;
-
-const Field& field_of(const VolumeItem& item) {
-  const FieldSet& fields = item.data->fields();
-  const Field* f = item.field.empty() ? fields.active() : nullptr;
-  if (!f && item.field.empty()) fail_usage("the dataset has no scalar field to look through", "volume", "name one with field=");
-  if (!f) f = &fields.require(item.field, item.association);
-  if (f->association == Association::whole)
-    fail_usage(fmt::format("field '{}' belongs to the whole dataset", f->name), "volume", "a volume needs a point or cell field");
-  if (item.component >= f->components())
-    fail_usage(fmt::format("field '{}' has {} components, not component {}", f->name, f->components(), item.component), "volume");
-  return *f;
-}
-
-void check(const VolumeItem& item) {
-  if (!item.data) fail_usage("a volume item has no dataset", "volume");
-  if (!item.data->as<UniformGrid>() && !item.data->as<RectilinearGrid>())
-    fail_usage(fmt::format("a {} mesh cannot be looked through as a volume", item.data->kind()), "volume",
-               "volumes are grids so far; show its surface: --show surface");
-  if (!(item.sampling.step >= 0) || !std::isfinite(item.sampling.step))
-    fail_usage(fmt::format("the step {} is no length", item.sampling.step), "volume", "give a length above 0, or 0 for half a cell");
-  if (!(item.unit_distance >= 0) || !std::isfinite(item.unit_distance))
-    fail_usage(fmt::format("the unit distance {} is no length", item.unit_distance), "volume",
-               "give a length above 0, or 0 for 1/100 of the diagonal");
-}
 
 /// Geometry of one axis: where the samples lie relative to the points.
 struct AxisPlan {
@@ -241,6 +218,7 @@ Volume prepare(const VolumeItem& item, uint32_t id, const Knobs& knobs) {
   if (auto* u = item.data->as<UniformGrid>()) uniform_geometry(*u, plan, v, smallest);
   else rectilinear_geometry(*item.data->as<RectilinearGrid>(), plan, v, smallest);
   if (!(v.hi.x > v.lo.x && v.hi.y > v.lo.y && v.hi.z > v.lo.z)) return v;
+  v.edge = smallest, v.bounds = item.data->bounds();
   take_samples(item, field, samples, v);
   build_index(v);
 
