@@ -26,14 +26,16 @@ class CellField : public RayField {
 
   void start(Vec3 origin, Vec3 direction, double from, double to) override {
     walk_.start(origin, direction, to);
-    done_ = from, to_ = to;
+    done_ = from, from_ = from, to_ = to;
     ready_.clear(), taken_ = 0, open_ = false;
+    given_.clear();
   }
 
   size_t next(std::span<Stretch> out) override {
     size_t n = 0;
     while (n < out.size()) {
       if (taken_ < ready_.size()) {
+        given_.emplace_back(ready_[taken_].from, ready_[taken_].cell);
         out[n++] = ready_[taken_++];
         continue;
       }
@@ -48,6 +50,8 @@ class CellField : public RayField {
     }
     return n;
   }
+
+  double entry() const override { return std::min(std::max(walk_.entry(), from_), to_); }
 
   Vec3f gradient(const Stretch& stretch, double t) override {
     const Plane<Vec3f>& g = source_.vertex_gradients();
@@ -109,14 +113,29 @@ class CellField : public RayField {
 
   /// The tetrahedron of the stretch's cell that holds the place, and its weights there.
   size_t place(const Stretch& stretch, double t, double w[4]) const {
+    size_t best = 0;
+    if (!place_in_cell_of(stretch.cell, t, best, w)) {
+      // Not a stretch of ours: the one that lay there.
+      auto it = std::upper_bound(given_.begin(), given_.end(), t, [](double a, const auto& g) { return a < g.first; });
+      if (it != given_.begin()) place_in_cell_of((it - 1)->second, t, best, w);
+    }
+    double sum = 0;
+    for (int k = 0; k < 4; ++k) w[k] = std::max(w[k], 0.0), sum += w[k];
+    for (int k = 0; k < 4; ++k) w[k] = sum > 0 ? w[k] / sum : 0.25;
+    return best;
+  }
+
+  /// Of the tetrahedra of the cell that has this one; false when the place lies outside of all.
+  bool place_in_cell_of(uint64_t tet, double t, size_t& best, double w[4]) const {
     const TetMesh& m = *volume_.mesh;
     const Vec3 x = walk_.origin() + walk_.direction() * t;
-    size_t best = stretch.cell, first = best, last = best + 1;
+    size_t first = tet, last = tet + 1;
     if (!m.cells.empty()) {
-      while (first > 0 && m.cells[first - 1] == m.cells[best]) --first;
-      while (last < m.size() && m.cells[last] == m.cells[best]) ++last;
+      while (first > 0 && m.cells[first - 1] == m.cells[tet]) --first;
+      while (last < m.size() && m.cells[last] == m.cells[tet]) ++last;
     }
     double least = -HUGE_VAL;
+    best = tet;
     for (size_t k = first; k < last; ++k) {
       double trial[4];
       weights(m, k, x, trial);
@@ -124,10 +143,7 @@ class CellField : public RayField {
       if (lowest > least) least = lowest, best = k, std::copy_n(trial, 4, w);
     }
     if (least == -HUGE_VAL) std::fill_n(w, 4, 0.25);
-    double sum = 0;
-    for (int k = 0; k < 4; ++k) w[k] = std::max(w[k], 0.0), sum += w[k];
-    for (int k = 0; k < 4; ++k) w[k] /= sum;
-    return best;
+    return least > -1e-3;
   }
 
   static void weights(const TetMesh& m, size_t tet, Vec3 x, double w[4]) {
@@ -142,9 +158,10 @@ class CellField : public RayField {
   const CellVolume& volume_;
   TetWalk walk_;
   CellCurve curve_;
-  double done_ = 0, to_ = 0;
+  double from_ = 0, done_ = 0, to_ = 0;
   std::vector<Stretch> ready_;
   size_t taken_ = 0;
+  std::vector<std::pair<double, uint64_t>> given_;  // where the stretches of this ray began, and their tetrahedra
   bool open_ = false;
   uint32_t cell_ = 0, cell_tet_ = 0;
   double cell_from_ = 0, cell_to_ = 0;

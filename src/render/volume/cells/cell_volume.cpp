@@ -8,6 +8,7 @@
 #include "data/memo.h"
 #include "filter/mesh/tessellate_cells.h"
 #include "filter/scalar/contour_amr.h"
+#include "render/volume/prepare_cast.h"
 
 namespace sg::volume {
 
@@ -15,18 +16,6 @@ namespace {
 
 constexpr double straight_enough = 1.0 / 1024;
 constexpr size_t most_parts = 4'000'000;
-
-const Field& field_of(const VolumeItem& item) {
-  const FieldSet& fields = item.data->fields();
-  const Field* f = item.field.empty() ? fields.active() : nullptr;
-  if (!f && item.field.empty()) fail_usage("the dataset has no scalar field to look through", "volume", "name one with field=");
-  if (!f) f = &fields.require(item.field, item.association);
-  if (f->association == Association::whole)
-    fail_usage(fmt::format("field '{}' belongs to the whole dataset", f->name), "volume", "a volume needs a point or cell field");
-  if (item.component >= f->components())
-    fail_usage(fmt::format("field '{}' has {} components, not component {}", f->name, f->components(), item.component), "volume");
-  return *f;
-}
 
 /// How many curved cells there are.
 size_t curved_cells(const DatasetPtr& data) {

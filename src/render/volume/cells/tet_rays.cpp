@@ -14,23 +14,26 @@ static_assert(block * block == TetPacket::lanes);
 
 }  // namespace
 
-TetMedium::TetMedium(std::span<const Medium::Knot> knots) {
-  const auto add = [&](float lo, float hi, const Optics& a, const Optics& b) {
-    Interval i{lo, hi, {a.tau, a.r, a.g, a.b}, {}, {}};
-    if (hi > lo) {
-      const float to[4] = {b.tau, b.r, b.g, b.b};
-      for (int k = 0; k < 4; ++k) i.slope[k] = (to[k] - i.at[k]) / (hi - lo);
-    }
-    intervals.push_back(i);
+TetMedium::TetMedium(const Medium& medium) {
+  const auto& lines = medium.lines();
+  const auto add = [&](float lo, float hi, const Optics& at, const Optics& slope) {
+    intervals.push_back({lo, hi, {at.tau, at.r, at.g, at.b}, {slope.tau, slope.r, slope.g, slope.b}, {}, {}});
   };
-  const Optics nothing{0, 0, 0, 0};
-  const float lo = knots.empty() ? 0 : knots.front().value, hi = knots.empty() ? 0 : knots.back().value;
-  const Optics low = knots.empty() ? nothing : knots.front().at, high = knots.empty() ? nothing : knots.back().at;
-  // Beyond the ends values are constant: from the place itself, so that no digits are lost.
-  add(-1e30f, lo, low, low);
-  for (size_t k = 0; k + 1 < knots.size(); ++k)
-    if (knots[k + 1].value > knots[k].value) add(knots[k].value, knots[k + 1].value, knots[k].at, knots[k + 1].at);
-  add(hi, 1e30f, high, high);
+  // Below the first line, which has no lower end of its own, things stay as they are where it was made.
+  const float lo = lines.front().origin, hi = lines.size() > 1 ? lines.back().lo : lo;
+  add(-1e30f, lo, lines.front().at, {0, 0, 0, 0});
+  for (const Medium::Line& l : lines) add(l.origin, std::min(l.hi, 1e30f), l.at, l.slope);
+
+  double sum[4] = {};
+  for (size_t i = 1; i < intervals.size(); ++i) {
+    Interval& v = intervals[i];
+    for (int k = 0; k < 4; ++k) v.before[k] = float(sum[k]);
+    if (v.hi >= 1e30f) break;
+    const double w = double(v.hi) - double(v.lo), tau = double(v.at[0]) + 0.5 * w * double(v.slope[0]);
+    sum[0] += w * tau;
+    for (int k = 1; k < 4; ++k)
+      sum[k] += w * (tau * (double(v.at[k]) + 0.5 * w * double(v.slope[k])) + w * w / 12 * double(v.slope[k]) * double(v.slope[0]));
+  }
 
   // Slice 0 lies below, the last one above, those between have equal width.
   slice_lo = lo, per_slice = hi > lo ? float(slices) / (hi - lo) : 0;
@@ -46,7 +49,7 @@ TetMedium::TetMedium(std::span<const Medium::Knot> knots) {
     const double end = s + 1 >= count ? 1e30 : double(lo) + (double(s) + 1) * width;
     for (size_t k = i; k < intervals.size() && double(intervals[k].lo) <= end; ++k) {
       const Interval& v = intervals[k];
-      lit[s] = lit[s] || v.at[0] > 0 || v.slope[0] > 0;
+      lit[s] = lit[s] || v.at[0] > 0 || v.slope[0] != 0;
     }
   }
   seen.assign(count + 1, 0);
@@ -66,9 +69,8 @@ bool TetRays::fits(const CellVolume& volume) {
   return true;
 }
 
-TetRays::TetRays(const CellVolume& volume, const Projection& projection, std::span<const Medium::Knot> knots, Context& context,
-                 float stop_below)
-    : volume_(volume), projection_(projection), medium_(knots), stop_below_(stop_below) {
+TetRays::TetRays(const CellVolume& volume, const Projection& projection, const Medium& medium, Context& context, float stop_below)
+    : volume_(volume), projection_(projection), medium_(medium), stop_below_(stop_below) {
   const TetMesh& mesh = *volume.mesh;
   const Vec3 eye = mesh.origin - projection.eye;
   const Vec3 at(dot(eye, projection.right), dot(eye, projection.up), dot(eye, projection.forward));

@@ -22,83 +22,150 @@ HWY_ATTR inline F turn(F ax, F ay, F bx, F by) { return hn::Sub(hn::Mul(ax, by),
 HWY_ATTR inline M to_float(hn::Mask<DI> m) { return hn::RebindMask(D(), m); }
 HWY_ATTR inline hn::Mask<DI> to_int(M m) { return hn::RebindMask(DI(), m); }
 
-/// 1 - exp(-x) for x >= 0.
-HWY_ATTR inline F fade(F x) {
+struct Faded {
+  F alpha, ratio, hidden;
+};
+
+/// Of an optical depth x >= 0: alpha = 1 - exp(-x), alpha / x, and hidden = alpha / 2 - alpha / x + exp(-x).
+HWY_ATTR inline Faded fade(F x) {
   const D d;
-  // Below 1/2 the series, which loses nothing for small x; else exp by powers of two.
-  const auto term = [&](F sum, float c) HWY_ATTR { return hn::Add(hn::Mul(sum, x), hn::Set(d, c)); };
-  F s = hn::Set(d, 1.0f / 40320);
-  s = term(hn::Neg(s), 1.0f / 5040), s = term(hn::Neg(s), 1.0f / 720), s = term(hn::Neg(s), 1.0f / 120);
-  s = term(hn::Neg(s), 1.0f / 24), s = term(hn::Neg(s), 1.0f / 6), s = term(hn::Neg(s), 0.5f), s = term(hn::Neg(s), 1.0f);
-  const F small = hn::Mul(s, x);
+  // Below 1/2 by their series, which lose nothing for small x; else exp by powers of two.
+  const auto term = [&](F sum, float c) HWY_ATTR { return hn::Sub(hn::Set(d, c), hn::Mul(sum, x)); };
+  F ratio = hn::Set(d, 1.0f / 5040);
+  ratio = term(ratio, 1.0f / 720), ratio = term(ratio, 1.0f / 120), ratio = term(ratio, 1.0f / 24), ratio = term(ratio, 1.0f / 6);
+  ratio = term(ratio, 0.5f), ratio = term(ratio, 1.0f);
+  F hidden = hn::Set(d, 1.0f / 80);
+  hidden = term(hidden, 1.0f / 24), hidden = hn::Mul(hn::Mul(term(hidden, 1.0f / 12), x), x);
+  Faded r{hn::Mul(ratio, x), ratio, hidden};
   const M large = hn::Gt(x, hn::Set(d, 0.5f));
-  if (hn::AllFalse(d, large)) return small;
+  if (hn::AllFalse(d, large)) return r;
   const DI di;
-  const F clamped = hn::Min(x, hn::Set(d, 87.0f));
-  const F y = hn::Mul(clamped, hn::Set(d, 1.44269504f));
+  const F one = hn::Set(d, 1.0f), y = hn::Mul(hn::Min(x, hn::Set(d, 87.0f)), hn::Set(d, 1.44269504f));
   const I whole = hn::ConvertTo(di, y);
   const F f = hn::Mul(hn::Sub(y, hn::ConvertTo(d, whole)), hn::Set(d, 0.69314718f));  // exp(-x) = 2^-whole exp(-f), 0 <= f < 0.7
   F e = hn::Set(d, 1.0f / 5040);
   for (float c : {1.0f / 720, 1.0f / 120, 1.0f / 24, 1.0f / 6, 0.5f, 1.0f, 1.0f}) e = hn::Sub(hn::Set(d, c), hn::Mul(e, f));
-  const F power = hn::BitCast(d, hn::ShiftLeft<23>(hn::Sub(hn::Set(di, 127), whole)));
-  return hn::IfThenElse(large, hn::Sub(hn::Set(d, 1.0f), hn::Mul(e, power)), small);
+  const F pass = hn::Mul(e, hn::BitCast(d, hn::ShiftLeft<23>(hn::Sub(hn::Set(di, 127), whole))));
+  const F alpha = hn::Sub(one, pass), share = hn::Div(alpha, hn::IfThenElse(large, x, one));
+  r.alpha = hn::IfThenElse(large, alpha, r.alpha), r.ratio = hn::IfThenElse(large, share, r.ratio);
+  r.hidden = hn::IfThenElse(large, hn::Add(hn::Sub(hn::Mul(alpha, hn::Set(d, 0.5f)), share), pass), r.hidden);
+  return r;
 }
 
 struct Colors {
   F r, g, b, pass;
 };
 
-/// The field goes from f0 to f1 over `length` in the lanes of `on`.
-HWY_ATTR inline void gather(const TetMedium& m, F f0, F f1, F length, I slice0, M on, Colors& sum) {
+/// The means of tau and of tau times colour over part of one line of the medium, and the colours at its ends.
+struct LinePart {
+  F tau, r, g, b, front[3], back[3];
+};
+
+HWY_ATTR inline F column(const TetMedium& m, I line, int k) {
+  const DI di;
+  constexpr int stride = int(sizeof(TetMedium::Interval) / 4);
+  static_assert(stride == 16);
+  return hn::GatherIndex(D(), reinterpret_cast<const float*>(m.intervals.data()) + k, hn::ShiftLeft<4>(line));
+}
+
+HWY_ATTR inline LinePart part_of_line(const TetMedium& m, I line, F lo, F from, F to) {
+  const D d;
+  const F x0 = hn::Sub(from, lo), x1 = hn::Sub(to, lo), middle = hn::Mul(hn::Set(d, 0.5f), hn::Add(x0, x1)), width = hn::Sub(to, from);
+  const F per_tau = column(m, line, 6), bend = hn::Mul(hn::Mul(hn::Mul(width, width), per_tau), hn::Set(d, 1.0f / 12));
+  LinePart p;
+  p.tau = hn::Max(hn::Add(column(m, line, 2), hn::Mul(per_tau, middle)), hn::Zero(d));
+  F* const mean[3] = {&p.r, &p.g, &p.b};
+  for (int k = 0; k < 3; ++k) {
+    const F c = column(m, line, 3 + k), slope = column(m, line, 7 + k);
+    p.front[k] = hn::Add(c, hn::Mul(slope, x0)), p.back[k] = hn::Add(c, hn::Mul(slope, x1));
+    *mean[k] = hn::Add(hn::Mul(p.tau, hn::Add(c, hn::Mul(slope, middle))), hn::Mul(slope, bend));
+  }
+  return p;
+}
+
+/// The line that a value belongs to when the field comes from (or goes to) higher values: a knot belongs to the side of the field.
+HWY_ATTR inline I line_of(const TetMedium& m, F f, I slice, M above, M on, F& lo, F& hi) {
+  const DI di;
+  I at = hn::GatherIndex(di, m.first.data(), slice);
+  for (;;) {
+    hi = column(m, at, 1);
+    const M past = hn::And(on, hn::Or(hn::Gt(f, hi), hn::And(above, hn::Eq(f, hi))));
+    if (hn::AllFalse(D(), past)) break;
+    at = hn::IfThenElse(to_int(past), hn::Add(at, hn::Set(di, 1)), at);
+  }
+  lo = column(m, at, 0);
+  return at;
+}
+
+/// Means over the field from f0 to f1.
+HWY_ATTR inline LinePart means(const TetMedium& m, F f0, F f1, I slice0, I slice1, M on) {
   const D d;
   const DI di;
   const F zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-  const auto* table = reinterpret_cast<const float*>(m.intervals.data());
-  constexpr int stride = int(sizeof(TetMedium::Interval) / 4);
   const F change = hn::Sub(f1, f0);
-  const M up = hn::Gt(change, zero), still = hn::Eq(change, zero);
-  const F per_change = hn::Div(one, hn::IfThenElse(still, one, change));
-  const auto column = [&](I interval, int k) HWY_ATTR { return hn::GatherIndex(d, table + k, hn::Mul(interval, hn::Set(di, stride))); };
+  const M down = hn::Lt(change, zero), up = hn::Gt(change, zero);
+  F lo0, hi0, lo1, hi1;
+  const I line0 = line_of(m, f0, slice0, hn::Not(down), on, lo0, hi0);
+  const I line1 = line_of(m, f1, slice1, hn::Not(up), on, lo1, hi1);
+  const M same = hn::Or(hn::Or(hn::Not(on), hn::Not(hn::Or(up, down))), to_float(hn::Eq(line0, line1)));
+  if (hn::AllTrue(d, same)) return part_of_line(m, line0, lo0, f0, f1);
 
-  // The interval that is entered: a knot belongs to the one in which the field goes on.
-  I at = hn::GatherIndex(di, m.first.data(), slice0);
-  for (;;) {
-    const F hi = column(at, 1);
-    const M past = hn::And(on, hn::Or(hn::Gt(f0, hi), hn::And(hn::Not(hn::And(hn::Not(up), hn::Not(still))), hn::Eq(f0, hi))));
-    if (hn::AllFalse(d, past)) break;
-    at = hn::IfThenElse(to_int(past), hn::Add(at, hn::Set(di, 1)), at);
-  }
-
-  F from = f0, part = zero;
-  for (;;) {
-    const F lo = column(at, 0), hi = column(at, 1);
-    const F ahead = hn::IfThenElse(up, hn::Min(f1, hi), hn::Max(f1, lo));
-    const M last = hn::Eq(ahead, f1);
-    const F end = hn::IfThenElse(last, one, hn::Mul(hn::Sub(ahead, f0), per_change));
-    const F h = hn::Mul(hn::Max(hn::Sub(end, part), zero), length);
-    const F x0 = hn::Sub(from, lo), x1 = hn::Sub(ahead, lo);
-    const F tau = column(at, 2), per_tau = column(at, 6);
-    const F tau0 = hn::Max(hn::Add(tau, hn::Mul(per_tau, x0)), zero), tau1 = hn::Max(hn::Add(tau, hn::Mul(per_tau, x1)), zero);
-    const F depth = hn::Mul(hn::Mul(hn::Set(d, 0.5f), h), hn::Add(tau0, tau1));
-    const M lit = hn::And(on, hn::Gt(depth, zero));
-    if (!hn::AllFalse(d, lit)) {
-      // C = c0 m + c1 (alpha - m), m = the mean of 1 - exp(-depth so far)
-      const F half = hn::Mul(hn::Mul(hn::Set(d, 0.125f), h), hn::Add(hn::Mul(hn::Set(d, 3.0f), tau0), tau1));
-      const F alpha = fade(depth);
-      const F m0 = hn::Mul(hn::Add(hn::Mul(hn::Set(d, 4.0f), fade(half)), alpha), hn::Set(d, 1.0f / 6));
-      const F share = hn::IfThenElseZero(lit, sum.pass);
-      const F w0 = hn::Mul(share, m0), w1 = hn::Mul(share, hn::Sub(alpha, m0)), w = hn::Add(w0, w1);
-      const F moment = hn::Add(hn::Mul(w0, x0), hn::Mul(w1, x1));  // colours are linear: w0 c0 + w1 c1 = w c(lo) + moment * slope
-      sum.r = hn::Add(sum.r, hn::Add(hn::Mul(w, column(at, 3)), hn::Mul(moment, column(at, 7))));
-      sum.g = hn::Add(sum.g, hn::Add(hn::Mul(w, column(at, 4)), hn::Mul(moment, column(at, 8))));
-      sum.b = hn::Add(sum.b, hn::Add(hn::Mul(w, column(at, 5)), hn::Mul(moment, column(at, 9))));
-      sum.pass = hn::Sub(sum.pass, hn::Mul(share, alpha));
+  // To the end of the first line, over whole lines, and from the beginning of the last one.
+  const F leave = hn::IfThenElse(same, f1, hn::IfThenElse(up, hi0, lo0)), enter = hn::IfThenElse(up, lo1, hi1);
+  LinePart a = part_of_line(m, line0, lo0, f0, leave);
+  const LinePart b = part_of_line(m, line1, lo1, enter, f1);
+  const F per = hn::Div(one, hn::IfThenElse(same, one, change));
+  const F share0 = hn::IfThenElse(same, one, hn::Mul(hn::Sub(leave, f0), per));
+  const F share1 = hn::IfThenElseZero(hn::Not(same), hn::Mul(hn::Sub(f1, enter), per));
+  // Sums stand for the lines before a line: up they are those before line1 less those before line0 + 1, down the other way round.
+  const I first = hn::IfThenElse(to_int(up), hn::Add(line0, hn::Set(di, 1)), line0);
+  const I last = hn::IfThenElse(to_int(up), line1, hn::Add(line1, hn::Set(di, 1)));
+  const M more = hn::AndNot(same, to_float(hn::Ne(first, last)));
+  const bool any = !hn::AllFalse(d, more);
+  const auto total = [&](F x, F y, int k) HWY_ATTR {
+    F sum = hn::Add(hn::Mul(share0, x), hn::IfThenElseZero(hn::Not(same), hn::Mul(share1, y)));
+    if (any) {
+      const F whole = hn::Sub(column(m, last, k), column(m, first, k));
+      sum = hn::Add(sum, hn::IfThenElseZero(more, hn::Mul(whole, per)));
     }
-    on = hn::AndNot(last, on);
-    if (hn::AllFalse(d, on)) return;
-    from = ahead, part = end;
-    const I step = hn::IfThenElse(to_int(up), hn::Set(di, 1), hn::Set(di, -1));
-    at = hn::IfThenElse(to_int(on), hn::Add(at, step), at);
+    return sum;
+  };
+  LinePart r;
+  r.tau = total(a.tau, b.tau, 10), r.r = total(a.r, b.r, 11), r.g = total(a.g, b.g, 12), r.b = total(a.b, b.b, 13);
+  for (int k = 0; k < 3; ++k) r.front[k] = a.front[k], r.back[k] = hn::IfThenElse(same, a.back[k], b.back[k]);
+  return r;
+}
+
+/// Puts one segment behind what is there: C = mean alpha - change hidden, exact for constant tau.
+HWY_ATTR inline void behind(const LinePart& p, F length, M on, Colors& sum) {
+  const D d;
+  const F depth = hn::Mul(p.tau, length);
+  const M lit = hn::And(on, hn::Gt(depth, hn::Zero(d)));
+  const Faded f = fade(hn::IfThenElseZero(lit, depth));
+  const F share = hn::IfThenElseZero(lit, sum.pass), gain = hn::Mul(hn::Mul(share, f.ratio), length), loss = hn::Mul(share, f.hidden);
+  F* const to[3] = {&sum.r, &sum.g, &sum.b};
+  const F* const mean[3] = {&p.r, &p.g, &p.b};
+  for (int k = 0; k < 3; ++k) *to[k] = hn::Add(*to[k], hn::Sub(hn::Mul(gain, *mean[k]), hn::Mul(loss, hn::Sub(p.back[k], p.front[k]))));
+  sum.pass = hn::Sub(sum.pass, hn::Mul(share, f.alpha));
+}
+
+/// The field goes from f0 to f1 over `length` in the lanes of `on`.
+template <class Slice>
+HWY_ATTR inline void gather(const TetMedium& m, F f0, F f1, F length, I slice0, I slice1, const Slice& slice, M on, Colors& sum) {
+  const D d;
+  const LinePart all = means(m, f0, f1, slice0, slice1, on);
+  // Deep segments in parts, so that the order of colours within them counts.
+  const F parts = hn::Min(hn::Ceil(hn::Mul(hn::Mul(all.tau, length), hn::Set(d, 2.0f))), hn::Set(d, float(TetMedium::most_parts)));
+  const M deep = hn::And(on, hn::And(hn::Gt(parts, hn::Set(d, 1.0f)), hn::Ne(f0, f1)));
+  behind(all, length, hn::AndNot(deep, on), sum);
+  if (hn::AllFalse(d, deep)) return;
+  const F per = hn::Div(hn::Set(d, 1.0f), hn::Max(parts, hn::Set(d, 1.0f))), step = hn::Mul(hn::Sub(f1, f0), per);
+  F from = f0, number = hn::Set(d, 1.0f);
+  for (M more = deep; !hn::AllFalse(d, more);) {
+    const M last = hn::Ge(number, parts);
+    const F to = hn::IfThenElse(last, f1, hn::Add(f0, hn::Mul(step, number)));
+    behind(means(m, from, to, slice(from), slice(to), more), hn::Mul(length, per), more, sum);
+    more = hn::AndNot(last, more), from = to, number = hn::Add(number, hn::Set(d, 1.0f));
   }
 }
 
@@ -207,7 +274,7 @@ HWY_ATTR void walk_lanes(const TetTables& tables, TetPacket& p, size_t lane) {
                            hn::GatherIndex(di, medium.seen.data(), hn::Min(slice0, slice1)));
     const M lit = hn::And(some, to_float(hn::Gt(seen, hn::Zero(di))));
     if (!hn::AllFalse(d, lit)) {
-      gather(medium, g0, g1, hn::Mul(hn::Sub(to, from), length), slice0, lit, sum);
+      gather(medium, g0, g1, hn::Mul(hn::Sub(to, from), length), slice0, slice1, slice, lit, sum);
       const M now = hn::And(hn::And(lit, hn::Lt(sum.pass, hn::Set(d, 0.5f))), hn::Ne(half, half));
       half = hn::IfThenElse(now, to, half);
     }

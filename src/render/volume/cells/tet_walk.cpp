@@ -47,6 +47,7 @@ void TetWalk::start(Vec3 origin, Vec3 direction, double to) {
     return to;
   });
   std::sort(hits_.begin(), hits_.end(), [](const Hit& a, const Hit& b) { return a.t < b.t || (a.t == b.t && a.face < b.face); });
+  entry_ = hits_.empty() ? HUGE_VAL : hits_.front().t;
 }
 
 bool TetWalk::begin_path() {

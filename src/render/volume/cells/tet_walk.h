@@ -37,6 +37,8 @@ class TetWalk {
   void start(Vec3 origin, Vec3 direction, double to);
   /// The next piece, near ones first where cells do not overlap; false when there is no more before `to`.
   bool next(Piece& piece);
+  /// Where the line meets the mesh for the first time; HUGE_VAL when it does not before `to`.
+  double entry() const { return entry_; }
   /// The ray's origin relative to the mesh's, and its direction.
   Vec3 origin() const { return origin_; }
   Vec3 direction() const { return direction_; }
@@ -61,7 +63,7 @@ class TetWalk {
   const CellVolume& volume_;
   const TetMesh& mesh_;
   Vec3 origin_, direction_, across_[2];
-  double to_ = 0, t_ = 0;
+  double to_ = 0, t_ = 0, entry_ = 0;
   float f_ = 0;
   int32_t tet_ = -1;
   size_t steps_ = 0;
