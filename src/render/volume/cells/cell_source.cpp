@@ -2,6 +2,7 @@
 #include "render/volume/cells/cell_source.h"
 
 #include "render/volume/cells/cell_value.h"
+#include "render/volume/cells/eye_space.h"
 #include "render/volume/cells/tet_walk.h"
 
 namespace sg::volume {
@@ -138,20 +139,12 @@ class CellField : public RayField {
     best = tet;
     for (size_t k = first; k < last; ++k) {
       double trial[4];
-      weights(m, k, x, trial);
+      tet_weights(m, k, x, trial);
       const double lowest = std::min(std::min(trial[0], trial[1]), std::min(trial[2], trial[3]));
       if (lowest > least) least = lowest, best = k, std::copy_n(trial, 4, w);
     }
     if (least == -HUGE_VAL) std::fill_n(w, 4, 0.25);
     return least > -1e-3;
-  }
-
-  static void weights(const TetMesh& m, size_t tet, Vec3 x, double w[4]) {
-    const auto& v = m.corners[tet];
-    const Vec3 a = m.at[v[0]], p = m.at[v[1]] - a, q = m.at[v[2]] - a, r = m.at[v[3]] - a, d = x - a;
-    const double per = 1 / dot(p, cross(q, r));
-    w[1] = dot(d, cross(q, r)) * per, w[2] = dot(p, cross(d, r)) * per, w[3] = dot(p, cross(q, d)) * per;
-    w[0] = 1 - w[1] - w[2] - w[3];
   }
 
   const CellSource& source_;

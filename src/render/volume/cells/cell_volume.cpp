@@ -223,4 +223,16 @@ CellVolume make_cell_volume(const VolumeItem& item, Context& context) {
   return v;
 }
 
+Medium make_medium(const VolumeItem& item, const CellVolume& volume) {
+  const double diagonal = item.data->bounds().diagonal();
+  Medium::Plan plan;
+  plan.unit = item.unit_distance > 0 ? item.unit_distance : 0.01 * diagonal;
+  const Range& r = volume.range;
+  plan.lo = r.empty() ? item.color.lo : r.lo + double(volume.base), plan.hi = r.empty() ? item.color.hi : r.hi + double(volume.base);
+  plan.base = volume.base;
+  plan.accuracy = 0.125 * item.sampling.tolerance, plan.faint = 0.1 / diagonal;
+  plan.most_tau = 1000 / (volume.mesh->edge > 0 ? volume.mesh->edge : diagonal);
+  return Medium(item.color, item.opacity, plan);
+}
+
 }  // namespace sg::volume

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "render/volume/cells/tet_mesh.h"
+#include "render/volume/optics/medium.h"
 #include "scene/scene.h"
 
 namespace sg::volume {
@@ -30,5 +31,8 @@ struct CellVolume {
 /// planes through the cells around each corner (see contour_amr.h); others are constant in each cell. Lattices are hexahedra.
 /// Throws Error(usage) for what has no volume.
 CellVolume make_cell_volume(const VolumeItem& item, Context& context);
+
+/// Of a composite volume, as prepare_cast makes it.
+Medium make_medium(const VolumeItem& item, const CellVolume& volume);
 
 }  // namespace sg::volume

@@ -70,75 +70,14 @@ bool TetRays::fits(const CellVolume& volume) {
 }
 
 TetRays::TetRays(const CellVolume& volume, const Projection& projection, const Medium& medium, Context& context, float stop_below)
-    : volume_(volume), projection_(projection), medium_(medium), stop_below_(stop_below) {
-  const TetMesh& mesh = *volume.mesh;
-  const Vec3 eye = mesh.origin - projection.eye;
-  const Vec3 at(dot(eye, projection.right), dot(eye, projection.up), dot(eye, projection.forward));
-  middle_depth_ = at.z;
-  eye_.resize(4 * mesh.at.size());
-  parallel_for(
-      mesh.at.size(), 16384,
-      [&](size_t begin, size_t end) {
-        for (size_t v = begin; v < end; ++v) {
-          const Vec3 p = mesh.at[v];
-          float* e = &eye_[4 * v];
-          e[0] = float(dot(p, projection.right) + at.x), e[1] = float(dot(p, projection.up) + at.y),
-          e[2] = float(dot(p, projection.forward));
-          e[3] = volume.by_cell ? 0 : volume.values[v];
-        }
-      },
-      &context);
-  bin();
-}
-
-/// Faces of the boundary by the tiles that their shadows may touch; those through the plane of the eye by all.
-void TetRays::bin() {
+    : volume_(volume), projection_(projection), medium_(medium), stop_below_(stop_below), eye_(volume, projection, context) {
   across_ = (projection_.width + tile - 1) / tile, down_ = (projection_.height + tile - 1) / tile;
-  const TetMesh& mesh = *volume_.mesh;
-  struct Box {
-    int x0, y0, x1, y1;
-  };
-  std::vector<Box> boxes(mesh.boundary.size());
-  parallel_for(boxes.size(), 4096, [&](size_t begin, size_t end) {
-    for (size_t f = begin; f < end; ++f) {
-      double lo[2] = {HUGE_VAL, HUGE_VAL}, hi[2] = {-HUGE_VAL, -HUGE_VAL};
-      int before = 0, behind = 0;
-      for (uint32_t v : mesh.boundary[f].v) {
-        const float* e = &eye_[4 * v];
-        const double z = double(e[2]) + middle_depth_, size = std::abs(double(e[0])) + std::abs(double(e[1])) + 1e-30;
-        const double s = projection_.parallel ? projection_.scale : projection_.scale / z;
-        // Near the eye's plane a shadow has no end.
-        before += z > 1e-4 * size, behind += z < -1e-4 * size;
-        const double p[2] = {0.5 * projection_.width + s * double(e[0]), 0.5 * projection_.height + projection_.shift_y - s * double(e[1])};
-        for (int a = 0; a < 2; ++a) lo[a] = std::min(lo[a], p[a]), hi[a] = std::max(hi[a], p[a]);
-      }
-      const bool whole = !projection_.parallel && before < 3 && behind < 3;
-      // A hundredth of a pixel is far more than floats leave uncertain.
-      const auto tile_of = [&](double p, int count) { return int(std::floor(std::clamp(p / tile, -1.0, double(count)))); };
-      boxes[f] = whole ? Box{0, 0, across_ - 1, down_ - 1}
-                       : Box{std::max(tile_of(lo[0] - 0.6, across_), 0), std::max(tile_of(lo[1] - 0.6, down_), 0),
-                             std::min(tile_of(hi[0] + 0.6, across_), across_ - 1), std::min(tile_of(hi[1] + 0.6, down_), down_ - 1)};
-    }
+  const auto& faces = volume.mesh->boundary;
+  std::vector<TileBox> boxes(faces.size());
+  parallel_for(faces.size(), 4096, [&](size_t begin, size_t end) {
+    for (size_t f = begin; f < end; ++f) boxes[f] = eye_.tiles(faces[f].v, tile, across_, down_);
   });
-  std::vector<size_t> count(size_t(across_) * size_t(down_) + 1);
-  const auto each = [&](auto&& act) {
-    for (size_t f = 0; f < boxes.size(); ++f)
-      for (int y = boxes[f].y0; y <= boxes[f].y1; ++y)
-        for (int x = boxes[f].x0; x <= boxes[f].x1; ++x) act(size_t(y) * size_t(across_) + size_t(x), f);
-  };
-  each([&](size_t t, size_t) { ++count[t]; });
-  faces_.resize(exclusive_scan(count));
-  first_face_.assign(count.begin(), count.end());
-  each([&](size_t t, size_t f) { faces_[count[t]++] = uint32_t(f); });
-}
-
-void TetRays::place(TetPacket& p, int lane, double px, double py) const {
-  const double sx = (px - 0.5 * projection_.width) / projection_.scale;
-  const double sy = -(py - 0.5 * projection_.height - projection_.shift_y) / projection_.scale;
-  const bool flat = projection_.parallel;
-  p.dx[lane] = flat ? 0 : float(sx), p.dy[lane] = flat ? 0 : float(sy);
-  p.x0[lane] = float(flat ? sx : sx * middle_depth_), p.y0[lane] = float(flat ? sy : sy * middle_depth_);
-  p.length[lane] = flat ? 1 : float(std::sqrt(1 + sx * sx + sy * sy));
+  bin_boxes(boxes, across_, down_, first_face_, faces_);
 }
 
 /// Where each pixel's line crosses the boundary, by the same tests as the walk.
@@ -147,12 +86,12 @@ void TetRays::find_hits(int x0, int y0, int width, int height, Scratch& s) const
   s.found.clear();
   s.first.fill(0);
   // Lines of the tile: x depends on the column alone, y on the row.
-  TetPacket columns, rows;
-  for (int k = 0; k < tile; ++k) place(columns, k, x0 + k + 0.5, 0), place(rows, k, 0, y0 + k + 0.5);
+  RayLines columns, rows;
+  for (int k = 0; k < tile; ++k) eye_.line(columns, k, x0 + k + 0.5, 0), eye_.line(rows, k, 0, y0 + k + 0.5);
   const size_t t = size_t(y0 / tile) * size_t(across_) + size_t(x0 / tile);
   for (size_t i = first_face_[t]; i < first_face_[t + 1]; ++i) {
     const auto& v = mesh.boundary[faces_[i]].v;
-    const float *a = &eye_[4 * v[0]], *b = &eye_[4 * v[1]], *c = &eye_[4 * v[2]];
+    const float *a = eye_[v[0]], *b = eye_[v[1]], *c = eye_[v[2]];
     float x[3][tile], y[3][tile];
     int begin = width, end = 0, top = height, bottom = 0;
     for (int k = 0; k < width; ++k) {
@@ -201,7 +140,7 @@ void TetRays::draw(int x0, int y0, int width, int height, const float* limit, Pi
   find_hits(x0, y0, width, height, s);
   const TetMesh& mesh = *volume_.mesh;
   const TetTables tables{
-      mesh.links.data(), eye_.data(), volume_.by_cell ? volume_.values.data() : nullptr, mesh.cells.empty() ? nullptr : mesh.cells.data(),
+      mesh.links.data(), eye_[0],    volume_.by_cell ? volume_.values.data() : nullptr, mesh.cells.empty() ? nullptr : mesh.cells.data(),
       &medium_,          stop_below_};
   constexpr uint8_t gone = 2;  // in Hit::used: this end of a path is done with
   TetPacket p;
@@ -211,16 +150,18 @@ void TetRays::draw(int x0, int y0, int width, int height, const float* limit, Pi
       const auto pixel_of = [&](int lane) { return size_t((by + lane / block) * tile + bx + lane % block); };
       const auto inside = [&](int lane) { return bx + lane % block < width && by + lane / block < height; };
       for (int lane = 0; lane < TetPacket::lanes; ++lane) {
-        place(p, lane, x0 + bx + lane % block + 0.5, y0 + by + lane / block + 0.5);
+        eye_.line(p, lane, x0 + bx + lane % block + 0.5, y0 + by + lane / block + 0.5);
+        p.length[lane] = eye_.length(p, lane, p, lane);
         p.r[lane] = p.g[lane] = p.b[lane] = 0, p.pass[lane] = 1, p.half[lane] = NAN, p.last[lane] = -1;
-        p.done[lane] = float(projection_.near_plane - middle_depth_);
-        p.limit[lane] = float(projection_.far_plane - middle_depth_);
+        p.done[lane] = float(projection_.near_plane - eye_.middle_depth());
+        p.limit[lane] = float(projection_.far_plane - eye_.middle_depth());
         if (!inside(lane)) {
           p.limit[lane] = p.done[lane];
           continue;
         }
         if (limit)
-          p.limit[lane] = std::min(p.limit[lane], float(double(limit[(by + lane / block) * width + bx + lane % block]) - middle_depth_));
+          p.limit[lane] =
+              std::min(p.limit[lane], float(double(limit[(by + lane / block) * width + bx + lane % block]) - eye_.middle_depth()));
       }
       for (;;) {
         bool more = false;
@@ -257,7 +198,7 @@ void TetRays::draw(int x0, int y0, int width, int height, const float* limit, Pi
         if (inside(lane)) {
           Pixel& o = out[(by + lane / block) * width + bx + lane % block];
           o = Pixel{};
-          if (any) o = {p.r[lane], p.g[lane], p.b[lane], p.pass[lane], float(double(p.half[lane]) + middle_depth_)};
+          if (any) o = {p.r[lane], p.g[lane], p.b[lane], p.pass[lane], float(double(p.half[lane]) + eye_.middle_depth())};
         }
     }
 }

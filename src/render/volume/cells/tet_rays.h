@@ -8,7 +8,7 @@
 #pragma once
 #include <vector>
 
-#include "render/volume/cells/cell_volume.h"
+#include "render/volume/cells/eye_space.h"
 #include "render/volume/optics/medium.h"
 
 namespace sg::volume {
@@ -30,10 +30,7 @@ struct TetMedium {
 };
 
 /// 16 rays: what they have gathered, and where each of them is.
-struct alignas(64) TetPacket {
-  static constexpr int lanes = 16;
-  // The line of a ray: x = (eye x - x0) - dx * depth, the same for y, is (0, 0) on it.
-  float x0[lanes], y0[lanes], dx[lanes], dy[lanes];
+struct alignas(64) TetPacket : RayLines {
   float length[lanes];              ///< ray length per depth
   float done[lanes], limit[lanes];  ///< depths: what lies before the one is drawn, beyond the other hidden
   int32_t tet[lanes];               ///< -1: this lane has nothing to do
@@ -82,15 +79,11 @@ class TetRays {
   };
   struct Scratch;
   void find_hits(int x0, int y0, int width, int height, Scratch& s) const;
-  void place(TetPacket& packet, int lane, double px, double py) const;
-  void bin();
-
   const CellVolume& volume_;
   const Projection projection_;
   TetMedium medium_;
   float stop_below_;
-  double middle_depth_ = 0;
-  Plane<float> eye_;
+  EyeSpace eye_;
   int across_ = 0, down_ = 0;
   std::vector<uint32_t> first_face_, faces_;  // boundary faces by tile
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The walk of 16 rays through tetrahedra, and what they gather (no fused multiply-add: the same bits everywhere).
-#include "render/volume/cells/tet_rays.h"
+#include "render/volume/cells/project.h"
 #include "render/volume/cells/tet_walk.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -83,6 +83,25 @@ HWY_ATTR inline LinePart part_of_line(const TetMedium& m, I line, F lo, F from, 
   return p;
 }
 
+/// Slices of the value.
+struct Slice {
+  const TetMedium& m;
+  HWY_ATTR I operator()(F f) const {
+    const D d;
+    const DI di;
+    const F at = hn::Mul(hn::Sub(f, hn::Set(d, m.slice_lo)), hn::Set(d, m.per_slice)), most = hn::Set(d, 1e6f);
+    const I s = hn::Add(hn::ConvertTo(di, hn::Min(hn::Max(at, hn::Set(d, -1.0f)), most)), hn::Set(di, 1));
+    const I last = hn::Set(di, int32_t(m.first.size()) - 1);
+    return hn::Min(hn::IfThenElse(to_int(hn::Lt(at, hn::Zero(d))), hn::Zero(di), s), last);
+  }
+  /// Is there anything to see between two slices?
+  HWY_ATTR M lit(I a, I b) const {
+    const DI di;
+    const I seen = hn::Sub(hn::GatherIndex(di, m.seen.data() + 1, hn::Max(a, b)), hn::GatherIndex(di, m.seen.data(), hn::Min(a, b)));
+    return to_float(hn::Gt(seen, hn::Zero(di)));
+  }
+};
+
 /// The line that a value belongs to when the field comes from (or goes to) higher values: a knot belongs to the side of the field.
 HWY_ATTR inline I line_of(const TetMedium& m, F f, I slice, M above, M on, F& lo, F& hi) {
   const DI di;
@@ -150,7 +169,6 @@ HWY_ATTR inline void behind(const LinePart& p, F length, M on, Colors& sum) {
 }
 
 /// The field goes from f0 to f1 over `length` in the lanes of `on`.
-template <class Slice>
 HWY_ATTR inline void gather(const TetMedium& m, F f0, F f1, F length, I slice0, I slice1, const Slice& slice, M on, Colors& sum) {
   const D d;
   const LinePart all = means(m, f0, f1, slice0, slice1, on);
@@ -211,7 +229,6 @@ HWY_ATTR void walk_lanes(const TetTables& tables, TetPacket& p, size_t lane) {
   Colors sum{hn::Load(d, p.r + lane), hn::Load(d, p.g + lane), hn::Load(d, p.b + lane), hn::Load(d, p.pass + lane)};
   const auto* links = reinterpret_cast<const int32_t*>(tables.links);
   const TetMedium& medium = *tables.medium;
-  const I last_slice = hn::Set(di, int32_t(medium.first.size()) - 1);
 
   const auto corner = [&](I id) HWY_ATTR {
     const I at = hn::ShiftLeft<2>(id);
@@ -230,12 +247,7 @@ HWY_ATTR void walk_lanes(const TetTables& tables, TetPacket& p, size_t lane) {
     f = hn::Add(hn::Add(hn::Mul(u, a.f), hn::Mul(v, b.f)), hn::Mul(w, c.f));
     return hn::Add(hn::Add(hn::Mul(u, a.z), hn::Mul(v, b.z)), hn::Mul(w, c.z));
   };
-  const auto slice = [&](F f) HWY_ATTR {
-    const F at = hn::Mul(hn::Sub(f, hn::Set(d, medium.slice_lo)), hn::Set(d, medium.per_slice));
-    const F most = hn::Set(d, 1e6f);
-    const I s = hn::Add(hn::ConvertTo(di, hn::Min(hn::Max(at, hn::Set(d, -1.0f)), most)), hn::Set(di, 1));
-    return hn::Min(hn::Max(hn::IfThenElse(to_int(hn::Lt(at, zero)), hn::Zero(di), s), hn::Zero(di)), last_slice);
-  };
+  const Slice slice{medium};
 
   Corner a = corner(hn::Load(di, p.id[0] + lane)), b = corner(hn::Load(di, p.id[1] + lane)), c = corner(hn::Load(di, p.id[2] + lane));
   F f, z = cross_at(a, b, c, f);
@@ -270,9 +282,7 @@ HWY_ATTR void walk_lanes(const TetTables& tables, TetPacket& p, size_t lane) {
       g1 = hn::IfThenElse(hn::Eq(to, z1), f1, hn::Add(f, hn::Mul(hn::Sub(to, z), per)));
     }
     const I slice0 = slice(g0), slice1 = slice(g1);
-    const I seen = hn::Sub(hn::GatherIndex(di, medium.seen.data() + 1, hn::Max(slice0, slice1)),
-                           hn::GatherIndex(di, medium.seen.data(), hn::Min(slice0, slice1)));
-    const M lit = hn::And(some, to_float(hn::Gt(seen, hn::Zero(di))));
+    const M lit = hn::And(some, slice.lit(slice0, slice1));
     if (!hn::AllFalse(d, lit)) {
       gather(medium, g0, g1, hn::Mul(hn::Sub(to, from), length), slice0, slice1, slice, lit, sum);
       const M now = hn::And(hn::And(lit, hn::Lt(sum.pass, hn::Set(d, 0.5f))), hn::Ne(half, half));
@@ -295,12 +305,75 @@ HWY_ATTR void walk(const TetTables& tables, TetPacket& packet) {
   for (size_t lane = 0; lane < size_t(TetPacket::lanes); lane += hn::Lanes(D())) walk_lanes(tables, packet, lane);
 }
 
+HWY_ATTR void put(const TetMedium& medium, SegmentPacket& p) {
+  const D d;
+  const Slice slice{medium};
+  for (size_t lane = 0; lane < size_t(SegmentPacket::lanes); lane += hn::Lanes(d)) {
+    const F length = hn::Load(d, p.length + lane), f0 = hn::Load(d, p.front + lane), f1 = hn::Load(d, p.back + lane);
+    const I slice0 = slice(f0), slice1 = slice(f1);
+    const M lit = hn::And(hn::Gt(length, hn::Zero(d)), slice.lit(slice0, slice1));
+    if (hn::AllFalse(d, lit)) continue;
+    Colors sum{hn::Load(d, p.r + lane), hn::Load(d, p.g + lane), hn::Load(d, p.b + lane), hn::Load(d, p.pass + lane)};
+    gather(medium, f0, f1, length, slice0, slice1, slice, lit, sum);
+    hn::Store(sum.r, d, p.r + lane), hn::Store(sum.g, d, p.g + lane), hn::Store(sum.b, d, p.b + lane),
+        hn::Store(sum.pass, d, p.pass + lane);
+  }
+}
+
+HWY_ATTR uint32_t cut(const ColumnTet& t, const float y[4], RowCut& out) {
+  const D d;
+  constexpr int faces[4][3] = {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}};
+  uint32_t bits = 0;
+  for (size_t lane = 0; lane < size_t(ColumnTet::lanes); lane += hn::Lanes(d)) {
+    Corner v[4];
+    for (int k = 0; k < 4; ++k) v[k].x = hn::Load(d, t.x[k] + lane), v[k].y = hn::Set(d, y[k]);
+    M left_of[4][4];
+    F size[4][4];
+    for (int a = 0; a < 4; ++a)
+      for (int b = a + 1; b < 4; ++b) {
+        left_of[a][b] = left(v[a], v[b]);
+        size[a][b] = hn::Abs(turn(v[a].x, v[a].y, v[b].x, v[b].y));
+      }
+    F enter = hn::Set(d, 1e30f), leave = hn::Set(d, -1e30f), front = hn::Zero(d), back = hn::Zero(d);
+    M any = hn::Lt(enter, leave);
+    for (const auto& [a, b, c] : faces) {
+      const M ab = left_of[a][b], bc = left_of[b][c], ac = left_of[a][c];
+      const M in = hn::Or(hn::AndNot(ac, hn::And(ab, bc)), hn::And(ac, hn::Not(hn::Or(ab, bc))));
+      if (hn::AllFalse(d, in)) continue;
+      const F all = hn::Add(hn::Add(size[b][c], size[a][c]), size[a][b]);
+      const M some = hn::Gt(all, hn::Set(d, 1e-37f));
+      const F per = hn::Div(hn::Set(d, 1.0f), hn::IfThenElse(some, all, hn::Set(d, 1.0f))), third = hn::Set(d, 1.0f / 3);
+      const F wa = hn::IfThenElse(some, hn::Mul(size[b][c], per), third), wb = hn::IfThenElse(some, hn::Mul(size[a][c], per), third);
+      const F wc = hn::IfThenElse(some, hn::Mul(size[a][b], per), third);
+      const auto mix = [&](const float* q) HWY_ATTR {
+        return hn::Add(hn::Add(hn::Mul(wa, hn::Set(d, q[a])), hn::Mul(wb, hn::Set(d, q[b]))), hn::Mul(wc, hn::Set(d, q[c])));
+      };
+      const F z = mix(t.z), f = mix(t.f);
+      const M nearer = hn::And(in, hn::Lt(z, enter)), farther = hn::And(in, hn::Gt(z, leave));
+      enter = hn::IfThenElse(nearer, z, enter), front = hn::IfThenElse(nearer, f, front);
+      leave = hn::IfThenElse(farther, z, leave), back = hn::IfThenElse(farther, f, back);
+      any = hn::Or(any, in);
+    }
+    if (hn::AllFalse(d, any)) continue;
+    hn::Store(enter, d, out.enter + lane), hn::Store(leave, d, out.leave + lane);
+    hn::Store(front, d, out.front + lane), hn::Store(back, d, out.back + lane);
+    uint8_t mask[8] = {};
+    hn::StoreMaskBits(d, any, mask);
+    bits |= (uint32_t(mask[0]) | uint32_t(mask[1]) << 8) << lane;
+  }
+  return bits;
+}
+
 }  // namespace sg::volume::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace sg::volume {
 HWY_EXPORT(walk);
+HWY_EXPORT(put);
+HWY_EXPORT(cut);
 void walk_tets(const TetTables& tables, TetPacket& packet) { HWY_DYNAMIC_DISPATCH(walk)(tables, packet); }
+void put_segments(const TetMedium& medium, SegmentPacket& packet) { HWY_DYNAMIC_DISPATCH(put)(medium, packet); }
+uint32_t cut_row(const ColumnTet& tet, const float y[4], RowCut& out) { return HWY_DYNAMIC_DISPATCH(cut)(tet, y, out); }
 }  // namespace sg::volume
 #endif
