@@ -4,7 +4,7 @@
 // All pixels of a block walk at the same time, one lane each, as TetWalk does it, in floats relative to the eye and the middle depth of
 // the mesh. In a tetrahedron the value is linear; its optical depth D and its light without attenuation come exactly from integrals of
 // the medium over the value, in constant time. Attenuation within a segment is exact for colours that change evenly with the depth;
-// a segment's colour is wrong by less than D^2/12 of its change of colour (at most 1/50: deeper ones are cut into parts, 8 at most).
+// segments are cut into parts (16 at most) until what else there may be is below D^2/12 of the change of colour = 1/3000.
 #pragma once
 #include <vector>
 
@@ -20,7 +20,7 @@ struct TetMedium {
   struct alignas(64) Interval {
     float lo, hi, at[4], slope[4], before[4], unused[2];
   };
-  static constexpr int most_parts = 8;
+  static constexpr int most_parts = 16;
   std::vector<Interval> intervals;
   std::vector<int32_t> first;  ///< per slice of the value: the interval of the slice before
   std::vector<int32_t> seen;   ///< slices before this one in which tau is not zero

@@ -62,7 +62,6 @@ struct LinePart {
 };
 
 HWY_ATTR inline F column(const TetMedium& m, I line, int k) {
-  const DI di;
   constexpr int stride = int(sizeof(TetMedium::Interval) / 4);
   static_assert(stride == 16);
   return hn::GatherIndex(D(), reinterpret_cast<const float*>(m.intervals.data()) + k, hn::ShiftLeft<4>(line));
@@ -172,8 +171,11 @@ HWY_ATTR inline void behind(const LinePart& p, F length, M on, Colors& sum) {
 HWY_ATTR inline void gather(const TetMedium& m, F f0, F f1, F length, I slice0, I slice1, const Slice& slice, M on, Colors& sum) {
   const D d;
   const LinePart all = means(m, f0, f1, slice0, slice1, on);
-  // Deep segments in parts, so that the order of colours within them counts.
-  const F parts = hn::Min(hn::Ceil(hn::Mul(hn::Mul(all.tau, length), hn::Set(d, 2.0f))), hn::Set(d, float(TetMedium::most_parts)));
+  // Deep segments in parts, so that the order of colours within them counts: (D / n)^2 / 12 of the change stays below 1/3000.
+  F bend = hn::Set(d, 1.0f / 256);
+  for (int k = 0; k < 3; ++k) bend = hn::Max(bend, hn::Abs(hn::Sub(all.back[k], all.front[k])));
+  const F fine = hn::Mul(hn::Set(d, 16.0f), hn::Sqrt(bend));
+  const F parts = hn::Min(hn::Ceil(hn::Mul(hn::Mul(all.tau, length), fine)), hn::Set(d, float(TetMedium::most_parts)));
   const M deep = hn::And(on, hn::And(hn::Gt(parts, hn::Set(d, 1.0f)), hn::Ne(f0, f1)));
   behind(all, length, hn::AndNot(deep, on), sum);
   if (hn::AllFalse(d, deep)) return;
