@@ -173,4 +173,6 @@ std::unique_ptr<RaySource> cell_source(const VolumeItem& item, Context& context)
   return source;
 }
 
+const CellVolume& cell_volume_of(const RaySource& source) { return static_cast<const CellSource&>(source).volume; }
+
 }  // namespace sg::volume

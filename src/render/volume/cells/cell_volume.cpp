@@ -79,7 +79,7 @@ Plane<float> stored_values(const Field& field, int component, bool shift, float&
 }
 
 /// Does each point have a finite value and place?
-std::vector<uint8_t> missing_points(const DatasetPtr& data, const Plane<float>* values, bool& any) {
+std::vector<uint8_t> missing_points(const DatasetPtr& data, std::span<const float> values, bool& any) {
   const size_t n = data->point_count();
   std::vector<uint8_t> missing(n);
   const Points* points = nullptr;
@@ -90,7 +90,7 @@ std::vector<uint8_t> missing_points(const DatasetPtr& data, const Plane<float>* 
       [&](size_t begin, size_t end) {
         bool found = false;
         for (size_t i = begin; i < end; ++i) {
-          missing[i] = values && !std::isfinite((*values)[i]);
+          missing[i] = !values.empty() && !std::isfinite(values[i]);
           found = found || missing[i];
         }
         return found;
@@ -107,7 +107,7 @@ std::vector<uint8_t> missing_points(const DatasetPtr& data, const Plane<float>* 
 
 std::shared_ptr<const TetMesh> mesh_of(const CellVolume& v, Context& context) {
   bool missing = false;
-  const std::vector<uint8_t> no_value = missing_points(v.data, v.by_cell ? nullptr : &v.values, missing);
+  const std::vector<uint8_t> no_value = missing_points(v.data, v.by_cell ? std::span<const float>() : v.values, missing);
   bool missing_cells = false;
   if (v.by_cell)
     for (float x : v.values) missing_cells = missing_cells || !std::isfinite(x);
@@ -176,7 +176,7 @@ std::shared_ptr<const Plane<Vec3f>> CellVolume::gradients() const {
   const std::string name = "volume/gradients/" + key;
   if (auto kept = data->memo().find<Plane<Vec3f>>(name)) return kept;
   const Plane<float> means = by_cell ? at_vertices(*this) : Plane<float>();
-  const Plane<float>& f = by_cell ? means : values;
+  const std::span<const float> f = by_cell ? std::span<const float>(means) : values;
   std::vector<Vec3> sum(mesh->at.size());
   std::vector<double> weight(mesh->at.size());
   for (size_t t = 0; t < mesh->size(); ++t) {
@@ -197,6 +197,35 @@ std::shared_ptr<const Plane<Vec3f>> CellVolume::gradients() const {
   return data->memo().keep<Plane<Vec3f>>(name, std::move(out), bytes);
 }
 
+namespace {
+
+/// What is kept of a field.
+struct Kept {
+  Plane<float> values;
+  float base = 0;
+  Range range;
+  std::shared_ptr<const TetMesh> mesh;
+};
+
+void take_field(CellVolume& v, const Field& field, int component, bool shift, Context& context) {
+  const std::string name = fmt::format("volume/field/{}/{}", v.key, int(shift));
+  auto kept = v.data->memo().find<Kept>(name);
+  if (!kept) {
+    Kept k;
+    k.values = stored_values(field, component, shift, k.base);
+    v.values = k.values;
+    v.mesh = k.mesh = mesh_of(v, context);
+    if (!v.by_cell) add_middles(v, k.values), v.values = k.values;
+    k.range = drawn_range(v);
+    const size_t bytes = k.values.size() * 4;
+    kept = v.data->memo().keep<Kept>(name, std::move(k), bytes);
+  }
+  v.values = kept->values, v.base = kept->base, v.range = kept->range, v.mesh = kept->mesh, v.owner = kept;
+  v.fit_error = v.range.empty() ? 0 : float((v.range.hi - v.range.lo) / 4096);
+}
+
+}  // namespace
+
 CellVolume make_cell_volume(const VolumeItem& item, Context& context) {
   if (!item.data) fail_usage("a volume item has no dataset", "volume");
   const Dataset& d = *item.data;
@@ -208,12 +237,7 @@ CellVolume make_cell_volume(const VolumeItem& item, Context& context) {
   v.data = straightened(item.data, field, component, context);
   v.by_cell = field->association == Association::cell;
   v.key = fmt::format("{}/{}/{}", field->name, association_name(field->association), component);
-  const bool linear = item.color.kind == ScaleKind::linear && item.color.labels.empty();
-  v.values = stored_values(*field, component, linear, v.base);
-  v.mesh = mesh_of(v, context);
-  if (!v.by_cell) add_middles(v, v.values);
-  v.range = drawn_range(v);
-  v.fit_error = v.range.empty() ? 0 : float((v.range.hi - v.range.lo) / 4096);
+  take_field(v, *field, component, item.color.kind == ScaleKind::linear && item.color.labels.empty(), context);
   if (item.detail.second == SecondAxis::field)
     if (const Field* second = v.data->fields().find(item.detail.second_field, Association::point)) {
       float none = 0;

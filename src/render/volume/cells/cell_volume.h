@@ -2,6 +2,7 @@
 // CellVolume: a scalar field of any mesh of solid cells, ready for rays: tetrahedra, values, gradients, a second field.
 #pragma once
 #include <memory>
+#include <span>
 
 #include "render/volume/cells/tet_mesh.h"
 #include "render/volume/optics/medium.h"
@@ -23,6 +24,8 @@ struct CellVolume {
   /// Of the mesh's vertices: volume-weighted means of those of the tetrahedra around; of cell fields, from means of the cells around.
   /// Made when first asked for, and kept with the dataset.
   std::shared_ptr<const Plane<Vec3f>> gradients() const;
+
+  std::shared_ptr<const void> owner;  ///< of the values
 };
 
 /// Reads the item and cuts its mesh, or takes the mesh from the dataset's memo. Cells that are ghosts, blanked, or have a corner without
