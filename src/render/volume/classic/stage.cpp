@@ -55,18 +55,6 @@ void check(const LayerInput& input, const Limits& limits) {
     fail_internal("the opaque frame has another size than the projection");
 }
 
-float value_at(const Volume& v, size_t i, size_t j, size_t k) {
-  const size_t at = i + v.voxels.dims[0] * (j + v.voxels.dims[1] * k);
-  const void* p = v.voxels.array.raw();
-  switch (v.voxels.array.type()) {
-    case ElementType::u8: return float(static_cast<const uint8_t*>(p)[at]);
-    case ElementType::i8: return float(static_cast<const int8_t*>(p)[at]);
-    case ElementType::u16: return float(static_cast<const uint16_t*>(p)[at]);
-    case ElementType::i16: return float(static_cast<const int16_t*>(p)[at]);
-    default: return static_cast<const float*>(p)[at];
-  }
-}
-
 }  // namespace
 
 Stage make_stage(const LayerInput& input, const Limits& limits) {
@@ -111,12 +99,24 @@ LitRay Stage::lit(Vec3 direction) const {
   return l;
 }
 
-Shade shade_sample(const Stage& stage, Vec3f g, float per_cell, const LitRay& lit) {
-  const auto& m = stage.volume.shade_plan.to_world;
-  const Vec3f normal{m[0][0] * g.x + m[0][1] * g.y + m[0][2] * g.z, m[1][0] * g.x + m[1][1] * g.y + m[1][2] * g.z,
-                     m[2][0] * g.x + m[2][1] * g.y + m[2][2] * g.z};
+float value_at(const Volume& v, size_t i, size_t j, size_t k) {
+  const size_t at = i + v.voxels.dims[0] * (j + v.voxels.dims[1] * k);
+  const void* p = v.voxels.array.raw();
+  switch (v.voxels.array.type()) {
+    case ElementType::u8: return float(static_cast<const uint8_t*>(p)[at]);
+    case ElementType::i8: return float(static_cast<const int8_t*>(p)[at]);
+    case ElementType::u16: return float(static_cast<const uint16_t*>(p)[at]);
+    case ElementType::i16: return float(static_cast<const int16_t*>(p)[at]);
+    default: return static_cast<const float*>(p)[at];
+  }
+}
+
+Shade shade_sample(const Stage& stage, Vec3f gradient, float per_cell, const LitRay& lit) {
+  return shade_normal(world_gradient(stage, gradient), std::min(1.0f, per_cell * stage.volume.shade_plan.per_scale), lit);
+}
+
+Shade shade_normal(Vec3f normal, float surface, const LitRay& lit) {
   const float square = dot(normal, normal);
-  const float surface = std::min(1.0f, per_cell * stage.volume.shade_plan.per_scale);
   if (!(square > 0) || !(square < 1e30f)) return {};
   const float side = (dot(normal, lit.direction) > 0 ? -1.0f : 1.0f) / std::sqrt(square);
   float diffuse = 0, specular = 0;

@@ -64,6 +64,16 @@ Stage make_stage(const LayerInput& input, const Limits& limits);
 
 /// Phong's model as the ray caster's kernels have it, for one sample: the gradient in q, the change of the value over a cell.
 Shade shade_sample(const Stage& stage, Vec3f gradient, float per_cell, const LitRay& lit);
+/// The same from a normal (world, any length above 0) and how far there is a surface (0 to 1).
+Shade shade_normal(Vec3f normal, float surface, const LitRay& lit);
+/// World direction of a gradient in q.
+inline Vec3f world_gradient(const Stage& stage, Vec3f g) {
+  const auto& m = stage.volume.shade_plan.to_world;
+  return {m[0][0] * g.x + m[0][1] * g.y + m[0][2] * g.z, m[1][0] * g.x + m[1][1] * g.y + m[1][2] * g.z,
+          m[2][0] * g.x + m[2][1] * g.y + m[2][2] * g.z};
+}
+/// Stored value of a lattice point.
+float value_at(const Volume& volume, size_t i, size_t j, size_t k);
 
 /// 1 - exp(-depth) for an optical depth >= 0, to 1e-6 of itself below 1/16 and 5e-7 beyond; the same bits on every machine.
 float alpha_of(float optical_depth);
