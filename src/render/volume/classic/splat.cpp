@@ -89,25 +89,26 @@ class Band {
   }
 
   void write(const Ink& ink, std::vector<float>& rgba) const {
-    const double base = double(s_.volume.base);
     for (size_t i = 0; i < sums_.size(); ++i) {
       float* out = &rgba[4 * (size_t(y0_) * size_t(width_) + i)];
       const Gathered& g = sums_[i];
-      if (composite_) {
-        out[0] = g.r, out[1] = g.g, out[2] = g.b, out[3] = 1 - g.transmittance;
-        continue;
-      }
-      double value = double(best_[i]) + base;
-      const auto [total, length] = totals_[i];
-      // Beyond the box kernels fade out: less than half a cell there is nothing.
-      const bool inside = length > 0.5 * double(full_);
-      if (s_.item.mode == RayFunction::sum) value = length > 0 ? total + base * length : NAN;
-      if (s_.item.mode == RayFunction::average) value = inside ? total / length + base : NAN;
-      ink.draw(value, out);
+      if (composite_) out[0] = g.r, out[1] = g.g, out[2] = g.b, out[3] = 1 - g.transmittance;
+      else ink.draw(collected(i), out);
     }
   }
 
  private:
+  /// What a mode other than composite shows. Kernels reach beyond the box; rays that miss it show nothing.
+  double collected(size_t i) const {
+    const PixelRay ray = s_.ray(int(i % size_t(width_)), y0_ + int(i / size_t(width_)));
+    if (!(ray.leave > ray.enter)) return NAN;
+    const auto [total, length] = totals_[i];
+    const double base = double(s_.volume.base);
+    if (s_.item.mode == RayFunction::sum) return total + base * length;
+    if (s_.item.mode == RayFunction::average) return length > 0 ? total / length + base : NAN;
+    return double(best_[i]) + base;
+  }
+
   size_t row(int y) const { return size_t(y - y0_) * size_t(width_); }
 
   template <class F>
