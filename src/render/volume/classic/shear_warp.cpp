@@ -19,7 +19,6 @@ struct Job {
   const EncodedVolume* encoded = nullptr;  // composite
   std::vector<Shade> shades;               // by direction code, where there is a surface
   std::vector<Four> entries;               // straight colour and alpha of a slice at `length`
-  std::vector<float> shares;               // of each slice in the box: the outer ones have half
   double length = 1;                       // world length between two slices on the middle ray
   bool limited = false;                    // surfaces, or near and far, cut the volume
 };
@@ -47,7 +46,6 @@ class Rows {
     const size_t nk = s_.volume.voxels.dims[size_t(f_.axes.k)];
     for (size_t n = 0; n < nk; ++n) {
       const size_t k = f_.rising ? n : nk - 1 - n;
-      if (j_.shares[k] == 0) continue;
       for (int v = v0_; v < v1_; ++v) scanline(k, v);
     }
   }
@@ -56,13 +54,13 @@ class Rows {
     const size_t nk = s_.volume.voxels.dims[size_t(f_.axes.k)];
     const bool most = s_.item.mode == RayFunction::maximum;
     for (size_t k = 0; k < nk; ++k) {
-      if (j_.shares[k] == 0) continue;
+      if (double(k) > hi_.z) continue;
       const double scale = f_.scale(double(k)), shift = f_.shift_i(double(k));
       for (int v = v0_; v < v1_; ++v) {
         size_t j;
         float fj;
         int from, to;
-        if (!across(k, v, j, fj) || !reach(scale, shift, lo_.x, hi_.x, from, to)) continue;
+        if (!across(k, v, 0, j, fj) || !reach(scale, shift, lo_.x, hi_.x, from, to)) continue;
         float* out = &best[size_t(v) * size_t(f_.width)];
         for (int u = from; u <= to; ++u) {
           if (!seen(v, u, k)) continue;
@@ -129,10 +127,10 @@ class Rows {
     return float(k) >= l.from && float(k) <= l.to;
   }
 
-  /// The scanlines j, j+1 that a row of the picture lies between.
-  bool across(size_t k, int v, size_t& j, float& fj) const {
+  /// The scanlines j, j+1 that a row of the picture lies between; beyond the box (by at most `margin`) the outermost.
+  bool across(size_t k, int v, double margin, size_t& j, float& fj) const {
     const double y = f_.scale(double(k)) * v + f_.shift_j(double(k));
-    if (!(y >= lo_.y - 1e-9 && y <= hi_.y + 1e-9)) return false;
+    if (!(y >= lo_.y - margin - 1e-9 && y <= hi_.y + margin + 1e-9)) return false;
     const double inside = std::clamp(y, 0.0, double(nj_ - 1));
     j = std::min(size_t(inside), nj_ - 2), fj = float(inside - double(j));
     return true;
@@ -156,11 +154,9 @@ class Rows {
     const EncodedVolume::Slice& slice = j_.encoded->slices[k];
     r.begin = slice.runs.data() + slice.first_run[j], r.end = slice.runs.data() + slice.first_run[j + 1];
     size_t at = slice.first_voxel[j];
-    const float share = j_.shares[k];
     for (const auto* run = r.begin; run < r.end; ++run)
       for (uint32_t i = run->begin; i < run->end; ++i, ++at) {
         Four c = j_.entries[slice.entry[at]];
-        if (share != 1) c[3] = alpha_of(share * density_of(c[3]));
         if (!slice.surface.empty()) {
           const float surface = float(slice.surface[at]) * (1.0f / 255);
           const Shade& shade = j_.shades[slice.normal[at]];
@@ -173,25 +169,56 @@ class Rows {
     return r;
   }
 
-  static float density_of(float alpha) { return alpha < 1 ? float(minus_log_one_minus(double(alpha))) : 1e30f; }
+  /// A slice stands for the slab of half a slice to each side. [from, to] in slices: the part of a ray in it and in the box.
+  struct Part {
+    double from, to;
+    /// Only where the coordinate x + slope * t lies in [lo, hi].
+    void keep(double x, double slope, double lo, double hi) {
+      if (slope == 0) {
+        if (x < lo || x > hi) to = from;
+        return;
+      }
+      const double a = (lo - x) / slope, b = (hi - x) / slope;
+      from = std::max(from, std::min(a, b)), to = std::min(to, std::max(a, b));
+    }
+  };
+  double slope_i(int u) const { return f_.parallel ? f_.shear_i : (f_.u0 + u / f_.resolution - f_.eye.x) / (f_.plane - f_.eye.z); }
+  double slope_j(int v) const { return f_.parallel ? f_.shear_j : (f_.v0 + v / f_.resolution - f_.eye.y) / (f_.plane - f_.eye.z); }
+
+  /// Two scanlines of a slice under a row of the picture.
+  struct Span {
+    size_t k;
+    int v;
+    double scale, shift;
+    float fj;
+    const Row *a, *b;
+    Part part;
+    int whole_from, whole_to;  // pixels whose rays cross the whole slab inside the box
+  };
 
   void scanline(size_t k, int v) {
     size_t j;
     float fj;
-    if (!across(k, v, j, fj)) return;
+    const double lean_j = slope_j(v), lean_i = std::max(std::abs(slope_i(0)), std::abs(slope_i(f_.width - 1)));
+    if (!across(k, v, 0.5 * std::abs(lean_j), j, fj)) return;
+    Part part{std::max(-0.5, lo_.z - double(k)), std::min(0.5, hi_.z - double(k))};
+    part.keep(f_.scale(double(k)) * v + f_.shift_j(double(k)), lean_j, lo_.y, hi_.y);
+    if (!(part.to > part.from)) return;
     const Row &a = decode(k, j), &b = decode(k, j + 1);
     if (a.begin == a.end && b.begin == b.end) return;
-    const double scale = f_.scale(double(k)), shift = f_.shift_i(double(k));
+    Span span{k, v, f_.scale(double(k)), f_.shift_i(double(k)), fj, &a, &b, part, f_.width, -1};
     int inside_from, inside_to;
-    if (!reach(scale, shift, lo_.x, hi_.x, inside_from, inside_to)) return;
-    // Runs of either scanline, joined where they overlap; a voxel is felt less than one voxel away.
+    if (!reach(span.scale, span.shift, lo_.x - 0.5 * lean_i, hi_.x + 0.5 * lean_i, inside_from, inside_to)) return;
+    if (part.to - part.from == 1 && limits_.empty())
+      reach(span.scale, span.shift, lo_.x + 0.5 * lean_i, hi_.x - 0.5 * lean_i, span.whole_from, span.whole_to);
+    // Runs of either scanline, joined where they overlap; a voxel is felt less than one voxel away, an outermost one beyond.
     const EncodedVolume::Run *p = a.begin, *q = b.begin;
     const auto take = [&](bool always, int64_t end, int64_t& from, int64_t& to) {
       const bool left = p < a.end, right = q < b.end;
       if (!left && !right) return false;
       const EncodedVolume::Run*& r = !right || (left && p->begin <= q->begin) ? p : q;
       if (!always && int64_t(r->begin) - 1 >= end) return false;
-      from = int64_t(r->begin) - 1, to = r->end, ++r;
+      from = r->begin == 0 ? -int64_t(ni_) : int64_t(r->begin) - 1, to = r->end == ni_ ? 2 * int64_t(ni_) : int64_t(r->end), ++r;
       return true;
     };
     int64_t from, to;
@@ -199,8 +226,8 @@ class Rows {
       int64_t more_from, more_to;
       while (take(false, to, more_from, more_to)) to = std::max(to, more_to);
       int first, last;
-      if (reach(scale, shift, double(from), double(to), first, last))
-        blend(k, v, std::max(first, inside_from), std::min(last, inside_to), scale, shift, a, b, fj);
+      if (reach(span.scale, span.shift, double(from), double(to), first, last))
+        blend(span, std::max(first, inside_from), std::min(last, inside_to));
     }
   }
 
@@ -212,20 +239,31 @@ class Rows {
     return u;
   }
 
-  void blend(size_t k, int v, int first, int last, double scale, double shift, const Row& a, const Row& b, float fj) {
-    int* next = &next_[index(v, 0)];
-    Gathered* sums = &sums_[index(v, 0)];
+  void blend(const Span& s, int first, int last) {
+    int* next = &next_[index(s.v, 0)];
+    Gathered* sums = &sums_[index(s.v, 0)];
     for (int u = next_open(next, first); u <= last; u = next_open(next, u + 1)) {
-      if (!seen(v, u, k)) continue;
-      const double x = std::clamp(scale * u + shift, lo_.x, hi_.x), whole = std::floor(x);
+      const double place = s.scale * u + s.shift;
+      float length = f_.parallel ? 1 : factor_[index(s.v, u)];
+      if (u < s.whole_from || u > s.whole_to) {
+        Part part = s.part;
+        part.keep(place, slope_i(u), lo_.x, hi_.x);
+        if (!limits_.empty()) {
+          const Limit& l = limits_[index(s.v, u)];
+          part.from = std::max(part.from, double(l.from) - double(s.k)), part.to = std::min(part.to, double(l.to) - double(s.k));
+        }
+        if (!(part.to > part.from)) continue;
+        length *= float(part.to - part.from);
+      }
+      const double x = std::clamp(place, lo_.x, hi_.x), whole = std::floor(x);
       const size_t i = size_t(int64_t(whole) + 1);
-      const float fi = float(x - whole), w11 = fi * fj, w01 = fi - w11, w10 = fj - w11, w00 = 1 - fi - w10;
-      Four c = a.at[i] * w00 + a.at[i + 1] * w01 + b.at[i] * w10 + b.at[i + 1] * w11;
+      const float fi = float(x - whole), w11 = fi * s.fj, w01 = fi - w11, w10 = s.fj - w11, w00 = 1 - fi - w10;
+      Four c = s.a->at[i] * w00 + s.a->at[i + 1] * w01 + s.b->at[i] * w10 + s.b->at[i + 1] * w11;
       float alpha = c[3];
       if (!(alpha > 0)) continue;
-      if (!f_.parallel && alpha < 1) {
-        // The ray meets the slices at an angle of its own.
-        alpha = alpha_of(factor_[index(v, u)] * log_table(alpha));
+      if (length != 1 && alpha < 1) {
+        // The ray meets the slices at an angle of its own, or is cut.
+        alpha = alpha_of(length * log_table(alpha));
         c *= alpha / c[3];
       }
       sums[u].behind(c[0], c[1], c[2], alpha);
@@ -273,12 +311,9 @@ bool cut_by_surfaces(const Stage& s) {
 /// Tables of the view: colour and alpha of the entries, light by direction, lengths.
 Job make_job(const Stage& s, const Factors& f) {
   const Volume& v = s.volume;
-  Job job{s, f, nullptr, {}, {}, {}, 1, cut_by_surfaces(s)};
+  Job job{s, f, nullptr, {}, {}, 1, cut_by_surfaces(s)};
   const Vec3 centre = (v.lo + v.hi) * 0.5, along = v.to_q * s.sight(s.world(centre));
   job.length = 1 / std::abs(along[f.axes.k]);
-  const double lo = v.lo[f.axes.k], hi = v.hi[f.axes.k];
-  for (size_t k = 0; k < v.voxels.dims[size_t(f.axes.k)]; ++k)
-    job.shares.push_back(float(std::max(0.0, std::min(hi, double(k) + 0.5) - std::max(lo, double(k) - 0.5))));
   if (s.item.mode != RayFunction::composite) return job;
   const int count = s.transfer().linear_table().count + 3;
   for (int i = 0; i < count; ++i) {

@@ -14,6 +14,9 @@ namespace {
 
 using Four = float __attribute__((vector_size(16)));
 
+/// Deviations of depth by which a kernel may lean from its middle to its edge (4.3 deviations away) and still be set upright.
+constexpr float upright_below = 1.6f;
+
 struct Job {
   const Stage& stage;
   const Footprints& footprints;
@@ -31,39 +34,35 @@ class Band {
   Band(const Job& job, size_t number) : j_(job), s_(job.stage), number_(number) {
     width_ = s_.projection.width, y0_ = int(number) * SplatList::band, y1_ = std::min(y0_ + SplatList::band, s_.projection.height);
     const size_t n = size_t(width_) * size_t(y1_ - y0_);
-    sums_.resize(n), sheet_.assign(n, Four{0, 0, 0, 0});
+    sums_.resize(n);
     composite_ = s_.item.mode == RayFunction::composite;
     if (!composite_) best_.assign(n, NAN), totals_.assign(n, {0, 0});
     if (s_.projection.parallel) lit_ = s_.lit(s_.projection.forward);
-    touched_.assign(size_t(y1_ - y0_), {width_, -1});
-    full_ = float(1 / length(s_.volume.to_q * s_.projection.forward));
   }
 
+  /// Voxels come by depth: a sheet is done when the next kernel begins behind it. As many are open as a kernel is deep.
   void sheets() {
-    const uint32_t *from = j_.list.begin(number_), *const last = j_.list.end(number_);
-    std::vector<Footprint> window;  // of the voxels [from, to)
-    std::vector<Four> values;
-    size_t first_kept = 0;
-    const uint32_t* to = from;
     const double reach = j_.footprints.reach();
     const size_t count = size_t(std::ceil((j_.farthest - j_.nearest) / j_.sheet));
-    for (size_t i = 0; i < count; ++i) {
-      const double z0 = j_.nearest + double(i) * j_.sheet, z1 = std::min(z0 + j_.sheet, j_.farthest);
-      while (to < last && j_.footprints.depth(j_.list.q(*to)) - reach < z1) {
-        Footprint f;
-        j_.footprints.at(j_.list.q(*to), f);
-        window.push_back(f), values.push_back(value(*to)), ++to;
-      }
-      while (first_kept < window.size() && double(window[first_kept].depth) + reach <= z0) ++first_kept, ++from;
-      if (first_kept > 4096 && first_kept > window.size() / 2) {
-        window.erase(window.begin(), window.begin() + ptrdiff_t(first_kept)),
-            values.erase(values.begin(), values.begin() + ptrdiff_t(first_kept));
-        first_kept = 0;
-      }
-      for (size_t v = first_kept; v < window.size(); ++v) part(window[v], values[v], z0, z1);
-      composite_sheet(z0, z1);
-      if (opaque_ == sums_.size()) return;
+    ring_.resize(size_t(2 * reach / j_.sheet) + 3);
+    for (Sheet& sheet : ring_) {
+      sheet.sums.assign(channels() * sums_.size(), 0.0f);
+      sheet.touched.assign(size_t(y1_ - y0_), {width_, -1});
     }
+    weights_.resize(size_t(width_));
+    size_t next = 0;
+    for (const uint32_t* p = j_.list.begin(number_); p < j_.list.end(number_); ++p) {
+      const Vec3 q = j_.list.q(*p);
+      const double depth = j_.footprints.depth(q) - j_.nearest;
+      if (depth + reach <= 0) continue;
+      const size_t first = std::max(next, size_t(std::max(0.0, (depth - reach) / j_.sheet)));
+      const size_t last = std::min(count, size_t((depth + reach) / j_.sheet) + 1);
+      for (; next < std::min(first, count); ++next) composite_sheet(next);
+      if (opaque_ == sums_.size() || first >= last) continue;
+      Footprint f;
+      if (j_.footprints.at(q, f)) spread(f, value(*p), first, last);
+    }
+    for (; next < count; ++next) composite_sheet(next);
   }
 
   void whole() {
@@ -98,6 +97,13 @@ class Band {
   }
 
  private:
+  /// Sums of a sheet, a plane of pixels per channel: density times colour and density, or value and length.
+  struct Sheet {
+    std::vector<float> sums;
+    std::vector<std::pair<int, int>> touched;  // per row: the pixels
+  };
+  size_t channels() const { return j_.after ? 2 : 4; }
+
   /// What a mode other than composite shows. Kernels reach beyond the box; rays that miss it show nothing.
   double collected(size_t i) const {
     const PixelRay ray = s_.ray(int(i % size_t(width_)), y0_ + int(i / size_t(width_)));
@@ -120,34 +126,46 @@ class Band {
   /// What a voxel adds up: density times colour and density; or its value and 1. Times its share of the box.
   Four value(uint32_t place) const {
     const Splat v = j_.list.splat(place);
-    if (j_.after) return Four{v.value * v.share, 0, 0, v.share};
+    if (j_.after) return Four{v.value * v.share, v.share, 0, 0};
     const Transfer::Medium& m = s_.transfer().medium(s_.transfer().index(v.value));
     const Shade shade = j_.shades.empty() ? Shade{} : j_.shades[place];
     const float density = std::min(m.density, 1e20f) * v.share;
     return Four{m.r * shade.diffuse + shade.flash, m.g * shade.diffuse + shade.flash, m.b * shade.diffuse + shade.flash, 1} * density;
   }
 
-  /// The part of a kernel between two depths, added to the sheet.
-  void part(const Footprint& f, Four value, double z0, double z1) {
-    const float a = float((z0 - double(f.depth)) / double(f.deviation)), b = float((z1 - double(f.depth)) / double(f.deviation));
-    const float tilt = std::abs(f.slope_x) * f.half_x + std::abs(f.slope_y) * f.half_y;
-    // What lies above the same depths everywhere under the footprint needs no second table.
-    const bool level = tilt < 0.02f;
-    const float here = j_.table.before(b) - j_.table.before(a);
-    if (level && !(here > 0)) return;
+  /// A kernel's parts between the planes of the sheets [first, last), added to them.
+  void spread(const Footprint& f, Four value, size_t first, size_t last) {
+    const auto plane = [&](size_t n) { return float((j_.nearest + double(n) * j_.sheet - double(f.depth)) / double(f.deviation)); };
+    // A kernel that leans little is sheared upright: it keeps its sums across and along, and each sheet's share is one number.
+    const bool upright = std::abs(f.slope_x) * f.half_x + std::abs(f.slope_y) * f.half_y < upright_below;
+    shares_.clear();
+    for (size_t n = first; n < last; ++n) shares_.push_back(j_.table.before(plane(n + 1)) - j_.table.before(plane(n)));
     rows(f, [&](int y) {
-      Four* out = &sheet_[row(y)];
       int from = width_, to = -1;
-      const float shift = f.slope_y * (float(y) + 0.5f - f.y);
-      const auto touch = [&](int x) { from = std::min(from, x), to = x; };
-      if (level) footprint_row(j_.table, f, y, width_, [&](int x, float, float share) { out[x] += value * (share * here), touch(x); });
-      else
-        footprint_row(j_.table, f, y, width_, [&](int x, float dx, float share) {
-          const float middle = shift + f.slope_x * dx;
-          out[x] += value * (share * (j_.table.before(b - middle) - j_.table.before(a - middle))), touch(x);
-        });
-      auto& [first, last] = touched_[size_t(y - y0_)];
-      first = std::min(first, from), last = std::max(last, to);
+      footprint_row(j_.table, f, y, width_,
+                    [&](int x, float, float share) { weights_[size_t(x)] = share, from = std::min(from, x), to = x; });
+      if (to < from) return;
+      for (size_t n = first; n < last; ++n) {
+        if (upright && !(shares_[n - first] > 0)) continue;
+        Sheet& sheet = ring_[n % ring_.size()];
+        auto& [low, high] = sheet.touched[size_t(y - y0_)];
+        low = std::min(low, from), high = std::max(high, to);
+        const float middle = f.slope_y * (float(y) + 0.5f - f.y) + f.slope_x * (0.5f - f.x), a = plane(n) - middle,
+                    b = plane(n + 1) - middle;
+        for (size_t c = 0; c < channels(); ++c) {
+          float* __restrict out = &sheet.sums[c * sums_.size() + row(y)];
+          const float* __restrict weight = weights_.data();
+          if (upright) {
+            const float amount = value[c] * shares_[n - first];
+            for (int x = from; x <= to; ++x) out[x] += amount * weight[x];
+          } else {
+            for (int x = from; x <= to; ++x) {
+              const float lean = f.slope_x * float(x);
+              out[x] += value[c] * weight[x] * (j_.table.before(b - lean) - j_.table.before(a - lean));
+            }
+          }
+        }
+      }
     });
   }
 
@@ -158,23 +176,27 @@ class Band {
     return to > from ? float((to - from) / (z1 - z0)) : 0;
   }
 
-  void composite_sheet(double z0, double z1) {
+  void composite_sheet(size_t number) {
+    Sheet& sheet = ring_[number % ring_.size()];
+    const double z0 = j_.nearest + double(number) * j_.sheet, z1 = z0 + j_.sheet;
+    const size_t n = sums_.size();
     for (int y = y0_; y < y1_; ++y) {
-      auto& [first, last] = touched_[size_t(y - y0_)];
+      auto& [first, last] = sheet.touched[size_t(y - y0_)];
       for (int x = first; x <= last; ++x) {
         const size_t at = row(y) + size_t(x);
-        const Four s = sheet_[at];
-        if (!(s[3] > 0)) continue;
-        sheet_[at] = Four{0, 0, 0, 0};
+        float s[4];
+        for (size_t c = 0; c < channels(); ++c) s[c] = sheet.sums[c * n + at], sheet.sums[c * n + at] = 0;
+        const float amount = s[channels() - 1];
+        if (!(amount > 0) || sums_[at].transmittance < opaque_below) continue;
         const float share = seen(at, z0, z1);
-        if (share == 0 || sums_[at].transmittance < opaque_below) continue;
+        if (share == 0) continue;
         if (!composite_) {
-          collect(at, s, share);
+          collect(at, s[0], amount, share);
         } else if (!j_.after) {
-          const float alpha = alpha_of(s[3] * share), color = alpha / s[3];
+          const float alpha = alpha_of(amount * share), color = alpha / amount;
           blend(at, s[0] * color, s[1] * color, s[2] * color, alpha);
         } else {
-          classify(at, x, y, s[0] / s[3], s[3] * share, 0.5 * (z0 + z1));
+          classify(at, x, y, s[0] / amount, amount * share, 0.5 * (z0 + z1));
         }
       }
       if (waiting_ > 0) flush();
@@ -187,10 +209,10 @@ class Band {
     opaque_ += sums_[at].transmittance < opaque_below;
   }
 
-  void collect(size_t at, Four s, float share) {
-    totals_[at].first += double(s[0]) * double(share), totals_[at].second += double(s[3]) * double(share);
-    if (!(s[3] > 0.5f * full_ * float(j_.sheet))) return;  // the kernels' fringe
-    const float value = s[0] / s[3];
+  void collect(size_t at, float sum, float length, float share) {
+    totals_[at].first += double(sum) * double(share), totals_[at].second += double(length) * double(share);
+    if (!(length > 0.5f * float(j_.sheet))) return;  // the kernels' fringe
+    const float value = sum / length;
     float& best = best_[at];
     if (!(best == best) || (s_.item.mode == RayFunction::maximum ? value > best : value < best)) best = value;
   }
@@ -234,11 +256,10 @@ class Band {
   int width_, y0_, y1_;
   bool composite_ = true;
   std::vector<Gathered> sums_;
-  std::vector<Four> sheet_;
-  std::vector<std::pair<int, int>> touched_;       // per row: the pixels that the sheet touches
+  std::vector<Sheet> ring_;
+  std::vector<float> weights_, shares_;
   std::vector<float> best_;                        // modes other than composite
   std::vector<std::pair<double, double>> totals_;  // value times length, length
-  float full_ = 1;                                 // world length of a ray through one voxel
   size_t opaque_ = 0;                              // pixels
   LitRay lit_;
   Run run_;
