@@ -15,14 +15,14 @@ static_assert(block * block == TetPacket::lanes);
 }  // namespace
 
 TetMedium::TetMedium(const Medium& medium) {
-  const auto& lines = medium.lines();
+  const auto lines = medium.straight();
   const auto add = [&](float lo, float hi, const Optics& at, const Optics& slope) {
-    intervals.push_back({lo, hi, {at.tau, at.r, at.g, at.b}, {slope.tau, slope.r, slope.g, slope.b}, {}, {}});
+    intervals.push_back({lo, hi, {at.tau, at.color.x, at.color.y, at.color.z}, {slope.tau, slope.color.x, slope.color.y, slope.color.z}, {}, {}});
   };
   // Below the first line, which has no lower end of its own, things stay as they are where it was made.
-  const float lo = lines.front().origin, hi = lines.size() > 1 ? lines.back().lo : lo;
-  add(-1e30f, lo, lines.front().at, {0, 0, 0, 0});
-  for (const Medium::Line& l : lines) add(l.origin, std::min(l.hi, 1e30f), l.at, l.slope);
+  const float lo = lines.front().lo, hi = lines.size() > 1 ? lines.back().lo : lo;
+  add(-1e30f, lo, lines.front().at, {});
+  for (const Medium::Straight& l : lines) add(l.lo, &l == &lines.back() ? 1e30f : l.hi, l.at, l.slope);
 
   double sum[4] = {};
   for (size_t i = 1; i < intervals.size(); ++i) {
