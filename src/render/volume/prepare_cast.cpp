@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "render/volume/cells/cell_source.h"
 #include "render/volume/lattice/lattice_ray.h"
 
 namespace sg::volume {
@@ -55,10 +56,10 @@ const Field& field_of(const VolumeItem& item) {
   return *f;
 }
 
-CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<const Volume> lattice, const Knobs& knobs, Context&) {
+CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<const Volume> lattice, const Knobs& knobs, Context& context) {
   CastVolume v;
   v.item = &item, v.id = id;
-  v.source = lattice_source(std::move(lattice));
+  v.source = lattice ? lattice_source(std::move(lattice)) : cell_source(item, context);
   RaySource& source = *v.source;
   const double base = double(source.base);
   const Range range = item.data->range(field_of(item), item.component);

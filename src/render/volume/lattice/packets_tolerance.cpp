@@ -296,7 +296,7 @@ class TolerantPacket {
     error = hn::Add(error, hn::IfThenElseZero(hn::Not(same), hn::Mul(beyond, hn::Mul(length, slope))));
     error = hn::Mul(error, pass);
     const F share = hn::Mul(pass, hn::Min(one, hn::Mul(length, tau_mean)));
-    const F allowed = hn::Mul(hn::Set(d, tolerance), hn::Add(hn::Mul(length, hn::Set(d, float(0.3 / plan_.budget.length))), hn::Mul(share, hn::Set(d, 0.6f))));
+    const F allowed = hn::Mul(hn::Set(d, tolerance), hn::Add(hn::Mul(length, hn::Set(d, float(0.3 / plan_.budget.length))), hn::Mul(share, hn::Set(d, 0.4f))));
     if constexpr (shaded) {
       light_.cell(source_, corner, inside, look);
       error = hn::Max(error, light_.error(from, way, hn::Mul(pass, taken)));
@@ -360,7 +360,7 @@ class TolerantPacket {
     const F alpha = hn::IfThenElse(hn::Lt(depth, hn::Set(d, 0.02f)), thin, hn::Sub(one, pass));
     auto color = medium_.color(middle);
     F r = hn::Mul(color.r, alpha), g = hn::Mul(color.g, alpha), bl = hn::Mul(color.b, alpha);
-    const M deep = hn::And(hn::And(drawn, hn::Gt(depth, hn::Set(d, 0.1f))), hn::Gt(hn::Mul(hn::Min(hn::Mul(depth, depth), hn::Set(d, 6.0f)), most_hidden_), hn::Set(d, 12.0f)));
+    const M deep = hn::And(hn::And(drawn, hn::Gt(depth, hn::Set(d, 0.1f))), hn::Gt(hn::Mul(hn::Min(depth, hn::Set(d, 6.0f)), most_hidden_), hn::Set(d, 12.0f)));
     if (!hn::AllFalse(d, deep)) {
       F hidden = hn::Add(hn::Sub(hn::Mul(half, alpha), hn::Div(alpha, hn::Max(depth, hn::Set(d, 0.05f)))), pass);
       const F series = hn::Mul(hn::Mul(depth, depth), hn::Sub(hn::Set(d, 1.0f / 12), hn::Mul(depth, hn::Sub(hn::Set(d, 1.0f / 24), hn::Mul(depth, hn::Set(d, 1.0f / 80))))));
