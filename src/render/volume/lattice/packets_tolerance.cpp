@@ -39,15 +39,18 @@ struct MediumLanes {
   const Medium::Columns& columns;
 
   struct Line {
-    F lo, hi, origin, at, slope, curve;
+    F lo, hi, origin, at, slope, curve, twist;
     HWY_INLINE F tau(F v) const {
       const F x = hn::Sub(v, origin);
-      return hn::Max(hn::Zero(D()), hn::Add(at, hn::Mul(x, hn::Add(slope, hn::Mul(x, curve)))));
+      return hn::Max(hn::Zero(D()), hn::Add(at, hn::Mul(x, hn::Add(slope, hn::Mul(x, hn::Add(curve, hn::Mul(x, twist)))))));
     }
-    HWY_INLINE F slope_at(F v) const { return hn::Abs(hn::Add(slope, hn::Mul(hn::Add(curve, curve), hn::Sub(v, origin)))); }
+    HWY_INLINE F slope_at(F v) const {
+      const F x = hn::Sub(v, origin);
+      return hn::Abs(hn::Add(slope, hn::Mul(x, hn::Add(hn::Add(curve, curve), hn::Mul(x, hn::Mul(hn::Set(D(), 3.0f), twist))))));
+    }
     HWY_INLINE hn::Mask<D> dark() const {
       const F zero = hn::Zero(D());
-      return hn::And(hn::Eq(at, zero), hn::And(hn::Eq(slope, zero), hn::Eq(curve, zero)));
+      return hn::And(hn::And(hn::Eq(at, zero), hn::Eq(slope, zero)), hn::And(hn::Eq(curve, zero), hn::Eq(twist, zero)));
     }
   };
   HWY_INLINE explicit MediumLanes(const Medium& m) : medium(m), columns(m.columns()) {}
@@ -56,7 +59,7 @@ struct MediumLanes {
     Line l;
     l.origin = hn::GatherIndex(d, columns.origin.data(), i), l.hi = hn::GatherIndex(d, columns.hi.data(), i);
     l.at = hn::GatherIndex(d, columns.at.data(), i), l.slope = hn::GatherIndex(d, columns.slope.data(), i);
-    l.curve = hn::GatherIndex(d, columns.curve.data(), i);
+    l.curve = hn::GatherIndex(d, columns.curve.data(), i), l.twist = hn::GatherIndex(d, columns.twist.data(), i);
     l.lo = hn::IfThenElse(hn::RebindMask(d, hn::Eq(i, hn::Zero(IntTag<D>()))), hn::Set(d, -HUGE_VALF), l.origin);
     return l;
   }
