@@ -89,7 +89,8 @@ class Alone {
     if (!item.clip.empty()) return;
     const bool composite = item.mode == RayFunction::composite, by_tolerance = composite && !(v.step > 0);
     if (picture.lattices[0]) {
-      plan_.emplace(PacketPlan{*picture.lattices[0], picture.projection, picture.knobs, {}, v.material, v.medium.get(), v.budget, float(v.source->edge)});
+      plan_.emplace(PacketPlan{
+          *picture.lattices[0], picture.projection, picture.knobs, {}, v.material, v.medium.get(), v.budget, float(v.source->edge)});
       if (picture.shaded)
         for (const Picture::Lamp& l : picture.lamps) plan_->lamps.push_back({l.direction, l.intensity});
       const bool in_steps = composite ? item.sampling.classify == "post" && !item.sampling.jitter : item.mode == RayFunction::maximum;
@@ -115,7 +116,8 @@ class Alone {
     const int width = x1 - x0;
     const auto place = [&](int x, int y) { return size_t(y) * size_t(frame.width) + size_t(x); };
     for (int y = y0; y < y1; ++y)
-      for (int x = x0; x < x1; ++x) limit[(y - y0) * width + x - x0] = std::min(float(picture_.projection.far_plane), frame.depth[place(x, y)]);
+      for (int x = x0; x < x1; ++x)
+        limit[(y - y0) * width + x - x0] = std::min(float(picture_.projection.far_plane), frame.depth[place(x, y)]);
     tets_->draw(x0, y0, width, y1 - y0, limit, found);
     for (int y = y0; y < y1; ++y)
       for (int x = x0; x < x1; ++x) {

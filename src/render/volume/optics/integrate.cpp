@@ -33,8 +33,8 @@ Stretch part_of(const Stretch& s, double from, double to) {
 
 namespace {
 
-constexpr int most_cuts = 6;  // halvings of a stretch for its light
-constexpr float deep = 0.05f; // optical depth from which on the order within a segment is seen
+constexpr int most_cuts = 6;   // halvings of a stretch for its light
+constexpr float deep = 0.05f;  // optical depth from which on the order within a segment is seen
 
 /// Where there is light on the ends of a part of a stretch, linear between them.
 struct LitPart {
