@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/volume_presets.h"
+
+#include "base/error.h"
+#include "base/text.h"
+#include "scene/volume_look.h"
+
+namespace sg {
+
+namespace {
+
+// A place on a preset's axis and what is there.
+struct Stop {
+  double at, opacity;
+};
+struct ColorStop {
+  double at;
+  std::string_view color;
+};
+struct Look {
+  VolumePreset preset;
+  enum class Axis { hounsfield, foreground } axis;  // foreground: 0 where the background ends, 1 at the largest values
+  std::vector<Stop> opacity;
+  std::vector<ColorStop> colors;
+  std::vector<std::string> words;
+};
+
+const std::vector<Look>& looks() {
+  using enum Look::Axis;
+  static const std::vector<Look> all{
+      {{"ct_bone", "CT: bone alone, ivory, with highlights."},
+       hounsfield,
+       {{180, 0}, {260, 0.25}, {450, 0.6}, {1000, 0.85}, {3000, 0.95}},
+       {{100, "#b5651d"}, {250, "#d9a066"}, {450, "#efdcb8"}, {1000, "#fbf6e8"}, {1800, "#ffffff"}},
+       {"shaded=true", "specular=0.3", "power=40"}},
+      {{"ct_skin", "CT: the surface of the body, what lies within is hidden."},
+       hounsfield,
+       {{-650, 0}, {-450, 0.1}, {-250, 0.6}, {0, 0.85}, {3000, 0.95}},
+       {{-700, "#8a4f3a"}, {-350, "#d89b7c"}, {0, "#ecbfa3"}, {300, "#f2d3bd"}},
+       {"shaded=true", "specular=0.12", "power=16"}},
+      {{"ct_vessels", "CT angiography: vessels with contrast agent in red, bone behind them in ivory, soft tissue left out."},
+       hounsfield,
+       {{120, 0}, {180, 0.08}, {260, 0.45}, {400, 0.6}, {600, 0.35}, {3000, 0.5}},
+       {{100, "#5c0a0a"}, {220, "#b3201a"}, {380, "#e05a3a"}, {600, "#e8c9a0"}, {1200, "#fbf6e8"}},
+       {"shaded=true", "specular=0.35", "power=48"}},
+      {{"mr", "MR: tissue by its brightness, borders stronger than the inside."},
+       foreground,
+       {{0, 0}, {0.15, 0.02}, {0.45, 0.10}, {0.75, 0.35}, {1, 0.6}},
+       {{0, "#2a1512"}, {0.3, "#8a4a3c"}, {0.55, "#c98b72"}, {0.8, "#ecd2bd"}, {1, "#fffaf2"}},
+       {"shaded=true", "specular=0.1", "second=gradient", "second_opacity=0:0.1,0.15:0.5,0.4:1"}},
+      {{"xray", "An X-ray picture: the integral of the value along each ray, in grey."},
+       foreground,
+       {{0, 0}, {1, 1}},
+       {},
+       {"mode=sum", "map=gray", "shaded=false"}},
+      {{"mip_angiography", "Maximum along each ray in grey: bright vessels of CT and MR angiography."},
+       foreground,
+       {{0, 0}, {0.02, 1}, {1, 1}},
+       {},
+       {"mode=maximum", "map=gray", "shaded=false"}},
+      {{"combustion", "Flames: what is hot glows, what is cold is clear; no lamp."},
+       foreground,
+       {{0, 0}, {0.15, 0.004}, {0.4, 0.03}, {0.7, 0.15}, {1, 0.55}},
+       {{0, "#2b0b06"}, {0.3, "#8f1d0a"}, {0.55, "#e0560f"}, {0.8, "#fbb526"}, {1, "#fff6c8"}},
+       {"shaded=false"}},
+      {{"density", "Smoke, fog, density of matter: opacity grows evenly with the value; no lamp."},
+       foreground,
+       {{0, 0}, {1, 0.35}},
+       {},
+       {"map=sight", "shaded=false"}},
+  };
+  return all;
+}
+
+const Look& look_of(std::string_view name) {
+  std::vector<std::string> names;
+  for (const Look& l : looks()) {
+    if (l.preset.name == name) return l;
+    names.emplace_back(l.preset.name);
+  }
+  fail_usage(fmt::format("unknown preset '{}'", name), "preset", unknown_name_hint(name, names));
+}
+
+}  // namespace
+
+std::span<const VolumePreset> volume_presets() {
+  static const std::vector<VolumePreset> presets = [] {
+    std::vector<VolumePreset> r;
+    for (const Look& l : looks()) r.push_back(l.preset);
+    return r;
+  }();
+  return presets;
+}
+
+const VolumePreset& find_volume_preset(std::string_view name) { return look_of(name).preset; }
+
+std::vector<std::string> words_of_preset(std::string_view name, const Dataset& data, const Field& field, int component,
+                                         std::string& reason) {
+  const Look& look = look_of(name);
+  Range r = data.range(field, field.components() > 1 ? component : 0);
+  if (r.empty()) r = {0, 1};
+  if (r.lo == r.hi) r.hi = r.lo + std::max(1.0, 0.01 * std::abs(r.lo));
+  double zero = r.lo, per = r.hi - r.lo;  // value = zero + per * place
+  if (look.axis == Look::Axis::hounsfield) {
+    double offset = 0;
+    if (looks_like_ct(data, field, &offset) || (r.lo <= -500 && r.hi >= 500)) {
+      zero = offset, per = 1;
+      reason = fmt::format("preset {}: values are Hounsfield units{}", name, offset != 0 ? fmt::format(" + {}", short_number(offset)) : "");
+    } else {
+      // Nobody knows: as if the data went from air to dense bone.
+      constexpr double air = -1000, bone = 2000;
+      per = (r.hi - r.lo) / (bone - air), zero = r.lo - air * per;
+      reason = fmt::format("preset {}: '{}' does not look like CT in Hounsfield units; its range {} to {} is taken for -1000 to 2000", name,
+                           field.name, short_number(r.lo), short_number(r.hi));
+    }
+  } else {
+    const Range f = foreground(field, component, r.lo, r.hi);
+    zero = f.lo, per = f.hi - f.lo;
+    reason =
+        fmt::format("preset {}: the foreground of '{}' goes from {} to {}", name, field.name, short_number(f.lo, 3), short_number(f.hi, 3));
+  }
+  std::vector<std::string> words = look.words;
+  std::string opacity, colors;
+  const auto value = [&](double at) { return short_number(zero + per * at, 8); };
+  for (const Stop& s : look.opacity) opacity += fmt::format("{}@{}:{}", opacity.empty() ? "" : ",", value(s.at), exact_number(s.opacity));
+  for (const ColorStop& s : look.colors) colors += fmt::format("{}@{}:{}", colors.empty() ? "" : ",", value(s.at), s.color);
+  words.push_back("opacity=" + opacity);
+  if (!colors.empty()) words.push_back("colors=" + colors);
+  else if (name != "xray") words.push_back(fmt::format("range={},{}", value(0), value(1)));
+  return words;
+}
+
+}  // namespace sg
