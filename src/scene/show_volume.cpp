@@ -14,10 +14,13 @@ namespace sg {
 
 void describe(Schema& s, VolumeShow& p) {
   describe(s, p.coloring);
-  std::string presets = "A whole look by name; words stated besides it win. ";
-  for (const VolumePreset& preset : volume_presets()) presets += fmt::format("{}: {} ", preset.name, preset.sentence);
-  presets.pop_back();
-  s("preset", p.preset, presets);
+  std::string presets;
+  std::vector<std::string> names;
+  for (const VolumePreset& preset : volume_presets()) {
+    presets += fmt::format("{}{} ({})", presets.empty() ? "" : ", ", preset.name, preset.about);
+    names.emplace_back(preset.name);
+  }
+  s("preset", p.preset, fmt::format("A whole look by name; words stated besides it win: {}.", presets)).choices(names);
   s("transfer", p.transfer,
     "What decides on opacity (and colours) where none are stated: auto, histogram, boundaries (of materials: where gradients are large), "
     "or a "
@@ -98,7 +101,13 @@ void check(const VolumeShow& p) {
   };
   ColorScale axis;  // any will do
   if (p.coloring.scale == "log") axis.kind = ScaleKind::log, axis.lo = 1e-300, axis.hi = 1;
-  if (!p.preset.empty()) each([&] { find_volume_preset(p.preset); });
+  each([&] {
+    std::vector<double> numbers{p.unit, p.sampling.step};
+    numbers.insert(numbers.end(), p.levels.begin(), p.levels.end());
+    for (const double v : numbers)
+      if (!std::isfinite(v))
+        fail_usage(fmt::format("{} is not a finite number", exact_number(v)), "volume", "unit, step and levels are finite");
+  });
   if (p.opacity != "auto") each([&] { parse_opacity(p.opacity, axis); });
   if (p.second_opacity != "auto") each([&] { parse_opacity(p.second_opacity, ColorScale{}, "second_opacity"); });
   if (!p.colors.empty())
@@ -154,6 +163,7 @@ Fields fields_of(const Dataset& d, const VolumeShow& p) {
   if (named.field.name == "none") named.field.name.clear();
   Fields f{};
   f.color = wanted_field(d, named);
+  if (!f.color) f.color = d.fields().active(1);  // one that is the same everywhere is seen through all the same
   if (!p.color_by.empty() && named.field.empty() && f.color && f.color->name == p.color_by.name) f.color = nullptr;  // the other one
   if (!f.color && named.field.empty() && !p.color_by.empty())
     for (const Field& other : d.fields())

@@ -44,7 +44,7 @@ std::vector<MaterialBoundary> material_boundaries(const std::vector<DerivativeSa
   // Values that few places have say nothing: the mean there is noise.
   double all = 0;
   for (double n : count) all += n;
-  const std::vector<double> mean = smooth_mean(sum, count, 6), density = smooth_mean(count, std::vector<double>(bins, 1), 6);
+  const std::vector<double> mean = smooth_mean(sum, count, 10), density = smooth_mean(count, std::vector<double>(bins, 1), 10);
   std::vector<double> g = mean;
   for (size_t b = 0; b < bins; ++b) g[b] *= std::min(1.0, density[b] / (0.0002 * all));
   const double highest = *std::max_element(g.begin(), g.end());
@@ -56,7 +56,7 @@ std::vector<MaterialBoundary> material_boundaries(const std::vector<DerivativeSa
     for (size_t k = b; k-- > 0 && g[k] <= g[b];) left = std::min(left, g[k]);
     for (size_t k = b + 1; k < bins && g[k] <= g[b]; ++k) right = std::min(right, g[k]);
     const double valley = std::max(left, right);
-    if (g[b] - valley < 0.12 * highest || g[b] < 0.2 * highest) continue;
+    if (g[b] - valley < 0.15 * highest || g[b] < 0.2 * highest) continue;
     const double half = 0.5 * (g[b] + valley);
     size_t l = b, r = b;
     while (l > 0 && g[l - 1] > half) --l;
@@ -100,7 +100,8 @@ std::string show_boundaries(const std::vector<MaterialBoundary>& found, double l
   if (opacity.points.back().x < hi) opacity.points.push_back({hi, 0});
   detail.second = SecondAxis::gradient;
   detail.second_factor.points = {{0, 0}, {0.25 * weakest, 0}, {0.8 * weakest, 1}};
-  return fmt::format("borders of materials at {} (where the mean gradient peaks); the inside of materials is left out", values);
+  return fmt::format("{} at {} (where the mean gradient peaks); the inside of materials is left out",
+                     found.size() == 1 ? "a border of materials" : "borders of materials", values);
 }
 
 }  // namespace sg

@@ -43,7 +43,7 @@ std::vector<DerivativeSample> on_lattice(const Dataset& d, const Field& f, int c
   if (std::min({n[0], n[1], n[2]}) < 3) return {};
   const size_t inner[3] = {n[0] - 2, n[1] - 2, n[2] - 2}, all = inner[0] * inner[1] * inner[2];
   // A step without a common factor with a row's length, so that samples do not line up.
-  size_t step = std::max<size_t>(1, all / most);
+  size_t step = std::max<size_t>(1, (all + most - 1) / most);
   while (step > 1 && std::gcd(step, inner[0]) > 1) ++step;
   const size_t count = (all + step - 1) / step;
   std::vector<DerivativeSample> samples(count);
@@ -99,7 +99,7 @@ std::vector<DerivativeSample> on_mesh(const DatasetPtr& data, const Field& field
   if (with_second) d = hessian(d, {{"value"}, "hessian"}, context);
   const Field& g = d->fields().require("gradient", field.association);
   const Field* h = with_second ? &d->fields().require("hessian", field.association) : nullptr;
-  const size_t n = field.array.count(), step = std::max<size_t>(1, n / most);
+  const size_t n = field.array.count(), step = std::max<size_t>(1, (n + most - 1) / most);
   std::vector<DerivativeSample> samples;
   for (size_t i = 0; i < n; i += step) {
     Mat3 m;

@@ -23,51 +23,45 @@ struct Look {
   std::vector<Stop> opacity;
   std::vector<ColorStop> colors;
   std::vector<std::string> words;
+  bool foreground_is_vessels = false;  // in scans without Hounsfield units: what is not background holds contrast agent
 };
 
 const std::vector<Look>& looks() {
   using enum Look::Axis;
   static const std::vector<Look> all{
-      {{"ct_bone", "CT: bone alone, ivory, with highlights."},
+      {{"ct_bone", "CT: bone alone"},
        hounsfield,
        {{180, 0}, {260, 0.25}, {450, 0.6}, {1000, 0.85}, {3000, 0.95}},
        {{100, "#b5651d"}, {250, "#d9a066"}, {450, "#efdcb8"}, {1000, "#fbf6e8"}, {1800, "#ffffff"}},
        {"shaded=true", "specular=0.3", "power=40"}},
-      {{"ct_skin", "CT: the surface of the body, what lies within is hidden."},
+      {{"ct_skin", "CT: the surface of the body"},
        hounsfield,
        {{-650, 0}, {-450, 0.1}, {-250, 0.6}, {0, 0.85}, {3000, 0.95}},
        {{-700, "#8a4f3a"}, {-350, "#d89b7c"}, {0, "#ecbfa3"}, {300, "#f2d3bd"}},
        {"shaded=true", "specular=0.12", "power=16"}},
-      {{"ct_vessels", "CT angiography: vessels with contrast agent in red, bone behind them in ivory, soft tissue left out."},
+      {{"ct_vessels", "CT angiography: vessels red, bone ivory"},
        hounsfield,
        {{120, 0}, {180, 0.08}, {260, 0.45}, {400, 0.6}, {600, 0.35}, {3000, 0.5}},
        {{100, "#5c0a0a"}, {220, "#b3201a"}, {380, "#e05a3a"}, {600, "#e8c9a0"}, {1200, "#fbf6e8"}},
-       {"shaded=true", "specular=0.35", "power=48"}},
-      {{"mr", "MR: tissue by its brightness, borders stronger than the inside."},
+       {"shaded=true", "specular=0.35", "power=48"},
+       true},
+      {{"mr", "tissue by its brightness, borders stronger"},
        foreground,
        {{0, 0}, {0.15, 0.02}, {0.45, 0.10}, {0.75, 0.35}, {1, 0.6}},
        {{0, "#2a1512"}, {0.3, "#8a4a3c"}, {0.55, "#c98b72"}, {0.8, "#ecd2bd"}, {1, "#fffaf2"}},
        {"shaded=true", "specular=0.1", "second=gradient", "second_opacity=0:0.1,0.15:0.5,0.4:1"}},
-      {{"xray", "An X-ray picture: the integral of the value along each ray, in grey."},
-       foreground,
-       {{0, 0}, {1, 1}},
-       {},
-       {"mode=sum", "map=gray", "shaded=false"}},
-      {{"mip_angiography", "Maximum along each ray in grey: bright vessels of CT and MR angiography."},
+      {{"xray", "the integral along each ray, in grey"}, foreground, {{0, 0}, {1, 1}}, {}, {"mode=sum", "map=gray", "shaded=false"}},
+      {{"mip_angiography", "the maximum along each ray, in grey"},
        foreground,
        {{0, 0}, {0.02, 1}, {1, 1}},
        {},
        {"mode=maximum", "map=gray", "shaded=false"}},
-      {{"combustion", "Flames: what is hot glows, what is cold is clear; no lamp."},
+      {{"combustion", "what is hot glows, what is cold is clear"},
        foreground,
-       {{0, 0}, {0.15, 0.004}, {0.4, 0.03}, {0.7, 0.15}, {1, 0.55}},
+       {{0, 0}, {0.1, 0.006}, {0.35, 0.06}, {0.7, 0.25}, {1, 0.7}},
        {{0, "#2b0b06"}, {0.3, "#8f1d0a"}, {0.55, "#e0560f"}, {0.8, "#fbb526"}, {1, "#fff6c8"}},
        {"shaded=false"}},
-      {{"density", "Smoke, fog, density of matter: opacity grows evenly with the value; no lamp."},
-       foreground,
-       {{0, 0}, {1, 0.35}},
-       {},
-       {"map=sight", "shaded=false"}},
+      {{"density", "opacity grows evenly with the value"}, foreground, {{0, 0}, {1, 0.35}}, {}, {"map=sight", "shaded=false"}},
   };
   return all;
 }
@@ -81,6 +75,13 @@ const Look& look_of(std::string_view name) {
   fail_usage(fmt::format("unknown preset '{}'", name), "preset", unknown_name_hint(name, names));
 }
 
+// To three digits: numbers for people to read.
+Range rounded_foreground(const Field& field, int component, const Range& r) {
+  const Range f = foreground(field, component, r.lo, r.hi);
+  const Range short_one{*parse_double(short_number(f.lo, 3)), *parse_double(short_number(f.hi, 3))};
+  return short_one.lo < short_one.hi ? short_one : f;
+}
+
 }  // namespace
 
 std::span<const VolumePreset> volume_presets() {
@@ -91,8 +92,6 @@ std::span<const VolumePreset> volume_presets() {
   }();
   return presets;
 }
-
-const VolumePreset& find_volume_preset(std::string_view name) { return look_of(name).preset; }
 
 std::vector<std::string> words_of_preset(std::string_view name, const Dataset& data, const Field& field, int component,
                                          std::string& reason) {
@@ -106,6 +105,12 @@ std::vector<std::string> words_of_preset(std::string_view name, const Dataset& d
     if (looks_like_ct(data, field, &offset) || (r.lo <= -500 && r.hi >= 500)) {
       zero = offset, per = 1;
       reason = fmt::format("preset {}: values are Hounsfield units{}", name, offset != 0 ? fmt::format(" + {}", short_number(offset)) : "");
+    } else if (look.foreground_is_vessels) {
+      constexpr double faint = 120, bright = 500;
+      const Range f = rounded_foreground(field, component, r);
+      per = (f.hi - f.lo) / (bright - faint), zero = f.lo - faint * per;
+      reason = fmt::format("preset {}: '{}' does not look like CT in Hounsfield units; its foreground {} to {} is taken for vessels", name,
+                           field.name, short_number(f.lo), short_number(f.hi));
     } else {
       // Nobody knows: as if the data went from air to dense bone.
       constexpr double air = -1000, bone = 2000;
@@ -114,7 +119,7 @@ std::vector<std::string> words_of_preset(std::string_view name, const Dataset& d
                            field.name, short_number(r.lo), short_number(r.hi));
     }
   } else {
-    const Range f = foreground(field, component, r.lo, r.hi);
+    const Range f = rounded_foreground(field, component, r);
     zero = f.lo, per = f.hi - f.lo;
     reason =
         fmt::format("preset {}: the foreground of '{}' goes from {} to {}", name, field.name, short_number(f.lo, 3), short_number(f.hi, 3));

@@ -11,11 +11,9 @@
 namespace sg {
 
 struct VolumePreset {
-  std::string_view name, sentence;
+  std::string_view name, about;
 };
 std::span<const VolumePreset> volume_presets();
-/// Throws Error(usage) with "did you mean".
-const VolumePreset& find_volume_preset(std::string_view name);
 
 /// The preset's words for this field: places in Hounsfield units become values of the field, those between background and foreground
 /// are read off its histogram. `reason` receives one line that says how. Throws Error(usage) for an unknown preset.

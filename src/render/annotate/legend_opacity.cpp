@@ -22,6 +22,12 @@ double largest_opacity(const VolumeLegend& v) {
   return most > 0 ? most : 1;
 }
 
+// Two digits, or all before the point.
+std::string end_text(double v) {
+  const double size = std::abs(v);
+  return typeset_number(short_number(v, size >= 100 && size < 1e5 ? int(std::log10(size)) + 1 : 2));
+}
+
 void put(Image& image, int x, int y, Vec3f srgb) {
   if (x < 0 || y < 0 || x >= image.width || y >= image.height) return;
   uint8_t* p = image.at(x, y);
@@ -112,10 +118,10 @@ void plan_opacity(const Legend& legend, double font, LegendLayout& l) {
   if (plane) {
     const bool by = v.detail.color_by_second;
     const double lo = by ? v.value.lo : v.detail.second_lo, hi = by ? v.value.hi : v.detail.second_hi;
-    l.panel_left = typeset_number(short_number(lo, 2)), l.panel_right = typeset_number(short_number(hi, 2));
+    l.panel_left = end_text(lo), l.panel_right = end_text(hi);
     l.panel_caption = by ? "opacity by " + v.value.title : v.second_title;
   } else {
-    l.panel_left = "0", l.panel_right = typeset_number(short_number(largest_opacity(v), 2));
+    l.panel_left = "0", l.panel_right = end_text(largest_opacity(v));
     l.panel_caption = "opacity";
   }
 }
