@@ -37,10 +37,11 @@ std::pair<std::string_view, std::string_view> halves(std::string_view part) {
   return {trim(part.substr(0, colon)), trim(part.substr(colon + 1))};
 }
 
-void check_ascends(double before, double now, std::string_view part, const std::string& word) {
+void check_ascends(double before, double now, std::string_view part, const ColorScale& axis, const std::string& word) {
   if (now < before)
-    fail_usage(fmt::format("'{}' lies below the point before it", part), word,
-               "write the points in ascending order; two at one place make a step");
+    fail_usage(fmt::format("'{}' lies below the point before it ({} after {})", part, short_number(axis.value_at(now)),
+                           short_number(axis.value_at(before))),
+               word, "write the points in ascending order; two at one place make a step");
 }
 
 }  // namespace
@@ -62,7 +63,7 @@ OpacityCurve parse_opacity(const std::string& text, const ColorScale& axis, cons
     if (!t || !y) fail_usage(fmt::format("'{}' is not a point of an opacity curve", part), word, opacity_form);
     if (!std::isfinite(*t)) fail_usage(fmt::format("'{}' has no place on a log scale", where), word, "values there are above 0");
     if (!(*y >= 0 && *y <= 1)) fail_usage(fmt::format("opacity {} is not between 0 and 1", how_much), word, opacity_form);
-    check_ascends(last, *t, part, word);
+    check_ascends(last, *t, part, axis, word);
     same = *t == last ? same + 1 : 0;
     if (same == 2) fail_usage(fmt::format("'{}' is the third point at one place", part), word, "two points at one place make a step");
     const double x = value_of(where, axis);
@@ -109,7 +110,7 @@ void parse_color_stops(const std::string& text, ColorScale& scale, bool keep_ran
     const auto t = place(where, scale);
     if (!t || what.empty()) fail_usage(fmt::format("'{}' is not a colour at a place", part), "colors", stops_form);
     if (!std::isfinite(*t)) fail_usage(fmt::format("'{}' has no place on a log scale", where), "colors", "values there are above 0");
-    if (!nodes.empty()) check_ascends(nodes.back().position, *t, part, "colors");
+    if (!nodes.empty()) check_ascends(nodes.back().position, *t, part, scale, "colors");
     if (nodes.size() > 1 && *t == nodes[nodes.size() - 2].position)
       fail_usage(fmt::format("'{}' is the third colour at one place", part), "colors", "two colours at one place make a step");
     nodes.push_back({*t, parse_color(what, "colors")});

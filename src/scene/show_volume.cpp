@@ -89,6 +89,22 @@ VolumeShow read(const std::vector<std::string>& words) {
   return p;
 }
 
+// Are there positions beside @values, so that only data can tell which comes first?
+bool mixes_places(const std::string& points) {
+  int values = 0, positions = 0;
+  for (const std::string_view part : split(points, ','))
+    if (part.find(':') != part.npos) ++(part.starts_with('@') ? values : positions);
+  return values > 0 && positions > 0;
+}
+bool mixes_ends(const std::string& widgets) {
+  for (const std::string_view part : split(widgets, ';')) {
+    const auto w = words(part);
+    for (size_t i = 1; i + 1 < std::min<size_t>(w.size(), 5); i += 2)
+      if (w[i].starts_with('@') != w[i + 1].starts_with('@')) return true;
+  }
+  return false;
+}
+
 // What cannot be whatever the data is.
 void check(const VolumeShow& p) {
   std::string problems;
@@ -108,16 +124,17 @@ void check(const VolumeShow& p) {
       if (!std::isfinite(v))
         fail_usage(fmt::format("{} is not a finite number", exact_number(v)), "volume", "unit, step and levels are finite");
   });
-  if (p.opacity != "auto") each([&] { parse_opacity(p.opacity, axis); });
-  if (p.second_opacity != "auto") each([&] { parse_opacity(p.second_opacity, ColorScale{}, "second_opacity"); });
-  if (!p.colors.empty())
+  if (p.opacity != "auto" && !mixes_places(p.opacity)) each([&] { parse_opacity(p.opacity, axis); });
+  if (p.second_opacity != "auto" && !mixes_places(p.second_opacity))
+    each([&] { parse_opacity(p.second_opacity, ColorScale{}, "second_opacity"); });
+  if (!p.colors.empty() && !mixes_places(p.colors))
     each([&] {
       ColorScale scale = axis;
       parse_color_stops(p.colors, scale, false);
     });
   if (!p.widgets.empty())
     each([&] {
-      parse_widgets(p.widgets, axis, ColorScale{});
+      if (!mixes_ends(p.widgets)) parse_widgets(p.widgets, axis, ColorScale{});
       if (p.opacity != "auto")
         fail_usage("both opacity and widgets are stated", "widgets", "the widgets decide on opacity; leave out one of the two");
     });

@@ -32,8 +32,8 @@ TEST_CASE("transfer functions: a recipe with a preset, a second axis, widgets or
   for (const std::string show : {
            "volume preset=mr",
            "volume preset=ct_bone specular=0.5",
-           "volume second=gradient 'second_opacity=0:0,0.3:1' 'opacity=0:0,@0.2:0.3,1:0.8'",
-           "volume 'widgets=triangle 0.1 0.4 0 1 0.7 tomato; rectangle @0.5 @0.9 0 0.5 0.3'",
+           "volume second=gradient 'second_opacity=0:0,0.3:1' 'opacity=0:0,@0.00002:0.3,1:0.8'",
+           "volume 'widgets=triangle 0.1 0.4 0 1 0.7 tomato; rectangle @0.00001 @0.00009 0 0.5 0.3'",
            "volume 'colors=0:#000000,0.4:#aa3311,1:white' transfer=boundaries",
            "volume 'clip=1,0,0,0; box -5,5,-5,5,-5,5'",
        }) {
@@ -88,7 +88,7 @@ TEST_CASE("transfer functions: files that are none are refused with the line") {
   CHECK(says(refused("sightglass-transfer: 1\ntransfer: other.yaml\n"), "names another file"));
   CHECK(says(refused("- 1\n"), "is no transfer function"));
   CHECK(says(refused("{"), "bad.yaml"));
-  const std::string list = "sightglass-transfer: 1\nopacity: ['0:0', '@0.5:0.25', '1:0.5']\nlevels: [0.1, 0.2]\n";
+  const std::string list = "sightglass-transfer: 1\nopacity: ['0:0', '@0.00002:0.25', '1:0.5']\nlevels: [0.00001, 0.00002]\n";
   write_file(path_of("list.yaml"), list);
   must(render("volume transfer=list.yaml", "a.png"));
   // Cut anywhere it is read or refused, never a crash.

@@ -154,6 +154,12 @@ TEST_CASE("volume words: what cannot be is refused before any data is read, all 
   CHECK(says(both, "not between"));
   CHECK(says(both, "has 2 numbers"));
   CHECK_NOTHROW(find_show("volume").check({"scale=log", "opacity=@5:0,@500:1"}));
+  // Which of a position and a value comes first, only the data can tell.
+  CHECK_NOTHROW(find_show("volume").check({"opacity=0:0,@-500:0.1,1:1", "colors=0:black,@-500:white", "widgets="}));
+  CHECK_NOTHROW(find_show("volume").check({"widgets=triangle 0 @-500 0 1"}));
+  const DatasetPtr d = two_fields();
+  CHECK(says(show_error(d, {"field=T", "opacity=0:0,@100:0.5,1:1"}), "'@100:0.5' lies below the point before it (100 after 200)"));
+  CHECK(show(d, {"field=T", "opacity=0:0,@250:0.5,1:1"}).item.opacity.at(250) == 0.5);
 }
 
 TEST_CASE("volume words: opacity by one field, colour by another") {
