@@ -21,7 +21,9 @@ struct VolumeShow {
 };
 void describe(Schema& s, VolumeShow& p);
 
-/// Finds the mistakes that can be seen without data, all at once. Throws Error(usage).
+/// The words as parameters; the second finds the mistakes that can be seen without data, all at once. Throw Error(usage).
+VolumeShow read_volume_words(const std::vector<std::string>& words);
+VolumeShow checked_volume_words(const std::vector<std::string>& words);
 void check_volume_words(const std::vector<std::string>& words);
 
 /// Adds one VolumeItem; what was chosen and why goes to context.info(). A preset's words come before the stated ones. Throws Error(usage)
