@@ -162,6 +162,11 @@ void choose_transfer(const VolumeShow& p, const Field& field, VolumeItem& item, 
     item.opacity.points = {{std::min(r.lo, before), 0.35}, {before, 0.35}, {last, 1}, {std::max(r.hi, last), 1}};
     return;
   }
+  const bool composites = item.mode == RayFunction::composite || item.mode == RayFunction::maximum_difference;
+  if (!composites && item.mode != RayFunction::maximum) {  // what is collected is drawn as it is
+    item.opacity.points = {{item.color.lo, 1}};
+    return;
+  }
   if (p.transfer == "boundaries") {
     const Range r = item.data->range(field, field.components() > 1 ? item.component : 0);
     const auto found = material_boundaries(sample_derivatives(item.data, field, item.component, false, 2000000, context), r.lo, r.hi);
@@ -179,7 +184,7 @@ void choose_transfer(const VolumeShow& p, const Field& field, VolumeItem& item, 
     context.info(fmt::format("no borders of materials stand out in '{}'; opacity comes from its histogram", field.name));
   }
   const std::string why = choose_volume_look(*item.data, field, p.coloring, item, p.transfer == "auto");
-  if (item.mode == RayFunction::composite || item.mode == RayFunction::maximum_difference) context.info(why);
+  if (composites) context.info(why);
 }
 
 std::string title_of_second(const TransferDetail& detail) {

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "color/parse_color.h"
 #include "scene/volume_look.h"
 
 namespace sg {
@@ -50,7 +51,7 @@ const std::vector<Look>& looks() {
        {{0, 0}, {0.15, 0.02}, {0.45, 0.10}, {0.75, 0.35}, {1, 0.6}},
        {{0, "#2a1512"}, {0.3, "#8a4a3c"}, {0.55, "#c98b72"}, {0.8, "#ecd2bd"}, {1, "#fffaf2"}},
        {"shaded=true", "specular=0.1", "second=gradient", "second_opacity=0:0.1,0.15:0.5,0.4:1"}},
-      {{"xray", "the integral along each ray, in grey"}, foreground, {{0, 0}, {1, 1}}, {}, {"mode=sum", "map=gray", "shaded=false"}},
+      {{"xray", "the integral along each ray, in grey"}, foreground, {}, {}, {"mode=sum", "map=gray", "shaded=false"}},
       {{"mip_angiography", "the maximum along each ray, in grey"},
        foreground,
        {{0, 0}, {0.02, 1}, {1, 1}},
@@ -128,8 +129,26 @@ std::vector<std::string> words_of_preset(std::string_view name, const Dataset& d
   std::string opacity, colors;
   const auto value = [&](double at) { return short_number(zero + per * at, 8); };
   for (const Stop& s : look.opacity) opacity += fmt::format("{}@{}:{}", opacity.empty() ? "" : ",", value(s.at), exact_number(s.opacity));
-  for (const ColorStop& s : look.colors) colors += fmt::format("{}@{}:{}", colors.empty() ? "" : ",", value(s.at), s.color);
-  words.push_back("opacity=" + opacity);
+  // No farther than the data goes: legends show no values that are not there.
+  const auto add_color = [&](double v, Vec3f c) {
+    colors += fmt::format("{}@{}:{}", colors.empty() ? "" : ",", short_number(v, 8), color_text(c));
+  };
+  const double first = look.colors.empty() ? 0 : zero + per * look.colors.front().at,
+               last = look.colors.empty() ? 0 : zero + per * look.colors.back().at;
+  const bool overlap = std::max(first, r.lo) < std::min(last, r.hi);
+  const double lo = overlap ? std::max(first, r.lo) : first, hi = overlap ? std::min(last, r.hi) : last;
+  for (size_t i = 0; i < look.colors.size(); ++i) {
+    const double v = zero + per * look.colors[i].at;
+    const Vec3f c = parse_color(look.colors[i].color, "preset");
+    if (i > 0) {
+      const double u = zero + per * look.colors[i - 1].at;
+      const Vec3f b = parse_color(look.colors[i - 1].color, "preset");
+      for (const double end : {lo, hi})
+        if (end > u && end < v) add_color(end, lerp(b, c, float((end - u) / (v - u))));
+    }
+    if (v >= lo && v <= hi) add_color(v, c);
+  }
+  if (!opacity.empty()) words.push_back("opacity=" + opacity);
   if (!colors.empty()) words.push_back("colors=" + colors);
   else if (name != "xray") words.push_back(fmt::format("range={},{}", value(0), value(1)));
   return words;

@@ -136,8 +136,10 @@ void draw_opacity(Image& image, Overlay& overlay, const Legend& s, const LegendL
   const double y = r.bottom() + 0.25 * l.font, line = overlay.measure("0", style).height;
   overlay.text(l.panel_left, r.x, y, style, true);
   overlay.text(l.panel_right, r.right() - overlay.measure(l.panel_right, style).width, y, style, true);
-  style.wrap = r.width, style.ellipsize = true;
-  const double width = std::min(r.width, overlay.measure(l.panel_caption, style).width);
+  // A long caption goes on below the bar, where no swatch of NaN is.
+  const double wanted = overlay.measure(l.panel_caption, style).width;
+  style.wrap = wanted <= r.width || l.nan ? r.width : l.column.right() - r.x, style.ellipsize = true;
+  const double width = std::min(wanted, r.width);
   overlay.text(l.panel_caption, r.x + 0.5 * (r.width - width), y + 0.95 * line, style, true);
 }
 
