@@ -138,7 +138,7 @@ TransferFunction::TransferFunction(const ColorScale& scale, const OpacityCurve& 
 }
 
 // The strongest decides the opacity; colours mix by opacity, so that they change smoothly where widgets overlap.
-float TransferFunction::of_widgets(float value, float second, const Vec4f& plain, float color[4]) const {
+float TransferFunction::of_widgets(float value, float second, const Vec4f& plain, float* color) const {
   float most = 0, sum = 0;
   Vec3f mixed{0, 0, 0};
   for (const Widget& w : widgets_) {
@@ -154,7 +154,7 @@ float TransferFunction::of_widgets(float value, float second, const Vec4f& plain
     most = std::max(most, a), sum += a;
     mixed = mixed + (w.own_color ? w.color : Vec3f{plain.x, plain.y, plain.z}) * a;
   }
-  if (sum > 0) color[0] = mixed.x / sum, color[1] = mixed.y / sum, color[2] = mixed.z / sum;
+  if (color && sum > 0) color[0] = mixed.x / sum, color[1] = mixed.y / sum, color[2] = mixed.z / sum;
   return most;
 }
 

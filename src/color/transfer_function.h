@@ -108,8 +108,9 @@ class TransferFunction {
     return {color[0], color[1], color[2], opacity};
   }
   float opacity(float value, float second) const {
-    float color[4];
-    return opacity_and_color(value, second, color);
+    if (!(value >= drawn_lo_ && value <= drawn_hi_)) return 0;
+    if (!widgets_.empty()) return of_widgets(value, second, {}, nullptr);
+    return with_factor_ ? curve_.at(value) * factor_.at(second) : curve_.at(value);
   }
   /// Opacity 0 for every value in [lo, hi] (stored) whatever the second axis says? Never true by mistake; false at times for
   /// intervals that only touch what is drawn.
@@ -136,7 +137,7 @@ class TransferFunction {
     Vec4f below, above, nan;
   };
   float opacity_and_color(float value, float second, float color[4]) const;
-  float of_widgets(float value, float second, const Vec4f& plain, float color[4]) const;
+  float of_widgets(float value, float second, const Vec4f& plain, float* color) const;
 
   Colors colors_;
   FastCurve curve_, factor_;

@@ -72,8 +72,11 @@ TEST_CASE("transfer function: nothing that is clear draws, and what is far from 
         const float lo = float(a) / 40, hi = float(b) / 40;
         float most = 0;
         for (int k = 0; k <= 20; ++k)
-          for (const float second : {-1.0f, 0.0f, 0.5f, 1.0f, 1.999f, 2.5f, 10.0f})
-            most = std::max(most, f.opacity(lo + (hi - lo) * float(k) / 20, second));
+          for (const float second : {-1.0f, 0.0f, 0.5f, 1.0f, 1.999f, 2.5f, 10.0f}) {
+            const float value = lo + (hi - lo) * float(k) / 20, opacity = f.opacity(value, second);
+            most = std::max(most, opacity);
+            if (k == 7) CHECK(f.at(value, second).opacity == opacity);
+          }
         clear += f.clear(lo, hi);
         if (f.clear(lo, hi)) CHECK(most == 0);
         CHECK(most <= f.most_opacity(lo, hi) * 1.00001f);
