@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "render/volume/cells/cell_source.h"
 #include "render/volume/lattice/lattice_ray.h"
 
 namespace sg::volume {
@@ -55,10 +56,10 @@ const Field& field_of(const VolumeItem& item) {
   return *f;
 }
 
-CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<const Volume> lattice, const Knobs& knobs, Context&) {
+CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<const Volume> lattice, const Knobs& knobs, Context& context) {
   CastVolume v;
   v.item = &item, v.id = id;
-  v.source = lattice_source(std::move(lattice));
+  v.source = lattice ? lattice_source(std::move(lattice)) : cell_source(item, context);
   RaySource& source = *v.source;
   const double base = double(source.base);
   const Range range = item.data->range(field_of(item), item.component);
@@ -72,7 +73,7 @@ CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<con
     const double span = std::abs(item.color.hi - item.color.lo);
     plan.lo = std::min(item.color.lo, item.color.hi) - span, plan.hi = std::max(item.color.lo, item.color.hi) + span;
   }
-  plan.accuracy = 0.25 * item.sampling.tolerance, plan.faint = 0.1 / diagonal, plan.most_tau = 1000 / source.edge;
+  plan.accuracy = 0.25 * item.sampling.tolerance, plan.faint = 0.5 / diagonal, plan.most_tau = 1000 / source.edge;
   v.medium = std::make_unique<Medium>(item.color, item.opacity, plan);
   v.budget = {item.sampling.tolerance, diagonal, knobs.stop_below > 0 ? float(0.2 * item.sampling.tolerance) : 0};
   v.step = item.sampling.step;

@@ -34,7 +34,7 @@ Stretch part_of(const Stretch& s, double from, double to) {
 namespace {
 
 constexpr int most_cuts = 6;  // halvings of a stretch for its light
-constexpr float deep = 0.1f;  // optical depth from which on the order within a segment is seen
+constexpr float deep = 0.05f; // optical depth from which on the order within a segment is seen
 
 /// Where there is light on the ends of a part of a stretch, linear between them.
 struct LitPart {
@@ -137,7 +137,7 @@ class Pieces {
     error += beyond * length * slope;
     error *= pass;
     const float share = pass * std::min(1.0f, length * medium.tau(0.25f * (s.b[0] + s.b[1] + s.b[2] + s.b[3])));
-    const float allowed = tolerance * (float(0.3 / look_.budget.length) * length + 0.6f * share);
+    const float allowed = tolerance * (float(0.3 / look_.budget.length) * length + 0.4f * share);
     const float n = std::clamp(std::ceil(std::sqrt(error / allowed)), 1.0f, 64.0f);
     float v = a, f = 0;
     for (float k = 1; k <= n; ++k) {
