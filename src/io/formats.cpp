@@ -49,7 +49,7 @@ const Format& format_of_folder(const std::string& path) {
   for (const Format& f : formats())
     if (f.sniff_folder && f.sniff_folder(path)) return f;
   fail_data("is a folder of no known kind", path,
-            "folders that are read: DICOM slices, OpenFOAM cases, AMReX plotfiles, stacks of pictures");
+            "folders that are read: DICOM slices, OpenFOAM cases, AMReX plotfiles, Zarr images, stacks of pictures");
 }
 
 const Format& format_of_file(const std::string& path, const ReadOptions& options) {
