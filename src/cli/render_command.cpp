@@ -206,7 +206,8 @@ int convert_slabs(const PipelineFile& file, const Options& o, Context& context) 
   options.chunk = size_t(o.write.chunk);
   if (o.write.compression != "none") options.compression = o.write.compression;
   const SlabSource source = with_context(fmt::format("writing '{}'", o.output), [&] {
-    return o.source.empty() ? slabs_of_file(o.inputs[0], o.read, context) : slabs_of_source(file.steps[0].operation, file.steps[0].words, context);
+    return o.source.empty() ? slabs_of_file(o.inputs[0], o.read, context)
+                            : slabs_of_source(file.steps[0].operation, file.steps[0].words, context);
   });
   write_zarr_slabs(o.output, source, options, context);
   const auto& n = source.grid.dims;
@@ -223,7 +224,9 @@ int run_convert(const Options& o, Context& context) {
     print_explanation(file);
     return 0;
   }
-  if (extension_of(o.output) == "zarr" && o.filters.empty() && o.read.pieces == 1 && o.write.pieces == 1) return convert_slabs(file, o, context);
+  const std::string target = o.output.substr(0, o.output.find_last_not_of('/') + 1);
+  if (extension_of(target) == "zarr" && o.filters.empty() && o.read.pieces == 1 && o.write.pieces == 1)
+    return convert_slabs(file, o, context);
   const PipelineGraph built = build_graph(file);
   check_memory(built, o);
   const Data data = built.graph.evaluate(built.last, {}, context);

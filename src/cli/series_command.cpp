@@ -26,7 +26,8 @@ std::vector<double> parse_times(const std::string& text) {
   if (ends.size() == 3) {
     const auto a = parse_double(ends[0]), b = parse_double(ends[1]);
     const auto n = parse_int(ends[2]);
-    if (!a || !b || !n || *n < 1 || *n > 1000000) fail_usage(fmt::format("'{}' is no list of times", text), "--times", "FIRST:LAST:COUNT, like 0:10:101");
+    if (!a || !b || !n || *n < 1 || *n > 1000000)
+      fail_usage(fmt::format("'{}' is no list of times", text), "--times", "FIRST:LAST:COUNT, like 0:10:101");
     for (int64_t i = 0; i < *n; ++i) times.push_back(*n == 1 ? *a : *a + (*b - *a) * double(i) / double(*n - 1));
     return times;
   }
@@ -55,7 +56,8 @@ PipelineFile at_time(PipelineFile file, double time, std::optional<size_t> step)
       if (op == known.end() || op->kind != OperationKind::source) continue;
       const ParamSet p = op->make_params();
       if (p.schema.find("time")) s.words.push_back("time=" + exact_number(time));
-      else fail_usage(fmt::format("the source '{}' has no time", s.operation), "--times", "a series needs a source with a parameter 'time'");
+      else
+        fail_usage(fmt::format("the source '{}' has no time", s.operation), "--times", "a series needs a source with a parameter 'time'");
     }
   }
   return file;
@@ -117,8 +119,8 @@ void fix_ranges(PipelineFile& first, const std::vector<PipelineFile>& some, Cont
       all = {-most, most};
     }
     show.words.push_back(fmt::format("range={},{}", exact_number(all.lo), exact_number(all.hi)));
-    context.info(fmt::format("one range for all pictures: {} to {}, that of {} steps spread over the series", short_number(all.lo), short_number(all.hi),
-                             some.size()));
+    context.info(fmt::format("one range for all pictures: {} to {}, that of {} steps spread over the series", short_number(all.lo),
+                             short_number(all.hi), some.size()));
   }
 }
 
@@ -129,7 +131,8 @@ bool is_numbered(const std::string& output) { return output.find(mark) != std::s
 int render_series(const Options& o, const PictureOptions& options, Context& context) {
   const PipelineFile plain = pipeline_of(o);
   if (const std::string ext = extension_of(o.output); ext == "mp4" || ext == "webm")
-    fail_usage("movies are not written yet", o.output, "write numbered pictures, like out_{n}.png, and join them with a tool of your choice");
+    fail_usage("movies are not written yet", o.output,
+               "write numbered pictures, like out_{n}.png, and join them with a tool of your choice");
   std::vector<double> times;
   bool by_step = false;
   if (!o.times.empty()) {
@@ -141,7 +144,9 @@ int render_series(const Options& o, const PictureOptions& options, Context& cont
   } else {
     fail_usage("a series of a source needs its times", "--times", "FIRST:LAST:COUNT, like --times 0:10:101");
   }
-  const auto step = [&](const PipelineFile& file, size_t n) { return at_time(file, times[n], by_step ? std::optional<size_t>(n) : std::nullopt); };
+  const auto step = [&](const PipelineFile& file, size_t n) {
+    return at_time(file, times[n], by_step ? std::optional<size_t>(n) : std::nullopt);
+  };
   { AtomicFile probe(numbered(o.output, 0, times.size())); }
 
   // The first picture chooses the looks of all.
@@ -164,7 +169,8 @@ int render_series(const Options& o, const PictureOptions& options, Context& cont
   PipelineFile base = chosen;
   for (size_t i = 0; i < plain.steps.size(); ++i) base.steps[i].words = plain.steps[i].words;  // without the time of the first
   std::vector<PipelineFile> some;
-  for (size_t i = 0; i < std::min<size_t>(5, times.size()); ++i) some.push_back(step(base, times.size() == 1 ? 0 : i * (times.size() - 1) / (std::min<size_t>(5, times.size()) - 1)));
+  for (size_t i = 0; i < std::min<size_t>(5, times.size()); ++i)
+    some.push_back(step(base, times.size() == 1 ? 0 : i * (times.size() - 1) / (std::min<size_t>(5, times.size()) - 1)));
   fix_ranges(base, some, context);
 
   const bool prefetch = o.memory == 0 || 2 * one_step < o.memory;

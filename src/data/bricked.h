@@ -17,7 +17,8 @@ struct BrickedVolume {
   struct Level {
     std::array<size_t, 3> dims{1, 1, 1};
     Vec3 origin{0, 0, 0}, spacing{1, 1, 1};
-    std::array<size_t, 3> coarseness{1, 1, 1};  ///< samples of level 0 per sample along each axis; each level's is a multiple of the one before
+    std::array<size_t, 3> coarseness{1, 1,
+                                     1};  ///< samples of level 0 per sample along each axis; each level's is a multiple of the one before
   };
   /// Of the values that are not NaN; lo > hi when there are none.
   struct Extremes {

@@ -92,7 +92,8 @@ ZarrArray parse_v2(const Json& json, const std::string& folder, const std::strin
     fail_data("filters before the compressor are not read", path, "write the array without filters");
   if (const Json* c = object_of(json, "compressor")) add_codec(a, text_of(*c, "id", ""), path);
   const std::string separator = text_of(json, "dimension_separator", ".");
-  if (separator != "." && separator != "/") fail_data(fmt::format("the dimension separator is '{}'", separator.substr(0, 10)), path, ". or /");
+  if (separator != "." && separator != "/")
+    fail_data(fmt::format("the dimension separator is '{}'", separator.substr(0, 10)), path, ". or /");
   a.separator = separator[0];
   if (json.contains("fill_value")) set_fill(a, json["fill_value"], path);
   return a;
@@ -192,7 +193,8 @@ bool ZarrArray::read_chunk(std::span<const size_t> at, std::byte* out, std::vect
   decode(codecs, packed, out, bytes, path);
   if (big_endian && element_size(type) > 1) {
     const size_t size = element_size(type);
-    for (size_t i = 0; i < bytes; i += size) std::reverse(out + i, out + i + size);  // swap_bytes() is parallel, this is called from inside loops
+    for (size_t i = 0; i < bytes; i += size)
+      std::reverse(out + i, out + i + size);  // swap_bytes() is parallel, this is called from inside loops
   }
   return true;
 }

@@ -27,8 +27,8 @@ struct ZarrArray {
   /// Chunks along axis a.
   size_t chunks(size_t a) const { return (shape[a] + chunk[a] - 1) / chunk[a]; }
   std::string chunk_path(std::span<const size_t> at) const;
-  /// The numbers of one whole chunk (also beyond the shape), in this machine's byte order. False for a chunk that is not there: all of it is
-  /// the fill value, `out` is not touched. `packed` is reused from chunk to chunk. Throws Error(data).
+  /// The numbers of one whole chunk (also beyond the shape), in this machine's byte order. False for a chunk that is not there: all of it
+  /// is the fill value, `out` is not touched. `packed` is reused from chunk to chunk. Throws Error(data).
   bool read_chunk(std::span<const size_t> at, std::byte* out, std::vector<std::byte>& packed) const;
 };
 

@@ -58,15 +58,12 @@ struct Copy {
   void operator()(const std::byte* chunk, const std::byte* fill, const std::array<size_t, 3>& c) const {
     Run r[3];
     for (size_t a = 0; a < 3; ++a) r[a] = run_in(part, a, c[a], shape.size[a]);
-    auto offset = [&](size_t a, size_t number) {
-      return (part.lo[a] + number * part.stride[a] - c[a] * shape.size[a]) * shape.stride[a];
-    };
+    auto offset = [&](size_t a, size_t number) { return (part.lo[a] + number * part.stride[a] - c[a] * shape.size[a]) * shape.stride[a]; };
     const size_t n = r[0].end - r[0].begin;
     const ptrdiff_t step = chunk ? ptrdiff_t(part.stride[0] * shape.stride[0] * element) : 0, to_step = ptrdiff_t(tuple * element);
     for (size_t k = r[2].begin; k < r[2].end; ++k)
       for (size_t j = r[1].begin; j < r[1].end; ++j) {
-        const std::byte* from =
-            chunk ? chunk + (shape.first + offset(0, r[0].begin) + offset(1, j) + offset(2, k)) * element : fill;
+        const std::byte* from = chunk ? chunk + (shape.first + offset(0, r[0].begin) + offset(1, j) + offset(2, k)) * element : fill;
         std::byte* to = out + ((k * part.count[1] + j) * part.count[0] + r[0].begin) * tuple * element;
         if (step == to_step && tuple == 1 && size_t(step) == element) std::memcpy(to, from, n * element);
         else if (element == 1) copy_row<1>(from, step, to, to_step, n);
@@ -162,8 +159,8 @@ std::vector<BrickedVolume::Extremes> read_extremes(const Image& image, size_t ch
   if (image.minmax.empty() || step > 0) return {};
   const auto array = open_array(image.minmax);
   const auto n = volume.blocks();
-  if (!array || array->type != ElementType::f32 || array->shape.size() != 5 || array->chunk != std::vector<size_t>({1, n[2], n[1], n[0], 2}) ||
-      channel >= array->shape[0])
+  if (!array || array->type != ElementType::f32 || array->shape.size() != 5 ||
+      array->chunk != std::vector<size_t>({1, n[2], n[1], n[0], 2}) || channel >= array->shape[0])
     return {};
   std::vector<BrickedVolume::Extremes> e(n[0] * n[1] * n[2]);
   std::vector<std::byte> packed;

@@ -20,9 +20,10 @@ struct Named {
   std::string_view name;
   Codec codec;
 };
-constexpr Named names[] = {{"zlib", Codec::zlib}, {"gzip", Codec::gzip},   {"bz2", Codec::bzip2}, {"zstd", Codec::zstd},
-                           {"blosc", Codec::blosc}, {"lz4", Codec::lz4}, {"crc32c", Codec::crc32c}, {"numcodecs.zlib", Codec::zlib},
-                           {"numcodecs.lz4", Codec::lz4}, {"numcodecs.bz2", Codec::bzip2}};
+constexpr Named names[] = {{"zlib", Codec::zlib},          {"gzip", Codec::gzip},           {"bz2", Codec::bzip2},
+                           {"zstd", Codec::zstd},          {"blosc", Codec::blosc},         {"lz4", Codec::lz4},
+                           {"crc32c", Codec::crc32c},      {"numcodecs.zlib", Codec::zlib}, {"numcodecs.lz4", Codec::lz4},
+                           {"numcodecs.bz2", Codec::bzip2}};
 
 [[noreturn]] void fail(const char* codec, size_t bytes, const std::string& where) {
   fail_data(fmt::format("the {} stream is damaged or does not hold the {} bytes of a chunk", codec, bytes), where);
@@ -37,7 +38,8 @@ void decode_blosc(std::span<const std::byte> in, std::byte* out, size_t bytes, c
 
 void decode_lz4(std::span<const std::byte> in, std::byte* out, size_t bytes, const std::string& where) {
   if (in.size() < 4 || load<uint32_t>(in.data()) != bytes || in.size() > size_t(LZ4_MAX_INPUT_SIZE)) fail("LZ4", bytes, where);
-  const int n = LZ4_decompress_safe(reinterpret_cast<const char*>(in.data()) + 4, reinterpret_cast<char*>(out), int(in.size() - 4), int(bytes));
+  const int n =
+      LZ4_decompress_safe(reinterpret_cast<const char*>(in.data()) + 4, reinterpret_cast<char*>(out), int(in.size() - 4), int(bytes));
   if (n < 0 || size_t(n) != bytes) fail("LZ4", bytes, where);
 }
 
@@ -106,8 +108,8 @@ void encode(const Packing& packing, std::span<const std::byte> in, size_t elemen
     out.resize(libdeflate_zlib_compress(c.get(), in.data(), in.size(), out.data(), out.size()));
   } else {
     out.resize(in.size() + BLOSC_MAX_OVERHEAD);
-    const int n = blosc_compress_ctx(packing.compression == "zstd" ? 3 : 5, BLOSC_SHUFFLE, element, in.size(), in.data(), out.data(), out.size(),
-                                     packing.compression.c_str(), 0, 1);
+    const int n = blosc_compress_ctx(packing.compression == "zstd" ? 3 : 5, BLOSC_SHUFFLE, element, in.size(), in.data(), out.data(),
+                                     out.size(), packing.compression.c_str(), 0, 1);
     if (n <= 0) fail_internal("Blosc could not compress a chunk");
     out.resize(size_t(n));
   }

@@ -47,7 +47,8 @@ void mean_rows(const float* a, const float* b, const float* c, const float* d, f
   for (size_t i = 0; i < n; ++i) {
     const size_t x = 2 * i;
     out[i] = float(((double(a[x]) + double(a[x + 1])) + (double(b[x]) + double(b[x + 1])) +
-                    ((double(c[x]) + double(c[x + 1])) + (double(d[x]) + double(d[x + 1])))) * 0.125);
+                    ((double(c[x]) + double(c[x + 1])) + (double(d[x]) + double(d[x + 1])))) *
+                   0.125);
   }
 }
 

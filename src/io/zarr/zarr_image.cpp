@@ -40,15 +40,19 @@ void place_axes(Image& image, const Axes& axes, const std::string& where) {
   const std::vector<size_t>& shape = image.levels[0].array.shape;
   for (size_t i = 0; i < shape.size(); ++i) {
     const std::string& n = axes.names[i];
-    int* slot = n == "x" ? &image.axis[0] : n == "y" ? &image.axis[1] : n == "z" ? &image.axis[2]
-              : n == "t" || axes.types[i] == "time" ? &image.time_axis
-              : n == "c" || axes.types[i] == "channel" ? &image.channel_axis : nullptr;
+    int* slot = n == "x"                                 ? &image.axis[0]
+                : n == "y"                               ? &image.axis[1]
+                : n == "z"                               ? &image.axis[2]
+                : n == "t" || axes.types[i] == "time"    ? &image.time_axis
+                : n == "c" || axes.types[i] == "channel" ? &image.channel_axis
+                                                         : nullptr;
     if (slot && *slot < 0) *slot = int(i);
     else if (shape[i] > 1) fail_data(fmt::format("axis '{}' of {} is none of t, c, z, y, x", n.substr(0, 40), shape[i]), where);
   }
   if (image.axis[0] < 0) fail_data("has no axis x", where);
-  constexpr std::pair<const char*, const char*> units[] = {{"meter", "m"}, {"millimeter", "mm"}, {"micrometer", "um"}, {"nanometer", "nm"},
-                                                           {"centimeter", "cm"}, {"kilometer", "km"}, {"angstrom", "angstrom"}};
+  constexpr std::pair<const char*, const char*> units[] = {{"meter", "m"},          {"millimeter", "mm"}, {"micrometer", "um"},
+                                                           {"nanometer", "nm"},     {"centimeter", "cm"}, {"kilometer", "km"},
+                                                           {"angstrom", "angstrom"}};
   const std::string said = axes.units[size_t(image.axis[0])];
   image.length_unit = said;
   for (const auto& [name, ours] : units)
@@ -64,7 +68,8 @@ void apply_transformations(const Json& object, size_t n, std::vector<double>& sc
     if (type == "identity") continue;
     const Json* v = t.is_object() ? list_of(t, type.c_str()) : nullptr;
     if ((type != "scale" && type != "translation") || !v)
-      fail_data(fmt::format("a coordinate transformation of type '{}' is not read", type.substr(0, 40)), where, "scale and translation are");
+      fail_data(fmt::format("a coordinate transformation of type '{}' is not read", type.substr(0, 40)), where,
+                "scale and translation are");
     if (v->size() != n) fail_data(fmt::format("a {} has {} numbers for {} axes", type, v->size(), n), where);
     for (size_t a = 0; a < n; ++a) {
       if (!(*v)[a].is_number()) fail_data(fmt::format("a {} holds something that is no number", type), where);
@@ -103,7 +108,8 @@ void read_levels(Image& image, const Json& multiscale, const std::string& where)
     for (int a = 0; a < 3; ++a)
       if (const int at = image.axis[a]; at >= 0)
         image.levels[l].spacing[a] = places[l][0][size_t(at)], image.levels[l].origin[a] = places[l][1][size_t(at)];
-  if (image.time_axis >= 0) image.time_step = places[0][0][size_t(image.time_axis)], image.first_time = places[0][1][size_t(image.time_axis)];
+  if (image.time_axis >= 0)
+    image.time_step = places[0][0][size_t(image.time_axis)], image.first_time = places[0][1][size_t(image.time_axis)];
 }
 
 void read_extras(Image& image, const Json& attributes) {
@@ -199,7 +205,8 @@ Image open_image(const std::string& given) {
     if (!group) fail_data("has neither .zattrs nor zarr.json", given, "a Zarr folder has one of them at its top");
     if (const Json* all = object_of(*group, "attributes")) attributes = object_of(*all, "ome") ? *object_of(*all, "ome") : *all;
     else attributes = Json::object();
-    if (const Json* all = object_of(*group, "attributes"); all && object_of(*all, "sightglass")) (*attributes)["sightglass"] = *object_of(*all, "sightglass");
+    if (const Json* all = object_of(*group, "attributes"); all && object_of(*all, "sightglass"))
+      (*attributes)["sightglass"] = *object_of(*all, "sightglass");
   }
   const Json* multiscales = list_of(*attributes, "multiscales");
   if (!multiscales || multiscales->empty() || !(*multiscales)[0].is_object())

@@ -21,18 +21,18 @@ struct Image {
   };
   std::string path;
   std::string name;
-  std::vector<Level> levels;         ///< finest first
-  int axis[3] = {-1, -1, -1};        ///< places of x, y and z in the shape; -1 = a single layer
+  std::vector<Level> levels;   ///< finest first
+  int axis[3] = {-1, -1, -1};  ///< places of x, y and z in the shape; -1 = a single layer
   int time_axis = -1, channel_axis = -1;
   double time_step = 1, first_time = 0;
-  std::string length_unit;           ///< "mm", ...; as the file says it when it is none of ours
-  std::vector<std::string> channels; ///< a name each
+  std::string length_unit;            ///< "mm", ...; as the file says it when it is none of ours
+  std::vector<std::string> channels;  ///< a name each
   // What our own files say besides.
   std::string unit;
   Mat3 direction;
-  bool vector = false;               ///< the channels are the components of one field
+  bool vector = false;  ///< the channels are the components of one field
   bool labels = false;
-  std::string minmax;                ///< folder of the extremes array, or ""
+  std::string minmax;  ///< folder of the extremes array, or ""
 
   std::array<size_t, 3> dims(size_t level) const;
   size_t steps() const { return time_axis < 0 ? 1 : levels[0].array.shape[size_t(time_axis)]; }

@@ -11,7 +11,8 @@ namespace {
 
 const Field& chosen_field(const Dataset& d, const ReadOptions& options, const std::string& path, Context& context) {
   if (!d.as<UniformGrid>())
-    fail_usage(fmt::format("a {} mesh cannot be written as Zarr", d.kind()), path, "a Zarr image holds a uniform grid; resample it first: -f 'resample ...'");
+    fail_usage(fmt::format("a {} mesh cannot be written as Zarr", d.kind()), path,
+               "a Zarr image holds a uniform grid; resample it first: -f 'resample ...'");
   const Field* chosen = options.fields.size() == 1 ? d.fields().find(options.fields[0], Association::point) : d.fields().active(0);
   size_t count = 0;
   for (const Field& f : d.fields())
@@ -49,7 +50,8 @@ SlabSource slabs_of_dataset(const DatasetPtr& dataset, const std::string& path, 
 }
 
 SlabSource slabs_of_file(const std::string& path, const ReadOptions& options, Context& context) {
-  if (!(find_format(path, options).honours & honours_region)) return slabs_of_dataset(single_dataset(read_data(path, options, context), path), path, context);
+  if (!(find_format(path, options).honours & honours_region))
+    return slabs_of_dataset(single_dataset(read_data(path, options, context), path), path, context);
   ReadOptions look = options;
   look.header_only = true;
   const DatasetPtr header = single_dataset(read_data(path, look, context), path);

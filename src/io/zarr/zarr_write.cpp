@@ -31,7 +31,8 @@ class AtomicFolder {
       fail_usage("is there already and is no Zarr folder", path_, "remove it first, or choose another name");
     partial_ = fmt::format("{}.partial-{}", path_, ::getpid());
     if (::mkdir(partial_.c_str(), 0777) != 0)
-      fail_data(errno == ENOENT ? "cannot be written: the folder around it does not exist" : std::string("cannot be written: ") + std::strerror(errno),
+      fail_data(errno == ENOENT ? "cannot be written: the folder around it does not exist"
+                                : std::string("cannot be written: ") + std::strerror(errno),
                 path_);
   }
   ~AtomicFolder() {
@@ -99,7 +100,12 @@ struct Level {
 class Writer {
  public:
   Writer(const std::string& folder, const SlabSource& source, const ZarrOptions& options, Context& context)
-      : source_(source), direction_(source.grid.direction), packing_{options.compression}, context_(context), folder_(folder), tuple_(element_size(source.type) * size_t(source.components)) {
+      : source_(source),
+        direction_(source.grid.direction),
+        packing_{options.compression},
+        context_(context),
+        folder_(folder),
+        tuple_(element_size(source.type) * size_t(source.components)) {
     plan(options.chunk);
     for (int c = 0; c < source.components; ++c) extremes_.emplace_back(source.grid.dims);
     for (Level& l : levels_) {
@@ -144,7 +150,7 @@ class Writer {
       for (int r = 0; r < 3; ++r) direction_.m[r][a] = -direction_.m[r][a];
     }
     l.origin = transpose(direction_) * g.origin;
-    for (;; ) {
+    for (;;) {
       bool more = false;
       for (size_t a = 0; a < 3; ++a) {
         l.chunk[a] = std::min(a == 2 ? thick : edge, l.dims[a]);
@@ -190,7 +196,8 @@ class Writer {
     const size_t means = level.halved[2] ? (count + 1) / 2 : count;
     std::byte* out = nullptr;
     const Array held = Array::make_raw(ElementType::u8, next.dims[0] * next.dims[1] * means * tuple_, 1, &out);
-    zarr::halve({source_.type, source_.components, source_.role == Role::labels}, values, {level.dims[0], level.dims[1], count}, level.halved, out);
+    zarr::halve({source_.type, source_.components, source_.role == Role::labels}, values, {level.dims[0], level.dims[1], count},
+                level.halved, out);
     push(l + 1, out, means);
   }
 
@@ -198,7 +205,8 @@ class Writer {
     const size_t nx = (level.dims[0] + level.chunk[0] - 1) / level.chunk[0], ny = (level.dims[1] + level.chunk[1] - 1) / level.chunk[1];
     const size_t components = size_t(source_.components), element = element_size(source_.type);
     for (size_t c = 0; c < components; ++c) {
-      const std::string top = components > 1 ? fmt::format("{}{}/{}/", level.folder, c, level.layer) : fmt::format("{}{}/", level.folder, level.layer);
+      const std::string top =
+          components > 1 ? fmt::format("{}{}/{}/", level.folder, c, level.layer) : fmt::format("{}{}/", level.folder, level.layer);
       make_folder(top);
       for (size_t j = 0; j < ny; ++j) make_folder(fmt::format("{}{}", top, j));
       parallel_for(
@@ -234,30 +242,36 @@ class Writer {
   }
 
   std::string array_text(const Level& l) const {
-    const auto shape = [&](const std::array<size_t, 3>& n, size_t c) { return source_.components > 1 ? list({c, n[2], n[1], n[0]}) : list({n[2], n[1], n[0]}); };
+    const auto shape = [&](const std::array<size_t, 3>& n, size_t c) {
+      return source_.components > 1 ? list({c, n[2], n[1], n[0]}) : list({n[2], n[1], n[0]});
+    };
     return fmt::format(
-        "{{\n  \"zarr_format\": 2,\n  \"shape\": {},\n  \"chunks\": {},\n  \"dtype\": \"{}\",\n  \"compressor\": {},\n  \"fill_value\": 0,\n"
+        "{{\n  \"zarr_format\": 2,\n  \"shape\": {},\n  \"chunks\": {},\n  \"dtype\": \"{}\",\n  \"compressor\": {},\n  \"fill_value\": "
+        "0,\n"
         "  \"filters\": null,\n  \"order\": \"C\",\n  \"dimension_separator\": \"/\"\n}}\n",
         shape(l.dims, size_t(source_.components)), shape(l.chunk, 1), dtypes[size_t(source_.type)], packing_.json());
   }
 
   std::string attributes() const {
-    constexpr std::pair<const char*, const char*> units[] = {{"m", "meter"}, {"mm", "millimeter"}, {"um", "micrometer"}, {"nm", "nanometer"},
-                                                             {"cm", "centimeter"}, {"km", "kilometer"}, {"angstrom", "angstrom"}};
+    constexpr std::pair<const char*, const char*> units[] = {{"m", "meter"},          {"mm", "millimeter"}, {"um", "micrometer"},
+                                                             {"nm", "nanometer"},     {"cm", "centimeter"}, {"km", "kilometer"},
+                                                             {"angstrom", "angstrom"}};
     std::string unit;
     for (const auto& [ours, name] : units)
       if (source_.length_unit == ours) unit = fmt::format(", \"unit\": \"{}\"", name);
     const bool many = source_.components > 1;
     std::string axes = many ? "{\"name\": \"c\", \"type\": \"channel\"}, " : "";
-    for (const char* a : {"z", "y", "x"}) axes += fmt::format("{}{{\"name\": \"{}\", \"type\": \"space\"{}}}", a[0] == 'z' ? "" : ", ", a, unit);
+    for (const char* a : {"z", "y", "x"})
+      axes += fmt::format("{}{{\"name\": \"{}\", \"type\": \"space\"{}}}", a[0] == 'z' ? "" : ", ", a, unit);
     std::string datasets;
     for (size_t l = 0; l < levels_.size(); ++l) {
       const auto vec = [&](Vec3 v, const char* first) {
         return fmt::format("[{}{}, {}, {}]", many ? first : "", exact_number(v.z), exact_number(v.y), exact_number(v.x));
       };
-      datasets += fmt::format("{}\n        {{\"path\": \"{}\", \"coordinateTransformations\": [{{\"type\": \"scale\", \"scale\": {}}}, "
-                              "{{\"type\": \"translation\", \"translation\": {}}}]}}",
-                              l ? "," : "", l, vec(levels_[l].spacing, "1, "), vec(levels_[l].origin, "0, "));
+      datasets += fmt::format(
+          "{}\n        {{\"path\": \"{}\", \"coordinateTransformations\": [{{\"type\": \"scale\", \"scale\": {}}}, "
+          "{{\"type\": \"translation\", \"translation\": {}}}]}}",
+          l ? "," : "", l, vec(levels_[l].spacing, "1, "), vec(levels_[l].origin, "0, "));
     }
     std::string channels;
     for (int c = 0; c < source_.components; ++c) channels += fmt::format("{}{{\"label\": {}}}", c ? ", " : "", json_string(source_.field));
@@ -268,11 +282,12 @@ class Writer {
       direction = fmt::format(", \"direction\": [{}]", direction);
     }
     return fmt::format(
-        "{{\n  \"multiscales\": [\n    {{\n      \"version\": \"0.4\",\n      \"name\": {},\n      \"type\": \"{}\",\n      \"axes\": [{}],\n"
+        "{{\n  \"multiscales\": [\n    {{\n      \"version\": \"0.4\",\n      \"name\": {},\n      \"type\": \"{}\",\n      \"axes\": "
+        "[{}],\n"
         "      \"datasets\": [{}\n      ]\n    }}\n  ],\n  \"omero\": {{\"channels\": [{}]}},\n"
         "  \"sightglass\": {{\"minmax\": \"minmax\", \"unit\": {}, \"vector\": {}, \"labels\": {}{}}}\n}}\n",
-        json_string(source_.title), source_.role == Role::labels ? "most frequent" : "mean", axes, datasets, channels, json_string(source_.unit), many,
-        source_.role == Role::labels, direction);
+        json_string(source_.title), source_.role == Role::labels ? "most frequent" : "mean", axes, datasets, channels,
+        json_string(source_.unit), many, source_.role == Role::labels, direction);
   }
 
   // minmax/: an array [component, z, y, x, lowest and highest] of one chunk per component.
@@ -319,7 +334,8 @@ void write_zarr_slabs(const std::string& path, const SlabSource& source, const Z
     context.check();
     const size_t count = std::min(at_once, all - first);
     const Array slab = source.slab(first, count).made_packed();
-    if (slab.count() != source.grid.dims[0] * source.grid.dims[1] * count || slab.type() != source.type || slab.components() != source.components)
+    if (slab.count() != source.grid.dims[0] * source.grid.dims[1] * count || slab.type() != source.type ||
+        slab.components() != source.components)
       fail_internal("a slab has another size or type than was announced", path);
     writer.add(slab, count);
     context.progress(double(first + count) / double(all), "writing chunks");

@@ -18,7 +18,8 @@ std::array<uint32_t, 3> BrickTree::bricks(size_t level) const {
   return n;
 }
 
-BrickTree::BrickTree(const BrickedVolume& volume, const Projection& projection, double pixels, uint64_t most_bytes, const Invisible& invisible)
+BrickTree::BrickTree(const BrickedVolume& volume, const Projection& projection, double pixels, uint64_t most_bytes,
+                     const Invisible& invisible)
     : volume_(volume), projection_(projection), invisible_(invisible) {
   const size_t levels = volume.levels.size();
   if (!volume.extremes.empty()) {
@@ -191,12 +192,14 @@ void BrickTree::balance() {
     const BrickNode n = nodes_[size_t(at)];
     if (n.children >= 0) continue;
     Vec3 size, lo;
-    for (int a = 0; a < 3; ++a) size[a] = double(edge * volume_.levels[n.level].coarseness[size_t(a)]), lo[a] = double(n.at[size_t(a)]) * size[a];
+    for (int a = 0; a < 3; ++a)
+      size[a] = double(edge * volume_.levels[n.level].coarseness[size_t(a)]), lo[a] = double(n.at[size_t(a)]) * size[a];
     for (int d = 0; d < 27; ++d) {
       if (d == 13) continue;
       const Vec3 place = lo + size * Vec3(d % 3 - 0.5, d / 3 % 3 - 0.5, d / 9 - 0.5);
       bool inside = true;
-      for (int a = 0; a < 3; ++a) inside = inside && place[a] >= 0 && place[a] - 0.5 * size[a] < last_place(volume_.levels[0].dims[size_t(a)]);
+      for (int a = 0; a < 3; ++a)
+        inside = inside && place[a] >= 0 && place[a] - 0.5 * size[a] < last_place(volume_.levels[0].dims[size_t(a)]);
       if (!inside) continue;
       // The middle of the neighbouring box may lie beyond the grid; its corner towards this one does not.
       Vec3 probe = place;

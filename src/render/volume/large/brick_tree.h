@@ -23,9 +23,9 @@ struct BrickNode {
   int32_t children = -1;         ///< place of the first of them; -1 for leaves
   float lo = 0, hi = 0;          ///< no value of the field lies outside
   uint8_t level = 0;
-  uint8_t blend = 0;    ///< bit c: at corner c (x + 2y + 4z) the next coarser level is drawn
-  bool exists = true;   ///< beyond the grid otherwise
-  bool seen = false;    ///< in the view, and not invisible
+  uint8_t blend = 0;   ///< bit c: at corner c (x + 2y + 4z) the next coarser level is drawn
+  bool exists = true;  ///< beyond the grid otherwise
+  bool seen = false;   ///< in the view, and not invisible
 };
 
 class BrickTree {
