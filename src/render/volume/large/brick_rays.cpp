@@ -210,9 +210,12 @@ class Walker final : public RayField {
       const double t0 = (p_.lo[i] - start_[i]) / along_[i], t1 = (p_.hi[i] - start_[i]) / along_[i];
       t_ = std::max(t_, std::min(t0, t1)), end_ = std::min(end_, std::max(t0, t1));
     }
+    entry_ = t_;
     // A hair: much less than a cell, much more than rounding.
     hair_ = 1e-7 / std::max({std::abs(along_.x), std::abs(along_.y), std::abs(along_.z), 1e-300});
   }
+
+  double entry() const override { return entry_; }
 
   size_t next(std::span<Stretch> out) override {
     size_t n = 0;
@@ -382,7 +385,7 @@ class Walker final : public RayField {
   const Prepared& p_;
   std::vector<Pin> pins_;
   Vec3 start_, along_, lo_, hi_;
-  double t_ = 0, end_ = 0, leaf_end_ = 0, cube_end_ = 0, hair_ = 0;
+  double t_ = 0, end_ = 0, entry_ = 0, leaf_end_ = 0, cube_end_ = 0, hair_ = 0;
   int leaf_ = -1;
   bool blends_ = false;
   Cells cells_[2];
