@@ -64,5 +64,6 @@ TEST_CASE("render: a series that cannot be is told") {
   CHECK(has(sightglass({"render", "-s", "drift size=9", "--times", "0:1", "-o", out}).err, "no list of times"));
   CHECK(has(sightglass({"render", "-s", "tangle size=9", "--times", "0,1", "-o", out}).err, "has no time"));
   CHECK(has(sightglass({"render", "-s", "drift size=9", "--times", "0,1", "-o", test::temp_folder() + "x.png"}).err, "{n}"));
-  CHECK(has(sightglass({"render", "-s", "drift size=9", "--times", "0,1", "-o", test::temp_folder() + "x_{n}.mp4"}).err, "movies are not written"));
+  CHECK(has(sightglass({"render", "-s", "drift size=9", "--times", "0,1", "-o", test::temp_folder() + "x_{n}.mp4"}).err,
+            "movies are not written"));
 }

@@ -233,6 +233,26 @@ TEST_CASE("bricked: gradients of a linear field are exact, on a turned grid too,
   }
 }
 
+TEST_CASE("bricked: gradients are central differences of the trilinear field, inside bricks and at their borders") {
+  const MadeVolume m = make_volume({140, 70, 70}, 1, bumpy);
+  const auto source = source_of(m, look(box_of(m), 1, 4000, true));
+  const auto ray = source->walker();
+  const Vec3 origin{-1, 20.3, 31.1}, d = normalize(Vec3{1, 0.11, 0.07});
+  double worst = 0, most = 0;
+  for (const auto& s : stretches(*ray, origin, d)) {
+    const double t = 0.4 * s.from + 0.6 * s.to;
+    const Vec3 u = origin + d * t, g = Vec3(ray->gradient(s, t));
+    if (u.x < 1 || u.x > 138) continue;
+    for (int a = 0; a < 3; ++a) {
+      Vec3 h{0, 0, 0};
+      h[a] = 1;
+      worst = std::max(worst, std::abs(g[a] - 0.5 * (m.at(0, u + h) - m.at(0, u - h)))), most = std::max(most, std::abs(g[a]));
+    }
+  }
+  CHECK(worst < 5e-6);
+  CHECK(most > 0.1);
+}
+
 TEST_CASE("bricked: a cell with a corner without a value is clear") {
   const MadeVolume m = make_volume({20, 20, 20}, 1, [](double x, double y, double z) { return x == 10 && y == 10 && z == 10 ? NAN : x; });
   const auto source = source_of(m, look(box_of(m), 1, 4000));

@@ -354,10 +354,27 @@ class Walker final : public RayField {
     return double(b[0]);
   }
 
+  // The same where all samples around the cell are held, at once. False elsewhere.
+  static bool inner_slope(const BrickData& d, Vec3 v, Vec3& g) {
+    size_t at = 0, step[3], stride = 1;
+    float place[3], out[3];
+    for (size_t i = 0; i < 3; ++i) {
+      const double local = v[int(i)] - d.first[i];
+      if (!(local >= 1) || !(local < double(d.n[i] - 2))) return false;
+      const auto cell = size_t(local);
+      place[i] = float(local - double(cell));
+      at += cell * stride, step[i] = stride, stride *= size_t(d.n[i]);
+    }
+    d.differences(d.values.raw(), at, step, place, out);
+    g = {double(out[0]), double(out[1]), double(out[2])};
+    return std::isfinite(g.x + g.y + g.z);
+  }
+
   // Central differences of a level, per sample of level 0; 0 where a value is missing.
   Vec3 slope(size_t level, const BrickData& d, Vec3 u) const {
     Vec3 g;
     const Vec3 v = u * p_.scale[level] + p_.shift[level];
+    if (inner_slope(d, v, g)) return g * p_.scale[level];
     for (int i = 0; i < 3; ++i) {
       Vec3 before = v, after = v;
       before[i] = std::clamp(v[i] - 1, 0.0, d.most[size_t(i)]), after[i] = std::clamp(v[i] + 1, 0.0, d.most[size_t(i)]);

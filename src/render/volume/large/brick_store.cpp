@@ -17,6 +17,25 @@ void read_corners(const std::byte* values, size_t at, const size_t step[3], floa
   out[4] = float(p[z]), out[5] = float(p[z + x]), out[6] = float(p[z + y]), out[7] = float(p[z + y + x]);
 }
 
+// Along each axis, the four lines through the cell hold one sample more at both ends.
+template <class T>
+void read_differences(const std::byte* values, size_t at, const size_t step[3], const float place[3], float out[3]) {
+  const T* p = reinterpret_cast<const T*>(values) + at;
+  for (int a = 0; a < 3; ++a) {
+    const int b = a == 0 ? 1 : 0, c = a == 2 ? 1 : 2;
+    const size_t s = step[a];
+    const float x = place[a], y = place[b], z = place[c];
+    float line[4];
+    for (int k = 0; k < 4; ++k) {
+      const T* q = p + (k & 1 ? step[b] : 0) + (k & 2 ? step[c] : 0);
+      const float v0 = float(*(q - s)), v1 = float(q[0]), v2 = float(q[s]), v3 = float(q[2 * s]);
+      line[k] = (v2 - v0) + x * ((v3 - v2) - (v1 - v0));
+    }
+    const float low = line[0] + y * (line[1] - line[0]), high = line[2] + y * (line[3] - line[2]);
+    out[a] = 0.5f * (low + z * (high - low));
+  }
+}
+
 // By hand: the parallel conversion of arrays must not run inside of what others wait for.
 Array narrowed(const Array& wide) {
   float* out = nullptr;
@@ -53,7 +72,7 @@ void find_ranges(const T* values, BrickData& b) {
 
 template <class T>
 void finish(BrickData& b) {
-  b.corners = read_corners<T>;
+  b.corners = read_corners<T>, b.differences = read_differences<T>;
   find_ranges(b.values.view<T>().data, b);
 }
 

@@ -25,6 +25,10 @@ struct BrickData {
   /// Fills the 8 corners of the cell of samples at, at + step (x fastest).
   void (*corners)(const std::byte* values, size_t at, const size_t step[3], float out[8]) = nullptr;
 
+  /// Central differences over two samples at a place in that cell (0..1 along each axis), per sample. All samples next to the cell must be
+  /// held.
+  void (*differences)(const std::byte* values, size_t at, const size_t step[3], const float place[3], float out[3]) = nullptr;
+
   size_t bytes() const { return values.bytes() + cube.size() * sizeof(Cube); }
 };
 
