@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/random.h"
+#include "data/bricked.h"
 #include "render/volume/cells/cell_source.h"
 #include "render/volume/cells/tet_rays.h"
 #include "render/volume/classic/layers.h"
@@ -86,7 +87,7 @@ class Alone {
     if (picture.volumes.size() != 1) return;
     const CastVolume& v = picture.volumes[0];
     const VolumeItem& item = *v.item;
-    if (!item.clip.empty()) return;
+    if (!item.clip.empty() || v.detail) return;
     const bool composite = item.mode == RayFunction::composite, by_tolerance = composite && !(v.step > 0);
     if (picture.lattices[0]) {
       plan_.emplace(PacketPlan{
@@ -96,7 +97,7 @@ class Alone {
       const bool in_steps = composite ? item.sampling.classify == "post" && !item.sampling.jitter : item.mode == RayFunction::maximum;
       if (by_tolerance && in_tolerant_packets(*plan_)) packets_ = cast_tile;
       else if (!by_tolerance && in_steps && in_packets(*plan_)) packets_ = march_tile;
-    } else if (by_tolerance && !item.shaded && TetRays::fits(cell_volume_of(*v.source))) {
+    } else if (by_tolerance && !item.shaded && !bricked_of(*item.data) && TetRays::fits(cell_volume_of(*v.source))) {
       tets_.emplace(cell_volume_of(*v.source), picture.projection, *v.medium, context, v.budget.stop_below);
     }
   }
@@ -176,12 +177,12 @@ void composite_volumes(const Scene& scene, const Projection& projection, const F
       context.check();
       check(*item);
       std::shared_ptr<const Volume> lattice;
-      if (item->data->as<UniformGrid>() || item->data->as<RectilinearGrid>()) {
+      if (!bricked_of(*item->data) && (item->data->as<UniformGrid>() || item->data->as<RectilinearGrid>())) {
         lattice = std::make_shared<const Volume>(prepare(*item, uint32_t(i + 1), knobs));
         if (!(lattice->hi.x > lattice->lo.x)) continue;  // a grid without extent
       }
       picture.lattices.push_back(lattice);
-      picture.volumes.push_back(prepare_cast(*item, uint32_t(i + 1), std::move(lattice), knobs, context));
+      picture.volumes.push_back(prepare_cast(*item, uint32_t(i + 1), std::move(lattice), projection, knobs, context));
       picture.shaded = picture.shaded || item->shaded;
     }
   if (picture.volumes.empty()) return composite_fragments(fragments, frame, context);
