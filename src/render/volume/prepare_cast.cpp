@@ -96,7 +96,7 @@ CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<con
     v.detail = std::make_unique<Detail>(Detail{*v.transfer, item.detail.second, plan.unit, float(plan.most_tau)});
   }
   v.budget = {item.sampling.tolerance, diagonal, knobs.stop_below > 0 ? float(0.2 * item.sampling.tolerance) : 0};
-  v.step = item.sampling.step;
+  v.step = item.sampling.step, v.unit = plan.unit;
   if (v.step > 0 && diagonal / v.step > 1e7)
     fail_usage(fmt::format("a step of {} takes {:.0f} samples through a volume of size {}", v.step, diagonal / v.step, diagonal), "volume",
                "give a longer step");

@@ -67,8 +67,8 @@ void pixel(const Picture& picture, int x, int y, Scratch& s) {
                        picture.fragments.fragments.begin() + picture.fragments.start[p + 1]);
   for (Fragment& f : s.fragments) f.depth = float((double(f.depth) - first_depth) / per_length);
   if (picture.shaded) light(picture, ray.direction, s.lit), cast.lights = &s.lit;
-  // The same place in the step for a pixel whatever the order of drawing.
-  cast.jitter = random_unit(uint64_t(x), uint64_t(y) + uint64_t(std::llround(projection.shift_y)));
+  // The same place in the step for a pixel of the whole picture, whatever band it is drawn in.
+  cast.jitter = random_unit(uint64_t(x), uint64_t(std::llround(2 * y - projection.height - 2 * projection.shift_y)));
 
   RayState state;
   s.caster.cast(cast, s.fragments, state);

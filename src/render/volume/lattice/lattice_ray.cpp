@@ -98,8 +98,11 @@ class LatticeRay final : public LatticeWalker {
 
   /// Differences of the gradient over half a cell to each side.
   bool bend(const Stretch&, double t, SecondDerivatives& h) override {
-    const Vec3 q = c_.start + c_.along * t;
-    Vec3 rows[3];
+    // At the border, those of the nearest place whose differences have samples on both sides.
+    Vec3 q = c_.start + c_.along * t, rows[3];
+    for (int a = 0; a < 3; ++a)
+      if (const long last = axes_[a].last(); last >= 4)
+        q[a] = std::clamp(q[a], 0.5 * (axes_[a].sample(1) + axes_[a].sample(2)), 0.5 * (axes_[a].sample(last - 2) + axes_[a].sample(last - 1)));
     for (int a = 0; a < 3; ++a) {
       const double edge = v_.cell_length(a, q[a]), from = std::max(q[a] - 0.5 * edge, axes_[a].sample(0)),
                    to = std::min(q[a] + 0.5 * edge, axes_[a].sample(axes_[a].last()));
@@ -116,6 +119,26 @@ class LatticeRay final : public LatticeWalker {
     h = {float(m[0][0]), float(m[1][1]), float(m[2][2]), float(0.5 * (m[0][1] + m[1][0])), float(0.5 * (m[0][2] + m[2][0])),
          float(0.5 * (m[1][2] + m[2][1]))};
     return true;
+  }
+
+  int samples(const Stretch&, double t, float values[8], float shares[8]) override {
+    if (v_.nearest) return 0;
+    long cell[3];
+    double f[3];
+    for (int a = 0; a < 3; ++a) {
+      const double q = std::clamp(c_.start[a] + t * c_.along[a], axes_[a].sample(0), axes_[a].sample(axes_[a].last()));
+      cell[a] = axes_[a].cell(long(v_.u(a, q))), f[a] = axes_[a].fraction(cell[a], q);
+    }
+    load(cell);
+    int n = 0;
+    double all = 0;
+    for (int c = 0; c < 8; ++c) {
+      if (corner_[c] != corner_[c]) continue;
+      const double share = (c & 1 ? f[0] : 1 - f[0]) * (c & 2 ? f[1] : 1 - f[1]) * (c & 4 ? f[2] : 1 - f[2]);
+      values[n] = corner_[c], shares[n++] = float(share), all += share;
+    }
+    for (int i = 0; i < n; ++i) shares[i] = float(double(shares[i]) / all);
+    return all > 0 ? n : 0;
   }
 
   float second(const Stretch& s, double t) override { return second_ ? second_->at(t) : (void(s), NAN); }

@@ -22,6 +22,7 @@ struct CastVolume {
   std::unique_ptr<Detail> detail;
   Budget budget;
   double step = 0;  ///< world length; 0 = by the tolerance
+  double unit = 1;  ///< world length to which opacity refers
   float per_scale = 1;
   std::unique_ptr<std::vector<double>> levels;  ///< stored values
   Material material;

@@ -268,6 +268,15 @@ void composite_sample(const Look& look, double from, double length, float value,
   composite_straight(look, from, from + length, value, value, lit, state);
 }
 
+void composite_optics(const Look& look, double from, double length, const Optics& optics, const Lit* lit, RayState& state) {
+  const float alpha = 1 - exp_minus(optics.tau * float(length));
+  if (!(alpha > 0)) return;
+  const Lit l = lit ? *lit : Lit{};
+  const Vec3f c = (optics.color * l.diffuse + Vec3f{l.specular, l.specular, l.specular}) * alpha;
+  state.sum.behind(c.x, c.y, c.z, alpha);
+  if (state.surface < 0 && state.sum.transmittance < 0.5f) state.surface = from + 0.5 * length, state.surface_id = look.id;
+}
+
 void composite_joint(const std::vector<Joint>& joint, RayState& state, int cuts) {
   const double from = joint[0].stretch.from, to = joint[0].stretch.to;
   double depth = 0, densest = 0;

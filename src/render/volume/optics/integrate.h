@@ -52,6 +52,8 @@ void composite(const Look& look, const Stretch& stretch, RayField& walker, RaySt
 void composite_straight(const Look& look, double from, double to, float a, float b, const Lit* lit, RayState& state);
 /// One sample that stands for a length.
 void composite_sample(const Look& look, double from, double length, float value, const Lit* lit, RayState& state);
+/// Optics that stand for a length.
+void composite_optics(const Look& look, double from, double length, const Optics& optics, const Lit* lit, RayState& state);
 /// Several media at once on stretches with common ends; cuts them until order does not matter within the budget.
 struct Joint {
   const Look* look;

@@ -58,6 +58,9 @@ class RayField {
   virtual Vec3f gradient(const Stretch& stretch, double t) = 0;
   /// Value of the second field there (TransferDetail::second_field); NaN where the source has none.
   virtual float second(const Stretch&, double) { return NAN; }
+  /// Values of the samples between which the value there is interpolated, and their shares: for classification before interpolation.
+  /// Returns how many (at most 8); 0 where the source cannot say.
+  virtual int samples(const Stretch&, double, float[8], float[8]) { return 0; }
   /// World second derivatives of the stored value there; false where the source has none.
   virtual bool bend(const Stretch&, double, SecondDerivatives&) { return false; }
 };
