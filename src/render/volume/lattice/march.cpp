@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Integration along a ray. A run of 16 samples is evaluated at once (places, values, table entries), then composited one by one
 // from near to far, so that the result depends neither on the width of the machine's vectors nor on what was passed over.
-#include "render/volume/lattice/runs.h"
 #include "render/volume/lattice/lattice_volume.h"
+#include "render/volume/lattice/runs.h"
 
 namespace sg::volume {
 
@@ -32,16 +32,16 @@ struct Stretch {
       size_t brick[3];
       for (int a = 0; a < 3; ++a) {
         const float u = std::max(0.0f, std::min(place(a, s), float(v.voxels.dims[size_t(a)] - 1)));
-        brick[a] = std::min(size_t(u) >> MinMaxBricks::shift, v.bricks.dims[size_t(a)] - 1);
+        brick[a] = std::min(size_t(u) >> MinMaxBricks::shift, v.bricks().dims[size_t(a)] - 1);
       }
-      const int d = v.distance[v.bricks.id(brick[0], brick[1], brick[2])];
+      const int d = v.distance[v.bricks().id(brick[0], brick[1], brick[2])];
       if (d == 0) return s;
       // All bricks nearer than d are empty: leave their cube, but for a margin wider than rounding errors.
       double out = double(end);
       for (int a = 0; a < 3; ++a) {
         if (per_by[a] == 0) continue;
         const ptrdiff_t side = ptrdiff_t(brick[a]) + (per_by[a] > 0 ? d : 1 - d);
-        if (side < 0 || side > ptrdiff_t(v.bricks.dims[size_t(a)])) continue;
+        if (side < 0 || side > ptrdiff_t(v.bricks().dims[size_t(a)])) continue;
         const double q = v.border[a][size_t(side)] + (per_by[a] > 0 ? -v.margin[a] : v.margin[a]);
         out = std::min(out, (q - first[a]) * per_by[a]);
       }
