@@ -9,8 +9,8 @@
 #include <memory>
 #include <vector>
 
-#include "index/minmax_bricks.h"
 #include "render/composite/over.h"
+#include "render/volume/lattice/empty_space.h"
 #include "render/volume/lattice/kernels.h"
 #include "render/volume/optics/transfer.h"
 #include "scene/scene.h"
@@ -31,7 +31,8 @@ struct LatticeSamples {
   Voxels voxels;
   float base = 0;               ///< value = stored + base
   std::vector<uint8_t> hidden;  ///< per cell of the lattice: draws nothing; may be empty
-  MinMaxBricks bricks;
+  FineBricks fine;       ///< for empty space
+  MinMaxBricks bricks;   ///< for maxima
   double lo = HUGE_VAL, hi = -HUGE_VAL;  ///< of the finite values stored; lo > hi when there are none
 };
 
@@ -59,12 +60,13 @@ struct Volume {
   double slices_per_q[3] = {};
 
   std::shared_ptr<const LatticeSamples> samples;
-  std::vector<uint8_t> distance;  ///< in bricks to the next that draws something (composite), see empty_space.h
+  std::vector<uint8_t> distance;  ///< in fine bricks to the next that draws something (composite)
   bool any_empty = true;          ///< is there a brick that draws nothing?
-  std::vector<double> border[3];  ///< q of the brick sides, dims+1
+  std::vector<double> border[3], fine_border[3];  ///< q of the sides of bricks, dims+1
   Vec3 margin;                    ///< q: rounding errors of places are smaller
 
   const MinMaxBricks& bricks() const { return samples->bricks; }
+  const FineBricks& fine() const { return samples->fine; }
   const std::vector<uint8_t>& hidden() const { return samples->hidden; }
 
   Vec3 q(Vec3 world) const { return to_q * (world - origin); }
