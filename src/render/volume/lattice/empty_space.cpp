@@ -17,8 +17,7 @@ struct Bits {
   size_t nx, ny, nz, words;
   std::vector<uint64_t> bits;
 
-  explicit Bits(const std::array<size_t, 3>& dims)
-      : nx(dims[0]), ny(dims[1]), nz(dims[2]), words((nx + 63) / 64), bits(words * ny * nz) {}
+  explicit Bits(const std::array<size_t, 3>& dims) : nx(dims[0]), ny(dims[1]), nz(dims[2]), words((nx + 63) / 64), bits(words * ny * nz) {}
   uint64_t* row(size_t y, size_t z) { return &bits[words * (y + ny * z)]; }
   const uint64_t* row(size_t y, size_t z) const { return &bits[words * (y + ny * z)]; }
   uint64_t used(size_t word) const { return word + 1 < words || nx % 64 == 0 ? ~uint64_t(0) : (uint64_t(1) << nx % 64) - 1; }
@@ -77,12 +76,14 @@ class Clearness {
     const LinearTable t = transfer.linear_table();
     first_ = t.first, per_axis_ = t.per_axis, last_ = float(t.count + 1);
     drawn_before_.resize(size_t(t.count) + 3);
-    for (int i = 0; i <= t.count + 1; ++i) drawn_before_[size_t(i) + 1] = uint16_t(drawn_before_[size_t(i)] + (transfer.medium(i).density > 0));
+    for (int i = 0; i <= t.count + 1; ++i)
+      drawn_before_[size_t(i) + 1] = uint16_t(drawn_before_[size_t(i)] + (transfer.medium(i).density > 0));
   }
   bool operator()(MinMaxBricks::Range r) const {
     if (drawn_before_.empty()) return transfer_.clear(r.lo, r.hi);
     // Entry of a value: int(axis) + 1, one more to each side for rounding errors.
-    const float a = std::min(std::max((r.lo - first_) * per_axis_, 0.0f), last_), b = std::min(std::max((r.hi - first_) * per_axis_ + 2, 0.0f), last_);
+    const float a = std::min(std::max((r.lo - first_) * per_axis_, 0.0f), last_),
+                b = std::min(std::max((r.hi - first_) * per_axis_ + 2, 0.0f), last_);
     return !(r.lo <= r.hi) || drawn_before_[size_t(int(b)) + 1] == drawn_before_[size_t(int(a))];
   }
 
@@ -126,7 +127,7 @@ MinMaxBricks coarse_bricks(const FineBricks& fine) {
   return r;
 }
 
-std::vector<uint8_t> distance_to_drawn(const FineBricks& bricks, const Transfer& transfer, bool& any_empty) {
+std::vector<uint8_t> distance_to_drawn(const FineBricks& bricks, const Transfer& transfer, bool& any_empty, const MinMaxBricks* coarse) {
   Bits reached(bricks.dims), flat(bricks.dims), newly(bricks.dims);
   const size_t rows = reached.ny * reached.nz;
   const Clearness clear(transfer);
@@ -144,10 +145,13 @@ std::vector<uint8_t> distance_to_drawn(const FineBricks& bricks, const Transfer&
           for (size_t w = 0; w < reached.words; ++w) {
             uint64_t drawn = 0;
             const size_t x0 = 64 * w, n = std::min<size_t>(64, reached.nx - x0);
-            for (size_t x = 0; x < n; ++x) {
-              const bool nothing = clear(bricks.ranges[r * reached.nx + x0 + x]);
-              drawn |= uint64_t(!nothing) << x;
-              distance[r * reached.nx + x0 + x] = nothing ? uint8_t(farthest) : uint8_t(0);
+            const MinMaxBricks::Range* range = &bricks.ranges[r * reached.nx + x0];
+            const MinMaxBricks::Range* above =
+                coarse ? &coarse->ranges[coarse->id(x0 / 2, r % reached.ny / 2, r / reached.ny / 2)] : nullptr;
+            for (size_t x = 0; x < n; x += 2) {
+              if (above && clear(above[x / 2])) continue;
+              for (size_t i = x; i < std::min(x + 2, n); ++i)
+                if (!clear(range[i])) drawn |= uint64_t(1) << i, distance[r * reached.nx + x0 + i] = 0;
             }
             reached.bits[r * reached.words + w] = drawn;
             empty += n - size_t(std::popcount(drawn));

@@ -24,6 +24,8 @@ MinMaxBricks coarse_bricks(const FineBricks& fine);
 
 /// For each fine brick the Chebyshev distance in bricks to the nearest one that may draw something: 0 for those themselves; d > 0 says
 /// that all bricks nearer than d are empty. At most 15. Three bytes follow the last one, so that any of them can be read as a word.
-std::vector<uint8_t> distance_to_drawn(const FineBricks& bricks, const Transfer& transfer, bool& any_empty);
+/// `coarse`, where given, saves looking into its empty bricks.
+std::vector<uint8_t> distance_to_drawn(const FineBricks& bricks, const Transfer& transfer, bool& any_empty,
+                                       const MinMaxBricks* coarse = nullptr);
 
 }  // namespace sg::volume

@@ -19,8 +19,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {
 
-/// Pairs of samples between two looks at the bricks.
-constexpr int pairs_per_look = 4;
+/// Pairs of samples between two looks at the bricks; pairs, so that two chains of work overlap.
+constexpr int pairs_per_look = 2;
 
 /// Bricks that draw nothing, ready for gathers.
 template <class D>
@@ -77,13 +77,14 @@ HWY_INLINE void leap(const Source<D, T>& source, const Space<D>& space, Lanes<D>
     for (int a = 0; a < 3; ++a) {
       const auto forth = hn::Gt(lanes.by[a], zero);
       const auto side = hn::Add(brick[a], hn::IfThenElse(forth, reach, hn::Sub(one, reach)));
-      const auto at = hn::Add(hn::Mul(side, hn::Set(d, float(FineBricks::edge))), hn::IfThenElse(forth, hn::Neg(space.margin), space.margin));
+      const auto at =
+          hn::Add(hn::Mul(side, hn::Set(d, float(FineBricks::edge))), hn::IfThenElse(forth, hn::Neg(space.margin), space.margin));
       const auto there = hn::Mul(hn::Sub(at, lanes.first[a]), lanes.per_by[a]);
       // Beyond the outermost bricks there is nothing else.
       const auto open = hn::Or(hn::Or(hn::Le(side, zero), hn::Ge(side, space.edges[a])), hn::Eq(lanes.by[a], zero));
       out = hn::IfThenElse(open, out, hn::Min(out, there));
     }
-    // Always by twos: samples go in pairs.
+    // Always by twos, as samples are taken.
     const auto next = hn::Mul(hn::Floor(hn::Mul(hn::Ceil(out), hn::Set(d, 0.5f))), hn::Set(d, 2.0f));
     looking = hn::And(looking, hn::Gt(next, lanes.s));
     lanes.s = hn::IfThenElse(looking, next, lanes.s);
@@ -133,41 +134,6 @@ HWY_INLINE hn::Vec<D> absorbed(D d, hn::Vec<D> x) {
   return hn::Add(hn::Sub(hn::Set(d, 1.0f), power), hn::Mul(power, e));
 }
 
-/// Are two neighbouring samples of any ray closer than about half a cell?
-inline bool close_samples(const Volume& v) {
-  double square = 0;
-  for (const auto& row : v.to_q.m)
-    for (const double x : row) square += x * x;
-  return v.step * std::sqrt(square) < 0.9;
-}
-
-/// What is lit together: one sample, or two neighbours that are closer than a cell, lit at the middle of their light.
-template <class D>
-struct Lit {
-  using F = hn::Vec<D>;
-  F r, g, b, alpha, later;  ///< `later`: share of alpha that is a sample later
-  hn::Mask<D> which;
-
-  HWY_INLINE Lit() { clear(); }
-  HWY_INLINE Lit(F wr, F wg, F wb, F a, F l, hn::Mask<D> m) : r(wr), g(wg), b(wb), alpha(a), later(l), which(m) {}
-  HWY_INLINE void clear() {
-    r = g = b = alpha = later = hn::Zero(D());
-    which = hn::Gt(r, r);
-  }
-  HWY_INLINE void add(F wr, F wg, F wb, F a, hn::Mask<D> m) {
-    r = hn::Add(r, wr), g = hn::Add(g, wg), b = hn::Add(b, wb), alpha = hn::Add(alpha, a), later = a;
-    which = hn::Or(which, m);
-  }
-  template <class Queue>
-  HWY_INLINE void push_to(Queue& queue, const PacketPlan& plan, const RayPacket& rays, PacketResult& result, F s) {
-    const D d;
-    if (hn::AllFalse(d, which)) return;
-    const F at = hn::Add(s, hn::IfThenElseZero(hn::Gt(later, hn::Zero(d)), hn::Div(later, alpha)));
-    queue.push(plan, rays, result, which, at, r, g, b, alpha);
-    clear();
-  }
-};
-
 /// A packet on its way. The packets of a tile take turns, so that the voxels between two depths are met by all of them while they
 /// are near in the cache.
 template <class D, class T, bool shaded>
@@ -195,7 +161,7 @@ class March {
     const Transfer& transfer = v.transfer[0];
     const Entries<D> entries(transfer.linear_table());
     const auto* steps = reinterpret_cast<const float*>(transfer.steps());
-    const bool skip = plan.knobs.skip_empty && v.any_empty, merge = close_samples(v);
+    const bool skip = plan.knobs.skip_empty && v.any_empty;
     const F stop = hn::Set(d, plan.knobs.stop_below), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
 
     Lanes<D> lanes(rays, per_by_, s_);
@@ -208,7 +174,6 @@ class March {
       if (skip) leap(source, space, lanes, hn::And(hn::Lt(lanes.s, lanes.end), bright));
       // Places do not wait for what was found at those before: lanes that are through count on.
       for (int look = 0; look < pairs_per_look; ++look) {
-        Lit<D> pair;
         for (const float second : {0.0f, 1.0f}) {
           const F s = hn::Add(lanes.s, hn::Set(d, second));
           const F x = lanes.u(0, s), y = lanes.u(1, s), z = lanes.u(2, s);
@@ -218,24 +183,16 @@ class March {
           const auto active = hn::And(hn::Lt(s, lanes.end), hn::Ge(pass, stop));
           const auto drawn = hn::And(active, hn::Lt(b_pass.b, one));
           seen_half = hn::IfThenElse(hn::And(active, hn::Ge(pass, half)), s, seen_half);
-          if (hn::AllFalse(d, drawn)) continue;
           const Pair<D> r_g = gather_pair(d, steps, entry);
           const F weight = hn::IfThenElseZero(drawn, pass);
           const F wr = hn::Mul(weight, r_g.a), wg = hn::Mul(weight, r_g.b), wb = hn::Mul(weight, b_pass.a);
           if constexpr (shaded) {
-            const F alpha = hn::Mul(weight, hn::Sub(one, b_pass.b));
-            if (second > 0 && merge) {
-              pair.add(wr, wg, wb, alpha, drawn);
-            } else {
-              if (second > 0) pair.push_to(queue_, plan, rays, result, lanes.s);
-              pair = {wr, wg, wb, alpha, second > 0 ? alpha : hn::Zero(d), drawn};
-            }
+            if (!hn::AllFalse(d, drawn)) queue_.push(plan, rays, result, drawn, s, wr, wg, wb, hn::Mul(weight, hn::Sub(one, b_pass.b)));
           } else {
             r = hn::Add(r, wr), g = hn::Add(g, wg), b = hn::Add(b, wb);
           }
           pass = hn::IfThenElse(drawn, hn::Mul(pass, b_pass.b), pass);
         }
-        if constexpr (shaded) pair.push_to(queue_, plan, rays, result, lanes.s);
         lanes.s = hn::Add(lanes.s, hn::Set(d, 2.0f));
       }
     }
@@ -291,7 +248,7 @@ class March {
   std::conditional_t<shaded, ShadeQueue<D, T>, None> queue_;
 };
 
-constexpr int group = 16;          ///< pixels across of the packets that take turns
+constexpr int group = 16;  ///< pixels across of the packets that take turns
 constexpr float samples_per_turn = 16;
 
 template <class D, class T, bool shaded>
