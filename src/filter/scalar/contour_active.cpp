@@ -51,64 +51,59 @@ std::shared_ptr<const CellActiveIndex> cell_index(const Job& job, const std::str
 }
 
 ActiveWords::ActiveWords(const LatticeIndex& index, std::array<size_t, 3> dims, double value)
-    : index_(index), dims_(dims), value_(value), words_((index.bricks.dims[0] + 63) / 64) {
-  const auto& n = index.bricks.dims;
-  active_.resize(words_ * n[1] * n[2]);
-  row_.resize(n[1] * n[2]);
+    : dims_(dims), cubes_(index.bricks.dims), value_(value), words_((dims[0] + 63) / 64) {
+  const auto& n = cubes_;
+  const size_t rows = n[1] * n[2];
+  wanted_.resize(rows * words_);
+  row_.resize(rows);
   for (uint32_t id : index.cubes.active(value)) {
-    const size_t row = id / n[0], i = id % n[0];
-    active_[row * words_ + i / 64] |= uint64_t(1) << (i % 64);
+    const size_t row = id / n[0], i = id % n[0], w = i / 8;
     row_[row] = 1;
+    // Samples 64w to 64w+63 lie in cubes 8w to 8w+7, and the first in cube 8w-1 too.
+    wanted_[row * words_ + w] = 1;
+    if (i % 8 == 7 && w + 1 < words_) wanted_[row * words_ + w + 1] = 1;
   }
+  sure_.resize(rows * words_);
+  const uint64_t last = dims[0] % 64 ? ~uint64_t(0) >> (64 - dims[0] % 64) : ~uint64_t(0);
+  parallel_for(rows, 64, [&](size_t begin, size_t end) {
+    for (size_t row = begin; row < end; ++row)
+      for (size_t w = 0; w < words_; ++w) {
+        unsigned inside = 0;
+        for (size_t b = 0; b < 8; ++b) {
+          const auto& range = index.bricks.ranges[row * n[0] + std::min(8 * w + b, n[0] - 1)];
+          inside |= unsigned(double(range.lo) >= value && !range.empty()) << b;
+        }
+        sure_[row * words_ + w] = spread[inside] & (w + 1 == words_ ? last : ~uint64_t(0));
+      }
+  });
 }
 
-// Points on the border of two rows of cubes belong to both.
-ActiveWords::Touched ActiveWords::touched(size_t j, size_t k) const {
+void ActiveWords::look(size_t j, size_t k, uint8_t* wanted) const {
+  const Near near = touched(j, k);
+  std::fill_n(wanted, words_, 0);
+  for (size_t y = near.y0; y <= near.y1; ++y)
+    for (size_t z = near.z0; z <= near.z1; ++z) {
+      const uint8_t* some = &wanted_[(y + cubes_[1] * z) * words_];
+      for (size_t w = 0; w < words_; ++w) wanted[w] |= some[w];
+    }
+}
+
+void ActiveWords::classify(const Array& samples, uint64_t* bits, Context& context) const {
   constexpr size_t edge = MinMaxBricks::edge;
-  const auto& n = index_.bricks.dims;
-  const size_t y = std::min(j / edge, n[1] - 1), z = std::min(k / edge, n[2] - 1);
-  const size_t y0 = j % edge == 0 && y > 0 ? y - 1 : y, z0 = k % edge == 0 && z > 0 ? z - 1 : z;
-  Touched t;
-  t.row[t.rows++] = y + n[1] * z;
-  if (y0 != y) t.row[t.rows++] = y0 + n[1] * z;
-  if (z0 != z) t.row[t.rows++] = y + n[1] * z0;
-  if (y0 != y && z0 != z) t.row[t.rows++] = y0 + n[1] * z0;
-  for (int r = 0; r < t.rows; ++r) t.none = t.none && !row_[t.row[r]];
-  return t;
-}
-
-void ActiveWords::classify(const Array& samples, uint64_t* bits, size_t words, Context& context) const {
-  const size_t nx = dims_[0], ny = dims_[1], cubes = index_.bricks.dims[0];
-  const uint64_t last = nx % 64 ? ~uint64_t(0) >> (64 - nx % 64) : ~uint64_t(0);
+  const size_t nx = dims_[0], ny = dims_[1];
   parallel_for(
-      ny * dims_[2], std::max<size_t>(1, 65536 / nx),
+      cubes_[1] * dims_[2], std::max<size_t>(1, 8192 / nx),
       [&](size_t begin, size_t end) {
-        std::vector<uint8_t> look(words);
-        for (size_t r = begin; r < end; ++r) {
-          const Touched t = touched(r % ny, r / ny);
-          uint64_t* row = bits + r * words;
-          if (!t.none)
-            for (size_t w = 0; w < words; ++w) {
-              // Samples 64w to 64w+63 lie in cubes 8w to 8w+7, and the first in cube 8w-1 too.
-              uint64_t any = 0;
-              for (int s = 0; s < t.rows; ++s) {
-                const uint64_t* a = &active_[t.row[s] * words_];
-                if (w / 8 < words_) any |= a[w / 8] >> (w % 8 * 8) & 0xff;
-                if (w) any |= a[(8 * w - 1) / 64] >> ((8 * w - 1) % 64) & 1;
-              }
-              look[w] = any != 0;
-            }
-          const auto* ranges = &index_.bricks.ranges[t.row[0] * cubes];
-          for (size_t w = 0; w < words; ++w) {
-            if (!t.none && look[w]) continue;
-            unsigned inside = 0;
-            for (size_t b = 0; b < 8; ++b) {
-              const auto& range = ranges[std::min(8 * w + b, cubes - 1)];
-              inside |= unsigned(double(range.lo) >= value_ && !range.empty()) << b;
-            }
-            row[w] = spread[inside] & (w + 1 == words ? last : ~uint64_t(0));
-          }
-          if (!t.none) classify_words(samples, nx, r, value_, look.data(), bits, words);
+        std::vector<uint8_t> wanted(words_);
+        for (size_t n = begin; n < end; ++n) {
+          const size_t y = n % cubes_[1], k = n / cubes_[1], z = touched(0, k).z1;
+          const uint64_t* sure = &sure_[(y + cubes_[1] * z) * words_];
+          // The first row of a cube may be the last of another one, those behind it are all alike.
+          const size_t first = y * edge, behind = y + 1 == cubes_[1] ? ny : first + edge;
+          look(first, k, wanted.data());
+          classify_rows(samples, nx, first + ny * k, 1, value_, wanted.data(), sure, bits, words_);
+          look(first + 1, k, wanted.data());
+          classify_rows(samples, nx, first + 1 + ny * k, behind - first - 1, value_, wanted.data(), sure, bits, words_);
         }
       },
       &context);

@@ -24,25 +24,35 @@ class ActiveWords {
  public:
   ActiveWords(const LatticeIndex& index, std::array<size_t, 3> dims, double value);
   /// Whether an edge at this row of points can be cut.
-  bool row(size_t j, size_t k) const { return !touched(j, k).none; }
+  bool row(size_t j, size_t k) const {
+    const Near near = touched(j, k);
+    bool any = false;
+    for (size_t y = near.y0; y <= near.y1; ++y)
+      for (size_t z = near.z0; z <= near.z1; ++z) any = any || row_[y + cubes_[1] * z];
+    return any;
+  }
   /// As classify(): bit i of row r is set for samples >= value, looked at only where the value can pass; elsewhere the cubes say it.
-  void classify(const Array& samples, uint64_t* bits, size_t words, Context& context) const;
+  void classify(const Array& samples, uint64_t* bits, Context& context) const;
 
  private:
-  // The rows of cubes that a row of points belongs to.
-  struct Touched {
-    size_t row[4];
-    int rows = 0;
-    bool none = true;
+  // The rows of cubes that a row of points belongs to: first and last along y and z. Points on the border of two belong to both.
+  struct Near {
+    size_t y0, y1, z0, z1;
   };
-  Touched touched(size_t j, size_t k) const;
+  Near touched(size_t j, size_t k) const {
+    constexpr size_t edge = MinMaxBricks::edge;
+    const size_t y = std::min(j / edge, cubes_[1] - 1), z = std::min(k / edge, cubes_[2] - 1);
+    return {j % edge == 0 && y > 0 ? y - 1 : y, y, k % edge == 0 && z > 0 ? z - 1 : z, z};
+  }
+  // Whether a word of a row of points can hold both sides.
+  void look(size_t j, size_t k, uint8_t* wanted) const;
 
-  const LatticeIndex& index_;
-  std::array<size_t, 3> dims_;
+  std::array<size_t, 3> dims_, cubes_;
   double value_;
-  size_t words_ = 0;              // per row of cubes
-  std::vector<uint64_t> active_;  // bit per cube
-  std::vector<uint8_t> row_;      // whether a row of cubes has any
+  size_t words_;                 // per row of points
+  std::vector<uint8_t> wanted_;  // a flag per word and row of cubes
+  std::vector<uint64_t> sure_;   // the words of all points of a row of cubes, where that is not set
+  std::vector<uint8_t> row_;     // whether a row of cubes has any active one
 };
 
 }  // namespace sg::contouring

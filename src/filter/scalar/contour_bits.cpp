@@ -1,55 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples to bits: one streaming pass, written so that compilers vectorise it.
+// Samples to bits: one streaming pass.
 #include <cmath>
 #include <type_traits>
 
 #include "base/parallel.h"
+#include "filter/scalar/contour_bits.h"
 #include "filter/scalar/contour_parts.h"
 
 namespace sg::contouring {
 
 namespace {
-
-#if defined(__x86_64__) && !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
-#define SG_CLONES __attribute__((target_clones("default", "avx2", "arch=x86-64-v4")))
-#else
-#define SG_CLONES
-#endif
-
-// 64 flags of 0 or 1 to bits: eight bytes at a time, gathered in the top byte by one multiplication.
-inline uint64_t pack64(const uint8_t* flags) {
-  uint64_t r = 0;
-  for (int b = 0; b < 8; ++b) {
-    uint64_t x;
-    std::memcpy(&x, flags + 8 * b, 8);
-    r |= (x * 0x0102040810204080ull) >> 56 << (8 * b);
-  }
-  return r;
-}
-
-#define SG_AT_LEAST(T)                                                         \
-  SG_CLONES void at_least(const T* p, size_t words, T least, uint64_t* bits) { \
-    for (size_t w = 0; w < words; ++w, p += 64) {                              \
-      uint8_t flags[64];                                                       \
-      for (size_t i = 0; i < 64; ++i) flags[i] = p[i] >= least;                \
-      bits[w] = pack64(flags);                                                 \
-    }                                                                          \
-  }
-SG_AT_LEAST(uint8_t)
-SG_AT_LEAST(int8_t)
-SG_AT_LEAST(uint16_t)
-SG_AT_LEAST(int16_t)
-SG_AT_LEAST(float)
-SG_AT_LEAST(double)
-
-#define SG_ANY_NAN(T)                                   \
-  SG_CLONES bool any_nan(const T* p, size_t n) {        \
-    int odd = 0;                                        \
-    for (size_t i = 0; i < n; ++i) odd |= p[i] != p[i]; \
-    return odd != 0;                                    \
-  }
-SG_ANY_NAN(float)
-SG_ANY_NAN(double)
 
 // The smallest T for which x >= value holds exactly when x >= it; `none` when there is no such number.
 template <class T>
@@ -64,22 +24,6 @@ T threshold(double value, bool& none) {
     none = up > double(std::numeric_limits<T>::max());
     return up < double(std::numeric_limits<T>::min()) ? std::numeric_limits<T>::min() : none ? T(0) : T(up);
   }
-}
-
-// The word that the row fills in part.
-template <class T>
-void last_word(const T* row, size_t nx, T least, uint64_t* out) {
-  const size_t whole = nx / 64, rest = nx % 64;
-  T tail[64];
-  for (size_t i = 0; i < 64; ++i) tail[i] = row[64 * whole + std::min(i, rest - 1)];
-  at_least(tail, 1, least, out + whole);
-  out[whole] &= ~uint64_t(0) >> (64 - rest);
-}
-
-template <class T>
-void classify_row(const T* row, size_t nx, T least, uint64_t* out) {
-  at_least(row, nx / 64, least, out);
-  if (nx % 64) last_word(row, nx, least, out);
 }
 
 template <class F>
@@ -117,7 +61,7 @@ bool classify(const Array& samples, size_t nx, size_t rows, std::span<const doub
             for (size_t v = 0; v < values.size(); ++v) {
               uint64_t* out = bits[v] + r * words;
               if (least[v].second) std::fill(out, out + words, 0);
-              else classify_row(row, nx, least[v].first, out);
+              else at_least(BitRows<T>{row, nx, 1, least[v].first, out, words});
             }
             if constexpr (std::is_floating_point_v<T>) nan = nan || any_nan(row, nx);
           }
@@ -127,19 +71,14 @@ bool classify(const Array& samples, size_t nx, size_t rows, std::span<const doub
   });
 }
 
-void classify_words(const Array& samples, size_t nx, size_t row, double value, const uint8_t* wanted, uint64_t* bits, size_t words) {
+void classify_rows(const Array& samples, size_t nx, size_t row, size_t rows, double value, const uint8_t* wanted, const uint64_t* otherwise,
+                   uint64_t* bits, size_t words) {
   native(samples, [&]<class T>(const T* all) {
     bool none = false;
     const T least = threshold<T>(value, none);
-    const T* p = all + row * nx;
     uint64_t* out = bits + row * words;
-    const size_t whole = nx / 64;
-    for (size_t w = 0; w < words; ++w) {
-      if (!wanted[w]) continue;
-      if (none) out[w] = 0;
-      else if (w == whole) last_word(p, nx, least, out);
-      else at_least(p + 64 * w, 1, least, out + w);
-    }
+    if (none) return void(std::fill(out, out + rows * words, 0));
+    at_least(BitRows<T>{all + row * nx, nx, rows, least, out, words, wanted, otherwise});
   });
 }
 

@@ -94,6 +94,7 @@ inline double crossing(double value, double a, double b) {
 
 struct LatticeIndex;
 class ActiveWords;
+struct CellTables;
 
 /// Where the edges of a row of points are cut, and where their results go.
 struct RowStart {
@@ -114,8 +115,14 @@ class LatticeContour {
   struct Slow;
   void skip_points(const std::vector<uint64_t>& bad);
   void find_cuts(Cuts& cuts, const ActiveWords* where) const;
+  bool simple() const { return frame_.axes == 3 && skip_.empty(); }
   void count_row(Cuts& cuts, size_t j, size_t k) const;
+  void count_simple_row(Cuts& cuts, size_t j, size_t k, uint64_t* odd) const;
+  void count_cell(const Cuts& cuts, RowStart& row, uint32_t pattern, size_t p) const;
   Piece generate(const Cuts& cuts, Room& room) const;
+  struct Writing;
+  void simple_triangles_of_row(const Cuts& cuts, size_t j, size_t k, uint32_t first_point, int32_t* out, uint32_t* cells,
+                               InnerPoint* inner) const;
   void triangles_of_row(const Cuts& cuts, size_t j, size_t k, uint32_t first_point, int32_t* out, uint32_t* cells, InnerPoint* inner) const;
   void lines_of_row(const Cuts& cuts, size_t j, uint32_t first_point, int32_t* out, uint32_t* cells) const;
 
@@ -126,9 +133,7 @@ class LatticeContour {
   Sample sample_;
   size_t words_ = 0;  ///< 64-bit words per row of bits
   bool missing_known_ = false, flip_ = false;
-  static constexpr uint8_t slow_pattern = 255;
-  uint8_t count_[256];          ///< triangles of a pattern of corners, or slow_pattern: the table alone cannot cut it
-  uint16_t first_[256];         ///< where they begin in the table
+  const CellTables* tables_ = nullptr;
   std::vector<uint64_t> skip_;  ///< bit per cell that must not be looked at, in rows like the points; empty when all are good
 };
 
@@ -160,8 +165,9 @@ Piece contour_cells(const Job& job, double value, const CellActiveIndex* index =
 /// Sets bit i of row r of bits[v] for samples >= values[v]. Returns true when a sample was NaN.
 bool classify(const Array& samples, size_t nx, size_t rows, std::span<const double> values, std::span<uint64_t* const> bits, size_t words,
               Context& context);
-/// The same for those words of row `row` that `wanted` names.
-void classify_words(const Array& samples, size_t nx, size_t row, double value, const uint8_t* wanted, uint64_t* bits, size_t words);
+/// The same for `rows` rows from `row` on, only for those words that `wanted` names; the others become those of `otherwise`.
+void classify_rows(const Array& samples, size_t nx, size_t row, size_t rows, double value, const uint8_t* wanted, const uint64_t* otherwise,
+                   uint64_t* bits, size_t words);
 /// Whether a sample is NaN.
 bool any_missing(const Array& samples, Context& context);
 /// Sets the bit of samples that are NaN.

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// The two passes over rows of bits that contours of solid lattices consist of. Inside filter/scalar only.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+namespace sg::contouring {
+
+/// What a pattern of corners (bit c: inside) means for the table way of cutting.
+struct CellTables {
+  static constexpr uint8_t slow = 255;
+  uint8_t triangles[256];              ///< or slow: the table alone cannot cut it
+  alignas(16) uint8_t edges[256][16];  ///< the cell's edges, three per triangle in the order of writing
+  uint16_t passed[256];                ///< bit per edge that moves on when the row's counters pass a cell; see triangles_of_row
+  /// trilinear: ambiguous patterns are slow. flip: triangles are wound the other way.
+  static const CellTables& of(bool trilinear, bool flip);
+};
+
+/// Four rows of bits around a row of cells: (j,k), (j+1,k), (j,k+1), (j+1,k+1).
+struct RowBits {
+  const uint64_t* row[4];
+  size_t words, points;  ///< of a row
+};
+
+/// Triangles of those cells that are no `odd` ones, and a bit for each odd one: cells with an ambiguous face or two corners alone at the
+/// ends of a diagonal. `any_odd` says whether there are such.
+size_t count_triangles(const RowBits& rows, uint64_t* odd, bool& any_odd);
+
+/// Cut edges of a row of points along x, y and z. Null: no such row.
+void count_edges(const uint64_t* row, const uint64_t* up, const uint64_t* back, size_t words, size_t points, uint32_t cut[3]);
+
+/// Writes the triangles of a row of cells, all of them good.
+struct TriangleRow {
+  const CellTables& tables;
+  RowBits bits;
+  uint32_t first[8];  ///< numbers of the first cut edges of the rows: along x in the four rows, y in rows 0 and 2, z in rows 0 and 1
+  int32_t* out;
+  uint32_t* cells;  ///< null, or a number per triangle
+  uint32_t first_cell;
+  /// Cuts cell i with these numbers of its 12 edges; moves out and cells on.
+  void* slow_job;
+  void (*slow)(void* job, size_t i, const uint32_t* edges, int32_t*& out, uint32_t*& cells);
+};
+void write_triangles(const TriangleRow& row);
+
+}  // namespace sg::contouring
