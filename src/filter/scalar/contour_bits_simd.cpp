@@ -2,6 +2,9 @@
 // Samples to bits, a vector of samples at a time; every target gives the same bits.
 #include "filter/scalar/contour_bits.h"
 
+#include <bit>
+#include <cmath>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "filter/scalar/contour_bits_simd.cpp"
 #include <hwy/foreach_target.h>
@@ -27,10 +30,10 @@ HWY_INLINE auto not_below(V v, V limit) {
   else return hn::Not(hn::Gt(limit, v));
 }
 
-// Bit i: p[i] >= least, for i < n <= 64.
-template <class T>
+// Bit i: p[i] >= least, for i < n <= 64, in vectors of up to `most` lanes.
+template <size_t most, class T>
 HWY_INLINE uint64_t word(const T* HWY_RESTRICT p, size_t n, T least) {
-  const hn::CappedTag<T, 64> d;
+  const hn::CappedTag<T, most> d;
   const size_t lanes = hn::Lanes(d);
   const auto limit = hn::Set(d, least);
   uint64_t r = 0;
@@ -40,15 +43,109 @@ HWY_INLINE uint64_t word(const T* HWY_RESTRICT p, size_t n, T least) {
   return r;
 }
 
+HWY_INLINE uint64_t last_word(size_t nx) { return nx % 64 ? ~uint64_t(0) >> (64 - nx % 64) : ~uint64_t(0); }
+
+HWY_INLINE RowState state_of(uint64_t any, uint64_t every) {
+  return any == 0 ? RowState::outside : every == ~uint64_t(0) ? RowState::inside : RowState::mixed;
+}
+
 template <class T>
-void rows_at_least(const BitRows<T>& b) {
+void all_rows(const BitRows<T>& b) {
   const size_t whole = b.nx / 64;
   for (size_t r = 0; r < b.rows; ++r) {
     const T* HWY_RESTRICT p = b.samples + r * b.nx;
     uint64_t* HWY_RESTRICT out = b.bits + r * b.words;
-    for (size_t w = 0; w < whole; ++w) out[w] = !b.wanted || b.wanted[w] ? word(p + 64 * w, 64, b.least) : b.otherwise[w];
-    if (whole < b.words) out[whole] = !b.wanted || b.wanted[whole] ? word(p + 64 * whole, b.nx - 64 * whole, b.least) : b.otherwise[whole];
+    uint64_t any = 0, every = ~uint64_t(0);
+    for (size_t w = 0; w < whole; ++w) {
+      out[w] = word<64>(p + 64 * w, 64, b.least);
+      any |= out[w], every &= out[w];
+    }
+    if (whole < b.words) {
+      out[whole] = word<64>(p + 64 * whole, b.nx - 64 * whole, b.least);
+      any |= out[whole], every &= out[whole] | ~last_word(b.nx);
+    }
+    b.state[r] = state_of(any, every);
   }
+}
+
+// Stretches whose ranges lie on one side of the level are known.
+template <class T>
+void sparse_rows(const BitRows<T>& b) {
+  constexpr size_t length = StretchRanges::length;
+  constexpr uint64_t ones = 0xffff;
+  const hn::CappedTag<uint8_t, 16> d;
+  const size_t lanes = hn::Lanes(d), stretches = (b.nx + length - 1) / length;
+  const auto level = hn::Set(d, b.level);
+  for (size_t r = 0; r < b.rows; ++r) {
+    const T* HWY_RESTRICT p = b.samples + r * b.nx;
+    const uint8_t *lo = &b.ranges->lo[(b.first_row + r) * b.ranges->per_row], *hi = &b.ranges->hi[(b.first_row + r) * b.ranges->per_row];
+    uint64_t* HWY_RESTRICT out = b.bits + r * b.words;
+    uint64_t any = 0, every = ~uint64_t(0);
+    for (size_t s = 0; s < stretches; s += 16) {  // four words at a time
+      uint64_t inside = 0, outside = 0;
+      for (size_t l = 0; l < 16; l += lanes) {
+        inside |= bits_of(d, hn::Gt(hn::LoadU(d, lo + s + l), level)) << l;
+        outside |= bits_of(d, hn::Gt(level, hn::LoadU(d, hi + s + l))) << l;
+      }
+      const size_t here = std::min<size_t>(16, stretches - s), words = std::min<size_t>(4, b.words - s / 4);
+      const uint64_t valid = (uint64_t(1) << here) - 1;
+      uint64_t mixed = ~(inside | outside) & valid;
+      any |= (inside & valid) | mixed, every &= inside | ~valid;
+      for (size_t w = 0; w < words; ++w) {
+        const uint64_t four = inside & valid & ~mixed;
+        out[s / 4 + w] = (four >> (4 * w) & 1) * ones | (four >> (4 * w + 1) & 1) * (ones << 16) |
+                         (four >> (4 * w + 2) & 1) * (ones << 32) | (four >> (4 * w + 3) & 1) * (ones << 48);
+      }
+      for (; mixed; mixed &= mixed - 1) {
+        const size_t at = s + size_t(std::countr_zero(mixed)), from = at * length;
+        out[at / 4] |= word<16>(p + from, std::min(length, b.nx - from), b.least) << (16 * (at % 4));
+      }
+    }
+    out[b.words - 1] &= last_word(b.nx);
+    b.state[r] = state_of(any, every);
+  }
+}
+
+template <class T>
+void rows_at_least(const BitRows<T>& b) {
+  if (b.ranges) sparse_rows(b);
+  else all_rows(b);
+}
+
+// NaN counts as less than all numbers.
+template <class T>
+bool ranges_of_row(const T* HWY_RESTRICT row, size_t nx, float* HWY_RESTRICT lo, float* HWY_RESTRICT hi) {
+  constexpr size_t length = StretchRanges::length;
+  bool nan = false;
+  for (size_t s = 0; s * length < nx; ++s) {
+    const T* HWY_RESTRICT p = row + s * length;
+    const size_t n = std::min(length, nx - s * length);
+    if constexpr (std::is_floating_point_v<T>) {
+      if (n == length) {
+        const hn::CappedTag<T, length> d;
+        const auto least = hn::Set(d, T(-HUGE_VALF));
+        auto low = hn::Neg(least), high = least;
+        for (size_t i = 0; i < length; i += hn::Lanes(d)) {
+          const auto v = hn::LoadU(d, p + i);
+          const auto missing = hn::IsNaN(v);
+          const auto known = hn::IfThenElse(missing, least, v);
+          nan = nan || !hn::AllFalse(d, missing);
+          low = hn::Min(low, known), high = hn::Max(high, known);
+        }
+        lo[s] = float(hn::GetLane(hn::MinOfLanes(d, low))), hi[s] = float(hn::GetLane(hn::MaxOfLanes(d, high)));
+        continue;
+      }
+    }
+    float low = HUGE_VALF, high = -HUGE_VALF;
+    for (size_t i = 0; i < n; ++i) {
+      const bool missing = p[i] != p[i];
+      nan = nan || missing;
+      const float v = missing ? -HUGE_VALF : float(p[i]);
+      low = v < low ? v : low, high = v > high ? v : high;
+    }
+    lo[s] = low, hi[s] = high;
+  }
+  return nan;
 }
 
 template <class T>
@@ -72,6 +169,12 @@ void rows_u16(const BitRows<uint16_t>& b) { rows_at_least(b); }
 void rows_i16(const BitRows<int16_t>& b) { rows_at_least(b); }
 void rows_f32(const BitRows<float>& b) { rows_at_least(b); }
 void rows_f64(const BitRows<double>& b) { rows_at_least(b); }
+bool ranges_u8(const uint8_t* row, size_t nx, float* lo, float* hi) { return ranges_of_row(row, nx, lo, hi); }
+bool ranges_i8(const int8_t* row, size_t nx, float* lo, float* hi) { return ranges_of_row(row, nx, lo, hi); }
+bool ranges_u16(const uint16_t* row, size_t nx, float* lo, float* hi) { return ranges_of_row(row, nx, lo, hi); }
+bool ranges_i16(const int16_t* row, size_t nx, float* lo, float* hi) { return ranges_of_row(row, nx, lo, hi); }
+bool ranges_f32(const float* row, size_t nx, float* lo, float* hi) { return ranges_of_row(row, nx, lo, hi); }
+bool ranges_f64(const double* row, size_t nx, float* lo, float* hi) { return ranges_of_row(row, nx, lo, hi); }
 bool nan_f32(const float* p, size_t n) { return holds_nan(p, n); }
 bool nan_f64(const double* p, size_t n) { return holds_nan(p, n); }
 
@@ -87,6 +190,12 @@ HWY_EXPORT(rows_u16);
 HWY_EXPORT(rows_i16);
 HWY_EXPORT(rows_f32);
 HWY_EXPORT(rows_f64);
+HWY_EXPORT(ranges_u8);
+HWY_EXPORT(ranges_i8);
+HWY_EXPORT(ranges_u16);
+HWY_EXPORT(ranges_i16);
+HWY_EXPORT(ranges_f32);
+HWY_EXPORT(ranges_f64);
 HWY_EXPORT(nan_f32);
 HWY_EXPORT(nan_f64);
 
@@ -96,6 +205,12 @@ void at_least(const BitRows<uint16_t>& b) { HWY_DYNAMIC_DISPATCH(rows_u16)(b); }
 void at_least(const BitRows<int16_t>& b) { HWY_DYNAMIC_DISPATCH(rows_i16)(b); }
 void at_least(const BitRows<float>& b) { HWY_DYNAMIC_DISPATCH(rows_f32)(b); }
 void at_least(const BitRows<double>& b) { HWY_DYNAMIC_DISPATCH(rows_f64)(b); }
+bool stretch_ranges(const uint8_t* row, size_t nx, float* lo, float* hi) { return HWY_DYNAMIC_DISPATCH(ranges_u8)(row, nx, lo, hi); }
+bool stretch_ranges(const int8_t* row, size_t nx, float* lo, float* hi) { return HWY_DYNAMIC_DISPATCH(ranges_i8)(row, nx, lo, hi); }
+bool stretch_ranges(const uint16_t* row, size_t nx, float* lo, float* hi) { return HWY_DYNAMIC_DISPATCH(ranges_u16)(row, nx, lo, hi); }
+bool stretch_ranges(const int16_t* row, size_t nx, float* lo, float* hi) { return HWY_DYNAMIC_DISPATCH(ranges_i16)(row, nx, lo, hi); }
+bool stretch_ranges(const float* row, size_t nx, float* lo, float* hi) { return HWY_DYNAMIC_DISPATCH(ranges_f32)(row, nx, lo, hi); }
+bool stretch_ranges(const double* row, size_t nx, float* lo, float* hi) { return HWY_DYNAMIC_DISPATCH(ranges_f64)(row, nx, lo, hi); }
 bool any_nan(const float* p, size_t n) { return HWY_DYNAMIC_DISPATCH(nan_f32)(p, n); }
 bool any_nan(const double* p, size_t n) { return HWY_DYNAMIC_DISPATCH(nan_f64)(p, n); }
 

@@ -62,23 +62,21 @@ std::vector<Piece> LatticeContour::run(std::span<const double> values) {
   for (size_t begin = 0; begin < values.size(); begin += together) {
     const auto some = values.subspan(begin, std::min(together, values.size() - begin));
     std::vector<Cuts> cuts(some.size());
-    std::vector<uint64_t*> bits;
-    std::vector<std::optional<ActiveWords>> where(some.size());
+    std::vector<RowsOut> out;
     for (size_t i = 0; i < some.size(); ++i) {
       cuts[i].value = some[i];
       cuts[i].inside.resize(rows * words_);
-      bits.push_back(cuts[i].inside.data());
+      cuts[i].state.resize(rows);
+      out.push_back({cuts[i].inside.data(), cuts[i].state.data()});
     }
     bool nan = false;
     if (index_) {
-      for (size_t i = 0; i < some.size(); ++i) {
-        where[i].emplace(*index_, frame_.dims, some[i]);
-        where[i]->classify(job_.samples, bits[i], job_.context);
-      }
+      for (size_t i = 0; i < some.size(); ++i)
+        classify_known(job_.samples, nx, rows, index_->ranges, some[i], out[i], words_, job_.context);
       if (!index_->missing.empty() && !missing_known_) skip_points(index_->missing);
       missing_known_ = true;
     } else {
-      nan = classify(job_.samples, nx, rows, some, bits, words_, job_.context);
+      nan = classify(job_.samples, nx, rows, some, out, words_, job_.context);
     }
     if (nan && !missing_known_) {
       std::vector<uint64_t> bad(rows * words_);
@@ -87,9 +85,8 @@ std::vector<Piece> LatticeContour::run(std::span<const double> values) {
       missing_known_ = true;
     }
     Room room;
-    for (size_t i = 0; i < cuts.size(); ++i) {
-      Cuts& c = cuts[i];
-      find_cuts(c, where[i] ? &*where[i] : nullptr);
+    for (Cuts& c : cuts) {
+      find_cuts(c);
       room.edges += c.vertices, room.inner += c.inner, room.cells += c.cells;
     }
     if (room.edges + room.inner > size_t(INT32_MAX))
@@ -103,10 +100,10 @@ std::vector<Piece> LatticeContour::run(std::span<const double> values) {
   return pieces;
 }
 
-void LatticeContour::find_cuts(Cuts& cuts, const ActiveWords* where) const {
+void LatticeContour::find_cuts(Cuts& cuts) const {
   const size_t ny = frame_.dims[1], nz = frame_.dims[2], rows = ny * nz;
   if (!skip_.empty())
-    for (int a = 0; a < frame_.axes; ++a) cuts.cut[a].assign(rows * words_, 0);  // an index leaves rows out
+    for (int a = 0; a < frame_.axes; ++a) cuts.cut[a].assign(rows * words_, 0);  // rows without a cut are left out
   cuts.rows.resize(rows);
   // Places are sums of counts: inside each chunk first, then those of the chunks before it are added.
   const size_t grain = std::max<size_t>(1, 512 / words_);
@@ -123,7 +120,7 @@ void LatticeContour::find_cuts(Cuts& cuts, const ActiveWords* where) const {
         RowStart& sum = before[begin / grain];
         for (size_t r = begin; r < end; ++r) {
           const size_t j = r % ny, k = r / ny;
-          if (!where || where->row(j, k)) simple() ? count_simple_row(cuts, j, k, odd.data()) : count_row(cuts, j, k);
+          if (may_cut(cuts, j, k)) simple() ? count_simple_row(cuts, j, k, odd.data()) : count_row(cuts, j, k);
           sum_up(cuts.rows[r], sum);
         }
       },
@@ -139,6 +136,15 @@ void LatticeContour::find_cuts(Cuts& cuts, const ActiveWords* where) const {
           cuts.rows[r].vertex += add.vertex, cuts.rows[r].cell += add.cell, cuts.rows[r].inner += add.inner;
       },
       &job_.context);
+}
+
+// False when the row and those behind it hold one and the same bit.
+bool LatticeContour::may_cut(const Cuts& cuts, size_t j, size_t k) const {
+  const size_t ny = frame_.dims[1], r = j + ny * k;
+  const RowState s = cuts.state[r];
+  if (s == RowState::mixed) return true;
+  const bool up = j + 1 < ny, back = k + 1 < frame_.dims[2];
+  return (up && cuts.state[r + 1] != s) || (back && cuts.state[r + ny] != s) || (up && back && cuts.state[r + ny + 1] != s);
 }
 
 // Solids whose cells are all good: most by bits alone.

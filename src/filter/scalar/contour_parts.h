@@ -12,6 +12,7 @@
 #include "data/dataset.h"
 #include "data/field_ops.h"
 #include "filter/field/lattice_frame.h"
+#include "filter/scalar/contour_bits.h"
 
 namespace sg {
 struct CellActiveIndex;
@@ -93,7 +94,6 @@ inline double crossing(double value, double a, double b) {
 }
 
 struct LatticeIndex;
-class ActiveWords;
 struct CellTables;
 
 /// Where the edges of a row of points are cut, and where their results go.
@@ -114,8 +114,9 @@ class LatticeContour {
   struct Room;
   struct Slow;
   void skip_points(const std::vector<uint64_t>& bad);
-  void find_cuts(Cuts& cuts, const ActiveWords* where) const;
+  void find_cuts(Cuts& cuts) const;
   bool simple() const { return frame_.axes == 3 && skip_.empty(); }
+  bool may_cut(const Cuts& cuts, size_t j, size_t k) const;
   void count_row(Cuts& cuts, size_t j, size_t k) const;
   void count_simple_row(Cuts& cuts, size_t j, size_t k, uint64_t* odd) const;
   void count_cell(const Cuts& cuts, RowStart& row, uint32_t pattern, size_t p) const;
@@ -162,14 +163,19 @@ void interpolate_inner(const Array& a, const Piece& piece, std::byte* out);
 /// Unstructured and surface meshes. `index`: what is known from earlier contours, or null.
 Piece contour_cells(const Job& job, double value, const CellActiveIndex* index = nullptr);
 
-/// Sets bit i of row r of bits[v] for samples >= values[v]. Returns true when a sample was NaN.
-bool classify(const Array& samples, size_t nx, size_t rows, std::span<const double> values, std::span<uint64_t* const> bits, size_t words,
+/// Where rows of bits go, and what each holds.
+struct RowsOut {
+  uint64_t* bits;
+  RowState* state;
+};
+/// Sets bit i of row r of out[v] for samples >= values[v]. Returns true when a sample was NaN.
+bool classify(const Array& samples, size_t nx, size_t rows, std::span<const double> values, std::span<const RowsOut> out, size_t words,
               Context& context);
-/// The same for `rows` rows from `row` on, only for those words that `wanted` names; the others become those of `otherwise`.
-void classify_rows(const Array& samples, size_t nx, size_t row, size_t rows, double value, const uint8_t* wanted, const uint64_t* otherwise,
-                   uint64_t* bits, size_t words);
-/// Whether a sample is NaN.
-bool any_missing(const Array& samples, Context& context);
+/// The same for one value, where the ranges are known.
+void classify_known(const Array& samples, size_t nx, size_t rows, const StretchRanges& ranges, double value, RowsOut out, size_t words,
+                    Context& context);
+/// One pass over the samples. `missing`: whether one is NaN.
+StretchRanges find_ranges(const Array& samples, size_t nx, size_t rows, bool& missing, Context& context);
 /// Sets the bit of samples that are NaN.
 void find_missing(const Array& samples, size_t nx, size_t rows, uint64_t* bits, size_t words, Context& context);
 

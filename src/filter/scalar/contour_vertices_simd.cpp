@@ -121,6 +121,7 @@ class Rows {
     const DI di;
     const auto nx = double(job_.frame.dims[0]), ny = double(job_.frame.dims[1]);
     const V one = hn::Set(d, 1.0), half = hn::Set(d, 0.5);
+    for (size_t l = 0; l < 8; ++l) __builtin_prefetch(f_ + edges_.from[e + 48 + l]), __builtin_prefetch(f_ + edges_.to[e + 48 + l]);
     const VI from = hn::LoadU(di, edges_.from + e), to = hn::LoadU(di, edges_.to + e);
     const V a = samples_at(f_, from), b = samples_at(f_, to);
     V t = hn::Div(hn::Sub(hn::Set(d, job_.value), a), hn::Sub(b, a));
