@@ -68,18 +68,35 @@ void all_rows(const BitRows<T>& b) {
   }
 }
 
-// Stretches whose ranges lie on one side of the level are known.
+// Stretches whose ranges lie on one side of the level are known. The others are listed first, some rows at a time, so that their samples,
+// each far from the last, are on the way from memory all together.
 template <class T>
-void sparse_rows(const BitRows<T>& b) {
-  constexpr size_t length = StretchRanges::length;
-  constexpr uint64_t ones = 0xffff;
-  const hn::CappedTag<uint8_t, 16> d;
-  const size_t lanes = hn::Lanes(d), stretches = (b.nx + length - 1) / length;
-  const auto level = hn::Set(d, b.level);
-  for (size_t r = 0; r < b.rows; ++r) {
-    const T* HWY_RESTRICT p = b.samples + r * b.nx;
-    const uint8_t *lo = &b.ranges->lo[(b.first_row + r) * b.ranges->per_row], *hi = &b.ranges->hi[(b.first_row + r) * b.ranges->per_row];
-    uint64_t* HWY_RESTRICT out = b.bits + r * b.words;
+class SparseRows {
+ public:
+  explicit SparseRows(const BitRows<T>& rows) : b_(rows) {}
+
+  void run() {
+    for (size_t r = 0; r < b_.rows; ++r) {
+      if (count_ + b_.nx / length + 16 > room) look();
+      add(r);
+    }
+    look();
+  }
+
+ private:
+  static constexpr size_t length = StretchRanges::length, room = 1024;
+  struct Open {
+    size_t word, from;  // of all bits, of all samples
+    uint32_t shift, samples;
+  };
+
+  void add(size_t r) {
+    constexpr uint64_t ones = 0xffff;
+    const hn::CappedTag<uint8_t, 16> d;
+    const size_t lanes = hn::Lanes(d), stretches = (b_.nx + length - 1) / length, first = (b_.first_row + r) * b_.ranges->per_row;
+    const auto level = hn::Set(d, b_.level);
+    const uint8_t *lo = &b_.ranges->lo[first], *hi = &b_.ranges->hi[first];
+    uint64_t* HWY_RESTRICT out = b_.bits + r * b_.words;
     uint64_t any = 0, every = ~uint64_t(0);
     for (size_t s = 0; s < stretches; s += 16) {  // four words at a time
       uint64_t inside = 0, outside = 0;
@@ -87,7 +104,7 @@ void sparse_rows(const BitRows<T>& b) {
         inside |= bits_of(d, hn::Gt(hn::LoadU(d, lo + s + l), level)) << l;
         outside |= bits_of(d, hn::Gt(level, hn::LoadU(d, hi + s + l))) << l;
       }
-      const size_t here = std::min<size_t>(16, stretches - s), words = std::min<size_t>(4, b.words - s / 4);
+      const size_t here = std::min<size_t>(16, stretches - s), words = std::min<size_t>(4, b_.words - s / 4);
       const uint64_t valid = (uint64_t(1) << here) - 1;
       uint64_t mixed = ~(inside | outside) & valid;
       any |= (inside & valid) | mixed, every &= inside | ~valid;
@@ -98,17 +115,32 @@ void sparse_rows(const BitRows<T>& b) {
       }
       for (; mixed; mixed &= mixed - 1) {
         const size_t at = s + size_t(std::countr_zero(mixed)), from = at * length;
-        out[at / 4] |= word<16>(p + from, std::min(length, b.nx - from), b.least) << (16 * (at % 4));
+        open_[count_++] = {r * b_.words + at / 4, r * b_.nx + from, uint32_t(16 * (at % 4)), uint32_t(std::min(length, b_.nx - from))};
+        __builtin_prefetch(b_.samples + r * b_.nx + from, 0, 2);
       }
+      if (count_ + 16 > room) look();
     }
-    out[b.words - 1] &= last_word(b.nx);
-    b.state[r] = state_of(any, every);
+    out[b_.words - 1] &= last_word(b_.nx);
+    b_.state[r] = state_of(any, every);
   }
-}
+
+  void look() {
+    for (size_t i = 0; i < count_; ++i) {
+      const Open& o = open_[i];
+      const T* HWY_RESTRICT p = b_.samples + o.from;
+      b_.bits[o.word] |= (o.samples == length ? word<16>(p, length, b_.least) : word<16>(p, o.samples, b_.least)) << o.shift;
+    }
+    count_ = 0;
+  }
+
+  const BitRows<T>& b_;
+  size_t count_ = 0;
+  Open open_[room];
+};
 
 template <class T>
 void rows_at_least(const BitRows<T>& b) {
-  if (b.ranges) sparse_rows(b);
+  if (b.ranges) SparseRows<T>(b).run();
   else all_rows(b);
 }
 
