@@ -65,7 +65,8 @@ std::vector<Piece> LatticeContour::run(std::span<const double> values) {
     std::vector<RowsOut> out;
     for (size_t i = 0; i < some.size(); ++i) {
       cuts[i].value = some[i];
-      cuts[i].inside.resize(rows * words_);
+      cuts[i].inside.resize(rows * words_ + 1);  // see RowBits
+      cuts[i].inside.back() = 0;
       cuts[i].state.resize(rows);
       out.push_back({cuts[i].inside.data(), cuts[i].state.data()});
     }
@@ -104,10 +105,10 @@ void LatticeContour::find_cuts(Cuts& cuts) const {
   const size_t ny = frame_.dims[1], nz = frame_.dims[2], rows = ny * nz;
   if (!skip_.empty())
     for (int a = 0; a < frame_.axes; ++a) cuts.cut[a].assign(rows * words_, 0);  // rows without a cut are left out
-  cuts.rows.resize(rows);
+  cuts.rows.resize(rows);                                                        // not initialised
   // Places are sums of counts: inside each chunk first, then those of the chunks before it are added.
   const size_t grain = std::max<size_t>(1, 512 / words_);
-  std::vector<RowStart> before((rows + grain - 1) / grain);
+  std::vector<RowStart> before((rows + grain - 1) / grain, RowStart{});
   auto sum_up = [](RowStart& place, RowStart& sum) {
     sum.vertex += std::exchange(place.vertex, sum.vertex);
     sum.cell += std::exchange(place.cell, sum.cell);
@@ -120,12 +121,13 @@ void LatticeContour::find_cuts(Cuts& cuts) const {
         RowStart& sum = before[begin / grain];
         for (size_t r = begin; r < end; ++r) {
           const size_t j = r % ny, k = r / ny;
+          cuts.rows[r] = {};
           if (may_cut(cuts, j, k)) simple() ? count_simple_row(cuts, j, k, odd.data()) : count_row(cuts, j, k);
           sum_up(cuts.rows[r], sum);
         }
       },
       &job_.context);
-  RowStart all;
+  RowStart all{};
   for (RowStart& chunk : before) sum_up(chunk, all);
   cuts.vertices = all.vertex, cuts.cells = all.cell, cuts.inner = all.inner;
   parallel_for(

@@ -17,7 +17,7 @@ struct LatticeContour::Cuts {
   Plane<uint64_t> inside;
   std::vector<RowState> state;  ///< of each row of `inside`
   Plane<uint64_t> cut[3];       ///< bits of cut edges, where cells are left out; otherwise they follow from `inside`
-  std::vector<RowStart> rows;
+  Plane<RowStart> rows;
   size_t vertices = 0, cells = 0, inner = 0;
 };
 

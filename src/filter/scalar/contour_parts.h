@@ -98,8 +98,8 @@ struct CellTables;
 
 /// Where the edges of a row of points are cut, and where their results go.
 struct RowStart {
-  size_t vertex = 0, cell = 0, inner = 0;  ///< first of the row, after the prefix sum; before it, counts
-  uint32_t cut[3]{};                       ///< cut edges along each axis; results lie in that order
+  size_t vertex, cell, inner;  ///< first of the row, after the prefix sum; before it, counts
+  uint32_t cut[3];             ///< cut edges along each axis; results lie in that order
 };
 
 /// Kernels on lattices of two or three axes; make one for all values.
@@ -147,7 +147,7 @@ struct VertexJob {
   size_t words;
   const uint64_t* inside;
   const Plane<uint64_t>* cut;  ///< 3, or null
-  const std::vector<RowStart>& rows;
+  const Plane<RowStart>& rows;
   float* xyz;
   float* normals;     ///< null: none
   EdgePoint* points;  ///< null: none

@@ -16,7 +16,7 @@ struct CellTables {
   static const CellTables& of(bool trilinear, bool flip);
 };
 
-/// Four rows of bits around a row of cells: (j,k), (j+1,k), (j,k+1), (j+1,k+1).
+/// Four rows of bits around a row of cells: (j,k), (j+1,k), (j,k+1), (j+1,k+1). Four more bytes behind each can be read.
 struct RowBits {
   const uint64_t* row[4];
   size_t words, points;  ///< of a row

@@ -4,6 +4,7 @@
 #include "filter/scalar/contour_rows.h"
 
 #include <bit>
+#include <cstring>
 
 #include "base/bits.h"
 #include "filter/scalar/cell_cases.h"
@@ -130,36 +131,60 @@ HWY_INLINE void write_numbers(uint32_t number, size_t triangles, uint32_t* out) 
 HWY_INLINE void edge_list(const EdgeNumbers& edges, uint32_t* to) { std::copy_n(edges.at, 12, to); }
 #endif
 
+// Bits i and i+1 of a row.
+HWY_INLINE uint32_t two_bits(const uint64_t* row, size_t i) {
+  static_assert(std::endian::native == std::endian::little);
+  uint64_t bits;
+  std::memcpy(&bits, reinterpret_cast<const uint8_t*>(row) + i / 32 * 4, 8);
+  return uint32_t(bits >> (i % 32)) & 3;
+}
+
 void triangle_row(const TriangleRow& row) {
+  constexpr size_t room = 512;
   const CellTables& tables = row.tables;
   const RowBits& bits = row.bits;
   Numbers numbers(row.first);
   int32_t* out = row.out;
   uint32_t* cells = row.cells;
-  for (size_t w = 0; w < bits.words; ++w) {
-    Twice q[4];
-    uint64_t any = 0, every = ~uint64_t(0);
-    for (int s = 0; s < 4; ++s) {
-      q[s] = twice(bits.row[s], w, bits.words);
-      any |= q[s].m | q[s].s;
-      every &= q[s].m & q[s].s;
+  uint32_t crossed[room + 64 + 4];
+  for (size_t w = 0; w < bits.words;) {
+    // Crossed cells are listed first, the first few of each word without a branch.
+    size_t count = 0;
+    for (; w < bits.words && count < room; ++w) {
+      uint64_t any = 0, every = ~uint64_t(0);
+      for (int s = 0; s < 4; ++s) {
+        const Twice q = twice(bits.row[s], w, bits.words);
+        any |= q.m | q.s;
+        every &= q.m & q.s;
+      }
+      uint64_t active = any & ~every & cell_bits(w, bits.points);
+      const size_t behind = count + ones(active);
+      size_t at = count;
+      do {
+        for (size_t n = 0; n < 4; ++n) {
+          crossed[at + n] = uint32_t(64 * w) + uint32_t(std::countr_zero(active));
+          active &= active - 1;
+        }
+        at += 4;
+      } while (HWY_UNLIKELY(at < behind));
+      count = behind;
     }
-    for (uint64_t active = any & ~every & cell_bits(w, bits.points); active; active &= active - 1) {
-      const auto i = size_t(std::countr_zero(active));
-      uint32_t pattern = 0;
-      for (int s = 0; s < 4; ++s) pattern |= uint32_t((q[s].m >> i & 1) | (q[s].s >> i & 1) << 1) << (2 * s);
+    for (size_t c = 0; c < count; ++c) {
+      const size_t i = crossed[c];
+      const uint32_t pattern =
+          two_bits(bits.row[0], i) | two_bits(bits.row[1], i) << 2 | two_bits(bits.row[2], i) << 4 | two_bits(bits.row[3], i) << 6;
       const auto edges = numbers.pass(tables.passed[pattern]);
       const size_t n = tables.triangles[pattern];
-      if (n == CellTables::slow) [[unlikely]] {
+      if (HWY_UNLIKELY(n == CellTables::slow)) {
         HWY_ALIGN uint32_t list[16];
         edge_list(edges, list);
-        row.slow(row.slow_job, 64 * w + i, list, out, cells);
+        row.slow(row.slow_job, i, list, out, cells);
         continue;
       }
       write_cell(edges, tables.edges[pattern], n, out);
       out += 3 * n;
       if (cells) {
-        write_numbers(row.first_cell + uint32_t(64 * w + i), n, cells);
+        write_numbers(row.first_cell + uint32_t(i), n, cells);
         cells += n;
       }
     }

@@ -38,20 +38,8 @@ HWY_INLINE V samples_at(const T* HWY_RESTRICT base, VI offset) {
 // Ends of edges, as offsets from the first point of the first row.
 struct Edges {
   static constexpr size_t room = 1024;
-  HWY_ALIGN int32_t from[room + 128], to[room + 128];
+  HWY_ALIGN int32_t from[room + 128] = {}, to[room + 128] = {};
   size_t count = 0;
-
-  // Those of a word, without a branch for the first few.
-  HWY_INLINE void add(uint64_t bits, int32_t first, int32_t next) {
-    const size_t behind = count + size_t(hwy::PopCount(bits));
-    for (size_t at = count; at < behind; at += 4)
-      for (size_t n = 0; n < 4; ++n) {
-        from[at + n] = first + int32_t(std::countr_zero(bits));
-        to[at + n] = from[at + n] + next;
-        bits &= bits - 1;
-      }
-    count = behind;
-  }
 };
 
 template <class T>
@@ -67,19 +55,22 @@ class Rows {
     if (all == 0) return;
     const bool inner = !job_.normals || (j >= 1 && j + 2 < ny && k >= 1 && k + 2 < job_.frame.dims[2]);
     if (!inner) flush();
+    if (!inner) return one_by_one(r);
     if (edges_.count == 0) next_ = row.vertex;
-    size_t v = row.vertex;
+    const size_t words = job_.words;
+    const auto first = int32_t((r - first_row_) * nx);
+    const uint64_t* a = job_.inside + r * words;
     for (int axis = 0; axis < 3; ++axis) {
       if (row.cut[axis] == 0) continue;
       const auto next = int32_t(job_.frame.stride[size_t(axis)]);
-      for (size_t w = 0; w < job_.words; ++w) {
-        uint64_t bits = cut_edges(job_, axis, r, w);
-        if (inner) {
-          edges_.add(bits, int32_t((r - first_row_) * nx + 64 * w), next);
-          if (edges_.count >= Edges::room) flush();
-        } else {
-          for (; bits; bits &= bits - 1) work_.careful(work_.maker, v++, r * nx + 64 * w + std::countr_zero(bits), axis);
-        }
+      if (job_.cut) {
+        const uint64_t* cut = job_.cut[axis].data() + r * words;
+        list(first, next, [=](size_t w) { return cut[w]; });
+      } else if (axis == 0) {
+        list(first, next, [=](size_t w) { return (a[w] ^ (a[w] >> 1 | (w + 1 < words ? a[w + 1] << 63 : 0))) & cell_bits(w, nx); });
+      } else {
+        const uint64_t* b = a + (axis == 1 ? words : words * ny);
+        list(first, next, [=](size_t w) { return a[w] ^ b[w]; });
       }
     }
   }
@@ -113,6 +104,45 @@ class Rows {
     size_t edge, point;
     int axis;
   };
+
+  void one_by_one(size_t r) {
+    const size_t nx = job_.frame.dims[0];
+    size_t v = job_.rows[r].vertex;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (job_.rows[r].cut[axis] == 0) continue;
+      for (size_t w = 0; w < job_.words; ++w)
+        for (uint64_t bits = cut_edges(job_, axis, r, w); bits; bits &= bits - 1)
+          work_.careful(work_.maker, v++, r * nx + 64 * w + size_t(std::countr_zero(bits)), axis);
+    }
+  }
+
+  // The set bits of a row; the first few of each word without a branch.
+  template <class Bits>
+  HWY_INLINE void list(int32_t first, int32_t next, Bits bits_of_word) {
+    size_t count = edges_.count, begin = count;
+    int32_t* HWY_RESTRICT from = edges_.from;
+    for (size_t w = 0; w < job_.words; ++w, first += 64) {
+      uint64_t bits = bits_of_word(w);
+      const size_t behind = count + size_t(hwy::PopCount(bits));
+      size_t at = count;
+      do {
+        for (size_t n = 0; n < 4; ++n) {
+          from[at + n] = first + int32_t(std::countr_zero(bits));
+          bits &= bits - 1;
+        }
+        at += 4;
+      } while (HWY_UNLIKELY(at < behind));
+      count = behind;
+      if (HWY_UNLIKELY(count >= Edges::room)) {
+        for (size_t e = begin; e < count; ++e) edges_.to[e] = from[e] + next;
+        edges_.count = count;
+        flush();
+        count = begin = 0;
+      }
+    }
+    for (size_t e = begin; e < count; ++e) edges_.to[e] = from[e] + next;
+    edges_.count = count;
+  }
 
   // Edges e to e + n, n <= lanes, where all lanes are written.
   HWY_INLINE void make(size_t e, size_t n, float* HWY_RESTRICT xyz, float* HWY_RESTRICT normals, EdgePoint* HWY_RESTRICT points) {
