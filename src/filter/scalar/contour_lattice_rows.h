@@ -5,7 +5,6 @@
 #include "base/huge_allocator.h"
 #include "filter/scalar/cell_cases.h"
 #include "filter/scalar/contour_parts.h"
-#include "filter/scalar/contour_rows.h"
 #include "filter/scalar/trilinear_cell.h"
 
 namespace sg::contouring {

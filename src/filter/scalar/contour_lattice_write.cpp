@@ -84,18 +84,6 @@ struct LatticeContour::Writing {
       triangle(edge[name[0]], edge[name[1]], edge[name[2]], i, out, cells);
     }
   }
-
-  // The first cut edges along an axis of the row dj and dk further.
-  static uint32_t start(const RowStart& s, int axis, uint32_t first_point) {
-    return first_point + uint32_t(s.vertex) + (axis > 0 ? s.cut[0] : 0) + (axis > 1 ? s.cut[1] : 0);
-  }
-  void starts(size_t row, uint32_t first_point, uint32_t* at) const {
-    const RowStart *s = &cuts.rows[row], *back = s + all.frame_.dims[1];
-    const uint32_t n[8] = {start(s[0], 0, first_point),    start(s[1], 0, first_point), start(back[0], 0, first_point),
-                           start(back[1], 0, first_point), start(s[0], 1, first_point), start(back[0], 1, first_point),
-                           start(s[0], 2, first_point),    start(s[1], 2, first_point)};
-    std::copy_n(n, 8, at);
-  }
 };
 
 void LatticeContour::simple_triangles_of_row(const Cuts& cuts, size_t j, size_t k, uint32_t first_point, int32_t* out, uint32_t* cells,
@@ -103,17 +91,19 @@ void LatticeContour::simple_triangles_of_row(const Cuts& cuts, size_t j, size_t 
   const size_t ny = frame_.dims[1], r = j + ny * k;
   Writing writing(*this, cuts, j, k, first_point, inner);
   const uint64_t* a = cuts.inside.data() + r * words_;
-  TriangleRow row{*tables_,
-                  {{a, a + words_, a + ny * words_, a + (ny + 1) * words_}, words_, frame_.dims[0]},
-                  {},
-                  out,
-                  cells,
-                  writing.first_cell,
-                  &writing,
-                  [](void* w, size_t i, const uint32_t* edges, int32_t*& to, uint32_t*& numbers) {
-                    static_cast<Writing*>(w)->slow(i, edges, to, numbers);
-                  }};
-  writing.starts(r, first_point, row.first);
+  const RowStart* near = &cuts.rows[r];
+  const TriangleRow row{*tables_,
+                        {{a, a + words_, a + ny * words_, a + (ny + 1) * words_}, words_, frame_.dims[0]},
+                        near,
+                        near + ny,
+                        first_point,
+                        out,
+                        cells,
+                        writing.first_cell,
+                        &writing,
+                        [](void* w, size_t i, const uint32_t* edges, int32_t*& to, uint32_t*& numbers) {
+                          static_cast<Writing*>(w)->slow(i, edges, to, numbers);
+                        }};
   write_triangles(row);
 }
 
@@ -125,7 +115,7 @@ void LatticeContour::triangles_of_row(const Cuts& cuts, size_t j, size_t k, uint
   const size_t row[4] = {j + ny * k, j + 1 + ny * k, j + ny * (k + 1), j + 1 + ny * (k + 1)};
   Writing writing(*this, cuts, j, k, first_point, inner);
   uint32_t at[8];
-  writing.starts(row[0], first_point, at);
+  first_edges(&cuts.rows[row[0]], &cuts.rows[row[2]], first_point, at);
   for (size_t w = 0; w < words_; ++w) {
     Pair q[4];
     uint64_t any = 0, every = ~uint64_t(0);

@@ -13,6 +13,7 @@
 #include "data/field_ops.h"
 #include "filter/field/lattice_frame.h"
 #include "filter/scalar/contour_bits.h"
+#include "filter/scalar/contour_rows.h"
 
 namespace sg {
 struct CellActiveIndex;
@@ -94,13 +95,6 @@ inline double crossing(double value, double a, double b) {
 }
 
 struct LatticeIndex;
-struct CellTables;
-
-/// Where the edges of a row of points are cut, and where their results go.
-struct RowStart {
-  size_t vertex, cell, inner;  ///< first of the row, after the prefix sum; before it, counts
-  uint32_t cut[3];             ///< cut edges along each axis; results lie in that order
-};
 
 /// Kernels on lattices of two or three axes; make one for all values.
 class LatticeContour {

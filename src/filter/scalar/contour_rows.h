@@ -6,6 +6,12 @@
 
 namespace sg::contouring {
 
+/// Where the edges of a row of points are cut, and where their results go.
+struct RowStart {
+  size_t vertex, cell, inner;  ///< first of the row, after the prefix sum; before it, counts
+  uint32_t cut[3];             ///< cut edges along each axis; results lie in that order
+};
+
 /// What a pattern of corners (bit c: inside) means for the table way of cutting.
 struct CellTables {
   static constexpr uint8_t slow = 255;
@@ -29,11 +35,21 @@ size_t count_triangles(const RowBits& rows, uint64_t* odd, bool& any_odd);
 /// Cut edges of a row of points along x, y and z. Null: no such row.
 void count_edges(const uint64_t* row, const uint64_t* up, const uint64_t* back, size_t words, size_t points, uint32_t cut[3]);
 
+/// Numbers of the first cut edges: along x in the four rows, y in rows 0 and 2, z in rows 0 and 1.
+inline void first_edges(const RowStart* near, const RowStart* back, uint32_t first_point, uint32_t* at) {
+  const uint32_t x[4] = {first_point + uint32_t(near[0].vertex), first_point + uint32_t(near[1].vertex),
+                         first_point + uint32_t(back[0].vertex), first_point + uint32_t(back[1].vertex)};
+  for (int s = 0; s < 4; ++s) at[s] = x[s];
+  at[4] = x[0] + near[0].cut[0], at[5] = x[2] + back[0].cut[0];
+  at[6] = at[4] + near[0].cut[1], at[7] = x[1] + near[1].cut[0] + near[1].cut[1];
+}
+
 /// Writes the triangles of a row of cells, all of them good.
 struct TriangleRow {
   const CellTables& tables;
   RowBits bits;
-  uint32_t first[8];  ///< numbers of the first cut edges of the rows: along x in the four rows, y in rows 0 and 2, z in rows 0 and 1
+  const RowStart *near, *back;  ///< rows (j,k) and (j+1,k), rows (j,k+1) and (j+1,k+1)
+  uint32_t first_point;         ///< what all numbers of points begin with
   int32_t* out;
   uint32_t* cells;  ///< null, or a number per triangle
   uint32_t first_cell;

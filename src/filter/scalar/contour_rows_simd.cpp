@@ -15,6 +15,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "filter/scalar/contour_list-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace sg::contouring::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
@@ -75,10 +77,14 @@ void edge_count(const uint64_t* HWY_RESTRICT row, const uint64_t* HWY_RESTRICT u
 using DU = hn::CappedTag<uint32_t, 16>;
 class Numbers {
  public:
-  explicit Numbers(const uint32_t* first) {
-    HWY_ALIGN uint32_t n[16] = {first[0], first[1], first[2], first[3], first[4], first[4],
-                                first[5], first[5], first[6], first[6], first[7], first[7]};
-    at_ = hn::Load(DU(), n);
+  Numbers(const RowStart* near, const RowStart* back, uint32_t first_point) {
+    // From registers: a vector read from numbers just written waits for them.
+    uint32_t n[8];
+    first_edges(near, back, first_point, n);
+    const auto set = [](uint32_t a, uint32_t b, uint32_t c, uint32_t d) { return _mm_set_epi32(int(d), int(c), int(b), int(a)); };
+    const auto all = _mm512_castsi256_si512(_mm256_set_m128i(set(n[4], n[5], n[6], n[7]), set(n[0], n[1], n[2], n[3])));
+    const auto order = _mm512_set_epi32(0, 0, 0, 0, 7, 7, 6, 6, 5, 5, 4, 4, 3, 2, 1, 0);
+    at_ = hn::Vec<DU>{_mm512_permutexvar_epi32(order, all)};
   }
   // The edges of the cell; then the counters pass it.
   HWY_INLINE hn::Vec<DU> pass(uint32_t passed) {
@@ -108,7 +114,7 @@ struct EdgeNumbers {
 };
 class Numbers {
  public:
-  explicit Numbers(const uint32_t* first) { std::copy_n(first, 8, at_); }
+  Numbers(const RowStart* near, const RowStart* back, uint32_t first_point) { first_edges(near, back, first_point, at_); }
   HWY_INLINE EdgeNumbers pass(uint32_t passed) {
     EdgeNumbers e;
     for (uint32_t s = 0; s < 4; ++s) e.at[s] = at_[s], at_[s] += passed >> s & 1;
@@ -143,12 +149,12 @@ void triangle_row(const TriangleRow& row) {
   constexpr size_t room = 512;
   const CellTables& tables = row.tables;
   const RowBits& bits = row.bits;
-  Numbers numbers(row.first);
+  Numbers numbers(row.near, row.back, row.first_point);
   int32_t* out = row.out;
   uint32_t* cells = row.cells;
-  uint32_t crossed[room + 64 + 4];
+  uint32_t crossed[room + 80];
   for (size_t w = 0; w < bits.words;) {
-    // Crossed cells are listed first, the first few of each word without a branch.
+    // Crossed cells are listed first, so that the work on them has no branch that depends on the surface.
     size_t count = 0;
     for (; w < bits.words && count < room; ++w) {
       uint64_t any = 0, every = ~uint64_t(0);
@@ -157,17 +163,8 @@ void triangle_row(const TriangleRow& row) {
         any |= q.m | q.s;
         every &= q.m & q.s;
       }
-      uint64_t active = any & ~every & cell_bits(w, bits.points);
-      const size_t behind = count + ones(active);
-      size_t at = count;
-      do {
-        for (size_t n = 0; n < 4; ++n) {
-          crossed[at + n] = uint32_t(64 * w) + uint32_t(std::countr_zero(active));
-          active &= active - 1;
-        }
-        at += 4;
-      } while (HWY_UNLIKELY(at < behind));
-      count = behind;
+      const uint64_t active = any & ~every & cell_bits(w, bits.points);
+      count = list_bits(active, uint32_t(64 * w), crossed, count);
     }
     for (size_t c = 0; c < count; ++c) {
       const size_t i = crossed[c];
@@ -178,7 +175,10 @@ void triangle_row(const TriangleRow& row) {
       if (HWY_UNLIKELY(n == CellTables::slow)) {
         HWY_ALIGN uint32_t list[16];
         edge_list(edges, list);
-        row.slow(row.slow_job, i, list, out, cells);
+        int32_t* to = out;  // copies, so that these two stay in registers
+        uint32_t* to_cells = cells;
+        row.slow(row.slow_job, i, list, to, to_cells);
+        out = to, cells = to_cells;
         continue;
       }
       write_cell(edges, tables.edges[pattern], n, out);

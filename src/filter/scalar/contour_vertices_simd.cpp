@@ -9,6 +9,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "filter/scalar/contour_list-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace sg::contouring::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
@@ -58,7 +60,7 @@ class Rows {
     if (!inner) return one_by_one(r);
     if (edges_.count == 0) next_ = row.vertex;
     const size_t words = job_.words;
-    const auto first = int32_t((r - first_row_) * nx);
+    const auto first = uint32_t((r - first_row_) * nx);
     const uint64_t* a = job_.inside + r * words;
     for (int axis = 0; axis < 3; ++axis) {
       if (row.cut[axis] == 0) continue;
@@ -116,31 +118,22 @@ class Rows {
     }
   }
 
-  // The set bits of a row; the first few of each word without a branch.
+  // The set bits of a row.
   template <class Bits>
-  HWY_INLINE void list(int32_t first, int32_t next, Bits bits_of_word) {
+  HWY_INLINE void list(uint32_t first, int32_t next, Bits bits_of_word) {
     size_t count = edges_.count, begin = count;
-    int32_t* HWY_RESTRICT from = edges_.from;
-    for (size_t w = 0; w < job_.words; ++w, first += 64) {
-      uint64_t bits = bits_of_word(w);
-      const size_t behind = count + size_t(hwy::PopCount(bits));
-      size_t at = count;
-      do {
-        for (size_t n = 0; n < 4; ++n) {
-          from[at + n] = first + int32_t(std::countr_zero(bits));
-          bits &= bits - 1;
-        }
-        at += 4;
-      } while (HWY_UNLIKELY(at < behind));
-      count = behind;
-      if (HWY_UNLIKELY(count >= Edges::room)) {
-        for (size_t e = begin; e < count; ++e) edges_.to[e] = from[e] + next;
-        edges_.count = count;
-        flush();
-        count = begin = 0;
-      }
+    const auto name_ends = [&] {
+      for (size_t e = begin; e < count; ++e) edges_.to[e] = edges_.from[e] + next;
+    };
+    for (size_t w = 0; w < job_.words; ++w) {
+      count = list_bits(bits_of_word(w), first + uint32_t(64 * w), reinterpret_cast<uint32_t*>(edges_.from), count);
+      if (HWY_LIKELY(count < Edges::room)) continue;
+      name_ends();
+      edges_.count = count;
+      flush();
+      count = begin = 0;
     }
-    for (size_t e = begin; e < count; ++e) edges_.to[e] = from[e] + next;
+    name_ends();
     edges_.count = count;
   }
 
