@@ -2,25 +2,17 @@
 #include "render/raster/discs.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 namespace sg::raster {
 
 namespace {
 
-void keep_nearest(uint64_t* slot, uint64_t key) {
-  std::atomic_ref<uint64_t> a(*slot);
-  uint64_t seen = a.load(std::memory_order_relaxed);
-  while (key < seen && !a.compare_exchange_weak(seen, key, std::memory_order_relaxed)) {
-  }
-}
-
 float along(const float* a, const float* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 }  // namespace
 
-void draw_discs(const DiscJob& job, size_t begin, size_t end) {
+void draw_discs_one_by_one(const DiscJob& job, size_t begin, size_t end) {
   const EyeView& v = job.view;
   for (size_t i = begin; i < end; ++i) {
     const size_t p = job.points[i];
@@ -32,7 +24,7 @@ void draw_discs(const DiscJob& job, size_t begin, size_t end) {
     if (!(cx > -1e6f && cx < 1e6f && cy > -1e6f && cy < 1e6f)) continue;
     const auto primitive = job.first_primitive + uint32_t(i);
     auto put = [&](int x, int y, float z) {
-      if (z > v.near_plane && z < v.far_plane) keep_nearest(&job.keys[size_t(y) * size_t(v.width) + size_t(x)], depth_key(z, primitive));
+      if (z > v.near_plane && z < v.far_plane) keep_nearer(&job.keys[size_t(y) * size_t(v.width) + size_t(x)], depth_key(z, primitive));
     };
     if (reach < 0.7f) {
       const int x = int(std::floor(cx)), y = int(std::floor(cy));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Oriented discs (surfels): each pixel shows the nearest disc that its ray meets, with the disc's own normal. Internal to raster/.
 #pragma once
+#include <atomic>
+
 #include "render/raster/shade.h"
 
 namespace sg::raster {
@@ -15,6 +17,15 @@ struct DiscJob {
 
 /// Draws discs begin..end into the visibility buffer with an atomic minimum. Discs smaller than a pixel take the one at their centre.
 void draw_discs(const DiscJob& job, size_t begin, size_t end);
+void draw_discs_one_by_one(const DiscJob& job, size_t begin, size_t end);  ///< the same in plain C++
+
+/// The minimum does not depend on the order in which threads come.
+inline void keep_nearer(uint64_t* slot, uint64_t key) {
+  std::atomic_ref<uint64_t> a(*slot);
+  uint64_t seen = a.load(std::memory_order_relaxed);
+  while (key < seen && !a.compare_exchange_weak(seen, key, std::memory_order_relaxed)) {
+  }
+}
 
 /// Like shade(), for the pixels of a disc item; `triangle` of the batch holds the disc. Depth comes from the keys.
 void shade_discs(const PreparedItem& item, const EyeView& view, const std::vector<WorldLight>& lights, const uint64_t* keys, ShadeBatch& b);
