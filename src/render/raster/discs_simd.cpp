@@ -30,6 +30,7 @@ struct Lanes {
   F x, y, z, n[3];  // the eye's coordinates and the normal in them
   F radius2, plane;
   M tiny;            // shows in the pixel at its centre, as deep as that
+  bool within;       // all lie between the near and the far plane
   I x0, x1, y0, y1;  // pixels; empty when there is nothing to draw
 };
 
@@ -52,12 +53,26 @@ HWY_INLINE Lanes place(const DiscJob& job, I point, I valid) {
   good = hn::And(good, hn::And(hn::Lt(hn::Abs(cx), set(1e6f)), hn::Lt(hn::Abs(cy), set(1e6f))));
   good = hn::And(good, hn::MaskFromVec(hn::BitCast(d, valid)));
   l.tiny = hn::Lt(reach, set(0.7f));
-  F grown;
-  if (v.parallel) grown = reach;
-  else grown = hn::IfThenElse(hn::Gt(l.z, set(2) * r), reach * l.z / (l.z - r), reach * set(4));
+  l.within = hn::AllTrue(d, hn::And(hn::Gt(l.z - r, set(v.near_plane)), hn::Lt(l.z + r, set(v.far_plane))));
+  // A disc spans r sqrt(1 - n^2) along each axis; on the picture, what the box of these spans covers, a little more for rounding.
+  auto span = [&](F n) { return r * hn::Sqrt(hn::Max(set(1.0001f) - n * n, set(0))); };
+  const F span_x = span(l.n[0]), span_y = span(l.n[1]), span_z = span(l.n[2]), margin = set(0.01f);
+  F near_scale = scale, far_scale = scale;
+  M beside = hn::FirstN(d, 0);  // reaches the eye's plane, or nearly
+  if (!v.parallel) {
+    near_scale = set(v.scale) / hn::Max(l.z - span_z, r), far_scale = set(v.scale) / (l.z + span_z);
+    beside = hn::Not(hn::Gt(l.z, set(2) * r));
+  }
+  auto most = [&](F q) { return hn::Max(q * near_scale, q * far_scale) + margin; };
+  auto least = [&](F q) { return hn::Min(q * near_scale, q * far_scale) - margin; };
+  const F grown = reach * set(4);
+  const F low_x = hn::IfThenElse(beside, cx - grown, set(v.center_x) + least(l.x - span_x)),
+          high_x = hn::IfThenElse(beside, cx + grown, set(v.center_x) + most(l.x + span_x)),
+          low_y = hn::IfThenElse(beside, cy - grown, set(v.center_y) - most(l.y + span_y)),
+          high_y = hn::IfThenElse(beside, cy + grown, set(v.center_y) - least(l.y - span_y));
   const F most_x = set(float(v.width - 1)), most_y = set(float(v.height - 1)), half = set(0.5f), zero = set(0);
-  const F left = hn::IfThenElse(l.tiny, hn::Floor(cx), hn::Ceil(cx - grown - half)), right = hn::Floor(cx + grown - half);
-  const F top = hn::IfThenElse(l.tiny, hn::Floor(cy), hn::Ceil(cy - grown - half)), bottom = hn::Floor(cy + grown - half);
+  const F left = hn::IfThenElse(l.tiny, hn::Floor(cx), hn::Ceil(low_x - half)), right = hn::Floor(high_x - half);
+  const F top = hn::IfThenElse(l.tiny, hn::Floor(cy), hn::Ceil(low_y - half)), bottom = hn::Floor(high_y - half);
   // Tiny ones off the picture stay off it.
   const F x0 = hn::IfThenElse(l.tiny, left, hn::Max(left, zero)), x1 = hn::IfThenElse(l.tiny, left, hn::Min(right, most_x));
   const F y0 = hn::IfThenElse(l.tiny, top, hn::Max(top, zero)), y1 = hn::IfThenElse(l.tiny, top, hn::Min(bottom, most_y));
@@ -72,12 +87,14 @@ HWY_INLINE Lanes place(const DiscJob& job, I point, I valid) {
 HWY_INLINE int32_t largest(I a) { return hn::GetLane(hn::MaxOfLanes(DI(), a)); }
 
 // All discs' pixels at the same place in their boxes at once.
+template <bool parallel>
 HWY_INLINE void draw_lanes(const DiscJob& job, const Lanes& l, uint32_t primitive, M wanted) {
   const DF d;
   const DI di;
   const EyeView& v = job.view;
   const I wide = hn::Sub(l.x1, l.x0), high = hn::Sub(l.y1, l.y0), zero = hn::Zero(di);
-  const auto some = hn::And(hn::Not(hn::Or(hn::Gt(zero, wide), hn::Gt(zero, high))), hn::MaskFromVec(hn::BitCast(di, hn::VecFromMask(d, wanted))));
+  const auto some =
+      hn::And(hn::Not(hn::Or(hn::Gt(zero, wide), hn::Gt(zero, high))), hn::MaskFromVec(hn::BitCast(di, hn::VecFromMask(d, wanted))));
   if (hn::AllFalse(di, some)) return;
   const int32_t columns = largest(hn::IfThenElseZero(some, wide)), rows = largest(hn::IfThenElseZero(some, high));
   const F inverse = set(1 / v.scale);
@@ -91,7 +108,7 @@ HWY_INLINE void draw_lanes(const DiscJob& job, const Lanes& l, uint32_t primitiv
       const auto in_box = hn::And(in_row, hn::Not(hn::Gt(x, l.x1)));
       const F dx = (hn::ConvertTo(d, x) + set(0.5f) - set(v.center_x)) * inverse;
       F qx, qy, z;
-      if (v.parallel) {
+      if constexpr (parallel) {
         qx = dx, qy = dy, z = (l.plane - l.n[0] * dx - l.n[1] * dy) / l.n[2];
       } else {
         z = l.plane / (l.n[0] * dx + l.n[1] * dy + l.n[2]);
@@ -100,7 +117,7 @@ HWY_INLINE void draw_lanes(const DiscJob& job, const Lanes& l, uint32_t primitiv
       const F ox = qx - l.x, oy = qy - l.y, oz = z - l.z;
       M hit = hn::Or(hn::Le(ox * ox + oy * oy + oz * oz, l.radius2), l.tiny);
       z = hn::IfThenElse(l.tiny, l.z, z);
-      hit = hn::And(hit, hn::And(hn::Gt(z, set(v.near_plane)), hn::Lt(z, set(v.far_plane))));
+      if (!l.within) hit = hn::And(hit, hn::And(hn::Gt(z, set(v.near_plane)), hn::Lt(z, set(v.far_plane))));
       hit = hn::And(hit, hn::MaskFromVec(hn::BitCast(d, hn::VecFromMask(di, in_box))));
       if (hn::AllFalse(d, hit)) continue;
       // Behind what is there already. Another thread may bring something nearer meanwhile, never something further.
@@ -141,12 +158,60 @@ void disc_range(const DiscJob& job, size_t begin, size_t end) {
     const I limit = hn::Set(di, small_disc);
     const auto large = hn::Or(hn::Gt(hn::Sub(l.x1, l.x0), limit), hn::Gt(hn::Sub(l.y1, l.y0), limit));
     const M is_large = hn::MaskFromVec(hn::BitCast(d, hn::VecFromMask(di, large)));
-    draw_lanes(job, l, job.first_primitive + uint32_t(i), hn::Not(is_large));
+    if (job.view.parallel) draw_lanes<true>(job, l, job.first_primitive + uint32_t(i), hn::Not(is_large));
+    else draw_lanes<false>(job, l, job.first_primitive + uint32_t(i), hn::Not(is_large));
     if (HWY_LIKELY(hn::AllFalse(di, large))) continue;
     uint8_t bytes[8] = {};
     hn::StoreMaskBits(d, is_large, bytes);
     for (size_t lane = 0; lane < n; ++lane)
       if (bytes[lane / 8] >> (lane % 8) & 1) draw_discs_one_by_one(job, i + lane, i + lane + 1);
+  }
+}
+
+// Light of the discs that pixels show: see DiscLight.
+void disc_light(const DiscLight& job, ShadeBatch& b) {
+  const DF d;
+  const DI di;
+  const EyeView& v = job.view;
+  const Material& m = job.material;
+  const size_t lanes = hn::Lanes(d);
+  const F zero = set(0), one = set(1);
+  for (size_t i = b.n; i % lanes != 0; ++i) b.triangle[i] = b.triangle[b.n - 1], b.pixel[i] = b.pixel[b.n - 1];
+  for (size_t i = 0; i < b.n; i += lanes) {
+    const I disc = hn::LoadU(di, reinterpret_cast<const int32_t*>(b.triangle + i));
+    const I point = hn::GatherIndex(di, reinterpret_cast<const int32_t*>(job.points), disc), at = hn::Add(point, hn::Add(point, point));
+    const I pixel = hn::LoadU(di, reinterpret_cast<const int32_t*>(b.pixel + i));
+    F n[3], view[3];
+    for (int c = 0; c < 3; ++c) n[c] = hn::GatherIndex(d, job.normals + c, at), view[c] = set(-v.forward[c]);
+    if (!v.parallel) {
+      const F x = hn::ConvertTo(d, hn::Add(hn::Set(di, b.tile_x), hn::And(pixel, hn::Set(di, tile_size - 1))));
+      const F y = hn::ConvertTo(d, hn::Add(hn::Set(di, b.tile_y), hn::ShiftRight<6>(pixel)));
+      static_assert(tile_size == 64);
+      const F dx = (x + set(0.5f) - set(v.center_x)) / set(v.scale), dy = (set(v.center_y) - y - set(0.5f)) / set(v.scale);
+      for (int c = 0; c < 3; ++c) view[c] = view[c] - set(v.right[c]) * dx - set(v.up[c]) * dy;
+      const F size = one / hn::Sqrt(view[0] * view[0] + view[1] * view[1] + view[2] * view[2]);
+      for (int c = 0; c < 3; ++c) view[c] = view[c] * size;
+    }
+    F facing = n[0] * view[0] + n[1] * view[1] + n[2] * view[2];
+    const M away = hn::Lt(facing, zero);
+    for (int c = 0; c < 3; ++c) n[c] = hn::IfThenElse(away, hn::Neg(n[c]), n[c]);
+    facing = hn::Abs(facing);
+    F diffuse = zero, specular = zero;
+    for (size_t k = 0; k < job.light_count; ++k) {
+      const WorldLight& light = job.lights[k];
+      const float to[3] = {light.x, light.y, light.z};
+      const F nl = along(n, to), intensity = set(light.intensity);
+      const M lit = hn::Gt(nl, zero);
+      diffuse = diffuse + hn::IfThenElseZero(lit, nl * intensity);
+      F x = hn::Min(hn::Max(set(2) * nl * facing - along(view, to), zero), one), power = one;
+      for (int p = job.power; p > 0; p >>= 1) {
+        if (p & 1) power = power * x;
+        x = x * x;
+      }
+      specular = specular + hn::IfThenElseZero(lit, power * intensity);
+    }
+    hn::StoreU(m.lit ? set(m.ambient) + set(m.diffuse) * diffuse : one, d, b.light + i);
+    hn::StoreU(m.lit ? set(m.specular) * specular : zero, d, b.gloss + i);
   }
 }
 
@@ -156,6 +221,8 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace sg::raster {
 HWY_EXPORT(disc_range);
+HWY_EXPORT(disc_light);
+void light_discs(const DiscLight& job, ShadeBatch& batch) { HWY_DYNAMIC_DISPATCH(disc_light)(job, batch); }
 void draw_discs(const DiscJob& job, size_t begin, size_t end) {
   if (int64_t(job.view.width) * job.view.height >= int64_t(1) << 30) return draw_discs_one_by_one(job, begin, end);
   HWY_DYNAMIC_DISPATCH(disc_range)(job, begin, end);
