@@ -6,11 +6,12 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "index/minmax_bricks.h"
-#include "render/composite/over.h"
 #include "render/volume/lattice/kernels.h"
+#include "render/volume/optics/ray_state.h"
 #include "render/volume/optics/transfer.h"
 #include "scene/scene.h"
 
@@ -25,6 +26,15 @@ struct Knobs {
 void composite_volumes(const Scene& scene, const Projection& projection, const FragmentLists& fragments, Frame& frame, Context& context,
                        const Knobs& knobs);
 
+/// What a volume needs of its field, whoever looks at it: kept in the dataset's memo.
+struct LatticeSamples {
+  Voxels voxels;
+  float base = 0;               ///< value = stored + base
+  std::vector<uint8_t> hidden;  ///< per cell of the lattice: draws nothing; may be empty
+  MinMaxBricks bricks;
+  double lo = HUGE_VAL, hi = -HUGE_VAL;  ///< of the finite values stored; lo > hi when there are none
+};
+
 struct Volume {
   uint32_t id = 0;  ///< item number + 1
   VolumeItem::Mode mode = VolumeItem::Mode::composite;
@@ -34,6 +44,8 @@ struct Volume {
   Voxels voxels;
   float base = 0;                  ///< value = stored + base
   double step = 1;                 ///< world length
+  double edge = 1;                 ///< world length of the smallest cell edge
+  Box3 bounds;                     ///< world
   std::vector<Transfer> transfer;  ///< one
   Kernels kernels{};
   bool direct = false;  ///< affine, a linear table, no holes to look after: kernels.entries does all
@@ -48,11 +60,14 @@ struct Volume {
   std::vector<uint32_t> first_cell[3];  ///< cell in which a slice of the axis begins
   double slices_per_q[3] = {};
 
-  MinMaxBricks bricks;
-  std::vector<uint8_t> distance;  ///< in bricks to the next that draws something (composite)
+  std::shared_ptr<const LatticeSamples> samples;
+  std::vector<uint8_t> distance;  ///< in bricks to the next that draws something (composite), see empty_space.h
+  bool any_empty = true;          ///< is there a brick that draws nothing?
   std::vector<double> border[3];  ///< q of the brick sides, dims+1
   Vec3 margin;                    ///< q: rounding errors of places are smaller
-  std::vector<uint8_t> hidden;    ///< per cell of the lattice: draws nothing; may be empty
+
+  const MinMaxBricks& bricks() const { return samples->bricks; }
+  const std::vector<uint8_t>& hidden() const { return samples->hidden; }
 
   Vec3 q(Vec3 world) const { return to_q * (world - origin); }
   /// Sample index of a place in q along one axis, clamped.
@@ -71,12 +86,6 @@ struct Course {
   double enter = 0, leave = -1;  ///< inside the box, and within the limits asked for
 };
 Course course(const Volume& volume, Vec3 origin, Vec3 direction, double from, double to);
-
-struct RayState {
-  Gathered sum;
-  double surface = -1;  ///< t at which half of the light was gone; -1 = nowhere yet
-  uint32_t surface_id = 0;
-};
 
 /// Integrates [from, to] of one volume or, in common steps (the shortest of theirs), of several that overlap there. Samples lie in the
 /// middle of their steps; the last step has what length is left. Stops when less than knobs.stop_below of the light passes.

@@ -50,6 +50,8 @@ class RayField {
   /// The next stretches from near to far, at most out.size(); 0 = no more. Between two stretches there may be a gap, which draws
   /// nothing (no cell, no value, or left out as invisible).
   virtual size_t next(std::span<Stretch> out) = 0;
+  /// t at which the ray that was started enters the shape of the volume: fixed steps are counted from there.
+  virtual double entry() const = 0;
   /// World gradient of the stored value at t of a stretch that `next` gave last or before.
   virtual Vec3f gradient(const Stretch& stretch, double t) = 0;
   /// Value of the second field there (TransferDetail::second_field); 0 where the source has none.

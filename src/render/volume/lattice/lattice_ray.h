@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rays through uniform and rectilinear grids, cell by cell: in each the trilinear field along the ray is a cubic.
+#pragma once
+#include <memory>
+
+#include "render/volume/lattice/lattice_volume.h"
+#include "render/volume/optics/stretch.h"
+
+namespace sg::volume {
+
+/// Point samples: cubics of the trilinear cells, exactly. Cell fields: trilinear between the middles of the cells; beside a cell
+/// without a value the mean of the corners that have one, as the cubic through four places. Labels: constant around each sample.
+std::unique_ptr<RaySource> lattice_source(std::shared_ptr<const Volume> volume);
+
+}  // namespace sg::volume

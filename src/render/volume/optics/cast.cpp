@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/volume/optics/cast.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sg::volume {
+
+/// Fixed steps over whatever stretches come: each step has one sample, taken in its middle (or its two ends, pre-integrated), and counts
+/// with the length on which there is a volume.
+struct Caster::Steps {
+  double origin = 0;  // where step 0 begins
+  double covered = 0, from = 0;
+  long step = 0;
+  bool open = false, sampled = false;
+  float value = 0, first = 0, last = 0;
+  Lit lit;
+};
+
+struct Caster::Active {
+  const CastVolume* volume = nullptr;
+  std::unique_ptr<RayField> walker;
+  LitRay lights;
+  Look look;
+  Steps steps;
+  Stretch ahead[32];
+  size_t next = 0, count = 0;
+
+  explicit Active(const CastVolume& v)
+      : volume(&v), walker(v.source->walker()), look{*v.medium, v.budget, v.id, nullptr, v.per_scale, float(v.source->edge)} {}
+
+  /// Is there a stretch to draw? Reads on when all that were read ahead are drawn.
+  bool peek() {
+    if (next < count) return true;
+    next = 0, count = walker->next(ahead);
+    return count > 0;
+  }
+  Stretch& front() { return ahead[next]; }
+
+  /// Limits of the ray by the planes that clip the volume.
+  void start(const CastRay& ray) {
+    double from = ray.from, to = ray.to;
+    for (const ClipPlane& p : volume->item->clip) {
+      const double d = dot(p.normal, ray.direction), rest = p.offset - dot(p.normal, ray.origin);
+      if (d > 0) to = std::min(to, rest / d);
+      else if (d < 0) from = std::max(from, rest / d);
+      else if (rest < 0) to = from - 1;
+    }
+    next = count = 0;
+    walker->start(ray.origin, ray.direction, from, to);
+    if (volume->item->shaded && ray.lights) lights = *ray.lights, lights.material = volume->material, look.lit = &lights;
+    steps = {};
+    // Whatever is passed over, steps are counted from where the ray enters.
+    if (volume->step > 0) steps.origin = walker->entry() - (volume->item->sampling.jitter ? ray.jitter * volume->step : 0);
+  }
+
+  void flush(RayState& state) {
+    if (!steps.open) return;
+    steps.open = false;
+    if (!(steps.covered > 0)) return;
+    const Lit* lit = look.lit ? &steps.lit : nullptr;
+    if (volume->item->sampling.classify == "integrated")
+      composite_straight(look, steps.from, steps.from + steps.covered, steps.first, steps.last, lit, state);
+    else composite_sample(look, steps.from, steps.covered, steps.value, lit, state);
+  }
+
+  /// Draws a stretch in fixed steps; what belongs to a step that goes on is kept.
+  void step_through(const Stretch& s, RayState& state) {
+    const double h = volume->step;
+    for (double t = s.from; t < s.to;) {
+      long k = long(std::floor((t - steps.origin) / h + 1e-9));
+      if (steps.open && k != steps.step) flush(state);
+      const double end = std::min(s.to, steps.origin + double(k + 1) * h), middle = steps.origin + (double(k) + 0.5) * h;
+      if (!steps.open) steps = {steps.origin, 0, t, k, true, false, 0, s.value(t), 0, {}};
+      steps.covered += end - t;
+      steps.last = s.value(end);
+      if (!steps.sampled) {
+        steps.sampled = middle >= t && middle < end;
+        const double at = std::clamp(middle, t, end);
+        steps.value = s.value(at);
+        if (look.lit && (steps.sampled || middle >= end) && !look.medium.clear(steps.value, steps.value))
+          steps.lit = light_at(*look.lit, walker->gradient(s, at), look.edge, look.per_scale);
+      }
+      if (!(end > t)) break;
+      t = end;
+    }
+  }
+};
+
+Caster::Caster(const std::vector<CastVolume>& volumes) {
+  for (const CastVolume& v : volumes)
+    (v.item->mode == RayFunction::composite ? composite_ : others_).push_back(std::make_shared<Active>(v));
+}
+
+void Caster::put(float t, Vec3f color, float alpha, uint32_t id) {
+  if (!(alpha > 0)) return;
+  const Fragment f{t, {color.x * alpha, color.y * alpha, color.z * alpha, alpha}, id};
+  fragments_.insert(
+      std::upper_bound(fragments_.begin(), fragments_.end(), f,
+                       [](const Fragment& a, const Fragment& b) { return a.depth < b.depth || (a.depth == b.depth && a.id < b.id); }),
+      f);
+}
+
+void Caster::collect(Active& active, const CastRay& ray) {
+  const CastVolume& v = *active.volume;
+  active.start(ray);
+  RayField& walker = *active.walker;
+  const float base = v.source->base;
+  // A scalar is drawn in the full colour of its value, unless its opacity there is zero.
+  const auto put_value = [&](double value, double t) {
+    const Optics o = v.medium->at(float(value));
+    if (o.tau > 0) put(float(t), o.color, 1, v.id);
+  };
+  const auto lit_color = [&](float stored, Vec3f gradient) {
+    const Optics o = v.medium->at(stored);
+    Vec3f c = o.color;
+    if (active.look.lit) {
+      const Lit l = light_at(active.lights, gradient, HUGE_VALF, 1);  // a surface by definition
+      c = {c.x * l.diffuse + l.specular, c.y * l.diffuse + l.specular, c.z * l.diffuse + l.specular};
+    }
+    return c;
+  };
+  switch (v.item->mode) {
+    case RayFunction::maximum:
+    case RayFunction::minimum: {
+      const Found f = v.item->mode == RayFunction::maximum ? largest(walker) : smallest(walker);
+      if (f.found) put_value(f.value, f.t);
+      break;
+    }
+    case RayFunction::average:
+    case RayFunction::sum: {
+      const Sum s = integral(walker);
+      if (!(s.length > 0)) break;
+      // The medium reads stored values: those of the average less the base, those of the sum as they are.
+      put_value(v.item->mode == RayFunction::average ? s.integral / s.length : s.integral + double(base) * s.length - double(base),
+                s.first);
+      break;
+    }
+    case RayFunction::first_hit:
+    case RayFunction::distance: {
+      const Found f = first_at_least(walker, v.levels->front());
+      if (!f.found) break;
+      if (v.item->mode == RayFunction::distance) {
+        put_value(f.t - f.first - double(base), f.t);
+        break;
+      }
+      Stretch there{f.t, f.t + 1e-6, {}, 0};
+      put(float(f.t), lit_color(float(f.value), walker.gradient(there, f.t)), 1, v.id);
+      break;
+    }
+    case RayFunction::accumulate: {
+      const Sum s = length_at_least(walker, v.levels->front());
+      if (s.length > 0) put_value(s.length - double(base), s.first);
+      break;
+    }
+    case RayFunction::isosurface: {
+      all_crossings(walker, *v.levels, crossings_);
+      for (const Crossing& c : crossings_) {
+        const double value = (*v.levels)[c.level] + double(base);
+        put(float(c.t), lit_color(float((*v.levels)[c.level]), c.gradient), float(std::clamp(v.item->opacity.at(value), 0.0, 1.0)), v.id);
+      }
+      break;
+    }
+    case RayFunction::maximum_difference: maximum_difference(active); break;
+    case RayFunction::composite: break;
+  }
+}
+
+/// Bruckner and Groeller 2009: a new maximum lets what lies before it fade by beta = (1 - new)/(1 - old), values taken over the colour
+/// range: for one rise from 0 that is their 1 - delta, and it does not depend on the number of steps in which a rise is seen.
+void Caster::maximum_difference(Active& active) {
+  const CastVolume& v = *active.volume;
+  const double lo = v.item->color.lo - double(v.source->base), hi = v.item->color.hi - double(v.source->base);
+  const double per_range = hi != lo ? 1 / (hi - lo) : 0, step = 0.25 * v.source->edge;
+  double highest = 0, r = 0, g = 0, b = 0, pass = 1, at = -1;
+  while (active.peek()) {
+    const Stretch s = active.front();
+    ++active.next;
+    const int n = std::clamp(int(std::ceil((s.to - s.from) / step)), 1, 64);
+    const double h = (s.to - s.from) / n;
+    for (int k = 0; k < n; ++k) {
+      const double t = s.from + (k + 0.5) * h;
+      const float value = s.value(t);
+      const Optics o = v.medium->at(value);
+      const double place = std::clamp((double(value) - lo) * per_range, 0.0, 1.0);
+      if (place > highest) {
+        const double beta = highest < 1 ? (1 - place) / (1 - highest) : 1;
+        r *= beta, g *= beta, b *= beta, pass = 1 - beta * (1 - pass), highest = place;
+        at = t;
+      }
+      if (!(o.tau > 0)) continue;
+      Lit l;
+      if (active.look.lit) l = light_at(active.lights, active.walker->gradient(s, t), active.look.edge, active.look.per_scale);
+      const double alpha = double(1 - exp_minus(float(double(o.tau) * h)));
+      const auto add = [&](double& c, float color) { c += pass * alpha * double(color * l.diffuse + l.specular); };
+      add(r, o.color.x), add(g, o.color.y), add(b, o.color.z);
+      pass *= 1 - alpha;
+      if (at < 0) at = t;
+    }
+  }
+  const double alpha = 1 - pass;
+  if (alpha > 0) put(float(at), {float(r / alpha), float(g / alpha), float(b / alpha)}, float(alpha), v.id);
+}
+
+/// Stretches of all composite volumes up to `to`.
+void Caster::until(double to, RayState& state) {
+  for (;;) {
+    // Where does something begin or end next?
+    double from = HUGE_VAL;
+    for (Active* a : active_)
+      if (a->peek()) from = std::min(from, a->front().from);
+    if (!(from < to)) break;
+    double end = to;
+    joint_.clear();
+    Active* only = nullptr;
+    for (Active* a : active_) {
+      if (!a->peek()) continue;
+      Stretch& s = a->front();
+      if (s.from > from) {
+        end = std::min(end, s.from);
+        continue;
+      }
+      end = std::min(end, s.to);
+      only = a;
+      joint_.push_back({&a->look, a->walker.get(), {}});
+    }
+    size_t k = 0;
+    for (Active* a : active_) {
+      if (!a->peek() || a->front().from > from) continue;
+      Stretch& s = a->front();
+      const bool whole = !(s.to > end);
+      joint_[k++].stretch = whole ? s : part_of(s, from, end);
+      if (whole) ++a->next;
+      else s = part_of(s, end, s.to);
+    }
+    for (Active* a : active_)
+      if (joint_.size() > 1 || a != only) a->flush(state);
+    if (joint_.size() == 1 && only->volume->step > 0) only->step_through(joint_[0].stretch, state);
+    else if (joint_.size() == 1) composite(only->look, joint_[0].stretch, *only->walker, state);
+    else composite_joint(joint_, state);
+    if (state.sum.transmittance < joint_[0].look->budget.stop_below) return;
+  }
+  for (Active* a : active_) a->flush(state);
+}
+
+void Caster::cast(const CastRay& ray, const std::vector<Fragment>& fragments, RayState& state) {
+  fragments_ = fragments;
+  for (auto& a : others_) collect(*a, ray);
+  active_.clear();
+  for (auto& a : composite_) a->start(ray), active_.push_back(a.get());
+  for (const Fragment& f : fragments_) {
+    until(double(f.depth), state);
+    state.sum.behind(f.rgba);
+    if (state.sum.transmittance < 0.5f && state.surface < 0) state.surface = double(f.depth), state.surface_id = f.id;
+    if (state.sum.transmittance < 1e-4f) return;
+  }
+  until(HUGE_VAL, state);
+}
+
+}  // namespace sg::volume

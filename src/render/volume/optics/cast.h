@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// Casting rays through prepared volumes of any kind: the path that can do everything. The lattice's packets are a faster way to the same
+// picture.
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "render/fragments.h"
+#include "render/volume/optics/functions.h"
+#include "render/volume/optics/integrate.h"
+#include "scene/scene.h"
+
+namespace sg::volume {
+
+/// One volume, ready for rays; shared by all threads.
+struct CastVolume {
+  const VolumeItem* item = nullptr;
+  uint32_t id = 0;  ///< item number + 1
+  std::unique_ptr<RaySource> source;
+  std::unique_ptr<Medium> medium;
+  Budget budget;
+  double step = 0;  ///< world length; 0 = by the tolerance
+  float per_scale = 1;
+  std::unique_ptr<std::vector<double>> levels;  ///< stored values
+  Material material;
+};
+
+/// What a ray of a picture knows before it meets anything.
+struct CastRay {
+  Vec3 origin, direction;
+  double from = 0, to = 0;         ///< limits in t: near plane and opaque depth
+  const LitRay* lights = nullptr;  ///< the scene's lights along this ray
+  double jitter = 0;               ///< share of a step by which fixed steps begin earlier
+};
+
+/// One thread's walkers.
+class Caster {
+ public:
+  explicit Caster(const std::vector<CastVolume>& volumes);
+
+  /// From near to far: the fragments, sorted by t (which stands in Fragment::depth), and the volumes, in order.
+  void cast(const CastRay& ray, const std::vector<Fragment>& fragments, RayState& state);
+
+ private:
+  struct Active;
+  struct Steps;
+  void collect(Active& active, const CastRay& ray);
+  void put(float t, Vec3f color, float alpha, uint32_t id);
+  void maximum_difference(Active& active);
+  void until(double to, RayState& state);
+
+  std::vector<std::shared_ptr<Active>> composite_, others_;
+  std::vector<Active*> active_;  // of this ray
+  std::vector<Fragment> fragments_;
+  std::vector<Crossing> crossings_;
+  std::vector<Joint> joint_;
+};
+
+}  // namespace sg::volume

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/volume/optics/integrate.h"
+
+#include <bit>
+#include <cmath>
+
+namespace sg::volume {
+
+// exp(-x) = 2^-k exp(-r), |r| <= ln2/2, Taylor to the 7th power.
+float exp_minus(float x) {
+  if (!(x < 87)) return 0;
+  constexpr float ln2_hi = 0.693145752f, ln2_lo = 1.42860677e-6f, per_ln2 = 1.44269504f;
+  const float k = float(int(x * per_ln2 + 0.5f)), r = -((x - k * ln2_hi) - k * ln2_lo);
+  float sum = 1.0f / 5040;
+  sum = sum * r + 1.0f / 720, sum = sum * r + 1.0f / 120, sum = sum * r + 1.0f / 24, sum = sum * r + 1.0f / 6;
+  sum = sum * r + 0.5f, sum = sum * r + 1, sum = sum * r + 1;
+  return sum * std::bit_cast<float>((127 - int(k)) << 23);
+}
+
+Stretch part_of(const Stretch& s, double from, double to) {
+  const double length = s.to - s.from;
+  const float a = float((from - s.from) / length), b = float((to - s.from) / length);
+  // The blossom of the cubic: b0 = f(a,a,a), b1 = f(a,a,b), b2 = f(a,b,b), b3 = f(b,b,b).
+  const auto blossom = [&s](float u, float v, float w) {
+    float p[4] = {s.b[0], s.b[1], s.b[2], s.b[3]};
+    const float at[3] = {u, v, w};
+    for (int level = 0; level < 3; ++level)
+      for (int i = 0; i < 3 - level; ++i) p[i] += at[level] * (p[i + 1] - p[i]);
+    return p[0];
+  };
+  return {from, to, {blossom(a, a, a), blossom(a, a, b), blossom(a, b, b), blossom(b, b, b)}, s.cell};
+}
+
+namespace {
+
+constexpr int most_cuts = 6;  // halvings of a stretch for its light
+constexpr float deep = 0.05f; // optical depth from which on the order within a segment is seen
+
+/// Where there is light on the ends of a part of a stretch, linear between them.
+struct LitPart {
+  double from, to;
+  Lit first, last;
+  Lit at(double t) const {
+    const float f = to > from ? float((t - from) / (to - from)) : 0;
+    return {first.diffuse + f * (last.diffuse - first.diffuse), first.specular + f * (last.specular - first.specular)};
+  }
+};
+
+class Pieces {
+ public:
+  Pieces(const Look& look, RayState& state) : look_(look), state_(state) {}
+
+  const LitPart* lit = nullptr;
+
+  /// A part of optical depth D: the value goes from a to b, `mean` is its mean by emission, which lies `weight` of the way on. C = c(mean)
+  /// A less what the front hides of the change of colour (exact for constant tau and a linear colour).
+  void segment(double t, float length, float depth, float a, float b, float mean, float weight) {
+    if (!(depth > 0)) return;
+    const float pass = exp_minus(depth), alpha = depth < 0.02f ? depth * (1 - depth * (0.5f - depth * (1.0f / 6))) : 1 - pass;
+    const Medium& medium = look_.medium;
+    Vec3f c = medium.color(mean) * alpha;
+    if (depth > deep) {
+      // A/2 - A/D + exp(-D), by its series where that cancels.
+      const float hidden =
+          depth < 0.2f ? depth * depth * (1.0f / 12 - depth * (1.0f / 24 - depth * (1.0f / 80))) : 0.5f * alpha - alpha / depth + pass;
+      c -= (medium.color(b) - medium.color(a)) * hidden;
+      weight -= hidden / alpha;
+    }
+    if (lit) {
+      const Lit l = lit->at(t + double(length) * double(weight));
+      const float flash = l.specular * alpha;
+      c = c * l.diffuse + Vec3f{flash, flash, flash};
+    }
+    Gathered& sum = state_.sum;
+    const float before = sum.transmittance;
+    sum.r += before * c.x, sum.g += before * c.y, sum.b += before * c.z;
+    sum.transmittance = before * pass;
+    if (state_.surface < 0 && sum.transmittance < 0.5f) {
+      // tau as good as constant: half of the light is gone at the share ln(2 before)/depth of the way.
+      const double gone = before > 0.5f ? std::log(2.0 * double(before)) / double(depth) : 0;
+      state_.surface = t + double(length) * std::min(gone, 1.0), state_.surface_id = look_.id;
+    }
+  }
+
+  /// The shares [f0, f1] of a stretch of which `line` is the medium. Simpson's rule: exact for the optical depth of a cubic.
+  void piece(const Stretch& s, float f0, float f1, float a, float b, const Medium::Line& line) {
+    const float middle = value(s, 0.5f * (f0 + f1)), length = float(s.to - s.from) * (f1 - f0);
+    const float t0 = line(a), tm = 4 * line(middle), t1 = line(b), all = t0 + tm + t1;
+    if (!(all > 0)) return;
+    const float mean = (t0 * a + tm * middle + t1 * b) / all, weight = (0.5f * tm + t1) / all;
+    segment(s.from + (s.to - s.from) * double(f0), length, length * (all * (1.0f / 6)), a, b, mean, weight);
+  }
+
+  static float value(const Stretch& s, float f) {
+    const float g = 1 - f;
+    const float b01 = g * s.b[0] + f * s.b[1], b12 = g * s.b[1] + f * s.b[2], b23 = g * s.b[2] + f * s.b[3];
+    return g * (g * b01 + f * b12) + f * (g * b12 + f * b23);
+  }
+
+  /// The share [f0, f1], on which the value goes one way from a to b: cut where it meets the knots of the medium.
+  void monotone(const Stretch& s, float f0, float f1, float a, float b) {
+    const std::vector<Medium::Line>& lines = look_.medium.lines();
+    int i = look_.medium.line_of(a);
+    const bool up = b >= a;
+    if (!up && i > 0 && lines[size_t(i)].lo == a) --i;
+    for (float f = f0, v = a;;) {
+      const Medium::Line& line = lines[size_t(i)];
+      const bool last = up ? b <= line.hi : b >= line.lo;
+      if (last) return piece(s, f, f1, v, b, line);
+      const float knot = up ? line.hi : line.lo;
+      const float at = meets(s, f, f1, v, b, knot);
+      piece(s, f, at, v, knot, line);
+      f = at, v = knot, i += up ? 1 : -1;
+    }
+  }
+
+  /// Where the value meets a knot between f0 and f1: false position, twice corrected.
+  static float meets(const Stretch& s, float f0, float f1, float a, float b, float knot) {
+    const float slope = (f1 - f0) / (b - a);
+    float f = f0 + (knot - a) * slope;
+    for (int i = 0; i < 2; ++i) f = std::clamp(f - (value(s, f) - knot) * slope, f0, f1);
+    return f;
+  }
+
+  void whole(const Stretch& s, float lo, float hi) {
+    const Medium& medium = look_.medium;
+    const float a = s.b[0], b = s.b[3], length = float(s.to - s.from), pass = state_.sum.transmittance;
+    const float tolerance = float(look_.budget.tolerance);
+    const float most = medium.most_tau(lo, hi), slope = medium.most_slope(lo, hi), taken = std::min(1.0f, length * most);
+    const float widths = (medium.axis(hi) - medium.axis(lo)) / medium.color_width();
+    const float change = std::min(1.0f, (medium.axis(hi) - medium.axis(lo)) * medium.color_slope());
+    // What one piece gets wrong: colours bend on a width; in a deep piece the front shows more of its own colour than a constant tau would
+    // have it; and the value may turn beyond its ends, where there may be knots. All fall with the square of the number of pieces.
+    const float beyond = std::max(hi - std::max(a, b), std::min(a, b) - lo);
+    float error = taken * (0.25f * tolerance) * widths * widths;
+    error += change * std::min(1.0f, 0.05f * length * length * most * slope * (hi - lo));
+    error += beyond * length * slope;
+    error *= pass;
+    const float share = pass * std::min(1.0f, length * medium.tau(0.25f * (s.b[0] + s.b[1] + s.b[2] + s.b[3])));
+    const float allowed = tolerance * (float(0.3 / look_.budget.length) * length + 0.4f * share);
+    const float n = std::clamp(std::ceil(std::sqrt(error / allowed)), 1.0f, 64.0f);
+    float v = a, f = 0;
+    for (float k = 1; k <= n; ++k) {
+      const float to = k == n ? 1 : k / n, next = k == n ? b : value(s, to);
+      monotone(s, f, to, v, next);
+      if (state_.sum.transmittance < look_.budget.stop_below) return;
+      v = next, f = to;
+    }
+  }
+
+ private:
+  const Look& look_;
+  RayState& state_;
+};
+
+/// Cuts the stretch until the light on its ends tells the light on its way.
+void composite_lit(const Look& look, const Stretch& s, float lo, float hi, const Lit& first, const Lit& last, RayField& walker, int cuts,
+                   RayState& state) {
+  const float depth = float(s.to - s.from) * look.medium.most_tau(lo, hi);
+  const float weight = state.sum.transmittance * std::min(depth, 1.0f);
+  const float change = std::abs(last.diffuse - first.diffuse) + std::abs(last.specular - first.specular);
+  if (cuts < most_cuts && weight * change > 0.25f * float(look.budget.tolerance)) {
+    const double middle = 0.5 * (s.from + s.to);
+    const Lit there = light_at(*look.lit, walker.gradient(s, middle), look.edge, look.per_scale);
+    const float off = std::abs(there.diffuse - 0.5f * (first.diffuse + last.diffuse)) +
+                      std::abs(there.specular - 0.5f * (first.specular + last.specular));
+    if (cuts == 0 || weight * off > 0.1f * float(look.budget.tolerance)) {
+      const Stretch a = part_of(s, s.from, middle), b = part_of(s, middle, s.to);
+      if (!look.medium.clear(a.lowest(), a.highest()))
+        composite_lit(look, a, a.lowest(), a.highest(), first, there, walker, cuts + 1, state);
+      if (!look.medium.clear(b.lowest(), b.highest()))
+        composite_lit(look, b, b.lowest(), b.highest(), there, last, walker, cuts + 1, state);
+      return;
+    }
+  }
+  Pieces pieces(look, state);
+  const LitPart part{s.from, s.to, first, last};
+  pieces.lit = &part;
+  pieces.whole(s, lo, hi);
+}
+
+}  // namespace
+
+void composite(const Look& look, const Stretch& s, RayField& walker, RayState& state) {
+  const float lo = s.lowest(), hi = s.highest();
+  if (!(lo <= hi) || look.medium.clear(lo, hi)) return;
+  if (!look.lit) return Pieces(look, state).whole(s, lo, hi);
+  const Lit first = light_at(*look.lit, walker.gradient(s, s.from), look.edge, look.per_scale);
+  const Lit last = light_at(*look.lit, walker.gradient(s, s.to), look.edge, look.per_scale);
+  composite_lit(look, s, lo, hi, first, last, walker, 0, state);
+}
+
+void composite_straight(const Look& look, double from, double to, float a, float b, const Lit* lit, RayState& state) {
+  Pieces pieces(look, state);
+  LitPart part;
+  if (lit) part = {from, to, *lit, *lit}, pieces.lit = &part;
+  const float third = (b - a) / 3;
+  pieces.monotone({from, to, {a, a + third, b - third, b}}, 0, 1, a, b);
+}
+
+void composite_sample(const Look& look, double from, double length, float value, const Lit* lit, RayState& state) {
+  composite_straight(look, from, from + length, value, value, lit, state);
+}
+
+void composite_joint(const std::vector<Joint>& joint, RayState& state, int cuts) {
+  const double from = joint[0].stretch.from, to = joint[0].stretch.to;
+  double depth = 0, densest = 0;
+  Vec3 glow{0, 0, 0};
+  bool simple = true;
+  uint32_t id = 0;
+  float stop = 0, tolerance = 1;
+  for (const Joint& j : joint) {
+    const Stretch& s = j.stretch;
+    const Medium& medium = j.look->medium;
+    stop = std::max(stop, j.look->budget.stop_below), tolerance = std::min(tolerance, float(j.look->budget.tolerance));
+    const float lo = s.lowest(), hi = s.highest();
+    if (!(lo <= hi) || medium.clear(lo, hi)) continue;
+    simple = simple && medium.line_of(lo) == medium.line_of(hi);
+    const float mean = 0.25f * (s.b[0] + s.b[1] + s.b[2] + s.b[3]);
+    const Optics o = medium.at(mean);
+    const double d = (to - from) * std::max(0.0, double(o.tau));
+    if (!(d > 0)) continue;
+    Lit lit;
+    if (j.look->lit) lit = light_at(*j.look->lit, j.walker->gradient(s, 0.5 * (from + to)), j.look->edge, j.look->per_scale);
+    depth += d;
+    glow +=
+        Vec3{o.color.x * lit.diffuse + lit.specular, o.color.y * lit.diffuse + lit.specular, o.color.z * lit.diffuse + lit.specular} * d;
+    if (d > densest) densest = d, id = j.look->id;
+  }
+  if (depth == 0 && simple) return;
+  if (cuts < 10 && (!simple || double(state.sum.transmittance) * std::min(depth * depth, 1.0) > double(tolerance))) {
+    const double middle = 0.5 * (from + to);
+    std::vector<Joint> half = joint;
+    for (Joint& j : half) j.stretch = part_of(j.stretch, from, middle);
+    composite_joint(half, state, cuts + 1);
+    if (state.sum.transmittance < stop) return;
+    for (size_t i = 0; i < half.size(); ++i) half[i].stretch = part_of(joint[i].stretch, middle, to);
+    return composite_joint(half, state, cuts + 1);
+  }
+  if (depth == 0) return;
+  glow = glow / depth;
+  const float alpha = 1 - exp_minus(float(depth));
+  state.sum.behind(float(glow.x) * alpha, float(glow.y) * alpha, float(glow.z) * alpha, alpha);
+  if (state.surface < 0 && state.sum.transmittance < 0.5f) state.surface = 0.5 * (from + to), state.surface_id = id;
+}
+
+}  // namespace sg::volume

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// The integral of emission and absorption along a ray, with a bound on its error instead of a step.
+//
+// On a stretch the field is a cubic, and between two knots of the medium tau and colour are straight lines over it. A stretch without a
+// knot is integrated as a whole (its optical depth exactly: the mean of the Bernstein coefficients). One with knots is cut into pieces
+// on which the cubic is straight enough, and these at the knots; there tau and colour are linear in t, and the optical depth is exact.
+#pragma once
+#include <vector>
+
+#include "render/volume/optics/light_model.h"
+#include "render/volume/optics/medium.h"
+#include "render/volume/optics/ray_state.h"
+#include "render/volume/optics/stretch.h"
+
+namespace sg::volume {
+
+/// Errors that an integral may make.
+struct Budget {
+  double tolerance = 1.0 / 512;  ///< of full scale, for a whole ray
+  double length = 1;             ///< world length of the longest ray through the volume
+  float stop_below = 0;          ///< a ray ends when less than this share of the light passes
+};
+
+/// exp(-x) for x >= 0 in float arithmetic alone, to 2e-7; the same bits everywhere.
+float exp_minus(float x);
+
+/// What a volume is made of and how it is lit.
+struct Look {
+  const Medium& medium;
+  Budget budget;
+  uint32_t id = 0;
+  const LitRay* lit = nullptr;  ///< null = not shaded
+  float per_scale = 1;          ///< 1 / change of the value over `edge` from which on there is a surface
+  float edge = 1;
+};
+
+/// Puts one stretch behind what the ray has gathered. `walker` is asked for gradients where the look is lit.
+void composite(const Look& look, const Stretch& stretch, RayField& walker, RayState& state);
+
+/// A piece of the ray on which the value goes straight from `a` to `b` (pre-integrated classification is this over a step).
+void composite_straight(const Look& look, double from, double to, float a, float b, const Lit* lit, RayState& state);
+/// One sample that stands for a length.
+void composite_sample(const Look& look, double from, double length, float value, const Lit* lit, RayState& state);
+/// Several media at once on stretches with common ends; cuts them until order does not matter within the budget.
+struct Joint {
+  const Look* look;
+  RayField* walker;
+  Stretch stretch;
+};
+void composite_joint(const std::vector<Joint>& joint, RayState& state, int cuts = 0);
+
+/// The part of a stretch between two places.
+Stretch part_of(const Stretch& stretch, double from, double to);
+
+}  // namespace sg::volume

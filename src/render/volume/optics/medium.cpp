@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/volume/optics/medium.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "color/cie.h"
+#include "render/volume/optics/transfer.h"
+
+namespace sg::volume {
+
+namespace {
+
+Vec3 linear_color(const ColorScale& scale, double v) {
+  const Vec4f c = scale.color(v);
+  return {srgb_to_linear(double(c.x)), srgb_to_linear(double(c.y)), srgb_to_linear(double(c.z))};
+}
+
+double difference(Vec3 a, Vec3 b) { return std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)}); }
+
+/// The curve of tau.
+class Curve {
+ public:
+  struct Sample {
+    double value, tau;
+  };
+  Curve(const ColorScale& scale, const OpacityCurve& curve, const Medium::Plan& plan) : scale_(scale), curve_(curve), plan_(plan) {}
+  Sample at(double v) const {
+    const double opacity = std::clamp(curve_.at(v), 0.0, 1.0) * double(scale_.color(v).w);
+    return {v, opacity < 1 ? std::min(minus_log_one_minus(opacity) / plan_.unit, plan_.most_tau) : plan_.most_tau};
+  }
+  /// The limit from one side.
+  Sample beside(double v, double towards) const { return {v, at(std::nextafter(v, towards)).tau}; }
+  /// The cubic through four places at equal distances.
+  struct Arc {
+    double lo, hi, at, slope, curve, twist;
+    Arc(Sample a, double first, double second, Sample b) : lo(a.value), hi(b.value), at(a.tau) {
+      const double w = hi - lo;
+      slope = (-11 * a.tau + 18 * first - 9 * second + 2 * b.tau) / (2 * w);
+      curve = 9 * (2 * a.tau - 5 * first + 4 * second - b.tau) / (2 * w * w);
+      twist = 9 * (-a.tau + 3 * first - 3 * second + b.tau) / (2 * w * w * w);
+    }
+    double operator()(double v) const {
+      const double d = v - lo;
+      return at + d * (slope + d * (curve + d * twist));
+    }
+  };
+  /// Appends arcs from a to b.
+  void refine(Sample a, Sample b, int depth, std::vector<Arc>& out) const {
+    const double middle = 0.5 * (a.value + b.value), third = (b.value - a.value) / 3;
+    if (!(middle > a.value && middle < b.value)) return out.push_back(even(a, b));
+    const Arc arc(a, at(a.value + third).tau, at(b.value - third).tau, b);
+    bool good = true;
+    for (double f : {0.5, 0.06, 0.17, 0.83, 0.94}) {
+      const Sample s = at(a.value + f * (b.value - a.value));
+      good = good && std::abs(arc(s.value) - s.tau) <= plan_.accuracy * std::max(s.tau, plan_.faint);
+    }
+    if (good || depth == 0 || out.size() > 4096) return out.push_back(arc);
+    refine(a, at(middle), depth - 1, out);
+    refine(at(middle), b, depth - 1, out);
+  }
+  static Arc even(Sample a, Sample b) { return {a, a.tau + (b.tau - a.tau) / 3, b.tau - (b.tau - a.tau) / 3, b}; }
+
+ private:
+  const ColorScale& scale_;
+  const OpacityCurve& curve_;
+  const Medium::Plan& plan_;
+};
+
+/// Values in [lo, hi] at which tau may bend or jump, or colour may jump.
+std::vector<double> bends(const ColorScale& scale, const OpacityCurve& curve, double lo, double hi) {
+  std::vector<double> v{lo, hi};
+  for (const Vec2& p : curve.points) v.push_back(p.x);
+  std::vector<double> jumps{scale.lo, scale.hi};
+  if (scale.kind == ScaleKind::log) jumps.push_back(0);
+  if (const size_t n = scale.map.colors.size(); n <= 512 && scale.labels.empty())
+    for (size_t i = 1; i + 1 < n; ++i) jumps.push_back(scale.value_at(double(i) / double(n - 1)));
+  for (double j : jumps) {
+    const Vec4f a = scale.color(std::nextafter(j, -HUGE_VAL)), b = scale.color(std::nextafter(j, HUGE_VAL));
+    if (a.w != b.w || std::abs(a.x - b.x) + std::abs(a.y - b.y) + std::abs(a.z - b.z) > 1e-3f) v.push_back(j);
+  }
+  for (double l : scale.labels)  // a label is a value with a little air around it
+    for (double side : {-1e-3, 1e-3}) v.push_back(l + side);
+  std::erase_if(v, [&](double x) { return !(x >= lo && x <= hi); });
+  std::sort(v.begin(), v.end());
+  v.erase(std::unique(v.begin(), v.end()), v.end());
+  return v;
+}
+
+}  // namespace
+
+Medium::Medium(const ColorScale& scale, const OpacityCurve& curve, const Plan& plan)
+    : kind_(scale.labels.empty() ? scale.kind : ScaleKind::linear), base_(plan.base) {
+  make_lines(scale, curve, plan);
+  make_colors(scale, plan);
+}
+
+void Medium::make_lines(const ColorScale& scale, const OpacityCurve& curve, const Plan& plan) {
+  const Curve tau(scale, curve, plan);
+  const double lo = std::min(plan.lo, plan.hi), hi = plan.hi, base = double(plan.base);
+  const std::vector<double> at = bends(scale, curve, lo, hi);
+  for (size_t i = 0; i + 1 < at.size(); ++i) {
+    Curve::Sample a = tau.beside(at[i], HUGE_VAL), b = tau.beside(at[i + 1], -HUGE_VAL);
+    // The little interval around a label has the look of its middle.
+    for (double l : scale.labels)
+      if (at[i] < l && l < at[i + 1]) a.tau = b.tau = tau.at(l).tau;
+    std::vector<Curve::Arc> arcs;
+    if (scale.labels.empty()) tau.refine(a, b, 12, arcs);
+    else arcs.push_back(Curve::even(a, b));
+    for (const Curve::Arc& arc : arcs) {
+      const float from = float(arc.lo - base), to = float(arc.hi - base);
+      if (to > from) lines_.push_back({from, to, from, float(arc.at), float(arc.slope), float(arc.curve), float(arc.twist)});
+    }
+  }
+  if (lines_.empty()) lines_.push_back({0, 0, 0, float(tau.at(lo).tau), 0, 0, 0});
+  bound();
+  top_ = lines_.back().hi, accuracy_ = float(plan.accuracy), faint_ = float(plan.faint);
+  // Beyond the data nothing is asked, but for rounding errors.
+  lines_.front().lo = -HUGE_VALF, lines_.back().hi = HUGE_VALF;
+  for (const Line& l : lines_) columns_.hi.push_back(l.hi);
+  slice();
+}
+
+double Medium::value_on_axis(double a) const {
+  if (kind_ == ScaleKind::linear) return a + double(base_);
+  const auto power = [](double axis) {
+    const double e = std::floor(axis);
+    return std::ldexp(1 + (axis - e), int(e));
+  };
+  if (kind_ == ScaleKind::log) return power(a);
+  return std::copysign((power(std::abs(a)) - 1) / double(per_threshold_), a);
+}
+
+void Medium::make_colors(const ColorScale& scale, const Plan& plan) {
+  // Where the colours change: the range of the scale, as far as there are data; and a bit beyond, for what lies below and above.
+  const double ends[2] = {std::min(scale.lo, scale.hi), std::max(scale.lo, scale.hi)}, air = (ends[1] - ends[0]) / 1000;
+  double lo = std::max(std::min(plan.lo, plan.hi), ends[0] - air), hi = std::min(plan.hi, ends[1] + air);
+  if (!scale.labels.empty()) lo = plan.lo, hi = plan.hi;
+  if (!(lo <= hi)) lo = hi = plan.hi < ends[0] ? plan.hi : plan.lo;  // all data on one side of the scale
+  if (kind_ == ScaleKind::log && !(lo > 0)) lo = hi > 0 ? std::min(hi, ends[0] > 0 ? ends[0] : 1e-30) : 1e-30, hi = std::max(lo, hi);
+  if (kind_ == ScaleKind::symlog) {
+    const double threshold = scale.linear_threshold > 0 ? scale.linear_threshold : 1e-3 * std::max(std::abs(scale.lo), std::abs(scale.hi));
+    per_threshold_ = threshold > 0 ? float(1 / threshold) : 1;
+  }
+  first_node_ = axis(float(lo - double(base_)));
+  const float last = axis(float(hi - double(base_)));
+  per_node_ = last > first_node_ ? float(nodes) / (last - first_node_) : 0;
+  const double per = per_node_ > 0 ? 1 / double(per_node_) : 0;
+  std::vector<Vec3> c(size_t(nodes) + 1);
+  colors_.resize(4 * c.size());
+  for (int i = 0; i <= nodes; ++i) {
+    double value = std::clamp(value_on_axis(double(first_node_) + i * per), lo, hi);
+    double best = HUGE_VAL;
+    for (double l : scale.labels)
+      if (std::abs(l - value) < std::abs(best - value)) best = l;
+    if (std::abs(best - value) <= std::max(0.5 * per, 1e-3)) value = best;
+    c[size_t(i)] = linear_color(scale, value);
+    for (size_t k = 0; k < 3; ++k) colors_[4 * size_t(i) + k] = uint16_t(std::clamp(c[size_t(i)][int(k)], 0.0, 1.0) * 65535 + 0.5);
+  }
+  // The widest change over which a straight line does, jumps (which are knots) left aside.
+  double steepest = 0;
+  const auto jump = [&](size_t i) { return difference(c[i], c[i + 1]) > 0.02; };
+  for (size_t i = 0; i < size_t(nodes); ++i)
+    if (!jump(i)) steepest = std::max(steepest, difference(c[i], c[i + 1]));
+  const auto straight = [&](size_t from, size_t to) {
+    for (size_t q = 1; q < 8; ++q) {
+      const double f = double(q) / 8;
+      const double bend = difference(c[from] + (c[to] - c[from]) * f, c[from + (to - from) * q / 8]);
+      if (bend > 2 * plan.accuracy && bend < 0.2) return false;
+    }
+    return true;
+  };
+  size_t width = size_t(nodes);
+  for (; width > 8; width /= 2) {
+    bool all = true;
+    for (size_t i = 0; i + width <= size_t(nodes) && all; i += width / 2) all = straight(i, i + width);
+    if (all) break;
+  }
+  color_width_ = per > 0 ? float(double(width) * per) : 1e30f, color_slope_ = float(steepest * double(per_node_));
+}
+
+void Medium::bound() {
+  const size_t n = lines_.size();
+  for (const Line& l : lines_) {
+    columns_.origin.push_back(l.origin), columns_.at.push_back(l.at), columns_.slope.push_back(l.slope);
+    columns_.curve.push_back(l.curve), columns_.twist.push_back(l.twist);
+    float most = 0, steepest = 0;
+    for (int i = 0; i <= 8; ++i) {
+      const float d = (l.hi - l.lo) * (float(i) / 8);
+      most = std::max(most, l(l.lo + d)), steepest = std::max(steepest, std::abs(l.slope + d * (2 * l.curve + d * 3 * l.twist)));
+    }
+    columns_.most_tau.push_back(most), columns_.most_slope.push_back(steepest);
+  }
+  for (std::vector<float>* table : {&columns_.most_tau, &columns_.most_slope})
+    for (size_t width = 2, row = n; width <= n; width *= 2, row += n) {
+      table->resize(row + n);
+      for (size_t i = 0; i + width <= n; ++i) (*table)[row + i] = std::max((*table)[row - n + i], (*table)[row - n + i + width / 2]);
+    }
+}
+
+std::vector<Medium::Straight> Medium::straight() const {
+  std::vector<Straight> out;
+  for (const Line& l : lines_) {
+    const float lo = l.origin, hi = std::min(l.hi, top_), width = hi - lo;
+    // A parabola leaves its chord by curve width^2 / 4; a cubic's curve is steepest at an end.
+    const float tau = std::max({l.at, l(hi), faint_}), bend = 0.25f * std::max(std::abs(l.curve), std::abs(l.curve + 3 * l.twist * width)) * width * width;
+    const float parts = std::max(std::sqrt(bend / (2 * accuracy_ * tau)), std::abs(axis(hi) - axis(lo)) / color_width_);
+    const int n = l.dark() ? 1 : std::clamp(int(std::ceil(parts)), 1, 1024);
+    for (int i = 0; i < n; ++i) {
+      const float a = lo + width * (float(i) / float(n)), b = i + 1 == n ? hi : lo + width * (float(i + 1) / float(n));
+      const float w = b - a;
+      if (!(w > 0) && !(n == 1 && lines_.size() == 1)) continue;
+      // Colours from just inside: at a knot they may jump.
+      const Vec3f ca = color(a + 1e-3f * w), cb = color(b - 1e-3f * w);
+      const float ta = l(a), tb = l(b), per = w > 0 ? 1 / w : 0;
+      out.push_back({a, b, {ta, ca}, {(tb - ta) * per, (cb - ca) * per}});
+    }
+  }
+  return out;
+}
+
+void Medium::slice() {
+  const size_t n = lines_.size();
+  slice_lo_ = n > 1 ? lines_.front().hi : 0;
+  const float top = n > 1 ? lines_.back().lo : 0;
+  per_slice_ = top > slice_lo_ ? float(slices) / (top - slice_lo_) : 0;
+  first_.resize(size_t(slices) + 2);  // one more: vectors load two at once
+  size_t line = 0;
+  for (int s = 0; s <= slices; ++s) {
+    // A line earlier than needed costs a step; one later would be wrong.
+    const float v = per_slice_ > 0 ? slice_lo_ + (float(s) - 0.01f) / per_slice_ : slice_lo_;
+    while (s > 0 && line + 1 < n && lines_[line].hi <= v) ++line;
+    first_[size_t(s)] = uint16_t(line);
+  }
+}
+
+float Medium::most(const std::vector<float>& table, float lo, float hi) const {
+  const size_t n = lines_.size(), a = size_t(line_of(lo)), b = std::max(a, size_t(line_of(hi)));
+  const size_t k = size_t(std::bit_width(b - a + 1) - 1);
+  return std::max(table[k * n + a], table[k * n + b + 1 - (size_t(1) << k)]);
+}
+
+}  // namespace sg::volume

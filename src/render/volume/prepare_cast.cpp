@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/volume/prepare_cast.h"
+
+#include <cmath>
+
+#include "base/error.h"
+#include "render/volume/cells/cell_source.h"
+#include "render/volume/lattice/lattice_ray.h"
+
+namespace sg::volume {
+
+namespace {
+
+bool needs_level(RayFunction f) {
+  return f == RayFunction::first_hit || f == RayFunction::distance || f == RayFunction::accumulate || f == RayFunction::isosurface;
+}
+
+bool clear_medium(const void* medium, float lo, float hi) { return static_cast<const Medium*>(medium)->clear(lo, hi); }
+bool below_level(const void* levels, float, float hi) { return hi < float(static_cast<const std::vector<double>*>(levels)->front()); }
+bool without_level(const void* levels, float lo, float hi) {
+  for (double l : *static_cast<const std::vector<double>*>(levels))
+    if (lo <= float(l) && float(l) <= hi) return false;
+  return true;
+}
+
+}  // namespace
+
+void check(const VolumeItem& item) {
+  if (!item.data) fail_usage("a volume item has no dataset", "volume");
+  if (item.data->as<SurfaceMesh>() || item.data->as<PointCloud>())
+    fail_usage(fmt::format("a {} has no inside to look through", item.data->kind()), "volume", "show its surface: --show surface");
+  if (!(item.sampling.step >= 0) || !std::isfinite(item.sampling.step))
+    fail_usage(fmt::format("the step {} is no length", item.sampling.step), "volume",
+               "give a length above 0, or 0 to sample by the tolerance");
+  if (!(item.sampling.tolerance > 0 && item.sampling.tolerance <= 1))
+    fail_usage(fmt::format("the tolerance {} is no share of full scale", item.sampling.tolerance), "volume",
+               "give a number above 0 and at most 1; 0.002 (1/512) is the default");
+  if (!(item.unit_distance >= 0) || !std::isfinite(item.unit_distance))
+    fail_usage(fmt::format("the unit distance {} is no length", item.unit_distance), "volume",
+               "give a length above 0, or 0 for 1/100 of the diagonal");
+  if (needs_level(item.mode) && item.levels.empty())
+    fail_usage("this ray function needs a value to look for", "volume", "name one with levels=");
+  for (double l : item.levels)
+    if (!std::isfinite(l)) fail_usage(fmt::format("the level {} is no number", l), "volume");
+}
+
+const Field& field_of(const VolumeItem& item) {
+  const FieldSet& fields = item.data->fields();
+  const Field* f = item.field.empty() ? fields.active() : nullptr;
+  if (!f && item.field.empty()) fail_usage("the dataset has no scalar field to look through", "volume", "name one with field=");
+  if (!f) f = &fields.require(item.field, item.association);
+  if (f->association == Association::whole)
+    fail_usage(fmt::format("field '{}' belongs to the whole dataset", f->name), "volume", "a volume needs a point or cell field");
+  if (item.component >= f->components())
+    fail_usage(fmt::format("field '{}' has {} components, not component {}", f->name, f->components(), item.component), "volume");
+  return *f;
+}
+
+CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<const Volume> lattice, const Knobs& knobs, Context& context) {
+  CastVolume v;
+  v.item = &item, v.id = id;
+  v.source = lattice ? lattice_source(std::move(lattice)) : cell_source(item, context);
+  RaySource& source = *v.source;
+  const double base = double(source.base);
+  const Range range = item.data->range(field_of(item), item.component);
+
+  const double diagonal = std::max(item.data->bounds().diagonal(), source.edge);
+  Medium::Plan plan;
+  plan.unit = item.unit_distance > 0 ? item.unit_distance : 0.01 * diagonal;
+  plan.lo = range.empty() ? item.color.lo : range.lo, plan.hi = range.empty() ? item.color.hi : range.hi, plan.base = source.base;
+  if (item.mode == RayFunction::sum || item.mode == RayFunction::distance || item.mode == RayFunction::accumulate) {
+    // These have values of their own, which need not be those of the field.
+    const double span = std::abs(item.color.hi - item.color.lo);
+    plan.lo = std::min(item.color.lo, item.color.hi) - span, plan.hi = std::max(item.color.lo, item.color.hi) + span;
+  }
+  plan.accuracy = 0.25 * item.sampling.tolerance, plan.faint = 0.5 / diagonal, plan.most_tau = 1000 / source.edge;
+  v.medium = std::make_unique<Medium>(item.color, item.opacity, plan);
+  v.budget = {item.sampling.tolerance, diagonal, knobs.stop_below > 0 ? float(0.2 * item.sampling.tolerance) : 0};
+  v.step = item.sampling.step;
+  if (v.step > 0 && diagonal / v.step > 1e7)
+    fail_usage(fmt::format("a step of {} takes {:.0f} samples through a volume of size {}", v.step, diagonal / v.step, diagonal), "volume",
+               "give a longer step");
+  v.per_scale = range.lo < range.hi ? float(1 / (0.002 * (range.hi - range.lo))) : 1;
+  v.levels = std::make_unique<std::vector<double>>();
+  for (double l : item.levels) v.levels->push_back(l - base);
+  const VolumeLight& light = item.light;
+  v.material = {float(light.ambient), float(light.diffuse), float(light.specular), float(light.power), item.shaded};
+  switch (item.mode) {
+    case RayFunction::composite: source.invisible = {clear_medium, v.medium.get()}; break;
+    case RayFunction::first_hit:
+    case RayFunction::accumulate: source.invisible = {below_level, v.levels.get()}; break;
+    case RayFunction::isosurface:
+      // Where values are constant around their samples, a surface may lie between two bricks.
+      if (item.color.labels.empty()) source.invisible = {without_level, v.levels.get()};
+      break;
+    default: break;
+  }
+  if (!knobs.skip_empty) source.invisible = {};
+  return v;
+}
+
+}  // namespace sg::volume

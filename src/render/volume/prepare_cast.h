@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// From a volume item to what rays need: checks, its source by the kind of mesh, its medium.
+#pragma once
+#include "base/context.h"
+#include "render/volume/lattice/lattice_volume.h"
+#include "render/volume/optics/cast.h"
+
+namespace sg::volume {
+
+/// The field that an item shows. Throws Error(usage) for what is no scalar field of points or cells.
+const Field& field_of(const VolumeItem& item);
+/// Throws Error(usage) for lengths, tolerances and levels that are none.
+void check(const VolumeItem& item);
+
+/// `lattice` is the prepared volume of a uniform or rectilinear grid, else null and the mesh is read by cells.
+CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<const Volume> lattice, const Knobs& knobs, Context& context);
+
+}  // namespace sg::volume

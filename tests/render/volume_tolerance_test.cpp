@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+// The default integrator against brute force: the midpoint rule at a hundredth of a cell with the curves themselves, in double.
+#include "color/cie.h"
+#include "volume_support.h"
+
+using namespace sg;
+using namespace sg::test;
+
+namespace {
+
+/// Samples of a grid for brute force: trilinear, clamped.
+struct Lattice {
+  std::array<size_t, 3> n;
+  std::vector<double> x[3];  // per axis, ascending
+  Vec3 origin{0, 0, 0};
+  Mat3 turn;  // world = origin + turn * (x, y, z)
+  std::vector<double> v;
+
+  double at(const Vec3& p, Vec3* cell_edges = nullptr) const {
+    size_t c[3];
+    double f[3];
+    for (int a = 0; a < 3; ++a) {
+      const auto& g = x[a];
+      const double q = std::clamp(p[a], g.front(), g.back());
+      c[a] = std::min(size_t(std::upper_bound(g.begin(), g.end(), q) - g.begin()), g.size() - 1) - 1;
+      f[a] = (q - g[c[a]]) / (g[c[a] + 1] - g[c[a]]);
+      if (cell_edges) (*cell_edges)[a] = g[c[a] + 1] - g[c[a]];
+    }
+    double sum = 0;
+    for (int k = 0; k < 8; ++k) {
+      const size_t at[3] = {c[0] + (k & 1), c[1] + (k >> 1 & 1), c[2] + (k >> 2)};
+      sum += (k & 1 ? f[0] : 1 - f[0]) * (k & 2 ? f[1] : 1 - f[1]) * (k & 4 ? f[2] : 1 - f[2]) * v[at[0] + n[0] * (at[1] + n[1] * at[2])];
+    }
+    return sum;
+  }
+  Vec3 gradient(const Vec3& p) const {
+    Vec3 edges, g;
+    at(p, &edges);
+    for (int a = 0; a < 3; ++a) {
+      Vec3 lo = p, hi = p;
+      const double here = std::clamp(p[a], x[a].front(), x[a].back());
+      lo[a] = std::max(here - edges[a], x[a].front()), hi[a] = std::min(here + edges[a], x[a].back());
+      g[a] = (at(hi) - at(lo)) / (hi[a] - lo[a]);
+    }
+    return turn * g;
+  }
+};
+
+struct Case {
+  std::string name;
+  Lattice lattice;
+  DatasetPtr data;
+  ColorScale color;
+  OpacityCurve opacity;
+  double unit = 0.1;
+  bool shaded = false;
+  int per_cell = 100;  // steps of the reference; more where the medium is thinner than those
+};
+
+Lattice lattice_of(size_t n, const std::function<double(Vec3)>& f, bool uneven = false) {
+  Lattice l;
+  l.n = {n, n, n};
+  for (int a = 0; a < 3; ++a)
+    for (size_t i = 0; i < n; ++i) {
+      double t = double(i) / double(n - 1);
+      if (uneven) t = a == 0 ? t * t * 0.7 + 0.3 * t : a == 1 ? t + 0.1 * std::sin(6 * t) * (1 - t) : t;
+      l.x[a].push_back(2 * t - 1);
+    }
+  for (size_t k = 0; k < n; ++k)
+    for (size_t j = 0; j < n; ++j)
+      for (size_t i = 0; i < n; ++i) l.v.push_back(double(float(f({l.x[0][i], l.x[1][j], l.x[2][k]}))));
+  return l;
+}
+
+DatasetPtr dataset_of(const Lattice& l, bool uneven, ElementType type = ElementType::f32) {
+  FieldSet fields;
+  fields.add({"f", Association::point, Array::from_vector(l.v).converted(type), "", Role::scalars});
+  if (uneven) {
+    RectilinearGrid g;
+    g.x = Array::from_vector(l.x[0]), g.y = Array::from_vector(l.x[1]), g.z = Array::from_vector(l.x[2]);
+    return make_dataset(g, fields);
+  }
+  UniformGrid g;
+  g.dims = l.n;
+  const double h = 2.0 / double(l.n[0] - 1);
+  g.spacing = {h, h, h};
+  g.origin = l.origin + l.turn * Vec3{-1, -1, -1};
+  g.direction = l.turn;
+  return make_dataset(g, fields);
+}
+
+double bumpy(Vec3 p) { return std::sin(3 * p.x + 1) * std::cos(2.5 * p.y) + 0.7 * std::sin(4 * p.z + p.x * p.y); }
+
+ColorScale colored(double lo, double hi, const char* map = "sight") {
+  ColorScale s;
+  s.map = find_colormap(map);
+  s.lo = lo, s.hi = hi;
+  return s;
+}
+OpacityCurve curve(std::vector<Vec2> points) {
+  OpacityCurve c;
+  c.points = std::move(points);
+  return c;
+}
+
+Vec4 brute_force(const Case& c, const Projection& view, int px, int py, const Scene& scene) {
+  const Projection::Ray ray = view.ray(px + 0.5, py + 0.5);
+  const Mat3 back = transpose(c.lattice.turn);
+  const Vec3 o = back * (ray.origin - c.lattice.origin), d = back * ray.direction;
+  double from = view.near_plane * ray.per_depth, to = 1e9;
+  for (int a = 0; a < 3; ++a) {
+    const double t0 = (c.lattice.x[a].front() - o[a]) / d[a], t1 = (c.lattice.x[a].back() - o[a]) / d[a];
+    from = std::max(from, std::min(t0, t1)), to = std::min(to, std::max(t0, t1));
+  }
+  if (!(from < to)) return {0, 0, 0, 1};
+  const auto [lo, hi] = std::minmax_element(c.lattice.v.begin(), c.lattice.v.end());
+  const double h0 = 2 / double(c.lattice.n[0] - 1) / c.per_cell, edge = 2 / double(c.lattice.n[0] - 1);
+  const int n = int((to - from) / h0) + 1;
+  const double h = (to - from) / n;
+  Vec4 out{0, 0, 0, 1};
+  const std::vector<Light> lights = lights_of(scene);
+  const VolumeLight terms;
+  for (int i = 0; i < n && out.w > 1e-7; ++i) {
+    const Vec3 p = o + d * (from + (i + 0.5) * h);
+    const double value = c.lattice.at(p);
+    const double opacity = c.opacity.at(value);
+    if (opacity <= 0) continue;
+    const double alpha = 1 - std::pow(1 - std::min(opacity, 1 - 1e-12), h / c.unit);
+    const Vec4f s = c.color.color(value);
+    Vec3 color{srgb_to_linear(double(s.x)), srgb_to_linear(double(s.y)), srgb_to_linear(double(s.z))};
+    if (c.shaded) {
+      const Vec3 g = c.lattice.gradient(p);
+      const double size = length(g), surface = std::min(1.0, size * edge / (0.002 * (*hi - *lo)));
+      if (size > 0) {
+        const Vec3 normal = g * ((dot(g, ray.direction) > 0 ? -1 : 1) / size);
+        double diffuse = 0, specular = 0;
+        for (const Light& l : lights) {
+          const Vec3 towards = normalize(
+              l.follows_camera ? view.right * l.direction.x + view.up * l.direction.y - view.forward * l.direction.z : l.direction);
+          const double e = dot(normal, towards);
+          if (e <= 0) continue;
+          diffuse += double(l.intensity) * e;
+          specular += double(l.intensity) * std::pow(std::max(0.0, dot(normal, normalize(towards - ray.direction))), terms.power);
+        }
+        color = color * (1 + surface * (terms.ambient + terms.diffuse * diffuse - 1));
+        const double flash = surface * terms.specular * specular;
+        color += Vec3{flash, flash, flash};
+      }
+    }
+    for (int k = 0; k < 3; ++k) out[k] += out.w * alpha * color[k];
+    out.w *= 1 - alpha;
+  }
+  return out;
+}
+
+std::vector<Case> cases() {
+  std::vector<Case> all;
+  const auto noise = [seed = uint64_t(0)](Vec3) mutable { return random_unit(5, seed++); };
+  const auto add = [&](std::string name, Lattice l, ColorScale color, OpacityCurve opacity, double unit, bool shaded = false,
+                       bool uneven = false, ElementType type = ElementType::f32, int per_cell = 100) {
+    Case c{std::move(name), std::move(l), nullptr, std::move(color), std::move(opacity), unit, shaded, per_cell};
+    if (type == ElementType::u8)
+      for (double& v : c.lattice.v) v = double(uint8_t(v));
+    c.data = dataset_of(c.lattice, uneven, type);
+    all.push_back(std::move(c));
+  };
+  const OpacityCurve ramp = curve({{-1.7, 0}, {-0.2, 0}, {1.7, 0.8}});
+  const OpacityCurve spikes = curve({{-2, 0}, {-0.505, 0}, {-0.5, 0.95}, {-0.495, 0}, {0.3, 0}, {0.3001, 0.99}, {0.3002, 0}, {2, 0}});
+  add("smooth ramp", lattice_of(24, bumpy), colored(-1.7, 1.7), ramp, 0.1);
+  add("thin spikes", lattice_of(24, bumpy), colored(-1.7, 1.7, "coolwarm"), spikes, 0.005, false, false, ElementType::f32, 40000);
+  add("noise", lattice_of(20, noise), colored(0, 1), curve({{0, 0}, {0.3, 0}, {0.6, 0.5}, {0.8, 0}, {1, 0.9}}), 0.1);
+  add("noise and spikes", lattice_of(20, noise), colored(0, 1),
+      curve({{0, 0}, {0.49, 0}, {0.5, 0.9}, {0.51, 0}, {0.8, 0}, {0.801, 0.9}, {0.802, 0}}), 0.01, false, false, ElementType::f32, 4000);
+  add("steps of opacity", lattice_of(24, bumpy), colored(-1.7, 1.7),
+      curve({{-2, 0}, {0.1, 0}, {0.1, 0.3}, {0.6, 0.3}, {0.6, 0}, {1.2, 0}, {1.2, 0.9}, {2, 0.9}}), 0.05, false, false, ElementType::f32,
+      4000);
+  add("solid", lattice_of(24, bumpy), colored(-1.7, 1.7), curve({{-2, 0}, {0.2, 0}, {0.9, 0.999}, {2, 0.999}}), 0.02);
+  add("fog", lattice_of(24, bumpy), colored(-1.7, 1.7), curve({{-2, 0.01}, {2, 0.05}}), 0.1);
+  add("bytes", lattice_of(24, [](Vec3 p) { return 128 + 70 * bumpy(p); }), colored(0, 255, "jet"),
+      curve({{0, 0}, {90, 0}, {140, 0.4}, {180, 0}, {250, 0.9}}), 0.05, false, false, ElementType::u8);
+  Lattice turned = lattice_of(20, bumpy);
+  const double a = 0.5;
+  turned.turn.m[0][0] = std::cos(a), turned.turn.m[0][1] = -std::sin(a), turned.turn.m[1][0] = std::sin(a),
+  turned.turn.m[1][1] = std::cos(a);
+  turned.origin = {0.1, -0.2, 0.05};
+  add("turned", turned, colored(-1.7, 1.7), ramp, 0.1);
+  add("uneven axes", lattice_of(20, bumpy, true), colored(-1.7, 1.7), ramp, 0.1, false, true);
+  ColorScale logarithmic = colored(0.01, 10);
+  logarithmic.kind = ScaleKind::log;
+  add("logarithmic colours", lattice_of(24, [](Vec3 p) { return std::exp(2 * bumpy(p)); }), logarithmic,
+      curve({{0, 0}, {0.1, 0.02}, {1, 0.1}, {5, 0.4}}), 0.1);
+  add("lit", lattice_of(24, bumpy), colored(-1.7, 1.7), ramp, 0.1, true);
+  add("lit and solid", lattice_of(24, bumpy), colored(-1.7, 1.7), curve({{-2, 0}, {0.2, 0}, {0.6, 0.95}, {2, 0.95}}), 0.05, true);
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("volume: the error stays within the tolerance of a hundredth-step reference on every scene") {
+  const Projection outside = perspective_view(20, 20, 24, {1.9, 1.4, 2.6}, {0, 0, 0});
+  const Projection inside = perspective_view(10, 10, 6, {0.1, 0.05, 0.2}, {0.7, 0.3, -1});
+  for (const Case& c : cases())
+    for (const Projection* view : {&outside, &inside}) {
+      INFO(c.name, view == &inside ? ", from inside" : "");
+      VolumeItem v = item(c.data, c.color, c.opacity);
+      v.unit_distance = c.unit, v.shaded = c.shaded;
+      const Scene scene = scene_of({v});
+      const Frame f = draw(scene, *view);
+      double worst = 0;
+      const int every = c.per_cell > 10000 ? 10 : c.per_cell > 100 ? 5 : 1;
+      for (int y = every / 2; y < view->height; y += every)
+        for (int x = every / 2; x < view->width; x += every) {
+          const Vec4 truth = brute_force(c, *view, x, y, scene);
+          const float* p = &f.rgba[4 * (size_t(y) * size_t(view->width) + size_t(x))];
+          for (int k = 0; k < 3; ++k) worst = std::max(worst, std::abs(truth[k] - double(p[k])));
+          worst = std::max(worst, std::abs(1 - truth.w - double(p[3])));
+        }
+      MESSAGE(c.name << " " << worst * 512);
+      CHECK(worst < 1.0 / 512);
+    }
+}
