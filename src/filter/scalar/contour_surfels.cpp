@@ -17,7 +17,7 @@ std::optional<SurfelPlaces> surfel_places(const Dataset& input, const Array& sam
       if ((view.step[a][c] != 0) != (a == c)) return {};
   const size_t nx = view.dims[0], ny = view.dims[1], nz = view.dims[2], rows = ny * nz, words = (nx + 63) / 64;
   const size_t grain = std::max<size_t>(1, 512 / words);
-  if ((grain + 3 * ny) * nx >= size_t(INT32_MAX)) return {};
+  if ((grain + 4 * ny) * nx >= size_t(INT32_MAX)) return {};
   Plane<uint64_t> inside(rows * words);
   std::vector<RowState> state(rows);
   const RowsOut out{inside.data(), state.data()};
@@ -47,6 +47,7 @@ std::optional<SurfelPlaces> surfel_places(const Dataset& input, const Array& sam
                         {view.step[0].x, view.step[1].y, view.step[2].z},
                         nx,
                         ny,
+                        nz,
                         words,
                         inside.data(),
                         place.data(),

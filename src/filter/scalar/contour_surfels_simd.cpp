@@ -78,7 +78,7 @@ class Surfels {
       const size_t before = count_;
       count_ = list_bits(active, uint32_t((row - first_row_) * r_.nx + 64 * w), reinterpret_cast<uint32_t*>(from_), count_);
       for (size_t n = before; n < count_; ++n) {
-        const T* p = f_ + from_[n] + r_.nx * r_.ny;  // the plane behind is what is not in the cache yet
+        const T* p = f_ + from_[n] + r_.nx * r_.ny * 2;  // that plane is what is not in the cache yet
         __builtin_prefetch(p), __builtin_prefetch(p + r_.nx);
       }
       if (count_ >= room) flush();
@@ -124,7 +124,9 @@ class Surfels {
       v = within_cell(hn::Add(v, hn::Mul(at.y, move)));
       w = within_cell(hn::Add(w, hn::Mul(at.z, move)));
     }
-    const At at = trilinear(c, u, v, w);
+    HWY_ALIGN int32_t index[3][hn::MaxLanes(DI())];
+    find_cells(n, index);
+    const At at = smooth(c, from, index, u, v, w);
     // Against the gradient in space. Scaled by the largest part, so that no square is lost.
     F gx = hn::Mul(at.x, hn::Set(d, float(-1 / r_.step.x))), gy = hn::Mul(at.y, hn::Set(d, float(-1 / r_.step.y))),
       gz = hn::Mul(at.z, hn::Set(d, float(-1 / r_.step.z)));
@@ -140,18 +142,60 @@ class Surfels {
     for (size_t l = 0; l < hn::Lanes(d); l += hn::Lanes(DD())) {
       const DD dd;
       const DH dh;
-      const auto p = hn::PromoteTo(dd, hn::LoadU(DHI(), from_ + n + l));
-      const auto half64 = hn::Set(dd, 0.5), nx = hn::Set(dd, double(r_.nx)), ny = hn::Set(dd, double(r_.ny));
-      const auto row = hn::Floor(hn::Div(hn::Add(p, half64), nx)), i = hn::Sub(p, hn::Mul(row, nx));
-      const auto r = hn::Add(row, hn::Set(dd, double(first_row_)));
-      const auto k = hn::Floor(hn::Div(hn::Add(r, half64), ny)), j = hn::Sub(r, hn::Mul(k, ny));
-      auto place = [&](double first, double step, auto index, int axis) {
-        const auto at_cell = hn::Add(index, hn::PromoteTo(dd, hn::LoadU(dh, local[axis] + l)));
+      auto place = [&](double first, double step, int axis) {
+        const auto cell = hn::PromoteTo(dd, hn::LoadU(DHI(), index[axis] + l));
+        const auto at_cell = hn::Add(cell, hn::PromoteTo(dd, hn::LoadU(dh, local[axis] + l)));
         return hn::DemoteTo(dh, hn::Add(hn::Set(dd, first), hn::Mul(hn::Set(dd, step), at_cell)));
       };
-      hn::StoreInterleaved3(place(r_.first.x, r_.step.x, i, 0), place(r_.first.y, r_.step.y, j, 1), place(r_.first.z, r_.step.z, k, 2), dh,
+      hn::StoreInterleaved3(place(r_.first.x, r_.step.x, 0), place(r_.first.y, r_.step.y, 1), place(r_.first.z, r_.step.z, 2), dh,
                             xyz + 3 * l);
     }
+  }
+
+  // Columns, rows and slices of the cells n and so on: exact, since the quotients are half a sample away from whole numbers.
+  HWY_INLINE void find_cells(size_t n, int32_t (*HWY_RESTRICT index)[hn::MaxLanes(DI())]) {
+    const DD dd;
+    const DHI di;
+    const auto half = hn::Set(dd, 0.5), nx = hn::Set(dd, double(r_.nx)), ny = hn::Set(dd, double(r_.ny));
+    for (size_t l = 0; l < hn::Lanes(DF()); l += hn::Lanes(dd)) {
+      const auto p = hn::PromoteTo(dd, hn::LoadU(di, from_ + n + l));
+      const auto row = hn::Floor(hn::Div(hn::Add(p, half), nx)), r = hn::Add(row, hn::Set(dd, double(first_row_)));
+      const auto k = hn::Floor(hn::Div(hn::Add(r, half), ny));
+      hn::StoreU(hn::DemoteTo(di, hn::Sub(p, hn::Mul(row, nx))), di, index[0] + l);
+      hn::StoreU(hn::DemoteTo(di, hn::Sub(r, hn::Mul(k, ny))), di, index[1] + l);
+      hn::StoreU(hn::DemoteTo(di, k), di, index[2] + l);
+    }
+  }
+
+  // Slopes from central differences at the corners, as contours have them, trilinear between those; cells at the border keep their own.
+  HWY_INLINE At smooth(const Corners& c, I from, const int32_t (*HWY_RESTRICT index)[hn::MaxLanes(DI())], F u, F v, F w) {
+    const DF d;
+    const DI di;
+    At at = trilinear(c, u, v, w);
+    const F at_in_cell[3] = {u, v, w};
+    F* slope[3] = {&at.x, &at.y, &at.z};
+    const size_t count[3] = {r_.nx, r_.ny, r_.nz};
+    const ptrdiff_t stride[3] = {1, ptrdiff_t(r_.nx), ptrdiff_t(r_.nx * r_.ny)};
+    for (size_t axis = 0; axis < 3; ++axis) {
+      const I here = hn::Load(di, index[axis]);
+      const auto inner = hn::And(hn::Gt(here, hn::Zero(di)), hn::Gt(hn::Set(di, int32_t(count[axis]) - 2), here));
+      const I one = hn::IfThenElseZero(inner, hn::Set(di, int32_t(stride[axis])));
+      const I before = hn::Sub(from, one), behind = hn::Add(from, one);
+      const size_t b1 = axis == 0 ? 2 : 1, b2 = axis == 2 ? 2 : 4, along = size_t(1) << axis;  // bits of corners across the axis, and along
+      F part[4];
+      for (size_t k = 0; k < 4; ++k) {
+        const size_t low = (k & 1 ? b1 : 0) + (k & 2 ? b2 : 0), high = low + along;
+        const auto offset = [&](size_t corner) {
+          return ptrdiff_t(corner & 1) + ptrdiff_t(corner >> 1 & 1) * stride[1] + ptrdiff_t(corner >> 2) * stride[2];
+        };
+        const F first = samples_at(f_ + offset(low), before, r_.value), last = samples_at(f_ + offset(high), behind, r_.value);
+        part[k] = hn::Sub(mix(c.f[high], last, at_in_cell[axis]), mix(first, c.f[low], at_in_cell[axis]));
+      }
+      const F s = at_in_cell[axis == 0 ? 1 : 0], t = at_in_cell[axis == 2 ? 1 : 2];
+      const F central = hn::Mul(mix(mix(part[0], part[1], s), mix(part[2], part[3], s), t), hn::Set(d, 0.5f));
+      *slope[axis] = hn::IfThenElse(hn::MaskFromVec(hn::BitCast(d, hn::VecFromMask(di, inner))), central, *slope[axis]);
+    }
+    return at;
   }
 
   const SurfelRows& r_;
