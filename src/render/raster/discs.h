@@ -19,6 +19,10 @@ struct DiscJob {
 void draw_discs(const DiscJob& job, size_t begin, size_t end);
 void draw_discs_one_by_one(const DiscJob& job, size_t begin, size_t end);  ///< the same in plain C++
 
+/// Whether the discs at the end of the list lie nearer to the viewer than those at its beginning, by a few of both: then drawing from the
+/// end hides more of the others before they are looked at.
+bool last_is_nearer(const DiscJob& job, size_t count);
+
 /// The minimum does not depend on the order in which threads come.
 inline void keep_nearer(uint64_t* slot, uint64_t key) {
   std::atomic_ref<uint64_t> a(*slot);

@@ -27,11 +27,11 @@ HWY_INLINE F along(const F* a, const float* b) { return a[0] * set(b[0]) + a[1] 
 
 // A vector of discs on the picture.
 struct Lanes {
-  F x, y, z, n[3];  // the eye's coordinates and the normal in them
-  F radius2, plane;
-  M tiny;            // shows in the pixel at its centre, as deep as that
-  bool within;       // all lie between the near and the far plane
-  I x0, x1, y0, y1;  // pixels; empty when there is nothing to draw
+  F x, y, z, n[3];            // the eye's coordinates and the normal in them
+  F radius2, plane, nearest;  // no point of the disc is less deep than that
+  M tiny;                     // shows in the pixel at its centre, as deep as that
+  bool within;                // all lie between the near and the far plane
+  I x0, x1, y0, y1;           // pixels; empty when there is nothing to draw
 };
 
 HWY_INLINE Lanes place(const DiscJob& job, I point, I valid) {
@@ -81,6 +81,7 @@ HWY_INLINE Lanes place(const DiscJob& job, I point, I valid) {
   l.x0 = pixel(x0, 1), l.x1 = pixel(x1, 0), l.y0 = pixel(y0, 1), l.y1 = pixel(y1, 0);
   l.plane = l.n[0] * l.x + l.n[1] * l.y + l.n[2] * l.z;
   l.radius2 = r * r;
+  l.nearest = l.z - r * set(1.001f);
   return l;
 }
 
@@ -106,6 +107,11 @@ HWY_INLINE void draw_lanes(const DiscJob& job, const Lanes& l, uint32_t primitiv
     for (int32_t column = 0; column <= columns; ++column) {
       const I x = hn::Add(l.x0, hn::Set(di, column));
       const auto in_box = hn::And(in_row, hn::Not(hn::Gt(x, l.x1)));
+      // What is there already. Another thread may bring something nearer meanwhile, never something further.
+      const I at = hn::IfThenElseZero(in_box, hn::Add(hn::Mul(y, hn::Set(di, v.width)), x));
+      const F there = hn::BitCast(d, hn::GatherIndex(di, depths + 1, hn::Add(at, at)));
+      M hit = hn::And(hn::Le(l.nearest, there), hn::MaskFromVec(hn::BitCast(d, hn::VecFromMask(di, in_box))));
+      if (hn::AllFalse(d, hit)) continue;
       const F dx = (hn::ConvertTo(d, x) + set(0.5f) - set(v.center_x)) * inverse;
       F qx, qy, z;
       if constexpr (parallel) {
@@ -115,14 +121,9 @@ HWY_INLINE void draw_lanes(const DiscJob& job, const Lanes& l, uint32_t primitiv
         qx = dx * z, qy = dy * z;
       }
       const F ox = qx - l.x, oy = qy - l.y, oz = z - l.z;
-      M hit = hn::Or(hn::Le(ox * ox + oy * oy + oz * oz, l.radius2), l.tiny);
+      hit = hn::And(hit, hn::Or(hn::Le(ox * ox + oy * oy + oz * oz, l.radius2), l.tiny));
       z = hn::IfThenElse(l.tiny, l.z, z);
       if (!l.within) hit = hn::And(hit, hn::And(hn::Gt(z, set(v.near_plane)), hn::Lt(z, set(v.far_plane))));
-      hit = hn::And(hit, hn::MaskFromVec(hn::BitCast(d, hn::VecFromMask(di, in_box))));
-      if (hn::AllFalse(d, hit)) continue;
-      // Behind what is there already. Another thread may bring something nearer meanwhile, never something further.
-      const I at = hn::IfThenElseZero(in_box, hn::Add(hn::Mul(y, hn::Set(di, v.width)), x));
-      const F there = hn::BitCast(d, hn::GatherIndex(di, depths + 1, hn::Add(at, at)));
       hit = hn::And(hit, hn::Le(z, there));
       if (hn::AllFalse(d, hit)) continue;
       HWY_ALIGN float depth[hn::MaxLanes(DF())];
@@ -223,6 +224,13 @@ namespace sg::raster {
 HWY_EXPORT(disc_range);
 HWY_EXPORT(disc_light);
 void light_discs(const DiscLight& job, ShadeBatch& batch) { HWY_DYNAMIC_DISPATCH(disc_light)(job, batch); }
+bool last_is_nearer(const DiscJob& job, size_t count) {
+  if (count == 0) return false;
+  const auto depth = [&](size_t i) { return to_eye(job.view, job.xyz + 3 * size_t(job.points[i])).z; };
+  float first = 0, last = 0;
+  for (size_t k = 0; k < 8; ++k) first += depth(count * k / 32), last += depth(count - 1 - count * k / 32);
+  return last < first;
+}
 void draw_discs(const DiscJob& job, size_t begin, size_t end) {
   if (int64_t(job.view.width) * job.view.height >= int64_t(1) << 30) return draw_discs_one_by_one(job, begin, end);
   HWY_DYNAMIC_DISPATCH(disc_range)(job, begin, end);
