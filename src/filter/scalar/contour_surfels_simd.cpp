@@ -39,6 +39,27 @@ HWY_INLINE F samples_at(const T* HWY_RESTRICT base, I offset, double value) {
   }
 }
 
+// The samples at the offsets and those behind them along x.
+struct Two {
+  F a, b;
+};
+template <class T>
+HWY_INLINE Two pairs_at(const T* HWY_RESTRICT base, I offset, double value) {
+#if HWY_TARGET <= HWY_AVX2 && HWY_ARCH_X86
+  if constexpr (std::is_same_v<T, float>) {  // one load brings both
+    const DF d;
+    const hn::ScalableTag<int64_t> d64;
+    const hn::Half<DI> half;
+    const auto* wide = reinterpret_cast<const int64_t*>(base);
+    const auto lo = hn::BitCast(d, hn::GatherOffset(d64, wide, hn::ShiftLeft<2>(hn::PromoteTo(d64, hn::LowerHalf(half, offset)))));
+    const auto hi = hn::BitCast(d, hn::GatherOffset(d64, wide, hn::ShiftLeft<2>(hn::PromoteTo(d64, hn::UpperHalf(half, offset)))));
+    const F v = hn::Set(d, float(value));
+    return {hn::Sub(hn::ConcatEven(d, hi, lo), v), hn::Sub(hn::ConcatOdd(d, hi, lo), v)};
+  }
+#endif
+  return {samples_at(base, offset, value), samples_at(base + 1, offset, value)};
+}
+
 struct Corners {
   F f[8];
 };
@@ -113,7 +134,10 @@ class Surfels {
     const DF d;
     const I from = hn::LoadU(DI(), from_ + n);
     Corners c;
-    for (size_t k = 0; k < 8; ++k) c.f[k] = samples_at(f_ + (k & 1) + (k >> 1 & 1) * r_.nx + (k >> 2) * r_.nx * r_.ny, from, r_.value);
+    for (size_t k = 0; k < 4; ++k) {
+      const Two two = pairs_at(f_ + (k & 1) * r_.nx + (k >> 1) * r_.nx * r_.ny, from, r_.value);
+      c.f[2 * k] = two.a, c.f[2 * k + 1] = two.b;
+    }
     const F half = hn::Set(d, 0.5f), one = hn::Set(d, 1.0f);
     F u = half, v = half, w = half;
     for (int step = 0; step < 2; ++step) {
@@ -171,31 +195,48 @@ class Surfels {
   HWY_INLINE At smooth(const Corners& c, I from, const int32_t (*HWY_RESTRICT index)[hn::MaxLanes(DI())], F u, F v, F w) {
     const DF d;
     const DI di;
-    At at = trilinear(c, u, v, w);
-    const F at_in_cell[3] = {u, v, w};
-    F* slope[3] = {&at.x, &at.y, &at.z};
-    const size_t count[3] = {r_.nx, r_.ny, r_.nz};
-    const ptrdiff_t stride[3] = {1, ptrdiff_t(r_.nx), ptrdiff_t(r_.nx * r_.ny)};
-    for (size_t axis = 0; axis < 3; ++axis) {
+    const At own = trilinear(c, u, v, w);
+    const size_t nx = r_.nx, nxy = r_.nx * r_.ny;
+    const F half = hn::Set(d, 0.5f);
+    // The change over two cells of a line of samples: a, low, high, b.
+    auto change = [](F a, F low, F high, F b, F t) { return hn::Sub(mix(high, b, t), mix(a, low, t)); };
+    auto choose = [&](size_t axis, size_t count, auto&& slope, F otherwise) {
       const I here = hn::Load(di, index[axis]);
-      const auto inner = hn::And(hn::Gt(here, hn::Zero(di)), hn::Gt(hn::Set(di, int32_t(count[axis]) - 2), here));
-      const I one = hn::IfThenElseZero(inner, hn::Set(di, int32_t(stride[axis])));
-      const I before = hn::Sub(from, one), behind = hn::Add(from, one);
-      const size_t b1 = axis == 0 ? 2 : 1, b2 = axis == 2 ? 2 : 4, along = size_t(1) << axis;  // bits of corners across the axis, and along
-      F part[4];
-      for (size_t k = 0; k < 4; ++k) {
-        const size_t low = (k & 1 ? b1 : 0) + (k & 2 ? b2 : 0), high = low + along;
-        const auto offset = [&](size_t corner) {
-          return ptrdiff_t(corner & 1) + ptrdiff_t(corner >> 1 & 1) * stride[1] + ptrdiff_t(corner >> 2) * stride[2];
-        };
-        const F first = samples_at(f_ + offset(low), before, r_.value), last = samples_at(f_ + offset(high), behind, r_.value);
-        part[k] = hn::Sub(mix(c.f[high], last, at_in_cell[axis]), mix(first, c.f[low], at_in_cell[axis]));
-      }
-      const F s = at_in_cell[axis == 0 ? 1 : 0], t = at_in_cell[axis == 2 ? 1 : 2];
-      const F central = hn::Mul(mix(mix(part[0], part[1], s), mix(part[2], part[3], s), t), hn::Set(d, 0.5f));
-      *slope[axis] = hn::IfThenElse(hn::MaskFromVec(hn::BitCast(d, hn::VecFromMask(di, inner))), central, *slope[axis]);
-    }
-    return at;
+      const auto inner = hn::And(hn::Gt(here, hn::Zero(di)), hn::Gt(hn::Set(di, int32_t(count) - 2), here));
+      const I one = hn::IfThenElseZero(inner, hn::Set(di, int32_t(axis == 0 ? 1 : axis == 1 ? nx : nxy)));
+      const F central = hn::Mul(slope(hn::Sub(from, one), hn::Add(from, one)), half);
+      return hn::IfThenElse(hn::MaskFromVec(hn::BitCast(d, hn::VecFromMask(di, inner))), central, otherwise);
+    };
+    const F x = choose(
+        0, r_.nx,
+        [&](I before, I behind) {
+          auto line = [&](size_t at, size_t k) {
+            return change(samples_at(f_ + at, before, r_.value), c.f[k], c.f[k + 1], samples_at(f_ + at + 1, behind, r_.value), u);
+          };
+          return mix(mix(line(0, 0), line(nx, 2), v), mix(line(nxy, 4), line(nx + nxy, 6), v), w);
+        },
+        own.x);
+    const F y = choose(
+        1, r_.ny,
+        [&](I before, I behind) {
+          auto lines = [&](size_t at, size_t k) {
+            const Two a = pairs_at(f_ + at, before, r_.value), b = pairs_at(f_ + at + nx, behind, r_.value);
+            return mix(change(a.a, c.f[k], c.f[k + 2], b.a, v), change(a.b, c.f[k + 1], c.f[k + 3], b.b, v), u);
+          };
+          return mix(lines(0, 0), lines(nxy, 4), w);
+        },
+        own.y);
+    const F z = choose(
+        2, r_.nz,
+        [&](I before, I behind) {
+          auto lines = [&](size_t at, size_t k) {
+            const Two a = pairs_at(f_ + at, before, r_.value), b = pairs_at(f_ + at + nxy, behind, r_.value);
+            return mix(change(a.a, c.f[k], c.f[k + 4], b.a, w), change(a.b, c.f[k + 1], c.f[k + 5], b.b, w), u);
+          };
+          return mix(lines(0, 0), lines(nx, 2), v);
+        },
+        own.z);
+    return {own.value, x, y, z};
   }
 
   const SurfelRows& r_;
