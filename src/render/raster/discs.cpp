@@ -15,7 +15,7 @@ float along(const float* a, const float* b) { return a[0] * b[0] + a[1] * b[1] +
 void draw_discs_one_by_one(const DiscJob& job, size_t begin, size_t end) {
   const EyeView& v = job.view;
   for (size_t i = begin; i < end; ++i) {
-    const size_t p = job.points[i];
+    const size_t p = job.points ? job.points[i] : i;
     const EyePoint e = to_eye(v, job.xyz + 3 * p);
     const float r = job.radius[p];
     if (!(e.z > v.near_plane) || !(e.z < v.far_plane) || !(r > 0)) continue;
@@ -59,7 +59,7 @@ namespace {
 
 void light_one(const PreparedItem& item, const EyeView& v, const std::vector<WorldLight>& lights, ShadeBatch& b, size_t i) {
   const float* normals = reinterpret_cast<const float*>(item.disc_normals.raw());
-  const size_t p = (*item.points)[b.triangle[i]];
+  const size_t p = item.points ? (*item.points)[b.triangle[i]] : b.triangle[i];
   const int x = b.tile_x + int(b.pixel[i]) % tile_size, y = b.tile_y + int(b.pixel[i]) / tile_size;
   Vec3f view(-v.forward[0], -v.forward[1], -v.forward[2]);
   if (!v.parallel) {
@@ -79,7 +79,8 @@ void shade_discs(const PreparedItem& item, const EyeView& v, const std::vector<W
   const ColorSource& color = item.color;
   const auto whole = int(m.power);
   if (float(whole) == m.power && whole >= 0 && whole < 1024 && item.positions.count() < size_t(INT32_MAX) / 3) {
-    light_discs({v, m, lights.data(), lights.size(), item.points->data(), reinterpret_cast<const float*>(item.disc_normals.raw()), whole},
+    light_discs({v, m, lights.data(), lights.size(), item.points ? item.points->data() : nullptr,
+                 reinterpret_cast<const float*>(item.disc_normals.raw()), whole},
                 b);
   } else {
     for (size_t i = 0; i < b.n; ++i) light_one(item, v, lights, b, i);
@@ -93,7 +94,7 @@ void shade_discs(const PreparedItem& item, const EyeView& v, const std::vector<W
     return;
   }
   for (size_t i = 0; i < b.n; ++i) {
-    const size_t p = (*item.points)[b.triangle[i]];
+    const size_t p = item.points ? (*item.points)[b.triangle[i]] : b.triangle[i];
     Vec4f rgba;
     if (color.kind == ColorSource::Kind::scalar) rgba = color.of(color.data()[p]);
     else

@@ -10,7 +10,7 @@ namespace sg::raster {
 struct DiscJob {
   EyeView view;
   const float *xyz, *normals, *radius;
-  const uint32_t* points;
+  const uint32_t* points;  ///< of each disc; null: disc i is point i
   uint32_t first_primitive;
   uint64_t* keys;  ///< one per pixel of the picture
 };
@@ -40,7 +40,7 @@ struct DiscLight {
   const Material& material;
   const WorldLight* lights;
   size_t light_count;
-  const uint32_t* points;
+  const uint32_t* points;  ///< null: disc i is point i
   const float* normals;
   int power;
 };

@@ -34,20 +34,37 @@ struct Lanes {
   I x0, x1, y0, y1;           // pixels; empty when there is nothing to draw
 };
 
-HWY_INLINE Lanes place(const DiscJob& job, I point, I valid) {
+// What a vector of discs has in memory.
+struct Stored {
+  F p[3], n[3], r;
+};
+HWY_INLINE Stored stored(const DiscJob& job, I point) {
+  const DF d;
+  const I at = hn::Add(point, hn::Add(point, point));
+  Stored s;
+  for (int c = 0; c < 3; ++c) s.p[c] = hn::GatherIndex(d, job.xyz + c, at), s.n[c] = hn::GatherIndex(d, job.normals + c, at);
+  s.r = hn::GatherIndex(d, job.radius, point);
+  return s;
+}
+HWY_INLINE Stored stored_from(const DiscJob& job, size_t first) {
+  const DF d;
+  Stored s;
+  hn::LoadInterleaved3(d, job.xyz + 3 * first, s.p[0], s.p[1], s.p[2]);
+  hn::LoadInterleaved3(d, job.normals + 3 * first, s.n[0], s.n[1], s.n[2]);
+  s.r = hn::LoadU(d, job.radius + first);
+  return s;
+}
+
+HWY_INLINE Lanes place(const DiscJob& job, const Stored& s, I valid) {
   const DF d;
   const DI di;
   const EyeView& v = job.view;
-  const I at = hn::Add(point, hn::Add(point, point));
-  F p[3], normal[3];
-  for (int c = 0; c < 3; ++c) {
-    p[c] = (hn::GatherIndex(d, job.xyz + c, at) - set(v.hi[c])) - set(v.lo[c]);
-    normal[c] = hn::GatherIndex(d, job.normals + c, at);
-  }
+  F p[3];
+  for (int c = 0; c < 3; ++c) p[c] = (s.p[c] - set(v.hi[c])) - set(v.lo[c]);
   Lanes l;
   l.x = along(p, v.right), l.y = along(p, v.up), l.z = along(p, v.forward);
-  l.n[0] = along(normal, v.right), l.n[1] = along(normal, v.up), l.n[2] = along(normal, v.forward);
-  const F r = hn::GatherIndex(d, job.radius, point), scale = v.parallel ? set(v.scale) : set(v.scale) / l.z;
+  l.n[0] = along(s.n, v.right), l.n[1] = along(s.n, v.up), l.n[2] = along(s.n, v.forward);
+  const F r = s.r, scale = v.parallel ? set(v.scale) : set(v.scale) / l.z;
   const F cx = set(v.center_x) + scale * l.x, cy = set(v.center_y) - scale * l.y, reach = r * scale;
   M good = hn::And(hn::And(hn::Gt(l.z, set(v.near_plane)), hn::Lt(l.z, set(v.far_plane))), hn::Gt(r, set(0)));
   good = hn::And(good, hn::And(hn::Lt(hn::Abs(cx), set(1e6f)), hn::Lt(hn::Abs(cy), set(1e6f))));
@@ -147,15 +164,24 @@ void disc_range(const DiscJob& job, size_t begin, size_t end) {
   const size_t lanes = hn::Lanes(d);
   for (size_t i = begin; i < end; i += lanes) {
     const size_t n = std::min(lanes, end - i);
-    HWY_ALIGN uint32_t point[hn::MaxLanes(DF())];
-    uint32_t last = 0;
-    for (size_t l = 0; l < lanes; ++l) point[l] = job.points[i + std::min(l, n - 1)], last = std::max(last, point[l]);
-    if (last > most_points) {
-      draw_discs_one_by_one(job, i, i + n);
-      continue;
+    Stored s;
+    if (!job.points && n == lanes) {
+      s = stored_from(job, i);
+    } else {
+      HWY_ALIGN uint32_t point[hn::MaxLanes(DF())];
+      uint32_t last = 0;
+      for (size_t l = 0; l < lanes; ++l) {
+        const size_t disc = i + std::min(l, n - 1);
+        point[l] = job.points ? job.points[disc] : uint32_t(disc);
+        last = std::max(last, point[l]);
+      }
+      if (last > most_points) {
+        draw_discs_one_by_one(job, i, i + n);
+        continue;
+      }
+      s = stored(job, hn::Load(di, reinterpret_cast<const int32_t*>(point)));
     }
-    const I valid = hn::VecFromMask(di, hn::FirstN(di, n));
-    const Lanes l = place(job, hn::Load(di, reinterpret_cast<const int32_t*>(point)), valid);
+    const Lanes l = place(job, s, hn::VecFromMask(di, hn::FirstN(di, n)));
     const I limit = hn::Set(di, small_disc);
     const auto large = hn::Or(hn::Gt(hn::Sub(l.x1, l.x0), limit), hn::Gt(hn::Sub(l.y1, l.y0), limit));
     const M is_large = hn::MaskFromVec(hn::BitCast(d, hn::VecFromMask(di, large)));
@@ -180,7 +206,8 @@ void disc_light(const DiscLight& job, ShadeBatch& b) {
   for (size_t i = b.n; i % lanes != 0; ++i) b.triangle[i] = b.triangle[b.n - 1], b.pixel[i] = b.pixel[b.n - 1];
   for (size_t i = 0; i < b.n; i += lanes) {
     const I disc = hn::LoadU(di, reinterpret_cast<const int32_t*>(b.triangle + i));
-    const I point = hn::GatherIndex(di, reinterpret_cast<const int32_t*>(job.points), disc), at = hn::Add(point, hn::Add(point, point));
+    const I point = job.points ? hn::GatherIndex(di, reinterpret_cast<const int32_t*>(job.points), disc) : disc,
+            at = hn::Add(point, hn::Add(point, point));
     const I pixel = hn::LoadU(di, reinterpret_cast<const int32_t*>(b.pixel + i));
     F n[3], view[3];
     for (int c = 0; c < 3; ++c) n[c] = hn::GatherIndex(d, job.normals + c, at), view[c] = set(-v.forward[c]);
@@ -226,7 +253,7 @@ HWY_EXPORT(disc_light);
 void light_discs(const DiscLight& job, ShadeBatch& batch) { HWY_DYNAMIC_DISPATCH(disc_light)(job, batch); }
 bool last_is_nearer(const DiscJob& job, size_t count) {
   if (count == 0) return false;
-  const auto depth = [&](size_t i) { return to_eye(job.view, job.xyz + 3 * size_t(job.points[i])).z; };
+  const auto depth = [&](size_t i) { return to_eye(job.view, job.xyz + 3 * (job.points ? size_t(job.points[i]) : i)).z; };
   float first = 0, last = 0;
   for (size_t k = 0; k < 8; ++k) first += depth(count * k / 32), last += depth(count - 1 - count * k / 32);
   return last < first;

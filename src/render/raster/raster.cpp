@@ -89,7 +89,7 @@ class Drawing {
                           reinterpret_cast<const float*>(item.positions.raw()),
                           reinterpret_cast<const float*>(item.disc_normals.raw()),
                           reinterpret_cast<const float*>(item.disc_radius.raw()),
-                          item.points->data(),
+                          item.points ? item.points->data() : nullptr,
                           item.first_primitive,
                           keys_.data()};
         const size_t n = item.primitives;
