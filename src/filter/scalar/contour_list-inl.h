@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Set bits to lists, for files that are compiled once for each target. Inside filter/scalar only.
+// Set bits to lists, for files that are compiled once for each target and have included Highway. Inside filter/scalar only.
 #if defined(SG_CONTOUR_LIST_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef SG_CONTOUR_LIST_INL
 #undef SG_CONTOUR_LIST_INL
 #else
 #define SG_CONTOUR_LIST_INL
 #endif
-#include <hwy/highway.h>
-
 #include <bit>
 
 HWY_BEFORE_NAMESPACE();
