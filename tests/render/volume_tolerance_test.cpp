@@ -215,7 +215,6 @@ TEST_CASE("volume: the error stays within the tolerance of a hundredth-step refe
           for (int k = 0; k < 3; ++k) worst = std::max(worst, std::abs(truth[k] - double(p[k])));
           worst = std::max(worst, std::abs(1 - truth.w - double(p[3])));
         }
-      MESSAGE(c.name << " " << worst * 512);
       CHECK(worst < 1.0 / 512);
     }
 }

@@ -203,7 +203,8 @@ std::vector<Medium::Straight> Medium::straight() const {
   for (const Line& l : lines_) {
     const float lo = l.origin, hi = std::min(l.hi, top_), width = hi - lo;
     // A parabola leaves its chord by curve width^2 / 4; a cubic's curve is steepest at an end.
-    const float tau = std::max({l.at, l(hi), faint_}), bend = 0.25f * std::max(std::abs(l.curve), std::abs(l.curve + 3 * l.twist * width)) * width * width;
+    const float tau = std::max({l.at, l(hi), faint_}),
+                bend = 0.25f * std::max(std::abs(l.curve), std::abs(l.curve + 3 * l.twist * width)) * width * width;
     const float parts = std::max(std::sqrt(bend / (2 * accuracy_ * tau)), std::abs(axis(hi) - axis(lo)) / color_width_);
     const int n = l.dark() ? 1 : std::clamp(int(std::ceil(parts)), 1, 1024);
     for (int i = 0; i < n; ++i) {
