@@ -31,7 +31,7 @@ void trilinear_frame(const std::vector<Vec3>& p, Vec3 r, Vec3& at, Vec3 column[3
 
 }  // namespace
 
-CellCurve::CellCurve(const CellVolume& volume) : volume_(volume), map_(volume.data) {}
+CellCurve::CellCurve(const CellVolume& volume) : volume_(volume), map_(volume.data), reader_(volume.data) {}
 
 void CellCurve::open(uint32_t cell, float& lowest, float& highest) {
   if (cell != cell_) {
@@ -68,6 +68,10 @@ void CellCurve::open(uint32_t cell, float& lowest, float& highest) {
       }
     } else if (reader.type() == CellType::polyhedron) {
       kind_ = Kind::polyhedron;
+      if (volume_.leaves) reader_.open(cell);
+      if (volume_.leaves && leaf_.open(
+                                at_, f_, [&] { return reader_.face_count(); }, [&](size_t k) { return reader_.face(k); }))
+        kind_ = Kind::leaf;
     } else {
       kind_ = Kind::shape;
       shape_ = CellShape::find(reader.type(), n);
@@ -113,6 +117,8 @@ float CellCurve::value(Vec3 at) {
   if (kind_ == Kind::box) {
     const Vec3 p = at - at_[0];
     f = trilinear(f_, {dot(rows_[0], p), dot(rows_[1], p), dot(rows_[2], p)});
+  } else if (kind_ == Kind::leaf) {
+    f = leaf_.value(at);
   } else if (kind_ == Kind::polyhedron) {
     CellPlace place;
     place.nearest = at + volume_.mesh->origin;
@@ -143,7 +149,7 @@ void CellCurve::fit(Vec3 x, Vec3 d, double from, double to, const float ends[2],
   const float v[4] = {ends[0], at(1.0 / 3), at(2.0 / 3), ends[1]};
   Stretch s{from, to, {}, mark};
   bernstein_from_thirds(v, s.b);
-  if (kind_ != Kind::box && depth < most_halvings) {
+  if (kind_ != Kind::box && kind_ != Kind::leaf && depth < most_halvings) {
     const float middle = at(0.5), half[3] = {ends[0], middle, ends[1]};
     const auto wrong = [&](double part, float f) { return !(std::abs(s.value(from + part * (to - from)) - f) <= volume_.fit_error); };
     if (wrong(0.5, middle) || wrong(1.0 / 6, at(1.0 / 6)) || wrong(5.0 / 6, at(5.0 / 6))) {
@@ -158,7 +164,16 @@ void CellCurve::fit(Vec3 x, Vec3 d, double from, double to, const float ends[2],
 }
 
 void CellCurve::add(Vec3 x, Vec3 d, double from, double to, uint64_t mark, std::vector<Stretch>& out) {
-  const float ends[2] = {value(x + d * from), value(x + d * to)};
+  float ends[2] = {value(x + d * from), 0};
+  if (kind_ == Kind::leaf) {
+    leaf_.cuts(x, d, from, to, cuts_);
+    for (double t : cuts_) {
+      ends[1] = value(x + d * t);
+      fit(x, d, from, t, ends, 0, mark, out);
+      from = t, ends[0] = ends[1];
+    }
+  }
+  ends[1] = value(x + d * to);
   fit(x, d, from, to, ends, 0, mark, out);
 }
 

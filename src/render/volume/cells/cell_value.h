@@ -6,13 +6,14 @@
 
 #include "data/cell_map.h"
 #include "render/volume/cells/cell_volume.h"
+#include "render/volume/cells/leaf_lattice.h"
 #include "render/volume/optics/stretch.h"
 
 namespace sg::volume {
 
-/// Hexahedra that are parallelepipeds, and voxels: exact. Others: the cell's own functions (mean value coordinates in polyhedra) through
-/// the inverse map at thirds, halved until the cubic departs at 1/6, 1/2 and 5/6 by less than CellVolume::fit_error (at most 5 times).
-/// Not thread-safe: one per walker.
+/// Hexahedra that are parallelepipeds, voxels, and leaves of AMR grids: exact. Others: the cell's own functions (mean value coordinates in
+/// polyhedra) through the inverse map at thirds, halved until the cubic departs at 1/6, 1/2 and 5/6 by less than CellVolume::fit_error (at
+/// most 5 times). Not thread-safe: one per walker.
 class CellCurve {
  public:
   explicit CellCurve(const CellVolume& volume);
@@ -22,13 +23,16 @@ class CellCurve {
   void add(Vec3 x, Vec3 d, double from, double to, uint64_t mark, std::vector<Stretch>& out);
 
  private:
-  enum class Kind { box, hexahedron, shape, polyhedron };
+  enum class Kind { box, hexahedron, shape, polyhedron, leaf };
   float value(Vec3 at);
   bool invert(Vec3 at);
   void fit(Vec3 x, Vec3 d, double from, double to, const float ends[2], int depth, uint64_t mark, std::vector<Stretch>& out);
 
   const CellVolume& volume_;
   CellMap map_;
+  CellReader reader_;  // of faces
+  LeafLattice leaf_;
+  std::vector<double> cuts_;
   uint32_t cell_ = uint32_t(-1);
   Kind kind_ = Kind::box;
   const CellShape* shape_ = nullptr;

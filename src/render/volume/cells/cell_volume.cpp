@@ -235,6 +235,7 @@ CellVolume make_cell_volume(const VolumeItem& item, Context& context) {
   int component = item.component;
   CellVolume v;
   v.data = straightened(item.data, field, component, context);
+  v.leaves = d.as<AmrGrid>() != nullptr;
   v.by_cell = field->association == Association::cell;
   v.key = fmt::format("{}/{}/{}", field->name, association_name(field->association), component);
   take_field(v, *field, component, item.color.kind == ScaleKind::linear && item.color.labels.empty(), context);

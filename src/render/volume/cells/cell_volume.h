@@ -13,6 +13,7 @@ namespace sg::volume {
 struct CellVolume {
   DatasetPtr data;  ///< linear cells and polyhedra: curved cells divided, the leaves of an AMR grid without hanging nodes
   std::shared_ptr<const TetMesh> mesh;
+  bool leaves = false;   ///< of an AMR grid: polyhedra are boxes whose faces are split
   bool by_cell = false;  ///< the field is constant in each cell
   std::string key;       ///< names the field in the dataset's memo
   Plane<float> values;   ///< stored: of the mesh's vertices, or of the cells of `data`
