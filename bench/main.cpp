@@ -140,13 +140,13 @@ int run(int argc, char** argv) {
       fail_usage("unknown argument '" + a + "'", "sg_bench", "--data FOLDER --only TEXT --out FILE --runs N --program SIGHTGLASS --list");
   }
   if (program.empty()) program = folder_of(argv[0]) + "../sightglass";
-  auto wanted = [&](const std::string& task, const std::string& size) {
-    return only.empty() || (task + "|" + size).find(only) != std::string::npos;
+  auto wanted = [&](const std::string& task, const std::string& size, const std::string& peer) {
+    return only.empty() || (task + "|" + size + "|" + peer).find(only) != std::string::npos;
   };
   if (!list) make_inputs(data);
   std::string lines;
   auto report = [&](const std::string& task, const std::string& peer, const std::string& size, const std::string& unit, auto&& measured) {
-    if (!wanted(task, size)) return;
+    if (!wanted(task, size, peer)) return;
     if (list) {
       std::printf("%s|%s|%s\n", task.c_str(), size.c_str(), peer.c_str());
       return;
@@ -156,7 +156,7 @@ int run(int argc, char** argv) {
       std::fprintf(stderr, "FAILED %s|%s\n", task.c_str(), size.c_str());
       return;
     }
-    std::printf("%-22s %-28s median %9.3f ms  min %9.3f ms  n %2d  %.0f %s  peak %.0f MB\n", task.c_str(), size.c_str(), r.median * 1e3,
+    std::printf("%-22s %-28s %-34s median %9.3f ms  min %9.3f ms  n %2d  %.0f %s  peak %.0f MB\n", task.c_str(), size.c_str(), peer.c_str(), r.median * 1e3,
                 r.least * 1e3, r.runs, r.count, unit.c_str(), r.peak_mb);
     std::fflush(stdout);
     lines += record(task, peer, size, unit, r);

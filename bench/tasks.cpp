@@ -164,34 +164,6 @@ Task isosurface_picture(size_t n, bool discs) {
           }};
 }
 
-Task volume(const char* what, bool shaded, bool maximum, bool fog) {
-  return {"volume_render", "float32 256^3, 1024x1024", fmt::format("sightglass:raycast({})", what), "pixels covered", [=] {
-            Scene scene;
-            VolumeItem item;
-            item.data = field_grid(256);
-            item.field = "f";
-            item.color.map = find_colormap("sight");
-            item.color.lo = -3, item.color.hi = 4;
-            item.opacity.points = {{-3, 0}, {-.9, 0}, {-.6, .15}, {-.3, 0}, {.2, 0}, {.5, .3}, {.8, 0}, {1.6, 0}, {2, .8}, {4, .8}};
-            if (fog) item.opacity.points = {{-3, .002}, {4, .01}};
-            if (maximum) item.mode = VolumeItem::Mode::maximum;
-            item.unit_distance = 2.0 / 255;
-            item.sampling.step = 1.0 / 255;
-            item.shaded = shaded;
-            scene.items.emplace_back(item);
-            auto turn = std::make_shared<double>(0);
-            auto shared = std::make_shared<Scene>(std::move(scene));
-            return [=] {
-              Context context;
-              *turn += 2;
-              RenderOptions o;
-              o.width = o.height = 1024, o.samples = 1;
-              const Frame f = render(*shared, peers_camera(*turn), o, context);
-              return double(f.pixels());
-            };
-          }};
-}
-
 }  // namespace
 
 std::vector<Task> tasks(const std::string& folder) {
@@ -202,6 +174,7 @@ std::vector<Task> tasks(const std::string& folder) {
   add_contour_tasks(t);
   add_cut_tasks(t);
   add_index_tasks(t);
+  add_volume_methods_tasks(t);
   t.push_back(gradients("grid", "uniform256"));
   t.push_back(gradients("tets", "tet1M"));
   t.push_back(writing(folder));
@@ -213,10 +186,7 @@ std::vector<Task> tasks(const std::string& folder) {
   t.push_back(surface("10M", 744));
   for (size_t n : {256, 400})
     for (bool discs : {false, true}) t.push_back(isosurface_picture(n, discs));
-  t.push_back(volume("composite", false, false, false));
-  t.push_back(volume("composite,shaded", true, false, false));
-  t.push_back(volume("MIP", false, true, false));
-  t.push_back(volume("composite,fog(no skipping)", false, false, true));
+  add_volume_tasks(t);
   return t;
 }
 

@@ -72,7 +72,7 @@ CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<con
     const double span = std::abs(item.color.hi - item.color.lo);
     plan.lo = std::min(item.color.lo, item.color.hi) - span, plan.hi = std::max(item.color.lo, item.color.hi) + span;
   }
-  plan.accuracy = 0.125 * item.sampling.tolerance, plan.faint = 0.1 / diagonal, plan.most_tau = 1000 / source.edge;
+  plan.accuracy = 0.25 * item.sampling.tolerance, plan.faint = 0.5 / diagonal, plan.most_tau = 1000 / source.edge;
   v.medium = std::make_unique<Medium>(item.color, item.opacity, plan);
   v.budget = {item.sampling.tolerance, diagonal, knobs.stop_below > 0 ? float(0.2 * item.sampling.tolerance) : 0};
   v.step = item.sampling.step;

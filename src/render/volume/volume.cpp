@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/volume/volume.h"
 
+#include <optional>
+
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/random.h"
+#include "render/volume/lattice/packets.h"
 #include "render/volume/prepare_cast.h"
 
 namespace sg::volume {
@@ -73,6 +76,27 @@ void pixel(const Picture& picture, int x, int y, Scratch& s) {
     picture.frame.depth[p] = float(first_depth + state.surface * per_length), picture.frame.ids[p] = state.surface_id;
 }
 
+/// How one volume alone is drawn.
+enum class Way { by_rays, in_steps, within_tolerance };
+
+Way way_of(const CastVolume& volume, const PacketPlan& plan) {
+  const VolumeItem& item = *volume.item;
+  if (!item.clip.empty()) return Way::by_rays;
+  const bool composite = item.mode == RayFunction::composite, steps = volume.step > 0;
+  if (composite && !steps) return in_tolerant_packets(plan) ? Way::within_tolerance : Way::by_rays;
+  const bool plain = composite ? item.sampling.classify == "post" && !item.sampling.jitter : item.mode == RayFunction::maximum;
+  return plain && in_packets(plan) ? Way::in_steps : Way::by_rays;
+}
+
+bool any_fragments(const FragmentLists& fragments, const Frame& frame, int x0, int y0, int x1, int y1) {
+  if (fragments.empty()) return false;
+  for (int y = y0; y < y1; ++y) {
+    const size_t row = size_t(y) * size_t(frame.width);
+    if (fragments.start[row + size_t(x0)] < fragments.start[row + size_t(x1)]) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 Course course(const Volume& v, Vec3 origin, Vec3 direction, double from, double to) {
@@ -112,6 +136,16 @@ void composite_volumes(const Scene& scene, const Projection& projection, const F
                                     : l.direction;
     picture.lamps.push_back({normalize(d), l.intensity});
   }
+  // One volume alone goes in packets of rays, where they can draw it.
+  std::optional<PacketPlan> plan;
+  Way way = Way::by_rays;
+  if (picture.volumes.size() == 1 && picture.lattices[0]) {
+    const CastVolume& only = picture.volumes[0];
+    plan.emplace(PacketPlan{*picture.lattices[0], projection, knobs, {}, only.material, only.medium.get(), only.budget, float(only.source->edge)});
+    if (picture.shaded)
+      for (const Picture::Lamp& l : picture.lamps) plan->lamps.push_back({l.direction, l.intensity});
+    way = way_of(only, *plan);
+  }
   const size_t across = size_t(frame.width + tile - 1) / tile, down = size_t(frame.height + tile - 1) / tile;
   parallel_for(
       across * down, 1,
@@ -119,8 +153,13 @@ void composite_volumes(const Scene& scene, const Projection& projection, const F
         Scratch scratch{{}, Caster(picture.volumes), {}};
         for (size_t t = begin; t < end; ++t) {
           const int x0 = int(t % across) * tile, y0 = int(t / across) * tile;
-          for (int y = y0; y < std::min(y0 + tile, frame.height); ++y)
-            for (int x = x0; x < std::min(x0 + tile, frame.width); ++x) pixel(picture, x, y, scratch);
+          const int x1 = std::min(x0 + tile, frame.width), y1 = std::min(y0 + tile, frame.height);
+          if (way != Way::by_rays && !any_fragments(fragments, frame, x0, y0, x1, y1)) {
+            (way == Way::in_steps ? march_tile : cast_tile)(*plan, x0, y0, x1, y1, frame);
+            continue;
+          }
+          for (int y = y0; y < y1; ++y)
+            for (int x = x0; x < x1; ++x) pixel(picture, x, y, scratch);
         }
       },
       &context);

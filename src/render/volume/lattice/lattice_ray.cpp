@@ -67,10 +67,10 @@ class LatticeRay final : public RayField {
     while (t_ < end_ && count + 4 <= out.size()) {
       size_t at[3], brick;
       for (size_t a = 0; a < 3; ++a) at[a] = size_t(axes_[a].cell(box_[a])) >> MinMaxBricks::shift;
-      brick = v_.bricks.id(at[0], at[1], at[2]);
+      brick = v_.bricks().id(at[0], at[1], at[2]);
       if (brick != brick_) {
         brick_ = brick;
-        const MinMaxBricks::Range r = v_.bricks.ranges[brick];
+        const MinMaxBricks::Range r = v_.bricks().ranges[brick];
         empty_ = r.empty() || invisible_(r.lo, r.hi);
       }
       if (empty_) {
@@ -130,7 +130,7 @@ class LatticeRay final : public RayField {
     for (int a = 0; a < 3; ++a) {
       const bool up = c_.along[a] > 0;
       side[a] = long((brick[a] + up) << MinMaxBricks::shift) - !up;  // the first box beyond
-      if (c_.along[a] == 0 || side[a] < 0 || side[a] > axes_[a].last() || (up && brick[a] + 1 >= v_.bricks.dims[size_t(a)])) continue;
+      if (c_.along[a] == 0 || side[a] < 0 || side[a] > axes_[a].last() || (up && brick[a] + 1 >= v_.bricks().dims[size_t(a)])) continue;
       out = std::min(out, std::max((axes_[a].side(side[a] + !up) - c_.start[a]) * per_along_[a], t_));
     }
     t_ = out;
@@ -139,7 +139,7 @@ class LatticeRay final : public RayField {
       if (c_.along[a] == 0) continue;
       const bool up = c_.along[a] > 0;
       long box = axes_[a].box_at(c_.start[a] + t_ * c_.along[a]);
-      const bool inner = up ? brick[a] + 1 < v_.bricks.dims[size_t(a)] : brick[a] > 0;
+      const bool inner = up ? brick[a] + 1 < v_.bricks().dims[size_t(a)] : brick[a] > 0;
       if (inner) {
         const double at = (axes_[a].side(side[a] + !up) - c_.start[a]) * per_along_[a];
         if (at <= t_) box = up ? std::max(box, side[a]) : std::min(box, side[a]);
@@ -237,10 +237,10 @@ class LatticeRay final : public RayField {
   }
 
   bool hidden() const {
-    if (v_.hidden.empty()) return false;
+    if (v_.hidden().empty()) return false;
     size_t at[3];
     for (int a = 0; a < 3; ++a) at[a] = size_t(axes_[a].cell(box_[a]));
-    return v_.hidden[at[0] + (v_.voxels.dims[0] - 1) * (at[1] + (v_.voxels.dims[1] - 1) * at[2])];
+    return v_.hidden()[at[0] + (v_.voxels.dims[0] - 1) * (at[1] + (v_.voxels.dims[1] - 1) * at[2])];
   }
 
   float value_at(Vec3 q) {

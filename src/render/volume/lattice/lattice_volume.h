@@ -6,6 +6,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "index/minmax_bricks.h"
@@ -24,6 +25,15 @@ struct Knobs {
 };
 void composite_volumes(const Scene& scene, const Projection& projection, const FragmentLists& fragments, Frame& frame, Context& context,
                        const Knobs& knobs);
+
+/// What a volume needs of its field, whoever looks at it: kept in the dataset's memo.
+struct LatticeSamples {
+  Voxels voxels;
+  float base = 0;               ///< value = stored + base
+  std::vector<uint8_t> hidden;  ///< per cell of the lattice: draws nothing; may be empty
+  MinMaxBricks bricks;
+  double lo = HUGE_VAL, hi = -HUGE_VAL;  ///< of the finite values stored; lo > hi when there are none
+};
 
 struct Volume {
   uint32_t id = 0;  ///< item number + 1
@@ -50,11 +60,14 @@ struct Volume {
   std::vector<uint32_t> first_cell[3];  ///< cell in which a slice of the axis begins
   double slices_per_q[3] = {};
 
-  MinMaxBricks bricks;
-  std::vector<uint8_t> distance;  ///< in bricks to the next that draws something (composite)
+  std::shared_ptr<const LatticeSamples> samples;
+  std::vector<uint8_t> distance;  ///< in bricks to the next that draws something (composite), see empty_space.h
+  bool any_empty = true;          ///< is there a brick that draws nothing?
   std::vector<double> border[3];  ///< q of the brick sides, dims+1
   Vec3 margin;                    ///< q: rounding errors of places are smaller
-  std::vector<uint8_t> hidden;    ///< per cell of the lattice: draws nothing; may be empty
+
+  const MinMaxBricks& bricks() const { return samples->bricks; }
+  const std::vector<uint8_t>& hidden() const { return samples->hidden; }
 
   Vec3 q(Vec3 world) const { return to_q * (world - origin); }
   /// Sample index of a place in q along one axis, clamped.

@@ -44,7 +44,7 @@ class Search {
   Maximum run() {
     const auto side = [this](int a, long i) {
       if (i <= 0) return -HUGE_VAL;
-      return size_t(i) >= v_.bricks.dims[size_t(a)] ? HUGE_VAL : v_.border[a][size_t(i)];
+      return size_t(i) >= v_.bricks().dims[size_t(a)] ? HUGE_VAL : v_.border[a][size_t(i)];
     };
     long first[3];
     for (int a = 0; a < 3; ++a)
@@ -55,9 +55,9 @@ class Search {
     crossed.clear();
     for (Walk walk(c_, c_.enter, c_.leave, first, side);;) {
       bool inside = true;
-      for (int a = 0; a < 3; ++a) inside = inside && walk.box[a] >= 0 && walk.box[a] < long(v_.bricks.dims[size_t(a)]);
+      for (int a = 0; a < 3; ++a) inside = inside && walk.box[a] >= 0 && walk.box[a] < long(v_.bricks().dims[size_t(a)]);
       if (!inside) break;
-      const MinMaxBricks::Range r = v_.bricks.ranges[v_.bricks.id(size_t(walk.box[0]), size_t(walk.box[1]), size_t(walk.box[2]))];
+      const MinMaxBricks::Range r = v_.bricks().ranges[v_.bricks().id(size_t(walk.box[0]), size_t(walk.box[1]), size_t(walk.box[2]))];
       if (!r.empty() && !(skip_ && r.hi < floor_)) crossed.push_back({r.hi, {walk.box[0], walk.box[1], walk.box[2]}, walk.t, walk.leave()});
       if (!walk.advance()) break;
     }
@@ -135,7 +135,7 @@ class Search {
     size_t at[3];
     for (size_t a = 0; a < 3; ++a) at[a] = size_t(std::clamp(box[a], 0l, long(v_.voxels.dims[a]) - 2));
     const size_t nx = v_.voxels.dims[0], ny = v_.voxels.dims[1];
-    if (!v_.hidden.empty() && v_.hidden[at[0] + (nx - 1) * (at[1] + (ny - 1) * at[2])]) return;
+    if (!v_.hidden().empty() && v_.hidden()[at[0] + (nx - 1) * (at[1] + (ny - 1) * at[2])]) return;
     const T* p = data_ + at[0] + nx * (at[1] + ny * at[2]);
     const size_t offset[4] = {0, nx, nx * ny, nx * ny + nx};
     T top = p[0];

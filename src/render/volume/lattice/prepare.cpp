@@ -4,8 +4,10 @@
 #include "base/parallel.h"
 #include "data/field_ops.h"
 #include "data/lattice.h"
-#include "render/volume/prepare_cast.h"
+#include "data/memo.h"
+#include "render/volume/lattice/empty_space.h"
 #include "render/volume/lattice/lattice_volume.h"
+#include "render/volume/prepare_cast.h"
 
 namespace sg::volume {
 
@@ -133,7 +135,10 @@ bool native(ElementType t) {
   return t == ElementType::u8 || t == ElementType::i8 || t == ElementType::u16 || t == ElementType::i16 || t == ElementType::f32;
 }
 
-void take_samples(const VolumeItem& item, const Field& field, std::array<size_t, 3> dims, Volume& v) {
+bool wants_small_differences(const VolumeItem& item) { return item.color.kind == ScaleKind::linear && item.color.labels.empty(); }
+
+LatticeSamples take_samples(const VolumeItem& item, const Field& field, std::array<size_t, 3> dims) {
+  LatticeSamples v;
   const Dataset& d = *item.data;
   const bool cells = field.association == Association::cell;
   const bool magnitude = item.component < 0 && field.components() > 1;
@@ -141,10 +146,8 @@ void take_samples(const VolumeItem& item, const Field& field, std::array<size_t,
                 ? scalar_of(field, -1,
                             is_float(field.array.type()) && element_size(field.array.type()) == 8 ? ElementType::f64 : ElementType::f32)
                 : field.array.component(std::max(item.component, 0));
-  if (!native(a.type())) {
-    const bool linear = item.color.kind == ScaleKind::linear && item.color.labels.empty();
-    a = linear ? narrowed(a, d.range(field, item.component), v.base) : a.converted(ElementType::f32);
-  }
+  if (!native(a.type()))
+    a = wants_small_differences(item) ? narrowed(a, d.range(field, item.component), v.base) : a.converted(ElementType::f32);
   a = a.made_packed();
   const Array& ghost = cells ? d.cell_ghost() : d.point_ghost();
   const uint8_t bits = cells ? not_drawn : uint8_t(ghost_hidden_point);
@@ -158,12 +161,28 @@ void take_samples(const VolumeItem& item, const Field& field, std::array<size_t,
   for (size_t& n : v.voxels.dims) n = std::max<size_t>(n, 2);
   if (v.voxels.dims != dims) a = dispatch(a, [&](auto view) { return doubled(view.data, dims, v.voxels.dims); });
   v.voxels.array = a;
+  v.bricks = minmax_bricks(v.voxels.array, v.voxels.dims);
+  for (const MinMaxBricks::Range& r : v.bricks.ranges) {
+    if (std::isfinite(r.lo)) v.lo = std::min(v.lo, double(r.lo));
+    if (std::isfinite(r.hi)) v.hi = std::max(v.hi, double(r.hi));
+  }
+  return v;
 }
 
-void build_index(Volume& v) {
-  v.bricks = minmax_bricks(v.voxels.array, v.voxels.dims);
+/// Taken once for all pictures of the field.
+std::shared_ptr<const LatticeSamples> kept_samples(const VolumeItem& item, const Field& field, std::array<size_t, 3> dims) {
+  const std::string key = fmt::format("volume lattice: {} {} {} {}", int(field.association), item.component, wants_small_differences(item), field.name);
+  Memo& memo = item.data->memo();
+  if (auto kept = memo.find<LatticeSamples>(key)) return kept;
+  LatticeSamples s = take_samples(item, field, dims);
+  const size_t own = s.voxels.array.raw() == field.array.raw() ? 0 : s.voxels.array.bytes();
+  const size_t bytes = own + s.hidden.size() + s.bricks.size() * sizeof(MinMaxBricks::Range);
+  return memo.keep(key, std::move(s), bytes);
+}
+
+void lay_borders(Volume& v) {
   for (int a = 0; a < 3; ++a) {
-    const size_t n = v.bricks.dims[size_t(a)], samples = v.voxels.dims[size_t(a)];
+    const size_t n = v.bricks().dims[size_t(a)], samples = v.voxels.dims[size_t(a)];
     v.border[a].resize(n + 1);
     for (size_t i = 0; i <= n; ++i) {
       const size_t s = std::min(i * MinMaxBricks::edge, samples - 1);
@@ -172,7 +191,7 @@ void build_index(Volume& v) {
     // Beyond the outermost samples values are clamped: those half cells belong to the outermost bricks.
     v.border[a].front() = -HUGE_VAL, v.border[a].back() = HUGE_VAL;
     // Places are floats in u: some units in the last place of the largest.
-    v.margin[a] = v.affine ? std::max(1e-3, 4e-7 * double(samples)) : 1e-7 * (v.hi[a] - v.lo[a]);
+    v.margin[a] = v.affine ? std::max(1e-3, 1e-6 * double(samples)) : 1e-7 * (v.hi[a] - v.lo[a]);
   }
 }
 
@@ -219,8 +238,9 @@ Volume prepare(const VolumeItem& item, uint32_t id, const Knobs& knobs) {
   else rectilinear_geometry(*item.data->as<RectilinearGrid>(), plan, v, smallest);
   if (!(v.hi.x > v.lo.x && v.hi.y > v.lo.y && v.hi.z > v.lo.z)) return v;
   v.edge = smallest, v.bounds = item.data->bounds();
-  take_samples(item, field, samples, v);
-  build_index(v);
+  v.samples = kept_samples(item, field, samples);
+  v.voxels = v.samples->voxels, v.base = v.samples->base;
+  lay_borders(v);
 
   // Lengths: step and the length to which opacity refers.
   const double diagonal = std::max(item.data->bounds().diagonal(), smallest);
@@ -230,17 +250,11 @@ Volume prepare(const VolumeItem& item, uint32_t id, const Knobs& knobs) {
     fail_usage(fmt::format("a step of {} takes {:.0f} samples through a volume of size {}", v.step, diagonal / v.step, diagonal), "volume",
                "give a longer step");
 
-  double lo = HUGE_VAL, hi = -HUGE_VAL;
-  for (const MinMaxBricks::Range& r : v.bricks.ranges) {
-    if (std::isfinite(r.lo)) lo = std::min(lo, double(r.lo));
-    if (std::isfinite(r.hi)) hi = std::max(hi, double(r.hi));
-  }
+  const double lo = v.samples->lo, hi = v.samples->hi;
   v.transfer.emplace_back(item.color, item.opacity, unit, v.step, lo + double(v.base), hi + double(v.base), double(v.base));
-  std::vector<uint8_t> clear(v.bricks.size());
-  for (size_t i = 0; i < clear.size(); ++i) clear[i] = v.transfer[0].clear(v.bricks.ranges[i].lo, v.bricks.ranges[i].hi);
-  v.distance = empty_distance(clear, v.bricks.dims);
+  if (item.mode != VolumeItem::Mode::maximum) v.distance = distance_to_drawn(v.bricks(), v.transfer[0], v.any_empty);
   v.kernels = knobs.simd ? best_kernels(v.voxels) : scalar_kernels(v.voxels);
-  v.direct = v.affine && !v.nearest && v.hidden.empty() && v.transfer[0].linear() && !(v.dual && v.voxels.array.type() == ElementType::f32);
+  v.direct = v.affine && !v.nearest && v.hidden().empty() && v.transfer[0].linear() && !(v.dual && v.voxels.array.type() == ElementType::f32);
   // A gradient in q becomes one in the world by the transpose of world -> q.
   for (int r = 0; r < 3; ++r)
     for (int c = 0; c < 3; ++c) v.shade_plan.to_world[r][c] = float(v.to_q.m[c][r]);

@@ -41,11 +41,11 @@ void finish_values(const Volume& v, Run& run) {
   if (v.dual)
     for (int n = 0; n < run_length; ++n)
       if (run.value[n] != run.value[n]) run.value[n] = sample_around_nan(v.voxels, run.ux[n], run.uy[n], run.uz[n]);
-  if (!v.hidden.empty())
+  if (!v.hidden().empty())
     for (int n = 0; n < run_length; ++n) {
       const auto cell = [&](float u, size_t a) { return std::min(size_t(clamped(u, float(v.voxels.dims[a] - 1))), v.voxels.dims[a] - 2); };
       const size_t id = cell(run.ux[n], 0) + (v.voxels.dims[0] - 1) * (cell(run.uy[n], 1) + (v.voxels.dims[1] - 1) * cell(run.uz[n], 2));
-      if (v.hidden[id]) run.value[n] = NAN;
+      if (v.hidden()[id]) run.value[n] = NAN;
     }
 }
 

@@ -109,11 +109,11 @@ void Caster::collect(Active& active, const CastRay& ray) {
   // A scalar is drawn in the full colour of its value, unless its opacity there is zero.
   const auto put_value = [&](double value, double t) {
     const Optics o = v.medium->at(float(value));
-    if (o.tau > 0) put(float(t), {o.r, o.g, o.b}, 1, v.id);
+    if (o.tau > 0) put(float(t), o.color, 1, v.id);
   };
   const auto lit_color = [&](float stored, Vec3f gradient) {
     const Optics o = v.medium->at(stored);
-    Vec3f c{o.r, o.g, o.b};
+    Vec3f c = o.color;
     if (active.look.lit) {
       const Lit l = light_at(active.lights, gradient, HUGE_VALF, 1);  // a surface by definition
       c = {c.x * l.diffuse + l.specular, c.y * l.diffuse + l.specular, c.z * l.diffuse + l.specular};
@@ -193,7 +193,7 @@ void Caster::maximum_difference(Active& active) {
       if (active.look.lit) l = light_at(active.lights, active.walker->gradient(s, t), active.look.edge, active.look.per_scale);
       const double alpha = double(1 - exp_minus(float(double(o.tau) * h)));
       const auto add = [&](double& c, float color) { c += pass * alpha * double(color * l.diffuse + l.specular); };
-      add(r, o.r), add(g, o.g), add(b, o.b);
+      add(r, o.color.x), add(g, o.color.y), add(b, o.color.z);
       pass *= 1 - alpha;
       if (at < 0) at = t;
     }

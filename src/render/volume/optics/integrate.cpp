@@ -33,7 +33,8 @@ Stretch part_of(const Stretch& s, double from, double to) {
 
 namespace {
 
-constexpr int most_cuts = 6;  // halvings of a stretch for its light or its colour
+constexpr int most_cuts = 6;  // halvings of a stretch for its light
+constexpr float deep = 0.1f;  // optical depth from which on the order within a segment is seen
 
 /// Where there is light on the ends of a part of a stretch, linear between them.
 struct LitPart {
@@ -51,23 +52,28 @@ class Pieces {
 
   const LitPart* lit = nullptr;
 
-  /// A part of optical depth D whose colour is `mean` by emission and changes by `change` from its front to its back, `weight` of the
-  /// way on by emission: C = mean A less what the front hides of the change (exact for constant tau).
-  void segment(double t, float length, float depth, const Optics& mean, const Optics& change, float weight) {
+  /// A part of optical depth D: the value goes from a to b, `mean` is its mean by emission, which lies `weight` of the way on. C = c(mean)
+  /// A less what the front hides of the change of colour (exact for constant tau and a linear colour).
+  void segment(double t, float length, float depth, float a, float b, float mean, float weight) {
     if (!(depth > 0)) return;
     const float pass = exp_minus(depth), alpha = depth < 0.02f ? depth * (1 - depth * (0.5f - depth * (1.0f / 6))) : 1 - pass;
-    // A/2 - A/D + exp(-D), by its series where that cancels.
-    const float hidden =
-        depth < 0.2f ? depth * depth * (1.0f / 12 - depth * (1.0f / 24 - depth * (1.0f / 80))) : 0.5f * alpha - alpha / depth + pass;
-    float r = mean.r * alpha - change.r * hidden, g = mean.g * alpha - change.g * hidden, b = mean.b * alpha - change.b * hidden;
+    const Medium& medium = look_.medium;
+    Vec3f c = medium.color(mean) * alpha;
+    if (depth > deep) {
+      // A/2 - A/D + exp(-D), by its series where that cancels.
+      const float hidden =
+          depth < 0.2f ? depth * depth * (1.0f / 12 - depth * (1.0f / 24 - depth * (1.0f / 80))) : 0.5f * alpha - alpha / depth + pass;
+      c -= (medium.color(b) - medium.color(a)) * hidden;
+      weight -= hidden / alpha;
+    }
     if (lit) {
-      const Lit l = lit->at(t + double(length) * double(weight - hidden / alpha));
+      const Lit l = lit->at(t + double(length) * double(weight));
       const float flash = l.specular * alpha;
-      r = r * l.diffuse + flash, g = g * l.diffuse + flash, b = b * l.diffuse + flash;
+      c = c * l.diffuse + Vec3f{flash, flash, flash};
     }
     Gathered& sum = state_.sum;
     const float before = sum.transmittance;
-    sum.r += before * r, sum.g += before * g, sum.b += before * b;
+    sum.r += before * c.x, sum.g += before * c.y, sum.b += before * c.z;
     sum.transmittance = before * pass;
     if (state_.surface < 0 && sum.transmittance < 0.5f) {
       // tau as good as constant: half of the light is gone at the share ln(2 before)/depth of the way.
@@ -76,76 +82,69 @@ class Pieces {
     }
   }
 
-  /// tau and colour linear over [t, t + length].
-  void linear(double t, float length, const Optics& first, const Optics& last) {
-    const float t0 = std::max(first.tau, 0.0f), t1 = std::max(last.tau, 0.0f), both = t0 + t1;
-    if (!(both > 0)) return;
-    const float weight = (t0 + 2 * t1) / (3 * both);
-    const Optics change{last.tau - first.tau, last.r - first.r, last.g - first.g, last.b - first.b};
-    const Optics mean{0, first.r + change.r * weight, first.g + change.g * weight, first.b + change.b * weight};
-    segment(t, length, length * 0.5f * both, mean, change, weight);
+  /// The shares [f0, f1] of a stretch of which `line` is the medium. Simpson's rule: exact for the optical depth of a cubic.
+  void piece(const Stretch& s, float f0, float f1, float a, float b, const Medium::Line& line) {
+    const float middle = value(s, 0.5f * (f0 + f1)), length = float(s.to - s.from) * (f1 - f0);
+    const float t0 = line(a), tm = 4 * line(middle), t1 = line(b), all = t0 + tm + t1;
+    if (!(all > 0)) return;
+    const float mean = (t0 * a + tm * middle + t1 * b) / all, weight = (0.5f * tm + t1) / all;
+    segment(s.from + (s.to - s.from) * double(f0), length, length * (all * (1.0f / 6)), a, b, mean, weight);
   }
 
-  /// A piece on which the value goes straight from a to b: cut at the knots of the medium.
-  void straight(double t, float length, float a, float b) {
+  static float value(const Stretch& s, float f) {
+    const float g = 1 - f;
+    const float b01 = g * s.b[0] + f * s.b[1], b12 = g * s.b[1] + f * s.b[2], b23 = g * s.b[2] + f * s.b[3];
+    return g * (g * b01 + f * b12) + f * (g * b12 + f * b23);
+  }
+
+  /// The share [f0, f1], on which the value goes one way from a to b: cut where it meets the knots of the medium.
+  void monotone(const Stretch& s, float f0, float f1, float a, float b) {
     const std::vector<Medium::Line>& lines = look_.medium.lines();
     int i = look_.medium.line_of(a);
-    if (a == b) {
-      const Optics o = lines[size_t(i)](a);
-      return linear(t, length, o, o);
-    }
-    const float per_value = length / std::abs(b - a);
-    const bool up = b > a;
+    const bool up = b >= a;
     if (!up && i > 0 && lines[size_t(i)].lo == a) --i;
-    for (float v = a;;) {
+    for (float f = f0, v = a;;) {
       const Medium::Line& line = lines[size_t(i)];
       const bool last = up ? b <= line.hi : b >= line.lo;
-      const float next = last ? b : up ? line.hi : line.lo;
-      const float way = std::abs(next - v) * per_value;
-      linear(t, way, line(v), line(next));
-      if (last) return;
-      t += double(way), v = next, i += up ? 1 : -1;
+      if (last) return piece(s, f, f1, v, b, line);
+      const float knot = up ? line.hi : line.lo;
+      const float at = meets(s, f, f1, v, b, knot);
+      piece(s, f, at, v, knot, line);
+      f = at, v = knot, i += up ? 1 : -1;
     }
   }
 
-  /// A stretch whose values lie on one line of the medium.
-  void smooth(const Stretch& s, const Medium::Line& line) {
-    const float length = float(s.to - s.from), mean = 0.25f * (s.b[0] + s.b[1] + s.b[2] + s.b[3]);
-    const Optics here = line(mean);
-    if (!(here.tau > 0)) return;
-    // The mean value by emission: integral of f tau(f) = tau(mean) mean + tau' (integral of f^2 - mean^2), f - mean in Bernstein form.
-    const float d0 = s.b[0] - mean, d1 = s.b[1] - mean, d2 = s.b[2] - mean, d3 = s.b[3] - mean;
-    const float spread =
-        (10 * (d0 * d0 + d3 * d3) + 6 * (d1 * d1 + d2 * d2) + 10 * (d0 * d1 + d2 * d3) + 4 * (d0 * d2 + d1 * d3) + 9 * d1 * d2 + d0 * d3) *
-        (1.0f / 70);
-    const float off = line.slope.tau * spread / here.tau, span = s.b[3] - s.b[0];
-    const Optics by_emission{0, here.r + line.slope.r * off, here.g + line.slope.g * off, here.b + line.slope.b * off};
-    const Optics change{0, line.slope.r * span, line.slope.g * span, line.slope.b * span};
-    const Optics front = line(s.b[0]), back = line(s.b[3]);
-    const float both = std::max(front.tau, 0.0f) + std::max(back.tau, 0.0f);
-    segment(s.from, length, length * here.tau, by_emission, change,
-            both > 0 ? (std::max(front.tau, 0.0f) + 2 * std::max(back.tau, 0.0f)) / (3 * both) : 0.5f);
+  /// Where the value meets a knot between f0 and f1: false position, twice corrected.
+  static float meets(const Stretch& s, float f0, float f1, float a, float b, float knot) {
+    const float slope = (f1 - f0) / (b - a);
+    float f = f0 + (knot - a) * slope;
+    for (int i = 0; i < 2; ++i) f = std::clamp(f - (value(s, f) - knot) * slope, f0, f1);
+    return f;
   }
 
   void whole(const Stretch& s, float lo, float hi) {
     const Medium& medium = look_.medium;
-    const int first = medium.line_of(lo), last = medium.line_of(hi);
-    if (first == last) return smooth(s, medium.lines()[size_t(first)]);
-    // The cubic leaves the straight line between its ends by at most this much.
-    const float bend = std::max(std::abs(s.b[1] - (2 * s.b[0] + s.b[3]) / 3), std::abs(s.b[2] - (s.b[0] + 2 * s.b[3]) / 3));
-    const double length = s.to - s.from;
-    const double by_depth = length * double(medium.most_slope(lo, hi));
-    const double by_color = std::min(1.0, length * double(medium.most_tau(lo, hi))) * double(medium.most_color_slope(lo, hi));
-    const double error = double(bend) * (by_depth + by_color) * double(state_.sum.transmittance);
-    const double allowed = 0.25 * look_.budget.tolerance * (length / look_.budget.length + 0.1);
-    int n = 1;
-    while (n < 64 && error > allowed * n * n) n *= 2;
-    const double step = length / n;
-    float a = s.b[0];
-    for (int k = 0; k < n; ++k) {
-      const float b = k + 1 == n ? s.b[3] : s.value(s.from + (k + 1) * step);
-      straight(s.from + k * step, float(step), a, b);
-      a = b;
+    const float a = s.b[0], b = s.b[3], length = float(s.to - s.from), pass = state_.sum.transmittance;
+    const float tolerance = float(look_.budget.tolerance);
+    const float most = medium.most_tau(lo, hi), slope = medium.most_slope(lo, hi), taken = std::min(1.0f, length * most);
+    const float widths = (medium.axis(hi) - medium.axis(lo)) / medium.color_width();
+    const float change = std::min(1.0f, (medium.axis(hi) - medium.axis(lo)) * medium.color_slope());
+    // What one piece gets wrong: colours bend on a width; in a deep piece the front shows more of its own colour than a constant tau would
+    // have it; and the value may turn beyond its ends, where there may be knots. All fall with the square of the number of pieces.
+    const float beyond = std::max(hi - std::max(a, b), std::min(a, b) - lo);
+    float error = taken * (0.25f * tolerance) * widths * widths;
+    error += change * std::min(1.0f, 0.05f * length * length * most * slope * (hi - lo));
+    error += beyond * length * slope;
+    error *= pass;
+    const float share = pass * std::min(1.0f, length * medium.tau(0.25f * (s.b[0] + s.b[1] + s.b[2] + s.b[3])));
+    const float allowed = tolerance * (float(0.3 / look_.budget.length) * length + 0.6f * share);
+    const float n = std::clamp(std::ceil(std::sqrt(error / allowed)), 1.0f, 64.0f);
+    float v = a, f = 0;
+    for (float k = 1; k <= n; ++k) {
+      const float to = k == n ? 1 : k / n, next = k == n ? b : value(s, to);
+      monotone(s, f, to, v, next);
+      if (state_.sum.transmittance < look_.budget.stop_below) return;
+      v = next, f = to;
     }
   }
 
@@ -195,7 +194,8 @@ void composite_straight(const Look& look, double from, double to, float a, float
   Pieces pieces(look, state);
   LitPart part;
   if (lit) part = {from, to, *lit, *lit}, pieces.lit = &part;
-  pieces.straight(from, float(to - from), a, b);
+  const float third = (b - a) / 3;
+  pieces.monotone({from, to, {a, a + third, b - third, b}}, 0, 1, a, b);
 }
 
 void composite_sample(const Look& look, double from, double length, float value, const Lit* lit, RayState& state) {
@@ -223,7 +223,8 @@ void composite_joint(const std::vector<Joint>& joint, RayState& state, int cuts)
     Lit lit;
     if (j.look->lit) lit = light_at(*j.look->lit, j.walker->gradient(s, 0.5 * (from + to)), j.look->edge, j.look->per_scale);
     depth += d;
-    glow += Vec3{o.r * lit.diffuse + lit.specular, o.g * lit.diffuse + lit.specular, o.b * lit.diffuse + lit.specular} * d;
+    glow +=
+        Vec3{o.color.x * lit.diffuse + lit.specular, o.color.y * lit.diffuse + lit.specular, o.color.z * lit.diffuse + lit.specular} * d;
     if (d > densest) densest = d, id = j.look->id;
   }
   if (depth == 0 && simple) return;

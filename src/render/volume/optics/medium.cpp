@@ -2,7 +2,6 @@
 #include "render/volume/optics/medium.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "color/cie.h"
@@ -12,32 +11,50 @@ namespace sg::volume {
 
 namespace {
 
-struct Sample {
-  double value;
-  double tau, r, g, b;
-};
+Vec3 linear_color(const ColorScale& scale, double v) {
+  const Vec4f c = scale.color(v);
+  return {srgb_to_linear(double(c.x)), srgb_to_linear(double(c.y)), srgb_to_linear(double(c.z))};
+}
 
-/// The curves themselves, from one side of a step.
-class Curves {
+double difference(Vec3 a, Vec3 b) { return std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)}); }
+
+/// The curve of tau.
+class Curve {
  public:
-  Curves(const ColorScale& scale, const OpacityCurve& curve, const Medium::Plan& plan) : scale_(scale), curve_(curve), plan_(plan) {}
+  struct Sample {
+    double value, tau;
+  };
+  Curve(const ColorScale& scale, const OpacityCurve& curve, const Medium::Plan& plan) : scale_(scale), curve_(curve), plan_(plan) {}
   Sample at(double v) const {
-    const Vec4f c = scale_.color(v);
-    const double opacity = std::clamp(curve_.at(v), 0.0, 1.0) * double(c.w);
-    const double tau = opacity < 1 ? std::min(minus_log_one_minus(opacity) / plan_.unit, plan_.most_tau) : plan_.most_tau;
-    return {v, tau, srgb_to_linear(double(c.x)), srgb_to_linear(double(c.y)), srgb_to_linear(double(c.z))};
+    const double opacity = std::clamp(curve_.at(v), 0.0, 1.0) * double(scale_.color(v).w);
+    return {v, opacity < 1 ? std::min(minus_log_one_minus(opacity) / plan_.unit, plan_.most_tau) : plan_.most_tau};
   }
-  Sample beside(double v, double towards) const {
-    Sample s = at(std::nextafter(v, towards));
-    s.value = v;
-    return s;
-  }
-  bool straight(const Sample& a, const Sample& b, const Sample& m) const {
-    const double f = (m.value - a.value) / (b.value - a.value);
-    const auto off = [f](double x, double y, double z) { return std::abs(x + f * (y - x) - z); };
-    if (off(a.tau, b.tau, m.tau) > plan_.accuracy * std::max(m.tau, plan_.faint)) return false;
-    if (m.tau == 0 && a.tau == 0 && b.tau == 0) return true;  // nobody sees the colour
-    return std::max({off(a.r, b.r, m.r), off(a.g, b.g, m.g), off(a.b, b.b, m.b)}) <= plan_.accuracy;
+  /// The limit from one side.
+  Sample beside(double v, double towards) const { return {v, at(std::nextafter(v, towards)).tau}; }
+  /// A parabola from a to b through the middle.
+  struct Arc {
+    Sample a, b;
+    double slope, curve;
+    Arc(Sample first, Sample last, double middle) : a(first), b(last) {
+      const double w = b.value - a.value;
+      slope = (4 * middle - 3 * a.tau - b.tau) / w, curve = 2 * (a.tau - 2 * middle + b.tau) / (w * w);
+    }
+    double at(double v) const { return a.tau + (v - a.value) * (slope + (v - a.value) * curve); }
+  };
+  /// Appends arcs from a to b.
+  void refine(Sample a, Sample b, int depth, std::vector<Arc>& out) const {
+    const double middle = 0.5 * (a.value + b.value);
+    if (!(middle > a.value && middle < b.value)) return out.push_back({a, b, 0.5 * (a.tau + b.tau)});
+    const Sample m = at(middle);
+    const Arc arc(a, b, m.tau);
+    bool good = true;
+    for (double f : {0.25, 0.75, 0.1, 0.9}) {
+      const Sample s = at(a.value + f * (b.value - a.value));
+      good = good && std::abs(arc.at(s.value) - s.tau) <= plan_.accuracy * std::max(s.tau, plan_.faint);
+    }
+    if (good || depth == 0 || out.size() > 4096) return out.push_back(arc);
+    refine(a, m, depth - 1, out);
+    refine(m, b, depth - 1, out);
   }
 
  private:
@@ -46,13 +63,18 @@ class Curves {
   const Medium::Plan& plan_;
 };
 
-/// Values at which a curve may bend or jump, within [lo, hi].
+/// Values in [lo, hi] at which tau may bend or jump, or colour may jump.
 std::vector<double> bends(const ColorScale& scale, const OpacityCurve& curve, double lo, double hi) {
-  std::vector<double> v{lo, hi, scale.lo, scale.hi};
+  std::vector<double> v{lo, hi};
   for (const Vec2& p : curve.points) v.push_back(p.x);
-  if (scale.kind != ScaleKind::linear) v.push_back(0);
-  if (const size_t n = scale.map.colors.size(); n <= 64 && scale.labels.empty())
-    for (size_t i = 1; i + 1 < n; ++i) v.push_back(scale.value_at(double(i) / double(n - 1)));
+  std::vector<double> jumps{scale.lo, scale.hi};
+  if (scale.kind == ScaleKind::log) jumps.push_back(0);
+  if (const size_t n = scale.map.colors.size(); n <= 512 && scale.labels.empty())
+    for (size_t i = 1; i + 1 < n; ++i) jumps.push_back(scale.value_at(double(i) / double(n - 1)));
+  for (double j : jumps) {
+    const Vec4f a = scale.color(std::nextafter(j, -HUGE_VAL)), b = scale.color(std::nextafter(j, HUGE_VAL));
+    if (a.w != b.w || std::abs(a.x - b.x) + std::abs(a.y - b.y) + std::abs(a.z - b.z) > 1e-3f) v.push_back(j);
+  }
   for (double l : scale.labels)  // a label is a value with a little air around it
     for (double side : {-1e-3, 1e-3}) v.push_back(l + side);
   std::erase_if(v, [&](double x) { return !(x >= lo && x <= hi); });
@@ -61,58 +83,110 @@ std::vector<double> bends(const ColorScale& scale, const OpacityCurve& curve, do
   return v;
 }
 
-/// Appends samples after a, up to and with b, so that straight lines do.
-void refine(const Curves& curves, const Sample& a, const Sample& b, int depth, std::vector<Sample>& out) {
-  const double middle = 0.5 * (a.value + b.value);
-  if (depth > 0 && middle > a.value && middle < b.value && out.size() < 4096) {
-    const Sample m = curves.at(middle);
-    bool straight = curves.straight(a, b, m);
-    for (double f : {0.25, 0.75, 0.1, 0.9})
-      if (straight) straight = curves.straight(a, b, curves.at(a.value + f * (b.value - a.value)));
-    if (!straight) {
-      refine(curves, a, m, depth - 1, out);
-      return refine(curves, m, b, depth - 1, out);
-    }
-  }
-  out.push_back(b);
-}
-
-Optics optics(const Sample& s) { return {float(s.tau), float(s.r), float(s.g), float(s.b)}; }
-
-Medium::Line line_between(const Sample& a, const Sample& b, float base) {
-  Medium::Line l{float(a.value - double(base)), float(b.value - double(base)), 0, optics(a), {}};
-  l.origin = l.lo;
-  const double d = double(l.hi) - double(l.lo);
-  if (d > 0) l.slope = {float((b.tau - a.tau) / d), float((b.r - a.r) / d), float((b.g - a.g) / d), float((b.b - a.b) / d)};
-  return l;
-}
-
 }  // namespace
 
-Medium::Medium(const ColorScale& scale, const OpacityCurve& curve, const Plan& plan) {
-  const Curves curves(scale, curve, plan);
-  const double lo = std::min(plan.lo, plan.hi), hi = plan.hi;
+Medium::Medium(const ColorScale& scale, const OpacityCurve& curve, const Plan& plan)
+    : kind_(scale.labels.empty() ? scale.kind : ScaleKind::linear), base_(plan.base) {
+  make_lines(scale, curve, plan);
+  make_colors(scale, plan);
+}
+
+void Medium::make_lines(const ColorScale& scale, const OpacityCurve& curve, const Plan& plan) {
+  const Curve tau(scale, curve, plan);
+  const double lo = std::min(plan.lo, plan.hi), hi = plan.hi, base = double(plan.base);
   const std::vector<double> at = bends(scale, curve, lo, hi);
   for (size_t i = 0; i + 1 < at.size(); ++i) {
-    // Labels: the little interval around one has the look of its middle.
-    const bool label = std::any_of(scale.labels.begin(), scale.labels.end(), [&](double l) { return at[i] < l && l < at[i + 1]; });
-    const double middle = 0.5 * (at[i] + at[i + 1]);
-    Sample a = label ? curves.at(double(float(middle))) : curves.beside(at[i], HUGE_VAL);
-    Sample b = label ? a : curves.beside(at[i + 1], -HUGE_VAL);
-    a.value = at[i], b.value = at[i + 1];
-    std::vector<Sample> samples{a};
-    if (scale.labels.empty()) refine(curves, a, b, 12, samples);
-    else samples.push_back(b);
-    for (size_t k = 0; k + 1 < samples.size(); ++k) {
-      const Line l = line_between(samples[k], samples[k + 1], plan.base);
-      if (l.hi > l.lo) lines_.push_back(l);
+    Curve::Sample a = tau.beside(at[i], HUGE_VAL), b = tau.beside(at[i + 1], -HUGE_VAL);
+    // The little interval around a label has the look of its middle.
+    for (double l : scale.labels)
+      if (at[i] < l && l < at[i + 1]) a.tau = b.tau = tau.at(l).tau;
+    std::vector<Curve::Arc> arcs;
+    if (scale.labels.empty()) tau.refine(a, b, 12, arcs);
+    else arcs.push_back({a, b, 0.5 * (a.tau + b.tau)});
+    for (const Curve::Arc& arc : arcs) {
+      const float from = float(arc.a.value - base), to = float(arc.b.value - base);
+      if (to > from) lines_.push_back({from, to, from, float(arc.a.tau), float(arc.slope), float(arc.curve)});
     }
   }
-  if (lines_.empty()) lines_.push_back({0, 0, 0, optics(curves.at(lo)), {}});
-  bounds();
+  if (lines_.empty()) lines_.push_back({0, 0, 0, float(tau.at(lo).tau), 0, 0});
+  bound();
   // Beyond the data nothing is asked, but for rounding errors.
   lines_.front().lo = -HUGE_VALF, lines_.back().hi = HUGE_VALF;
+  for (const Line& l : lines_) columns_.hi.push_back(l.hi);
   slice();
+}
+
+double Medium::value_on_axis(double a) const {
+  if (kind_ == ScaleKind::linear) return a + double(base_);
+  const auto power = [](double axis) {
+    const double e = std::floor(axis);
+    return std::ldexp(1 + (axis - e), int(e));
+  };
+  if (kind_ == ScaleKind::log) return power(a);
+  return std::copysign((power(std::abs(a)) - 1) / double(per_threshold_), a);
+}
+
+void Medium::make_colors(const ColorScale& scale, const Plan& plan) {
+  // Where the colours change: the range of the scale, as far as there are data; and a bit beyond, for what lies below and above.
+  const double ends[2] = {std::min(scale.lo, scale.hi), std::max(scale.lo, scale.hi)}, air = (ends[1] - ends[0]) / 1000;
+  double lo = std::max(std::min(plan.lo, plan.hi), ends[0] - air), hi = std::min(plan.hi, ends[1] + air);
+  if (!scale.labels.empty()) lo = plan.lo, hi = plan.hi;
+  if (!(lo <= hi)) lo = hi = plan.hi < ends[0] ? plan.hi : plan.lo;  // all data on one side of the scale
+  if (kind_ == ScaleKind::log && !(lo > 0)) lo = hi > 0 ? std::min(hi, ends[0] > 0 ? ends[0] : 1e-30) : 1e-30, hi = std::max(lo, hi);
+  if (kind_ == ScaleKind::symlog) {
+    const double threshold = scale.linear_threshold > 0 ? scale.linear_threshold : 1e-3 * std::max(std::abs(scale.lo), std::abs(scale.hi));
+    per_threshold_ = threshold > 0 ? float(1 / threshold) : 1;
+  }
+  first_node_ = axis(float(lo - double(base_)));
+  const float last = axis(float(hi - double(base_)));
+  per_node_ = last > first_node_ ? float(nodes) / (last - first_node_) : 0;
+  const double per = per_node_ > 0 ? 1 / double(per_node_) : 0;
+  std::vector<Vec3> c(size_t(nodes) + 1);
+  colors_.resize(4 * c.size());
+  for (int i = 0; i <= nodes; ++i) {
+    double value = std::clamp(value_on_axis(double(first_node_) + i * per), lo, hi);
+    double best = HUGE_VAL;
+    for (double l : scale.labels)
+      if (std::abs(l - value) < std::abs(best - value)) best = l;
+    if (std::abs(best - value) <= std::max(0.5 * per, 1e-3)) value = best;
+    c[size_t(i)] = linear_color(scale, value);
+    for (size_t k = 0; k < 3; ++k) colors_[4 * size_t(i) + k] = uint16_t(std::clamp(c[size_t(i)][int(k)], 0.0, 1.0) * 65535 + 0.5);
+  }
+  // The widest change over which a straight line does, jumps (which are knots) left aside.
+  double steepest = 0;
+  const auto jump = [&](size_t i) { return difference(c[i], c[i + 1]) > 0.02; };
+  for (size_t i = 0; i < size_t(nodes); ++i)
+    if (!jump(i)) steepest = std::max(steepest, difference(c[i], c[i + 1]));
+  const auto straight = [&](size_t from, size_t to) {
+    for (size_t q = 1; q < 8; ++q) {
+      const double f = double(q) / 8;
+      const double bend = difference(c[from] + (c[to] - c[from]) * f, c[from + (to - from) * q / 8]);
+      if (bend > 2 * plan.accuracy && bend < 0.2) return false;
+    }
+    return true;
+  };
+  size_t width = size_t(nodes);
+  for (; width > 8; width /= 2) {
+    bool all = true;
+    for (size_t i = 0; i + width <= size_t(nodes) && all; i += width / 2) all = straight(i, i + width);
+    if (all) break;
+  }
+  color_width_ = per > 0 ? float(double(width) * per) : 1e30f, color_slope_ = float(steepest * double(per_node_));
+}
+
+void Medium::bound() {
+  const size_t n = lines_.size();
+  for (const Line& l : lines_) {
+    columns_.origin.push_back(l.origin), columns_.at.push_back(l.at), columns_.slope.push_back(l.slope), columns_.curve.push_back(l.curve);
+    const float width = l.hi - l.lo, top = l.curve < 0 ? std::clamp(-l.slope / (2 * l.curve), 0.0f, width) : 0;
+    columns_.most_tau.push_back(std::max({l.at, l(l.hi), l(l.lo + top)}));
+    columns_.most_slope.push_back(std::max(std::abs(l.slope), std::abs(l.slope + 2 * l.curve * width)));
+  }
+  for (std::vector<float>* table : {&columns_.most_tau, &columns_.most_slope})
+    for (size_t width = 2, row = n; width <= n; width *= 2, row += n) {
+      table->resize(row + n);
+      for (size_t i = 0; i + width <= n; ++i) (*table)[row + i] = std::max((*table)[row - n + i], (*table)[row - n + i + width / 2]);
+    }
 }
 
 void Medium::slice() {
@@ -120,7 +194,7 @@ void Medium::slice() {
   slice_lo_ = n > 1 ? lines_.front().hi : 0;
   const float top = n > 1 ? lines_.back().lo : 0;
   per_slice_ = top > slice_lo_ ? float(slices) / (top - slice_lo_) : 0;
-  first_.resize(size_t(slices) + 1);
+  first_.resize(size_t(slices) + 2);  // one more: vectors load two at once
   size_t line = 0;
   for (int s = 0; s <= slices; ++s) {
     // A line earlier than needed costs a step; one later would be wrong.
@@ -130,35 +204,10 @@ void Medium::slice() {
   }
 }
 
-void Medium::bounds() {
-  const size_t n = lines_.size();
-  std::vector<float> tau(n), slope(n), color(n);
-  for (size_t i = 0; i < n; ++i) {
-    const Line& l = lines_[i];
-    tau[i] = std::max(l.at.tau, l(l.hi).tau);
-    slope[i] = std::abs(l.slope.tau);
-    color[i] = std::max({std::abs(l.slope.r), std::abs(l.slope.g), std::abs(l.slope.b)});
-  }
-  const auto build = [n](std::vector<float> first, std::vector<std::vector<float>>& out) {
-    out.push_back(std::move(first));
-    for (size_t k = 0, width = 2; width <= n; ++k, width *= 2) {
-      std::vector<float> next(n - width + 1);
-      for (size_t i = 0; i < next.size(); ++i) next[i] = std::max(out[k][i], out[k][i + width / 2]);
-      out.push_back(std::move(next));
-    }
-  };
-  build(std::move(tau), tau_), build(std::move(slope), slope_), build(std::move(color), color_slope_);
-}
-
-float Medium::most(const std::vector<std::vector<float>>& table, float lo, float hi) const {
-  const size_t a = size_t(line_of(lo)), b = std::max(a, size_t(line_of(hi)));
+float Medium::most(const std::vector<float>& table, float lo, float hi) const {
+  const size_t n = lines_.size(), a = size_t(line_of(lo)), b = std::max(a, size_t(line_of(hi)));
   const size_t k = size_t(std::bit_width(b - a + 1) - 1);
-  return std::max(table[k][a], table[k][b + 1 - (size_t(1) << k)]);
+  return std::max(table[k * n + a], table[k * n + b + 1 - (size_t(1) << k)]);
 }
-
-bool Medium::clear(float lo, float hi) const { return !(lo <= hi) || most(tau_, lo, hi) == 0; }
-float Medium::most_tau(float lo, float hi) const { return most(tau_, lo, hi); }
-float Medium::most_slope(float lo, float hi) const { return most(slope_, lo, hi); }
-float Medium::most_color_slope(float lo, float hi) const { return most(color_slope_, lo, hi); }
 
 }  // namespace sg::volume

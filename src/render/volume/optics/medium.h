@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Medium: extinction and colour as piecewise-linear functions of the value, on as few knots as their accuracy allows.
+// Medium: extinction as parabolas over the value, on as few knots as their accuracy allows, and colour as a fine table.
 #pragma once
+#include <bit>
 #include <cstdint>
 #include <vector>
 
+#include "base/vec.h"
 #include "color/color_scale.h"
 
 namespace sg::volume {
@@ -11,20 +13,19 @@ namespace sg::volume {
 /// Emission and absorption (Max 1995): extinction tau per world length, straight colour c in linear light. C = integral of
 /// c tau exp(-integral tau).
 struct Optics {
-  float tau = 0, r = 0, g = 0, b = 0;
+  float tau = 0;
+  Vec3f color;
 };
 
-/// tau(v) and c(v): linear between knots, constant beyond the first and last. Two knots at one value make a step.
 class Medium {
  public:
-  /// The straight line of one interval: optics at `origin` plus slope times (v - origin), for v in [lo, hi].
+  /// tau = at + slope d + curve d^2, d = v - origin, for v in [lo, hi].
   struct Line {
     float lo, hi;  ///< infinite at the ends
-    float origin;
-    Optics at, slope;
-    Optics operator()(float v) const {
-      const float d = v - origin;
-      return {at.tau + slope.tau * d, at.r + slope.r * d, at.g + slope.g * d, at.b + slope.b * d};
+    float origin, at, slope, curve;
+    float operator()(float v) const {
+      const float d = v - origin, t = at + d * (slope + d * curve);
+      return t > 0 ? t : 0;
     }
   };
 
@@ -37,8 +38,8 @@ class Medium {
     double faint = 0.01;       ///< a tau that makes no difference
     double most_tau = 1e6;     ///< stands for that of opacity 1, which has none
   };
-  /// Samples -log(1 - opacity)/unit and the colour scale until straight lines between the knots are right to the accuracy. Every
-  /// point of the curve is a knot. Values that the scale does not draw have tau 0.
+  /// Samples -log(1 - opacity)/unit until parabolas between the knots are right to the accuracy. Every point of the curve is a
+  /// knot, and so is every jump of colour. Values that the scale does not draw have tau 0.
   Medium(const ColorScale& scale, const OpacityCurve& curve, const Plan& plan);
 
   /// Lines by rising value; never empty. Line i ends where line i+1 begins.
@@ -50,25 +51,69 @@ class Medium {
     while (lines_[size_t(i)].hi <= v) ++i;
     return i;
   }
-  Optics at(float v) const { return lines_[size_t(line_of(v))](v); }
+  float tau(float v) const { return lines_[size_t(line_of(v))](v); }
+  Vec3f color(float v) const {
+    const uint16_t* c = &colors_[4 * size_t(node(v))];
+    return {float(c[0]) * (1.0f / 65535), float(c[1]) * (1.0f / 65535), float(c[2]) * (1.0f / 65535)};
+  }
+  Optics at(float v) const { return {tau(v), color(v)}; }
+
   /// Is tau zero on all of [lo, hi]?
-  bool clear(float lo, float hi) const;
-  /// Largest tau and largest |d tau/d v| over [lo, hi]; a step counts with what it changes.
-  float most_tau(float lo, float hi) const;
-  float most_slope(float lo, float hi) const;
-  /// Largest |d c/d v| of a channel.
-  float most_color_slope(float lo, float hi) const;
+  bool clear(float lo, float hi) const { return !(lo <= hi) || most(columns_.most_tau, lo, hi) == 0; }
+  /// Largest tau and largest |d tau/d v| over [lo, hi].
+  float most_tau(float lo, float hi) const { return most(columns_.most_tau, lo, hi); }
+  float most_slope(float lo, float hi) const { return most(columns_.most_slope, lo, hi); }
+
+  /// Colours lie evenly on an axis: the value itself, or on log and symlog scales a piecewise-linear logarithm read off the bits of the
+  /// float. A change of the axis by `color_width` bends them by less than the accuracy.
+  float axis(float v) const {
+    if (kind_ == ScaleKind::linear) return v;
+    v += base_;
+    if (kind_ == ScaleKind::log) return v > 0 ? bit_log(v) : -1e30f;
+    const float m = bit_log(1 + std::abs(v) * per_threshold_);
+    return v < 0 ? -m : m;
+  }
+  float color_width() const { return color_width_; }
+  /// Largest |change of a colour| per change of the axis.
+  float color_slope() const { return color_slope_; }
+
+  /// For vector code: the lines by columns, and the largest tau and |slope| of 2^k lines from line i on, at [k * lines + i].
+  struct Columns {
+    std::vector<float> origin, hi, at, slope, curve, most_tau, most_slope;
+  };
+  const Columns& columns() const { return columns_; }
+  // The colours themselves (r, g, b, 0 as u16 per node), their axis, and the slices of lines.
+  static constexpr int nodes = 8192, slices = 2048;
+  bool linear() const { return kind_ == ScaleKind::linear; }
+  const uint16_t* colors() const { return colors_.data(); }
+  float first_node() const { return first_node_; }
+  float per_node() const { return per_node_; }
+  const uint16_t* first_lines() const { return first_.data(); }
+  float slice_lo() const { return slice_lo_; }
+  float per_slice() const { return per_slice_; }
 
  private:
-  static constexpr int slices = 2048;
+  int node(float v) const {
+    const float at = (axis(v) - first_node_) * per_node_ + 0.5f;
+    return at >= 0 ? at < float(nodes) ? int(at) : nodes : 0;
+  }
+  // log2 with straight lines between the powers of two: monotone, continuous, exactly invertible. 0 for 1.
+  static float bit_log(float v) { return float(std::bit_cast<int32_t>(v) - 0x3F800000) * 0x1p-23f; }
+  double value_on_axis(double a) const;
+  void make_lines(const ColorScale& scale, const OpacityCurve& curve, const Plan& plan);
+  void make_colors(const ColorScale& scale, const Plan& plan);
+  void bound();
   void slice();
-  void bounds();
-  float most(const std::vector<std::vector<float>>& table, float lo, float hi) const;
+  float most(const std::vector<float>& table, float lo, float hi) const;
 
   std::vector<Line> lines_;
   std::vector<uint16_t> first_;  // by equal slices of the value (and beyond them): the line in which the slice begins
   float slice_lo_ = 0, per_slice_ = 0;
-  std::vector<std::vector<float>> tau_, slope_, color_slope_;  // [k][i]: the largest of lines i .. i + 2^k
+  Columns columns_;
+
+  ScaleKind kind_ = ScaleKind::linear;
+  std::vector<uint16_t> colors_;
+  float base_ = 0, per_threshold_ = 1, first_node_ = 0, per_node_ = 0, color_width_ = 1, color_slope_ = 0;
 };
 
 }  // namespace sg::volume

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// The fast way through one volume of a lattice: neighbouring rays go together, one per vector lane.
+#pragma once
+#include <vector>
+
+#include "render/volume/lattice/lattice_volume.h"
+#include "render/volume/optics/integrate.h"
+#include "scene/camera.h"
+
+namespace sg::volume {
+
+/// What the rays of a picture share.
+struct PacketPlan {
+  struct Lamp {
+    Vec3 direction;  ///< towards the light: world, unit
+    float intensity;
+  };
+  static constexpr size_t most_lamps = 8;
+
+  const Volume& volume;
+  const Projection& projection;
+  Knobs knobs;
+  std::vector<Lamp> lamps;  ///< of a shaded volume
+  Material material;        ///< power: 32
+  // Of the integral within a tolerance:
+  const Medium* medium = nullptr;
+  Budget budget;
+  float edge = 1;
+};
+
+/// May this volume be drawn by `march_tile`: affine, linear between samples, a linear transfer table, no hidden cells, offsets
+/// of 32 bits? The others take the way of march() and maximum_along().
+bool in_packets(const PacketPlan& plan);
+
+/// Draws the pixels [x0, x1) x [y0, y1): fixed steps of volume.step, or the maximum, behind nothing and before what is in the frame
+/// (opaque surfaces by its depth). Notes depth and id where the volume takes half of the light and nothing opaque lies behind. Bytes
+/// depend neither on the borders of tiles nor on the width of vectors; knobs.simd = false takes one ray at a time.
+void march_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame);
+
+/// May this volume be drawn by `cast_tile`: as above, with whole powers of light.
+bool in_tolerant_packets(const PacketPlan& plan);
+
+/// The same within plan.budget instead of in steps. For tests: knobs.simd = false takes one ray at a time, with the same bytes.
+void cast_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame);
+
+}  // namespace sg::volume

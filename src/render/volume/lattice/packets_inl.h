@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: Apache-2.0
+// Vector code that both kinds of packets share; included once per target, after highway.h. D is the tag of a packet: one lane per ray.
+// Only IEEE operations in a fixed order, none fused: the same bits for any number of lanes.
+#if defined(SG_PACKETS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SG_PACKETS_INL_H
+#undef SG_PACKETS_INL_H
+#else
+#define SG_PACKETS_INL_H
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace sg::volume::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+template <class D>
+using IntTag = hn::RebindToSigned<D>;
+template <class D>
+using Int = hn::Vec<IntTag<D>>;
+
+template <class D>
+constexpr int lanes_of = int(hn::MaxLanes(D()));
+
+template <class D>
+HWY_INLINE hn::Vec<D> mixed(D, hn::Vec<D> a, hn::Vec<D> b, hn::Vec<D> f) {
+  return hn::Add(a, hn::Mul(f, hn::Sub(b, a)));
+}
+
+/// Truncated; |v| < 2^31 (hn::ConvertTo looks after larger ones in four more instructions).
+template <class D>
+HWY_INLINE Int<D> to_int(D, hn::Vec<D> v) {
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
+  if constexpr (lanes_of<D> == 16) return Int<D>{_mm512_cvttps_epi32(v.raw)};
+#endif
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2
+  if constexpr (lanes_of<D> == 8) return Int<D>{_mm256_cvttps_epi32(v.raw)};
+#endif
+  return hn::ConvertTo(IntTag<D>(), v);
+}
+
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
+// A gather of all lanes whose mask the compiler cannot see through: it would leave out the zeros, and then each gather waits for
+// what its register held before.
+HWY_INLINE __m512i gather_longs(const void* data, __m256i at) {
+  __mmask8 all = 0xFF;
+  asm("" : "+Yk"(all));
+  return _mm512_mask_i32gather_epi64(_mm512_setzero_si512(), all, at, data, 4);
+}
+HWY_INLINE __m512i gather_ints(const void* data, __m512i at) {
+  __mmask16 all = 0xFFFF;
+  asm("" : "+Yk"(all));
+  return _mm512_mask_i32gather_epi32(_mm512_setzero_si512(), all, at, data, 1);
+}
+#endif
+
+/// The 32-bit word that begins at byte at[n] of the data.
+template <class D>
+HWY_INLINE Int<D> gather_words(D, const void* data, Int<D> at) {
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
+  if constexpr (lanes_of<D> == 16) return Int<D>{gather_ints(data, at.raw)};
+#endif
+  return hn::GatherOffset(IntTag<D>(), static_cast<const int32_t*>(data), at);
+}
+
+/// Two values that are neighbours in memory.
+template <class D>
+struct Pair {
+  hn::Vec<D> a, b;
+};
+
+/// data[at] and data[at + 1].
+template <class D>
+HWY_INLINE Pair<D> gather_pair(D d, const float* data, Int<D> at) {
+#if HWY_TARGET <= HWY_AVX2 && HWY_ARCH_X86
+  if constexpr (lanes_of<D> >= 8) {
+    // One 64-bit load brings both; then even and odd places are told apart.
+    const hn::Repartition<int64_t, D> d64;
+    const hn::Half<IntTag<D>> half;
+    using V64 = hn::Vec<decltype(d64)>;
+    const auto below = hn::LowerHalf(half, at).raw, above = hn::UpperHalf(half, at).raw;
+#if HWY_TARGET <= HWY_AVX3
+    const V64 lo{gather_longs(data, below)}, hi{gather_longs(data, above)};
+#else
+    const auto* wide = reinterpret_cast<const long long*>(data);
+    const V64 lo{_mm256_i32gather_epi64(wide, below, 4)}, hi{_mm256_i32gather_epi64(wide, above, 4)};
+#endif
+    return {hn::ConcatEven(d, hn::BitCast(d, hi), hn::BitCast(d, lo)), hn::ConcatOdd(d, hn::BitCast(d, hi), hn::BitCast(d, lo))};
+  }
+#endif
+  return {hn::GatherIndex(d, data, at), hn::GatherIndex(d, data + 1, at)};
+}
+
+/// Small integers: one 32-bit load brings both; near the end of the array it starts earlier and is shifted.
+template <class D, class T>
+HWY_INLINE Pair<D> gather_pair(D d, const T* data, Int<D> at, Int<D> last_load) {
+  const IntTag<D> di;
+  const hn::RebindToUnsigned<D> du;
+  constexpr int bits = 8 * sizeof(T);
+  const auto byte = sizeof(T) == 2 ? hn::ShiftLeft<1>(at) : at;
+  const auto from = hn::Min(byte, last_load);
+  const auto skipped = hn::ShiftLeft<3>(hn::Sub(byte, from));
+  const auto word = hn::BitCast(
+      di, hn::Shr(hn::BitCast(du, gather_words(d, data, from)), hn::BitCast(du, skipped)));
+  if constexpr (std::is_signed_v<T>) {
+    const auto a = hn::ShiftRight<32 - bits>(hn::ShiftLeft<32 - bits>(word)),
+               b = hn::ShiftRight<32 - bits>(hn::ShiftLeft<32 - 2 * bits>(word));
+    return {hn::ConvertTo(d, a), hn::ConvertTo(d, b)};
+  } else {
+    const auto mask = hn::Set(di, (1 << bits) - 1);
+    const auto shifted = hn::BitCast(di, hn::ShiftRight<bits>(hn::BitCast(du, word)));
+    return {hn::ConvertTo(d, hn::And(word, mask)), hn::ConvertTo(d, hn::And(shifted, mask))};
+  }
+}
+
+/// A place along one axis: the cell and the fraction of its edge.
+template <class D>
+struct Place {
+  Int<D> cell;
+  hn::Vec<D> fraction;
+};
+
+/// The lattice, ready for gathers.
+template <class D, class T>
+struct Source {
+  const T* data;
+  Int<D> row, layer, last_load;
+  hn::Vec<D> top[3];
+  Int<D> last_cell[3];
+
+  HWY_INLINE explicit Source(const Voxels& voxels) : data(reinterpret_cast<const T*>(voxels.array.raw())) {
+    const D d;
+    const IntTag<D> di;
+    row = hn::Set(di, int(voxels.dims[0])), layer = hn::Set(di, int(voxels.dims[0] * voxels.dims[1]));
+    last_load = hn::Set(di, int(voxels.array.bytes()) - 4);
+    for (size_t a = 0; a < 3; ++a)
+      top[a] = hn::Set(d, float(voxels.dims[a] - 1)), last_cell[a] = hn::Set(di, int(voxels.dims[a]) - 2);
+  }
+  HWY_INLINE Place<D> place(int axis, hn::Vec<D> u) const {
+    const D d;
+    const auto x = hn::Max(hn::Zero(d), hn::Min(u, top[axis]));
+    const auto cell = hn::Min(to_int(d, x), last_cell[axis]);
+    return {cell, hn::Sub(x, hn::ConvertTo(d, cell))};
+  }
+  HWY_INLINE Int<D> offset(Int<D> i, Int<D> j, Int<D> k) const {
+    return hn::Add(i, hn::Add(hn::Mul(j, row), hn::Mul(k, layer)));
+  }
+  HWY_INLINE Pair<D> pair(Int<D> at) const {
+    if constexpr (std::is_same_v<T, float>) return gather_pair(D(), data, at);
+    else return gather_pair(D(), data, at, last_load);
+  }
+  HWY_INLINE hn::Vec<D> value(const Place<D>& x, const Place<D>& y, const Place<D>& z) const {
+    const D d;
+    const auto at = offset(x.cell, y.cell, z.cell);
+    const auto p00 = pair(at), p01 = pair(hn::Add(at, row));
+    const auto above = hn::Add(at, layer);
+    const auto p10 = pair(above), p11 = pair(hn::Add(above, row));
+    const auto v0 = mixed(d, mixed(d, p00.a, p00.b, x.fraction), mixed(d, p01.a, p01.b, x.fraction), y.fraction);
+    const auto v1 = mixed(d, mixed(d, p10.a, p10.b, x.fraction), mixed(d, p11.a, p11.b, x.fraction), y.fraction);
+    return mixed(d, v0, v1, z.fraction);
+  }
+};
+
+/// Pixels of a packet across and down.
+template <class D>
+constexpr int packet_width = lanes_of<D> >= 8 ? 4 : lanes_of<D> >= 4 ? 2 : 1;
+
+template <class DD>
+struct V3 {
+  hn::Vec<DD> x, y, z;
+};
+template <class DD>
+HWY_INLINE V3<DD> set3(DD d, Vec3 v) {
+  return {hn::Set(d, v.x), hn::Set(d, v.y), hn::Set(d, v.z)};
+}
+template <class DD>
+HWY_INLINE hn::Vec<DD> dot3(DD, const V3<DD>& a, const V3<DD>& b) {
+  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+}
+template <class DD>
+HWY_INLINE V3<DD> plus(DD, const V3<DD>& a, const V3<DD>& b, hn::Vec<DD> s) {
+  return {hn::Add(a.x, hn::Mul(b.x, s)), hn::Add(a.y, hn::Mul(b.y, s)), hn::Add(a.z, hn::Mul(b.z, s))};
+}
+template <class DD>
+HWY_INLINE void store_narrow(DD, hn::Vec<DD> v, float* to) {
+  const hn::Rebind<float, DD> df;
+  hn::StoreU(hn::DemoteTo(df, v), df, to);
+}
+
+/// The rays through the pixels from (x, y) on, as far as they lie in the tile; false when none meets the volume.
+template <class D>
+HWY_INLINE bool set_up(const PacketPlan& plan, int x, int y, int x1, int y1, const Frame& frame, RayPacket& r) {
+  constexpr int lanes = lanes_of<D>, width = packet_width<D>;
+  using DD = hn::CappedTag<double, lanes>;
+  const DD d;
+  using V = hn::Vec<DD>;
+  const Projection& p = plan.projection;
+  const Volume& v = plan.volume;
+  alignas(64) double px[lanes], py[lanes], depth[lanes];
+  for (int n = 0; n < lanes; ++n) {
+    const int i = x + n % width, j = y + n / width;
+    px[n] = i + 0.5, py[n] = j + 0.5;
+    r.inside[n] = i < x1 && j < y1;
+    r.pixel[n] = r.inside[n] ? size_t(j) * size_t(frame.width) + size_t(i) : 0;
+    depth[n] = r.inside[n] ? std::min(p.far_plane, double(frame.depth[r.pixel[n]])) : -HUGE_VAL;
+  }
+  const Mat3& m = v.to_q;
+  const V zero = hn::Zero(d);
+  bool any = false;
+  for (size_t n = 0; n < size_t(lanes); n += hn::Lanes(d)) {
+    const V sx = hn::Div(hn::Sub(hn::Load(d, px + n), hn::Set(d, 0.5 * p.width)), hn::Set(d, p.scale));
+    const V sy = hn::Div(hn::Sub(hn::Set(d, 0.5 * p.height + p.shift_y), hn::Load(d, py + n)), hn::Set(d, p.scale));
+    const V3<DD> eye = set3(d, p.eye), right = set3(d, p.right), up = set3(d, p.up), forward = set3(d, p.forward);
+    V3<DD> origin = eye, direction = forward;
+    if (p.parallel) {
+      origin = plus(d, plus(d, eye, right, sx), up, sy);
+    } else {
+      direction = plus(d, plus(d, forward, right, sx), up, sy);
+      const V length = hn::Sqrt(dot3(d, direction, direction));
+      direction = {hn::Div(direction.x, length), hn::Div(direction.y, length), hn::Div(direction.z, length)};
+    }
+    const V per_length = dot3(d, direction, forward);
+    const V first_depth = dot3(d, V3<DD>{hn::Sub(origin.x, eye.x), hn::Sub(origin.y, eye.y), hn::Sub(origin.z, eye.z)}, forward);
+    V enter = hn::Div(hn::Sub(hn::Set(d, p.near_plane), first_depth), per_length);
+    V leave = hn::Div(hn::Sub(hn::Load(d, depth + n), first_depth), per_length);
+    const V3<DD> away{hn::Sub(origin.x, hn::Set(d, v.origin.x)), hn::Sub(origin.y, hn::Set(d, v.origin.y)),
+                      hn::Sub(origin.z, hn::Set(d, v.origin.z))};
+    V start[3], along[3];
+    for (int a = 0; a < 3; ++a) {
+      const V3<DD> line = set3(d, Vec3{m.m[a][0], m.m[a][1], m.m[a][2]});
+      start[a] = dot3(d, line, away), along[a] = dot3(d, line, direction);
+      const V lo = hn::Set(d, v.lo[a]), hi = hn::Set(d, v.hi[a]);
+      const auto still = hn::Eq(along[a], zero);
+      const auto outside = hn::Or(hn::Lt(start[a], lo), hn::Gt(start[a], hi));
+      const V t0 = hn::Div(hn::Sub(lo, start[a]), along[a]), t1 = hn::Div(hn::Sub(hi, start[a]), along[a]);
+      enter = hn::IfThenElse(still, enter, hn::Max(enter, hn::Min(t0, t1)));
+      leave = hn::IfThenElse(still, leave, hn::Min(leave, hn::Max(t0, t1)));
+      leave = hn::IfThenElse(hn::And(still, outside), hn::Set(d, -HUGE_VAL), leave);
+    }
+    const auto hit = hn::Gt(leave, enter);
+    any = any || !hn::AllFalse(d, hit);
+    // A ray that misses has no steps; its places are of no account but finite.
+    const V length = hn::IfThenElseZero(hit, hn::Sub(leave, enter)), step = hn::Set(d, v.step);
+    const V steps = hn::Floor(hn::Div(length, step));
+    const V rest = hn::Max(zero, hn::Sub(length, hn::Mul(steps, step)));
+    const V half = hn::Set(d, 0.5);
+    enter = hn::IfThenElseZero(hit, enter), leave = hn::IfThenElseZero(hit, leave);
+    const V t_first = hn::Add(enter, hn::Mul(half, step)), t_last = hn::Sub(leave, hn::Mul(half, rest));
+    for (int a = 0; a < 3; ++a) {
+      store_narrow(d, hn::Add(start[a], hn::Mul(along[a], t_first)), r.first[a] + n);
+      store_narrow(d, hn::Mul(along[a], step), r.by[a] + n);
+      store_narrow(d, hn::Add(start[a], hn::Mul(along[a], t_last)), r.last[a] + n);
+      store_narrow(d, hn::Add(start[a], hn::Mul(along[a], enter)), r.entry[a] + n);
+      store_narrow(d, along[a], r.along[a] + n);
+    }
+    store_narrow(d, direction.x, r.direction[0] + n), store_narrow(d, direction.y, r.direction[1] + n);
+    store_narrow(d, direction.z, r.direction[2] + n);
+    store_narrow(d, steps, r.steps + n), store_narrow(d, rest, r.rest + n), store_narrow(d, length, r.length + n);
+    hn::Store(enter, d, r.enter + n), hn::Store(leave, d, r.leave + n);
+    hn::Store(first_depth, d, r.first_depth + n), hn::Store(per_length, d, r.per_length + n);
+  }
+  return any;
+}
+
+}  // namespace sg::volume::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

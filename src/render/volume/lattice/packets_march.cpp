@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: Apache-2.0
+// Emission and absorption along packets of rays. Every lane has its own place on its own ray: a lane in empty bricks leaps, the
+// others do not wait for it. What is to be lit is queued, so that gradients are taken of full vectors only.
+#include "render/volume/lattice/packet_rays.h"
+
+// Targets without gathers of their own share one version.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "render/volume/lattice/packets_march.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "render/volume/lattice/packet_shading_inl.h"
+#include "render/volume/lattice/packets_inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sg::volume::HWY_NAMESPACE {
+
+/// Samples between two looks at the bricks.
+constexpr int samples_per_look = 4;
+
+/// Bricks that draw nothing, ready for gathers.
+template <class D>
+struct Space {
+  const uint8_t* distance;
+  Int<D> row, layer, last[3];
+  hn::Vec<D> margin, edges[3];
+
+  HWY_INLINE explicit Space(const Volume& v) : distance(v.distance.data()) {
+    const D d;
+    const IntTag<D> di;
+    const auto& dims = v.bricks().dims;
+    row = hn::Set(di, int(dims[0])), layer = hn::Set(di, int(dims[0] * dims[1]));
+    for (size_t a = 0; a < 3; ++a) last[a] = hn::Set(di, int(dims[a]) - 1), edges[a] = hn::Set(d, float(dims[a]));
+    margin = hn::Set(d, float(std::max({v.margin.x, v.margin.y, v.margin.z})));
+  }
+};
+
+/// Where the lanes of a packet are: sample s of `end`, at first + s * by.
+template <class D>
+struct Lanes {
+  hn::Vec<D> first[3], by[3], per_by[3], s, end;
+
+  HWY_INLINE Lanes(const float (*from)[most_lanes], const RayPacket& r) {
+    const D d;
+    for (int a = 0; a < 3; ++a) {
+      first[a] = hn::Load(d, from[a]), by[a] = hn::Load(d, r.by[a]);
+      per_by[a] = hn::Div(hn::Set(d, 1.0f), by[a]);
+    }
+    s = hn::Zero(d), end = hn::Load(d, r.steps);
+  }
+  HWY_INLINE hn::Vec<D> u(int a) const { return hn::Add(first[a], hn::Mul(s, by[a])); }
+};
+
+/// Takes the lanes that are `looking` to their next sample in a brick that draws something, or to their end.
+template <class D, class T>
+HWY_INLINE void leap(const Source<D, T>& source, const Space<D>& space, Lanes<D>& lanes, hn::Mask<D> looking) {
+  const D d;
+  const IntTag<D> di;
+  const auto zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+  while (true) {
+    hn::Vec<D> brick[3];
+    auto id = hn::Zero(di);
+    for (int a = 2; a >= 0; --a) {
+      const auto cell = to_int(d, hn::Max(zero, hn::Min(lanes.u(a), source.top[a])));
+      const auto b = hn::Min(hn::ShiftRight<MinMaxBricks::shift>(cell), space.last[a]);
+      brick[a] = hn::ConvertTo(d, b);
+      id = hn::Add(id, a == 2 ? hn::Mul(b, space.layer) : a == 1 ? hn::Mul(b, space.row) : b);
+    }
+    const auto free = hn::And(gather_words(d, space.distance, id), hn::Set(di, 255));
+    looking = hn::And(looking, hn::RebindMask(d, hn::Gt(free, hn::Zero(di))));
+    if (hn::AllFalse(d, looking)) return;
+    // All bricks nearer than that are empty: leave their cube, but for a margin wider than rounding errors.
+    const auto reach = hn::ConvertTo(d, free);
+    auto out = lanes.end;
+    for (int a = 0; a < 3; ++a) {
+      const auto forth = hn::Gt(lanes.by[a], zero);
+      const auto side = hn::Add(brick[a], hn::IfThenElse(forth, reach, hn::Sub(one, reach)));
+      const auto at = hn::Add(hn::Mul(side, hn::Set(d, float(MinMaxBricks::edge))), hn::IfThenElse(forth, hn::Neg(space.margin), space.margin));
+      const auto there = hn::Mul(hn::Sub(at, lanes.first[a]), lanes.per_by[a]);
+      // Beyond the outermost bricks there is nothing else.
+      const auto open = hn::Or(hn::Or(hn::Le(side, zero), hn::Ge(side, space.edges[a])), hn::Eq(lanes.by[a], zero));
+      out = hn::IfThenElse(open, out, hn::Min(out, there));
+    }
+    const auto next = hn::Min(hn::Max(hn::Add(lanes.s, one), hn::Ceil(out)), lanes.end);
+    lanes.s = hn::IfThenElse(looking, next, lanes.s);
+    looking = hn::And(looking, hn::Lt(lanes.s, lanes.end));
+    if (hn::AllFalse(d, looking)) return;
+  }
+}
+
+/// Transfer::index, times four: where the entry's numbers begin.
+template <class D>
+struct Entries {
+  hn::Vec<D> first, per_axis, count;
+  Int<D> below_count, above, none;
+
+  HWY_INLINE explicit Entries(const LinearTable& t) {
+    const D d;
+    const IntTag<D> di;
+    first = hn::Set(d, t.first), per_axis = hn::Set(d, t.per_axis), count = hn::Set(d, float(t.count));
+    below_count = hn::Set(di, t.count - 1), above = hn::Set(di, t.count + 1), none = hn::Set(di, t.count + 2);
+  }
+  HWY_INLINE Int<D> at(hn::Vec<D> value) const {
+    const D d;
+    const IntTag<D> di;
+    const auto zero = hn::Zero(d);
+    const auto place = hn::Mul(hn::Sub(value, first), per_axis);
+    auto e = hn::Add(hn::Min(to_int(d, hn::Max(hn::Min(place, count), zero)), below_count), hn::Set(di, 1));
+    e = hn::IfThenElse(hn::RebindMask(di, hn::Gt(place, count)), above, e);
+    e = hn::IfThenElseZero(hn::RebindMask(di, hn::Ge(place, zero)), e);
+    e = hn::IfThenElse(hn::RebindMask(di, hn::Eq(value, value)), e, none);
+    return hn::ShiftLeft<2>(e);
+  }
+};
+
+/// 1 - exp(-x) for x >= 0, to a few units in the last place.
+template <class D>
+HWY_INLINE hn::Vec<D> absorbed(D d, hn::Vec<D> x) {
+  const IntTag<D> di;
+  x = hn::Min(x, hn::Set(d, 80.0f));
+  const auto k = to_int(d, hn::Add(hn::Mul(x, hn::Set(d, 1.44269504f)), hn::Set(d, 0.5f)));
+  const auto kf = hn::ConvertTo(d, k);
+  // r = x - k ln 2 in two parts; e = 1 - exp(-r) by its series.
+  const auto r = hn::Sub(hn::Sub(x, hn::Mul(kf, hn::Set(d, 0.693145752f))), hn::Mul(kf, hn::Set(d, 1.42860677e-6f)));
+  auto e = hn::Set(d, 1.0f / 5040);
+  for (const float c : {-1.0f / 720, 1.0f / 120, -1.0f / 24, 1.0f / 6, -0.5f, 1.0f}) e = hn::Add(hn::Mul(e, r), hn::Set(d, c));
+  e = hn::Mul(e, r);
+  const auto power = hn::BitCast(d, hn::ShiftLeft<23>(hn::Sub(hn::Set(di, 127), k)));
+  return hn::Add(hn::Sub(hn::Set(d, 1.0f), power), hn::Mul(power, e));
+}
+
+template <class D, class T, bool shaded>
+HWY_INLINE void march_packet(const PacketPlan& plan, const RayPacket& rays, PacketResult& result) {
+  const D d;
+  using F = hn::Vec<D>;
+  const Volume& v = plan.volume;
+  const Source<D, T> source(v.voxels);
+  const Space<D> space(v);
+  const Transfer& transfer = v.transfer[0];
+  const Entries<D> entries(transfer.linear_table());
+  const auto* steps = reinterpret_cast<const float*>(transfer.steps());
+  const bool skip = plan.knobs.skip_empty && v.any_empty;
+  const F stop = hn::Set(d, plan.knobs.stop_below), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
+
+  Lanes<D> lanes(rays.first, rays);
+  F r = hn::Zero(d), g = r, b = r, pass = one, seen_half = hn::Set(d, -1.0f);
+  ShadeQueue<D, T> queue(plan, rays, result);
+  while (true) {
+    const auto on = hn::And(hn::Lt(lanes.s, lanes.end), hn::Ge(pass, stop));
+    if (hn::AllFalse(d, on)) break;
+    if (skip) leap(source, space, lanes, on);
+    // Places do not wait for what was found at those before: lanes that are through count on.
+    for (int look = 0; look < samples_per_look; ++look) {
+      const F x = lanes.u(0), y = lanes.u(1), z = lanes.u(2);
+      const F value = source.value(source.place(0, x), source.place(1, y), source.place(2, z));
+      const auto entry = entries.at(value);
+      const Pair<D> b_pass = gather_pair(d, steps + 2, entry);
+      const auto active = hn::And(hn::Lt(lanes.s, lanes.end), hn::Ge(pass, stop));
+      const auto drawn = hn::And(active, hn::Lt(b_pass.b, one));
+      seen_half = hn::IfThenElse(hn::And(active, hn::Ge(pass, half)), lanes.s, seen_half);
+      lanes.s = hn::Add(lanes.s, one);
+      if (hn::AllFalse(d, drawn)) continue;
+      const Pair<D> r_g = gather_pair(d, steps, entry);
+      const F weight = hn::IfThenElseZero(drawn, pass);
+      const F wr = hn::Mul(weight, r_g.a), wg = hn::Mul(weight, r_g.b), wb = hn::Mul(weight, b_pass.a);
+      if constexpr (shaded) queue.push(drawn, x, y, z, value, wr, wg, wb, hn::Mul(weight, hn::Sub(one, b_pass.b)));
+      else r = hn::Add(r, wr), g = hn::Add(g, wg), b = hn::Add(b, wb);
+      pass = hn::IfThenElse(drawn, hn::Mul(pass, b_pass.b), pass);
+    }
+  }
+  alignas(64) float at_half[most_lanes], before[most_lanes];
+  hn::Store(seen_half, d, at_half), hn::Store(pass, d, before);
+
+  // The last step has what length is left.
+  const F rest = hn::Load(d, rays.rest);
+  const auto last = hn::And(hn::Gt(rest, hn::Zero(d)), hn::Ge(pass, stop));
+  if (!hn::AllFalse(d, last)) {
+    const F x = hn::Load(d, rays.last[0]), y = hn::Load(d, rays.last[1]), z = hn::Load(d, rays.last[2]);
+    const F value = source.value(source.place(0, x), source.place(1, y), source.place(2, z));
+    const auto entry = entries.at(value);
+    const auto* media = reinterpret_cast<const float*>(&transfer.medium(0));
+    const Pair<D> r_g = gather_pair(d, media, entry), b_density = gather_pair(d, media + 2, entry);
+    const auto drawn = hn::And(last, hn::Gt(b_density.b, hn::Zero(d)));
+    if (!hn::AllFalse(d, drawn)) {
+      const F alpha = absorbed(d, hn::Mul(b_density.b, rest));
+      const F weight = hn::IfThenElseZero(drawn, hn::Mul(pass, alpha));
+      const F wr = hn::Mul(weight, r_g.a), wg = hn::Mul(weight, r_g.b), wb = hn::Mul(weight, b_density.a);
+      if constexpr (shaded) queue.push(drawn, x, y, z, value, wr, wg, wb, weight);
+      else r = hn::Add(r, wr), g = hn::Add(g, wg), b = hn::Add(b, wb);
+      pass = hn::IfThenElse(drawn, hn::Mul(pass, hn::Sub(one, alpha)), pass);
+    }
+  }
+  if constexpr (shaded) queue.finish();
+  else hn::Store(r, d, result.r), hn::Store(g, d, result.g), hn::Store(b, d, result.b);
+  hn::Store(pass, d, result.transmittance);
+  for (size_t n = 0; n < hn::Lanes(d); ++n) {
+    result.surface[n] = -1;
+    if (before[n] < 0.5f) result.surface[n] = rays.enter[n] + (double(at_half[n]) + 0.5) * v.step;
+    else if (result.transmittance[n] < 0.5f) result.surface[n] = rays.leave[n] - 0.5 * double(rays.rest[n]);
+  }
+}
+
+template <class D, class T, bool shaded>
+HWY_NOINLINE void march_all(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+  constexpr int lanes = lanes_of<D>, width = packet_width<D>, height = lanes / width;
+  RayPacket rays;
+  PacketResult result;
+  for (int y = y0; y < y1; y += height)
+    for (int x = x0; x < x1; x += width) {
+      if (!set_up<D>(plan, x, y, x1, y1, frame, rays)) continue;
+      march_packet<D, T, shaded>(plan, rays, result);
+      put(plan, rays, result, lanes, frame);
+    }
+}
+
+template <class D>
+HWY_INLINE void march_with(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+  const bool shaded = plan.volume.shaded;
+  switch (plan.volume.voxels.array.type()) {
+    case ElementType::u8: return (shaded ? march_all<D, uint8_t, true> : march_all<D, uint8_t, false>)(plan, x0, y0, x1, y1, frame);
+    case ElementType::i8: return (shaded ? march_all<D, int8_t, true> : march_all<D, int8_t, false>)(plan, x0, y0, x1, y1, frame);
+    case ElementType::u16: return (shaded ? march_all<D, uint16_t, true> : march_all<D, uint16_t, false>)(plan, x0, y0, x1, y1, frame);
+    case ElementType::i16: return (shaded ? march_all<D, int16_t, true> : march_all<D, int16_t, false>)(plan, x0, y0, x1, y1, frame);
+    default: return (shaded ? march_all<D, float, true> : march_all<D, float, false>)(plan, x0, y0, x1, y1, frame);
+  }
+}
+
+void march_in_packets(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+  march_with<hn::CappedTag<float, most_lanes>>(plan, x0, y0, x1, y1, frame);
+}
+
+#if HWY_ONCE
+void march_singly(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+  march_with<hn::CappedTag<float, 1>>(plan, x0, y0, x1, y1, frame);
+}
+#endif
+
+}  // namespace sg::volume::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sg::volume {
+
+HWY_EXPORT(march_in_packets);
+
+bool in_packets(const PacketPlan& plan) {
+  const Volume& v = plan.volume;
+  const size_t bytes = v.voxels.array.bytes();
+  const bool offsets_fit = bytes >= 4 && bytes < (size_t(1) << 31) && v.voxels.array.count() < (size_t(1) << 29);
+  return v.direct && offsets_fit && plan.lamps.size() <= PacketPlan::most_lamps && plan.material.power == 32;
+}
+
+void put(const PacketPlan& plan, const RayPacket& rays, const PacketResult& result, int lanes, Frame& frame) {
+  for (int n = 0; n < lanes; ++n) {
+    if (!rays.inside[n] || !(rays.length[n] > 0)) continue;
+    const size_t p = rays.pixel[n];
+    float* out = &frame.rgba[4 * p];
+    Gathered sum{result.r[n], result.g[n], result.b[n], result.transmittance[n]};
+    sum.behind(out);
+    out[0] = sum.r, out[1] = sum.g, out[2] = sum.b, out[3] = 1 - sum.transmittance;
+    // A volume that hides what is behind it can be picked.
+    if (result.surface[n] >= 0 && !(frame.depth[p] < HUGE_VALF))
+      frame.depth[p] = float(rays.first_depth[n] + result.surface[n] * rays.per_length[n]), frame.ids[p] = plan.volume.id;
+  }
+}
+
+void march_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+  if (plan.volume.mode == VolumeItem::Mode::maximum) return maximum_tile(plan, x0, y0, x1, y1, frame);
+  if (plan.knobs.simd) return HWY_DYNAMIC_DISPATCH(march_in_packets)(plan, x0, y0, x1, y1, frame);
+  return HWY_STATIC_DISPATCH(march_singly)(plan, x0, y0, x1, y1, frame);
+}
+
+}  // namespace sg::volume
+#endif
