@@ -32,7 +32,7 @@ std::string key_of(const Stage& s, int axis) {
 
 /// Are all cells around the voxel hidden?
 bool all_hidden(const Volume& v, const std::array<size_t, 3>& at) {
-  if (v.hidden.empty()) return false;
+  if (v.hidden().empty()) return false;
   for (int corner = 0; corner < 8; ++corner) {
     size_t id = 0;
     bool exists = true;
@@ -41,7 +41,7 @@ bool all_hidden(const Volume& v, const std::array<size_t, 3>& at) {
       exists = exists && c < n;
       id = id * n + c;
     }
-    if (exists && !v.hidden[id]) return false;
+    if (exists && !v.hidden()[id]) return false;
   }
   return true;
 }

@@ -32,7 +32,7 @@ Vec3 SplatList::lattice(uint32_t voxel) const {
 float SplatList::share(const size_t at[3]) const {
   const float whole = axis_share_[0][at[0]] * axis_share_[1][at[1]] * axis_share_[2][at[2]];
   const Volume& v = stage_.volume;
-  if (v.hidden.empty()) return whole;
+  if (v.hidden().empty()) return whole;
   int cells = 0, drawn = 0;  // around the voxel
   for (int corner = 0; corner < 8; ++corner) {
     size_t id = 0;
@@ -42,7 +42,7 @@ float SplatList::share(const size_t at[3]) const {
       exists = exists && c < n;
       id = id * n + c;
     }
-    if (exists) ++cells, drawn += !v.hidden[id];
+    if (exists) ++cells, drawn += !v.hidden()[id];
   }
   return cells > 0 ? whole * float(drawn) / float(cells) : whole;
 }
@@ -74,9 +74,9 @@ void SplatList::collect(bool classified) {
           for (size_t j = 0; j < n[1]; ++j)
             for (size_t i = 0; i < n[0]; ++i) {
               // A kernel reaches less than a brick: with all bricks around clear, no sheet's value can be seen there.
-              const size_t brick = v.bricks.id(std::min(i >> MinMaxBricks::shift, v.bricks.dims[0] - 1),
-                                               std::min(j >> MinMaxBricks::shift, v.bricks.dims[1] - 1),
-                                               std::min(k >> MinMaxBricks::shift, v.bricks.dims[2] - 1));
+              const size_t brick = v.bricks().id(std::min(i >> MinMaxBricks::shift, v.bricks().dims[0] - 1),
+                                               std::min(j >> MinMaxBricks::shift, v.bricks().dims[1] - 1),
+                                               std::min(k >> MinMaxBricks::shift, v.bricks().dims[2] - 1));
               if (composite && v.distance[brick] > (classified ? 0 : 1)) {
                 i |= MinMaxBricks::edge - 1;
                 continue;

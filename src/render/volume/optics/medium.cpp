@@ -110,6 +110,7 @@ void Medium::make_lines(const ColorScale& scale, const OpacityCurve& curve, cons
   }
   if (lines_.empty()) lines_.push_back({0, 0, 0, float(tau.at(lo).tau), 0, 0});
   bound();
+  top_ = lines_.back().hi, accuracy_ = float(plan.accuracy), faint_ = float(plan.faint);
   // Beyond the data nothing is asked, but for rounding errors.
   lines_.front().lo = -HUGE_VALF, lines_.back().hi = HUGE_VALF;
   for (const Line& l : lines_) columns_.hi.push_back(l.hi);
@@ -187,6 +188,27 @@ void Medium::bound() {
       table->resize(row + n);
       for (size_t i = 0; i + width <= n; ++i) (*table)[row + i] = std::max((*table)[row - n + i], (*table)[row - n + i + width / 2]);
     }
+}
+
+std::vector<Medium::Straight> Medium::straight() const {
+  std::vector<Straight> out;
+  for (const Line& l : lines_) {
+    const float lo = l.origin, hi = std::min(l.hi, top_), width = hi - lo;
+    // A parabola leaves its chord by curve width^2 / 4.
+    const float tau = std::max({l.at, l(hi), faint_}), bend = 0.25f * std::abs(l.curve) * width * width;
+    const float parts = std::max(std::sqrt(bend / (2 * accuracy_ * tau)), std::abs(axis(hi) - axis(lo)) / color_width_);
+    const int n = l.dark() ? 1 : std::clamp(int(std::ceil(parts)), 1, 1024);
+    for (int i = 0; i < n; ++i) {
+      const float a = lo + width * (float(i) / float(n)), b = i + 1 == n ? hi : lo + width * (float(i + 1) / float(n));
+      const float w = b - a;
+      if (!(w > 0) && !(n == 1 && lines_.size() == 1)) continue;
+      // Colours from just inside: at a knot they may jump.
+      const Vec3f ca = color(a + 1e-3f * w), cb = color(b - 1e-3f * w);
+      const float ta = l(a), tb = l(b), per = w > 0 ? 1 / w : 0;
+      out.push_back({a, b, {ta, ca}, {(tb - ta) * per, (cb - ca) * per}});
+    }
+  }
+  return out;
 }
 
 void Medium::slice() {

@@ -23,6 +23,7 @@ class Medium {
   struct Line {
     float lo, hi;  ///< infinite at the ends
     float origin, at, slope, curve;
+    bool dark() const { return at == 0 && slope == 0 && curve == 0; }
     float operator()(float v) const {
       const float d = v - origin, t = at + d * (slope + d * curve);
       return t > 0 ? t : 0;
@@ -57,6 +58,13 @@ class Medium {
     return {float(c[0]) * (1.0f / 65535), float(c[1]) * (1.0f / 65535), float(c[2]) * (1.0f / 65535)};
   }
   Optics at(float v) const { return {tau(v), color(v)}; }
+
+  /// The whole of it in straight lines, over the values in the data: for those who integrate over the value itself.
+  struct Straight {
+    float lo, hi;
+    Optics at, slope;  ///< at lo, and per value
+  };
+  std::vector<Straight> straight() const;
 
   /// Is tau zero on all of [lo, hi]?
   bool clear(float lo, float hi) const { return !(lo <= hi) || most(columns_.most_tau, lo, hi) == 0; }
@@ -109,6 +117,7 @@ class Medium {
   std::vector<Line> lines_;
   std::vector<uint16_t> first_;  // by equal slices of the value (and beyond them): the line in which the slice begins
   float slice_lo_ = 0, per_slice_ = 0;
+  float top_ = 0, accuracy_ = 0, faint_ = 0;  // largest value; of the plan
   Columns columns_;
 
   ScaleKind kind_ = ScaleKind::linear;
