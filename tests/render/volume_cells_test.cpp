@@ -52,6 +52,34 @@ TEST_CASE("volume cells: curved cells add up to the chord, and a linear field to
   }
 }
 
+TEST_CASE("volume cells: fields in curved cells are read in reference space") {
+  // A quadratic field is in the space of straight-sided quadratic cells: exact, however few they are.
+  const auto quadratic = [](Vec3 p) { return 1 + p.x * p.x - 2 * p.y * p.z + 3 * p.z * p.z + p.x; };
+  for (CellType kind : {CellType::quadratic_tetra, CellType::triquadratic_hexahedron, CellType::lagrange_hexahedron}) {
+    CAPTURE(name_of(kind));
+    for (const Warp& warp : {Warp(straight), Warp(bent)}) {
+      const bool exact = warp({.5, .5, .3}).x == .5;
+      const VolumeItem item = item_of(with_field(cube(kind, exact ? 1 : 3, warp), exact ? Function(quadratic) : Function(linear)));
+      Context context;
+      const auto source = volume::cell_source(item, context);
+      const auto walker = source->walker();
+      for (const TestRay& ray : some_rays(40)) {
+        const auto [a, b] = chord(ray.o, ray.d);
+        if (b - a < 1e-3) continue;
+        double truth = 0;
+        constexpr int n = 2000;
+        for (int i = 0; i < n; ++i) {
+          const Vec3 x = ray.o + ray.d * (a + (i + 0.5) / n * (b - a));
+          truth += (exact ? quadratic(x) : linear(x)) * (b - a) / n;
+        }
+        const RaySum r = gather(*source, *walker, ray.o, ray.d);
+        CHECK(r.length == doctest::Approx(b - a).epsilon(1e-9));
+        CHECK(r.integral == doctest::Approx(truth).epsilon(exact ? 1e-4 : 3e-4));
+      }
+    }
+  }
+}
+
 TEST_CASE("volume cells: the same curved field on cells of every kind has the same integrals, better with more cells") {
   const std::vector<TestRay> rays = some_rays(40);
   for (CellType kind : linear_kinds()) {

@@ -31,7 +31,7 @@ void trilinear_frame(const std::vector<Vec3>& p, Vec3 r, Vec3& at, Vec3 column[3
 
 }  // namespace
 
-CellCurve::CellCurve(const CellVolume& volume) : volume_(volume), map_(volume.data), reader_(volume.data) {}
+CellCurve::CellCurve(const CellVolume& volume) : volume_(volume), map_(volume.curved ? volume.curved : volume.data), reader_(volume.data) {}
 
 void CellCurve::open(uint32_t cell, float& lowest, float& highest) {
   if (cell != cell_) {
@@ -43,12 +43,13 @@ void CellCurve::open(uint32_t cell, float& lowest, float& highest) {
     const size_t n = ids.size();
     at_.resize(n), dn_.resize(n), f_.resize(n), n_.resize(n);
     lowest_ = HUGE_VALF, highest_ = -HUGE_VALF;
+    const std::span<const float> values = volume_.curved ? volume_.curved_values : volume_.values;
     const bool voxel = reader.type() == CellType::voxel;
     Box3 box;
     for (size_t k = 0; k < n; ++k) {
       const size_t from = voxel ? size_t(hexahedron_bits[k]) : k;
       at_[k] = at[from] - volume_.mesh->origin;
-      const float f = volume_.values[size_t(ids[from])];
+      const float f = values[size_t(ids[from])];
       f_[k] = double(f);
       lowest_ = std::min(lowest_, f), highest_ = std::max(highest_, f);
       box.add(at_[k]);
@@ -74,7 +75,10 @@ void CellCurve::open(uint32_t cell, float& lowest, float& highest) {
         kind_ = Kind::leaf;
     } else {
       kind_ = Kind::shape;
-      shape_ = CellShape::find(reader.type(), n);
+      shape_ = CellShape::find(reader.type(), n, reader.orders());
+      weights_.assign(reader.weights().begin(), reader.weights().end());
+      // Functions of curved cells reach beyond their nodes.
+      if (is_high_order(reader.type())) lowest_ = -HUGE_VALF, highest_ = HUGE_VALF;
     }
   }
   guess_ = shape_ ? shape_->center() : Vec3(0.5, 0.5, 0.5);
@@ -88,7 +92,8 @@ bool CellCurve::invert(Vec3 at) {
     for (int i = 0; i < 12; ++i) {
       Vec3 x, column[3], step;
       if (shape_) {
-        shape_->functions(r, n_.data(), dn_.data());
+        const CellGeometry geometry{shape_, at_, weights_, n_.data(), dn_.data()};
+        geometry.functions(r);
         x = column[0] = column[1] = column[2] = Vec3();
         for (size_t k = 0; k < at_.size(); ++k) {
           x += at_[k] * n_[k];
@@ -126,7 +131,8 @@ float CellCurve::value(Vec3 at) {
     for (size_t k = 0; k < f_.size(); ++k) f += n_[k] * f_[k];
   } else if (invert(at)) {
     if (shape_) {
-      shape_->values(guess_, n_.data());
+      const CellGeometry geometry{shape_, at_, weights_, n_.data(), dn_.data()};
+      geometry.values(guess_);
       for (size_t k = 0; k < f_.size(); ++k) f += n_[k] * f_[k];
     } else {
       f = trilinear(f_, guess_);

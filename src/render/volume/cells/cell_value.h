@@ -17,7 +17,7 @@ namespace sg::volume {
 class CellCurve {
  public:
   explicit CellCurve(const CellVolume& volume);
-  /// Opens a cell; the smallest and largest value of its corners.
+  /// Opens a cell (of CellVolume::curved, if there is one); no value lies outside [lowest, highest].
   void open(uint32_t cell, float& lowest, float& highest);
   /// Appends stretches over [from, to] of the ray x + t d (x relative to TetMesh::origin) that carry `mark`.
   void add(Vec3 x, Vec3 d, double from, double to, uint64_t mark, std::vector<Stretch>& out);
@@ -37,7 +37,7 @@ class CellCurve {
   Kind kind_ = Kind::box;
   const CellShape* shape_ = nullptr;
   std::vector<Vec3> at_, dn_;  // of the open cell's points, relative to the mesh's origin; in the order of hexahedra
-  std::vector<double> f_, n_;
+  std::vector<double> f_, n_, weights_;
   float lowest_ = 0, highest_ = 0;
   Vec3 rows_[3];  // box: reference coordinates = rows . (x - at_[0])
   Vec3 guess_;

@@ -105,10 +105,10 @@ struct TetRays::Scratch {
 };
 
 bool TetRays::fits(const CellVolume& volume) {
-  if (volume.by_cell || volume.mesh->all_tets) return true;
-  const Plane<uint32_t>& cells = volume.mesh->cells;
-  for (size_t t = 1; t < cells.size(); ++t)
-    if (cells[t] == cells[t - 1]) return false;
+  if (volume.by_cell) return true;
+  if (volume.mesh->all_tets && volume.part_of.empty()) return true;
+  for (size_t t = 0; t < volume.mesh->size(); ++t)
+    if (!volume.linear(t)) return false;
   return true;
 }
 
@@ -193,9 +193,13 @@ void TetRays::draw(int x0, int y0, int width, int height, const float* limit, Pi
   thread_local Scratch s;
   find_hits(x0, y0, width, height, s);
   const TetMesh& mesh = *volume_.mesh;
-  const TetTables tables{
-      mesh.links.data(), eye_[0],    volume_.by_cell ? volume_.values.data() : nullptr, mesh.cells.empty() ? nullptr : mesh.cells.data(),
-      &medium_,          light_ ? &*light_ : nullptr,          stop_below_};
+  const TetTables tables{mesh.links.data(),
+                         eye_[0],
+                         volume_.by_cell ? volume_.values.data() : nullptr,
+                         mesh.cells.empty() ? nullptr : mesh.cells.data(),
+                         &medium_,
+                         light_ ? &*light_ : nullptr,
+                         stop_below_};
   constexpr uint8_t gone = 2;  // in Hit::used: this end of a path is done with
   TetPacket p;
   for (int by = 0; by < height; by += block)

@@ -292,10 +292,10 @@ HWY_ATTR void walk_lanes(const TetTables& tables, TetPacket& p, size_t lane) {
     return hn::Add(hn::Add(hn::Mul(u, a.z), hn::Mul(v, b.z)), hn::Mul(w, c.z));
   };
   const Slice slice{medium};
-  // The gradient at the face behind, in the lanes that have asked for it.
+  // The light at the face behind, in the lanes that have asked for it.
   const TetLight* light = tables.light;
   const F direction[3] = {hn::Load(d, p.direction[0] + lane), hn::Load(d, p.direction[1] + lane), hn::Load(d, p.direction[2] + lane)};
-  F before[3] = {zero, zero, zero};
+  Shine before{one, zero};
   M known_before = hn::Lt(one, zero);
 
   Corner a = corner(hn::Load(di, p.id[0] + lane)), b = corner(hn::Load(di, p.id[1] + lane)), c = corner(hn::Load(di, p.id[2] + lane));
@@ -335,16 +335,19 @@ HWY_ATTR void walk_lanes(const TetTables& tables, TetPacket& p, size_t lane) {
     if (!hn::AllFalse(d, lit)) {
       Shine shine{one, zero};
       if (light) {
-        F g[3], middle[3];
+        // The mean of the light on the two faces; in front of the first segment of a row there is none yet.
+        F g[3];
         const I of[3] = {hn::Add(hn::ShiftLeft<1>(a.id), a.id), hn::Add(hn::ShiftLeft<1>(b.id), b.id),
                          hn::Add(hn::ShiftLeft<1>(c.id), c.id)};
         for (int k = 0; k < 3; ++k) {
           g[k] = zero;
           for (int v = 0; v < 3; ++v) g[k] = hn::Add(g[k], hn::Mul(weight[v], hn::GatherIndex(d, light->gradients + k, of[v])));
-          middle[k] = hn::IfThenElse(known_before, hn::Mul(hn::Set(d, 0.5f), hn::Add(g[k], before[k])), g[k]);
-          before[k] = g[k];
         }
-        shine = shine_at(*light, middle, direction, lit);
+        const Shine here = shine_at(*light, g, direction, lit);
+        const F half_of = hn::Set(d, 0.5f);
+        shine.diffuse = hn::IfThenElse(known_before, hn::Mul(half_of, hn::Add(before.diffuse, here.diffuse)), here.diffuse);
+        shine.specular = hn::IfThenElse(known_before, hn::Mul(half_of, hn::Add(before.specular, here.specular)), here.specular);
+        before = here;
       }
       gather(medium, g0, g1, hn::Mul(hn::Sub(to, from), length), slice0, slice1, slice, lit, light ? &shine : nullptr, sum);
       const M now = hn::And(hn::And(lit, hn::Lt(sum.pass, hn::Set(d, 0.5f))), hn::Ne(half, half));
