@@ -26,6 +26,7 @@ class CellCurve {
   enum class Kind { box, hexahedron, shape, polyhedron, leaf };
   float value(Vec3 at);
   bool invert(Vec3 at);
+  bool open_affine();
   void fit(Vec3 x, Vec3 d, double from, double to, const float ends[2], int depth, uint64_t mark, std::vector<Stretch>& out);
 
   const CellVolume& volume_;
@@ -39,7 +40,8 @@ class CellCurve {
   std::vector<Vec3> at_, dn_;  // of the open cell's points, relative to the mesh's origin; in the order of hexahedra
   std::vector<double> f_, n_, weights_;
   float lowest_ = 0, highest_ = 0;
-  Vec3 rows_[3];  // box: reference coordinates = rows . (x - at_[0])
+  Vec3 rows_[3], first_;                 // box, and affine shapes: reference coordinates = first + rows . (x - at_[0])
+  bool affine_ = false, cubic_ = false;  // shapes: straight; and no more than cubic along a line
   Vec3 guess_;
   double size_ = 1;
 };

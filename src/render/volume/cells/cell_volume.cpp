@@ -14,9 +14,9 @@ namespace sg::volume {
 
 namespace {
 
-constexpr double straight_enough = 1.0 / 2048;  // of the mesh's size
+constexpr double straight_enough = 1.0 / 512;  // of the mesh's size
 constexpr int most_halvings = 5;
-constexpr size_t most_parts = 4'000'000;
+constexpr size_t most_parts = 1'000'000;
 
 /// How many cells tessellate() makes of the mesh at a level, and how many of the cells are curved.
 struct Parts {

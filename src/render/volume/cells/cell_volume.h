@@ -44,8 +44,8 @@ struct CellVolume {
 };
 
 /// Reads the item and cuts its mesh, or takes the mesh from the dataset's memo. Cells that are ghosts, blanked, or have a corner without
-/// a finite value or place draw nothing. The shape of curved cells is divided until it departs from straight ones by less than 1/2048 of
-/// the mesh's size (or there would be more than 4 million parts); their fields are not, they are read in reference space. Cell fields of
+/// a finite value or place draw nothing. The shape of curved cells is divided until it departs from straight ones by less than 1/512 of
+/// the mesh's size (or there would be more than a million parts); their fields are not, they are read in reference space. Cell fields of
 /// AMR grids become continuous: means and planes through the cells around each corner (see contour_amr.h); others are constant in each
 /// cell. Lattices are hexahedra. Throws Error(usage) for what has no volume.
 CellVolume make_cell_volume(const VolumeItem& item, Context& context);
