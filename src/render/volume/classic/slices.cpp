@@ -102,6 +102,7 @@ struct Pixel {
   float back[4] = {0, 0, 0, 0};  // back to front
   double total = 0, length = 0;  // value * length, length
   float best = NAN;
+  double resume = -HUGE_VAL;  // front to back: nothing is seen before this length
 };
 
 class Tile {
@@ -121,7 +122,8 @@ class Tile {
       }
     first_ = nearest, last_ = farthest;
     composite_ = s_.item.mode == RayFunction::composite;
-    if (s_.projection.parallel) lit_ = s_.lit(s_.projection.forward);
+    skip_ = composite_ && k_.options.front_to_back;
+    lit_ = s_.lit(s_.projection.forward);
   }
 
   void draw() {
@@ -190,13 +192,40 @@ class Tile {
       Pixel& p = at(x, y);
       double from, to, sample;
       if ((composite_ && p.sum.transmittance < opaque_below) || !piece(slab, p.ray, from, to, sample)) continue;
-      live_[n] = &p, length_[n] = float(to - from), x_[n] = x, y_[n] = y;
-      for (int a = 0; a < 3; ++a) place_[a][n] = p.ray.start[a] + sample * p.ray.along[a];
-      // The axis stack interpolates within its slice, and only there.
-      if (k_.axis >= 0) place_[k_.axis][n] = slab.plane;
+      if (skip_ && sample < p.resume) continue;
+      for (int a = 0; a < 3; ++a) {
+        place_[a][n] = p.ray.start[a] + sample * p.ray.along[a];
+        // The axis stack interpolates within its slice, and only there.
+        if (a == k_.axis) place_[a][n] = slab.plane;
+        u_[a][n] = s_.volume.u(a, place_[a][n]);
+      }
+      if (skip_ && clear(p, n)) continue;
+      live_[n] = &p, length_[n] = float(to - from);
       if (++n == run_length) run(n), n = 0;
     }
     if (n > 0) run(n);
+  }
+
+  /// Is the sample's brick empty? Then so is the ray up to where it leaves the cube of empty bricks around, but for a margin wider than
+  /// rounding errors.
+  bool clear(Pixel& p, int n) const {
+    const Volume& v = s_.volume;
+    size_t brick[3];
+    for (size_t a = 0; a < 3; ++a) brick[a] = std::min(size_t(u_[a][n]) >> MinMaxBricks::shift, v.bricks().dims[a] - 1);
+    const int d = v.distance[v.bricks().id(brick[0], brick[1], brick[2])];
+    if (d == 0) return false;
+    double out = HUGE_VAL;
+    for (int a = 0; a < 3; ++a) {
+      const double along = p.ray.along[a];
+      if (along == 0) continue;
+      const ptrdiff_t border = ptrdiff_t(brick[a]) + (along > 0 ? d : 1 - d);
+      if (border < 0 || border > ptrdiff_t(v.bricks().dims[size_t(a)])) continue;
+      // The axis stack looks at its plane, up to half a slice from where the ray is.
+      const double slack = v.margin[a] + (a == k_.axis ? v.cell_length(a, place_[a][n]) : 0), q = v.border[a][size_t(border)];
+      out = std::min(out, (q + (along > 0 ? -slack : slack) - p.ray.start[a]) / along);
+    }
+    p.resume = out;
+    return true;
   }
 
   void run(int count) {
@@ -204,7 +233,7 @@ class Tile {
     Run run;
     for (int n = 0; n < run_length; ++n) {
       const int m = n < count ? n : 0;
-      run.ux[n] = v.u(0, place_[0][m]), run.uy[n] = v.u(1, place_[1][m]), run.uz[n] = v.u(2, place_[2][m]);
+      run.ux[n] = u_[0][m], run.uy[n] = u_[1][m], run.uz[n] = u_[2][m];
     }
     finish_values(v, run);
     if (!composite_) return collect(run, count);
@@ -223,7 +252,7 @@ class Tile {
       const Transfer::Medium& medium = s_.transfer().medium(run.entry[n]);
       Shade shade;
       if (v.shaded) {
-        if (!s_.projection.parallel) lit_ = s_.lit(s_.projection.ray(x_[n] + 0.5, y_[n] + 0.5).direction);
+        if (!s_.projection.parallel) s_.light(s_.to_world * live_[n]->ray.along, lit_);
         shade = shade_sample(s_, {g.x[m], g.y[m], g.z[m]}, g.per_cell[m], lit_);
       }
       const float alpha = alpha_of(medium.density * length_[n]);
@@ -254,13 +283,13 @@ class Tile {
   const Stage& s_;
   int x0_, y0_, x1_, y1_;
   double first_ = 0, last_ = 0;
-  bool composite_ = true, rising_ = true;
+  bool composite_ = true, skip_ = true, rising_ = true;
   std::vector<Pixel> pixels_;
   LitRay lit_;
   Pixel* live_[run_length];
   float length_[run_length];
   double place_[3][run_length];
-  int x_[run_length], y_[run_length];
+  float u_[3][run_length];
 };
 
 }  // namespace

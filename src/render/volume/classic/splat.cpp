@@ -37,7 +37,7 @@ class Band {
     sums_.resize(n);
     composite_ = s_.item.mode == RayFunction::composite;
     if (!composite_) best_.assign(n, NAN), totals_.assign(n, {0, 0});
-    if (s_.projection.parallel) lit_ = s_.lit(s_.projection.forward);
+    lit_ = s_.lit(s_.projection.forward);
   }
 
   /// Voxels come by depth: a sheet is done when the next kernel begins behind it. As many are open as a kernel is deep.
@@ -241,7 +241,7 @@ class Band {
     gradients(
         s_.volume, run_, which, waiting_, [](int, int) { return 0.0; }, g);
     for (int n = 0; n < waiting_; ++n) {
-      if (!s_.projection.parallel) lit_ = s_.lit(s_.projection.ray(x_[n] + 0.5, y_[n] + 0.5).direction);
+      if (!s_.projection.parallel) s_.light(s_.projection.ray(x_[n] + 0.5, y_[n] + 0.5).direction, lit_);
       const Shade shade = shade_sample(s_, {g.x[n], g.y[n], g.z[n]}, g.per_cell[n], lit_);
       const Transfer::Medium& m = s_.transfer().medium(run_.entry[n]);
       const float alpha = alpha_of(m.density * length_[n]), white = alpha * shade.flash, color = alpha * shade.diffuse;
@@ -278,7 +278,7 @@ void shade_voxels(Job& job) {
         LitRay lit = s.lit(s.projection.forward);
         for (size_t i = begin; i < end; ++i) {
           const Vec3 q = job.list.q(uint32_t(i));
-          if (!s.projection.parallel) lit = s.lit(s.sight(s.world(q)));
+          if (!s.projection.parallel) s.light(s.sight(s.world(q)), lit);
           const PointGradient g = gradient_at_sample(s.volume, size_t(q.x), size_t(q.y), size_t(q.z));
           job.shades[i] = shade_sample(s, g.q, g.per_cell, lit);
         }
