@@ -97,8 +97,11 @@ class Alone {
       const bool in_steps = composite ? item.sampling.classify == "post" && !item.sampling.jitter : item.mode == RayFunction::maximum;
       if (by_tolerance && in_tolerant_packets(*plan_)) packets_ = cast_tile;
       else if (!by_tolerance && in_steps && in_packets(*plan_)) packets_ = march_tile;
-    } else if (by_tolerance && !item.shaded && !bricked_of(*item.data) && TetRays::fits(cell_volume_of(*v.source))) {
+    } else if (by_tolerance && !bricked_of(*item.data) && TetRays::fits(cell_volume_of(*v.source))) {
       tets_.emplace(cell_volume_of(*v.source), picture.projection, *v.medium, context, v.budget.stop_below);
+      std::vector<TetLight::Lamp> lamps;
+      for (const Picture::Lamp& l : picture.lamps) lamps.push_back({Vec3f(l.direction), l.intensity});
+      if (item.shaded) tets_->light(std::move(lamps), item.light, v.per_scale);
     }
   }
 
