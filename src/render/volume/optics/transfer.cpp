@@ -65,6 +65,13 @@ Transfer::Transfer(const ColorScale& scale, const OpacityCurve& curve, double un
   const ColorTable colors = color_table(scale);
   steps_.resize(size_t(count_) + 3), media_.resize(size_t(count_) + 3), drawn_before_.resize(size_t(count_) + 4);
   const double entry = 1 / double(per_axis_);
+  // Spikes of opacity narrower than the table.
+  std::vector<uint8_t> thin(size_t(count_) + 3);
+  for (size_t k = 0; k + 2 < curve.points.size(); ++k) {
+    const float from = float(curve.points[k].x - base), to = float(curve.points[k + 2].x - base);
+    if (!(curve.points[k + 1].y > 0 && (axis(to) - axis(from)) * per_axis_ < 2)) continue;
+    for (int i = std::max(index(from) - 1, 0); i <= std::min(index(to) + 1, count_ + 1); ++i) thin[size_t(i)] = 1;
+  }
   const double beyond = std::max(1e-3 * (last - first), 1e-9 * std::max(std::abs(first), std::abs(last)));
   for (int i = 0; i < count_ + 3; ++i) {
     double value = double(value_on_axis(double(first_) + (double(i) - 0.5) * entry)) + base;
@@ -88,12 +95,7 @@ Transfer::Transfer(const ColorScale& scale, const OpacityCurve& curve, double un
     const double pass = exp_negative(density * step), alpha = 1 - pass;
     media_[size_t(i)] = {color.x, color.y, color.z, float(std::min(density, 1e30))};
     steps_[size_t(i)] = {float(color.x * alpha), float(color.y * alpha), float(color.z * alpha), float(pass)};
-    drawn_before_[size_t(i) + 1] = drawn_before_[size_t(i)] + (density > 0);
-  }
-  for (size_t k = 0; k < curve.points.size(); ++k) {
-    if (!(curve.points[k].y > 0)) continue;
-    const double from = curve.points[k > 0 ? k - 1 : 0].x, to = curve.points[std::min(k + 1, curve.points.size() - 1)].x;
-    if (from < to && std::abs(axis(float(to - base)) - axis(float(from - base))) * per_axis_ < 2) thin_.push_back({float(from - base), float(to - base)});
+    drawn_before_[size_t(i) + 1] = drawn_before_[size_t(i)] + (density > 0 || thin[size_t(i)]);
   }
 }
 
@@ -103,10 +105,7 @@ bool Transfer::clear(float lo, float hi) const {
   const float slack = 1e-6f * (std::abs(lo) + std::abs(hi));
   if (!std::isfinite(slack)) return drawn_before_.back() == 0;
   const int a = index(lo - slack), b = index(hi + slack);
-  if (drawn_before_[size_t(b) + 1] != drawn_before_[size_t(a)]) return false;
-  for (const Vec2f& t : thin_)
-    if (t.x <= hi && t.y >= lo) return false;
-  return true;
+  return drawn_before_[size_t(b) + 1] == drawn_before_[size_t(a)];
 }
 
 }  // namespace sg::volume

@@ -47,6 +47,8 @@ class Transfer {
   LinearTable linear_table() const { return {first_, per_axis_, count_}; }
   const Step* steps() const { return steps_.data(); }
   const Medium& medium(int index) const { return media_[size_t(index)]; }
+  /// May values of this entry draw something? True also for spikes of opacity too narrow for the table.
+  bool draws(int entry) const { return drawn_before_[size_t(entry) + 1] != drawn_before_[size_t(entry)]; }
   /// Does every value in [lo, hi] (stored) draw nothing?
   bool clear(float lo, float hi) const;
 
@@ -67,7 +69,6 @@ class Transfer {
   std::vector<Step> steps_;
   std::vector<Medium> media_;
   std::vector<uint32_t> drawn_before_;  // entries before this one that draw something
-  std::vector<Vec2f> thin_;             // stored values of spikes narrower than two entries, which the table may miss
 };
 
 }  // namespace sg::volume
