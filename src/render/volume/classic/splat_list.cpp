@@ -75,8 +75,8 @@ void SplatList::collect(bool classified) {
             for (size_t i = 0; i < n[0]; ++i) {
               // A kernel reaches less than a brick: with all bricks around clear, no sheet's value can be seen there.
               const size_t brick = v.bricks().id(std::min(i >> MinMaxBricks::shift, v.bricks().dims[0] - 1),
-                                               std::min(j >> MinMaxBricks::shift, v.bricks().dims[1] - 1),
-                                               std::min(k >> MinMaxBricks::shift, v.bricks().dims[2] - 1));
+                                                 std::min(j >> MinMaxBricks::shift, v.bricks().dims[1] - 1),
+                                                 std::min(k >> MinMaxBricks::shift, v.bricks().dims[2] - 1));
               if (composite && v.distance[brick] > (classified ? 0 : 1)) {
                 i |= MinMaxBricks::edge - 1;
                 continue;
