@@ -115,6 +115,8 @@ class Band {
     const double base = double(s_.volume.base);
     if (s_.item.mode == RayFunction::sum) return total + base * length;
     if (s_.item.mode == RayFunction::average) return length > 0 ? total / length + base : NAN;
+    // Rays that only touch the kernels' fringe show its mean.
+    if (!(best_[i] == best_[i])) return length > 0 ? total / length + base : NAN;
     return double(best_[i]) + base;
   }
 
