@@ -92,7 +92,7 @@ Task new_transfer_function(size_t n) {
             return [=] {
               item->opacity.points[3].x -= 1e-3;
               const volume::Volume v = volume::prepare(*item, 1, {});
-              return double(v.bricks().size() - size_t(std::count(v.distance.begin(), v.distance.end(), 0)));
+              return double(v.fine().size() - size_t(std::count(v.distance.begin(), v.distance.end(), 0)));
             };
           }};
 }

@@ -219,17 +219,17 @@ class Tile {
   bool clear(Pixel& p, int n) const {
     const Volume& v = s_.volume;
     size_t brick[3];
-    for (size_t a = 0; a < 3; ++a) brick[a] = std::min(size_t(u_[a][n]) >> MinMaxBricks::shift, v.bricks().dims[a] - 1);
-    const int d = v.distance[v.bricks().id(brick[0], brick[1], brick[2])];
+    for (size_t a = 0; a < 3; ++a) brick[a] = std::min(size_t(u_[a][n]) >> FineBricks::shift, v.fine().dims[a] - 1);
+    const int d = v.distance[v.fine().id(brick[0], brick[1], brick[2])];
     if (d == 0) return false;
     double out = HUGE_VAL;
     for (int a = 0; a < 3; ++a) {
       const double along = p.ray.along[a];
       if (along == 0) continue;
       const ptrdiff_t border = ptrdiff_t(brick[a]) + (along > 0 ? d : 1 - d);
-      if (border < 0 || border > ptrdiff_t(v.bricks().dims[size_t(a)])) continue;
+      if (border < 0 || border > ptrdiff_t(v.fine().dims[size_t(a)])) continue;
       // The axis stack looks at its plane, up to half a slice from where the ray is.
-      const double slack = v.margin[a] + (a == k_.axis ? v.cell_length(a, place_[a][n]) : 0), q = v.border[a][size_t(border)];
+      const double slack = v.margin[a] + (a == k_.axis ? v.cell_length(a, place_[a][n]) : 0), q = v.fine_border[a][size_t(border)];
       out = std::min(out, (q + (along > 0 ? -slack : slack) - p.ray.start[a]) / along);
     }
     p.resume = out;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "index/minmax_bricks.h"
+#include "render/volume/lattice/empty_space.h"
 #include "render/volume/lattice/kernels.h"
 #include "render/volume/optics/ray_state.h"
 #include "render/volume/optics/transfer.h"
@@ -29,9 +30,10 @@ void composite_volumes(const Scene& scene, const Projection& projection, const F
 /// What a volume needs of its field, whoever looks at it: kept in the dataset's memo.
 struct LatticeSamples {
   Voxels voxels;
-  float base = 0;               ///< value = stored + base
-  std::vector<uint8_t> hidden;  ///< per cell of the lattice: draws nothing; may be empty
-  MinMaxBricks bricks;
+  float base = 0;                        ///< value = stored + base
+  std::vector<uint8_t> hidden;           ///< per cell of the lattice: draws nothing; may be empty
+  FineBricks fine;                       ///< for empty space
+  MinMaxBricks bricks;                   ///< for maxima
   double lo = HUGE_VAL, hi = -HUGE_VAL;  ///< of the finite values stored; lo > hi when there are none
 };
 
@@ -61,12 +63,13 @@ struct Volume {
   double slices_per_q[3] = {};
 
   std::shared_ptr<const LatticeSamples> samples;
-  std::vector<uint8_t> distance;  ///< in bricks to the next that draws something (composite), see empty_space.h
-  bool any_empty = true;          ///< is there a brick that draws nothing?
-  std::vector<double> border[3];  ///< q of the brick sides, dims+1
-  Vec3 margin;                    ///< q: rounding errors of places are smaller
+  std::vector<uint8_t> distance;                  ///< in fine bricks to the next that draws something (composite)
+  bool any_empty = true;                          ///< is there a brick that draws nothing?
+  std::vector<double> border[3], fine_border[3];  ///< q of the sides of bricks, dims+1
+  Vec3 margin;                                    ///< q: rounding errors of places are smaller
 
   const MinMaxBricks& bricks() const { return samples->bricks; }
+  const FineBricks& fine() const { return samples->fine; }
   const std::vector<uint8_t>& hidden() const { return samples->hidden; }
 
   Vec3 q(Vec3 world) const { return to_q * (world - origin); }

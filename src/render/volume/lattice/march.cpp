@@ -32,17 +32,17 @@ struct Stretch {
       size_t brick[3];
       for (int a = 0; a < 3; ++a) {
         const float u = std::max(0.0f, std::min(place(a, s), float(v.voxels.dims[size_t(a)] - 1)));
-        brick[a] = std::min(size_t(u) >> MinMaxBricks::shift, v.bricks().dims[size_t(a)] - 1);
+        brick[a] = std::min(size_t(u) >> FineBricks::shift, v.fine().dims[size_t(a)] - 1);
       }
-      const int d = v.distance[v.bricks().id(brick[0], brick[1], brick[2])];
+      const int d = v.distance[v.fine().id(brick[0], brick[1], brick[2])];
       if (d == 0) return s;
       // All bricks nearer than d are empty: leave their cube, but for a margin wider than rounding errors.
       double out = double(end);
       for (int a = 0; a < 3; ++a) {
         if (per_by[a] == 0) continue;
         const ptrdiff_t side = ptrdiff_t(brick[a]) + (per_by[a] > 0 ? d : 1 - d);
-        if (side < 0 || side > ptrdiff_t(v.bricks().dims[size_t(a)])) continue;
-        const double q = v.border[a][size_t(side)] + (per_by[a] > 0 ? -v.margin[a] : v.margin[a]);
+        if (side < 0 || side > ptrdiff_t(v.fine().dims[size_t(a)])) continue;
+        const double q = v.fine_border[a][size_t(side)] + (per_by[a] > 0 ? -v.margin[a] : v.margin[a]);
         out = std::min(out, (q - first[a]) * per_by[a]);
       }
       s = std::max(s + 1, out >= double(end) ? end : int(std::ceil(out)));

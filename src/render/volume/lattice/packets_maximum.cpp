@@ -109,7 +109,7 @@ class Climb {
       there = hn::Gt(none, none);
       while (!hn::AllFalse(d, looking)) {
         const F hi = highest_in(walk);
-        M here = hn::And(looking, hn::AndNot(hn::Eq(walk.t, from), hn::Gt(hi, skip_ ? best_ : none)));
+        M here = hn::And(looking, hn::AndNot(hn::And(hn::Eq(walk.t, from), hn::Eq(walk.leave(), to)), hn::Gt(hi, skip_ ? best_ : none)));
         there = hn::Or(there, here);
         looking = hn::AndNot(here, looking);
         const M on = walk.advance(looking);

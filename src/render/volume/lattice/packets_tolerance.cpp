@@ -197,7 +197,7 @@ class TolerantPacket {
     const IntTag<D> di;
     const I one = hn::Set(di, 1), zero = hn::Zero(di);
     const F stop = hn::Set(d, plan_.budget.stop_below);
-    const auto& bricks = v_.bricks().dims;
+    const auto& bricks = v_.fine().dims;
     const bool skip = plan_.knobs.skip_empty && v_.any_empty;
     I cell[3];
     F t = hn::Zero(d);
@@ -210,7 +210,7 @@ class TolerantPacket {
       I inside[3], brick[3];
       for (int a = 0; a < 3; ++a) {
         inside[a] = hn::Min(hn::Max(cell[a], zero), source_.last_cell[a]);
-        brick[a] = hn::ShiftRight<MinMaxBricks::shift>(inside[a]);
+        brick[a] = hn::ShiftRight<FineBricks::shift>(inside[a]);
       }
       I free = zero;
       if (skip) {
@@ -225,7 +225,7 @@ class TolerantPacket {
       I side[3];
       for (int a = 0; a < 3; ++a) {
         const auto up = hn::RebindMask(di, up_[a]);
-        const I reach = hn::ShiftLeft<MinMaxBricks::shift>(hn::Add(brick[a], hn::IfThenElse(up, free, hn::Sub(one, free))));
+        const I reach = hn::ShiftLeft<FineBricks::shift>(hn::Add(brick[a], hn::IfThenElse(up, free, hn::Sub(one, free))));
         side[a] = hn::IfThenElse(leaps, reach, hn::Add(cell[a], hn::IfThenElse(up, one, zero)));
         F there = hn::Mul(hn::Sub(hn::ConvertTo(d, side[a]), start_[a]), per_along_[a]);
         // Beyond the outermost bricks there is nothing else.

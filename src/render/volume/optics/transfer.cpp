@@ -90,6 +90,11 @@ Transfer::Transfer(const ColorScale& scale, const OpacityCurve& curve, double un
     steps_[size_t(i)] = {float(color.x * alpha), float(color.y * alpha), float(color.z * alpha), float(pass)};
     drawn_before_[size_t(i) + 1] = drawn_before_[size_t(i)] + (density > 0);
   }
+  for (size_t k = 0; k < curve.points.size(); ++k) {
+    if (!(curve.points[k].y > 0)) continue;
+    const double from = curve.points[k > 0 ? k - 1 : 0].x, to = curve.points[std::min(k + 1, curve.points.size() - 1)].x;
+    if (from < to && std::abs(axis(float(to - base)) - axis(float(from - base))) * per_axis_ < 2) thin_.push_back({float(from - base), float(to - base)});
+  }
 }
 
 bool Transfer::clear(float lo, float hi) const {
@@ -98,7 +103,10 @@ bool Transfer::clear(float lo, float hi) const {
   const float slack = 1e-6f * (std::abs(lo) + std::abs(hi));
   if (!std::isfinite(slack)) return drawn_before_.back() == 0;
   const int a = index(lo - slack), b = index(hi + slack);
-  return drawn_before_[size_t(b) + 1] == drawn_before_[size_t(a)];
+  if (drawn_before_[size_t(b) + 1] != drawn_before_[size_t(a)]) return false;
+  for (const Vec2f& t : thin_)
+    if (t.x <= hi && t.y >= lo) return false;
+  return true;
 }
 
 }  // namespace sg::volume

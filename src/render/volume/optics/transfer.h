@@ -67,6 +67,7 @@ class Transfer {
   std::vector<Step> steps_;
   std::vector<Medium> media_;
   std::vector<uint32_t> drawn_before_;  // entries before this one that draw something
+  std::vector<Vec2f> thin_;             // stored values of spikes narrower than two entries, which the table may miss
 };
 
 }  // namespace sg::volume
