@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/core.h>
+
+#include "base/error.h"
 #include "base/parallel.h"
 #include "render/volume/classic/options.h"
 #include "render/volume/classic/slab_polygon.h"
@@ -16,6 +19,7 @@ namespace sg::volume {
 namespace {
 
 constexpr int tile_width = 64, tile_height = 16;
+constexpr size_t most_slabs = 200000;
 
 /// What one slice stands for, between two planes. View stack: depths. Axis stack: places in q along the axis.
 struct Slab {
@@ -56,6 +60,9 @@ void view_stack(Stack& stack) {
   nearest = std::max(nearest, s.projection.near_plane), farthest = std::min(farthest, s.projection.far_plane);
   const double step = s.volume.step;
   const size_t count = farthest > nearest ? size_t(std::ceil((farthest - nearest) / step)) : 0;
+  if (count > most_slabs)
+    fail_usage(fmt::format("a step of {} makes {} slices", step, count), "volume",
+               fmt::format("give a longer step: at most {} slices", most_slabs));
   for (size_t i = 0; i < count; ++i) {
     const double from = nearest + double(i) * step, to = std::min(from + step, farthest);
     add(stack, from, to, 0.5 * (from + to), slab_polygon(corners, from, to, s.projection));
@@ -133,7 +140,8 @@ class Tile {
       const Slab& slab = k_.slabs[index];
       if (slab.to < first_ || slab.from > last_ || slab.bottom < y0_ || slab.top > y1_) continue;
       rising_ = index < k_.rising;
-      for (int y = std::max(y0_, int(slab.top) - 1); y < std::min(y1_, int(slab.bottom) + 2); ++y) {
+      const int from = int(std::max(slab.top - 1, double(y0_))), to = int(std::min(slab.bottom + 2, double(y1_)));
+      for (int y = from; y < to; ++y) {
         int first, last;
         row_span(slab.outline, y, s_.projection.width, first, last);
         row(slab, y, std::max(first, x0_), std::min(last, x1_));

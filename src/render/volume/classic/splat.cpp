@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/core.h>
+
+#include "base/error.h"
 #include "base/parallel.h"
 #include "render/volume/classic/options.h"
 #include "render/volume/classic/splat_list.h"
@@ -112,6 +115,8 @@ class Band {
     const double base = double(s_.volume.base);
     if (s_.item.mode == RayFunction::sum) return total + base * length;
     if (s_.item.mode == RayFunction::average) return length > 0 ? total / length + base : NAN;
+    // Rays that only touch the kernels' fringe show its mean.
+    if (!(best_[i] == best_[i])) return length > 0 ? total / length + base : NAN;
     return double(best_[i]) + base;
   }
 
@@ -305,6 +310,9 @@ Layer splat(const LayerInput& input, const SplatOptions& options) {
   Job job{stage,    footprints, list, table, after, input.item.sampling.step > 0 ? input.item.sampling.step : 2 * stage.volume.step,
           HUGE_VAL, -HUGE_VAL,  {}};
   const Vec3 lo = stage.volume.lo, hi = stage.volume.hi;
+  if (!(footprints.reach() / job.sheet < 100))
+    fail_usage(fmt::format("sheets of {} are too thin for kernels that reach {:.4g}", job.sheet, footprints.reach()), "volume",
+               "give a longer step, or 0 for one voxel");
   for (int c = 0; c < 8; ++c) {
     const double z = footprints.depth({c & 1 ? hi.x : lo.x, c & 2 ? hi.y : lo.y, c & 4 ? hi.z : lo.z});
     job.nearest = std::min(job.nearest, z - footprints.reach()), job.farthest = std::max(job.farthest, z + footprints.reach());
