@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data/byte_cache.h"
 
+#include <atomic>
+#include <cmath>
+
 #include "base/parallel.h"
 #include "data/bricked.h"
 #include "support/test.h"
