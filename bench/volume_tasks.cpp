@@ -65,8 +65,8 @@ VolumeItem volume_item(Look look, size_t n, bool bytes) {
 
 /// tolerance 0: fixed half-voxel steps, as the peers.
 Task volume(const char* label, Look look, size_t n, bool bytes, double tolerance = 0) {
-  return {"volume_render", fmt::format("{} {}^3, 1024x1024", bytes ? "uint8" : "float32", n), fmt::format("sightglass:raycast({}{})", label, tolerance > 0 ? ",tolerance" : ""),
-          "pixels covered", [=] {
+  return {"volume_render", fmt::format("{} {}^3, 1024x1024", bytes ? "uint8" : "float32", n),
+          fmt::format("sightglass:raycast({}{})", label, tolerance > 0 ? ",tolerance" : ""), "pixels covered", [=] {
             Scene scene;
             VolumeItem item = volume_item(look, n, bytes);
             if (tolerance > 0) item.sampling.step = 0, item.sampling.tolerance = tolerance;

@@ -2,7 +2,6 @@
 #include "data/byte_cache.h"
 
 #include <atomic>
-#include <cmath>
 
 #include "base/parallel.h"
 #include "data/bricked.h"

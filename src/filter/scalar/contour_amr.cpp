@@ -86,6 +86,7 @@ class Builder {
   // ---- which leaves ----
 
   bool crosses(double lo, double hi) const {
+    if (values_.empty()) return true;
     for (double v : values_)
       if (lo <= v && v <= hi) return true;
     return false;

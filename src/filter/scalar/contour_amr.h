@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The leaves of an AMR grid near isosurfaces as a mesh without hanging nodes. Inside filter/scalar only.
+// The leaves of an AMR grid, all or those near isosurfaces, as a mesh without hanging nodes.
 #pragma once
 #include "base/context.h"
 #include "data/dataset.h"
@@ -7,7 +7,7 @@
 
 namespace sg::contouring {
 
-/// An unstructured mesh of the leaf cells that one of the values crosses, and those around them. Leaves beside finer ones are
+/// An unstructured mesh of the leaf cells that one of the values crosses, and those around them; without values, of all. Leaves beside finer ones are
 /// polyhedra (2D: polygons) with the finer ones' corners in their faces and edges, at level jumps of any ratio; the others are voxels
 /// (pixels). So neighbours share whole faces, and a contour has no cracks.
 ///

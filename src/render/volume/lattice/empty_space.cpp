@@ -16,8 +16,7 @@ struct Bits {
   size_t nx, ny, nz, words;
   std::vector<uint64_t> bits;
 
-  explicit Bits(const std::array<size_t, 3>& dims)
-      : nx(dims[0]), ny(dims[1]), nz(dims[2]), words((nx + 63) / 64), bits(words * ny * nz) {}
+  explicit Bits(const std::array<size_t, 3>& dims) : nx(dims[0]), ny(dims[1]), nz(dims[2]), words((nx + 63) / 64), bits(words * ny * nz) {}
   uint64_t* row(size_t y, size_t z) { return &bits[words * (y + ny * z)]; }
   const uint64_t* row(size_t y, size_t z) const { return &bits[words * (y + ny * z)]; }
   uint64_t used(size_t word) const { return word + 1 < words || nx % 64 == 0 ? ~uint64_t(0) : (uint64_t(1) << nx % 64) - 1; }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Integration along a ray. A run of 16 samples is evaluated at once (places, values, table entries), then composited one by one
 // from near to far, so that the result depends neither on the width of the machine's vectors nor on what was passed over.
-#include "render/volume/lattice/runs.h"
 #include "render/volume/lattice/lattice_volume.h"
+#include "render/volume/lattice/runs.h"
 
 namespace sg::volume {
 

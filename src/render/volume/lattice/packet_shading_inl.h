@@ -23,9 +23,9 @@ template <class D, class T>
 struct SlopeFinder {
   const Source<D, T>& source;
   Place<D> at[3];
-  Int<D> lower[3], upper[3];           // cells one before and one after, inside the lattice
-  hn::Vec<D> f_lower[3], f_upper[3];   // fractions there
-  hn::Mask<D> first[3], last[3];       // in the first or last cell of an axis?
+  Int<D> lower[3], upper[3];          // cells one before and one after, inside the lattice
+  hn::Vec<D> f_lower[3], f_upper[3];  // fractions there
+  hn::Mask<D> first[3], last[3];      // in the first or last cell of an axis?
   bool inner = true;
 
   HWY_INLINE SlopeFinder(const Source<D, T>& s, hn::Vec<D> x, hn::Vec<D> y, hn::Vec<D> z) : source(s) {
@@ -75,13 +75,13 @@ struct SlopeFinder {
     hi[0] = mixed(d, plane(b00, b01, fx, fy), plane(b10, b11, fx, fy), fz);
     const auto m00 = mixed(d, a00.b, b00.a, fx), m01 = mixed(d, a01.b, b01.a, fx), m10 = mixed(d, a10.b, b10.a, fx),
                m11 = mixed(d, a11.b, b11.a, fx);
-    lo[1] = mixed(d, mixed(d, line(hn::Sub(corner, row), fx), m00, fy),
-                  mixed(d, line(hn::Add(hn::Sub(corner, row), layer), fx), m10, fy), fz);
+    lo[1] =
+        mixed(d, mixed(d, line(hn::Sub(corner, row), fx), m00, fy), mixed(d, line(hn::Add(hn::Sub(corner, row), layer), fx), m10, fy), fz);
     const auto two_rows = hn::Add(row, row), two_layers = hn::Add(layer, layer);
     hi[1] = mixed(d, mixed(d, m01, line(hn::Add(corner, two_rows), fx), fy),
                   mixed(d, m11, line(hn::Add(hn::Add(corner, two_rows), layer), fx), fy), fz);
-    lo[2] = mixed(d, mixed(d, line(hn::Sub(corner, layer), fx), line(hn::Add(hn::Sub(corner, layer), row), fx), fy),
-                  mixed(d, m00, m01, fy), fz);
+    lo[2] = mixed(d, mixed(d, line(hn::Sub(corner, layer), fx), line(hn::Add(hn::Sub(corner, layer), row), fx), fy), mixed(d, m00, m01, fy),
+                  fz);
     hi[2] = mixed(d, mixed(d, m10, m11, fy),
                   mixed(d, line(hn::Add(corner, two_layers), fx), line(hn::Add(hn::Add(corner, two_layers), row), fx), fy), fz);
   }
@@ -173,7 +173,8 @@ class ShadeQueue {
     const auto bent = hn::And(hn::Gt(square, zero), hn::Lt(square, hn::Set(d, 1e30f)));
     const F surface = hn::Min(hn::Mul(g.per_cell, hn::Set(d, plan_.volume.shade_plan.per_scale)), one);
     const auto lane = hn::IndicesFromVec(d, to_int(d, hn::Load(d, queue_[at_lane])));
-    const auto away = hn::Gt(dot(x, y, z, of_lanes(rays_.direction[0], lane), of_lanes(rays_.direction[1], lane), of_lanes(rays_.direction[2], lane)), zero);
+    const auto away = hn::Gt(
+        dot(x, y, z, of_lanes(rays_.direction[0], lane), of_lanes(rays_.direction[1], lane), of_lanes(rays_.direction[2], lane)), zero);
     const F side = hn::Div(hn::IfThenElse(away, hn::Set(d, -1.0f), one), hn::Sqrt(square));
     F diffuse = zero, specular = zero;
     for (size_t l = 0; l < plan_.lamps.size(); ++l) {
@@ -182,7 +183,8 @@ class ShadeQueue {
       const F c = hn::Mul(side, dot(x, y, z, hn::Set(d, to.x), hn::Set(d, to.y), hn::Set(d, to.z)));
       const auto lit = hn::Gt(c, zero);
       diffuse = hn::Add(diffuse, hn::IfThenElseZero(lit, hn::Mul(intensity, c)));
-      F h = hn::Max(hn::Mul(side, dot(x, y, z, of_lanes(half_[l][0], lane), of_lanes(half_[l][1], lane), of_lanes(half_[l][2], lane))), zero);
+      F h =
+          hn::Max(hn::Mul(side, dot(x, y, z, of_lanes(half_[l][0], lane), of_lanes(half_[l][1], lane), of_lanes(half_[l][2], lane))), zero);
       for (int i = 0; i < 5; ++i) h = hn::Mul(h, h);
       specular = hn::Add(specular, hn::IfThenElseZero(lit, hn::Mul(intensity, h)));
     }

@@ -76,7 +76,8 @@ HWY_INLINE void leap(const Source<D, T>& source, const Space<D>& space, Lanes<D>
     for (int a = 0; a < 3; ++a) {
       const auto forth = hn::Gt(lanes.by[a], zero);
       const auto side = hn::Add(brick[a], hn::IfThenElse(forth, reach, hn::Sub(one, reach)));
-      const auto at = hn::Add(hn::Mul(side, hn::Set(d, float(MinMaxBricks::edge))), hn::IfThenElse(forth, hn::Neg(space.margin), space.margin));
+      const auto at =
+          hn::Add(hn::Mul(side, hn::Set(d, float(MinMaxBricks::edge))), hn::IfThenElse(forth, hn::Neg(space.margin), space.margin));
       const auto there = hn::Mul(hn::Sub(at, lanes.first[a]), lanes.per_by[a]);
       // Beyond the outermost bricks there is nothing else.
       const auto open = hn::Or(hn::Or(hn::Le(side, zero), hn::Ge(side, space.edges[a])), hn::Eq(lanes.by[a], zero));

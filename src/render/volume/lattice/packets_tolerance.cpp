@@ -39,24 +39,45 @@ struct MediumLanes {
   const Medium::Columns& columns;
 
   struct Line {
-    F lo, hi, origin, at, slope, curve;
+    F lo, hi, origin, at, slope, curve, twist;
     HWY_INLINE F tau(F v) const {
       const F x = hn::Sub(v, origin);
-      return hn::Max(hn::Zero(D()), hn::Add(at, hn::Mul(x, hn::Add(slope, hn::Mul(x, curve)))));
+      return hn::Max(hn::Zero(D()), hn::Add(at, hn::Mul(x, hn::Add(slope, hn::Mul(x, hn::Add(curve, hn::Mul(x, twist)))))));
     }
-    HWY_INLINE F slope_at(F v) const { return hn::Abs(hn::Add(slope, hn::Mul(hn::Add(curve, curve), hn::Sub(v, origin)))); }
+    HWY_INLINE F slope_at(F v) const {
+      const F x = hn::Sub(v, origin);
+      return hn::Abs(hn::Add(slope, hn::Mul(x, hn::Add(hn::Add(curve, curve), hn::Mul(x, hn::Mul(hn::Set(D(), 3.0f), twist))))));
+    }
     HWY_INLINE hn::Mask<D> dark() const {
       const F zero = hn::Zero(D());
-      return hn::And(hn::Eq(at, zero), hn::And(hn::Eq(slope, zero), hn::Eq(curve, zero)));
+      return hn::And(hn::And(hn::Eq(at, zero), hn::Eq(slope, zero)), hn::And(hn::Eq(curve, zero), hn::Eq(twist, zero)));
     }
   };
-  HWY_INLINE explicit MediumLanes(const Medium& m) : medium(m), columns(m.columns()) {}
+  /// As many lines as there are lanes fit a vector: then no gather is needed.
+  bool few;
+  F few_columns[6];
+  HWY_INLINE explicit MediumLanes(const Medium& m) : medium(m), columns(m.columns()), few(m.lines().size() <= size_t(lanes_of<D>)) {
+    const D d;
+    const std::vector<float>* all[6] = {&columns.origin, &columns.hi, &columns.at, &columns.slope, &columns.curve, &columns.twist};
+    for (int c = 0; c < 6; ++c) {
+      alignas(64) float column[most_lanes] = {};
+      if (few) std::copy(all[c]->begin(), all[c]->end(), column);
+      few_columns[c] = hn::Load(d, column);
+    }
+  }
   HWY_INLINE Line line(I i) const {
     const D d;
     Line l;
-    l.origin = hn::GatherIndex(d, columns.origin.data(), i), l.hi = hn::GatherIndex(d, columns.hi.data(), i);
-    l.at = hn::GatherIndex(d, columns.at.data(), i), l.slope = hn::GatherIndex(d, columns.slope.data(), i);
-    l.curve = hn::GatherIndex(d, columns.curve.data(), i);
+    if (few) {
+      const auto which = hn::IndicesFromVec(d, i);
+      l.origin = hn::TableLookupLanes(few_columns[0], which), l.hi = hn::TableLookupLanes(few_columns[1], which);
+      l.at = hn::TableLookupLanes(few_columns[2], which), l.slope = hn::TableLookupLanes(few_columns[3], which);
+      l.curve = hn::TableLookupLanes(few_columns[4], which), l.twist = hn::TableLookupLanes(few_columns[5], which);
+    } else {
+      l.origin = hn::GatherIndex(d, columns.origin.data(), i), l.hi = hn::GatherIndex(d, columns.hi.data(), i);
+      l.at = hn::GatherIndex(d, columns.at.data(), i), l.slope = hn::GatherIndex(d, columns.slope.data(), i);
+      l.curve = hn::GatherIndex(d, columns.curve.data(), i), l.twist = hn::GatherIndex(d, columns.twist.data(), i);
+    }
     l.lo = hn::IfThenElse(hn::RebindMask(d, hn::Eq(i, hn::Zero(IntTag<D>()))), hn::Set(d, -HUGE_VALF), l.origin);
     return l;
   }
@@ -67,7 +88,8 @@ struct MediumLanes {
     at = hn::IfThenElseZero(hn::Ge(at, hn::Zero(d)), hn::Min(at, hn::Set(d, float(Medium::slices))));
     I i = hn::And(gather_words(d, medium.first_lines(), hn::ShiftLeft<1>(to_int(d, at))), hn::Set(di, 0xFFFF));
     for (;;) {
-      const auto beyond = hn::Le(hn::GatherIndex(d, columns.hi.data(), i), v);
+      const auto beyond =
+          hn::Le(few ? hn::TableLookupLanes(few_columns[1], hn::IndicesFromVec(d, i)) : hn::GatherIndex(d, columns.hi.data(), i), v);
       if (hn::AllFalse(d, beyond)) return i;
       i = hn::Sub(i, hn::VecFromMask(di, hn::RebindMask(di, beyond)));
     }
@@ -97,20 +119,48 @@ struct MediumLanes {
     const I low = hn::Set(di, 0xFFFF);
     const hn::RebindToUnsigned<IntTag<D>> du;
     const I g = hn::BitCast(di, hn::ShiftRight<16>(hn::BitCast(du, rg)));
-    return {hn::Mul(hn::ConvertTo(d, hn::And(rg, low)), per), hn::Mul(hn::ConvertTo(d, g), per), hn::Mul(hn::ConvertTo(d, hn::And(b, low)), per)};
+    return {hn::Mul(hn::ConvertTo(d, hn::And(rg, low)), per), hn::Mul(hn::ConvertTo(d, g), per),
+            hn::Mul(hn::ConvertTo(d, hn::And(b, low)), per)};
   }
 };
 
-/// A cubic in Bernstein form.
+/// a + b s + c s^2 + e s^3.
 template <class D>
 struct Cubic {
-  hn::Vec<D> b[4];
-  HWY_INLINE hn::Vec<D> at(hn::Vec<D> f) const {
-    const D d;
-    const auto b01 = mixed(d, b[0], b[1], f), b12 = mixed(d, b[1], b[2], f), b23 = mixed(d, b[2], b[3], f);
-    return mixed(d, mixed(d, b01, b12, f), mixed(d, b12, b23, f), f);
-  }
+  hn::Vec<D> a, b, c, e, last;  // last: at s = 1
+  HWY_INLINE hn::Vec<D> at(hn::Vec<D> s) const { return hn::Add(a, hn::Mul(s, hn::Add(b, hn::Mul(s, hn::Add(c, hn::Mul(s, e)))))); }
 };
+
+/// The trilinear field of a cell along the way from + s * way, corners by rows.
+template <class D>
+HWY_INLINE Cubic<D> along_way(D d, const Pair<D>& p00, const Pair<D>& p01, const Pair<D>& p10, const Pair<D>& p11, const hn::Vec<D> from[3],
+                              const hn::Vec<D> way[3]) {
+  using F = hn::Vec<D>;
+  struct Linear {
+    F a, b;
+  };
+  struct Square {
+    F a, b, c;
+  };
+  const auto x = [&](const Pair<D>& p) HWY_ATTR {
+    const F rise = hn::Sub(p.b, p.a);
+    return Linear{hn::Add(p.a, hn::Mul(from[0], rise)), hn::Mul(way[0], rise)};
+  };
+  const auto y = [&](const Linear& p, const Linear& q) HWY_ATTR {
+    const F rise = hn::Sub(q.a, p.a), bend = hn::Sub(q.b, p.b);
+    return Square{hn::Add(p.a, hn::Mul(from[1], rise)), hn::Add(hn::Add(p.b, hn::Mul(from[1], bend)), hn::Mul(way[1], rise)),
+                  hn::Mul(way[1], bend)};
+  };
+  const Square p = y(x(p00), x(p01)), q = y(x(p10), x(p11));
+  const F da = hn::Sub(q.a, p.a), db = hn::Sub(q.b, p.b), dc = hn::Sub(q.c, p.c);
+  Cubic<D> f;
+  f.a = hn::Add(p.a, hn::Mul(from[2], da));
+  f.b = hn::Add(hn::Add(p.b, hn::Mul(from[2], db)), hn::Mul(way[2], da));
+  f.c = hn::Add(hn::Add(p.c, hn::Mul(from[2], dc)), hn::Mul(way[2], db));
+  f.e = hn::Mul(way[2], dc);
+  f.last = hn::Add(hn::Add(f.a, f.b), hn::Add(f.c, f.e));
+  return f;
+}
 
 /// What is gathered so far, and where half of the light was gone.
 template <class D>
@@ -152,7 +202,8 @@ class TolerantPacket {
     I cell[3];
     F t = hn::Zero(d);
     // Cells -1 and n-1 are the halves beyond the outermost samples.
-    for (int a = 0; a < 3; ++a) cell[a] = hn::Min(hn::Max(to_int(d, hn::Floor(start_[a])), hn::Set(di, -1)), hn::Add(source_.last_cell[a], one));
+    for (int a = 0; a < 3; ++a)
+      cell[a] = hn::Min(hn::Max(to_int(d, hn::Floor(start_[a])), hn::Set(di, -1)), hn::Add(source_.last_cell[a], one));
     for (;;) {
       const M on = hn::And(hn::Lt(t, end_), hn::Ge(sum_.pass, stop));
       if (hn::AllFalse(d, on)) break;
@@ -163,7 +214,8 @@ class TolerantPacket {
       }
       I free = zero;
       if (skip) {
-        const I id = hn::Add(brick[0], hn::Add(hn::Mul(brick[1], hn::Set(di, int(bricks[0]))), hn::Mul(brick[2], hn::Set(di, int(bricks[0] * bricks[1])))));
+        const I id = hn::Add(
+            brick[0], hn::Add(hn::Mul(brick[1], hn::Set(di, int(bricks[0]))), hn::Mul(brick[2], hn::Set(di, int(bricks[0] * bricks[1])))));
         free = hn::And(gather_words(d, v_.distance.data(), id), hn::Set(di, 255));
       }
       const auto leaps = hn::Gt(free, zero);
@@ -191,7 +243,8 @@ class TolerantPacket {
         if (!hn::AllFalse(d, leaping)) {
           // Inside the cube along the other axes, and never back.
           const I here = to_int(d, hn::Floor(hn::Add(start_[a], hn::Mul(along_[a], leave))));
-          const I forth = hn::IfThenElse(up, hn::Max(cell[a], hn::Min(here, hn::Sub(beyond, one))), hn::Min(cell[a], hn::Max(here, hn::Add(beyond, one))));
+          const I forth = hn::IfThenElse(up, hn::Max(cell[a], hn::Min(here, hn::Sub(beyond, one))),
+                                         hn::Min(cell[a], hn::Max(here, hn::Add(beyond, one))));
           const auto open = hn::Ge(at[a], hn::Set(d, HUGE_VALF));
           const I free_way = hn::Min(hn::Max(here, hn::Set(di, -1)), hn::Add(source_.last_cell[a], one));
           const I leapt = hn::IfThenElse(hn::RebindMask(di, open), hn::IfThenElse(hn::RebindMask(di, still_[a]), cell[a], free_way), forth);
@@ -224,23 +277,13 @@ class TolerantPacket {
     const F largest = hn::Max(hn::Max(hn::Max(p00.a, p00.b), hn::Max(p01.a, p01.b)), hn::Max(hn::Max(p10.a, p10.b), hn::Max(p11.a, p11.b)));
     const M clear_line = line_.dark();
     if (hn::AllFalse(d, hn::AndNot(hn::And(clear_line, hn::And(hn::Ge(least, line_.lo), hn::Le(largest, line_.hi))), look))) return;
-    F value[4];
-    for (int i = 0; i < 4; ++i) {
-      const F s = hn::Set(d, float(i) * (1.0f / 3));
-      const F x = hn::Add(from[0], hn::Mul(way[0], s)), y = hn::Add(from[1], hn::Mul(way[1], s)), z = hn::Add(from[2], hn::Mul(way[2], s));
-      value[i] = mixed(d, mixed(d, mixed(d, p00.a, p00.b, x), mixed(d, p01.a, p01.b, x), y),
-                       mixed(d, mixed(d, p10.a, p10.b, x), mixed(d, p11.a, p11.b, x), y), z);
-    }
-    Cubic<D> f;
-    const F sixth = hn::Set(d, 1.0f / 6), five = hn::Set(d, 5.0f), two = hn::Set(d, 2.0f), nine = hn::Set(d, 9.0f), eighteen = hn::Set(d, 18.0f);
-    f.b[0] = value[0], f.b[3] = value[3];
-    f.b[1] = hn::Mul(hn::Add(hn::Sub(hn::Sub(hn::Mul(eighteen, value[1]), hn::Mul(five, value[0])), hn::Mul(nine, value[2])), hn::Mul(two, value[3])), sixth);
-    f.b[2] = hn::Mul(hn::Add(hn::Sub(hn::Sub(hn::Mul(eighteen, value[2]), hn::Mul(nine, value[1])), hn::Mul(five, value[3])), hn::Mul(two, value[0])), sixth);
-    const F lo = hn::Min(hn::Min(f.b[0], f.b[1]), hn::Min(f.b[2], f.b[3])), hi = hn::Max(hn::Max(f.b[0], f.b[1]), hn::Max(f.b[2], f.b[3]));
-    const F total = hn::Add(hn::Add(f.b[0], f.b[1]), hn::Add(f.b[2], f.b[3]));
-    look = hn::And(look, hn::Eq(total, total));  // no hole
-    const M strange = hn::AndNot(hn::And(hn::Ge(f.b[0], line_.lo), hn::Le(f.b[0], line_.hi)), look);
-    if (!hn::AllFalse(d, strange)) at_ = medium_.line_of(f.b[0]), line_ = medium_.line(at_);
+    const Cubic<D> f = along_way(d, p00, p01, p10, p11, from, way);
+    // The hull of the cubic's Bernstein coefficients.
+    const F third = hn::Set(d, 1.0f / 3), b1 = hn::Add(f.a, hn::Mul(f.b, third)), b2 = hn::Add(b1, hn::Mul(hn::Add(f.b, f.c), third));
+    const F lo = hn::Min(hn::Min(f.a, b1), hn::Min(b2, f.last)), hi = hn::Max(hn::Max(f.a, b1), hn::Max(b2, f.last));
+    look = hn::And(look, hn::Eq(f.last, f.last));  // no hole
+    const M strange = hn::AndNot(hn::And(hn::Ge(f.a, line_.lo), hn::Le(f.a, line_.hi)), look);
+    if (!hn::AllFalse(d, strange)) at_ = medium_.line_of(f.a), line_ = medium_.line(at_);
     const M same = hn::And(hn::Ge(lo, line_.lo), hn::Le(hi, line_.hi));
     const M dark = hn::And(same, line_.dark());
     look = hn::AndNot(dark, look);
@@ -248,15 +291,16 @@ class TolerantPacket {
     integrate(f, lo, hi, same, corner, inside, from, way, t, hn::Sub(leave, t), look);
   }
 
-  HWY_INLINE void integrate(const Cubic<D>& f, F lo, F hi, M same, I corner, const I inside[3],
-                            const F from[3], const F way[3], F t, F length, M look) {
+  HWY_INLINE void integrate(const Cubic<D>& f, F lo, F hi, M same, I corner, const I inside[3], const F from[3], const F way[3], F t,
+                            F length, M look) {
     const D d;
     const IntTag<D> di;
     const F zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
     const Medium& m = medium_.medium;
     const typename MediumLanes<D>::Line& line = line_;
     const float tolerance = float(plan_.budget.tolerance);
-    const F mean = hn::Mul(hn::Set(d, 0.25f), hn::Add(hn::Add(f.b[0], f.b[1]), hn::Add(f.b[2], f.b[3])));
+    // Of the cubic: a + b/2 + c/3 + e/4.
+    const F mean = hn::Add(hn::Add(f.a, hn::Mul(half, f.b)), hn::Add(hn::Mul(hn::Set(d, 1.0f / 3), f.c), hn::Mul(hn::Set(d, 0.25f), f.e)));
     F tau_mean = line.tau(mean), most = hn::Max(hn::Max(line.tau(lo), line.tau(hi)), tau_mean);
     F slope = hn::Max(line.slope_at(lo), line.slope_at(hi));
     if (!hn::AllFalse(d, hn::AndNot(same, look))) {
@@ -270,24 +314,30 @@ class TolerantPacket {
     // The errors of optics/integrate.cpp, Pieces::whole.
     const F pass = sum_.pass, taken = hn::Min(one, hn::Mul(length, most)), range = hn::Sub(hi, lo);
     const F widths = hn::Mul(range, hn::Set(d, 1 / m.color_width())), change = hn::Min(one, hn::Mul(range, hn::Set(d, m.color_slope())));
-    const F beyond = hn::Max(hn::Sub(hi, hn::Max(f.b[0], f.b[3])), hn::Sub(hn::Min(f.b[0], f.b[3]), lo));
+    const F beyond = hn::Max(hn::Sub(hi, hn::Max(f.a, f.last)), hn::Sub(hn::Min(f.a, f.last), lo));
     const F deep = hn::Mul(hn::Mul(hn::Mul(length, length), hn::Mul(most, slope)), hn::Mul(range, hn::Set(d, 0.05f)));
     F error = hn::Mul(hn::Mul(taken, hn::Set(d, 0.25f * tolerance)), hn::Mul(widths, widths));
     error = hn::Add(error, hn::Mul(change, hn::Min(one, deep)));
     error = hn::Add(error, hn::IfThenElseZero(hn::Not(same), hn::Mul(beyond, hn::Mul(length, slope))));
     error = hn::Mul(error, pass);
     const F share = hn::Mul(pass, hn::Min(one, hn::Mul(length, tau_mean)));
-    const F allowed = hn::Mul(hn::Set(d, tolerance), hn::Add(hn::Mul(length, hn::Set(d, float(0.3 / plan_.budget.length))), hn::Mul(share, hn::Set(d, 0.6f))));
+    const F allowed = hn::Mul(hn::Set(d, tolerance),
+                              hn::Add(hn::Mul(length, hn::Set(d, float(0.3 / plan_.budget.length))), hn::Mul(share, hn::Set(d, 0.4f))));
     if constexpr (shaded) {
       light_.cell(source_, corner, inside, look);
       error = hn::Max(error, light_.error(from, way, hn::Mul(pass, taken)));
     }
-    const F count = hn::Max(one, hn::Min(hn::Ceil(hn::Sqrt(hn::Div(error, hn::Max(allowed, hn::Set(d, 1e-30f))))), hn::Set(d, 64.0f)));
-    const F per_count = hn::Div(one, count), stop = hn::Set(d, plan_.budget.stop_below);
+    F count = one, per_count = one, end = one, target = f.last;
+    if (!hn::AllFalse(d, hn::And(look, hn::Gt(error, allowed)))) {
+      count = hn::Max(one, hn::Min(hn::Ceil(hn::Sqrt(hn::Div(error, hn::Max(allowed, hn::Set(d, 1e-30f))))), hn::Set(d, 64.0f)));
+      per_count = hn::Div(one, count), end = per_count;
+      target = hn::IfThenElse(hn::Eq(count, one), f.last, f.at(per_count));
+    }
+    const F stop = hn::Set(d, plan_.budget.stop_below);
+    most_hidden_ = hn::Mul(range, hn::Set(d, m.color_slope() / (0.2f * tolerance)));
 
     // Pieces, cut where the value meets the knots.
-    F k = zero, v = f.b[0], s = zero;
-    F end = hn::IfThenElse(hn::Eq(count, one), one, per_count), target = hn::IfThenElse(hn::Eq(count, one), f.b[3], f.at(per_count));
+    F k = zero, v = f.a, s = zero;
     typename MediumLanes<D>::Line& l = line_;
     for (;;) {
       const M up = hn::Ge(target, v);
@@ -307,20 +357,22 @@ class TolerantPacket {
       const F per_all = hn::Div(one, hn::Max(all, hn::Set(d, 1e-37f)));
       const F by_emission = hn::Mul(hn::Add(hn::Add(hn::Mul(t0, v), hn::Mul(tm, middle)), hn::Mul(t1, next)), per_all);
       const F weight = hn::Mul(hn::Add(hn::Mul(half, tm), t1), per_all);
-      segment(look, hn::Add(t, hn::Mul(length, s)), part, hn::Mul(part, hn::Mul(all, hn::Set(d, 1.0f / 6))), v, next, by_emission, weight, t, length, from, way);
+      segment(look, hn::Add(t, hn::Mul(length, s)), part, hn::Mul(part, hn::Mul(all, hn::Set(d, 1.0f / 6))), v, next, by_emission, weight,
+              t, length, from, way);
       // On to the next line, or to the next piece.
       k = hn::IfThenElse(ends, hn::Add(k, one), k);
       look = hn::And(look, hn::And(hn::Lt(k, count), hn::Ge(sum_.pass, stop)));
       if (hn::AllFalse(d, look)) return;
       v = next, s = to;
       if (!hn::AllFalse(d, cut)) {
-        at_ = hn::IfThenElse(hn::RebindMask(di, cut), hn::Add(at_, hn::IfThenElse(hn::RebindMask(di, up), hn::Set(di, 1), hn::Set(di, -1))), at_);
+        at_ = hn::IfThenElse(hn::RebindMask(di, cut), hn::Add(at_, hn::IfThenElse(hn::RebindMask(di, up), hn::Set(di, 1), hn::Set(di, -1))),
+                             at_);
         l = medium_.line(at_);
       }
       const F after = hn::Add(k, one), there = hn::Mul(after, per_count);
       const M final_piece = hn::Ge(after, count);
       end = hn::IfThenElse(ends, hn::IfThenElse(final_piece, one, there), end);
-      target = hn::IfThenElse(ends, hn::IfThenElse(final_piece, f.b[3], f.at(there)), target);
+      target = hn::IfThenElse(ends, hn::IfThenElse(final_piece, f.last, f.at(there)), target);
     }
   }
 
@@ -336,10 +388,13 @@ class TolerantPacket {
     const F alpha = hn::IfThenElse(hn::Lt(depth, hn::Set(d, 0.02f)), thin, hn::Sub(one, pass));
     auto color = medium_.color(middle);
     F r = hn::Mul(color.r, alpha), g = hn::Mul(color.g, alpha), bl = hn::Mul(color.b, alpha);
-    const M deep = hn::And(drawn, hn::Gt(depth, hn::Set(d, 0.1f)));
+    const M deep = hn::And(hn::And(drawn, hn::Gt(depth, hn::Set(d, 0.1f))),
+                           hn::Gt(hn::Mul(hn::Min(depth, hn::Set(d, 6.0f)), most_hidden_), hn::Set(d, 12.0f)));
     if (!hn::AllFalse(d, deep)) {
       F hidden = hn::Add(hn::Sub(hn::Mul(half, alpha), hn::Div(alpha, hn::Max(depth, hn::Set(d, 0.05f)))), pass);
-      const F series = hn::Mul(hn::Mul(depth, depth), hn::Sub(hn::Set(d, 1.0f / 12), hn::Mul(depth, hn::Sub(hn::Set(d, 1.0f / 24), hn::Mul(depth, hn::Set(d, 1.0f / 80))))));
+      const F series =
+          hn::Mul(hn::Mul(depth, depth),
+                  hn::Sub(hn::Set(d, 1.0f / 12), hn::Mul(depth, hn::Sub(hn::Set(d, 1.0f / 24), hn::Mul(depth, hn::Set(d, 1.0f / 80))))));
       hidden = hn::IfThenElseZero(deep, hn::IfThenElse(hn::Lt(depth, hn::Set(d, 0.2f)), series, hidden));
       const auto front = medium_.color(a), back = medium_.color(b);
       r = hn::Sub(r, hn::Mul(hn::Sub(back.r, front.r), hidden)), g = hn::Sub(g, hn::Mul(hn::Sub(back.g, front.g), hidden));
@@ -350,10 +405,12 @@ class TolerantPacket {
       const F s = hn::Div(hn::Sub(hn::Add(here, hn::Mul(part, weight)), t), hn::Max(length, hn::Set(d, 1e-30f)));
       const auto lit = light_.at(from, way, s);
       const F flash = hn::Mul(lit.specular, alpha);
-      r = hn::Add(hn::Mul(r, lit.diffuse), flash), g = hn::Add(hn::Mul(g, lit.diffuse), flash), bl = hn::Add(hn::Mul(bl, lit.diffuse), flash);
+      r = hn::Add(hn::Mul(r, lit.diffuse), flash), g = hn::Add(hn::Mul(g, lit.diffuse), flash),
+      bl = hn::Add(hn::Mul(bl, lit.diffuse), flash);
     }
     const F before = hn::IfThenElseZero(drawn, sum_.pass);
-    sum_.r = hn::Add(sum_.r, hn::Mul(before, r)), sum_.g = hn::Add(sum_.g, hn::Mul(before, g)), sum_.b = hn::Add(sum_.b, hn::Mul(before, bl));
+    sum_.r = hn::Add(sum_.r, hn::Mul(before, r)), sum_.g = hn::Add(sum_.g, hn::Mul(before, g)),
+    sum_.b = hn::Add(sum_.b, hn::Mul(before, bl));
     const F after = hn::Mul(sum_.pass, pass);
     const M halved = hn::And(drawn, hn::And(hn::Lt(after, half), hn::Lt(sum_.half_at, zero)));
     if (!hn::AllFalse(d, halved)) {
@@ -382,6 +439,7 @@ class TolerantPacket {
   // The line of the medium on which each lane's value was last: most often it is there still.
   I at_;
   typename MediumLanes<D>::Line line_;
+  F most_hidden_;  // what the front of a cell can hide of its change of colour, in a fifth of the tolerance
 };
 
 template <class D, class T, bool shaded>

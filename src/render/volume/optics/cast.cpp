@@ -27,7 +27,7 @@ struct Caster::Active {
   size_t next = 0, count = 0;
 
   explicit Active(const CastVolume& v)
-      : volume(&v), walker(v.source->walker()), look{*v.medium, v.budget, v.id, nullptr, v.per_scale, float(v.source->edge)} {}
+      : volume(&v), walker(v.source->walker()), look{*v.medium, v.budget, v.id, nullptr, v.per_scale, float(v.source->edge), v.detail.get()} {}
 
   /// Is there a stretch to draw? Reads on when all that were read ahead are drawn.
   bool peek() {
@@ -235,7 +235,7 @@ void Caster::until(double to, RayState& state) {
     }
     for (Active* a : active_)
       if (joint_.size() > 1 || a != only) a->flush(state);
-    if (joint_.size() == 1 && only->volume->step > 0) only->step_through(joint_[0].stretch, state);
+    if (joint_.size() == 1 && only->volume->step > 0 && !only->look.detail) only->step_through(joint_[0].stretch, state);
     else if (joint_.size() == 1) composite(only->look, joint_[0].stretch, *only->walker, state);
     else composite_joint(joint_, state);
     if (state.sum.transmittance < joint_[0].look->budget.stop_below) return;

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/volume/cells/cell_source.h"
+
+#include "render/volume/cells/cell_value.h"
+#include "render/volume/cells/eye_space.h"
+#include "render/volume/cells/tet_walk.h"
+
+namespace sg::volume {
+
+namespace {
+
+struct CellSource : RaySource {
+  CellVolume volume;
+  mutable std::once_flag once;
+  mutable std::shared_ptr<const Plane<Vec3f>> gradients;
+
+  const Plane<Vec3f>& vertex_gradients() const {
+    std::call_once(once, [&] { gradients = volume.gradients(); });
+    return *gradients;
+  }
+  std::unique_ptr<RayField> walker() const override;
+};
+
+class CellField : public RayField {
+ public:
+  explicit CellField(const CellSource& source) : source_(source), volume_(source.volume), walk_(source.volume), curve_(source.volume) {}
+
+  void start(Vec3 origin, Vec3 direction, double from, double to) override {
+    walk_.start(origin, direction, to);
+    done_ = from, from_ = from, to_ = to;
+    ready_.clear(), taken_ = 0, open_ = false;
+    given_.clear();
+  }
+
+  size_t next(std::span<Stretch> out) override {
+    size_t n = 0;
+    while (n < out.size()) {
+      if (taken_ < ready_.size()) {
+        given_.emplace_back(ready_[taken_].from, ready_[taken_].cell);
+        out[n++] = ready_[taken_++];
+        continue;
+      }
+      ready_.clear(), taken_ = 0;
+      TetWalk::Piece p;
+      if (!walk_.next(p)) {
+        if (!open_) break;
+        close();
+        continue;
+      }
+      add(p);
+    }
+    return n;
+  }
+
+  double entry() const override { return std::min(std::max(walk_.entry(), from_), to_); }
+
+  Vec3f gradient(const Stretch& stretch, double t) override {
+    const Plane<Vec3f>& g = source_.vertex_gradients();
+    double w[4];
+    const auto& v = volume_.mesh->corners[place(stretch, t, w)];
+    Vec3f sum;
+    for (size_t k = 0; k < 4; ++k) sum += g[v[k]] * float(w[k]);
+    return sum;
+  }
+
+  float second(const Stretch& stretch, double t) override {
+    if (volume_.seconds.empty()) return 0;
+    double w[4], sum = 0;
+    const auto& v = volume_.mesh->corners[place(stretch, t, w)];
+    for (size_t k = 0; k < 4; ++k) sum += w[k] * double(volume_.seconds[v[k]]);
+    return float(sum);
+  }
+
+ private:
+  void add(const TetWalk::Piece& p) {
+    const double from = std::max(p.from, done_), to = std::min(p.to, to_);
+    if (!(to > from)) return;
+    done_ = to;
+    const TetMesh& mesh = *volume_.mesh;
+    const uint32_t cell = mesh.cell(p.tet);
+    if (open_ && (cell != cell_ || from != cell_to_)) close();
+    const bool single = volume_.mesh->all_tets || (cell_is_tet(p.tet) && !volume_.by_cell);
+    if (single && !volume_.by_cell) {
+      // Linear: straight from the ends of the tetrahedron, cut to what was asked for.
+      const double per = p.to > p.from ? 1 / (p.to - p.from) : 0;
+      const float f0 = from == p.from ? p.enter : float(p.enter + (p.leave - p.enter) * ((from - p.from) * per));
+      const float f1 = to == p.to ? p.leave : float(p.enter + (p.leave - p.enter) * ((to - p.from) * per));
+      if (source_.invisible(std::min(f0, f1), std::max(f0, f1))) return;
+      ready_.push_back({from, to, {f0, f0 + (f1 - f0) / 3, f1 - (f1 - f0) / 3, f1}, p.tet});
+      return;
+    }
+    if (!open_) open_ = true, cell_ = cell, cell_tet_ = p.tet, cell_from_ = from;
+    cell_to_ = to;
+  }
+
+  bool cell_is_tet(uint32_t tet) const {
+    const TetMesh& m = *volume_.mesh;
+    return (tet == 0 || m.cells[tet - 1] != m.cells[tet]) && (tet + 1 == m.size() || m.cells[tet + 1] != m.cells[tet]);
+  }
+
+  /// The cell that was gathered from its tetrahedra.
+  void close() {
+    open_ = false;
+    if (volume_.by_cell) {
+      const float f = volume_.values[cell_];
+      if (!source_.invisible(f, f)) ready_.push_back({cell_from_, cell_to_, {f, f, f, f}, cell_tet_});
+      return;
+    }
+    float lowest, highest;
+    curve_.open(cell_, lowest, highest);
+    if (source_.invisible(lowest, highest)) return;
+    curve_.add(walk_.origin(), walk_.direction(), cell_from_, cell_to_, cell_tet_, ready_);
+  }
+
+  /// The tetrahedron of the stretch's cell that holds the place, and its weights there.
+  size_t place(const Stretch& stretch, double t, double w[4]) const {
+    size_t best = 0;
+    if (!place_in_cell_of(stretch.cell, t, best, w)) {
+      // Not a stretch of ours: the one that lay there.
+      auto it = std::upper_bound(given_.begin(), given_.end(), t, [](double a, const auto& g) { return a < g.first; });
+      if (it != given_.begin()) place_in_cell_of((it - 1)->second, t, best, w);
+    }
+    double sum = 0;
+    for (int k = 0; k < 4; ++k) w[k] = std::max(w[k], 0.0), sum += w[k];
+    for (int k = 0; k < 4; ++k) w[k] = sum > 0 ? w[k] / sum : 0.25;
+    return best;
+  }
+
+  /// Of the tetrahedra of the cell that has this one; false when the place lies outside of all.
+  bool place_in_cell_of(uint64_t tet, double t, size_t& best, double w[4]) const {
+    const TetMesh& m = *volume_.mesh;
+    const Vec3 x = walk_.origin() + walk_.direction() * t;
+    size_t first = tet, last = tet + 1;
+    if (!m.cells.empty()) {
+      while (first > 0 && m.cells[first - 1] == m.cells[tet]) --first;
+      while (last < m.size() && m.cells[last] == m.cells[tet]) ++last;
+    }
+    double least = -HUGE_VAL;
+    best = tet;
+    for (size_t k = first; k < last; ++k) {
+      double trial[4];
+      tet_weights(m, k, x, trial);
+      const double lowest = std::min(std::min(trial[0], trial[1]), std::min(trial[2], trial[3]));
+      if (lowest > least) least = lowest, best = k, std::copy_n(trial, 4, w);
+    }
+    if (least == -HUGE_VAL) std::fill_n(w, 4, 0.25);
+    return least > -1e-3;
+  }
+
+  const CellSource& source_;
+  const CellVolume& volume_;
+  TetWalk walk_;
+  CellCurve curve_;
+  double from_ = 0, done_ = 0, to_ = 0;
+  std::vector<Stretch> ready_;
+  size_t taken_ = 0;
+  std::vector<std::pair<double, uint64_t>> given_;  // where the stretches of this ray began, and their tetrahedra
+  bool open_ = false;
+  uint32_t cell_ = 0, cell_tet_ = 0;
+  double cell_from_ = 0, cell_to_ = 0;
+};
+
+std::unique_ptr<RayField> CellSource::walker() const { return std::make_unique<CellField>(*this); }
+
+}  // namespace
+
+std::unique_ptr<RaySource> cell_source(const VolumeItem& item, Context& context) {
+  auto source = std::make_unique<CellSource>();
+  source->volume = make_cell_volume(item, context);
+  source->base = source->volume.base;
+  source->bounds = source->volume.mesh->bounds;
+  source->edge = source->volume.mesh->edge > 0 ? source->volume.mesh->edge : 1;
+  return source;
+}
+
+const CellVolume& cell_volume_of(const RaySource& source) { return static_cast<const CellSource&>(source).volume; }
+
+}  // namespace sg::volume

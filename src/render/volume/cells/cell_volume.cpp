@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/volume/cells/cell_volume.h"
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "data/cell_reader.h"
+#include "data/field_ops.h"
+#include "data/memo.h"
+#include "filter/mesh/tessellate_cells.h"
+#include "filter/scalar/contour_amr.h"
+#include "render/volume/prepare_cast.h"
+
+namespace sg::volume {
+
+namespace {
+
+constexpr double straight_enough = 1.0 / 1024;
+constexpr size_t most_parts = 4'000'000;
+
+/// How many curved cells there are.
+size_t curved_cells(const DatasetPtr& data) {
+  const auto* mesh = data->as<UnstructuredMesh>();
+  if (!mesh) return 0;
+  size_t n = 0;
+  for (size_t c = 0; c < mesh->cells.size(); ++c) n += is_high_order(mesh->type(c)) && cell_type_info(mesh->type(c)).dimension == 3;
+  return n;
+}
+
+/// The mesh with linear cells only; `field` and `component` follow.
+DatasetPtr straightened(const DatasetPtr& data, const Field*& field, int& component, Context& context) {
+  if (data->as<AmrGrid>()) {
+    if (data->as<AmrGrid>()->dimension < 3)
+      fail_usage("an AMR grid of two dimensions has no volume", "volume", "show its surface: --show surface");
+    const std::string key = fmt::format("volume/leaves/{}/{}/{}", field->name, association_name(field->association), component);
+    auto kept = data->memo().find<DatasetPtr>(key);
+    if (!kept) {
+      DatasetPtr leaves = contouring::amr_cells_near(data, *field, component, {}, context);
+      const size_t bytes = leaves->point_count() * 32 + leaves->cell_count() * 80;
+      kept = data->memo().keep<DatasetPtr>(key, std::move(leaves), bytes);
+    }
+    if (field->association == Association::cell) component = 0;
+    field = &(*kept)->fields().require(field->name, Association::point);
+    return *kept;
+  }
+  const size_t curved = curved_cells(data);
+  if (curved == 0) return data;
+  auto kept = data->memo().find<DatasetPtr>("volume/straight");
+  if (!kept) {
+    TessellateParams p;
+    p.tolerance = straight_enough, p.max_level = 0;
+    for (size_t parts = curved; p.max_level < 5 && parts * 8 <= most_parts; parts *= 8) ++p.max_level;
+    p.max_level = std::max(p.max_level, 1);
+    DatasetPtr straight = tessellate(data, p, context);
+    const size_t bytes = straight->point_count() * 32 + straight->cell_count() * 80;
+    kept = data->memo().keep<DatasetPtr>("volume/straight", std::move(straight), bytes);
+  }
+  field = &(*kept)->fields().require(field->name, field->association);
+  return *kept;
+}
+
+/// As f32, wide types relative to the middle of their range where the scale is linear.
+Plane<float> stored_values(const Field& field, int component, bool shift, float& base) {
+  const bool wide = field.array.type() != ElementType::f32 && element_size(field.array.type()) >= 4;
+  const Array a = scalar_of(field, field.components() == 1 ? 0 : component, wide ? ElementType::f64 : ElementType::f32);
+  Plane<float> out;
+  out.resize(a.count());
+  dispatch(a, [&](auto v) {
+    if (wide && shift) {
+      Range r;
+      for (size_t i = 0; i < v.count; ++i)
+        if (const auto x = double(v[i]); std::isfinite(x)) r.add({x, x});
+      base = r.empty() ? 0 : float(0.5 * r.lo + 0.5 * r.hi);
+    }
+    parallel_for(v.count, 65536, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) out[i] = float(double(v[i]) - double(base));
+    });
+  });
+  return out;
+}
+
+/// Does each point have a finite value and place?
+std::vector<uint8_t> missing_points(const DatasetPtr& data, std::span<const float> values, bool& any) {
+  const size_t n = data->point_count();
+  std::vector<uint8_t> missing(n);
+  const Points* points = nullptr;
+  if (auto* u = data->as<UnstructuredMesh>()) points = &u->points;
+  if (auto* c = data->as<CurvilinearGrid>()) points = &c->points;
+  any = parallel_reduce(
+      n, 65536, false,
+      [&](size_t begin, size_t end) {
+        bool found = false;
+        for (size_t i = begin; i < end; ++i) {
+          missing[i] = !values.empty() && !std::isfinite(values[i]);
+          found = found || missing[i];
+        }
+        return found;
+      },
+      [](bool a, bool b) { return a || b; });
+  if (points)
+    dispatch(points->xyz, [&](auto v) {
+      if constexpr (std::is_floating_point_v<std::remove_cvref_t<decltype(v[0])>>)
+        for (size_t i = 0; i < n; ++i)
+          if (!std::isfinite(v(i, 0)) || !std::isfinite(v(i, 1)) || !std::isfinite(v(i, 2))) missing[i] = 1, any = true;
+    });
+  return missing;
+}
+
+std::shared_ptr<const TetMesh> mesh_of(const CellVolume& v, Context& context) {
+  bool missing = false;
+  const std::vector<uint8_t> no_value = missing_points(v.data, v.by_cell ? std::span<const float>() : v.values, missing);
+  bool missing_cells = false;
+  if (v.by_cell)
+    for (float x : v.values) missing_cells = missing_cells || !std::isfinite(x);
+  const std::string key = missing || missing_cells ? "volume/tets/" + v.key : "volume/tets";
+  if (auto kept = v.data->memo().find<TetMesh>(key)) return kept;
+  const auto draws = [&](const CellReader& open) {
+    if (missing_cells && !std::isfinite(v.values[open.cell()])) return false;
+    if (missing)
+      for (int64_t id : open.ids())
+        if (no_value[size_t(id)]) return false;
+    return true;
+  };
+  TetMesh mesh = make_tet_mesh(v.data, draws, context);
+  const size_t bytes = mesh.bytes();
+  return v.data->memo().keep<TetMesh>(key, std::move(mesh), bytes);
+}
+
+/// Values of the middles of polyhedra: the means of their points, as the middles are.
+void add_middles(const CellVolume& v, Plane<float>& values) {
+  const TetMesh& mesh = *v.mesh;
+  values.resize(mesh.at.size());
+  CellReader reader(v.data);
+  for (size_t k = 0; k < mesh.middle_of.size(); ++k) {
+    reader.open(mesh.middle_of[k]);
+    double sum = 0;
+    for (int64_t id : reader.ids()) sum += double(values[size_t(id)]);
+    values[mesh.points + k] = float(sum / double(std::max<size_t>(reader.ids().size(), 1)));
+  }
+}
+
+Range drawn_range(const CellVolume& v) {
+  const TetMesh& mesh = *v.mesh;
+  return parallel_reduce(
+      mesh.size(), 16384, Range{},
+      [&](size_t begin, size_t end) {
+        Range r;
+        for (size_t t = begin; t < end; ++t) {
+          if (v.by_cell) {
+            const auto x = double(v.values[mesh.cell(t)]);
+            r.add({x, x});
+          } else {
+            for (uint32_t k : mesh.corners[t]) r.add({double(v.values[k]), double(v.values[k])});
+          }
+        }
+        return r;
+      },
+      [](Range a, const Range& b) { return a.add(b), a; });
+}
+
+/// Cell values carried to the vertices: the mean of the tetrahedra around.
+Plane<float> at_vertices(const CellVolume& v) {
+  const TetMesh& mesh = *v.mesh;
+  Plane<float> sum;
+  std::vector<uint32_t> count(mesh.at.size());
+  sum.assign(mesh.at.size(), 0.0f);
+  for (size_t t = 0; t < mesh.size(); ++t)
+    for (uint32_t k : mesh.corners[t]) sum[k] += v.values[mesh.cell(t)], ++count[k];
+  for (size_t k = 0; k < count.size(); ++k)
+    if (count[k]) sum[k] /= float(count[k]);
+  return sum;
+}
+
+}  // namespace
+
+std::shared_ptr<const Plane<Vec3f>> CellVolume::gradients() const {
+  const std::string name = "volume/gradients/" + key;
+  if (auto kept = data->memo().find<Plane<Vec3f>>(name)) return kept;
+  const Plane<float> means = by_cell ? at_vertices(*this) : Plane<float>();
+  const std::span<const float> f = by_cell ? std::span<const float>(means) : values;
+  std::vector<Vec3> sum(mesh->at.size());
+  std::vector<double> weight(mesh->at.size());
+  for (size_t t = 0; t < mesh->size(); ++t) {
+    const auto& v = mesh->corners[t];
+    const Vec3 a = mesh->at[v[0]], p = mesh->at[v[1]] - a, q = mesh->at[v[2]] - a, r = mesh->at[v[3]] - a;
+    const Vec3 qr = cross(q, r), rp = cross(r, p), pq = cross(p, q);
+    const double six = dot(p, qr);
+    if (!(std::abs(six) > 0)) continue;
+    // The gradient times the signed volume; the sign makes it one times the volume.
+    const auto f0 = double(f[v[0]]);
+    const Vec3 g = qr * (double(f[v[1]]) - f0) + rp * (double(f[v[2]]) - f0) + pq * (double(f[v[3]]) - f0);
+    for (uint32_t k : v) sum[k] += six > 0 ? g : -g, weight[k] += std::abs(six);
+  }
+  Plane<Vec3f> out;
+  out.resize(sum.size());
+  for (size_t k = 0; k < sum.size(); ++k) out[k] = weight[k] > 0 ? Vec3f(sum[k] / weight[k]) : Vec3f();
+  const size_t bytes = out.size() * sizeof(Vec3f);
+  return data->memo().keep<Plane<Vec3f>>(name, std::move(out), bytes);
+}
+
+namespace {
+
+/// What is kept of a field.
+struct Kept {
+  Plane<float> values;
+  float base = 0;
+  Range range;
+  std::shared_ptr<const TetMesh> mesh;
+};
+
+void take_field(CellVolume& v, const Field& field, int component, bool shift, Context& context) {
+  const std::string name = fmt::format("volume/field/{}/{}", v.key, int(shift));
+  auto kept = v.data->memo().find<Kept>(name);
+  if (!kept) {
+    Kept k;
+    k.values = stored_values(field, component, shift, k.base);
+    v.values = k.values;
+    v.mesh = k.mesh = mesh_of(v, context);
+    if (!v.by_cell) add_middles(v, k.values), v.values = k.values;
+    k.range = drawn_range(v);
+    const size_t bytes = k.values.size() * 4;
+    kept = v.data->memo().keep<Kept>(name, std::move(k), bytes);
+  }
+  v.values = kept->values, v.base = kept->base, v.range = kept->range, v.mesh = kept->mesh, v.owner = kept;
+  v.fit_error = v.range.empty() ? 0 : float((v.range.hi - v.range.lo) / 4096);
+}
+
+}  // namespace
+
+CellVolume make_cell_volume(const VolumeItem& item, Context& context) {
+  if (!item.data) fail_usage("a volume item has no dataset", "volume");
+  const Dataset& d = *item.data;
+  if (d.as<SurfaceMesh>() || d.as<PointCloud>())
+    fail_usage(fmt::format("a {} mesh cannot be looked through as a volume", d.kind()), "volume", "show its surface: --show surface");
+  const Field* field = &field_of(item);
+  int component = item.component;
+  CellVolume v;
+  v.data = straightened(item.data, field, component, context);
+  v.by_cell = field->association == Association::cell;
+  v.key = fmt::format("{}/{}/{}", field->name, association_name(field->association), component);
+  take_field(v, *field, component, item.color.kind == ScaleKind::linear && item.color.labels.empty(), context);
+  if (item.detail.second == SecondAxis::field)
+    if (const Field* second = v.data->fields().find(item.detail.second_field, Association::point)) {
+      float none = 0;
+      v.seconds = stored_values(*second, -1, false, none);
+      add_middles(v, v.seconds);
+    }
+  return v;
+}
+
+Medium make_medium(const VolumeItem& item, const CellVolume& volume) {
+  const double diagonal = item.data->bounds().diagonal();
+  Medium::Plan plan;
+  plan.unit = item.unit_distance > 0 ? item.unit_distance : 0.01 * diagonal;
+  const Range& r = volume.range;
+  plan.lo = r.empty() ? item.color.lo : r.lo + double(volume.base), plan.hi = r.empty() ? item.color.hi : r.hi + double(volume.base);
+  plan.base = volume.base;
+  plan.accuracy = 0.125 * item.sampling.tolerance, plan.faint = 0.1 / diagonal;
+  plan.most_tau = 1000 / (volume.mesh->edge > 0 ? volume.mesh->edge : diagonal);
+  return Medium(item.color, item.opacity, plan);
+}
+
+}  // namespace sg::volume

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// CellVolume: a scalar field of any mesh of solid cells, ready for rays: tetrahedra, values, gradients, a second field.
+#pragma once
+#include <memory>
+#include <span>
+
+#include "render/volume/cells/tet_mesh.h"
+#include "render/volume/optics/medium.h"
+#include "scene/scene.h"
+
+namespace sg::volume {
+
+struct CellVolume {
+  DatasetPtr data;  ///< linear cells and polyhedra: curved cells divided, the leaves of an AMR grid without hanging nodes
+  std::shared_ptr<const TetMesh> mesh;
+  bool by_cell = false;  ///< the field is constant in each cell
+  std::string key;       ///< names the field in the dataset's memo
+  Plane<float> values;   ///< stored: of the mesh's vertices, or of the cells of `data`
+  Plane<float> seconds;  ///< the second field at the mesh's vertices; may be empty
+  float base = 0;        ///< value = stored + base
+  Range range;           ///< of the stored values that are drawn; empty when none are
+  float fit_error = 0;   ///< largest departure of a stretch from the field in cells that are not tetrahedra or boxes
+
+  /// Of the mesh's vertices: volume-weighted means of those of the tetrahedra around; of cell fields, from means of the cells around.
+  /// Made when first asked for, and kept with the dataset.
+  std::shared_ptr<const Plane<Vec3f>> gradients() const;
+
+  std::shared_ptr<const void> owner;  ///< of the values
+};
+
+/// Reads the item and cuts its mesh, or takes the mesh from the dataset's memo. Cells that are ghosts, blanked, or have a corner without
+/// a finite value or place draw nothing. Curved cells are divided until they depart from straight ones by less than 1/1024 of the mesh's
+/// size and of the field's range (or there would be more than 4 million parts). Cell fields of AMR grids become continuous: means and
+/// planes through the cells around each corner (see contour_amr.h); others are constant in each cell. Lattices are hexahedra.
+/// Throws Error(usage) for what has no volume.
+CellVolume make_cell_volume(const VolumeItem& item, Context& context);
+
+/// Of a composite volume, as prepare_cast makes it.
+Medium make_medium(const VolumeItem& item, const CellVolume& volume);
+
+}  // namespace sg::volume

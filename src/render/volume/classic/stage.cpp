@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/volume/classic/stage.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/core.h>
+
+#include "base/error.h"
+
+namespace sg::volume {
+
+namespace {
+
+const char* name_of(RayFunction f) {
+  switch (f) {
+    case RayFunction::composite: return "composite";
+    case RayFunction::maximum: return "maximum";
+    case RayFunction::minimum: return "minimum";
+    case RayFunction::average: return "average";
+    case RayFunction::sum: return "sum";
+    case RayFunction::first_hit: return "first_hit";
+    case RayFunction::distance: return "distance";
+    case RayFunction::accumulate: return "accumulate";
+    case RayFunction::isosurface: return "isosurface";
+    case RayFunction::maximum_difference: return "maximum_difference";
+  }
+  return "?";
+}
+
+[[noreturn]] void refuse(const Limits& limits, const std::string& what) {
+  fail_usage(fmt::format("method={} cannot draw {}", limits.method, what), "volume", "method=ray can");
+}
+
+void check(const LayerInput& input, const Limits& limits) {
+  const VolumeItem& item = input.item;
+  if (std::find(limits.modes.begin(), limits.modes.end(), item.mode) == limits.modes.end()) {
+    std::string can;
+    for (const RayFunction f : limits.modes) can += (can.empty() ? "" : ", ") + std::string(name_of(f));
+    fail_usage(fmt::format("method={} cannot draw mode={}", limits.method, name_of(item.mode)), "volume",
+               fmt::format("it draws {}; method=ray draws all", can));
+  }
+  if (!limits.rectilinear && item.data && item.data->as<RectilinearGrid>()) refuse(limits, "rectilinear grids");
+  if (!limits.perspective && !input.projection.parallel)
+    fail_usage(fmt::format("method={} has parallel projections only", limits.method), "camera", "parallel=true, or method=ray");
+  if (!limits.clip && !item.clip.empty()) refuse(limits, "clipped volumes");
+  if (!item.detail.plain()) refuse(limits, "transfer functions of two dimensions");
+  if (item.sampling.kernel != "linear") refuse(limits, fmt::format("with kernel={}", item.sampling.kernel));
+  if (item.light.shadows > 0) refuse(limits, "shadows");
+  if (item.light.occlusion > 0) refuse(limits, "ambient occlusion");
+  if (item.light.style != "none" && !item.light.style.empty()) refuse(limits, fmt::format("in style={}", item.light.style));
+  if (!limits.depth_cue && item.light.depth_cue > 0) refuse(limits, "a depth cue");
+  if (input.opaque.width != input.projection.width || input.opaque.height != input.projection.height)
+    fail_internal("the opaque frame has another size than the projection");
+}
+
+}  // namespace
+
+Stage make_stage(const LayerInput& input, const Limits& limits) {
+  check(input, limits);
+  input.context.check();
+  Stage s{input.item, input.projection, input.opaque, input.context, prepare(input.item, 1, Knobs{}), false, {}, {}};
+  const Volume& v = s.volume;
+  s.empty = v.transfer.empty() || !(v.hi.x > v.lo.x && v.hi.y > v.lo.y && v.hi.z > v.lo.z);
+  if (s.empty) return s;
+  s.to_world = inverse(v.to_q);
+  const Projection& p = input.projection;
+  for (const Light& l : input.lights) {
+    const Vec3 d = l.follows_camera ? p.right * l.direction.x + p.up * l.direction.y - p.forward * l.direction.z : l.direction;
+    s.lamps.push_back({normalize(d), l.intensity});
+  }
+  return s;
+}
+
+PixelRay Stage::ray(int x, int y) const {
+  const Projection::Ray r = projection.ray(x + 0.5, y + 0.5);
+  PixelRay out;
+  out.per_length = dot(r.direction, projection.forward), out.first_depth = dot(r.origin - projection.eye, projection.forward);
+  const double nearest = (projection.near_plane - out.first_depth) / out.per_length;
+  const double most = std::min(projection.far_plane, double(opaque.depth[size_t(y) * size_t(projection.width) + size_t(x)]));
+  const Course c = course(volume, r.origin, r.direction, nearest, (most - out.first_depth) / out.per_length);
+  out.start = c.start, out.along = c.along, out.enter = c.enter, out.leave = c.leave;
+  for (const ClipPlane& plane : item.clip) {
+    const double slope = dot(plane.normal, r.direction), room = plane.offset - dot(plane.normal, r.origin);
+    if (slope > 0) out.leave = std::min(out.leave, room / slope);
+    else if (slope < 0) out.enter = std::max(out.enter, room / slope);
+    else if (room < 0) out.leave = out.enter - 1;
+  }
+  return out;
+}
+
+LitRay Stage::lit(Vec3 direction) const {
+  LitRay l;
+  l.direction = Vec3f(direction);
+  for (const Lamp& lamp : lamps) l.lights.push_back({Vec3f(lamp.direction), Vec3f(normalize(lamp.direction - direction)), lamp.intensity});
+  l.material.ambient = float(item.light.ambient), l.material.diffuse = float(item.light.diffuse);
+  l.material.specular = float(item.light.specular), l.material.power = float(item.light.power);
+  return l;
+}
+
+float value_at(const Volume& v, size_t i, size_t j, size_t k) {
+  const size_t at = i + v.voxels.dims[0] * (j + v.voxels.dims[1] * k);
+  const void* p = v.voxels.array.raw();
+  switch (v.voxels.array.type()) {
+    case ElementType::u8: return float(static_cast<const uint8_t*>(p)[at]);
+    case ElementType::i8: return float(static_cast<const int8_t*>(p)[at]);
+    case ElementType::u16: return float(static_cast<const uint16_t*>(p)[at]);
+    case ElementType::i16: return float(static_cast<const int16_t*>(p)[at]);
+    default: return static_cast<const float*>(p)[at];
+  }
+}
+
+Shade shade_sample(const Stage& stage, Vec3f gradient, float per_cell, const LitRay& lit) {
+  return shade_normal(world_gradient(stage, gradient), std::min(1.0f, per_cell * stage.volume.shade_plan.per_scale), lit);
+}
+
+Shade shade_normal(Vec3f normal, float surface, const LitRay& lit) {
+  const float square = dot(normal, normal);
+  if (!(square > 0) || !(square < 1e30f)) return {};
+  const float side = (dot(normal, lit.direction) > 0 ? -1.0f : 1.0f) / std::sqrt(square);
+  float diffuse = 0, specular = 0;
+  for (const LitRay::One& l : lit.lights) {
+    const float d = side * dot(normal, l.light);
+    if (!(d > 0)) continue;
+    diffuse += l.intensity * d;
+    float base = std::max(0.0f, side * dot(normal, l.half)), power = 1;
+    for (int n = std::clamp(int(lit.material.power + 0.5f), 1, 1024); n > 0; n >>= 1, base *= base)
+      if (n & 1) power *= base;
+    specular += l.intensity * power;
+  }
+  return {1 + surface * (lit.material.ambient + lit.material.diffuse * diffuse - 1), surface * (lit.material.specular * specular)};
+}
+
+float alpha_of(float x) {
+  constexpr int count = 16 * 512;  // straight lines between 512 entries per unit
+  static const std::vector<float> table = [] {
+    std::vector<float> t(count + 2);
+    for (int i = 0; i < count + 2; ++i) t[size_t(i)] = float(1 - exp_negative(i / 512.0));
+    return t;
+  }();
+  if (x < 0.0625f) return x * (1 - x * (0.5f - x * (1.0f / 6 - x * (1.0f / 24))));
+  if (!(x < 16)) return 1;
+  const float at = x * 512;
+  const int i = int(at);
+  return table[size_t(i)] + (at - float(i)) * (table[size_t(i) + 1] - table[size_t(i)]);
+}
+
+Ink::Ink(const VolumeItem& item) : item_(item), table_(color_table(item.color)) {}
+
+void Ink::draw(double value, float rgba[4]) const {
+  rgba[0] = rgba[1] = rgba[2] = rgba[3] = 0;
+  if (!(value == value)) return;
+  const Vec4f c = table_.at(item_.color.position(value));
+  if (!(item_.opacity.at(value) > 0) || !(c.w > 0)) return;
+  rgba[0] = c.x, rgba[1] = c.y, rgba[2] = c.z, rgba[3] = 1;
+}
+
+PointGradient gradient_at_sample(const Volume& v, size_t i, size_t j, size_t k) {
+  const std::array<size_t, 3> here{i, j, k};
+  const float centre = value_at(v, i, j, k);
+  PointGradient g{{0, 0, 0}, 0};
+  for (int a = 0; a < 3; ++a) {
+    std::array<size_t, 3> below = here, above = here;
+    const size_t n = v.voxels.dims[size_t(a)];
+    if (here[size_t(a)] > 0) --below[size_t(a)];
+    if (here[size_t(a)] + 1 < n) ++above[size_t(a)];
+    float lo = value_at(v, below[0], below[1], below[2]), hi = value_at(v, above[0], above[1], above[2]);
+    float apart = float(above[size_t(a)] - below[size_t(a)]);
+    if (lo != lo) lo = centre, apart *= 0.5f;
+    if (hi != hi) hi = centre, apart *= 0.5f;
+    g.q[a] = (hi - lo) / apart;
+    g.per_cell += 0.25f * (hi - lo) * (hi - lo);
+  }
+  g.per_cell = std::sqrt(g.per_cell);
+  return g;
+}
+
+}  // namespace sg::volume
