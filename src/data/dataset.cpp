@@ -44,7 +44,7 @@ const Box3& Dataset::bounds() const {
   std::lock_guard lock(mutex_);
   if (!bounds_) {
     bounds_ = sg::bounds(parts_.mesh);
-    if (const BrickedPtr whole = bricked_of(*this)) bounds_->add(whole->bounds());  // what the coarse level stands for
+    if (const BrickedPtr whole = bricked_of(*this)) bounds_ = whole->bounds();  // what the coarse level stands for
   }
   return *bounds_;
 }

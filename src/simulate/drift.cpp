@@ -15,11 +15,11 @@ void describe(Schema& s, DriftParams& p) {
   s("time", p.time, "When.");
 }
 
-double drift_speed(const DriftParams& p, Vec3 at) { return p.speed * std::cos(3 * at.y * degree) * std::exp(-at.z / 12); }
+double drift_speed(const DriftParams& p, Vec3 at) { return p.speed * std::cos(3 * at.y * degree) * std::exp((at.z - 30) / 12); }
 
 double drift_tracer(const DriftParams& p, Vec3 at, double time) {
   const double y = at.y * degree, x = (at.x - drift_speed(p, at) * time) * degree, c = std::cos(y);
-  return std::exp(-at.z / 12) *
+  return std::exp((at.z - 30) / 12) *
          (0.5 * std::cos(4 * x) * std::cos(3 * y) + c * c * (0.3 * std::cos(9 * x + 5 * y) + 0.2 * std::cos(17 * x - 8 * y)));
 }
 
@@ -48,7 +48,8 @@ void fill(const UniformGrid& g, const DriftParams& p, T* out, const Context& con
         std::vector<double> row(nx);
         for (size_t r = begin; r < end; ++r) {
           const Vec3 at = g.origin + g.spacing * Vec3(0, double(r % ny), double(r / ny));
-          const double y = at.y * degree, x = (at.x - drift_speed(p, at) * p.time) * degree, c = std::cos(y), fade = std::exp(-at.z / 12);
+          const double y = at.y * degree, x = (at.x - drift_speed(p, at) * p.time) * degree, c = std::cos(y),
+                       fade = std::exp((at.z - 30) / 12);
           const double step = g.spacing.x * degree;
           std::fill(row.begin(), row.end(), 0.0);
           add_wave(0.5 * fade * std::cos(3 * y), 4 * x, 4 * step, row.data(), nx);
