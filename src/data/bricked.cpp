@@ -65,6 +65,16 @@ Range BrickedVolume::range() const {
 
 uint64_t BrickedVolume::bytes() const { return uint64_t(levels[0].dims[0]) * levels[0].dims[1] * levels[0].dims[2] * element_size(type); }
 
+Box3 BrickedVolume::bounds() const {
+  Box3 box;
+  const Level& l = levels[0];
+  for (size_t c = 0; c < 8; ++c) {
+    const Vec3 corner(double(c & 1 ? l.dims[0] - 1 : 0), double(c & 2 ? l.dims[1] - 1 : 0), double(c & 4 ? l.dims[2] - 1 : 0));
+    box.add(l.origin + direction * (l.spacing * corner));
+  }
+  return box;
+}
+
 void attach_bricked(const Dataset& coarse, BrickedPtr volume) { coarse.memo().keep(key, BrickedPtr(std::move(volume)), 0); }
 
 BrickedPtr bricked_of(const Dataset& dataset) {

@@ -44,11 +44,14 @@ struct BrickedVolume {
   /// Over all blocks; empty when the file does not tell.
   Range range() const;
   uint64_t bytes() const;  ///< of level 0
+  /// Of the samples of level 0.
+  Box3 bounds() const;
 };
 using BrickedPtr = std::shared_ptr<const BrickedVolume>;
 
-/// `coarse` is the volume at one of its levels; from now on renderers may read finer values of it. Filters make new datasets, which do
-/// not have the volume any more.
+/// `coarse` is the volume at one of its levels; from now on renderers may read finer values of it, and the bounds of the dataset and the
+/// range of the field are those of the volume. To be called before anything else is asked of the dataset. Filters make new datasets,
+/// which do not have the volume any more.
 void attach_bricked(const Dataset& coarse, BrickedPtr volume);
 /// The volume that the dataset stands for; null for all others.
 BrickedPtr bricked_of(const Dataset& dataset);

@@ -323,6 +323,9 @@ TEST_CASE("zarr: a volume beyond the memory allowed is a coarse level with a way
     CHECK(v->extremes[b].hi == hi);
   }
   CHECK(v->range() == Range{0, 250});
+  // Pictures have the frame and the colours of the whole.
+  CHECK(length(coarse->bounds().lo - d->bounds().lo) + length(coarse->bounds().hi - d->bounds().hi) < 1e-12);
+  CHECK(coarse->range(coarse->fields()[0]) == d->range(d->fields()[0]));
   // A file that says nothing of them.
   std::filesystem::remove_all(path + "/minmax");
   CHECK(bricked_of(*read(path, {}, bytes))->extremes.empty());

@@ -16,6 +16,7 @@ struct MadeVolume {
   BrickedPtr volume;
   DatasetPtr dataset;
   std::shared_ptr<std::atomic<size_t>> reads = std::make_shared<std::atomic<size_t>>(0);
+  std::shared_ptr<std::atomic<size_t>> expected = std::make_shared<std::atomic<size_t>>(0);  ///< samples of which reading was announced
   std::vector<std::array<size_t, 3>> dims;
   std::shared_ptr<std::vector<std::vector<float>>> values = std::make_shared<std::vector<std::vector<float>>>();
 
@@ -86,6 +87,10 @@ MadeVolume make_volume(std::array<size_t, 3> dims, size_t levels, F&& f, Mat3 di
     for (size_t k = 0; k < n[2]; ++k)
       for (size_t j = 0; j < n[1]; ++j)
         for (size_t i = 0; i < n[0]; ++i) *to++ = (*values)[level][lo[0] + i + d[0] * (lo[1] + j + d[1] * (lo[2] + k))];
+  };
+  v->expect = [expected = m.expected, dims = m.dims](size_t level, std::array<size_t, 3> lo, std::array<size_t, 3> n) {
+    for (size_t a = 0; a < 3; ++a) CHECK((n[a] > 0 && lo[a] + n[a] <= dims[level][a]));
+    *expected += n[0] * n[1] * n[2];
   };
   m.volume = v;
   // The dataset is the coarsest level.

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Boxes of numbers out of chunks.
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cmath>
 
 #include "base/file.h"
@@ -134,6 +137,23 @@ bool any_chunk(const Box& box) {
 
 namespace {
 
+// The chunks of a box without gaps.
+template <class F>
+void for_each_chunk(const Box& box, const LatticePart& part, F&& f) {
+  const ChunkShape shape = chunk_shape(box);
+  std::array<size_t, 3> first{}, last{};
+  for (size_t a = 0; a < 3; ++a) first[a] = part.lo[a] / shape.size[a], last[a] = (part.lo[a] + part.count[a] - 1) / shape.size[a];
+  std::vector<size_t> at = shape.at;
+  std::array<size_t, 3> c{};
+  for (c[2] = first[2]; c[2] <= last[2]; ++c[2])
+    for (c[1] = first[1]; c[1] <= last[1]; ++c[1])
+      for (c[0] = first[0]; c[0] <= last[0]; ++c[0]) {
+        for (size_t a = 0; a < 3; ++a)
+          if (box.axis[a] >= 0) at[size_t(box.axis[a])] = c[a];
+        f(box.array, at);
+      }
+}
+
 // Levels that are whole multiples of the ones before, as far as there are some; the others are left out.
 std::vector<size_t> usable_levels(const Image& image, std::vector<std::array<size_t, 3>>& coarseness) {
   std::vector<size_t> used{0};
@@ -198,6 +218,16 @@ BrickedPtr bricked(std::shared_ptr<const Image> image, size_t step, size_t chann
       return chunk->empty() ? nullptr : chunk;
     };
     read_part(box_of(*image, used[level], step, channel), part, out, 1, chunks, nullptr, false);
+  };
+  v->expect = [=](size_t level, std::array<size_t, 3> lo, std::array<size_t, 3> count) {
+    LatticePart part;
+    part.dims = image->dims(used[level]), part.lo = lo, part.count = count;
+    for_each_chunk(box_of(*image, used[level], step, channel), part, [](const ZarrArray& array, const std::vector<size_t>& at) {
+      const int fd = ::open(array.chunk_path(at).c_str(), O_RDONLY | O_CLOEXEC);
+      if (fd < 0) return;
+      ::posix_fadvise(fd, 0, 0, POSIX_FADV_WILLNEED);
+      ::close(fd);
+    });
   };
   return v;
 }

@@ -111,11 +111,13 @@ Data read_zarr(const std::string& path, const ReadOptions& options, Context& con
   if (coarse) {
     parts.notes.emplace_back("level",
                              fmt::format("{} of {}: {} of {} samples", level, image->levels.size(), size_text(grid.dims), size_text(dims)));
-    context.info(fmt::format("{}: {} do not fit into memory; level {} with {} is read, volumes are drawn from the bricks", path,
-                             size_text(dims), level, size_text(grid.dims)));
+    const char* rest = planned.size() == 1 && !image->vector ? "volumes are drawn from the bricks"
+                                                             : "--fields with one name draws volumes from the bricks";
+    context.info(fmt::format("{}: {} do not fit into memory; level {} with {} is read, {}", path, size_text(dims), level,
+                             size_text(grid.dims), rest));
   }
   const DatasetPtr dataset = make_dataset(std::move(parts));
-  if (coarse && !image->vector) {
+  if (coarse && planned.size() == 1 && !image->vector) {
     const size_t cache = size_t(std::min<uint64_t>(allowed / 8, uint64_t(256) << 20));
     attach_bricked(*dataset, zarr::bricked(image, step, planned[0].channels[0], cache));
   }

@@ -54,8 +54,10 @@ class BrickedSource final : public RaySource {
 
   std::unique_ptr<RayField> walker() const override;
   const BrickTree& tree() const {
-    std::call_once(planned_,
-                   [&] { tree_ = std::make_unique<BrickTree>(*volume_, projection_, pixels_, 4 * uint64_t(cache_limit_), invisible); });
+    std::call_once(planned_, [&] {
+      tree_ = std::make_unique<BrickTree>(*volume_, projection_, pixels_, 4 * uint64_t(cache_limit_), invisible);
+      foresee();
+    });
     return *tree_;
   }
   const BrickedVolume& volume() const { return *volume_; }
@@ -74,6 +76,38 @@ class BrickedSource final : public RaySource {
   }
 
  private:
+  // The system may read what rays will need, the nearest first, while the first rays are cast.
+  void foresee() const {
+    if (!volume_->expect) return;
+    std::vector<std::pair<double, size_t>> order;
+    for (size_t i = 0; i < tree_->size(); ++i) {
+      const BrickNode& n = tree_->node(int(i));
+      if (!n.seen || n.children >= 0) continue;
+      Vec3 lo, hi;
+      tree_->box(n, lo, hi);
+      const BrickedVolume::Level& fine = volume_->levels[0];
+      order.emplace_back(projection_.to_eye(fine.origin + volume_->direction * (fine.spacing * (0.5 * (lo + hi)))).z, i);
+    }
+    std::sort(order.begin(), order.end());
+    size_t bytes = 0;
+    for (size_t i = 0; i < order.size() && bytes < cache_limit_; ++i) {
+      const BrickNode& n = tree_->node(int(order[i].second));
+      Vec3 lo, hi;
+      tree_->box(n, lo, hi);
+      std::array<size_t, 3> from{}, count{};
+      size_t size = element_size(volume_->type);
+      for (size_t a = 0; a < 3; ++a) {
+        const double scale = prepared_.scale[n.level][int(a)], shift = prepared_.shift[n.level][int(a)];
+        const double last = double(volume_->levels[n.level].dims[a]) - 1;
+        from[a] = size_t(std::clamp(std::ceil(lo[int(a)] * scale + shift), 0.0, last));
+        count[a] = size_t(std::clamp(std::ceil(hi[int(a)] * scale + shift) - 1, double(from[a]), last)) - from[a] + 1;
+        size *= count[a];
+      }
+      volume_->expect(n.level, from, count);
+      bytes += size;
+    }
+  }
+
   // Of the level that the nearest place of the box is drawn from.
   double finest_edge() const {
     double nearest = HUGE_VAL;
