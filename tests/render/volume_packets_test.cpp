@@ -120,11 +120,11 @@ TEST_CASE("volume packets: maxima agree with the search one ray at a time") {
     for (int y = 0; y < oblique.height; ++y)
       for (int x = 0; x < oblique.width; ++x) {
         const auto ray = oblique.ray(x + 0.5, y + 0.5);
-        const volume::Maximum m = volume::maximum_along(prepared, volume::course(prepared, ray.origin, ray.direction, 0, 1e9), {});
+        const volume::Found m = largest_along(prepared, ray.origin, ray.direction);
         const float got = f.rgba[size_t(4 * (oblique.width * y + x))];
         hits += m.found;
         INFO(int(where) << " " << x << " " << y << " want " << m.value << " at " << m.t << " got " << got * 200);
-        if (m.found) REQUIRE(std::abs(got - transfer.medium(transfer.index(m.value)).r) < 2e-3f);
+        if (m.found) REQUIRE(std::abs(got - transfer.medium(transfer.index(float(m.value))).r) < 2e-3f);
         else REQUIRE(got == 0);
       }
     CHECK(hits > 100);

@@ -50,7 +50,7 @@ struct Volume {
   Box3 bounds;                     ///< world
   std::vector<Transfer> transfer;  ///< one
   Kernels kernels{};
-  bool direct = false;  ///< affine, a linear table, no holes to look after: kernels.entries does all
+  bool direct = false;  ///< affine, a linear table, no holes to look after: packets may draw it
   ShadePlan shade_plan{};
 
   // world -> q
@@ -89,19 +89,5 @@ struct Course {
   double enter = 0, leave = -1;  ///< inside the box, and within the limits asked for
 };
 Course course(const Volume& volume, Vec3 origin, Vec3 direction, double from, double to);
-
-/// Integrates [from, to] of one volume or, in common steps (the shortest of theirs), of several that overlap there. Samples lie in the
-/// middle of their steps; the last step has what length is left. Stops when less than knobs.stop_below of the light passes.
-void march(const Volume& volume, const Course& course, double from, double to, const LitRay& lit, const Knobs& knobs, RayState& state);
-void march_together(const Volume* const* volumes, const Course* const* courses, size_t count, double from, double to, const LitRay& lit,
-                    const Knobs& knobs, RayState& state);
-
-/// The largest value along the course, exactly that of the trilinear field.
-struct Maximum {
-  float value;  ///< stored
-  double t;
-  bool found;
-};
-Maximum maximum_along(const Volume& volume, const Course& course, const Knobs& knobs);
 
 }  // namespace sg::volume
