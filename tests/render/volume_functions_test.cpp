@@ -166,7 +166,8 @@ TEST_CASE("volume: opacity by a second field and by the gradient are what their 
   // |grad f| = 1: a factor that is 1/2 there.
   v.detail.second = SecondAxis::gradient;
   v.detail.second_factor.points = {{0, 0}, {2, 1}};
-  CHECK(-std::log(1 - double(look(scene_of({v}), 0.1, 0.3).rgba[3])) == Approx(-2 * std::log(1 - 0.5 * (1 - std::exp(-1.0)))).epsilon(2e-3));
+  CHECK(-std::log(1 - double(look(scene_of({v}), 0.1, 0.3).rgba[3])) ==
+        Approx(-2 * std::log(1 - 0.5 * (1 - std::exp(-1.0)))).epsilon(2e-3));
 }
 
 TEST_CASE("volume: second derivative and curvature of a ball of larger values") {
@@ -184,14 +185,16 @@ TEST_CASE("volume: second derivative and curvature of a ball of larger values") 
 TEST_CASE("volume: packets of any width and single rays integrate to the same bytes, and to the general way within rounding") {
   for (const bool shaded : {false, true})
     for (const ElementType type : {ElementType::f32, ElementType::u8, ElementType::i16}) {
-      VolumeItem v = item(grid(cube(21, -1, 1), [](Vec3 p) { return 100 + 50 * bumpy(p); }, type), grey(15, 185), {{{15, 0}, {90, 0}, {185, 0.9}}});
+      VolumeItem v = item(grid(
+                              cube(21, -1, 1), [](Vec3 p) { return 100 + 50 * bumpy(p); }, type),
+                          grey(15, 185), {{{15, 0}, {90, 0}, {185, 0.9}}});
       v.unit_distance = 0.1, v.shaded = shaded;
       const Projection view = perspective_view(30, 30, 34, {1.9, 1.4, 2.6}, {0, 0, 0});
       volume::Knobs single;
       single.simd = false;
       const Frame a = draw(scene_of({v}), view), b = draw(scene_of({v}), view, single);
       CHECK(same_bytes(a, b));
-      v.clip = {{{1, 0, 0}, 1e6}};  // packets do not know planes
+      v.clip = {{{1, 0, 0}, 1e6}};                                           // packets do not know planes
       CHECK(largest_difference(a, draw(scene_of({v}), view)) < 2.0f / 512);  // each within 1/512 of the truth
       v.clip.clear();
       set_thread_count(1);

@@ -6,9 +6,9 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
-#include "render/volume/volume.h"
 #include "render/volume/lattice/lattice_ray.h"
 #include "render/volume/optics/functions.h"
+#include "render/volume/volume.h"
 #include "support/test.h"
 
 namespace sg::test {

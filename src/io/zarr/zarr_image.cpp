@@ -3,6 +3,7 @@
 #include "io/zarr/zarr_image.h"
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "base/file.h"
 #include "io/zarr/zarr_json.h"

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "io/zarr/zarr_json.h"
+#include <nlohmann/json.hpp>
 
 #include "base/file.h"
+#include "io/zarr/zarr_json.h"
 
 namespace sg::zarr {
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Private to src/io/zarr: JSON files that may be damaged.
+// Private to src/io/zarr: JSON files that may be damaged. The three files that use it include nlohmann/json.hpp before it.
 #pragma once
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>

@@ -16,7 +16,8 @@ bool needs_level(RayFunction f) {
   return f == RayFunction::first_hit || f == RayFunction::distance || f == RayFunction::accumulate || f == RayFunction::isosurface;
 }
 
-std::unique_ptr<RaySource> source_of(const VolumeItem& item, std::shared_ptr<const Volume> lattice, const Projection& projection, Context& context) {
+std::unique_ptr<RaySource> source_of(const VolumeItem& item, std::shared_ptr<const Volume> lattice, const Projection& projection,
+                                     Context& context) {
   if (auto bricked = bricked_source(item, projection, context.memory_limit / 2, context)) return bricked;
   if (!lattice) return cell_source(item, context);
   std::shared_ptr<const Volume> second;

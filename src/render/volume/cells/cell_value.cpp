@@ -174,7 +174,6 @@ float CellCurve::value(Vec3 at) {
       f = trilinear(f_, guess_);
     }
   } else {
-
     // A cell that is folded there: near the corners by their distance.
     double sum = 0;
     for (size_t k = 0; k < f_.size(); ++k) {

@@ -76,8 +76,7 @@ class Clearness {
     const LinearTable t = transfer.linear_table();
     first_ = t.first, per_axis_ = t.per_axis, last_ = float(t.count + 1);
     drawn_before_.resize(size_t(t.count) + 3);
-    for (int i = 0; i <= t.count + 1; ++i)
-      drawn_before_[size_t(i) + 1] = uint16_t(drawn_before_[size_t(i)] + transfer.draws(i));
+    for (int i = 0; i <= t.count + 1; ++i) drawn_before_[size_t(i) + 1] = uint16_t(drawn_before_[size_t(i)] + transfer.draws(i));
   }
   bool operator()(MinMaxBricks::Range r) const {
     if (drawn_before_.empty()) return transfer_.clear(r.lo, r.hi);

@@ -102,7 +102,8 @@ class LatticeRay final : public LatticeWalker {
     Vec3 q = c_.start + c_.along * t, rows[3];
     for (int a = 0; a < 3; ++a)
       if (const long last = axes_[a].last(); last >= 4)
-        q[a] = std::clamp(q[a], 0.5 * (axes_[a].sample(1) + axes_[a].sample(2)), 0.5 * (axes_[a].sample(last - 2) + axes_[a].sample(last - 1)));
+        q[a] = std::clamp(q[a], 0.5 * (axes_[a].sample(1) + axes_[a].sample(2)),
+                          0.5 * (axes_[a].sample(last - 2) + axes_[a].sample(last - 1)));
     for (int a = 0; a < 3; ++a) {
       const double edge = v_.cell_length(a, q[a]), from = std::max(q[a] - 0.5 * edge, axes_[a].sample(0)),
                    to = std::min(q[a] + 0.5 * edge, axes_[a].sample(axes_[a].last()));
@@ -116,7 +117,11 @@ class LatticeRay final : public LatticeWalker {
     for (int r = 0; r < 3; ++r)
       for (int c = 0; c < 3; ++c)
         for (int a = 0; a < 3; ++a) m[r][c] += v_.to_q.m[a][r] * rows[a][c];
-    h = {float(m[0][0]), float(m[1][1]), float(m[2][2]), float(0.5 * (m[0][1] + m[1][0])), float(0.5 * (m[0][2] + m[2][0])),
+    h = {float(m[0][0]),
+         float(m[1][1]),
+         float(m[2][2]),
+         float(0.5 * (m[0][1] + m[1][0])),
+         float(0.5 * (m[0][2] + m[2][0])),
          float(0.5 * (m[1][2] + m[2][1]))};
     return true;
   }
@@ -334,7 +339,8 @@ class LatticeRay final : public LatticeWalker {
   bool holes_ = false;
 };
 
-std::unique_ptr<LatticeWalker> walker_of(const std::shared_ptr<const Volume>& v, const Invisible& invisible, std::unique_ptr<LatticeWalker> second) {
+std::unique_ptr<LatticeWalker> walker_of(const std::shared_ptr<const Volume>& v, const Invisible& invisible,
+                                         std::unique_ptr<LatticeWalker> second) {
   switch (v->voxels.array.type()) {
     case ElementType::u8: return std::make_unique<LatticeRay<uint8_t>>(v, invisible, std::move(second));
     case ElementType::i8: return std::make_unique<LatticeRay<int8_t>>(v, invisible, std::move(second));

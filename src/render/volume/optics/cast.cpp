@@ -30,7 +30,8 @@ struct Caster::Active {
   size_t next = 0, count = 0;
 
   explicit Active(const CastVolume& v)
-      : volume(&v), walker(v.source->walker()), look{*v.medium, v.budget, v.id, nullptr, v.per_scale, float(v.source->edge), v.detail.get()} {}
+      : volume(&v), walker(v.source->walker()), look{*v.medium,     v.budget, v.id, nullptr, v.per_scale, float(v.source->edge),
+                                                     v.detail.get()} {}
 
   /// Is there a stretch to draw? Reads on when all that were read ahead are drawn.
   bool peek() {

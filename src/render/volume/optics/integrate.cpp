@@ -207,7 +207,8 @@ Place place_at(const Look& look, const Stretch& s, double t, RayField& walker) {
   }
   const TransferFunction::Sample o = detail.transfer.at(value, second);
   if (!(o.opacity > 0)) return {};
-  const float tau = o.opacity < 1 ? std::min(float(minus_log_one_minus(double(o.opacity)) / detail.unit), detail.most_tau) : detail.most_tau;
+  const float tau =
+      o.opacity < 1 ? std::min(float(minus_log_one_minus(double(o.opacity)) / detail.unit), detail.most_tau) : detail.most_tau;
   Vec3f c{o.r, o.g, o.b};
   if (look.lit) {
     const Lit l = light_at(*look.lit, slope(), look.edge, look.per_scale);
@@ -216,8 +217,8 @@ Place place_at(const Look& look, const Stretch& s, double t, RayField& walker) {
   return {tau, c * tau};
 }
 
-void composite_detailed(const Look& look, const Stretch& s, double from, double to, const Place& a, const Place& b, RayField& walker, int cuts,
-                        RayState& state) {
+void composite_detailed(const Look& look, const Stretch& s, double from, double to, const Place& a, const Place& b, RayField& walker,
+                        int cuts, RayState& state) {
   if (state.sum.transmittance < look.budget.stop_below) return;
   const double middle = 0.5 * (from + to);
   const Place m = place_at(look, s, middle, walker);
@@ -226,7 +227,8 @@ void composite_detailed(const Look& look, const Stretch& s, double from, double 
   const float depth = simpson(a.tau, m.tau, b.tau), rough = 0.25f * length * (a.tau + 2 * m.tau + b.tau);
   const Vec3f glow{simpson(a.glow.x, m.glow.x, b.glow.x), simpson(a.glow.y, m.glow.y, b.glow.y), simpson(a.glow.z, m.glow.z, b.glow.z)};
   const Vec3f rough_glow = (a.glow + m.glow * 2 + b.glow) * (0.25f * length);
-  const float off = std::max({std::abs(depth - rough), std::abs(glow.x - rough_glow.x), std::abs(glow.y - rough_glow.y), std::abs(glow.z - rough_glow.z)});
+  const float off = std::max(
+      {std::abs(depth - rough), std::abs(glow.x - rough_glow.x), std::abs(glow.y - rough_glow.y), std::abs(glow.z - rough_glow.z)});
   const float pass = state.sum.transmittance, taken = std::min(1.0f, depth);
   const float allowed = float(look.budget.tolerance) * (0.3f * float(length / look.budget.length) + 0.3f * pass * taken);
   // The order of colours within a deep part, too.

@@ -44,8 +44,8 @@ struct Look {
   const Detail* detail = nullptr;  ///< null = the medium tells all
 };
 
-/// Puts one stretch behind what the ray has gathered. `walker` is asked for gradients where the look is lit. With a detail, tau is integrated by
-/// Simpson's rule on parts that are halved until it agrees with the trapezoid rule, 8 times at most: an estimate, no bound.
+/// Puts one stretch behind what the ray has gathered. `walker` is asked for gradients where the look is lit. With a detail, tau is
+/// integrated by Simpson's rule on parts that are halved until it agrees with the trapezoid rule, 8 times at most: an estimate, no bound.
 void composite(const Look& look, const Stretch& stretch, RayField& walker, RayState& state);
 
 /// A piece of the ray on which the value goes straight from `a` to `b` (pre-integrated classification is this over a step).
