@@ -29,10 +29,15 @@ Frame render_progressively(const Scene& scene, const Camera& camera, const Rende
                            const std::function<bool(const Frame&, int coarseness)>& show) {
   Frame frame(std::max(options.width, 1), std::max(options.height, 1));
   for (const int factor : {8, 4, 2}) {
+    // A square of pixels with one colour needs no better integral than that.
+    Scene rough = scene;
+    for (Item& item : rough.items)
+      if (auto* volume = std::get_if<VolumeItem>(&item))
+        volume->sampling.tolerance = std::min(0.125, 2 * factor * volume->sampling.tolerance);
     RenderOptions coarse = options;
     coarse.width = std::max(1, (options.width + factor - 1) / factor), coarse.height = std::max(1, (options.height + factor - 1) / factor);
     coarse.samples = 1;
-    enlarge(render(scene, camera, coarse, context), factor, frame);
+    enlarge(render(rough, camera, coarse, context), factor, frame);
     if (!show(frame, factor)) return frame;
   }
   frame = render(scene, camera, options, context);
