@@ -18,6 +18,9 @@ void describe(Schema& s, PictureParams& p) {
   s("axes", p.axes, "Draw the bounding box with numbers.");
   s("triad", p.triad, "Draw the orientation axes.");
   s("samples", p.samples, "Samples per pixel and axis; 0 chooses 2 for surfaces, 1 for volumes.").range(0, 4);
+  s("adaptive", p.adaptive,
+    "Above 0: all samples only where neighbouring pixels differ by more than this share of full scale; 0 takes all of them everywhere.")
+      .range(0, 1);
   s("text", p.text, "Size factor of all text.").range(0.2, 10);
 }
 

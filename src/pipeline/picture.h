@@ -19,6 +19,7 @@ struct PictureParams {
   std::string title;
   bool legend = true, axes = true, triad = true;
   int samples = 0;
+  double adaptive = 0;
   double text = 1;
 };
 void describe(Schema& s, PictureParams& p);

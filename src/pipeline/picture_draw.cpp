@@ -71,6 +71,7 @@ int width_beside_legends(const Annotation& annotation, const StatedPicture& s) {
 Image draw_picture(const Scene& scene, const Camera& camera, const StatedPicture& s, const Annotation& annotation, Context& context) {
   RenderOptions options;
   options.width = width_beside_legends(annotation, s), options.height = s.height, options.samples = s.picture.samples;
+  options.adaptive = s.picture.adaptive;
   Frame frame = render(scene, camera, options, context);
   const Projection projection = make_projection(camera, options.width, options.height);
   Annotation with_texts = annotation;

@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -41,6 +42,33 @@ void reduce(const Frame& fine, int n, int first, Frame& frame) {
   });
 }
 
+/// Squares of `side` pixels, by rows of ceil(width/side), in which or beside which a pixel of one sample differs from a neighbour.
+std::vector<uint8_t> uneven_squares(const Frame& frame, int side, double threshold) {
+  const int across = (frame.width + side - 1) / side, down = (frame.height + side - 1) / side;
+  std::vector<uint8_t> uneven(size_t(across) * size_t(down));
+  const auto differ = [&](size_t p, size_t q) {
+    if (frame.ids[p] != frame.ids[q]) return true;
+    for (size_t k = 0; k < 4; ++k) {
+      const auto shown = [&](size_t i) { return std::sqrt(std::clamp(double(frame.rgba[4 * i + k]), 0.0, 1.0)); };  // near sRGB's curve
+      if (std::abs(shown(p) - shown(q)) > threshold) return true;
+    }
+    return false;
+  };
+  parallel_for(size_t(down), 1, [&](size_t begin, size_t end) {
+    for (int j = int(begin); j < int(end); ++j)
+      for (int i = 0; i < across; ++i) {
+        bool any = false;
+        for (int y = std::max(0, j * side - 1); y < std::min(frame.height - 1, (j + 1) * side) && !any; ++y)
+          for (int x = std::max(0, i * side - 1); x < std::min(frame.width - 1, (i + 1) * side) && !any; ++x) {
+            const size_t p = size_t(y) * size_t(frame.width) + size_t(x);
+            any = differ(p, p + 1) || differ(p, p + size_t(frame.width));
+          }
+        uneven[size_t(j) * size_t(across) + size_t(i)] = any;
+      }
+  });
+  return uneven;
+}
+
 /// Pixels of a supersampled band: few enough that its planes stay small, enough that going through the scene once a band costs
 /// little. The bands depend on the size of the picture alone.
 constexpr size_t band_pixels = size_t(1) << 21;
@@ -57,20 +85,41 @@ Frame render(const Scene& scene, const Camera& camera, const RenderOptions& opti
   const Projection whole = make_projection(camera, options.width * n, options.height * n);
   const auto prepared = prepare_scene(scene, context);
   Frame frame(options.width, options.height);
-  auto draw = [&](const Projection& projection, Frame& into) {
-    const FragmentLists fragments = rasterize_prepared(*prepared, projection, n, into, context);
+  auto draw = [&](const Projection& projection, int samples, const std::vector<uint8_t>* wanted, Frame& into) {
+    const FragmentLists fragments = rasterize_prepared(*prepared, projection, samples, into, context);
     context.check();
-    composite_volumes(scene, projection, fragments, into, context);
+    composite_volumes(scene, projection, fragments, into, context, wanted);
   };
+  const bool adaptive = options.adaptive > 0 && n > 1;
   if (n == 1) {
-    draw(whole, frame);
+    draw(whole, 1, nullptr, frame);
   } else {
-    const int rows = std::clamp(int(band_pixels / (size_t(whole.width) * size_t(n))), 1, options.height);
+    // One sample first, where that may do.
+    constexpr int tile = 16;
+    const int side = tile / n;
+    std::vector<uint8_t> uneven;
+    Frame single(adaptive ? options.width : 1, adaptive ? options.height : 1);
+    if (adaptive) {
+      draw(make_projection(camera, options.width, options.height), 1, nullptr, single);
+      uneven = uneven_squares(single, side, options.adaptive);
+    }
+    const size_t across = size_t(options.width + side - 1) / size_t(side);
+    int rows = std::clamp(int(band_pixels / (size_t(whole.width) * size_t(n))), 1, options.height);
+    if (adaptive) rows = std::max(rows / side, 1) * side;  // squares are not cut by bands
     for (int first = 0; first < options.height; first += rows) {
       const int count = std::min(rows, options.height - first);
       Frame band(whole.width, count * n);
-      draw(band_of(whole, first * n, count * n), band);
+      std::vector<uint8_t> wanted;
+      if (adaptive) wanted.assign(uneven.begin() + ptrdiff_t(across * size_t(first / side)), uneven.end());
+      draw(band_of(whole, first * n, count * n), n, adaptive && side * n == tile ? &wanted : nullptr, band);
       reduce(band, n, first, frame);
+      for (int y = first; adaptive && y < first + count; ++y)
+        for (int x = 0; x < options.width; ++x) {
+          if (uneven[across * size_t(y / side) + size_t(x / side)]) continue;
+          const size_t p = size_t(y) * size_t(options.width) + size_t(x);
+          std::copy_n(&single.rgba[4 * p], 4, &frame.rgba[4 * p]);
+          frame.depth[p] = single.depth[p], frame.ids[p] = single.ids[p];
+        }
     }
   }
   composite_background(scene, frame);

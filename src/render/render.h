@@ -10,6 +10,9 @@ namespace sg {
 struct RenderOptions {
   int width = 1280, height = 720;
   int samples = 0;  ///< per pixel and axis (1, 2, 3, 4); 0 = 2 for surfaces, 1 for volumes alone
+  /// Above 0: all the samples are taken only where neighbouring pixels of one sample differ by more than this share of full scale in a
+  /// channel (as displayed), or show different items; in squares of 16/samples pixels.
+  double adaptive = 0;
 };
 
 /// Surfaces, lines, points and volumes in one picture: opaque ones by depth, translucent ones and volumes in depth order,

@@ -201,6 +201,7 @@ void composite_volumes(const Scene& scene, const Projection& projection, const F
       [&](size_t begin, size_t end) {
         Scratch scratch{{}, Caster(picture.volumes), {}};
         for (size_t t = begin; t < end; ++t) {
+          if (knobs.wanted && !(*knobs.wanted)[t]) continue;
           const int x0 = int(t % across) * tile, y0 = int(t / across) * tile;
           const int x1 = std::min(x0 + tile, frame.width), y1 = std::min(y0 + tile, frame.height);
           if (!any_fragments(fragments, frame, x0, y0, x1, y1) && alone.draw(x0, y0, x1, y1)) continue;
@@ -215,8 +216,11 @@ void composite_volumes(const Scene& scene, const Projection& projection, const F
 
 namespace sg {
 
-void composite_volumes(const Scene& scene, const Projection& projection, const FragmentLists& fragments, Frame& frame, Context& context) {
-  volume::composite_volumes(scene, projection, fragments, frame, context, volume::Knobs{});
+void composite_volumes(const Scene& scene, const Projection& projection, const FragmentLists& fragments, Frame& frame, Context& context,
+                       const std::vector<uint8_t>* wanted) {
+  volume::Knobs knobs;
+  knobs.wanted = wanted;
+  volume::composite_volumes(scene, projection, fragments, frame, context, knobs);
 }
 
 }  // namespace sg

@@ -20,9 +20,10 @@ namespace sg::volume {
 
 /// Switches for tests and benchmarks; the picture must not depend on them (but `stop_below` by less than 1/255).
 struct Knobs {
-  bool skip_empty = true;          ///< pass over empty bricks
-  float stop_below = 1.0f / 4096;  ///< a ray ends when less than this share of the light passes
-  bool simd = true;                ///< false: the scalar reference
+  bool skip_empty = true;                        ///< pass over empty bricks
+  float stop_below = 1.0f / 4096;                ///< a ray ends when less than this share of the light passes
+  bool simd = true;                              ///< false: the scalar reference
+  const std::vector<uint8_t>* wanted = nullptr;  ///< per tile of 16 x 16 pixels, see composite_volumes; null = all
 };
 void composite_volumes(const Scene& scene, const Projection& projection, const FragmentLists& fragments, Frame& frame, Context& context,
                        const Knobs& knobs);
