@@ -39,8 +39,8 @@ class CellLight {
     }
   }
 
-  /// Differences over the samples before and after each corner, of the cell whose lowest corner lies at `corner`.
-  HWY_INLINE void cell(const Source<D, T>& s, I corner, const I at[3], hn::Mask<D>) {
+  /// Differences over the samples before and after each corner, of the cell whose lowest corner lies at `corner`; `corners` by rows.
+  HWY_INLINE void cell(const Source<D, T>& s, I corner, const I at[3], const Pair<D> corners[4]) {
     const D d;
     const IntTag<D> di;
     const I zero = hn::Zero(di), one = hn::Set(di, 1);
@@ -55,10 +55,7 @@ class CellLight {
     }
     const I rows[4] = {corner, hn::Add(corner, s.row), hn::Add(corner, s.layer), hn::Add(corner, hn::Add(s.layer, s.row))};
     F own[8];
-    for (int r = 0; r < 4; ++r) {
-      const Pair<D> p = s.pair(rows[r]);
-      own[2 * r] = p.a, own[2 * r + 1] = p.b;
-    }
+    for (int r = 0; r < 4; ++r) own[2 * r] = corners[r].a, own[2 * r + 1] = corners[r].b;
     for (int r = 0; r < 4; ++r) {
       // x: a - (one before), (one after) - b.
       const F lower = s.pair(hn::Add(rows[r], before[0])).a;

@@ -288,11 +288,12 @@ class TolerantPacket {
     const M dark = hn::And(same, line_.dark());
     look = hn::AndNot(dark, look);
     if (hn::AllFalse(d, look)) return;
-    integrate(f, lo, hi, same, corner, inside, from, way, t, hn::Sub(leave, t), look);
+    const Pair<D> rows[4] = {p00, p01, p10, p11};
+    integrate(f, lo, hi, same, corner, inside, rows, from, way, t, hn::Sub(leave, t), look);
   }
 
-  HWY_INLINE void integrate(const Cubic<D>& f, F lo, F hi, M same, I corner, const I inside[3], const F from[3], const F way[3], F t,
-                            F length, M look) {
+  HWY_INLINE void integrate(const Cubic<D>& f, F lo, F hi, M same, I corner, const I inside[3], const Pair<D> rows[4], const F from[3],
+                            const F way[3], F t, F length, M look) {
     const D d;
     const IntTag<D> di;
     const F zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
@@ -324,7 +325,7 @@ class TolerantPacket {
     const F allowed = hn::Mul(hn::Set(d, tolerance),
                               hn::Add(hn::Mul(length, hn::Set(d, float(0.3 / plan_.budget.length))), hn::Mul(share, hn::Set(d, 0.4f))));
     if constexpr (shaded) {
-      light_.cell(source_, corner, inside, look);
+      light_.cell(source_, corner, inside, rows);
       error = hn::Max(error, light_.error(from, way, hn::Mul(pass, taken)));
     }
     F count = one, per_count = one, end = one, target = f.last;
