@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "render/volume/cells/cell_source.h"
 #include "render/volume/lattice/lattice_ray.h"
+#include "render/volume/lattice/reconstructed_ray.h"
 
 namespace sg::volume {
 
@@ -21,6 +22,16 @@ bool without_level(const void* levels, float lo, float hi) {
   for (double l : *static_cast<const std::vector<double>*>(levels))
     if (lo <= float(l) && float(l) <= hi) return false;
   return true;
+}
+
+std::unique_ptr<RaySource> source_of(const VolumeItem& item, std::shared_ptr<const Volume> lattice, Context& context, Range& reach) {
+  const VolumeSampling& sampling = item.sampling;
+  if (!lattice && sampling.kernel != "linear")
+    fail_usage(fmt::format("kernel '{}' joins the samples of uniform and rectilinear grids; this is a {} mesh", sampling.kernel, item.data->kind()),
+               "volume", "leave kernel=linear, or resample to a grid first");
+  if (!lattice) return cell_source(item, context);
+  if (!wants_reconstruction(sampling) || lattice->nearest) return lattice_source(std::move(lattice));
+  return reconstructed_source(std::move(lattice), sampling, &item.data->memo(), &reach);
 }
 
 }  // namespace
@@ -59,7 +70,8 @@ const Field& field_of(const VolumeItem& item) {
 CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<const Volume> lattice, const Knobs& knobs, Context& context) {
   CastVolume v;
   v.item = &item, v.id = id;
-  v.source = lattice ? lattice_source(std::move(lattice)) : cell_source(item, context);
+  Range reach;  // of a kernel that goes beyond the data
+  v.source = source_of(item, std::move(lattice), context, reach);
   RaySource& source = *v.source;
   const double base = double(source.base);
   const Range range = item.data->range(field_of(item), item.component);
@@ -68,6 +80,7 @@ CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<con
   Medium::Plan plan;
   plan.unit = item.unit_distance > 0 ? item.unit_distance : 0.01 * diagonal;
   plan.lo = range.empty() ? item.color.lo : range.lo, plan.hi = range.empty() ? item.color.hi : range.hi, plan.base = source.base;
+  if (!reach.empty()) plan.lo = std::min(plan.lo, reach.lo + base), plan.hi = std::max(plan.hi, reach.hi + base);
   if (item.mode == RayFunction::sum || item.mode == RayFunction::distance || item.mode == RayFunction::accumulate) {
     // These have values of their own, which need not be those of the field.
     const double span = std::abs(item.color.hi - item.color.lo);
