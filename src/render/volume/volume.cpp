@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/random.h"
+#include "data/bricked.h"
 #include "render/volume/cells/cell_source.h"
 #include "render/volume/cells/tet_rays.h"
 #include "render/volume/classic/layers.h"
@@ -67,8 +68,8 @@ void pixel(const Picture& picture, int x, int y, Scratch& s) {
                        picture.fragments.fragments.begin() + picture.fragments.start[p + 1]);
   for (Fragment& f : s.fragments) f.depth = float((double(f.depth) - first_depth) / per_length);
   if (picture.shaded) light(picture, ray.direction, s.lit), cast.lights = &s.lit;
-  // The same place in the step for a pixel whatever the order of drawing.
-  cast.jitter = random_unit(uint64_t(x), uint64_t(y) + uint64_t(std::llround(projection.shift_y)));
+  // The same place in the step for a pixel of the whole picture, whatever band it is drawn in.
+  cast.jitter = random_unit(uint64_t(x), uint64_t(std::llround(2 * y - projection.height - 2 * projection.shift_y)));
 
   RayState state;
   s.caster.cast(cast, s.fragments, state);
@@ -87,18 +88,22 @@ class Alone {
     if (picture.volumes.size() != 1) return;
     const CastVolume& v = picture.volumes[0];
     const VolumeItem& item = *v.item;
-    if (!item.clip.empty()) return;
+    if (!item.clip.empty() || v.detail) return;
     const bool composite = item.mode == RayFunction::composite, by_tolerance = composite && !(v.step > 0);
     if (picture.lattices[0]) {
       if (wants_reconstruction(item.sampling)) return;
-      plan_.emplace(PacketPlan{*picture.lattices[0], picture.projection, picture.knobs, {}, v.material, v.medium.get(), v.budget, float(v.source->edge)});
+      plan_.emplace(PacketPlan{
+          *picture.lattices[0], picture.projection, picture.knobs, {}, v.material, v.medium.get(), v.budget, float(v.source->edge)});
       if (picture.shaded)
         for (const Picture::Lamp& l : picture.lamps) plan_->lamps.push_back({l.direction, l.intensity});
       const bool in_steps = composite ? item.sampling.classify == "post" && !item.sampling.jitter : item.mode == RayFunction::maximum;
       if (by_tolerance && in_tolerant_packets(*plan_)) packets_ = cast_tile;
       else if (!by_tolerance && in_steps && in_packets(*plan_)) packets_ = march_tile;
-    } else if (by_tolerance && !item.shaded && TetRays::fits(cell_volume_of(*v.source))) {
+    } else if (by_tolerance && !bricked_of(*item.data) && TetRays::fits(cell_volume_of(*v.source))) {
       tets_.emplace(cell_volume_of(*v.source), picture.projection, *v.medium, context, v.budget.stop_below);
+      std::vector<TetLight::Lamp> lamps;
+      for (const Picture::Lamp& l : picture.lamps) lamps.push_back({Vec3f(l.direction), l.intensity});
+      if (item.shaded) tets_->light(std::move(lamps), item.light, v.per_scale);
     }
   }
 
@@ -117,7 +122,8 @@ class Alone {
     const int width = x1 - x0;
     const auto place = [&](int x, int y) { return size_t(y) * size_t(frame.width) + size_t(x); };
     for (int y = y0; y < y1; ++y)
-      for (int x = x0; x < x1; ++x) limit[(y - y0) * width + x - x0] = std::min(float(picture_.projection.far_plane), frame.depth[place(x, y)]);
+      for (int x = x0; x < x1; ++x)
+        limit[(y - y0) * width + x - x0] = std::min(float(picture_.projection.far_plane), frame.depth[place(x, y)]);
     tets_->draw(x0, y0, width, y1 - y0, limit, found);
     for (int y = y0; y < y1; ++y)
       for (int x = x0; x < x1; ++x) {
@@ -176,12 +182,12 @@ void composite_volumes(const Scene& scene, const Projection& projection, const F
       context.check();
       check(*item);
       std::shared_ptr<const Volume> lattice;
-      if (item->data->as<UniformGrid>() || item->data->as<RectilinearGrid>()) {
+      if (!bricked_of(*item->data) && (item->data->as<UniformGrid>() || item->data->as<RectilinearGrid>())) {
         lattice = std::make_shared<const Volume>(prepare(*item, uint32_t(i + 1), knobs));
         if (!(lattice->hi.x > lattice->lo.x)) continue;  // a grid without extent
       }
       picture.lattices.push_back(lattice);
-      picture.volumes.push_back(prepare_cast(*item, uint32_t(i + 1), std::move(lattice), knobs, context));
+      picture.volumes.push_back(prepare_cast(*item, uint32_t(i + 1), std::move(lattice), projection, knobs, context));
       picture.shaded = picture.shaded || item->shaded;
     }
   if (picture.volumes.empty()) return composite_fragments(fragments, frame, context);
