@@ -40,7 +40,7 @@ struct VolumeSampling {
   double step = 0;                   ///< world length of fixed steps; 0 = by the tolerance
   std::string classify = "post";     ///< with steps: pre, post or integrated
   bool jitter = false;               ///< with steps: the first sample anywhere in the first step
-  std::string kernel = "linear";     ///< between the samples: nearest, linear, catmull_rom, bspline, gaussian, sinc
+  std::string kernel = "linear";     ///< nearest, linear, catmull_rom, mitchell, bspline, bspline_smooth, gaussian, sinc
   std::string gradient = "central";  ///< central, sobel, intermediate, analytic
 };
 void describe(Schema& s, VolumeSampling& p);

@@ -7,6 +7,7 @@
 #include "render/volume/cells/cell_source.h"
 #include "render/volume/large/bricked_source.h"
 #include "render/volume/lattice/lattice_ray.h"
+#include "render/volume/lattice/reconstructed_ray.h"
 
 namespace sg::volume {
 
@@ -17,9 +18,18 @@ bool needs_level(RayFunction f) {
 }
 
 std::unique_ptr<RaySource> source_of(const VolumeItem& item, std::shared_ptr<const Volume> lattice, const Projection& projection,
-                                     Context& context) {
+                                     Context& context, Range& reach) {
   if (auto bricked = bricked_source(item, projection, context.memory_limit / 2, context)) return bricked;
+  const VolumeSampling& sampling = item.sampling;
+  if (!lattice && sampling.kernel != "linear")
+    fail_usage(fmt::format("kernel '{}' joins the samples of uniform and rectilinear grids; this is a {} mesh", sampling.kernel, item.data->kind()),
+               "volume", "leave kernel=linear, or resample to a grid first");
   if (!lattice) return cell_source(item, context);
+  if (wants_reconstruction(sampling) && !lattice->nearest) {
+    if (item.detail.second == SecondAxis::field)
+      fail_usage("a second field is read with the linear kernel and central gradients only", "volume", "leave kernel and gradient as they are");
+    return reconstructed_source(std::move(lattice), sampling, &item.data->memo(), &reach);
+  }
   std::shared_ptr<const Volume> second;
   if (item.detail.second == SecondAxis::field) {
     VolumeItem other = item;
@@ -76,7 +86,8 @@ CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<con
                         const Knobs& knobs, Context& context) {
   CastVolume v;
   v.item = &item, v.id = id;
-  v.source = source_of(item, std::move(lattice), projection, context);
+  Range reach;  // of a kernel that goes beyond the data
+  v.source = source_of(item, std::move(lattice), projection, context, reach);
   RaySource& source = *v.source;
   const double base = double(source.base);
   const Range range = item.data->range(field_of(item), item.component);
@@ -85,6 +96,7 @@ CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<con
   Medium::Plan plan;
   plan.unit = item.unit_distance > 0 ? item.unit_distance : 0.01 * diagonal;
   plan.lo = range.empty() ? item.color.lo : range.lo, plan.hi = range.empty() ? item.color.hi : range.hi, plan.base = source.base;
+  if (!reach.empty()) plan.lo = std::min(plan.lo, reach.lo + base), plan.hi = std::max(plan.hi, reach.hi + base);
   if (item.mode == RayFunction::sum || item.mode == RayFunction::distance || item.mode == RayFunction::accumulate) {
     // These have values of their own, which need not be those of the field.
     const double span = std::abs(item.color.hi - item.color.lo);

@@ -11,6 +11,7 @@
 #include "render/volume/cells/tet_rays.h"
 #include "render/volume/classic/layers.h"
 #include "render/volume/lattice/packets.h"
+#include "render/volume/lattice/reconstructed_ray.h"
 #include "render/volume/prepare_cast.h"
 
 namespace sg::volume {
@@ -90,6 +91,7 @@ class Alone {
     if (!item.clip.empty() || v.detail) return;
     const bool composite = item.mode == RayFunction::composite, by_tolerance = composite && !(v.step > 0);
     if (picture.lattices[0]) {
+      if (wants_reconstruction(item.sampling)) return;
       plan_.emplace(PacketPlan{
           *picture.lattices[0], picture.projection, picture.knobs, {}, v.material, v.medium.get(), v.budget, float(v.source->edge)});
       if (picture.shaded)
