@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "render/volume/lattice/lattice_ray.h"
+#include "render/volume/light/effects.h"
 
 namespace sg::volume {
 
@@ -41,6 +42,7 @@ void check(const VolumeItem& item) {
     fail_usage("this ray function needs a value to look for", "volume", "name one with levels=");
   for (double l : item.levels)
     if (!std::isfinite(l)) fail_usage(fmt::format("the level {} is no number", l), "volume");
+  check_light(item);
 }
 
 const Field& field_of(const VolumeItem& item) {

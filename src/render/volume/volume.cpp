@@ -6,7 +6,9 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/random.h"
+#include "render/composite/background.h"
 #include "render/volume/lattice/packets.h"
+#include "render/volume/light/effects.h"
 #include "render/volume/prepare_cast.h"
 
 namespace sg::volume {
@@ -28,6 +30,7 @@ struct Picture {
     float intensity;
   };
   std::vector<Lamp> lamps;
+  const Scene* fading = nullptr;  // with depth_cue: the scene into whose background it fades
 };
 
 /// What a tile's rays reuse.
@@ -37,8 +40,9 @@ struct Scratch {
   std::vector<Fragment> fragments;
 };
 
-void light(const Picture& picture, Vec3 direction, LitRay& lit) {
-  lit.direction = Vec3f(direction);
+void light(const Picture& picture, int y, Vec3 origin, Vec3 direction, LitRay& lit) {
+  lit.direction = Vec3f(direction), lit.origin = origin, lit.along = direction;
+  if (picture.fading) lit.background = background_of_row(*picture.fading, picture.projection, y);
   lit.lights.clear();
   for (const Picture::Lamp& l : picture.lamps)
     lit.lights.push_back({Vec3f(l.direction), Vec3f(normalize(l.direction - direction)), l.intensity});
@@ -62,7 +66,7 @@ void pixel(const Picture& picture, int x, int y, Scratch& s) {
     s.fragments.assign(picture.fragments.fragments.begin() + picture.fragments.start[p],
                        picture.fragments.fragments.begin() + picture.fragments.start[p + 1]);
   for (Fragment& f : s.fragments) f.depth = float((double(f.depth) - first_depth) / per_length);
-  if (picture.shaded) light(picture, ray.direction, s.lit), cast.lights = &s.lit;
+  if (picture.shaded) light(picture, y, ray.origin, ray.direction, s.lit), cast.lights = &s.lit;
   // The same place in the step for a pixel whatever the order of drawing.
   cast.jitter = random_unit(uint64_t(x), uint64_t(y) + uint64_t(std::llround(projection.shift_y)));
 
@@ -81,11 +85,23 @@ enum class Way { by_rays, in_steps, within_tolerance };
 
 Way way_of(const CastVolume& volume, const PacketPlan& plan) {
   const VolumeItem& item = *volume.item;
-  if (!item.clip.empty()) return Way::by_rays;
+  if (!item.clip.empty() || volume.effects) return Way::by_rays;
   const bool composite = item.mode == RayFunction::composite, steps = volume.step > 0;
   if (composite && !steps) return in_tolerant_packets(plan) ? Way::within_tolerance : Way::by_rays;
   const bool plain = composite ? item.sampling.classify == "post" && !item.sampling.jitter : item.mode == RayFunction::maximum;
   return plain && in_packets(plan) ? Way::in_steps : Way::by_rays;
+}
+
+void add_effects(const Scene& scene, Picture& picture, const Context& context) {
+  Box3 drawn;
+  for (const CastVolume& v : picture.volumes) drawn.add(v.source->bounds.lo), drawn.add(v.source->bounds.hi);
+  std::vector<Vec3> lamps;
+  for (const Picture::Lamp& l : picture.lamps) lamps.push_back(l.direction);
+  for (CastVolume& v : picture.volumes) {
+    v.effects = light_effects(*v.item, *v.source, *v.medium, lamps, picture.projection, drawn, &context);
+    picture.shaded = picture.shaded || v.effects;
+    if (v.item->light.depth_cue > 0) picture.fading = &scene;
+  }
 }
 
 bool any_fragments(const FragmentLists& fragments, const Frame& frame, int x0, int y0, int x1, int y1) {
@@ -136,6 +152,7 @@ void composite_volumes(const Scene& scene, const Projection& projection, const F
                                     : l.direction;
     picture.lamps.push_back({normalize(d), l.intensity});
   }
+  add_effects(scene, picture, context);
   // One volume alone goes in packets of rays, where they can draw it.
   std::optional<PacketPlan> plan;
   Way way = Way::by_rays;

@@ -34,6 +34,9 @@ struct Look {
   float edge = 1;
 };
 
+/// Light at t of a stretch; look.lit must not be null.
+Lit light_on(const Look& look, RayField& walker, const Stretch& stretch, double t);
+
 /// Puts one stretch behind what the ray has gathered. `walker` is asked for gradients where the look is lit.
 void composite(const Look& look, const Stretch& stretch, RayField& walker, RayState& state);
 
