@@ -129,7 +129,7 @@ Occlusion::Occlusion(const RaySource& source, const Medium& medium, const std::v
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<Level> pyramid;
     pyramid.push_back(opacities(frame, axis, source, integral, clip, context));
-    for (int l = 0; l < levels; ++l) pyramid.push_back(coarser(pyramid.back(), axis));
+    for (int l = 1; l < levels; ++l) pyramid.push_back(coarser(pyramid.back(), axis));
     parallel_for(
         n_[1] * n_[2], 8,
         [&](size_t begin, size_t end) {
@@ -137,15 +137,17 @@ Occlusion::Occlusion(const RaySource& source, const Medium& medium, const std::v
             for (size_t i = 0; i < n_[0]; ++i)
               for (int side = 0; side < 2; ++side) {
                 const size_t cell[3] = {i, r % n_[1], r / n_[1]};
-                float square = 1;  // of the share that passes
-                for (int l = 0; l <= levels; ++l) {
-                  const double size = double(1 << l);
+                // Shell l reaches from 2^l to 2^(l+1) cells; a half one before it, from the boxes of shell 0.
+                const auto passes = [&](int level, double away) {
+                  const double size = double(1 << level);
                   double place[3];
                   for (int a = 0; a < 3; ++a) place[a] = (double(cell[a]) + 0.5) / size;
-                  place[axis] += side ? 0.75 : -0.75;
-                  square *= 1 - pyramid[size_t(l)].sample(place);
-                }
-                hidden_[i + n_[0] * r][size_t(2 * axis + side)] = uint16_t(65535 * (1 - std::sqrt(square)) + 0.5f);
+                  place[axis] += (side ? away : -away) / size;
+                  return 1 - pyramid[size_t(level)].sample(place);
+                };
+                float pass = std::sqrt(passes(0, 0.75));
+                for (int l = 0; l < levels; ++l) pass *= passes(l, 1.5 * double(1 << l));
+                hidden_[i + n_[0] * r][size_t(2 * axis + side)] = uint16_t(65535 * (1 - pass) + 0.5f);
               }
         },
         context);

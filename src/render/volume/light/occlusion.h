@@ -11,11 +11,11 @@
 namespace sg::volume {
 
 /// On a lattice over the box of the volume, the share that is hidden in each of six directions: the pyramid on a face of a cube, from
-/// half a cell to `radius` away. Its shell from s to 2s counts with the opacity of a box of edge 2s, to the power 1/2, as its thickness
-/// is s; boxes of all sizes come from a pyramid of opacities (one per axis: behind each other they multiply, side by side they add).
-/// In a homogeneous medium the share is 1 - exp(-tau (radius - cell/2)) exactly. Opacity, not extinction, is what is averaged: half of a
-/// box filled with stone hides half. (Cones through pyramids: Crassin et al. 2011; six directions blended by the squares of the
-/// normal: McTaggart 2004.)
+/// half a cell to `radius` away. Its shell from s to 2s counts with the opacity of a box of edge s, read trilinearly in the middle of the
+/// shell (so that a little of what lies up to 1.5 radius away counts too); boxes of all sizes come from a pyramid of opacities (one per
+/// axis: behind each other they multiply, side by side they add). In a homogeneous medium the share is 1 - exp(-tau (radius - cell/2))
+/// exactly. Opacity, not extinction, is what is averaged: half of a box filled with stone hides half. (Cones through pyramids: Crassin et
+/// al. 2011; six directions blended by the squares of the normal: McTaggart 2004.)
 class Occlusion {
  public:
   /// Cell = radius / 16, or 1/8, 1/4 while that is not below half of the smallest edge of the mesh: at most 1.5 million cells whatever

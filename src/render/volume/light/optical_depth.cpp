@@ -71,7 +71,8 @@ void DepthRay::clip(const std::vector<ClipPlane>& planes) {
   }
 }
 
-void depths_along(const DepthRay& ray, RayField& walker, const DepthIntegral& integral, double spacing, float most, std::span<float> depth) {
+void depths_along(const DepthRay& ray, RayField& walker, const DepthIntegral& integral, double spacing, float most,
+                  std::span<float> depth) {
   double sum = 0;
   size_t i = 0;
   if (ray.from < ray.to) {

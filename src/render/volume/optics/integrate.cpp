@@ -49,9 +49,7 @@ constexpr float deep = 0.1f;  // optical depth from which on the order within a 
 struct LitPart {
   double from, to;
   Lit first, last;
-  Lit at(double t) const {
-    return lerp(first, last, to > from ? float((t - from) / (to - from)) : 0);
-  }
+  Lit at(double t) const { return lerp(first, last, to > from ? float((t - from) / (to - from)) : 0); }
 };
 
 class Pieces {
@@ -142,7 +140,8 @@ class Pieces {
     const Medium& medium = look_.medium;
     const float a = s.b[0], b = s.b[3], length = float(s.to - s.from), pass = state_.sum.transmittance;
     const float tolerance = float(look_.budget.tolerance);
-    const float most = denser_ * medium.most_tau(lo, hi), slope = denser_ * medium.most_slope(lo, hi), taken = std::min(1.0f, length * most);
+    const float most = denser_ * medium.most_tau(lo, hi), slope = denser_ * medium.most_slope(lo, hi),
+                taken = std::min(1.0f, length * most);
     const float widths = (medium.axis(hi) - medium.axis(lo)) / medium.color_width();
     const float change = std::min(1.0f, (medium.axis(hi) - medium.axis(lo)) * medium.color_slope());
     // What one piece gets wrong: colours bend on a width; in a deep piece the front shows more of its own colour than a constant tau would

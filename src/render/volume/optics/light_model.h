@@ -13,9 +13,7 @@ struct Lit {
   Vec3f tint{0, 0, 0};
   float opacity = 1;
 
-  Vec3f color(Vec3f c) const {
-    return Vec3f{c.x * diffuse + specular, c.y * diffuse + specular, c.z * diffuse + specular} + tint;
-  }
+  Vec3f color(Vec3f c) const { return Vec3f{c.x * diffuse + specular, c.y * diffuse + specular, c.z * diffuse + specular} + tint; }
 };
 inline float difference(const Lit& a, const Lit& b) {
   const auto off = [](float x, float y) { return std::abs(x - y); };
