@@ -55,7 +55,8 @@ std::shared_ptr<const LightEffects> light_effects(const VolumeItem& item, const 
     for (const Vec3& lamp : lamps) {
       std::string with_light = key;
       append_numbers(with_light, {lamp.x, lamp.y, lamp.z});
-      e.maps.push_back(kept->get(with_light, 4, [&] { return LightMap(source, medium, item.clip, lamp, {}, context); }));
+      e.maps.push_back(
+          kept->get(with_light, std::max<size_t>(2, lamps.size()), [&] { return LightMap(source, medium, item.clip, lamp, {}, context); }));
     }
   }
   if (l.occlusion > 0)

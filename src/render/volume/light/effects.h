@@ -45,8 +45,8 @@ bool has_effects(const VolumeItem& item);
 /// Throws Error(usage) for shares outside 0..1, an unknown style, and shadows or occlusion of what is not composited.
 void check_light(const VolumeItem& item);
 
-/// Maps are kept with the dataset: the last four of shadows and the last two of occlusion. `drawn` is the box of all volumes of the scene:
-/// they fade together. Null when the item asks for nothing.
+/// Maps are kept with the dataset: those of shadows of one picture, at most 32 MiB per lamp, and the last two of occlusion. `drawn` is the
+/// box of all volumes of the scene: they fade together. Null when the item asks for nothing.
 std::shared_ptr<const LightEffects> light_effects(const VolumeItem& item, const RaySource& source, const Medium& medium,
                                                   std::span<const Vec3> lamps, const Projection& projection, const Box3& drawn,
                                                   const Context* context);

@@ -21,7 +21,7 @@ class LightMap {
  public:
   struct Plan {
     double spacing = 0;                     ///< world length; 0 = the smallest edge of a cell
-    size_t most_samples = size_t(1) << 22;  ///< 2 bytes each; the spacing grows until they are enough
+    size_t most_samples = size_t(1) << 24;  ///< 2 bytes each; the spacing grows until they are enough
   };
   /// `towards` is the direction to the lamp. Clipped parts cast no shadow.
   LightMap(const RaySource& source, const Medium& medium, const std::vector<ClipPlane>& clip, Vec3 towards, const Plan& plan,
