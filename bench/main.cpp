@@ -156,8 +156,8 @@ int run(int argc, char** argv) {
       std::fprintf(stderr, "FAILED %s|%s\n", task.c_str(), size.c_str());
       return;
     }
-    std::printf("%-22s %-28s %-34s median %9.3f ms  min %9.3f ms  n %2d  %.0f %s  peak %.0f MB\n", task.c_str(), size.c_str(), peer.c_str(), r.median * 1e3,
-                r.least * 1e3, r.runs, r.count, unit.c_str(), r.peak_mb);
+    std::printf("%-22s %-28s %-34s median %9.3f ms  min %9.3f ms  n %2d  %.0f %s  peak %.0f MB\n", task.c_str(), size.c_str(), peer.c_str(),
+                r.median * 1e3, r.least * 1e3, r.runs, r.count, unit.c_str(), r.peak_mb);
     std::fflush(stdout);
     lines += record(task, peer, size, unit, r);
   };

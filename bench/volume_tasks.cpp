@@ -4,7 +4,7 @@
 #include "bench.h"
 #include "data/memo.h"
 #include "inputs.h"
-#include "render/render.h"
+#include "render/progressive.h"
 #include "render/volume/lattice/lattice_volume.h"
 
 namespace sg::bench {
@@ -65,8 +65,8 @@ VolumeItem volume_item(Look look, size_t n, bool bytes) {
 
 /// tolerance 0: fixed half-voxel steps, as the peers.
 Task volume(const char* label, Look look, size_t n, bool bytes, double tolerance = 0) {
-  return {"volume_render", fmt::format("{} {}^3, 1024x1024", bytes ? "uint8" : "float32", n), fmt::format("sightglass:raycast({}{})", label, tolerance > 0 ? ",tolerance" : ""),
-          "pixels covered", [=] {
+  return {"volume_render", fmt::format("{} {}^3, 1024x1024", bytes ? "uint8" : "float32", n),
+          fmt::format("sightglass:raycast({}{})", label, tolerance > 0 ? ",tolerance" : ""), "pixels covered", [=] {
             Scene scene;
             VolumeItem item = volume_item(look, n, bytes);
             if (tolerance > 0) item.sampling.step = 0, item.sampling.tolerance = tolerance;
@@ -84,6 +84,26 @@ Task volume(const char* label, Look look, size_t n, bool bytes, double tolerance
           }};
 }
 
+/// A picture of one ray for 8 x 8 pixels: what progressive rendering shows first.
+Task first_progressive(size_t n) {
+  return {
+      "volume_progressive_first", fmt::format("float32 {}^3, 1024x1024", n), "sightglass:progressive", "pixels", [=] {
+        Scene scene;
+        VolumeItem item = volume_item(Look::shaded, n, false);
+        item.sampling.step = 0;
+        scene.items.emplace_back(std::move(item));
+        auto shared = std::make_shared<Scene>(std::move(scene));
+        auto turn = std::make_shared<double>(0);
+        return [=] {
+          Context context;
+          *turn += 2;
+          RenderOptions o;
+          o.width = o.height = 1024, o.samples = 1;
+          return double(render_progressively(*shared, peers_camera(*turn), o, context, [](const Frame&, int) { return false; }).pixels());
+        };
+      }};
+}
+
 /// What a new transfer function costs before rays start: its table and the map of the empty bricks.
 Task new_transfer_function(size_t n) {
   return {"volume_transfer_change", fmt::format("float32 {}^3", n), "sightglass:prepare", "empty bricks", [=] {
@@ -92,7 +112,7 @@ Task new_transfer_function(size_t n) {
             return [=] {
               item->opacity.points[3].x -= 1e-3;
               const volume::Volume v = volume::prepare(*item, 1, {});
-              return double(v.bricks().size() - size_t(std::count(v.distance.begin(), v.distance.end(), 0)));
+              return double(v.fine().size() - size_t(std::count(v.distance.begin(), v.distance.end(), 0)));
             };
           }};
 }
@@ -112,6 +132,7 @@ void add_volume_tasks(std::vector<Task>& t) {
       t.push_back(volume("MIP", Look::maximum, n, bytes));
       if (!bytes) t.push_back(volume("composite,fog(no skipping)", Look::fog, n, bytes));
     }
+  t.push_back(first_progressive(512));
   t.push_back(new_transfer_function(256));
   t.push_back(new_transfer_function(512));
 }

@@ -19,6 +19,8 @@ std::string range_text(const ParamDecl& d) {
   if (d.lo == -HUGE_VAL && d.hi == HUGE_VAL) return "";
   if (d.hi == HUGE_VAL) return (d.lo_open ? "above " : "at least ") + exact_number(d.lo);
   if (d.lo == -HUGE_VAL) return (d.hi_open ? "below " : "at most ") + exact_number(d.hi);
+  if (d.lo_open || d.hi_open)
+    return (d.lo_open ? "above " : "at least ") + exact_number(d.lo) + (d.hi_open ? " and below " : " and at most ") + exact_number(d.hi);
   return "from " + exact_number(d.lo) + " to " + exact_number(d.hi);
 }
 

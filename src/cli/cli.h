@@ -3,6 +3,7 @@
 #pragma once
 #include "base/context.h"
 #include "cli/options.h"
+#include "pipeline/picture.h"
 #include "pipeline/pipeline_file.h"
 
 namespace sg {
@@ -19,6 +20,11 @@ int run_open(const Options& o, Context& context);
 int run_ops(const Options& o, Context& context);
 int run_colormap(const Options& o, Context& context);
 int run_demo(const Options& o, Context& context);
+
+/// Does the name of the output number its pictures ("out_{n}.png")?
+bool is_numbered(const std::string& output);
+/// One picture per time step, all with the looks and colours of one; the next step is loaded while one is drawn.
+int render_series(const Options& o, const PictureOptions& options, Context& context);
 
 /// The pipeline that the options of render and convert describe.
 PipelineFile pipeline_of(const Options& o);

@@ -59,7 +59,9 @@ void add_picture(CLI::App& a, Options& o) {
   a.add_option("--title", o.title, "Text above the picture");
   a.add_option("--background", o.background, "Colour, or 'transparent'");
   a.add_option("--picture", o.picture, "Further key=value of the picture (see: sightglass ops picture)")->allow_extra_args(false);
-  a.add_option("-o,--output", o.output, "Picture to write: .png .jpg .webp");
+  a.add_option("--times", o.times,
+               "With {n} in the output: the times to draw, like 0:10:101 (first:last:count) or 0,0.5,1; default: all of the file");
+  a.add_option("-o,--output", o.output, "Picture to write: .png .jpg .webp; {n} in its name numbers the pictures of a time series");
 }
 
 Vec3 triple(const std::string& text, const char* option, double least) {
@@ -212,7 +214,9 @@ Options parse_options(int argc, char** argv) {
     a.add_option("input", o.inputs, "File to read");
     a.add_option("-o,--output", o.output, "File to write")->required();
     a.add_option("--encoding", o.write.encoding, "VTK XML")->check(CLI::IsMember({"ascii", "base64", "appended"}));
-    a.add_option("--compression", o.write.compression, "VTK XML, NRRD")->check(CLI::IsMember({"none", "zlib", "lz4", "lzma", "gzip"}));
+    a.add_option("--compression", o.write.compression, "VTK XML, NRRD, Zarr")
+        ->check(CLI::IsMember({"none", "zlib", "lz4", "lzma", "gzip", "zstd"}));
+    a.add_option("--chunk", o.write.chunk, "Zarr: samples along each axis of a chunk")->check(CLI::Range(8, 512));
     a.add_flag("!--ascii", o.write.binary, "STL and PLY as text");
     a.add_option("--pieces", o.write.pieces, ".pvti .pvtr .pvts .pvtu .pvtp .vtm: cut each mesh into so many files")
         ->check(CLI::Range(1, 100000));

@@ -15,6 +15,7 @@
 #include "image/codec.h"
 #include "pipeline/picture.h"
 #include "pipeline/read_params.h"
+#include "pipeline/slabs.h"
 
 namespace sg {
 
@@ -145,6 +146,8 @@ int run_render(const Options& o, Context& context) {
   if (!o.field.empty()) options.coloring.push_back("field=" + o.field);
   if (!o.map.empty()) options.coloring.push_back("map=" + o.map);
   if (!o.scale.empty()) options.coloring.push_back("scale=" + o.scale);
+  if (is_numbered(o.output)) return render_series(o, options, context);
+  if (!o.times.empty()) fail_usage("several times need several pictures", "--times", "number them: -o out_{n}.png");
   const std::string output = !o.output.empty() ? o.output : (o.inputs.empty() ? file.steps[0].operation : stem_of(o.inputs[0])) + ".png";
   return render_to(file, output, options, o, context);
 }
@@ -195,6 +198,25 @@ int run_info_of_pipeline(const Options& o, Context& context) {
   return 0;
 }
 
+namespace {
+
+// Without filters a volume goes to a Zarr folder slab by slab, so that it need not fit into memory.
+int convert_slabs(const PipelineFile& file, const Options& o, Context& context) {
+  ZarrOptions options;
+  options.chunk = size_t(o.write.chunk);
+  if (o.write.compression != "none") options.compression = o.write.compression;
+  const SlabSource source = with_context(fmt::format("writing '{}'", o.output), [&] {
+    return o.source.empty() ? slabs_of_file(o.inputs[0], o.read, context)
+                            : slabs_of_source(file.steps[0].operation, file.steps[0].words, context);
+  });
+  write_zarr_slabs(o.output, source, options, context);
+  const auto& n = source.grid.dims;
+  if (!o.quiet) std::printf("%s: uniform %zux%zux%zu, field '%s'\n", o.output.c_str(), n[0], n[1], n[2], source.field.c_str());
+  return 0;
+}
+
+}  // namespace
+
 int run_convert(const Options& o, Context& context) {
   PipelineFile file = pipeline_of(o);
   if (o.inputs.size() > 1) fail_usage("converts one file at a time", "sightglass convert");
@@ -202,6 +224,9 @@ int run_convert(const Options& o, Context& context) {
     print_explanation(file);
     return 0;
   }
+  const std::string target = o.output.substr(0, o.output.find_last_not_of('/') + 1);
+  if (extension_of(target) == "zarr" && o.filters.empty() && o.read.pieces == 1 && o.write.pieces == 1)
+    return convert_slabs(file, o, context);
   const PipelineGraph built = build_graph(file);
   check_memory(built, o);
   const Data data = built.graph.evaluate(built.last, {}, context);

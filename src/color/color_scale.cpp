@@ -143,23 +143,4 @@ double OpacityCurve::most(double a, double b) const {
   return most;
 }
 
-OpacityCurve parse_opacity(const std::string& text, double lo, double hi) {
-  const char* form = "write position:opacity pairs, e.g. 0:0,0.3:0.1,1:0.8";
-  OpacityCurve curve;
-  curve.points.clear();
-  const auto parts = split(text, ',');
-  if (parts.empty()) fail_usage("the opacity curve is empty", "opacity", form);
-  for (std::string_view part : parts) {
-    const auto pair = split(part, ':');
-    const bool constant = parts.size() == 1 && pair.size() == 1;
-    const auto x = pair.size() == 2 ? parse_double(pair[0]) : std::optional<double>(constant ? 0.0 : no_value);
-    const auto y = pair.empty() ? std::nullopt : parse_double(pair.back());
-    if (!x || !y || !std::isfinite(*x)) fail_usage(fmt::format("'{}' is not a point of an opacity curve", part), "opacity", form);
-    if (!(*y >= 0 && *y <= 1)) fail_usage(fmt::format("opacity {} is not between 0 and 1", pair.back()), "opacity", form);
-    curve.points.push_back({*x == 1 ? hi : lo + *x * (hi - lo), *y});
-  }
-  std::stable_sort(curve.points.begin(), curve.points.end(), [](const Vec2& a, const Vec2& b) { return a.x < b.x; });
-  return curve;
-}
-
 }  // namespace sg

@@ -61,7 +61,7 @@ struct OpacityCurve {
 };
 
 /// "0:0,0.3:0.1,1:0.8": positions, 0 at the value lo and 1 at hi (lo 0 and hi 1: values), and opacities in [0,1]; a single
-/// number is a constant opacity. Two points at one position make a step. Throws Error(usage).
+/// number is a constant opacity. @v is the value v itself. Positions ascend; two points at one make a step. Throws Error(usage).
 OpacityCurve parse_opacity(const std::string& text, double lo, double hi);
 
 struct TickLabel {

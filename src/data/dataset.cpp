@@ -2,6 +2,7 @@
 #include "data/dataset.h"
 
 #include "base/error.h"
+#include "data/bricked.h"
 #include "data/lattice.h"
 #include "data/memo.h"
 
@@ -41,7 +42,10 @@ DatasetPtr make_dataset(Mesh mesh, FieldSet fields) {
 
 const Box3& Dataset::bounds() const {
   std::lock_guard lock(mutex_);
-  if (!bounds_) bounds_ = sg::bounds(parts_.mesh);
+  if (!bounds_) {
+    bounds_ = sg::bounds(parts_.mesh);
+    if (const BrickedPtr whole = bricked_of(*this)) bounds_ = whole->bounds();  // what the coarse level stands for
+  }
   return *bounds_;
 }
 
@@ -52,6 +56,9 @@ const FieldStats& Dataset::stats(const Field& field) const {
     if (have == key && stats->range.size() == size_t(field.components())) return *stats;
   const Array& skip = field.association == Association::point ? parts_.point_ghost : parts_.cell_ghost;
   stats_.emplace_back(key, std::make_unique<FieldStats>(field_stats(field.array, true, skip)));
+  // Means hide the extremes of the volume that the dataset stands for.
+  if (const BrickedPtr whole = bricked_of(*this); whole && field.association == Association::point && field.name == whole->field)
+    if (const Range r = whole->range(); !r.empty() && field.components() == 1) stats_.back().second->range[0].add(r);
   return *stats_.back().second;
 }
 

@@ -38,6 +38,30 @@ T blended(double v) {
   else return T(std::nearbyint(v));  // a blend of two values of T lies in the range of T
 }
 
+// Directions between those at two points, as long as the lengths there say: blended as numbers alone they would be shorter.
+Array interpolate_directions(const Array& a, std::span<const EdgePoint> points) {
+  std::byte* out = nullptr;
+  Array r = Array::make_raw(a.type(), points.size(), 3, &out);
+  dispatch(a, [&](auto v) {
+    using T = std::remove_cvref_t<decltype(v[0])>;
+    T* to = reinterpret_cast<T*>(out);
+    parallel_for(points.size(), grain, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) {
+        const EdgePoint p = points[i];
+        const Vec3 from(double(v(p.a, 0)), double(v(p.a, 1)), double(v(p.a, 2))),
+            behind(double(v(p.b, 0)), double(v(p.b, 1)), double(v(p.b, 2)));
+        const double t = p.t;
+        Vec3 n = from * (1 - t) + behind * t;
+        const double is = length(n), wanted = length(from) * (1 - t) + length(behind) * t;
+        if (p.a == p.b) n = from;
+        else if (is > 0) n *= wanted / is;
+        for (int c = 0; c < 3; ++c) to[3 * i + size_t(c)] = T(n[c]);
+      }
+    });
+  });
+  return r;
+}
+
 template <class Map>
 void carry(FieldSet& out, const FieldSet& in, Association association, Association as, Map&& map) {
   for (const Field& f : in)
@@ -97,7 +121,13 @@ void carry_gathered(FieldSet& out, const FieldSet& in, Association association, 
   carry(out, in, association, as, [&](const Array& a) { return gather(a, ids); });
 }
 void carry_interpolated(FieldSet& out, const FieldSet& in, std::span<const EdgePoint> points) {
-  carry(out, in, Association::point, Association::point, [&](const Array& a) { return interpolate(a, points); });
+  for (const Field& f : in) {
+    if (f.association != Association::point) continue;
+    const ElementType t = f.array.type();
+    const bool direction = f.role == Role::normals && f.components() == 3 && (t == ElementType::f32 || t == ElementType::f64);
+    out.add(
+        {f.name, Association::point, direction ? interpolate_directions(f.array, points) : interpolate(f.array, points), f.unit, f.role});
+  }
 }
 void carry_combined(FieldSet& out, const FieldSet& in, Association association, std::span<const int64_t> ids,
                     std::span<const double> weights, size_t n, Association as) {

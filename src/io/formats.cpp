@@ -49,7 +49,7 @@ const Format& format_of_folder(const std::string& path) {
   for (const Format& f : formats())
     if (f.sniff_folder && f.sniff_folder(path)) return f;
   fail_data("is a folder of no known kind", path,
-            "folders that are read: DICOM slices, OpenFOAM cases, AMReX plotfiles, stacks of pictures");
+            "folders that are read: DICOM slices, OpenFOAM cases, AMReX plotfiles, Zarr images, stacks of pictures");
 }
 
 const Format& format_of_file(const std::string& path, const ReadOptions& options) {
@@ -141,7 +141,9 @@ size_t chosen_step(const std::vector<double>& times, const ReadOptions& options,
   return best;
 }
 
-void write_data(const std::string& path, const Data& data, const WriteOptions& options, Context& context) {
+void write_data(const std::string& given, const Data& data, const WriteOptions& options, Context& context) {
+  std::string path = given;
+  while (path.size() > 1 && path.back() == '/') path.pop_back();  // of a format that is a folder
   const std::string ext = extension_of(path);
   const Format* known = nullptr;
   for (const Format& f : formats())

@@ -141,4 +141,10 @@ void write_gltf(const std::string& path, const Data& data, const WriteOptions& o
 Data read_bpt(const std::string& path, const ReadOptions& options, Context& context);
 Data read_gml(const std::string& path, const ReadOptions& options, Context& context);
 
+bool sniff_zarr_folder(const std::string& path);
+Data read_zarr(const std::string& path, const ReadOptions& options, Context& context);
+std::vector<double> times_of_zarr(const std::string& path, const ReadOptions& options, Context& context);
+/// One point field of a uniform grid as OME-Zarr; see io/zarr/zarr.h.
+void write_zarr(const std::string& path, const Data& data, const WriteOptions& options, Context& context);
+
 }  // namespace sg

@@ -6,6 +6,7 @@
 #include "base/text.h"
 #include "color/parse_color.h"
 #include "pipeline/picture_parts.h"
+#include "pipeline/transfer_file.h"
 
 namespace sg {
 
@@ -77,7 +78,7 @@ void check_shows(const PipelineFile& file) {
   if (!problems.empty()) fail_usage(problems);
 }
 
-bool same_legend(const ColorScale& a, const ColorScale& b) {
+bool same_legend(const Legend& a, const Legend& b) {
   return a.title == b.title && a.map.name == b.map.name && a.lo == b.lo && a.hi == b.hi && a.kind == b.kind && a.labels == b.labels &&
          a.limits == b.limits;
 }
@@ -103,7 +104,7 @@ bool has_nan(const Scene& scene) {
 // What the results of all shows come to.
 struct Shown {
   Scene scene;
-  std::vector<ColorScale> legends;  // each once
+  std::vector<Legend> legends;  // each once
   Box3 box;
   bool outlined = false, any_points = false;
 };
@@ -167,8 +168,10 @@ Shown collect(const PipelineFile& file, const std::vector<Data>& results, const 
       if (parts.size() > 1 && d->point_count() == 0) continue;                                             // what a filter left nothing of
       if (parts.size() > 1 && show.kind == "volume" && word_value(words[k], "field") == "none") continue;  // nothing to see through
       const auto legend = find_show(show.kind).add(s.scene, d, words[k], context);
+      if (const auto path = show.kind == "volume" ? word_value(words[k], "save") : std::nullopt; path && !path->empty())
+        save_transfer_file(path_beside(file.origin, *path), std::get<VolumeItem>(s.scene.items.back()));
       if (!legend || !stated.picture.legend) continue;
-      if (std::none_of(s.legends.begin(), s.legends.end(), [&](const ColorScale& have) { return same_legend(have, *legend); }))
+      if (std::none_of(s.legends.begin(), s.legends.end(), [&](const Legend& have) { return same_legend(have, *legend); }))
         s.legends.push_back(*legend);
     }
   }
@@ -192,6 +195,7 @@ Annotation annotation_of(const StatedPicture& stated, const Shown& shown, const 
 
 Picture make_picture(PipelineFile& file, const PictureOptions& options, Context& context) {
   const StatedPicture stated = stated_in(file);
+  load_transfer_files(file);
   check_shows(file);
   const auto cache = options.cache ? options.cache : std::make_shared<Cache>(0);
   std::vector<Data> held;
@@ -213,7 +217,15 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
   const std::vector<Data> results = built.graph.evaluate(targets, context);
   held.clear();
 
-  Shown shown = collect(file, results, stated, context);
+  // What the notes say already, and what several parts say alike, is said once.
+  Context once(context, 0, 1);
+  std::vector<std::string> said = picture.notes;
+  once.on_log = [&](LogLevel level, std::string_view text) {
+    if (std::any_of(said.begin(), said.end(), [&](const std::string& s) { return s.find(text) != s.npos; })) return;
+    said.emplace_back(text);
+    context.log(level, text);
+  };
+  Shown shown = collect(file, results, stated, once);
   const Box3& box = shown.box;
   if (!shown.any_points) context.warn("the picture is empty: there are no points to show");
   if (!file.show.empty() && look.shows.empty())

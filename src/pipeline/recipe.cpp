@@ -68,6 +68,7 @@ void attach_recipe(Image& image, const PipelineFile& file, const std::string& pi
     inputs += fmt::format("{} xxh3-4m {}\n", content_hash(path), relative);
   }
   std::erase_if(recipe.picture, [](const std::string& w) { return w.starts_with("output="); });
+  for (auto& show : recipe.show) std::erase_if(show.words, [](const std::string& w) { return w.starts_with("save="); });
   image.text.emplace_back("Software", "Sightglass " SG_VERSION);
   image.text.emplace_back("sightglass", emit_pipeline(recipe));
   if (!inputs.empty()) image.text.emplace_back("sightglass-inputs", inputs);

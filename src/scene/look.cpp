@@ -56,7 +56,6 @@ bool is_turned(const Dataset& d) {
 
 // A 3D scalar image or box grid: seen through, or for labels its voxel faces.
 void look_at_grid(const Dataset& d, const Field& f, Look& look) {
-  double offset = 0;
   if (d.as<UniformGrid>() && f.association == Association::point && looks_like_labels(d, f)) {
     look.filter = {"label_surface", "field=" + f.name};
     look.shows.push_back({"surface", {"field=" + f.name, "map=labels"}, false});
@@ -65,10 +64,6 @@ void look_at_grid(const Dataset& d, const Field& f, Look& look) {
   }
   look.shows.push_back({"volume", {"field=" + f.name}, true});
   if (is_turned(d)) look.shows.push_back({"outline", {}, true});
-  if (looks_like_ct(d, f, &offset)) {
-    look.reason = fmt::format("'{}' looks like CT (16-bit, air peak): volume with skin and bone colours", f.name);
-    return;
-  }
   ColoringParams params;
   Context quiet;
   VolumeItem item;

@@ -4,11 +4,10 @@
 #include "base/text.h"
 #include "color/parse_color.h"
 #include "data/field_ops.h"
-#include "data/lattice.h"
 #include "filter/mesh/faces.h"
 #include "filter/mesh/surface.h"
 #include "scene/show_labels.h"
-#include "scene/volume_look.h"
+#include "scene/show_volume.h"
 
 namespace sg {
 
@@ -33,15 +32,6 @@ void describe(Schema& s, SurfaceShow& p) {
   s("flat", p.flat, "One normal per polygon instead of smooth shading.");
   s("lit", p.lit, "Light the surface; false shows the plain colours.");
   s("feature_angle", p.feature_angle, "Edges sharper than this stay sharp when normals are computed.").unit("deg").range(0, 180);
-}
-
-void describe(Schema& s, VolumeShow& p) {
-  describe(s, p.coloring);
-  s("opacity", p.opacity, "Opacity over the colour range as position:opacity points (0:0,0.3:0.1,1:0.8), or 'auto'.");
-  s("unit", p.unit, "Length to which opacity refers; 0 is a hundredth of the diagonal.").at_least(0);
-  s("step", p.step, "Distance of samples along the rays; 0 is half the smallest cell edge.").at_least(0);
-  s("mode", p.mode, "What a ray collects.").choices({"composite", "maximum"});
-  s("shaded", p.shaded, "Light the volume by the gradient of the field.");
 }
 
 void describe(Schema& s, LinesShow& p) {
@@ -97,9 +87,6 @@ const Field* automatic_field(const Dataset& d) {
   return nullptr;
 }
 
-namespace {
-
-// The field to colour by, or null for one colour.
 const Field* wanted_field(const Dataset& d, const ColoringParams& p) {
   if (!p.color.empty() || p.field.name == "none") return nullptr;
   if (!p.field.empty()) {
@@ -110,6 +97,8 @@ const Field* wanted_field(const Dataset& d, const ColoringParams& p) {
   }
   return automatic_field(d);
 }
+
+namespace {
 
 bool is_direct(const Field& f) {
   const int n = f.components();
@@ -196,32 +185,6 @@ std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const Surfa
   return legend;
 }
 
-std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const VolumeShow& p, Context& context) {
-  const Field* f = wanted_field(*input, p.coloring);
-  if (!f) fail_usage("there is no field to see through", "volume", "name one with field=");
-  if (is_lattice(input->mesh())) {
-    const auto n = lattice_dims(input->mesh());
-    if (std::min({n[0], n[1], n[2]}) < 2)
-      fail_usage(fmt::format("a grid of {}x{}x{} points has no volume", n[0], n[1], n[2]), "volume",
-                 "show it as a surface: --show surface");
-  }
-  VolumeItem item;
-  item.data = input;
-  item.field = f->name;
-  item.association = f->association;
-  item.component = p.coloring.component;
-  item.mode = p.mode == "maximum" ? VolumeItem::Mode::maximum : VolumeItem::Mode::composite;
-  item.shaded = p.shaded;
-  item.unit_distance = p.unit;
-  item.sampling.step = p.step;
-  item.color = choose_scale(*input, *f, p.coloring, context);
-  if (p.opacity == "auto") choose_volume_look(*input, *f, p.coloring, item);
-  else item.opacity = parse_opacity(p.opacity, item.color.lo, item.color.hi);
-  auto legend = item.color;
-  scene.items.emplace_back(std::move(item));
-  return legend;
-}
-
 std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const LinesShow& p, Context& context) {
   LinesItem item;
   item.data = surface_of(input, context);
@@ -292,28 +255,33 @@ std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const Outli
 }
 
 template <class P>
+std::string help_of() {
+  P p;
+  return params_help(schema_of(p));
+}
+template <class P>
+std::string json_of() {
+  P p;
+  return params_json(schema_of(p));
+}
+template <class P>
+void check_words(const std::vector<std::string>& words) {
+  P p;
+  Schema s = schema_of(p);
+  set_params(s, words, "show");
+}
+template <class P>
+std::optional<Legend> add_words(Scene& scene, const DatasetPtr& data, const std::vector<std::string>& words, Context& context) {
+  P p;
+  Schema s = schema_of(p);
+  set_params(s, words, "show");
+  if (auto scale = add(scene, data, p, context)) return Legend(std::move(*scale));
+  return {};
+}
+
+template <class P>
 constexpr ShowKind kind(std::string_view name, std::string_view sentence) {
-  return {name,
-          sentence,
-          [] {
-            P p;
-            return params_help(schema_of(p));
-          },
-          [] {
-            P p;
-            return params_json(schema_of(p));
-          },
-          [](const std::vector<std::string>& words) {
-            P p;
-            Schema s = schema_of(p);
-            set_params(s, words, "show");
-          },
-          [](Scene& scene, const DatasetPtr& data, const std::vector<std::string>& words, Context& context) {
-            P p;
-            Schema s = schema_of(p);
-            set_params(s, words, "show");
-            return add(scene, data, p, context);
-          }};
+  return {name, sentence, help_of<P>, json_of<P>, check_words<P>, add_words<P>};
 }
 
 }  // namespace
@@ -321,7 +289,8 @@ constexpr ShowKind kind(std::string_view name, std::string_view sentence) {
 std::span<const ShowKind> show_kinds() {
   static constexpr ShowKind kinds[] = {
       kind<SurfaceShow>("surface", "The outer surface, coloured by a field."),
-      kind<VolumeShow>("volume", "A scalar field of a grid, seen through."),
+      {"volume", "A scalar field of any mesh with volume, seen through.", help_of<VolumeShow>, json_of<VolumeShow>, check_volume_words,
+       add_volume},
       kind<LinesShow>("lines", "Lines of constant width."),
       kind<PointsShow>("points", "Every point as a dot."),
       kind<LabelsShow>("labels", "Numbers at points, turned along their lines (see line_labels)."),

@@ -9,6 +9,7 @@
 
 #include "base/context.h"
 #include "base/schema.h"
+#include "color/legend_content.h"
 #include "scene/scene.h"
 
 namespace sg {
@@ -33,13 +34,6 @@ struct SurfaceShow {
   bool edges = false, flat = false, lit = true;
   double feature_angle = 40;
 };
-struct VolumeShow {
-  ColoringParams coloring;
-  std::string opacity = "auto";
-  double unit = 0, step = 0;
-  std::string mode = "composite";
-  bool shaded = true;
-};
 struct LinesShow {
   ColoringParams coloring;
   double opacity = 1, width = 1.5;
@@ -59,7 +53,6 @@ struct OutlineShow {
   double width = 1.2;
 };
 void describe(Schema& s, SurfaceShow& p);
-void describe(Schema& s, VolumeShow& p);
 void describe(Schema& s, LinesShow& p);
 void describe(Schema& s, PointsShow& p);
 void describe(Schema& s, LabelsShow& p);
@@ -72,8 +65,8 @@ struct ShowKind {
   std::string (*json)();
   /// Throws Error(usage) for bad words; all mistakes at once.
   void (*check)(const std::vector<std::string>& words);
-  /// Adds items for the dataset; returns the colour scale for the legend when a field is mapped to colours.
-  std::optional<ColorScale> (*add)(Scene&, const DatasetPtr&, const std::vector<std::string>& words, Context&);
+  /// Adds items for the dataset; returns what the legend shows when a field is mapped to colours.
+  std::optional<Legend> (*add)(Scene&, const DatasetPtr&, const std::vector<std::string>& words, Context&);
 };
 std::span<const ShowKind> show_kinds();
 /// Throws Error(usage) with "did you mean".
@@ -86,6 +79,9 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
 /// The field that colours a dataset when none is named: the bands of filled contours, its scalars when they vary, else its own colours,
 /// else the first field that varies, points before cells, scalars before vectors, numberings last. Null when there is none.
 const Field* automatic_field(const Dataset& data);
+
+/// The field that `params` names, else the automatic one; null for one colour and when there is none. Throws Error(usage).
+const Field* wanted_field(const Dataset& data, const ColoringParams& params);
 
 /// A point cloud with point fields 'value', 'angle' and 'line', as the operation line_labels makes it.
 bool is_line_labels(const Dataset& data);

@@ -30,6 +30,10 @@ enum class RayFunction {
   maximum_difference,  ///< MIDA: compositing that lets new maxima shine through (Bruckner, Groeller 2009)
 };
 
+/// The words for them, in the order of the enumerations.
+const std::vector<std::string>& volume_method_names();
+const std::vector<std::string>& ray_function_names();
+
 /// How finely a ray looks.
 struct VolumeSampling {
   double tolerance = 1.0 / 512;      ///< of full scale: largest error of a pixel that the integral may have

@@ -89,16 +89,30 @@ void ct_look(const Range& r, double offset, bool choose_colors, VolumeItem& item
 
 }  // namespace
 
-std::string choose_volume_look(const Dataset& data, const Field& field, const ColoringParams& params, VolumeItem& item) {
+Range foreground(const Field& field, int component, double lo, double hi) {
+  auto h = histogram(field, component, lo, hi, 1024);
+  const double width = hi - lo;
+  const size_t peak = size_t(std::max_element(h.begin(), h.end()) - h.begin());
+  Range r{lo, hi};
+  if (peak < h.size() / 2) {
+    const size_t end = std::min(h.size() - 1, peak + 1 + h.size() / 50);
+    r.lo = lo + double(end) / double(h.size()) * width;
+    std::fill(h.begin(), h.begin() + ptrdiff_t(end), size_t(0));
+  }
+  r.hi = std::max(quantile(h, lo, hi, 0.999), r.lo + 0.01 * width);
+  return r;
+}
+
+std::string choose_volume_look(const Dataset& data, const Field& field, const ColoringParams& params, VolumeItem& item, bool anatomy) {
   const Range r{item.color.lo, item.color.hi};
   if (item.mode == VolumeItem::Mode::maximum) {
     item.opacity.points = {{r.lo, 0}, {r.hi, 1}};
     return "maximum along each ray";
   }
   double offset = 0;
-  if (params.range.empty() && looks_like_ct(data, field, &offset)) {
+  if (anatomy && params.range.empty() && looks_like_ct(data, field, &offset)) {
     ct_look(data.range(field), offset, params.map == "auto", item);
-    return fmt::format("CT: an air peak and soft tissue in 16-bit values{}", offset ? " (Hounsfield + 1024)" : "");
+    return fmt::format("CT (an air peak and soft tissue in 16-bit values{}): skin and bone colours", offset ? ", Hounsfield + 1024" : "");
   }
   if (item.color.kind != ScaleKind::linear) {  // by position, so that decades get equal shares
     item.opacity.points.clear();

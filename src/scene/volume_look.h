@@ -14,7 +14,13 @@ std::vector<size_t> histogram(const Field& field, int component, double lo, doub
 /// to Hounsfield units to get values (0 or 1024).
 bool looks_like_ct(const Dataset& data, const Field& field, double* offset);
 
-/// Fills item.opacity (and item.color for CT when map is auto); returns one line that says what was chosen and why.
-std::string choose_volume_look(const Dataset& data, const Field& field, const ColoringParams& params, VolumeItem& item);
+/// From the end of the background (the most frequent low value and its surroundings) to what one value in a thousand of the others exceeds.
+/// Never empty when lo < hi.
+Range foreground(const Field& field, int component, double lo, double hi);
+
+/// Fills item.opacity (and item.color for CT when map is auto, unless `anatomy` is false); returns one line that says what was chosen and
+/// why.
+std::string choose_volume_look(const Dataset& data, const Field& field, const ColoringParams& params, VolumeItem& item,
+                               bool anatomy = true);
 
 }  // namespace sg

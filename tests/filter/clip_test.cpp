@@ -465,3 +465,31 @@ TEST_CASE("trusted datasets: sizes of fields are looked at all the same, and onl
   broken.single_type = CellType::tetra;
   CHECK(error_of([&] { make_dataset(broken); }).find("point id 4") != std::string::npos);  // also after a call that threw
 }
+
+TEST_CASE("clip and slice: fields of normals keep their length between points") {
+  Context ctx;
+  const DatasetPtr grid = to_unstructured(meshes::uniform_box(5, 5, 5), {}, ctx);
+  DatasetParts parts = grid->parts();
+  std::vector<float> unit, plain;
+  for (size_t i = 0; i < grid->point_count(); ++i) {
+    const double a = 2.1 * double(i), b = 0.7 * double(i);
+    for (double x : {std::cos(a) * std::cos(b), std::sin(a) * std::cos(b), std::sin(b)})
+      unit.push_back(float(x)), plain.push_back(float(x));
+  }
+  parts.fields.add({"n", Association::point, Array::from_vector(std::move(unit), 3), "", Role::normals});
+  parts.fields.add({"v", Association::point, Array::from_vector(std::move(plain), 3), "", Role::vectors});
+  const DatasetPtr in = make_dataset(std::move(parts));
+  const Vec3 center = in->bounds().center(), normal{1, 0.3, 0.2};
+  ClipParams clipped;
+  clipped.origin = center, clipped.normal = normal;
+  for (const DatasetPtr& d : {slice(in, {.origin = center, .normal = normal}, ctx), std::get<DatasetPtr>(clip(in, clipped, ctx))}) {
+    const Field &n = d->fields().require("n", Association::point), &v = d->fields().require("v", Association::point);
+    double shortest = 1;
+    REQUIRE(d->point_count() > 10);
+    for (size_t i = 0; i < d->point_count(); ++i) {
+      CHECK(length(Vec3(n.array.get(i, 0), n.array.get(i, 1), n.array.get(i, 2))) == doctest::Approx(1).epsilon(1e-6));
+      shortest = std::min(shortest, length(Vec3(v.array.get(i, 0), v.array.get(i, 1), v.array.get(i, 2))));
+    }
+    CHECK(shortest < 0.9);  // as other vectors are not
+  }
+}

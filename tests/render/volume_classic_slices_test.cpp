@@ -161,6 +161,8 @@ TEST_CASE("slices: what cannot be sliced is refused in words, and a flat or empt
   CHECK(refused(v, p, sliced(), "two dimensions"));
   v = smooth_item(9), v.sampling.kernel = "bspline";
   CHECK(refused(v, p, sliced(), "bspline"));
+  v = smooth_item(9), v.sampling.step = 1e-6;
+  CHECK(refused(v, p, sliced(), "longer step"));
   UniformGrid g;
   g.dims = {5, 5, 1}, g.origin = {-1, -1, 0}, g.spacing = {0.5, 0.5, 0.25};
   v = item(grid(g, [](Vec3) { return 1.0; }), one_color({1, 1, 1}), constant_opacity(2));

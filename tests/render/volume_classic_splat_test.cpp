@@ -203,6 +203,8 @@ TEST_CASE("splat: rectilinear grids and other ray functions are refused in words
   CHECK(refused(v, p, splats(), "method=ray"));
   v = smooth_item(9), v.clip.push_back({{1, 0, 0}, 0});
   CHECK(refused(v, p, splats(), "clipped"));
+  v = smooth_item(9), v.sampling.step = 1e-4;
+  CHECK(refused(v, p, splats(), "too thin"));
   RectilinearGrid r;
   r.x = r.y = r.z = Array::from_vector(std::vector<double>{0, 1, 3});
   FieldSet fields;

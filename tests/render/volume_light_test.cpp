@@ -13,7 +13,7 @@ namespace {
 
 volume::CastVolume cast_of(const VolumeItem& v) {
   Context context;
-  return volume::prepare_cast(v, 1, std::make_shared<const volume::Volume>(volume::prepare(v, 1, {})), {}, context);
+  return volume::prepare_cast(v, 1, std::make_shared<const volume::Volume>(volume::prepare(v, 1, {})), parallel_view(1, 1, 1), {}, context);
 }
 
 /// Integral of tau from a place towards a lamp, by the midpoint rule on every stretch.

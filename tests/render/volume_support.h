@@ -6,8 +6,9 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "render/volume/lattice/lattice_ray.h"
+#include "render/volume/optics/functions.h"
 #include "render/volume/volume.h"
-#include "render/volume/lattice/lattice_volume.h"
 #include "support/test.h"
 
 namespace sg::test {
@@ -103,6 +104,13 @@ inline Scene scene_of(std::vector<Item> items) {
 inline Frame look(const Scene& scene, double x = 0.013, double y = 0.017, const volume::Knobs& knobs = {},
                   const FragmentLists& fragments = {}) {
   return draw(scene, parallel_view(1, 1, 1, {0, 0, -1}, {0, 1, 0}, {x, y, 0}), knobs, fragments);
+}
+/// The largest value along a ray, as the general way finds it.
+inline volume::Found largest_along(const volume::Volume& v, Vec3 origin, Vec3 direction) {
+  const auto source = volume::lattice_source(std::make_shared<const volume::Volume>(v));
+  const auto walker = source->walker();
+  walker->start(origin, direction, 0, 1e9);
+  return volume::largest(*walker);
 }
 inline float largest_difference(const Frame& a, const Frame& b) {
   float most = 0;

@@ -26,8 +26,13 @@ T rounded(double v) {
   else return T(std::nearbyint(v));
 }
 
+bool is_direction(const Field& f) {
+  const ElementType t = f.array.type();
+  return f.role == Role::normals && f.components() == 3 && (t == ElementType::f32 || t == ElementType::f64);
+}
+
 // A point field: kept values, blends along cut edges, blends inside cells.
-Array carried(const Array& a, const Shares& s) {
+Array carried(const Array& a, const Shares& s, bool direction) {
   const size_t kept = s.build.kept, cuts = s.build.cuts.size(), inner = s.build.inner_first.size() - 1;
   std::byte* bytes = nullptr;
   Array r = Array::make_raw(a.type(), kept + cuts + inner, a.components(), &bytes);
@@ -35,6 +40,12 @@ Array carried(const Array& a, const Shares& s) {
     using T = std::remove_cvref_t<decltype(v[0])>;
     const auto n = size_t(v.components);
     T* out = reinterpret_cast<T*>(bytes);
+    // Directions are as long as the blend of the lengths.
+    auto long_at = [&](size_t k) { return length(Vec3(double(v(k, 0)), double(v(k, 1)), double(v(k, 2)))); };
+    auto stretch = [](T* m, double wanted) {
+      const double is = length(Vec3(double(m[0]), double(m[1]), double(m[2])));
+      for (size_t c = 0; c < 3 && is > 0; ++c) m[c] = T(double(m[c]) * (wanted / is));
+    };
     if (s.build.rows) copy_lattice_points(a, s.build.rows->grid, s.build.rows->ranks, bytes);
     else
       parallel_for(kept, grain, [&](size_t begin, size_t end) {
@@ -50,6 +61,10 @@ Array carried(const Array& a, const Shares& s) {
         for (size_t c = 0; c < n; ++c)
           out[(kept + i) * n + c] =
               rounded<T>(double(v(std::min(p, q), int(c))) * (1 - s.t[i]) + double(v(std::max(p, q), int(c))) * s.t[i]);
+        if (direction) {
+          const double wanted = long_at(std::min(p, q)) * (1 - s.t[i]) + long_at(std::max(p, q)) * s.t[i];
+          stretch(out + (kept + i) * n, wanted);
+        }
       }
     });
     parallel_for(inner, grain, [&](size_t begin, size_t end) {
@@ -61,6 +76,12 @@ Array carried(const Array& a, const Shares& s) {
           for (size_t k = first + 1; k < s.build.inner_first[i + 1]; ++k)
             sum += s.build.inner_weights[k] * (double(v(s.build.inner_points[k], int(c))) - base);
           out[(kept + cuts + i) * n + c] = rounded<T>(sum);
+          if (!direction || c + 1 < n) continue;
+          const double first_long = long_at(s.build.inner_points[first]);
+          double wanted = first_long;
+          for (size_t k = first + 1; k < s.build.inner_first[i + 1]; ++k)
+            wanted += s.build.inner_weights[k] * (long_at(s.build.inner_points[k]) - first_long);
+          stretch(out + (kept + cuts + i) * n, wanted);
         }
     });
   });
@@ -141,7 +162,8 @@ DatasetPtr finish(const Job& job, Build b) {
   out.mesh = std::move(mesh);
   const Shares shares{b, t};
   for (const Field& f : in.fields())
-    if (f.association == Association::point) out.fields.add({f.name, f.association, carried(f.array, shares), f.unit, f.role});
+    if (f.association == Association::point)
+      out.fields.add({f.name, f.association, carried(f.array, shares, is_direction(f)), f.unit, f.role});
   carry_gathered(out.fields, in.fields(), Association::cell, b.source, Association::cell);
   carry_whole(out.fields, in.fields());
   if (!in.fields().find("original_cell", Association::cell))

@@ -7,9 +7,9 @@
 
 namespace sg::contouring {
 
-/// An unstructured mesh of the leaf cells that one of the values crosses, and those around them; without values, of all. Leaves beside finer ones are
-/// polyhedra (2D: polygons) with the finer ones' corners in their faces and edges, at level jumps of any ratio; the others are voxels
-/// (pixels). So neighbours share whole faces, and a contour has no cracks.
+/// An unstructured mesh of the leaf cells that one of the values crosses, and those around them; without values, of all. Leaves beside
+/// finer ones are polyhedra (2D: polygons) with the finer ones' corners in their faces and edges, at level jumps of any ratio; the others
+/// are voxels (pixels). So neighbours share whole faces, and a contour has no cracks.
 ///
 /// A field of the points is taken as it is, at each corner from the finest patch there. A field of the cells becomes a point field:
 /// at a corner of equal cells their mean; at level jumps and at the border the mean of the planes through the cells around

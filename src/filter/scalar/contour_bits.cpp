@@ -1,55 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples to bits: one streaming pass, written so that compilers vectorise it.
+// Samples to bits: one streaming pass.
 #include <cmath>
 #include <type_traits>
 
 #include "base/parallel.h"
+#include "filter/scalar/contour_bits.h"
 #include "filter/scalar/contour_parts.h"
 
 namespace sg::contouring {
 
 namespace {
-
-#if defined(__x86_64__) && !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
-#define SG_CLONES __attribute__((target_clones("default", "avx2", "arch=x86-64-v4")))
-#else
-#define SG_CLONES
-#endif
-
-// 64 flags of 0 or 1 to bits: eight bytes at a time, gathered in the top byte by one multiplication.
-inline uint64_t pack64(const uint8_t* flags) {
-  uint64_t r = 0;
-  for (int b = 0; b < 8; ++b) {
-    uint64_t x;
-    std::memcpy(&x, flags + 8 * b, 8);
-    r |= (x * 0x0102040810204080ull) >> 56 << (8 * b);
-  }
-  return r;
-}
-
-#define SG_AT_LEAST(T)                                                         \
-  SG_CLONES void at_least(const T* p, size_t words, T least, uint64_t* bits) { \
-    for (size_t w = 0; w < words; ++w, p += 64) {                              \
-      uint8_t flags[64];                                                       \
-      for (size_t i = 0; i < 64; ++i) flags[i] = p[i] >= least;                \
-      bits[w] = pack64(flags);                                                 \
-    }                                                                          \
-  }
-SG_AT_LEAST(uint8_t)
-SG_AT_LEAST(int8_t)
-SG_AT_LEAST(uint16_t)
-SG_AT_LEAST(int16_t)
-SG_AT_LEAST(float)
-SG_AT_LEAST(double)
-
-#define SG_ANY_NAN(T)                                   \
-  SG_CLONES bool any_nan(const T* p, size_t n) {        \
-    int odd = 0;                                        \
-    for (size_t i = 0; i < n; ++i) odd |= p[i] != p[i]; \
-    return odd != 0;                                    \
-  }
-SG_ANY_NAN(float)
-SG_ANY_NAN(double)
 
 // The smallest T for which x >= value holds exactly when x >= it; `none` when there is no such number.
 template <class T>
@@ -64,22 +24,6 @@ T threshold(double value, bool& none) {
     none = up > double(std::numeric_limits<T>::max());
     return up < double(std::numeric_limits<T>::min()) ? std::numeric_limits<T>::min() : none ? T(0) : T(up);
   }
-}
-
-// The word that the row fills in part.
-template <class T>
-void last_word(const T* row, size_t nx, T least, uint64_t* out) {
-  const size_t whole = nx / 64, rest = nx % 64;
-  T tail[64];
-  for (size_t i = 0; i < 64; ++i) tail[i] = row[64 * whole + std::min(i, rest - 1)];
-  at_least(tail, 1, least, out + whole);
-  out[whole] &= ~uint64_t(0) >> (64 - rest);
-}
-
-template <class T>
-void classify_row(const T* row, size_t nx, T least, uint64_t* out) {
-  at_least(row, nx / 64, least, out);
-  if (nx % 64) last_word(row, nx, least, out);
 }
 
 template <class F>
@@ -98,7 +42,7 @@ size_t row_grain(size_t nx) { return std::max<size_t>(1, 65536 / std::max<size_t
 
 }  // namespace
 
-bool classify(const Array& samples, size_t nx, size_t rows, std::span<const double> values, std::span<uint64_t* const> bits, size_t words,
+bool classify(const Array& samples, size_t nx, size_t rows, std::span<const double> values, std::span<const RowsOut> out, size_t words,
               Context& context) {
   return native(samples, [&](const auto* p) {
     using T = std::remove_cvref_t<decltype(*p)>;
@@ -115,9 +59,9 @@ bool classify(const Array& samples, size_t nx, size_t rows, std::span<const doub
           for (size_t r = begin; r < end; ++r) {
             const T* row = p + r * nx;
             for (size_t v = 0; v < values.size(); ++v) {
-              uint64_t* out = bits[v] + r * words;
-              if (least[v].second) std::fill(out, out + words, 0);
-              else classify_row(row, nx, least[v].first, out);
+              uint64_t* bits = out[v].bits + r * words;
+              if (!least[v].second) at_least(BitRows<T>{row, nx, 1, least[v].first, bits, words, out[v].state + r});
+              else std::fill(bits, bits + words, 0), out[v].state[r] = RowState::outside;
             }
             if constexpr (std::is_floating_point_v<T>) nan = nan || any_nan(row, nx);
           }
@@ -127,30 +71,66 @@ bool classify(const Array& samples, size_t nx, size_t rows, std::span<const doub
   });
 }
 
-void classify_words(const Array& samples, size_t nx, size_t row, double value, const uint8_t* wanted, uint64_t* bits, size_t words) {
+void classify_known(const Array& samples, size_t nx, size_t rows, const StretchRanges& ranges, double value, RowsOut out, size_t words,
+                    Context& context) {
   native(samples, [&]<class T>(const T* all) {
     bool none = false;
     const T least = threshold<T>(value, none);
-    const T* p = all + row * nx;
-    uint64_t* out = bits + row * words;
-    const size_t whole = nx / 64;
-    for (size_t w = 0; w < words; ++w) {
-      if (!wanted[w]) continue;
-      if (none) out[w] = 0;
-      else if (w == whole) last_word(p, nx, least, out);
-      else at_least(p + 64 * w, 1, least, out + w);
-    }
+    parallel_for(
+        rows, row_grain(nx),
+        [&](size_t begin, size_t end) {
+          uint64_t* bits = out.bits + begin * words;
+          if (!none)
+            return at_least(BitRows<T>{all + begin * nx, nx, end - begin, least, bits, words, out.state + begin, &ranges, begin,
+                                       ranges.level(float(least))});
+          std::fill(bits, out.bits + end * words, 0);
+          std::fill(out.state + begin, out.state + end, RowState::outside);
+        },
+        &context);
   });
 }
 
-bool any_missing(const Array& samples, Context& context) {
-  return native(samples, [&]<class T>(const T* p) {
-    if constexpr (std::is_floating_point_v<T>)
-      return parallel_reduce(
-          samples.count(), 65536, false, [&](size_t begin, size_t end) { return any_nan(p + begin, end - begin); },
-          [](bool a, bool b) { return a || b; }, &context);
-    return false;
+// Levels are as many as bytes tell apart, spread over the middle 98 % of some stretches; the rest takes the first and the last one.
+void find_levels(StretchRanges& r, const Array& samples) {
+  const Sample f(samples);
+  const size_t n = samples.count(), step = std::max<size_t>(1, n / 4096);
+  std::vector<float> some;
+  for (size_t i = step / 2; i < n; i += step)
+    if (const auto x = float(f(i)); std::isfinite(x)) some.push_back(x);
+  if (some.empty()) return;
+  const auto place = [&](size_t at) {
+    std::nth_element(some.begin(), some.begin() + ptrdiff_t(at), some.end());
+    return some[at];
+  };
+  const float lo = place(some.size() / 100), hi = place(some.size() - 1 - some.size() / 100);
+  r.first = lo;
+  r.scale = hi > lo ? 254 / (hi - lo) : 0;
+  if (!std::isfinite(r.scale) || !(r.scale > 0)) r.scale = 1;
+}
+
+StretchRanges find_ranges(const Array& samples, size_t nx, size_t rows, bool& missing, Context& context) {
+  StretchRanges r;
+  const size_t stretches = (nx + StretchRanges::length - 1) / StretchRanges::length;
+  r.per_row = (nx + 63) / 64 * 4;
+  r.lo.resize(r.per_row * rows + 16), r.hi.resize(r.per_row * rows + 16);
+  find_levels(r, samples);
+  missing = native(samples, [&]<class T>(const T* p) {
+    return parallel_reduce(
+        rows, row_grain(nx), false,
+        [&](size_t begin, size_t end) {
+          bool nan = false;
+          std::vector<float> lo(stretches), hi(stretches);
+          for (size_t row = begin; row < end; ++row) {
+            const bool here = stretch_ranges(p + row * nx, nx, lo.data(), hi.data());
+            nan = nan || here;
+            for (size_t s = 0; s < stretches; ++s) r.lo[row * r.per_row + s] = r.level(lo[s]);
+            for (size_t s = 0; s < stretches; ++s) r.hi[row * r.per_row + s] = r.level(hi[s]);
+          }
+          return nan;
+        },
+        [](bool a, bool b) { return a || b; }, &context);
   });
+  return r;
 }
 
 void find_missing(const Array& samples, size_t nx, size_t rows, uint64_t* bits, size_t words, Context& context) {

@@ -15,11 +15,7 @@ LatticeContour::LatticeContour(const Job& job, std::shared_ptr<const LatticeInde
     : job_(job), index_(std::move(index)), lattice_(job.input.mesh()), frame_(lattice_.view()), sample_(job.samples) {
   words_ = (frame_.dims[0] + 63) / 64;
   flip_ = !frame_.right_handed();
-  for (uint32_t p = 0; p < 256; ++p) {
-    const auto t = lattice_cases().plain(p);
-    count_[p] = job.trilinear && needs_trilinear(p) ? slow_pattern : uint8_t((t[1] - t[0]) / 3);
-    first_[p] = uint16_t(t[0]);
-  }
+  tables_ = &CellTables::of(job.trilinear, flip_);
   const size_t nx = frame_.dims[0], rows = frame_.dims[1] * frame_.dims[2];
   if (const Array& ghost = job.input.point_ghost(); !ghost.empty()) {
     const auto g = ghost.view<uint8_t>();
@@ -66,23 +62,22 @@ std::vector<Piece> LatticeContour::run(std::span<const double> values) {
   for (size_t begin = 0; begin < values.size(); begin += together) {
     const auto some = values.subspan(begin, std::min(together, values.size() - begin));
     std::vector<Cuts> cuts(some.size());
-    std::vector<uint64_t*> bits;
-    std::vector<std::optional<ActiveWords>> where(some.size());
+    std::vector<RowsOut> out;
     for (size_t i = 0; i < some.size(); ++i) {
       cuts[i].value = some[i];
-      cuts[i].inside.resize(rows * words_);
-      bits.push_back(cuts[i].inside.data());
+      cuts[i].inside.resize(rows * words_ + 1);  // see RowBits
+      cuts[i].inside.back() = 0;
+      cuts[i].state.resize(rows);
+      out.push_back({cuts[i].inside.data(), cuts[i].state.data()});
     }
     bool nan = false;
     if (index_) {
-      for (size_t i = 0; i < some.size(); ++i) {
-        where[i].emplace(*index_, frame_.dims, some[i]);
-        where[i]->classify(job_.samples, bits[i], words_, job_.context);
-      }
+      for (size_t i = 0; i < some.size(); ++i)
+        classify_known(job_.samples, nx, rows, index_->ranges, some[i], out[i], words_, job_.context);
       if (!index_->missing.empty() && !missing_known_) skip_points(index_->missing);
       missing_known_ = true;
     } else {
-      nan = classify(job_.samples, nx, rows, some, bits, words_, job_.context);
+      nan = classify(job_.samples, nx, rows, some, out, words_, job_.context);
     }
     if (nan && !missing_known_) {
       std::vector<uint64_t> bad(rows * words_);
@@ -91,9 +86,8 @@ std::vector<Piece> LatticeContour::run(std::span<const double> values) {
       missing_known_ = true;
     }
     Room room;
-    for (size_t i = 0; i < cuts.size(); ++i) {
-      Cuts& c = cuts[i];
-      find_cuts(c, where[i] ? &*where[i] : nullptr);
+    for (Cuts& c : cuts) {
+      find_cuts(c);
       room.edges += c.vertices, room.inner += c.inner, room.cells += c.cells;
     }
     if (room.edges + room.inner > size_t(INT32_MAX))
@@ -107,23 +101,86 @@ std::vector<Piece> LatticeContour::run(std::span<const double> values) {
   return pieces;
 }
 
-void LatticeContour::find_cuts(Cuts& cuts, const ActiveWords* where) const {
+void LatticeContour::find_cuts(Cuts& cuts) const {
   const size_t ny = frame_.dims[1], nz = frame_.dims[2], rows = ny * nz;
   if (!skip_.empty())
-    for (int a = 0; a < frame_.axes; ++a) cuts.cut[a].assign(rows * words_, 0);  // an index leaves rows out
-  cuts.rows.resize(rows);
+    for (int a = 0; a < frame_.axes; ++a) cuts.cut[a].assign(rows * words_, 0);  // rows without a cut are left out
+  cuts.rows.resize(rows);                                                        // not initialised
+  // Places are sums of counts: inside each chunk first, then those of the chunks before it are added.
+  const size_t grain = std::max<size_t>(1, 512 / words_);
+  std::vector<RowStart> before((rows + grain - 1) / grain, RowStart{});
+  auto sum_up = [](RowStart& place, RowStart& sum) {
+    sum.vertex += std::exchange(place.vertex, sum.vertex);
+    sum.cell += std::exchange(place.cell, sum.cell);
+    sum.inner += std::exchange(place.inner, sum.inner);
+  };
   parallel_for(
-      rows, std::max<size_t>(1, 512 / words_),
+      rows, grain,
       [&](size_t begin, size_t end) {
-        for (size_t r = begin; r < end; ++r)
-          if (!where || where->row(r % ny, r / ny)) count_row(cuts, r % ny, r / ny);
+        std::vector<uint64_t> odd(words_);
+        RowStart& sum = before[begin / grain];
+        for (size_t r = begin; r < end; ++r) {
+          const size_t j = r % ny, k = r / ny;
+          cuts.rows[r] = {};
+          if (may_cut(cuts, j, k)) simple() ? count_simple_row(cuts, j, k, odd.data()) : count_row(cuts, j, k);
+          sum_up(cuts.rows[r], sum);
+        }
       },
       &job_.context);
-  for (RowStart& row : cuts.rows) {
-    cuts.vertices += std::exchange(row.vertex, cuts.vertices);
-    cuts.cells += std::exchange(row.cell, cuts.cells);
-    cuts.inner += std::exchange(row.inner, cuts.inner);
+  RowStart all{};
+  for (RowStart& chunk : before) sum_up(chunk, all);
+  cuts.vertices = all.vertex, cuts.cells = all.cell, cuts.inner = all.inner;
+  parallel_for(
+      rows, grain,
+      [&](size_t begin, size_t end) {
+        const RowStart& add = before[begin / grain];
+        for (size_t r = begin; r < end; ++r)
+          cuts.rows[r].vertex += add.vertex, cuts.rows[r].cell += add.cell, cuts.rows[r].inner += add.inner;
+      },
+      &job_.context);
+}
+
+// False when the row and those behind it hold one and the same bit.
+bool LatticeContour::may_cut(const Cuts& cuts, size_t j, size_t k) const {
+  const size_t ny = frame_.dims[1], r = j + ny * k;
+  const RowState s = cuts.state[r];
+  if (s == RowState::mixed) return true;
+  const bool up = j + 1 < ny, back = k + 1 < frame_.dims[2];
+  return (up && cuts.state[r + 1] != s) || (back && cuts.state[r + ny] != s) || (up && back && cuts.state[r + ny + 1] != s);
+}
+
+// Solids whose cells are all good: most by bits alone.
+void LatticeContour::count_simple_row(Cuts& cuts, size_t j, size_t k, uint64_t* odd) const {
+  const size_t nx = frame_.dims[0], ny = frame_.dims[1], nz = frame_.dims[2], r = j + ny * k;
+  const uint64_t* a = cuts.inside.data() + r * words_;
+  const bool up = j + 1 < ny, back = k + 1 < nz;
+  RowStart& row = cuts.rows[r];
+  count_edges(a, up ? a + words_ : nullptr, back ? a + ny * words_ : nullptr, words_, nx, row.cut);
+  row.vertex = size_t(row.cut[0]) + row.cut[1] + row.cut[2];
+  if (!up || !back) return;
+  const RowBits rows{{a, a + words_, a + ny * words_, a + (ny + 1) * words_}, words_, nx};
+  bool any_odd = false;
+  row.cell = count_triangles(rows, odd, any_odd);
+  if (!any_odd) return;
+  for (size_t w = 0; w < words_; ++w) {
+    if (!odd[w]) continue;
+    const Pair q[4] = {{rows.row[0], w, words_}, {rows.row[1], w, words_}, {rows.row[2], w, words_}, {rows.row[3], w, words_}};
+    for (uint64_t m = odd[w]; m; m &= m - 1) {
+      const int i = std::countr_zero(m);
+      const uint32_t pattern = q[0].corners(i) | q[1].corners(i) << 2 | q[2].corners(i) << 4 | q[3].corners(i) << 6;
+      count_cell(cuts, row, pattern, r * nx + 64 * w + size_t(i));
+    }
   }
+}
+
+void LatticeContour::count_cell(const Cuts& cuts, RowStart& row, uint32_t pattern, size_t p) const {
+  if (tables_->triangles[pattern] != CellTables::slow) {
+    row.cell += tables_->triangles[pattern];
+    return;
+  }
+  const Slow slow(p, cuts.value, frame_, sample_, false);
+  row.cell += size_t(slow.cell.triangle_count);
+  row.inner += size_t(slow.cell.inner_count);
 }
 
 // An edge is cut when its ends differ and a good cell lies at it; a cell is crossed when its corners differ.
@@ -171,14 +228,7 @@ void LatticeContour::count_row(Cuts& cuts, size_t j, size_t k) const {
         row.cell += square_of(low, p, cuts.value, frame_, sample_).lines;
         continue;
       }
-      const uint32_t pattern = low | c.corners(i) << 4 | d.corners(i) << 6;
-      if (count_[pattern] != slow_pattern) [[likely]] {
-        row.cell += count_[pattern];
-        continue;
-      }
-      const Slow slow(p, cuts.value, frame_, sample_, false);
-      row.cell += size_t(slow.cell.triangle_count);
-      row.inner += size_t(slow.cell.inner_count);
+      count_cell(cuts, row, low | c.corners(i) << 4 | d.corners(i) << 6, p);
     }
   }
 }

@@ -14,8 +14,9 @@ inline ptrdiff_t corner_offset(int c, const LatticeFrame& f) { return (c & 1) + 
 struct LatticeContour::Cuts {
   double value = 0;
   Plane<uint64_t> inside;
-  Plane<uint64_t> cut[3];  ///< bits of cut edges, where cells are left out; otherwise they follow from `inside`
-  std::vector<RowStart> rows;
+  std::vector<RowState> state;  ///< of each row of `inside`
+  Plane<uint64_t> cut[3];       ///< bits of cut edges, where cells are left out; otherwise they follow from `inside`
+  Plane<RowStart> rows;
   size_t vertices = 0, cells = 0, inner = 0;
 };
 

@@ -30,9 +30,9 @@ Piece LatticeContour::generate(const Cuts& cuts, Room& room) const {
           const size_t first = cuts.rows[r].cell;
           if ((r + 1 < rows ? cuts.rows[r + 1].cell : cuts.cells) == first) continue;
           uint32_t* cells = from ? from + first : nullptr;
-          if (corners == 3)
-            triangles_of_row(cuts, r % ny, r / ny, uint32_t(piece.first_point), out + 3 * first, cells,
-                             piece.inner.data + cuts.rows[r].inner);
+          InnerPoint* inner = piece.inner.data + cuts.rows[r].inner;
+          if (simple()) simple_triangles_of_row(cuts, r % ny, r / ny, uint32_t(piece.first_point), out + 3 * first, cells, inner);
+          else if (corners == 3) triangles_of_row(cuts, r % ny, r / ny, uint32_t(piece.first_point), out + 3 * first, cells, inner);
           else lines_of_row(cuts, r, uint32_t(piece.first_point), out + 2 * first, cells);
         }
       },
@@ -44,23 +44,78 @@ Piece LatticeContour::generate(const Cuts& cuts, Room& room) const {
   return piece;
 }
 
-// Walks the crossed cells of a row with one counter per row of edges: an edge's number is the number of cut edges before it, and
-// every cut edge of these rows belongs to a crossed cell that is visited.
+// Where triangles of a row go.
+struct LatticeContour::Writing {
+  const LatticeContour& all;
+  const Cuts& cuts;
+  size_t first_point_of_row;  // its number on the lattice
+  uint32_t first_cell, next_inner;
+  InnerPoint* inner;
+
+  Writing(const LatticeContour& a, const Cuts& c, size_t j, size_t k, uint32_t first_point, InnerPoint* to) : all(a), cuts(c), inner(to) {
+    const size_t nx = a.frame_.dims[0], ny = a.frame_.dims[1], row = j + ny * k;
+    first_point_of_row = row * nx;
+    first_cell = uint32_t((nx - 1) * (j + (ny - 1) * k));
+    next_inner = first_point + uint32_t(c.vertices + c.rows[row].inner);
+  }
+
+  void triangle(uint32_t a, uint32_t b, uint32_t c, size_t i, int32_t*& out, uint32_t*& cells) const {
+    out[0] = int32_t(a);
+    out[all.flip_ ? 2 : 1] = int32_t(b);
+    out[all.flip_ ? 1 : 2] = int32_t(c);
+    out += 3;
+    if (cells) *cells++ = first_cell + uint32_t(i);
+  }
+
+  // A cell that the table alone cannot cut; `list` has the numbers of its edges.
+  void slow(size_t i, const uint32_t* list, int32_t*& out, uint32_t*& cells) {
+    uint32_t edge[TrilinearCell::first_inner + 8];
+    std::copy_n(list, TrilinearCell::first_inner, edge);
+    const size_t p = first_point_of_row + i;
+    const Slow slow(p, cuts.value, all.frame_, all.sample_, true);
+    const TrilinearCell& cell = slow.cell;
+    for (int n = 0; n < cell.inner_count; ++n) {
+      const auto& u = cell.inner[size_t(n)];
+      edge[TrilinearCell::first_inner + n] = next_inner++;
+      *inner++ = {p, {float(u[0]), float(u[1]), float(u[2])}};
+    }
+    for (int t = 0; t < cell.triangle_count; ++t) {
+      const auto& name = cell.triangles[size_t(t)];
+      triangle(edge[name[0]], edge[name[1]], edge[name[2]], i, out, cells);
+    }
+  }
+};
+
+void LatticeContour::simple_triangles_of_row(const Cuts& cuts, size_t j, size_t k, uint32_t first_point, int32_t* out, uint32_t* cells,
+                                             InnerPoint* inner) const {
+  const size_t ny = frame_.dims[1], r = j + ny * k;
+  Writing writing(*this, cuts, j, k, first_point, inner);
+  const uint64_t* a = cuts.inside.data() + r * words_;
+  const RowStart* near = &cuts.rows[r];
+  const TriangleRow row{*tables_,
+                        {{a, a + words_, a + ny * words_, a + (ny + 1) * words_}, words_, frame_.dims[0]},
+                        near,
+                        near + ny,
+                        first_point,
+                        out,
+                        cells,
+                        writing.first_cell,
+                        &writing,
+                        [](void* w, size_t i, const uint32_t* edges, int32_t*& to, uint32_t*& numbers) {
+                          static_cast<Writing*>(w)->slow(i, edges, to, numbers);
+                        }};
+  write_triangles(row);
+}
+
+// The same where some cells are left out. Walks the crossed cells of a row with one counter per row of edges: an edge's number is the
+// number of cut edges before it, and every cut edge of these rows belongs to a crossed cell that is visited.
 void LatticeContour::triangles_of_row(const Cuts& cuts, size_t j, size_t k, uint32_t first_point, int32_t* out, uint32_t* cells,
                                       InnerPoint* inner) const {
   const size_t nx = frame_.dims[0], ny = frame_.dims[1];
   const size_t row[4] = {j + ny * k, j + 1 + ny * k, j + ny * (k + 1), j + 1 + ny * (k + 1)};
-  const uint8_t* all = lattice_cases().triangle_edges();
-  const size_t cell_row = (nx - 1) * (j + (ny - 1) * k);
-  auto start = [&](size_t r, int axis) {
-    const RowStart& s = cuts.rows[r];
-    return first_point + uint32_t(s.vertex) + (axis > 0 ? s.cut[0] : 0) + (axis > 1 ? s.cut[1] : 0);
-  };
-  uint32_t at[8] = {start(row[0], 0), start(row[1], 0), start(row[2], 0), start(row[3], 0),
-                    start(row[0], 1), start(row[2], 1), start(row[0], 2), start(row[1], 2)};
-  const bool stored = !skip_.empty();
-  uint32_t next_inner = first_point + uint32_t(cuts.vertices + cuts.rows[row[0]].inner);
-  const int second = flip_ ? 2 : 1, third = flip_ ? 1 : 2;
+  Writing writing(*this, cuts, j, k, first_point, inner);
+  uint32_t at[8];
+  first_edges(&cuts.rows[row[0]], &cuts.rows[row[2]], first_point, at);
   for (size_t w = 0; w < words_; ++w) {
     Pair q[4];
     uint64_t any = 0, every = ~uint64_t(0);
@@ -71,47 +126,27 @@ void LatticeContour::triangles_of_row(const Cuts& cuts, size_t j, size_t k, uint
     }
     uint64_t active = any & ~every & cell_bits(w, nx);
     if (!active) continue;
-    const uint64_t skip = skip_.empty() ? 0 : skip_[row[0] * words_ + w];
+    const uint64_t skip = skip_[row[0] * words_ + w];
     uint64_t c[8];
-    if (stored) {
-      for (int s = 0; s < 4; ++s) c[s] = cuts.cut[0][row[s] * words_ + w];
-      c[4] = cuts.cut[1][row[0] * words_ + w], c[5] = cuts.cut[1][row[2] * words_ + w];
-      c[6] = cuts.cut[2][row[0] * words_ + w], c[7] = cuts.cut[2][row[1] * words_ + w];
-    } else {
-      for (int s = 0; s < 4; ++s) c[s] = q[s].m ^ q[s].s;
-      c[4] = q[0].m ^ q[1].m, c[5] = q[2].m ^ q[3].m, c[6] = q[0].m ^ q[2].m, c[7] = q[1].m ^ q[3].m;
-    }
+    for (int s = 0; s < 4; ++s) c[s] = cuts.cut[0][row[s] * words_ + w];
+    c[4] = cuts.cut[1][row[0] * words_ + w], c[5] = cuts.cut[1][row[2] * words_ + w];
+    c[6] = cuts.cut[2][row[0] * words_ + w], c[7] = cuts.cut[2][row[1] * words_ + w];
     for (; active; active &= active - 1) {
       const int i = std::countr_zero(active);
-      uint32_t step[8], edge[TrilinearCell::first_inner + 8];
+      uint32_t step[8];
       for (int s = 0; s < 8; ++s) step[s] = uint32_t(c[s] >> i & 1);
       if (!(skip >> i & 1)) {
+        uint32_t edge[TrilinearCell::first_inner];
         for (int s = 0; s < 4; ++s) edge[s] = at[s];
         for (int s = 4; s < 8; ++s) edge[2 * s - 4] = at[s], edge[2 * s - 3] = at[s] + step[s];
         const uint32_t pattern = q[0].corners(i) | q[1].corners(i) << 2 | q[2].corners(i) << 4 | q[3].corners(i) << 6;
-        auto triangle = [&](uint32_t a, uint32_t b, uint32_t c) {
-          out[0] = int32_t(a);
-          out[second] = int32_t(b);
-          out[third] = int32_t(c);
-          out += 3;
-          if (cells) *cells++ = uint32_t(cell_row + 64 * w + size_t(i));
-        };
-        if (count_[pattern] == slow_pattern) [[unlikely]] {
-          const size_t p = row[0] * nx + 64 * w + size_t(i);
-          const Slow slow(p, cuts.value, frame_, sample_, true);
-          const TrilinearCell& cut_cell = slow.cell;
-          for (int n = 0; n < cut_cell.inner_count; ++n) {
-            const auto& u = cut_cell.inner[size_t(n)];
-            edge[TrilinearCell::first_inner + n] = next_inner++;
-            *inner++ = {p, {float(u[0]), float(u[1]), float(u[2])}};
-          }
-          for (int t = 0; t < cut_cell.triangle_count; ++t) {
-            const auto& name = cut_cell.triangles[size_t(t)];
-            triangle(edge[name[0]], edge[name[1]], edge[name[2]]);
-          }
+        const size_t cell = 64 * w + size_t(i), n = tables_->triangles[pattern];
+        if (n == CellTables::slow) [[unlikely]] {
+          writing.slow(cell, edge, out, cells);
         } else {
-          const uint8_t* e = all + first_[pattern];
-          for (uint32_t t = count_[pattern]; t > 0; --t, e += 3) triangle(edge[e[0]], edge[e[1]], edge[e[2]]);
+          const uint8_t* e = tables_->edges[pattern];  // wound right already
+          for (size_t t = 0; t < 3 * n; ++t) *out++ = int32_t(edge[e[t]]);
+          if (cells) cells = std::fill_n(cells, n, writing.first_cell + uint32_t(cell));
         }
       }
       for (int s = 0; s < 8; ++s) at[s] += step[s];

@@ -12,6 +12,8 @@
 #include "data/dataset.h"
 #include "data/field_ops.h"
 #include "filter/field/lattice_frame.h"
+#include "filter/scalar/contour_bits.h"
+#include "filter/scalar/contour_rows.h"
 
 namespace sg {
 struct CellActiveIndex;
@@ -93,13 +95,6 @@ inline double crossing(double value, double a, double b) {
 }
 
 struct LatticeIndex;
-class ActiveWords;
-
-/// Where the edges of a row of points are cut, and where their results go.
-struct RowStart {
-  size_t vertex = 0, cell = 0, inner = 0;  ///< first of the row, after the prefix sum; before it, counts
-  uint32_t cut[3]{};                       ///< cut edges along each axis; results lie in that order
-};
 
 /// Kernels on lattices of two or three axes; make one for all values.
 class LatticeContour {
@@ -113,9 +108,16 @@ class LatticeContour {
   struct Room;
   struct Slow;
   void skip_points(const std::vector<uint64_t>& bad);
-  void find_cuts(Cuts& cuts, const ActiveWords* where) const;
+  void find_cuts(Cuts& cuts) const;
+  bool simple() const { return frame_.axes == 3 && skip_.empty(); }
+  bool may_cut(const Cuts& cuts, size_t j, size_t k) const;
   void count_row(Cuts& cuts, size_t j, size_t k) const;
+  void count_simple_row(Cuts& cuts, size_t j, size_t k, uint64_t* odd) const;
+  void count_cell(const Cuts& cuts, RowStart& row, uint32_t pattern, size_t p) const;
   Piece generate(const Cuts& cuts, Room& room) const;
+  struct Writing;
+  void simple_triangles_of_row(const Cuts& cuts, size_t j, size_t k, uint32_t first_point, int32_t* out, uint32_t* cells,
+                               InnerPoint* inner) const;
   void triangles_of_row(const Cuts& cuts, size_t j, size_t k, uint32_t first_point, int32_t* out, uint32_t* cells, InnerPoint* inner) const;
   void lines_of_row(const Cuts& cuts, size_t j, uint32_t first_point, int32_t* out, uint32_t* cells) const;
 
@@ -126,9 +128,7 @@ class LatticeContour {
   Sample sample_;
   size_t words_ = 0;  ///< 64-bit words per row of bits
   bool missing_known_ = false, flip_ = false;
-  static constexpr uint8_t slow_pattern = 255;
-  uint8_t count_[256];          ///< triangles of a pattern of corners, or slow_pattern: the table alone cannot cut it
-  uint16_t first_[256];         ///< where they begin in the table
+  const CellTables* tables_ = nullptr;
   std::vector<uint64_t> skip_;  ///< bit per cell that must not be looked at, in rows like the points; empty when all are good
 };
 
@@ -141,7 +141,7 @@ struct VertexJob {
   size_t words;
   const uint64_t* inside;
   const Plane<uint64_t>* cut;  ///< 3, or null
-  const std::vector<RowStart>& rows;
+  const Plane<RowStart>& rows;
   float* xyz;
   float* normals;     ///< null: none
   EdgePoint* points;  ///< null: none
@@ -157,13 +157,19 @@ void interpolate_inner(const Array& a, const Piece& piece, std::byte* out);
 /// Unstructured and surface meshes. `index`: what is known from earlier contours, or null.
 Piece contour_cells(const Job& job, double value, const CellActiveIndex* index = nullptr);
 
-/// Sets bit i of row r of bits[v] for samples >= values[v]. Returns true when a sample was NaN.
-bool classify(const Array& samples, size_t nx, size_t rows, std::span<const double> values, std::span<uint64_t* const> bits, size_t words,
+/// Where rows of bits go, and what each holds.
+struct RowsOut {
+  uint64_t* bits;
+  RowState* state;
+};
+/// Sets bit i of row r of out[v] for samples >= values[v]. Returns true when a sample was NaN.
+bool classify(const Array& samples, size_t nx, size_t rows, std::span<const double> values, std::span<const RowsOut> out, size_t words,
               Context& context);
-/// The same for those words of row `row` that `wanted` names.
-void classify_words(const Array& samples, size_t nx, size_t row, double value, const uint8_t* wanted, uint64_t* bits, size_t words);
-/// Whether a sample is NaN.
-bool any_missing(const Array& samples, Context& context);
+/// The same for one value, where the ranges are known.
+void classify_known(const Array& samples, size_t nx, size_t rows, const StretchRanges& ranges, double value, RowsOut out, size_t words,
+                    Context& context);
+/// One pass over the samples. `missing`: whether one is NaN.
+StretchRanges find_ranges(const Array& samples, size_t nx, size_t rows, bool& missing, Context& context);
 /// Sets the bit of samples that are NaN.
 void find_missing(const Array& samples, size_t nx, size_t rows, uint64_t* bits, size_t words, Context& context);
 

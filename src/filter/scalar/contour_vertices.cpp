@@ -5,7 +5,7 @@
 #include <type_traits>
 
 #include "base/parallel.h"
-#include "filter/scalar/contour_parts.h"
+#include "filter/scalar/contour_vertices.h"
 
 namespace sg::contouring {
 
@@ -43,32 +43,6 @@ struct Maker {
       return g;
     for (int l = 0; l < 3; ++l) d[l] = careful_derivative(frame.stencil[l][at[l]], p, [&](size_t i) { return double(f[i]); });
     return m * d;
-  }
-
-  // Away from the border of an axis-parallel grid, with central differences: most points of most contours. False beside NaN.
-  template <int axis>
-  bool plain_edge(size_t v, size_t p, size_t i, size_t j, size_t k) const {
-    const ptrdiff_t up = frame.stride[1], back = frame.stride[2], next = axis == 0 ? 1 : axis == 1 ? up : back;
-    const T *a = f + p, *b = a + next;
-    const double va = double(*a), vb = double(*b), t = crossing(job.value, va, vb);
-    double g[3];
-    if (job.normals) {
-      auto blend = [&](ptrdiff_t step) {
-        const double at_a = double(a[step]) - double(a[-step]), at_b = double(b[step]) - double(b[-step]);
-        return at_a + (at_b - at_a) * t;
-      };
-      g[0] = scale.x * blend(1), g[1] = scale.y * blend(up), g[2] = scale.z * blend(back);
-      const double square = g[0] * g[0] + g[1] * g[1] + g[2] * g[2];
-      if (!(square > 0 && square < HUGE_VAL)) [[unlikely]]
-        return false;
-      const double size = -1 / std::sqrt(square);
-      for (int c = 0; c < 3; ++c) job.normals[3 * v + size_t(c)] = float(g[c] * size);
-    }
-    if (job.points) job.points[v] = {uint32_t(p), uint32_t(ptrdiff_t(p) + next), float(t)};
-    job.xyz[3 * v] = float(first.x + step.x * (double(i) + (axis == 0 ? t : 0.0)));
-    job.xyz[3 * v + 1] = float(first.y + step.y * (double(j) + (axis == 1 ? t : 0.0)));
-    job.xyz[3 * v + 2] = float(first.z + step.z * (double(k) + (axis == 2 ? t : 0.0)));
-    return true;
   }
 
   template <int axis>
@@ -114,46 +88,37 @@ struct Maker {
     if (job.normals) set_normal(v, g);
   }
 
-  // The bits of the cut edges along an axis, one word of a row.
-  template <int axis>
-  uint64_t cut(size_t r, size_t w) const {
-    if (job.cut) return job.cut[axis][r * job.words + w];
-    const uint64_t *row = job.inside + r * job.words, here = row[w];
-    if (axis == 1) return here ^ row[w + job.words];
-    if (axis == 2) return here ^ row[w + job.words * frame.dims[1]];
-    const uint64_t next = here >> 1 | (w + 1 < job.words ? row[w + 1] << 63 : 0);
-    const size_t left = frame.dims[0] - 1 - 64 * w;  // edges that exist in this word
-    return (here ^ next) & (left >= 64 ? ~uint64_t(0) : (uint64_t(1) << left) - 1);
-  }
-
-  template <int axis>
-  void edges_along(size_t v, size_t j, size_t k, size_t r) const {
-    if (job.rows[r].cut[axis] == 0) return;
-    const bool inner = plain && j >= 1 && j + 2 < frame.dims[1] && k >= 1 && k + 2 < frame.dims[2];
-    for (size_t w = 0; w < job.words; ++w)
-      for (uint64_t m = cut<axis>(r, w); m; m &= m - 1) {
-        const size_t i = 64 * w + size_t(std::countr_zero(m));
-        if (!(inner && i >= 1 && i + 2 < frame.dims[0] && plain_edge<axis>(v, r * frame.dims[0] + i, i, j, k))) edge<axis>(v, i, j, k);
-        ++v;
-      }
+  void edge(size_t v, size_t i, size_t j, size_t k, int axis) const {
+    if (axis == 0) edge<0>(v, i, j, k);
+    else if (axis == 1) edge<1>(v, i, j, k);
+    else edge<2>(v, i, j, k);
   }
 
   void row(size_t j, size_t k) const {
     const size_t r = j + frame.dims[1] * k;
-    const RowStart& row = job.rows[r];
-    edges_along<0>(row.vertex, j, k, r);
-    edges_along<1>(row.vertex + row.cut[0], j, k, r);
-    if (frame.axes == 3) edges_along<2>(row.vertex + row.cut[0] + row.cut[1], j, k, r);
+    size_t v = job.rows[r].vertex;
+    for (int axis = 0; axis < frame.axes; ++axis) {
+      if (job.rows[r].cut[axis] == 0) continue;
+      for (size_t w = 0; w < job.words; ++w)
+        for (uint64_t m = cut_edges(job, axis, r, w); m; m &= m - 1) edge(v++, 64 * w + size_t(std::countr_zero(m)), j, k, axis);
+    }
   }
 };
 
 template <class T>
 void run(const VertexJob& job) {
-  const size_t ny = job.frame.dims[1];
+  const size_t nx = job.frame.dims[0], ny = job.frame.dims[1], grain = std::max<size_t>(1, 512 / job.words);
   const Maker<T> maker(job, job.samples.view<T>().data);
+  const PlainVertices plain{job, maker.first, maker.step, maker.scale, &maker, [](const void* m, size_t v, size_t p, int axis) {
+                              const auto& all = *static_cast<const Maker<T>*>(m);
+                              const auto& n = all.frame.dims;
+                              all.edge(v, p % n[0], p / n[0] % n[1], p / n[0] / n[1], axis);
+                            }};
+  const bool together = maker.plain && (grain + 3 * ny) * nx < size_t(INT32_MAX);
   parallel_for(
-      job.rows.size(), std::max<size_t>(1, 512 / job.words),
+      job.rows.size(), grain,
       [&](size_t begin, size_t end) {
+        if (together) return make_plain_vertices(plain, begin, end);
         for (size_t r = begin; r < end; ++r) maker.row(r % ny, r / ny);
       },
       &job.context);

@@ -6,6 +6,7 @@
 #include "base/text.h"
 #include "data/field_ops.h"
 #include "data/lattice.h"
+#include "filter/scalar/contour_surfels.h"
 
 namespace sg {
 
@@ -143,6 +144,52 @@ Array joined(std::vector<Slab>& slabs, std::vector<T> Slab::*member, int compone
   return a;
 }
 
+Array same_number(size_t count, float number) {
+  float* to = nullptr;
+  const Array a = Array::make<float>(count, 1, &to);
+  parallel_for(count, 1 << 16, [&](size_t begin, size_t end) { std::fill(to + begin, to + end, number); });
+  return a;
+}
+
+// In one of the types that contours read as they are.
+Array native_samples(const Array& a) {
+  switch (a.type()) {
+    case ElementType::u32:
+    case ElementType::i32:
+    case ElementType::u64:
+    case ElementType::i64: return a.converted(ElementType::f64);
+    default: return a.made_packed();
+  }
+}
+
+DatasetPtr assemble(const Dataset& in, const Field& field, double value, Points points, Array normals, Array radius,
+                    std::span<const int64_t> cells, std::span<const int64_t> corners, std::span<const double> weights, Context& ctx) {
+  const size_t count = normals.count();
+  if (count == 0) {
+    const Range r = in.range(field);
+    ctx.info(fmt::format("surfels: nothing at {} = {}; the field runs from {} to {}", field.name, short_number(value), short_number(r.lo),
+                         short_number(r.hi)));
+  }
+  DatasetParts out;
+  FieldSet rest;
+  bool others = false;
+  for (const Field& f : in.fields()) {
+    if (f.association == Association::point && f.name == field.name) continue;
+    rest.add(f);
+    others = others || f.association == Association::point;
+  }
+  out.fields.add({field.name, Association::point, same_number(count, float(value)), field.unit, field.role});
+  if (others) carry_combined(out.fields, rest, Association::point, corners, weights, 8, Association::point);
+  carry_gathered(out.fields, rest, Association::cell, cells, Association::point);
+  carry_whole(out.fields, rest);
+  out.fields.add({"Normals", Association::point, std::move(normals), "", Role::normals});
+  out.fields.add({"radius", Association::point, std::move(radius), "length", Role::none});
+  out.mesh = PointCloud{std::move(points)};
+  out.notes = in.notes();
+  out.time = in.time();
+  return make_dataset(std::move(out));
+}
+
 }  // namespace
 
 DatasetPtr surfels(const DatasetPtr& in, const SurfelsParams& p, Context& ctx) {
@@ -163,8 +210,20 @@ DatasetPtr surfels(const DatasetPtr& in, const SurfelsParams& p, Context& ctx) {
   for (const Field& f : in->fields()) others = others || (f.association == Association::point && f.name != field.name);
   const double far =
       std::max({std::abs(box.lo.x), std::abs(box.lo.y), std::abs(box.lo.z), std::abs(box.hi.x), std::abs(box.hi.y), std::abs(box.hi.z)});
+  const Vec3 origin = far <= 4 * box.diagonal() ? Vec3() : box.center();
+  if (!others && cell_ghost.empty() && point_ghost.empty()) {
+    bool cells = false;
+    for (const Field& f : in->fields()) cells = cells || f.association == Association::cell;
+    if (const auto places = contouring::surfel_places(*in, native_samples(field.array), value, origin, cells, ctx)) {
+      const double r = 0.5 * p.size *
+                       std::sqrt(dot(lattice.view().step[0], lattice.view().step[0]) + dot(lattice.view().step[1], lattice.view().step[1]) +
+                                 dot(lattice.view().step[2], lattice.view().step[2]));
+      return assemble(*in, field, value, {places->xyz, origin}, places->normals, same_number(places->xyz.count(), float(r)), places->cells,
+                      {}, {}, ctx);
+    }
+  }
   const Job job{lattice.view(),
-                far <= 4 * box.diagonal() ? Vec3() : box.center(),
+                origin,
                 value,
                 p.size,
                 others,
@@ -176,29 +235,11 @@ DatasetPtr surfels(const DatasetPtr& in, const SurfelsParams& p, Context& ctx) {
         slabs.size(), 1, [&](size_t k, size_t) { find_in_slab(job, v.data, k, slabs[k]); }, &ctx);
   });
   const Array cells = joined(slabs, &Slab::cells, 1), corners = joined(slabs, &Slab::corners, 1),
-              weights = joined(slabs, &Slab::weights, 1);
-  const size_t count = cells.count();
-  if (count == 0) {
-    const Range r = in->range(field);
-    ctx.info(fmt::format("surfels: nothing at {} = {}; the field runs from {} to {}", field.name, short_number(value), short_number(r.lo),
-                         short_number(r.hi)));
-  }
-  DatasetParts out;
-  FieldSet rest;
-  for (const Field& f : in->fields())
-    if (!(f.association == Association::point && f.name == field.name)) rest.add(f);
-  out.fields.add({field.name, Association::point, Array::from_vector(std::vector<float>(count, float(value))), field.unit, field.role});
-  if (others)
-    carry_combined(out.fields, rest, Association::point, std::span(corners.view<int64_t>().data, corners.count()),
-                   std::span(weights.view<double>().data, weights.count()), 8, Association::point);
-  carry_gathered(out.fields, rest, Association::cell, std::span(cells.view<int64_t>().data, count), Association::point);
-  carry_whole(out.fields, rest);
-  out.fields.add({"Normals", Association::point, joined(slabs, &Slab::normals, 3), "", Role::normals});
-  out.fields.add({"radius", Association::point, joined(slabs, &Slab::radius, 1), "length", Role::none});
-  out.mesh = PointCloud{{joined(slabs, &Slab::xyz, 3), job.origin}};
-  out.notes = in->notes();
-  out.time = in->time();
-  return make_dataset(std::move(out));
+              weights = joined(slabs, &Slab::weights, 1), normals = joined(slabs, &Slab::normals, 3),
+              radius = joined(slabs, &Slab::radius, 1);
+  return assemble(*in, field, value, {joined(slabs, &Slab::xyz, 3), origin}, normals, radius,
+                  std::span(cells.view<int64_t>().data, cells.count()), std::span(corners.view<int64_t>().data, corners.count()),
+                  std::span(weights.view<double>().data, weights.count()), ctx);
 }
 
 }  // namespace sg

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "color/color_scale.h"
+#include "color/legend_content.h"
 #include "image/image.h"
 #include "scene/camera.h"
 #include "scene/scene.h"
@@ -16,7 +16,7 @@ struct Annotation {
   std::string title;  ///< top centre; long titles wrap, then shrink, never crop
   /// Right side, side by side; each exactly the colours drawn, title, unit, ticks. A `below` or `above` colour that is set shows
   /// as a triangle at that end: set it, to the end colour if need be, when data lies out of range.
-  std::vector<ColorScale> legends;
+  std::vector<Legend> legends;
   std::optional<Box3> box;  ///< bounding box with numbered axes (the box lines themselves are scene lines)
   std::string axis_names[3] = {"x", "y", "z"};
   std::string length_unit;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/text.h"
+#include "render/annotate/legend_opacity.h"
 
 namespace sg {
 namespace {
@@ -15,6 +16,7 @@ constexpr double bar_width = 1.3;
 constexpr double label_gap = 0.75;  // from the bar to its numbers
 constexpr double triangle = 1.0;
 constexpr double widest_title = 10, widest_name = 12;
+constexpr double panel_gap = 0.3, panel_foot = 2.1;  // foot: two lines of small letters
 
 std::string title_of(const ColorScale& s) {
   std::string title;
@@ -68,7 +70,7 @@ TextStyle sized(double font) {
 }
 
 /// One column with its right edge at area.right().
-LegendLayout layout_one(const Overlay& o, const ColorScale& s, const Rect& area, double font, bool nan) {
+LegendLayout layout_one(const Overlay& o, const Legend& s, const Rect& area, double font, bool nan) {
   LegendLayout l;
   l.font = font;
   l.title = title_of(s);
@@ -115,17 +117,22 @@ LegendLayout layout_one(const Overlay& o, const ColorScale& s, const Rect& area,
     if (l.below) bottom -= triangle * font + 2;
     y += 0.5 * line_height, bottom -= 0.5 * line_height;  // for the half of a number that stands beyond the bar
   }
+  const bool panel = bar && s.volume.has_value();
+  if (panel) bottom = std::min(bottom, top + height - panel_foot * font);
   l.bar = {0, std::round(y), std::round(bar_width * font), std::max(2.0, std::round(bottom) - std::round(y))};
   if (bar) {
     l.ticks = ticks_of(s, l.bar, line_height);
     for (const auto& t : l.ticks) labels = std::max(labels, o.measure(t.text, style).width);
   }
   l.label_width = std::ceil(labels);
-  double width = l.bar.width + label_gap * font + l.label_width;
+  if (panel) plan_opacity(s, font, l);
+  const double before = panel ? l.panel.width + std::round(panel_gap * font) : 0;
+  double width = before + l.bar.width + label_gap * font + l.label_width;
   if (l.title_upwards) width += 0.5 * font + l.title_size.height;
   else width = std::max(width, l.title_size.width);
   l.column = {area.right() - std::ceil(width), top, std::ceil(width), height};
-  l.bar.x = std::round(l.column.x);
+  l.bar.x = std::round(l.column.x + before);
+  if (panel) l.panel = {std::round(l.column.x), l.bar.y, l.panel.width, l.bar.height};
   l.nan_y = l.bar.bottom() + (l.below ? triangle * font + 2 : 0) + 0.75 * line_height;
   return l;
 }
@@ -183,7 +190,7 @@ void draw_rows(Image& image, Overlay& overlay, const ColorScale& s, const Legend
 
 }  // namespace
 
-std::vector<LegendLayout> layout_legends(const Overlay& overlay, const std::vector<ColorScale>& scales, const Rect& area, double font,
+std::vector<LegendLayout> layout_legends(const Overlay& overlay, const std::vector<Legend>& scales, const Rect& area, double font,
                                          bool nan) {
   std::vector<LegendLayout> legends;
   for (double f = font;; f *= 0.88) {
@@ -206,13 +213,14 @@ double legends_width(const std::vector<LegendLayout>& legends) {
   return legends.back().column.right() - legends.front().column.x + 2 * margin * legends.front().font;
 }
 
-void draw_legend(Image& image, Overlay& overlay, const ColorScale& s, const LegendLayout& l) {
+void draw_legend(Image& image, Overlay& overlay, const Legend& s, const LegendLayout& l) {
   if (!l.title.empty()) {
     if (l.title_upwards)
       overlay.text_upwards(l.title, l.column.right() - l.title_size.height, l.column.y + 0.5 * (l.column.height - l.title_size.width),
                            l.title_style);
     else overlay.text(l.title, l.column.x, l.column.y, l.title_style, true);
   }
+  if (l.panel.width > 0) draw_opacity(image, overlay, s, l);
   if (s.labels.empty() || !s.limits.empty()) draw_bar(image, overlay, s, l);
   else draw_rows(image, overlay, s, l);
   if (l.nan) {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Legends: one column per colour scale, right side of the picture.
+// Legends: one column per colour scale, right side of the picture; of volumes with the opacity beside the bar.
 #pragma once
 #include <string>
 #include <vector>
 
-#include "color/color_scale.h"
+#include "color/legend_content.h"
 #include "render/annotate/overlay.h"
 
 namespace sg {
@@ -23,10 +23,13 @@ struct LegendLayout {
   TextExtent title_size;
   bool title_upwards = false;
   Rect bar;
-  bool above = false, below = false;  ///< triangles
-  std::vector<Tick> ticks;            ///< continuous scales
-  std::vector<std::string> rows;      ///< categorical scales: names, the last may say how many more there are
-  size_t swatches = 0;                ///< of the rows, those with a colour
+  Rect
+      panel;  ///< of volumes: left of the bar, the same rows; opacity over the value, or the plane (second axis, value). Width 0 for others
+  std::string panel_left, panel_right, panel_caption;  ///< numbers at its ends, and what they are
+  bool above = false, below = false;                   ///< triangles
+  std::vector<Tick> ticks;                             ///< continuous scales
+  std::vector<std::string> rows;                       ///< categorical scales: names, the last may say how many more there are
+  size_t swatches = 0;                                 ///< of the rows, those with a colour
   double row_height = 0, label_width = 0;
   double nan_y = 0;  ///< top of the NaN swatch
   bool nan = false;
@@ -35,11 +38,11 @@ struct LegendLayout {
 
 /// Legends that fit in `area` (below the title), placed from its right edge; letters shrink until they do, and a thumbnail too
 /// small for legible ones gets none.
-std::vector<LegendLayout> layout_legends(const Overlay& overlay, const std::vector<ColorScale>& scales, const Rect& area, double font,
+std::vector<LegendLayout> layout_legends(const Overlay& overlay, const std::vector<Legend>& scales, const Rect& area, double font,
                                          bool nan);
 /// Sum of the columns, with the margins to picture and border; 0 for none.
 double legends_width(const std::vector<LegendLayout>& legends);
 /// Colours go straight to the image, so that they are exact; lines and letters to the overlay.
-void draw_legend(Image& image, Overlay& overlay, const ColorScale& scale, const LegendLayout& layout);
+void draw_legend(Image& image, Overlay& overlay, const Legend& scale, const LegendLayout& layout);
 
 }  // namespace sg

@@ -2,28 +2,20 @@
 #include "render/raster/discs.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 namespace sg::raster {
 
 namespace {
 
-void keep_nearest(uint64_t* slot, uint64_t key) {
-  std::atomic_ref<uint64_t> a(*slot);
-  uint64_t seen = a.load(std::memory_order_relaxed);
-  while (key < seen && !a.compare_exchange_weak(seen, key, std::memory_order_relaxed)) {
-  }
-}
-
 float along(const float* a, const float* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 }  // namespace
 
-void draw_discs(const DiscJob& job, size_t begin, size_t end) {
+void draw_discs_one_by_one(const DiscJob& job, size_t begin, size_t end) {
   const EyeView& v = job.view;
   for (size_t i = begin; i < end; ++i) {
-    const size_t p = job.points[i];
+    const size_t p = job.points ? job.points[i] : i;
     const EyePoint e = to_eye(v, job.xyz + 3 * p);
     const float r = job.radius[p];
     if (!(e.z > v.near_plane) || !(e.z < v.far_plane) || !(r > 0)) continue;
@@ -32,7 +24,7 @@ void draw_discs(const DiscJob& job, size_t begin, size_t end) {
     if (!(cx > -1e6f && cx < 1e6f && cy > -1e6f && cy < 1e6f)) continue;
     const auto primitive = job.first_primitive + uint32_t(i);
     auto put = [&](int x, int y, float z) {
-      if (z > v.near_plane && z < v.far_plane) keep_nearest(&job.keys[size_t(y) * size_t(v.width) + size_t(x)], depth_key(z, primitive));
+      if (z > v.near_plane && z < v.far_plane) keep_nearer(&job.keys[size_t(y) * size_t(v.width) + size_t(x)], depth_key(z, primitive));
     };
     if (reach < 0.7f) {
       const int x = int(std::floor(cx)), y = int(std::floor(cy));
@@ -63,43 +55,49 @@ void draw_discs(const DiscJob& job, size_t begin, size_t end) {
   }
 }
 
-void shade_discs(const PreparedItem& item, const EyeView& v, const std::vector<WorldLight>& lights, const uint64_t* keys, ShadeBatch& b) {
-  const Material& m = item.material;
+namespace {
+
+void light_one(const PreparedItem& item, const EyeView& v, const std::vector<WorldLight>& lights, ShadeBatch& b, size_t i) {
   const float* normals = reinterpret_cast<const float*>(item.disc_normals.raw());
+  const size_t p = item.points ? (*item.points)[b.triangle[i]] : b.triangle[i];
+  const int x = b.tile_x + int(b.pixel[i]) % tile_size, y = b.tile_y + int(b.pixel[i]) / tile_size;
+  Vec3f view(-v.forward[0], -v.forward[1], -v.forward[2]);
+  if (!v.parallel) {
+    const float dx = (float(x) + 0.5f - v.center_x) / v.scale, dy = (v.center_y - float(y) - 0.5f) / v.scale;
+    view = normalize(view - Vec3f(v.right[0], v.right[1], v.right[2]) * dx - Vec3f(v.up[0], v.up[1], v.up[2]) * dy);
+  }
+  Vec3f n(normals[3 * p], normals[3 * p + 1], normals[3 * p + 2]);
+  if (dot(n, view) < 0) n = -n;
+  light_point(item.material, lights.data(), lights.size(), n, view, b.light[i], b.gloss[i]);
+}
+
+}  // namespace
+
+void shade_discs(const PreparedItem& item, const EyeView& v, const std::vector<WorldLight>& lights, const uint64_t* keys, ShadeBatch& b) {
+  if (b.n == 0) return;
+  const Material& m = item.material;
   const ColorSource& color = item.color;
   const auto whole = int(m.power);
-  const bool by_squares = float(whole) == m.power && whole >= 0 && whole < 1024;
-  auto power = [&](float x) {
-    if (!by_squares) return std::pow(x, m.power);
-    float r = 1;
-    for (int k = whole; k > 0; k >>= 1, x *= x)
-      if (k & 1) r *= x;
-    return r;
-  };
+  if (float(whole) == m.power && whole >= 0 && whole < 1024 && item.positions.count() < size_t(INT32_MAX) / 3) {
+    light_discs({v, m, lights.data(), lights.size(), item.points ? item.points->data() : nullptr,
+                 reinterpret_cast<const float*>(item.disc_normals.raw()), whole},
+                b);
+  } else {
+    for (size_t i = 0; i < b.n; ++i) light_one(item, v, lights, b, i);
+  }
   for (size_t i = 0; i < b.n; ++i) {
-    const size_t p = (*item.points)[b.triangle[i]];
     const int x = b.tile_x + int(b.pixel[i]) % tile_size, y = b.tile_y + int(b.pixel[i]) / tile_size;
     b.depth[i] = key_depth(keys[size_t(y) * size_t(v.width) + size_t(x)]);
-    Vec3f view(-v.forward[0], -v.forward[1], -v.forward[2]);
-    if (!v.parallel) {
-      const float dx = (float(x) + 0.5f - v.center_x) / v.scale, dy = (v.center_y - float(y) - 0.5f) / v.scale;
-      view = normalize(view - Vec3f(v.right[0], v.right[1], v.right[2]) * dx - Vec3f(v.up[0], v.up[1], v.up[2]) * dy);
-    }
-    Vec3f n(normals[3 * p], normals[3 * p + 1], normals[3 * p + 2]);
-    if (dot(n, view) < 0) n = -n;
-    float diffuse = 0, specular = 0;
-    for (const WorldLight& l : lights) {
-      const Vec3f to{l.x, l.y, l.z};
-      const float nl = dot(n, to);
-      if (!(nl > 0)) continue;
-      diffuse += nl * l.intensity;
-      specular += power(std::clamp(2 * nl * dot(n, view) - dot(to, view), 0.0f, 1.0f)) * l.intensity;
-    }
-    b.light[i] = m.lit ? m.ambient + m.diffuse * diffuse : 1;
-    b.gloss[i] = m.lit ? m.specular * specular : 0;
-    Vec4f rgba = color.constant;
+  }
+  if (color.kind == ColorSource::Kind::constant) {
+    for (size_t k = 0; k < 4; ++k) std::fill_n(b.rgba[k], b.n, color.constant[int(k)]);
+    return;
+  }
+  for (size_t i = 0; i < b.n; ++i) {
+    const size_t p = item.points ? (*item.points)[b.triangle[i]] : b.triangle[i];
+    Vec4f rgba;
     if (color.kind == ColorSource::Kind::scalar) rgba = color.of(color.data()[p]);
-    else if (color.kind == ColorSource::Kind::direct)
+    else
       for (int k = 0; k < 4; ++k) rgba[k] = color.data()[4 * p + size_t(k)];
     for (int k = 0; k < 4; ++k) b.rgba[k][i] = rgba[k];
   }

@@ -212,7 +212,6 @@ class Preparation {
     p.width = s.size, p.shaded = s.shaded;
     const Positions positions = positions_of(s.data);
     p.positions = positions.xyz, p.origin = positions.origin;
-    p.points = derived<std::vector<uint32_t>>(s.data, "points", [&] { return chosen_points(*s.data); });
     if (!s.disc_normals.empty() && !s.disc_radius.empty() && s.opacity >= 1 && !p.color.translucent) {
       auto numbers = [&](const std::string& name, int components) {
         const Field& f = s.data->fields().require(name, Association::point);
@@ -224,7 +223,9 @@ class Preparation {
       p.disc_normals = numbers(s.disc_normals, 3), p.disc_radius = numbers(s.disc_radius, 1);
       p.discs = true;
     }
-    push(std::move(p), p.points->size());
+    const bool all = p.discs && s.data->as<PointCloud>() && s.data->point_ghost().empty();  // of the discs: no list says more
+    if (!all) p.points = derived<std::vector<uint32_t>>(s.data, "points", [&] { return chosen_points(*s.data); });
+    push(std::move(p), all ? s.data->point_count() : p.points->size());
   }
 
   void operator()(const VolumeItem&) {}

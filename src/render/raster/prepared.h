@@ -74,7 +74,7 @@ struct PreparedItem {
   double width = 1;  ///< pixels; also the points' size
   bool shaded = false;
   // lines and points
-  std::shared_ptr<const std::vector<uint32_t>> points;  ///< numbers of the dots that are drawn
+  std::shared_ptr<const std::vector<uint32_t>> points;  ///< numbers of the dots that are drawn; null (discs only): all
   Array positions;                                      ///< f32 x 3 packed
   Vec3 origin;
   bool discs = false;               ///< points as oriented discs: opaque, drawn like triangles

@@ -89,11 +89,14 @@ class Drawing {
                           reinterpret_cast<const float*>(item.positions.raw()),
                           reinterpret_cast<const float*>(item.disc_normals.raw()),
                           reinterpret_cast<const float*>(item.disc_radius.raw()),
-                          item.points->data(),
+                          item.points ? item.points->data() : nullptr,
                           item.first_primitive,
                           keys_.data()};
+        const size_t n = item.primitives;
+        const bool back = last_is_nearer(job, n);
         parallel_for(
-            item.primitives, triangle_chunk, [&](size_t begin, size_t end) { draw_discs(job, begin, end); }, &context_);
+            n, triangle_chunk, [&](size_t begin, size_t end) { draw_discs(job, back ? n - end : begin, back ? n - begin : end); },
+            &context_);
       } else {
         const std::vector<MarkRecord> m = mark_records(item, uint32_t(&item - scene_.items.data()), projection_, pixel_scale_);
         marks_.insert(marks_.end(), m.begin(), m.end());

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "render/volume/cells/cell_source.h"
+#include "render/volume/large/bricked_source.h"
 #include "render/volume/lattice/lattice_ray.h"
 #include "render/volume/light/effects.h"
 
@@ -15,6 +17,21 @@ bool needs_level(RayFunction f) {
   return f == RayFunction::first_hit || f == RayFunction::distance || f == RayFunction::accumulate || f == RayFunction::isosurface;
 }
 
+std::unique_ptr<RaySource> source_of(const VolumeItem& item, std::shared_ptr<const Volume> lattice, const Projection& projection,
+                                     Context& context) {
+  if (auto bricked = bricked_source(item, projection, context.memory_limit / 2, context)) return bricked;
+  if (!lattice) return cell_source(item, context);
+  std::shared_ptr<const Volume> second;
+  if (item.detail.second == SecondAxis::field) {
+    VolumeItem other = item;
+    other.field = item.detail.second_field, other.component = -1;
+    other.color = ColorScale(), other.opacity.points = {{0, 1}}, other.detail = {};
+    second = std::make_shared<const Volume>(prepare(other, 0, {}));
+  }
+  return lattice_source(std::move(lattice), std::move(second));
+}
+
+bool clear_transfer(const void* transfer, float lo, float hi) { return static_cast<const TransferFunction*>(transfer)->clear(lo, hi); }
 bool clear_medium(const void* medium, float lo, float hi) { return static_cast<const Medium*>(medium)->clear(lo, hi); }
 bool below_level(const void* levels, float, float hi) { return hi < float(static_cast<const std::vector<double>*>(levels)->front()); }
 bool without_level(const void* levels, float lo, float hi) {
@@ -57,10 +74,11 @@ const Field& field_of(const VolumeItem& item) {
   return *f;
 }
 
-CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<const Volume> lattice, const Knobs& knobs, Context&) {
+CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<const Volume> lattice, const Projection& projection,
+                        const Knobs& knobs, Context& context) {
   CastVolume v;
   v.item = &item, v.id = id;
-  v.source = lattice_source(std::move(lattice));
+  v.source = source_of(item, std::move(lattice), projection, context);
   RaySource& source = *v.source;
   const double base = double(source.base);
   const Range range = item.data->range(field_of(item), item.component);
@@ -76,8 +94,12 @@ CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<con
   }
   plan.accuracy = 0.25 * item.sampling.tolerance, plan.faint = 0.5 / diagonal, plan.most_tau = 1000 / source.edge;
   v.medium = std::make_unique<Medium>(item.color, item.opacity, plan);
+  if (!item.detail.plain()) {
+    v.transfer = std::make_unique<TransferFunction>(item.color, item.opacity, item.detail, base);
+    v.detail = std::make_unique<Detail>(Detail{*v.transfer, item.detail.second, plan.unit, float(plan.most_tau)});
+  }
   v.budget = {item.sampling.tolerance, diagonal, knobs.stop_below > 0 ? float(0.2 * item.sampling.tolerance) : 0};
-  v.step = item.sampling.step;
+  v.step = item.sampling.step, v.unit = plan.unit;
   if (v.step > 0 && diagonal / v.step > 1e7)
     fail_usage(fmt::format("a step of {} takes {:.0f} samples through a volume of size {}", v.step, diagonal / v.step, diagonal), "volume",
                "give a longer step");
@@ -87,7 +109,10 @@ CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<con
   const VolumeLight& light = item.light;
   v.material = {float(light.ambient), float(light.diffuse), float(light.specular), float(light.power), item.shaded};
   switch (item.mode) {
-    case RayFunction::composite: source.invisible = {clear_medium, v.medium.get()}; break;
+    case RayFunction::composite:
+      if (v.detail) source.invisible = {clear_transfer, v.transfer.get()};
+      else source.invisible = {clear_medium, v.medium.get()};
+      break;
     case RayFunction::first_hit:
     case RayFunction::accumulate: source.invisible = {below_level, v.levels.get()}; break;
     case RayFunction::isosurface:

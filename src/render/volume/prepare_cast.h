@@ -13,6 +13,7 @@ const Field& field_of(const VolumeItem& item);
 void check(const VolumeItem& item);
 
 /// `lattice` is the prepared volume of a uniform or rectilinear grid, else null and the mesh is read by cells.
-CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<const Volume> lattice, const Knobs& knobs, Context& context);
+CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<const Volume> lattice, const Projection& projection,
+                        const Knobs& knobs, Context& context);
 
 }  // namespace sg::volume

@@ -7,6 +7,10 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "render/composite/background.h"
+#include "data/bricked.h"
+#include "render/volume/cells/cell_source.h"
+#include "render/volume/cells/tet_rays.h"
+#include "render/volume/classic/layers.h"
 #include "render/volume/lattice/packets.h"
 #include "render/volume/light/effects.h"
 #include "render/volume/prepare_cast.h"
@@ -67,8 +71,8 @@ void pixel(const Picture& picture, int x, int y, Scratch& s) {
                        picture.fragments.fragments.begin() + picture.fragments.start[p + 1]);
   for (Fragment& f : s.fragments) f.depth = float((double(f.depth) - first_depth) / per_length);
   if (picture.shaded) light(picture, y, ray.origin, ray.direction, s.lit), cast.lights = &s.lit;
-  // The same place in the step for a pixel whatever the order of drawing.
-  cast.jitter = random_unit(uint64_t(x), uint64_t(y) + uint64_t(std::llround(projection.shift_y)));
+  // The same place in the step for a pixel of the whole picture, whatever band it is drawn in.
+  cast.jitter = random_unit(uint64_t(x), uint64_t(std::llround(2 * y - projection.height - 2 * projection.shift_y)));
 
   RayState state;
   s.caster.cast(cast, s.fragments, state);
@@ -80,17 +84,67 @@ void pixel(const Picture& picture, int x, int y, Scratch& s) {
     picture.frame.depth[p] = float(first_depth + state.surface * per_length), picture.frame.ids[p] = state.surface_id;
 }
 
-/// How one volume alone is drawn.
-enum class Way { by_rays, in_steps, within_tolerance };
+/// One volume alone, in the fastest way that can draw it.
+class Alone {
+ public:
+  Alone(const Picture& picture, Context& context) : picture_(picture) {
+    if (picture.volumes.size() != 1) return;
+    const CastVolume& v = picture.volumes[0];
+    const VolumeItem& item = *v.item;
+    if (!item.clip.empty() || v.detail || v.effects) return;
+    const bool composite = item.mode == RayFunction::composite, by_tolerance = composite && !(v.step > 0);
+    if (picture.lattices[0]) {
+      plan_.emplace(PacketPlan{
+          *picture.lattices[0], picture.projection, picture.knobs, {}, v.material, v.medium.get(), v.budget, float(v.source->edge)});
+      if (picture.shaded)
+        for (const Picture::Lamp& l : picture.lamps) plan_->lamps.push_back({l.direction, l.intensity});
+      const bool in_steps = composite ? item.sampling.classify == "post" && !item.sampling.jitter : item.mode == RayFunction::maximum;
+      if (by_tolerance && in_tolerant_packets(*plan_)) packets_ = cast_tile;
+      else if (!by_tolerance && in_steps && in_packets(*plan_)) packets_ = march_tile;
+    } else if (by_tolerance && !bricked_of(*item.data) && TetRays::fits(cell_volume_of(*v.source))) {
+      tets_.emplace(cell_volume_of(*v.source), picture.projection, *v.medium, context, v.budget.stop_below);
+      std::vector<TetLight::Lamp> lamps;
+      for (const Picture::Lamp& l : picture.lamps) lamps.push_back({Vec3f(l.direction), l.intensity});
+      if (item.shaded) tets_->light(std::move(lamps), item.light, v.per_scale);
+    }
+  }
 
-Way way_of(const CastVolume& volume, const PacketPlan& plan) {
-  const VolumeItem& item = *volume.item;
-  if (!item.clip.empty() || volume.effects) return Way::by_rays;
-  const bool composite = item.mode == RayFunction::composite, steps = volume.step > 0;
-  if (composite && !steps) return in_tolerant_packets(plan) ? Way::within_tolerance : Way::by_rays;
-  const bool plain = composite ? item.sampling.classify == "post" && !item.sampling.jitter : item.mode == RayFunction::maximum;
-  return plain && in_packets(plan) ? Way::in_steps : Way::by_rays;
-}
+  /// Draws a tile; false when it has to go by single rays.
+  bool draw(int x0, int y0, int x1, int y1) const {
+    if (packets_) packets_(*plan_, x0, y0, x1, y1, picture_.frame);
+    else if (tets_) draw_tets(x0, y0, x1, y1);
+    return packets_ || tets_;
+  }
+
+ private:
+  void draw_tets(int x0, int y0, int x1, int y1) const {
+    Frame& frame = picture_.frame;
+    float limit[TetRays::tile * TetRays::tile];
+    TetRays::Pixel found[TetRays::tile * TetRays::tile];
+    const int width = x1 - x0;
+    const auto place = [&](int x, int y) { return size_t(y) * size_t(frame.width) + size_t(x); };
+    for (int y = y0; y < y1; ++y)
+      for (int x = x0; x < x1; ++x)
+        limit[(y - y0) * width + x - x0] = std::min(float(picture_.projection.far_plane), frame.depth[place(x, y)]);
+    tets_->draw(x0, y0, width, y1 - y0, limit, found);
+    for (int y = y0; y < y1; ++y)
+      for (int x = x0; x < x1; ++x) {
+        const TetRays::Pixel& from = found[(y - y0) * width + x - x0];
+        const size_t p = place(x, y);
+        float* out = &frame.rgba[4 * p];
+        Gathered sum{from.r, from.g, from.b, from.transmittance};
+        sum.behind(out);
+        out[0] = sum.r, out[1] = sum.g, out[2] = sum.b, out[3] = 1 - sum.transmittance;
+        if (from.half == from.half && !(frame.depth[p] < HUGE_VALF)) frame.depth[p] = from.half, frame.ids[p] = picture_.volumes[0].id;
+      }
+  }
+
+  const Picture& picture_;
+  std::optional<PacketPlan> plan_;
+  void (*packets_)(const PacketPlan&, int, int, int, int, Frame&) = nullptr;
+  std::optional<TetRays> tets_;
+};
+static_assert(tile == TetRays::tile);
 
 void add_effects(const Scene& scene, Picture& picture, const Context& context) {
   Box3 drawn;
@@ -135,15 +189,19 @@ void composite_volumes(const Scene& scene, const Projection& projection, const F
     fail_internal(
         fmt::format("a frame of {} x {} for a projection of {} x {}", frame.width, frame.height, projection.width, projection.height));
   check_fragments(fragments, frame);
+  draw_layers(scene, projection, frame, context);
   Picture picture{projection, fragments, frame, knobs, {}, {}, false, {}};
   for (size_t i = 0; i < scene.items.size(); ++i)
-    if (const auto* item = std::get_if<VolumeItem>(&scene.items[i])) {
+    if (const auto* item = std::get_if<VolumeItem>(&scene.items[i]); item && item->method == VolumeMethod::ray) {
       context.check();
       check(*item);
-      auto lattice = std::make_shared<const Volume>(prepare(*item, uint32_t(i + 1), knobs));
-      if (!(lattice->hi.x > lattice->lo.x)) continue;  // a grid without extent
+      std::shared_ptr<const Volume> lattice;
+      if (!bricked_of(*item->data) && (item->data->as<UniformGrid>() || item->data->as<RectilinearGrid>())) {
+        lattice = std::make_shared<const Volume>(prepare(*item, uint32_t(i + 1), knobs));
+        if (!(lattice->hi.x > lattice->lo.x)) continue;  // a grid without extent
+      }
       picture.lattices.push_back(lattice);
-      picture.volumes.push_back(prepare_cast(*item, uint32_t(i + 1), std::move(lattice), knobs, context));
+      picture.volumes.push_back(prepare_cast(*item, uint32_t(i + 1), std::move(lattice), projection, knobs, context));
       picture.shaded = picture.shaded || item->shaded;
     }
   if (picture.volumes.empty()) return composite_fragments(fragments, frame, context);
@@ -153,16 +211,7 @@ void composite_volumes(const Scene& scene, const Projection& projection, const F
     picture.lamps.push_back({normalize(d), l.intensity});
   }
   add_effects(scene, picture, context);
-  // One volume alone goes in packets of rays, where they can draw it.
-  std::optional<PacketPlan> plan;
-  Way way = Way::by_rays;
-  if (picture.volumes.size() == 1 && picture.lattices[0]) {
-    const CastVolume& only = picture.volumes[0];
-    plan.emplace(PacketPlan{*picture.lattices[0], projection, knobs, {}, only.material, only.medium.get(), only.budget, float(only.source->edge)});
-    if (picture.shaded)
-      for (const Picture::Lamp& l : picture.lamps) plan->lamps.push_back({l.direction, l.intensity});
-    way = way_of(only, *plan);
-  }
+  const Alone alone(picture, context);
   const size_t across = size_t(frame.width + tile - 1) / tile, down = size_t(frame.height + tile - 1) / tile;
   parallel_for(
       across * down, 1,
@@ -171,10 +220,7 @@ void composite_volumes(const Scene& scene, const Projection& projection, const F
         for (size_t t = begin; t < end; ++t) {
           const int x0 = int(t % across) * tile, y0 = int(t / across) * tile;
           const int x1 = std::min(x0 + tile, frame.width), y1 = std::min(y0 + tile, frame.height);
-          if (way != Way::by_rays && !any_fragments(fragments, frame, x0, y0, x1, y1)) {
-            (way == Way::in_steps ? march_tile : cast_tile)(*plan, x0, y0, x1, y1, frame);
-            continue;
-          }
+          if (!any_fragments(fragments, frame, x0, y0, x1, y1) && alone.draw(x0, y0, x1, y1)) continue;
           for (int y = y0; y < y1; ++y)
             for (int x = x0; x < x1; ++x) pixel(picture, x, y, scratch);
         }

@@ -77,10 +77,9 @@ class CellField : public RayField {
     if (!(to > from)) return;
     done_ = to;
     const TetMesh& mesh = *volume_.mesh;
-    const uint32_t cell = mesh.cell(p.tet);
+    const uint32_t cell = volume_.by_cell ? mesh.cell(p.tet) : volume_.whole(p.tet);
     if (open_ && (cell != cell_ || from != cell_to_)) close();
-    const bool single = volume_.mesh->all_tets || (cell_is_tet(p.tet) && !volume_.by_cell);
-    if (single && !volume_.by_cell) {
+    if (!volume_.by_cell && volume_.linear(p.tet)) {
       // Linear: straight from the ends of the tetrahedron, cut to what was asked for.
       const double per = p.to > p.from ? 1 / (p.to - p.from) : 0;
       const float f0 = from == p.from ? p.enter : float(p.enter + (p.leave - p.enter) * ((from - p.from) * per));
@@ -91,11 +90,6 @@ class CellField : public RayField {
     }
     if (!open_) open_ = true, cell_ = cell, cell_tet_ = p.tet, cell_from_ = from;
     cell_to_ = to;
-  }
-
-  bool cell_is_tet(uint32_t tet) const {
-    const TetMesh& m = *volume_.mesh;
-    return (tet == 0 || m.cells[tet - 1] != m.cells[tet]) && (tet + 1 == m.size() || m.cells[tet + 1] != m.cells[tet]);
   }
 
   /// The cell that was gathered from its tetrahedra.
@@ -110,6 +104,7 @@ class CellField : public RayField {
     curve_.open(cell_, lowest, highest);
     if (source_.invisible(lowest, highest)) return;
     curve_.add(walk_.origin(), walk_.direction(), cell_from_, cell_to_, cell_tet_, ready_);
+    std::erase_if(ready_, [&](const Stretch& s) { return source_.invisible(s.lowest(), s.highest()); });
   }
 
   /// The tetrahedron of the stretch's cell that holds the place, and its weights there.
@@ -126,25 +121,20 @@ class CellField : public RayField {
     return best;
   }
 
-  /// Of the tetrahedra of the cell that has this one; false when the place lies outside of all.
+  /// Walks from a tetrahedron towards the place; false when it lies outside of all that are met.
   bool place_in_cell_of(uint64_t tet, double t, size_t& best, double w[4]) const {
     const TetMesh& m = *volume_.mesh;
     const Vec3 x = walk_.origin() + walk_.direction() * t;
-    size_t first = tet, last = tet + 1;
-    if (!m.cells.empty()) {
-      while (first > 0 && m.cells[first - 1] == m.cells[tet]) --first;
-      while (last < m.size() && m.cells[last] == m.cells[tet]) ++last;
-    }
-    double least = -HUGE_VAL;
     best = tet;
-    for (size_t k = first; k < last; ++k) {
-      double trial[4];
-      tet_weights(m, k, x, trial);
-      const double lowest = std::min(std::min(trial[0], trial[1]), std::min(trial[2], trial[3]));
-      if (lowest > least) least = lowest, best = k, std::copy_n(trial, 4, w);
+    for (int step = 0; step < 256; ++step) {
+      tet_weights(m, best, x, w);
+      const int k = int(std::min_element(w, w + 4) - w);
+      if (!(w[k] < -1e-9)) return w[k] == w[k];
+      const int32_t next = m.links[best].next[k];
+      if (next < 0) return w[k] > -1e-3;
+      best = size_t(next);
     }
-    if (least == -HUGE_VAL) std::fill_n(w, 4, 0.25);
-    return least > -1e-3;
+    return false;
   }
 
   const CellSource& source_;

@@ -31,7 +31,7 @@ void trilinear_frame(const std::vector<Vec3>& p, Vec3 r, Vec3& at, Vec3 column[3
 
 }  // namespace
 
-CellCurve::CellCurve(const CellVolume& volume) : volume_(volume), map_(volume.data) {}
+CellCurve::CellCurve(const CellVolume& volume) : volume_(volume), map_(volume.curved ? volume.curved : volume.data), reader_(volume.data) {}
 
 void CellCurve::open(uint32_t cell, float& lowest, float& highest) {
   if (cell != cell_) {
@@ -43,18 +43,20 @@ void CellCurve::open(uint32_t cell, float& lowest, float& highest) {
     const size_t n = ids.size();
     at_.resize(n), dn_.resize(n), f_.resize(n), n_.resize(n);
     lowest_ = HUGE_VALF, highest_ = -HUGE_VALF;
+    const std::span<const float> values = volume_.curved ? volume_.curved_values : volume_.values;
     const bool voxel = reader.type() == CellType::voxel;
     Box3 box;
     for (size_t k = 0; k < n; ++k) {
       const size_t from = voxel ? size_t(hexahedron_bits[k]) : k;
       at_[k] = at[from] - volume_.mesh->origin;
-      const float f = volume_.values[size_t(ids[from])];
+      const float f = values[size_t(ids[from])];
       f_[k] = double(f);
       lowest_ = std::min(lowest_, f), highest_ = std::max(highest_, f);
       box.add(at_[k]);
     }
     size_ = box.diagonal();
     shape_ = nullptr;
+    affine_ = cubic_ = false;
     if (voxel || reader.type() == CellType::hexahedron) {
       kind_ = Kind::hexahedron;
       const Vec3 a = at_[1] - at_[0], b = at_[3] - at_[0], c = at_[4] - at_[0];
@@ -66,25 +68,68 @@ void CellCurve::open(uint32_t cell, float& lowest, float& highest) {
         kind_ = Kind::box;
         rows_[0] = cross(b, c) / volume, rows_[1] = cross(c, a) / volume, rows_[2] = cross(a, b) / volume;
       }
-    } else if (reader.type() == CellType::polyhedron) {
+    } else if (!(shape_ = CellShape::find(reader.type(), n, reader.orders()))) {  // polyhedra and prisms of five and six sides
       kind_ = Kind::polyhedron;
+      if (volume_.leaves) reader_.open(cell);
+      if (volume_.leaves && leaf_.open(
+                                at_, f_, [&] { return reader_.face_count(); }, [&](size_t k) { return reader_.face(k); }))
+        kind_ = Kind::leaf;
     } else {
       kind_ = Kind::shape;
-      shape_ = CellShape::find(reader.type(), n);
+      weights_.assign(reader.weights().begin(), reader.weights().end());
+      affine_ = open_affine();
+      // Functions of curved cells reach beyond their nodes.
+      if (is_high_order(reader.type())) lowest_ = -3e38f, highest_ = 3e38f;
     }
   }
   guess_ = shape_ ? shape_->center() : Vec3(0.5, 0.5, 0.5);
   lowest = lowest_, highest = highest_;
 }
 
+/// Is every node where an affine map of the reference element puts it? Then there is nothing to search.
+bool CellCurve::open_affine() {
+  cubic_ = false;
+  const size_t n = at_.size();
+  // Four nodes that span the element: those of a tetrahedron, base and next to the first above it.
+  const size_t third = shape_->base() == CellType::tetra || shape_->base() == CellType::wedge ? 2 : 3;
+  size_t up = 3;
+  if (shape_->base() != CellType::tetra) {
+    for (up = 1; up < n && !(shape_->node(up).z > 0.5); ++up) {
+    }
+    if (up == n) return false;
+  }
+  const Vec3 r0 = shape_->node(0), dr[3] = {shape_->node(1) - r0, shape_->node(third) - r0, shape_->node(up) - r0};
+  const Vec3 dx[3] = {at_[1] - at_[0], at_[third] - at_[0], at_[up] - at_[0]};
+  const double volume = dot(dx[0], cross(dx[1], dx[2]));
+  if (!(std::abs(volume) > 0) || !weights_.empty()) return false;
+  const Vec3 inverse[3] = {cross(dx[1], dx[2]) / volume, cross(dx[2], dx[0]) / volume, cross(dx[0], dx[1]) / volume};
+  for (int a = 0; a < 3; ++a) rows_[a] = inverse[0] * dr[0][a] + inverse[1] * dr[1][a] + inverse[2] * dr[2][a];
+  first_ = r0;
+  for (size_t k = 0; k < n; ++k) {
+    const Vec3 p = at_[k] - at_[0], r = first_ + Vec3(dot(rows_[0], p), dot(rows_[1], p), dot(rows_[2], p));
+    if (!(length(r - shape_->node(k)) < 1e-6)) return false;
+  }
+  const auto orders = shape_->orders();
+  const int most = std::max({orders[0], orders[1], orders[2]});
+  cubic_ =
+      most == 1 ? shape_->base() == CellType::wedge || shape_->base() == CellType::tetra : shape_->base() == CellType::tetra && most <= 3;
+  return true;
+}
+
 /// Newton's method from the last place found.
 bool CellCurve::invert(Vec3 at) {
+  if (affine_) {
+    const Vec3 p = at - at_[0];
+    guess_ = first_ + Vec3(dot(rows_[0], p), dot(rows_[1], p), dot(rows_[2], p));
+    return true;
+  }
   for (int attempt = 0; attempt < 2; ++attempt) {
     Vec3 r = guess_;
     for (int i = 0; i < 12; ++i) {
       Vec3 x, column[3], step;
       if (shape_) {
-        shape_->functions(r, n_.data(), dn_.data());
+        const CellGeometry geometry{shape_, at_, weights_, n_.data(), dn_.data()};
+        geometry.functions(r);
         x = column[0] = column[1] = column[2] = Vec3();
         for (size_t k = 0; k < at_.size(); ++k) {
           x += at_[k] * n_[k];
@@ -113,6 +158,8 @@ float CellCurve::value(Vec3 at) {
   if (kind_ == Kind::box) {
     const Vec3 p = at - at_[0];
     f = trilinear(f_, {dot(rows_[0], p), dot(rows_[1], p), dot(rows_[2], p)});
+  } else if (kind_ == Kind::leaf) {
+    f = leaf_.value(at);
   } else if (kind_ == Kind::polyhedron) {
     CellPlace place;
     place.nearest = at + volume_.mesh->origin;
@@ -120,7 +167,8 @@ float CellCurve::value(Vec3 at) {
     for (size_t k = 0; k < f_.size(); ++k) f += n_[k] * f_[k];
   } else if (invert(at)) {
     if (shape_) {
-      shape_->values(guess_, n_.data());
+      const CellGeometry geometry{shape_, at_, weights_, n_.data(), dn_.data()};
+      geometry.values(guess_);
       for (size_t k = 0; k < f_.size(); ++k) f += n_[k] * f_[k];
     } else {
       f = trilinear(f_, guess_);
@@ -143,7 +191,7 @@ void CellCurve::fit(Vec3 x, Vec3 d, double from, double to, const float ends[2],
   const float v[4] = {ends[0], at(1.0 / 3), at(2.0 / 3), ends[1]};
   Stretch s{from, to, {}, mark};
   bernstein_from_thirds(v, s.b);
-  if (kind_ != Kind::box && depth < most_halvings) {
+  if (kind_ != Kind::box && kind_ != Kind::leaf && !cubic_ && depth < most_halvings) {
     const float middle = at(0.5), half[3] = {ends[0], middle, ends[1]};
     const auto wrong = [&](double part, float f) { return !(std::abs(s.value(from + part * (to - from)) - f) <= volume_.fit_error); };
     if (wrong(0.5, middle) || wrong(1.0 / 6, at(1.0 / 6)) || wrong(5.0 / 6, at(5.0 / 6))) {
@@ -158,7 +206,16 @@ void CellCurve::fit(Vec3 x, Vec3 d, double from, double to, const float ends[2],
 }
 
 void CellCurve::add(Vec3 x, Vec3 d, double from, double to, uint64_t mark, std::vector<Stretch>& out) {
-  const float ends[2] = {value(x + d * from), value(x + d * to)};
+  float ends[2] = {value(x + d * from), 0};
+  if (kind_ == Kind::leaf) {
+    leaf_.cuts(x, d, from, to, cuts_);
+    for (double t : cuts_) {
+      ends[1] = value(x + d * t);
+      fit(x, d, from, t, ends, 0, mark, out);
+      from = t, ends[0] = ends[1];
+    }
+  }
+  ends[1] = value(x + d * to);
   fit(x, d, from, to, ends, 0, mark, out);
 }
 

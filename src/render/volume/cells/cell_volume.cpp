@@ -14,16 +14,45 @@ namespace sg::volume {
 
 namespace {
 
-constexpr double straight_enough = 1.0 / 1024;
-constexpr size_t most_parts = 4'000'000;
+constexpr double straight_enough = 1.0 / 512;  // of the mesh's size
+constexpr int most_halvings = 5;
+constexpr size_t most_parts = 1'000'000;
 
-/// How many curved cells there are.
-size_t curved_cells(const DatasetPtr& data) {
-  const auto* mesh = data->as<UnstructuredMesh>();
-  if (!mesh) return 0;
-  size_t n = 0;
-  for (size_t c = 0; c < mesh->cells.size(); ++c) n += is_high_order(mesh->type(c)) && cell_type_info(mesh->type(c)).dimension == 3;
-  return n;
+/// How many cells tessellate() makes of the mesh at a level, and how many of the cells are curved.
+struct Parts {
+  size_t curved = 0;
+  std::array<size_t, most_halvings + 1> at_level{};
+};
+Parts count_parts(const UnstructuredMesh& mesh) {
+  size_t straight = 0, pyramids = 0, others = 0;
+  for (size_t c = 0; c < mesh.cells.size(); ++c) {
+    const CellType t = mesh.type(c);
+    if (!is_high_order(t) || cell_type_info(t).dimension != 3) ++straight;
+    else if (linear_type(t) == CellType::pyramid) ++pyramids;
+    else ++others;
+  }
+  Parts p{pyramids + others, {}};
+  for (size_t& n : p.at_level) {
+    n = straight + pyramids + others;
+    others = 8 * others + 4 * pyramids, pyramids *= 6;
+  }
+  return p;
+}
+
+/// Every curved cell in parts, as many for all: as many as its shape asks for. Fields go along, without asking for more.
+DatasetPtr divided(const DatasetPtr& data, const Parts& parts, Context& context) {
+  TessellateParams p;
+  p.tolerance = straight_enough, p.max_level = 0;
+  while (p.max_level < most_halvings && parts.at_level[size_t(p.max_level) + 1] <= most_parts) ++p.max_level;
+  DatasetParts shape = data->parts();
+  shape.fields = {};
+  const DatasetPtr shapes = tessellate(make_dataset(std::move(shape)), p, context);
+  for (int level = 0; level <= p.max_level; ++level)
+    if (parts.at_level[size_t(level)] == shapes->cell_count()) {
+      p.tolerance = 1e-30, p.max_level = level;
+      break;
+    }
+  return tessellate(data, p, context);
 }
 
 /// The mesh with linear cells only; `field` and `component` follow.
@@ -42,15 +71,13 @@ DatasetPtr straightened(const DatasetPtr& data, const Field*& field, int& compon
     field = &(*kept)->fields().require(field->name, Association::point);
     return *kept;
   }
-  const size_t curved = curved_cells(data);
-  if (curved == 0) return data;
+  const auto* mesh = data->as<UnstructuredMesh>();
+  if (!mesh) return data;
+  const Parts parts = count_parts(*mesh);
+  if (parts.curved == 0) return data;
   auto kept = data->memo().find<DatasetPtr>("volume/straight");
   if (!kept) {
-    TessellateParams p;
-    p.tolerance = straight_enough, p.max_level = 0;
-    for (size_t parts = curved; p.max_level < 5 && parts * 8 <= most_parts; parts *= 8) ++p.max_level;
-    p.max_level = std::max(p.max_level, 1);
-    DatasetPtr straight = tessellate(data, p, context);
+    DatasetPtr straight = divided(data, parts, context);
     const size_t bytes = straight->point_count() * 32 + straight->cell_count() * 80;
     kept = data->memo().keep<DatasetPtr>("volume/straight", std::move(straight), bytes);
   }
@@ -226,6 +253,34 @@ void take_field(CellVolume& v, const Field& field, int component, bool shift, Co
 
 }  // namespace
 
+namespace {
+
+/// The field as it is in the curved cells themselves.
+void take_curved(CellVolume& v, const VolumeItem& item, Context& context) {
+  context.check();
+  const Field* part_of = v.data->fields().find("original_cell", Association::cell);
+  // A field of that name may have come with the file: then nothing tells what is part of what.
+  if (!part_of || part_of->array.type() != ElementType::i64 || item.data->fields().find("original_cell", Association::cell)) return;
+  const std::string name = fmt::format("volume/curved/{}/{}", v.key, v.base);
+  auto kept = item.data->memo().find<Plane<float>>(name);
+  if (!kept) {
+    float none = 0;
+    Plane<float> values = stored_values(field_of(item), item.component, false, none);
+    // f32 fields keep their digits; others were narrowed about the base.
+    if (v.base != 0) {
+      const Array wide = scalar_of(field_of(item), field_of(item).components() == 1 ? 0 : item.component, ElementType::f64);
+      for (size_t i = 0; i < values.size(); ++i) values[i] = float(wide.get(i) - double(v.base));
+    }
+    const size_t bytes = values.size() * 4;
+    kept = item.data->memo().keep<Plane<float>>(name, std::move(values), bytes);
+  }
+  v.curved = item.data, v.curved_values = *kept, v.curved_owner = kept;
+  const View<int64_t> parts = part_of->array.view<int64_t>();
+  v.part_of = {parts.data, parts.count};
+}
+
+}  // namespace
+
 CellVolume make_cell_volume(const VolumeItem& item, Context& context) {
   if (!item.data) fail_usage("a volume item has no dataset", "volume");
   const Dataset& d = *item.data;
@@ -235,9 +290,11 @@ CellVolume make_cell_volume(const VolumeItem& item, Context& context) {
   int component = item.component;
   CellVolume v;
   v.data = straightened(item.data, field, component, context);
+  v.leaves = d.as<AmrGrid>() != nullptr;
   v.by_cell = field->association == Association::cell;
   v.key = fmt::format("{}/{}/{}", field->name, association_name(field->association), component);
   take_field(v, *field, component, item.color.kind == ScaleKind::linear && item.color.labels.empty(), context);
+  if (v.data != item.data && !v.leaves && !v.by_cell) take_curved(v, item, context);
   if (item.detail.second == SecondAxis::field)
     if (const Field* second = v.data->fields().find(item.detail.second_field, Association::point)) {
       float none = 0;
@@ -254,7 +311,7 @@ Medium make_medium(const VolumeItem& item, const CellVolume& volume) {
   const Range& r = volume.range;
   plan.lo = r.empty() ? item.color.lo : r.lo + double(volume.base), plan.hi = r.empty() ? item.color.hi : r.hi + double(volume.base);
   plan.base = volume.base;
-  plan.accuracy = 0.125 * item.sampling.tolerance, plan.faint = 0.1 / diagonal;
+  plan.accuracy = 0.25 * item.sampling.tolerance, plan.faint = 0.5 / diagonal;
   plan.most_tau = 1000 / (volume.mesh->edge > 0 ? volume.mesh->edge : diagonal);
   return Medium(item.color, item.opacity, plan);
 }

@@ -29,7 +29,7 @@ class Projector {
       : input_(input),
         volume_(make_cell_volume(input.item, input.context)),
         medium_(make_medium(input.item, volume_)),
-        table_(medium_),
+        table_(medium_, volume_.range),
         eye_(volume_, input.projection, input.context) {}
 
   Layer draw() {

@@ -14,15 +14,58 @@ static_assert(block * block == TetPacket::lanes);
 
 }  // namespace
 
-TetMedium::TetMedium(const Medium& medium) {
-  const auto lines = medium.straight();
-  const auto add = [&](float lo, float hi, const Optics& at, const Optics& slope) {
-    intervals.push_back({lo, hi, {at.tau, at.color.x, at.color.y, at.color.z}, {slope.tau, slope.color.x, slope.color.y, slope.color.z}, {}, {}});
+namespace {
+
+struct Sample {
+  float value;
+  Optics at;
+};
+
+/// Appends the ends of pieces after a, up to and with b, on which the medium is straight.
+void refine(const Medium& medium, const Sample& a, const Sample& b, float accuracy, float faint, int depth, std::vector<Sample>& out) {
+  const auto straight = [&](float share) {
+    const float v = a.value + share * (b.value - a.value);
+    const Optics m = medium.at(v);
+    const auto off = [&](float x, float y, float z) { return std::abs(x + share * (y - x) - z); };
+    if (off(a.at.tau, b.at.tau, m.tau) > accuracy * std::max(m.tau, faint)) return false;
+    if (a.at.tau == 0 && b.at.tau == 0 && m.tau == 0) return true;
+    for (int k = 0; k < 3; ++k)
+      if (off(a.at.color[k], b.at.color[k], m.color[k]) > accuracy) return false;
+    return true;
   };
-  // Below the first line, which has no lower end of its own, things stay as they are where it was made.
-  const float lo = lines.front().lo, hi = lines.size() > 1 ? lines.back().lo : lo;
-  add(-1e30f, lo, lines.front().at, {});
-  for (const Medium::Straight& l : lines) add(l.lo, &l == &lines.back() ? 1e30f : l.hi, l.at, l.slope);
+  const float middle = a.value + 0.5f * (b.value - a.value);
+  if (depth > 0 && middle > a.value && middle < b.value && !(straight(0.5f) && straight(0.2f) && straight(0.8f))) {
+    const Sample m{middle, medium.at(middle)};
+    refine(medium, a, m, accuracy, faint, depth - 1, out);
+    return refine(medium, m, b, accuracy, faint, depth - 1, out);
+  }
+  out.push_back(b);
+}
+
+}  // namespace
+
+TetMedium::TetMedium(const Medium& medium, const Range& range, float accuracy, float faint) {
+  const auto add = [&](const Sample& a, const Sample& b) {
+    Interval i{a.value, b.value, {a.at.tau, a.at.color.x, a.at.color.y, a.at.color.z}, {}, {}, {}};
+    const float to[4] = {b.at.tau, b.at.color.x, b.at.color.y, b.at.color.z}, width = b.value - a.value;
+    for (int k = 0; k < 4 && width < 1e30f; ++k) i.slope[k] = (to[k] - i.at[k]) / width;
+    intervals.push_back(i);
+  };
+  const float lo = range.empty() ? 0 : float(range.lo), hi = range.empty() ? 0 : float(range.hi);
+  const Sample bottom{lo, medium.at(lo)}, top{hi, medium.at(hi)};
+  add({-1e30f, bottom.at}, bottom);
+  std::vector<Sample> samples;
+  for (const Medium::Line& l : medium.lines()) {
+    const float from = std::max(l.lo, lo), to = std::min(l.hi, hi);
+    if (!(from < to)) continue;
+    // A knot may be a jump: each line has its own ends.
+    const Sample a{from, {l(from), medium.color(from)}};
+    const Sample b{to, {l(to), medium.color(to < hi ? std::nextafter(to, from) : to)}};
+    samples.assign(1, a);
+    refine(medium, a, b, accuracy, faint, 9, samples);
+    for (size_t k = 0; k + 1 < samples.size(); ++k) add(samples[k], samples[k + 1]);
+  }
+  add(top, {1e30f, top.at});
 
   double sum[4] = {};
   for (size_t i = 1; i < intervals.size(); ++i) {
@@ -62,15 +105,15 @@ struct TetRays::Scratch {
 };
 
 bool TetRays::fits(const CellVolume& volume) {
-  if (volume.by_cell || volume.mesh->all_tets) return true;
-  const Plane<uint32_t>& cells = volume.mesh->cells;
-  for (size_t t = 1; t < cells.size(); ++t)
-    if (cells[t] == cells[t - 1]) return false;
+  if (volume.by_cell) return true;
+  if (volume.mesh->all_tets && volume.part_of.empty()) return true;
+  for (size_t t = 0; t < volume.mesh->size(); ++t)
+    if (!volume.linear(t)) return false;
   return true;
 }
 
 TetRays::TetRays(const CellVolume& volume, const Projection& projection, const Medium& medium, Context& context, float stop_below)
-    : volume_(volume), projection_(projection), medium_(medium), stop_below_(stop_below), eye_(volume, projection, context) {
+    : volume_(volume), projection_(projection), medium_(medium, volume.range), stop_below_(stop_below), eye_(volume, projection, context) {
   across_ = (projection_.width + tile - 1) / tile, down_ = (projection_.height + tile - 1) / tile;
   const auto& faces = volume.mesh->boundary;
   std::vector<TileBox> boxes(faces.size());
@@ -78,6 +121,17 @@ TetRays::TetRays(const CellVolume& volume, const Projection& projection, const M
     for (size_t f = begin; f < end; ++f) boxes[f] = eye_.tiles(faces[f].v, tile, across_, down_);
   });
   bin_boxes(boxes, across_, down_, first_face_, faces_);
+}
+
+void TetRays::light(std::vector<TetLight::Lamp> lamps, const VolumeLight& light, float per_scale) {
+  gradients_ = volume_.gradients();
+  light_ = TetLight{std::move(lamps),
+                    float(light.ambient),
+                    float(light.diffuse),
+                    float(light.specular),
+                    int(std::lround(std::clamp(light.power, 0.0, 4096.0))),
+                    float(volume_.mesh->edge) * per_scale,
+                    reinterpret_cast<const float*>(gradients_->data())};
 }
 
 /// Where each pixel's line crosses the boundary, by the same tests as the walk.
@@ -139,9 +193,13 @@ void TetRays::draw(int x0, int y0, int width, int height, const float* limit, Pi
   thread_local Scratch s;
   find_hits(x0, y0, width, height, s);
   const TetMesh& mesh = *volume_.mesh;
-  const TetTables tables{
-      mesh.links.data(), eye_[0],    volume_.by_cell ? volume_.values.data() : nullptr, mesh.cells.empty() ? nullptr : mesh.cells.data(),
-      &medium_,          stop_below_};
+  const TetTables tables{mesh.links.data(),
+                         eye_[0],
+                         volume_.by_cell ? volume_.values.data() : nullptr,
+                         mesh.cells.empty() ? nullptr : mesh.cells.data(),
+                         &medium_,
+                         light_ ? &*light_ : nullptr,
+                         stop_below_};
   constexpr uint8_t gone = 2;  // in Hit::used: this end of a path is done with
   TetPacket p;
   for (int by = 0; by < height; by += block)
@@ -152,6 +210,12 @@ void TetRays::draw(int x0, int y0, int width, int height, const float* limit, Pi
       for (int lane = 0; lane < TetPacket::lanes; ++lane) {
         eye_.line(p, lane, x0 + bx + lane % block + 0.5, y0 + by + lane / block + 0.5);
         p.length[lane] = eye_.length(p, lane, p, lane);
+        if (light_) {
+          const Vec3f d(projection_.ray(x0 + bx + lane % block + 0.5, y0 + by + lane / block + 0.5).direction);
+          for (int k = 0; k < 3; ++k) p.direction[k][lane] = d[k];
+        } else {
+          p.direction[0][lane] = p.direction[1][lane] = p.direction[2][lane] = 0;
+        }
         p.r[lane] = p.g[lane] = p.b[lane] = 0, p.pass[lane] = 1, p.half[lane] = NAN, p.last[lane] = -1;
         p.done[lane] = float(projection_.near_plane - eye_.middle_depth());
         p.limit[lane] = float(projection_.far_plane - eye_.middle_depth());

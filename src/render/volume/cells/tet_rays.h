@@ -13,7 +13,7 @@
 
 namespace sg::volume {
 
-/// A medium as the kernel reads it.
+/// A medium as the kernel reads it: pieces on which tau and colour are straight.
 struct TetMedium {
   /// One line: values from lo to hi; tau, r, g, b at lo and their slopes; the integrals of tau and of tau times colour over the value
   /// up to lo. Constant beyond the ends.
@@ -26,12 +26,14 @@ struct TetMedium {
   std::vector<int32_t> seen;   ///< slices before this one in which tau is not zero
   float slice_lo = 0, per_slice = 0;
 
-  explicit TetMedium(const Medium& medium);
+  /// `range`: of the values there are. Straight lines are right to `accuracy` (of colours, and of tau relative to itself or to `faint`).
+  TetMedium(const Medium& medium, const Range& range, float accuracy = 1.0f / 2048, float faint = 0.05f);
 };
 
 /// 16 rays: what they have gathered, and where each of them is.
 struct alignas(64) TetPacket : RayLines {
   float length[lanes];              ///< ray length per depth
+  float direction[3][lanes];        ///< world, unit
   float done[lanes], limit[lanes];  ///< depths: what lies before the one is drawn, beyond the other hidden
   int32_t tet[lanes];               ///< -1: this lane has nothing to do
   int32_t id[3][lanes];             ///< corners of the face where it enters, to the left around the line
@@ -41,6 +43,19 @@ struct alignas(64) TetPacket : RayLines {
   float half[lanes];  ///< depth at which half of the light was gone; NaN before
 };
 
+/// Light on the field by its gradient.
+struct TetLight {
+  struct Lamp {
+    Vec3f direction;  ///< towards it: world, unit
+    float intensity;
+  };
+  std::vector<Lamp> lamps;
+  float ambient = 0.12f, diffuse = 0.88f, specular = 0.18f;
+  int power = 32;
+  float edge_per_scale = 1;          ///< see light_at
+  const float* gradients = nullptr;  ///< world, three numbers a vertex
+};
+
 /// What the kernel reads.
 struct TetTables {
   const TetLink* links;
@@ -48,6 +63,7 @@ struct TetTables {
   const float* cell_values;  ///< of cell fields, else null
   const uint32_t* cells;     ///< of tetrahedra; null: their own number
   const TetMedium* medium;
+  const TetLight* light;  ///< null: not shaded
   float stop_below;
 };
 
@@ -66,6 +82,9 @@ class TetRays {
   static bool fits(const CellVolume& volume);
   /// Values are stored ones. Keeps references to `volume`.
   TetRays(const CellVolume& volume, const Projection& projection, const Medium& medium, Context& context, float stop_below = 1.0f / 4096);
+  /// Lights the field from now on; the lamps of the scene, in world directions. `per_scale` as in Look. Powers of highlights count as
+  /// whole numbers.
+  void light(std::vector<TetLight::Lamp> lamps, const VolumeLight& light, float per_scale);
 
   /// Pixels [x0, x0 + width) x [y0, y0 + height), x0 and y0 multiples of `tile`, width and height at most that. `limit`: depth per pixel,
   /// row by row, beyond which nothing is drawn; null = the far plane.
@@ -85,6 +104,8 @@ class TetRays {
   float stop_below_;
   EyeSpace eye_;
   int across_ = 0, down_ = 0;
+  std::optional<TetLight> light_;
+  std::shared_ptr<const Plane<Vec3f>> gradients_;
   std::vector<uint32_t> first_face_, faces_;  // boundary faces by tile
 };
 

@@ -154,8 +154,13 @@ HWY_ATTR inline LinePart means(const TetMedium& m, F f0, F f1, I slice0, I slice
   return r;
 }
 
+/// Light on a segment: a factor of its colour, and white on top of it.
+struct Shine {
+  F diffuse, specular;
+};
+
 /// Puts one segment behind what is there: C = mean alpha - change hidden, exact for constant tau.
-HWY_ATTR inline void behind(const LinePart& p, F length, M on, Colors& sum) {
+HWY_ATTR inline void behind(const LinePart& p, F length, M on, const Shine* shine, Colors& sum) {
   const D d;
   const F depth = hn::Mul(p.tau, length);
   const M lit = hn::And(on, hn::Gt(depth, hn::Zero(d)));
@@ -163,12 +168,17 @@ HWY_ATTR inline void behind(const LinePart& p, F length, M on, Colors& sum) {
   const F share = hn::IfThenElseZero(lit, sum.pass), gain = hn::Mul(hn::Mul(share, f.ratio), length), loss = hn::Mul(share, f.hidden);
   F* const to[3] = {&sum.r, &sum.g, &sum.b};
   const F* const mean[3] = {&p.r, &p.g, &p.b};
-  for (int k = 0; k < 3; ++k) *to[k] = hn::Add(*to[k], hn::Sub(hn::Mul(gain, *mean[k]), hn::Mul(loss, hn::Sub(p.back[k], p.front[k]))));
+  for (int k = 0; k < 3; ++k) {
+    F c = hn::Sub(hn::Mul(gain, *mean[k]), hn::Mul(loss, hn::Sub(p.back[k], p.front[k])));
+    if (shine) c = hn::Add(hn::Mul(c, shine->diffuse), hn::Mul(hn::Mul(share, f.alpha), shine->specular));
+    *to[k] = hn::Add(*to[k], c);
+  }
   sum.pass = hn::Sub(sum.pass, hn::Mul(share, f.alpha));
 }
 
 /// The field goes from f0 to f1 over `length` in the lanes of `on`.
-HWY_ATTR inline void gather(const TetMedium& m, F f0, F f1, F length, I slice0, I slice1, const Slice& slice, M on, Colors& sum) {
+HWY_ATTR inline void gather(const TetMedium& m, F f0, F f1, F length, I slice0, I slice1, const Slice& slice, M on, const Shine* shine,
+                            Colors& sum) {
   const D d;
   const LinePart all = means(m, f0, f1, slice0, slice1, on);
   // Deep segments in parts, so that the order of colours within them counts: (D / n)^2 / 12 of the change stays below 1/3000.
@@ -177,16 +187,46 @@ HWY_ATTR inline void gather(const TetMedium& m, F f0, F f1, F length, I slice0, 
   const F fine = hn::Mul(hn::Set(d, 16.0f), hn::Sqrt(bend));
   const F parts = hn::Min(hn::Ceil(hn::Mul(hn::Mul(all.tau, length), fine)), hn::Set(d, float(TetMedium::most_parts)));
   const M deep = hn::And(on, hn::And(hn::Gt(parts, hn::Set(d, 1.0f)), hn::Ne(f0, f1)));
-  behind(all, length, hn::AndNot(deep, on), sum);
+  behind(all, length, hn::AndNot(deep, on), shine, sum);
   if (hn::AllFalse(d, deep)) return;
   const F per = hn::Div(hn::Set(d, 1.0f), hn::Max(parts, hn::Set(d, 1.0f))), step = hn::Mul(hn::Sub(f1, f0), per);
   F from = f0, number = hn::Set(d, 1.0f);
   for (M more = deep; !hn::AllFalse(d, more);) {
     const M last = hn::Ge(number, parts);
     const F to = hn::IfThenElse(last, f1, hn::Add(f0, hn::Mul(step, number)));
-    behind(means(m, from, to, slice(from), slice(to), more), hn::Mul(length, per), more, sum);
+    behind(means(m, from, to, slice(from), slice(to), more), hn::Mul(length, per), more, shine, sum);
     more = hn::AndNot(last, more), from = to, number = hn::Add(number, hn::Set(d, 1.0f));
   }
+}
+
+/// light_at for the lanes of `on`; the light falls on both sides of the gradient.
+HWY_ATTR inline Shine shine_at(const TetLight& light, const F g[3], const F direction[3], M on) {
+  const D d;
+  const F zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+  const auto dot = [](const F a[3], const F b[3])
+                       HWY_ATTR { return hn::Add(hn::Add(hn::Mul(a[0], b[0]), hn::Mul(a[1], b[1])), hn::Mul(a[2], b[2])); };
+  const F square = dot(g, g);
+  const M bent = hn::And(on, hn::And(hn::Gt(square, zero), hn::Lt(square, hn::Set(d, 1e30f))));
+  const F size = hn::Sqrt(hn::IfThenElse(bent, square, one));
+  const F surface = hn::Min(one, hn::Mul(size, hn::Set(d, light.edge_per_scale)));
+  const F side = hn::Div(hn::IfThenElse(hn::Gt(dot(g, direction), zero), hn::Set(d, -1.0f), one), size);
+  F diffuse = zero, specular = zero;
+  for (const TetLight::Lamp& l : light.lamps) {
+    const F to[3] = {hn::Set(d, l.direction.x), hn::Set(d, l.direction.y), hn::Set(d, l.direction.z)};
+    const F c = hn::Mul(side, dot(g, to)), intensity = hn::Set(d, l.intensity);
+    const M faces = hn::Gt(c, zero);
+    diffuse = hn::Add(diffuse, hn::IfThenElseZero(faces, hn::Mul(intensity, c)));
+    const F half[3] = {hn::Sub(to[0], direction[0]), hn::Sub(to[1], direction[1]), hn::Sub(to[2], direction[2])};
+    const F half2 = dot(half, half);
+    const F h = hn::Div(hn::Mul(side, dot(g, half)), hn::Sqrt(hn::IfThenElse(hn::Gt(half2, zero), half2, one)));
+    F base = hn::Max(h, zero), power = one;
+    for (int n = light.power; n > 0; n >>= 1, base = hn::Mul(base, base))
+      if (n & 1) power = hn::Mul(power, base);
+    specular = hn::Add(specular, hn::IfThenElseZero(faces, hn::Mul(intensity, power)));
+  }
+  const F factor = hn::Sub(hn::Add(hn::Set(d, light.ambient), hn::Mul(hn::Set(d, light.diffuse), diffuse)), one);
+  return {hn::IfThenElse(bent, hn::Add(one, hn::Mul(surface, factor)), one),
+          hn::IfThenElseZero(bent, hn::Mul(surface, hn::Mul(hn::Set(d, light.specular), specular)))};
 }
 
 struct Corner {
@@ -239,6 +279,7 @@ HWY_ATTR void walk_lanes(const TetTables& tables, TetPacket& p, size_t lane) {
                   hn::Sub(hn::Sub(hn::GatherIndex(d, tables.eye + 1, at), y0), hn::Mul(dy, z)), z, hn::GatherIndex(d, tables.eye + 3, at),
                   id};
   };
+  F weight[3];  // of a, b, c where the line crosses their face
   const auto cross_at = [&](const Corner& a, const Corner& b, const Corner& c, F& f) HWY_ATTR {
     const F wa = hn::Max(turn(b.x, b.y, c.x, c.y), zero), wb = hn::Max(turn(c.x, c.y, a.x, a.y), zero);
     const F wc = hn::Max(turn(a.x, a.y, b.x, b.y), zero), all = hn::Add(hn::Add(wa, wb), wc);
@@ -246,10 +287,16 @@ HWY_ATTR void walk_lanes(const TetTables& tables, TetPacket& p, size_t lane) {
     const F per = hn::Div(one, hn::IfThenElse(some, all, one)), third = hn::Set(d, 1.0f / 3);
     const F u = hn::IfThenElse(some, hn::Mul(wa, per), third), v = hn::IfThenElse(some, hn::Mul(wb, per), third);
     const F w = hn::IfThenElse(some, hn::Mul(wc, per), third);
+    weight[0] = u, weight[1] = v, weight[2] = w;
     f = hn::Add(hn::Add(hn::Mul(u, a.f), hn::Mul(v, b.f)), hn::Mul(w, c.f));
     return hn::Add(hn::Add(hn::Mul(u, a.z), hn::Mul(v, b.z)), hn::Mul(w, c.z));
   };
   const Slice slice{medium};
+  // The light at the face behind, in the lanes that have asked for it.
+  const TetLight* light = tables.light;
+  const F direction[3] = {hn::Load(d, p.direction[0] + lane), hn::Load(d, p.direction[1] + lane), hn::Load(d, p.direction[2] + lane)};
+  Shine before{one, zero};
+  M known_before = hn::Lt(one, zero);
 
   Corner a = corner(hn::Load(di, p.id[0] + lane)), b = corner(hn::Load(di, p.id[1] + lane)), c = corner(hn::Load(di, p.id[2] + lane));
   F f, z = cross_at(a, b, c, f);
@@ -286,10 +333,27 @@ HWY_ATTR void walk_lanes(const TetTables& tables, TetPacket& p, size_t lane) {
     const I slice0 = slice(g0), slice1 = slice(g1);
     const M lit = hn::And(some, slice.lit(slice0, slice1));
     if (!hn::AllFalse(d, lit)) {
-      gather(medium, g0, g1, hn::Mul(hn::Sub(to, from), length), slice0, slice1, slice, lit, sum);
+      Shine shine{one, zero};
+      if (light) {
+        // The mean of the light on the two faces; in front of the first segment of a row there is none yet.
+        F g[3];
+        const I of[3] = {hn::Add(hn::ShiftLeft<1>(a.id), a.id), hn::Add(hn::ShiftLeft<1>(b.id), b.id),
+                         hn::Add(hn::ShiftLeft<1>(c.id), c.id)};
+        for (int k = 0; k < 3; ++k) {
+          g[k] = zero;
+          for (int v = 0; v < 3; ++v) g[k] = hn::Add(g[k], hn::Mul(weight[v], hn::GatherIndex(d, light->gradients + k, of[v])));
+        }
+        const Shine here = shine_at(*light, g, direction, lit);
+        const F half_of = hn::Set(d, 0.5f);
+        shine.diffuse = hn::IfThenElse(known_before, hn::Mul(half_of, hn::Add(before.diffuse, here.diffuse)), here.diffuse);
+        shine.specular = hn::IfThenElse(known_before, hn::Mul(half_of, hn::Add(before.specular, here.specular)), here.specular);
+        before = here;
+      }
+      gather(medium, g0, g1, hn::Mul(hn::Sub(to, from), length), slice0, slice1, slice, lit, light ? &shine : nullptr, sum);
       const M now = hn::And(hn::And(lit, hn::Lt(sum.pass, hn::Set(d, 0.5f))), hn::Ne(half, half));
       half = hn::IfThenElse(now, to, half);
     }
+    known_before = lit;
     done = hn::IfThenElse(some, to, done);
     z = z1, f = f1;
 
@@ -316,7 +380,7 @@ HWY_ATTR void put(const TetMedium& medium, SegmentPacket& p) {
     const M lit = hn::And(hn::Gt(length, hn::Zero(d)), slice.lit(slice0, slice1));
     if (hn::AllFalse(d, lit)) continue;
     Colors sum{hn::Load(d, p.r + lane), hn::Load(d, p.g + lane), hn::Load(d, p.b + lane), hn::Load(d, p.pass + lane)};
-    gather(medium, f0, f1, length, slice0, slice1, slice, lit, sum);
+    gather(medium, f0, f1, length, slice0, slice1, slice, lit, nullptr, sum);
     hn::Store(sum.r, d, p.r + lane), hn::Store(sum.g, d, p.g + lane), hn::Store(sum.b, d, p.b + lane),
         hn::Store(sum.pass, d, p.pass + lane);
   }

@@ -91,7 +91,8 @@ bool Footprints::at(Vec3 q, Footprint& out) const {
   }
   out.x = float(0.5 * projection_.width + scale * eye.x), out.y = float(0.5 * projection_.height + projection_.shift_y - scale * eye.y);
   out.depth = float(eye.z);
-  return true;
+  // Far beside the picture numbers may be anything.
+  return std::abs(out.x) + out.half_x < 1e8f && std::abs(out.y) + out.half_y < 1e8f;
 }
 
 }  // namespace sg::volume

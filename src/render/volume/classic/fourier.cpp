@@ -146,7 +146,7 @@ XRay project(const Stage& s, const Spectrum& spectrum) {
   for (int a = 0; a < 3; ++a) across += length(s.to_world.column(a));
   x.pitch = 0.5 * edge;
   const double wanted = 2 * (reach + across) / x.pitch;
-  if (wanted > 16384) {
+  if (wanted > 8192) {
     fail_usage(fmt::format("method=fourier would need a slice of {:.0f} points squared", wanted), "volume", "method=ray needs none");
   }
   x.size = fft_size(size_t(wanted) + 1);

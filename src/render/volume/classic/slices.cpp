@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/core.h>
+
+#include "base/error.h"
 #include "base/parallel.h"
 #include "render/volume/classic/options.h"
 #include "render/volume/classic/slab_polygon.h"
@@ -16,6 +19,7 @@ namespace sg::volume {
 namespace {
 
 constexpr int tile_width = 64, tile_height = 16;
+constexpr size_t most_slabs = 200000;
 
 /// What one slice stands for, between two planes. View stack: depths. Axis stack: places in q along the axis.
 struct Slab {
@@ -56,6 +60,9 @@ void view_stack(Stack& stack) {
   nearest = std::max(nearest, s.projection.near_plane), farthest = std::min(farthest, s.projection.far_plane);
   const double step = s.volume.step;
   const size_t count = farthest > nearest ? size_t(std::ceil((farthest - nearest) / step)) : 0;
+  if (count > most_slabs)
+    fail_usage(fmt::format("a step of {} makes {} slices", step, count), "volume",
+               fmt::format("give a longer step: at most {} slices", most_slabs));
   for (size_t i = 0; i < count; ++i) {
     const double from = nearest + double(i) * step, to = std::min(from + step, farthest);
     add(stack, from, to, 0.5 * (from + to), slab_polygon(corners, from, to, s.projection));
@@ -102,6 +109,7 @@ struct Pixel {
   float back[4] = {0, 0, 0, 0};  // back to front
   double total = 0, length = 0;  // value * length, length
   float best = NAN;
+  double resume = -HUGE_VAL;  // front to back: nothing is seen before this length
 };
 
 class Tile {
@@ -121,7 +129,8 @@ class Tile {
       }
     first_ = nearest, last_ = farthest;
     composite_ = s_.item.mode == RayFunction::composite;
-    if (s_.projection.parallel) lit_ = s_.lit(s_.projection.forward);
+    skip_ = composite_ && k_.options.front_to_back;
+    lit_ = s_.lit(s_.projection.forward);
   }
 
   void draw() {
@@ -131,7 +140,8 @@ class Tile {
       const Slab& slab = k_.slabs[index];
       if (slab.to < first_ || slab.from > last_ || slab.bottom < y0_ || slab.top > y1_) continue;
       rising_ = index < k_.rising;
-      for (int y = std::max(y0_, int(slab.top) - 1); y < std::min(y1_, int(slab.bottom) + 2); ++y) {
+      const int from = int(std::max(slab.top - 1, double(y0_))), to = int(std::min(slab.bottom + 2, double(y1_)));
+      for (int y = from; y < to; ++y) {
         int first, last;
         row_span(slab.outline, y, s_.projection.width, first, last);
         row(slab, y, std::max(first, x0_), std::min(last, x1_));
@@ -190,13 +200,40 @@ class Tile {
       Pixel& p = at(x, y);
       double from, to, sample;
       if ((composite_ && p.sum.transmittance < opaque_below) || !piece(slab, p.ray, from, to, sample)) continue;
-      live_[n] = &p, length_[n] = float(to - from), x_[n] = x, y_[n] = y;
-      for (int a = 0; a < 3; ++a) place_[a][n] = p.ray.start[a] + sample * p.ray.along[a];
-      // The axis stack interpolates within its slice, and only there.
-      if (k_.axis >= 0) place_[k_.axis][n] = slab.plane;
+      if (skip_ && sample < p.resume) continue;
+      for (int a = 0; a < 3; ++a) {
+        place_[a][n] = p.ray.start[a] + sample * p.ray.along[a];
+        // The axis stack interpolates within its slice, and only there.
+        if (a == k_.axis) place_[a][n] = slab.plane;
+        u_[a][n] = s_.volume.u(a, place_[a][n]);
+      }
+      if (skip_ && clear(p, n)) continue;
+      live_[n] = &p, length_[n] = float(to - from);
       if (++n == run_length) run(n), n = 0;
     }
     if (n > 0) run(n);
+  }
+
+  /// Is the sample's brick empty? Then so is the ray up to where it leaves the cube of empty bricks around, but for a margin wider than
+  /// rounding errors.
+  bool clear(Pixel& p, int n) const {
+    const Volume& v = s_.volume;
+    size_t brick[3];
+    for (size_t a = 0; a < 3; ++a) brick[a] = std::min(size_t(u_[a][n]) >> FineBricks::shift, v.fine().dims[a] - 1);
+    const int d = v.distance[v.fine().id(brick[0], brick[1], brick[2])];
+    if (d == 0) return false;
+    double out = HUGE_VAL;
+    for (int a = 0; a < 3; ++a) {
+      const double along = p.ray.along[a];
+      if (along == 0) continue;
+      const ptrdiff_t border = ptrdiff_t(brick[a]) + (along > 0 ? d : 1 - d);
+      if (border < 0 || border > ptrdiff_t(v.fine().dims[size_t(a)])) continue;
+      // The axis stack looks at its plane, up to half a slice from where the ray is.
+      const double slack = v.margin[a] + (a == k_.axis ? v.cell_length(a, place_[a][n]) : 0), q = v.fine_border[a][size_t(border)];
+      out = std::min(out, (q + (along > 0 ? -slack : slack) - p.ray.start[a]) / along);
+    }
+    p.resume = out;
+    return true;
   }
 
   void run(int count) {
@@ -204,7 +241,7 @@ class Tile {
     Run run;
     for (int n = 0; n < run_length; ++n) {
       const int m = n < count ? n : 0;
-      run.ux[n] = v.u(0, place_[0][m]), run.uy[n] = v.u(1, place_[1][m]), run.uz[n] = v.u(2, place_[2][m]);
+      run.ux[n] = u_[0][m], run.uy[n] = u_[1][m], run.uz[n] = u_[2][m];
     }
     finish_values(v, run);
     if (!composite_) return collect(run, count);
@@ -223,7 +260,7 @@ class Tile {
       const Transfer::Medium& medium = s_.transfer().medium(run.entry[n]);
       Shade shade;
       if (v.shaded) {
-        if (!s_.projection.parallel) lit_ = s_.lit(s_.projection.ray(x_[n] + 0.5, y_[n] + 0.5).direction);
+        if (!s_.projection.parallel) s_.light(s_.to_world * live_[n]->ray.along, lit_);
         shade = shade_sample(s_, {g.x[m], g.y[m], g.z[m]}, g.per_cell[m], lit_);
       }
       const float alpha = alpha_of(medium.density * length_[n]);
@@ -254,13 +291,13 @@ class Tile {
   const Stage& s_;
   int x0_, y0_, x1_, y1_;
   double first_ = 0, last_ = 0;
-  bool composite_ = true, rising_ = true;
+  bool composite_ = true, skip_ = true, rising_ = true;
   std::vector<Pixel> pixels_;
   LitRay lit_;
   Pixel* live_[run_length];
   float length_[run_length];
   double place_[3][run_length];
-  int x_[run_length], y_[run_length];
+  float u_[3][run_length];
 };
 
 }  // namespace

@@ -10,9 +10,9 @@
 
 namespace sg::volume {
 
-/// Kaiser and Bessel's window, cut to `width` points of the spectrum and lowered to zero there, so that it has a slope. Its transform is
-/// known in closed form, so that the samples can be divided by it beforehand; with twofold padding what it lets through of the copies
-/// beside is 1e-3 of them.
+/// Kaiser and Bessel's window, cut to `width` points of the spectrum and lowered to zero there, so that it has a slope. Its
+/// transform is known in closed form, so that the samples can be divided by it beforehand; with twofold padding the error between the
+/// points is 1.3e-4 of the sum of all samples.
 class SpectrumFilter {
  public:
   static constexpr int width = 4;

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/core.h>
+
+#include "base/error.h"
 #include "base/parallel.h"
 #include "render/volume/classic/options.h"
 #include "render/volume/classic/splat_list.h"
@@ -37,7 +40,7 @@ class Band {
     sums_.resize(n);
     composite_ = s_.item.mode == RayFunction::composite;
     if (!composite_) best_.assign(n, NAN), totals_.assign(n, {0, 0});
-    if (s_.projection.parallel) lit_ = s_.lit(s_.projection.forward);
+    lit_ = s_.lit(s_.projection.forward);
   }
 
   /// Voxels come by depth: a sheet is done when the next kernel begins behind it. As many are open as a kernel is deep.
@@ -112,6 +115,8 @@ class Band {
     const double base = double(s_.volume.base);
     if (s_.item.mode == RayFunction::sum) return total + base * length;
     if (s_.item.mode == RayFunction::average) return length > 0 ? total / length + base : NAN;
+    // Rays that only touch the kernels' fringe show its mean.
+    if (!(best_[i] == best_[i])) return length > 0 ? total / length + base : NAN;
     return double(best_[i]) + base;
   }
 
@@ -241,7 +246,7 @@ class Band {
     gradients(
         s_.volume, run_, which, waiting_, [](int, int) { return 0.0; }, g);
     for (int n = 0; n < waiting_; ++n) {
-      if (!s_.projection.parallel) lit_ = s_.lit(s_.projection.ray(x_[n] + 0.5, y_[n] + 0.5).direction);
+      if (!s_.projection.parallel) s_.light(s_.projection.ray(x_[n] + 0.5, y_[n] + 0.5).direction, lit_);
       const Shade shade = shade_sample(s_, {g.x[n], g.y[n], g.z[n]}, g.per_cell[n], lit_);
       const Transfer::Medium& m = s_.transfer().medium(run_.entry[n]);
       const float alpha = alpha_of(m.density * length_[n]), white = alpha * shade.flash, color = alpha * shade.diffuse;
@@ -278,7 +283,7 @@ void shade_voxels(Job& job) {
         LitRay lit = s.lit(s.projection.forward);
         for (size_t i = begin; i < end; ++i) {
           const Vec3 q = job.list.q(uint32_t(i));
-          if (!s.projection.parallel) lit = s.lit(s.sight(s.world(q)));
+          if (!s.projection.parallel) s.light(s.sight(s.world(q)), lit);
           const PointGradient g = gradient_at_sample(s.volume, size_t(q.x), size_t(q.y), size_t(q.z));
           job.shades[i] = shade_sample(s, g.q, g.per_cell, lit);
         }
@@ -305,6 +310,9 @@ Layer splat(const LayerInput& input, const SplatOptions& options) {
   Job job{stage,    footprints, list, table, after, input.item.sampling.step > 0 ? input.item.sampling.step : 2 * stage.volume.step,
           HUGE_VAL, -HUGE_VAL,  {}};
   const Vec3 lo = stage.volume.lo, hi = stage.volume.hi;
+  if (!(footprints.reach() / job.sheet < 100))
+    fail_usage(fmt::format("sheets of {} are too thin for kernels that reach {:.4g}", job.sheet, footprints.reach()), "volume",
+               "give a longer step, or 0 for one voxel");
   for (int c = 0; c < 8; ++c) {
     const double z = footprints.depth({c & 1 ? hi.x : lo.x, c & 2 ? hi.y : lo.y, c & 4 ? hi.z : lo.z});
     job.nearest = std::min(job.nearest, z - footprints.reach()), job.farthest = std::max(job.farthest, z + footprints.reach());

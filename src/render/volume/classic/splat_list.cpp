@@ -74,11 +74,11 @@ void SplatList::collect(bool classified) {
           for (size_t j = 0; j < n[1]; ++j)
             for (size_t i = 0; i < n[0]; ++i) {
               // A kernel reaches less than a brick: with all bricks around clear, no sheet's value can be seen there.
-              const size_t brick = v.bricks().id(std::min(i >> MinMaxBricks::shift, v.bricks().dims[0] - 1),
-                                               std::min(j >> MinMaxBricks::shift, v.bricks().dims[1] - 1),
-                                               std::min(k >> MinMaxBricks::shift, v.bricks().dims[2] - 1));
+              const size_t brick = v.fine().id(std::min(i >> FineBricks::shift, v.fine().dims[0] - 1),
+                                               std::min(j >> FineBricks::shift, v.fine().dims[1] - 1),
+                                               std::min(k >> FineBricks::shift, v.fine().dims[2] - 1));
               if (composite && v.distance[brick] > (classified ? 0 : 1)) {
-                i |= MinMaxBricks::edge - 1;
+                i |= FineBricks::edge - 1;
                 continue;
               }
               const uint32_t voxel = uint32_t(i + n[0] * (j + n[1] * k));

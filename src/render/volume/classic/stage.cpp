@@ -92,11 +92,16 @@ PixelRay Stage::ray(int x, int y) const {
 
 LitRay Stage::lit(Vec3 direction) const {
   LitRay l;
-  l.direction = Vec3f(direction);
-  for (const Lamp& lamp : lamps) l.lights.push_back({Vec3f(lamp.direction), Vec3f(normalize(lamp.direction - direction)), lamp.intensity});
   l.material.ambient = float(item.light.ambient), l.material.diffuse = float(item.light.diffuse);
   l.material.specular = float(item.light.specular), l.material.power = float(item.light.power);
+  light(direction, l);
   return l;
+}
+
+void Stage::light(Vec3 direction, LitRay& l) const {
+  l.direction = Vec3f(direction);
+  l.lights.clear();
+  for (const Lamp& lamp : lamps) l.lights.push_back({Vec3f(lamp.direction), Vec3f(normalize(lamp.direction - direction)), lamp.intensity});
 }
 
 float value_at(const Volume& v, size_t i, size_t j, size_t k) {

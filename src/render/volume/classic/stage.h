@@ -56,6 +56,8 @@ struct Stage {
   /// Unit direction of sight at a world place.
   Vec3 sight(Vec3 place) const { return projection.parallel ? projection.forward : normalize(place - projection.eye); }
   LitRay lit(Vec3 direction) const;
+  /// The same for another direction; only what depends on it is done again.
+  void light(Vec3 direction, LitRay& lit) const;
   const Transfer& transfer() const { return volume.transfer[0]; }
 };
 

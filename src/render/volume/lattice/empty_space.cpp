@@ -3,21 +3,21 @@
 
 #include <bit>
 
+#include "base/error.h"
 #include "base/parallel.h"
 
 namespace sg::volume {
 
 namespace {
 
-constexpr int farthest = 63;
+constexpr int farthest = 15;
 
 /// One bit per brick, rows along x begin at words.
 struct Bits {
   size_t nx, ny, nz, words;
   std::vector<uint64_t> bits;
 
-  explicit Bits(const std::array<size_t, 3>& dims)
-      : nx(dims[0]), ny(dims[1]), nz(dims[2]), words((nx + 63) / 64), bits(words * ny * nz) {}
+  explicit Bits(const std::array<size_t, 3>& dims) : nx(dims[0]), ny(dims[1]), nz(dims[2]), words((nx + 63) / 64), bits(words * ny * nz) {}
   uint64_t* row(size_t y, size_t z) { return &bits[words * (y + ny * z)]; }
   const uint64_t* row(size_t y, size_t z) const { return &bits[words * (y + ny * z)]; }
   uint64_t used(size_t word) const { return word + 1 < words || nx % 64 == 0 ? ~uint64_t(0) : (uint64_t(1) << nx % 64) - 1; }
@@ -40,11 +40,96 @@ void widen_row(const Bits& in, size_t y, size_t z, Bits& out) {
   }
 }
 
+/// Rows of samples are folded into one row of minima and one of maxima first, at memory speed. `v < lo ? v : lo` keeps lo when v is NaN.
+template <class T>
+void range_row(const T* values, const std::array<size_t, 3>& dims, size_t y0, size_t z0, std::vector<T>& lo, std::vector<T>& hi,
+               MinMaxBricks::Range* out, size_t bricks) {
+  constexpr size_t edge = FineBricks::edge;
+  using Limits = std::numeric_limits<T>;
+  const T top = Limits::has_infinity ? Limits::infinity() : Limits::max(),
+          bottom = Limits::has_infinity ? -Limits::infinity() : Limits::lowest();
+  const size_t nx = dims[0], y1 = std::min(y0 + edge, dims[1] - 1), z1 = std::min(z0 + edge, dims[2] - 1);
+  lo.assign(nx, top), hi.assign(nx, bottom);
+  T *l = lo.data(), *h = hi.data();
+  for (size_t z = z0; z <= z1; ++z)
+    for (size_t y = y0; y <= y1; ++y) {
+      const T* row = values + nx * (y + dims[1] * z);
+      for (size_t x = 0; x < nx; ++x) {
+        l[x] = row[x] < l[x] ? row[x] : l[x];
+        h[x] = row[x] > h[x] ? row[x] : h[x];
+      }
+    }
+  for (size_t b = 0; b < bricks; ++b) {
+    T bl = top, bh = bottom;
+    for (size_t x = b * edge; x <= std::min((b + 1) * edge, nx - 1); ++x) bl = std::min(bl, l[x]), bh = std::max(bh, h[x]);
+    // Only a cube of NaN alone leaves bl > bh.
+    if (bl > bh) out[b] = {HUGE_VALF, -HUGE_VALF};
+    else out[b] = {float(bl), float(bh)};
+  }
+}
+
+/// Transfer::clear for many ranges: where the axis is linear, without branches; says "drawn" an entry too early.
+class Clearness {
+ public:
+  explicit Clearness(const Transfer& transfer) : transfer_(transfer) {
+    if (!transfer.linear()) return;
+    const LinearTable t = transfer.linear_table();
+    first_ = t.first, per_axis_ = t.per_axis, last_ = float(t.count + 1);
+    drawn_before_.resize(size_t(t.count) + 3);
+    for (int i = 0; i <= t.count + 1; ++i) drawn_before_[size_t(i) + 1] = uint16_t(drawn_before_[size_t(i)] + transfer.draws(i));
+  }
+  bool operator()(MinMaxBricks::Range r) const {
+    if (drawn_before_.empty()) return transfer_.clear(r.lo, r.hi);
+    // Entry of a value: int(axis) + 1, one more to each side for rounding errors.
+    const float a = std::min(std::max((r.lo - first_) * per_axis_, 0.0f), last_),
+                b = std::min(std::max((r.hi - first_) * per_axis_ + 2, 0.0f), last_);
+    return !(r.lo <= r.hi) || drawn_before_[size_t(int(b)) + 1] == drawn_before_[size_t(int(a))];
+  }
+
+ private:
+  const Transfer& transfer_;
+  float first_ = 0, per_axis_ = 0, last_ = 0;
+  std::vector<uint16_t> drawn_before_;
+};
+
 }  // namespace
 
-std::vector<uint8_t> distance_to_drawn(const MinMaxBricks& bricks, const Transfer& transfer, bool& any_empty) {
+FineBricks fine_bricks(const Array& values, std::array<size_t, 3> dims) {
+  if (values.components() != 1 || !values.packed() || values.count() != dims[0] * dims[1] * dims[2] || values.count() == 0)
+    fail_internal("fine_bricks: the array does not fit the lattice");
+  FineBricks r;
+  for (size_t a = 0; a < 3; ++a) r.dims[a] = (std::max<size_t>(dims[a], 2) - 2) / FineBricks::edge + 1;
+  r.ranges.resize(r.dims[0] * r.dims[1] * r.dims[2]);
+  dispatch(values, [&](auto view) {
+    using T = std::remove_cvref_t<decltype(view.data[0])>;
+    parallel_for(r.dims[1] * r.dims[2], 8, [&](size_t begin, size_t end) {
+      std::vector<T> lo, hi;
+      for (size_t row = begin; row < end; ++row)
+        range_row(view.data, dims, (row % r.dims[1]) * FineBricks::edge, (row / r.dims[1]) * FineBricks::edge, lo, hi,
+                  &r.ranges[row * r.dims[0]], r.dims[0]);
+    });
+  });
+  return r;
+}
+
+MinMaxBricks coarse_bricks(const FineBricks& fine) {
+  MinMaxBricks r;
+  for (size_t a = 0; a < 3; ++a) r.dims[a] = (fine.dims[a] + 1) / 2;
+  r.ranges.assign(r.dims[0] * r.dims[1] * r.dims[2], {HUGE_VALF, -HUGE_VALF});
+  for (size_t k = 0; k < fine.dims[2]; ++k)
+    for (size_t j = 0; j < fine.dims[1]; ++j)
+      for (size_t i = 0; i < fine.dims[0]; ++i) {
+        const MinMaxBricks::Range from = fine.ranges[fine.id(i, j, k)];
+        MinMaxBricks::Range& to = r.ranges[r.id(i / 2, j / 2, k / 2)];
+        to.lo = std::min(to.lo, from.lo), to.hi = std::max(to.hi, from.hi);
+      }
+  return r;
+}
+
+std::vector<uint8_t> distance_to_drawn(const FineBricks& bricks, const Transfer& transfer, bool& any_empty, const MinMaxBricks* coarse) {
   Bits reached(bricks.dims), flat(bricks.dims), newly(bricks.dims);
   const size_t rows = reached.ny * reached.nz;
+  const Clearness clear(transfer);
   std::vector<uint8_t> distance(bricks.size() + 3, uint8_t(farthest));
   const auto mark = [&](size_t row, const uint64_t* bits, int level) {
     for (size_t w = 0; w < reached.words; ++w)
@@ -55,15 +140,21 @@ std::vector<uint8_t> distance_to_drawn(const MinMaxBricks& bricks, const Transfe
       rows, rows_at_once, size_t(0),
       [&](size_t begin, size_t end) {
         size_t empty = 0;
-        for (size_t r = begin; r < end; ++r) {
-          uint64_t* to = &reached.bits[r * reached.words];
-          for (size_t x = 0; x < reached.nx; ++x) {
-            const MinMaxBricks::Range& range = bricks.ranges[r * reached.nx + x];
-            if (transfer.clear(range.lo, range.hi)) ++empty;
-            else to[x / 64] |= uint64_t(1) << x % 64;
+        for (size_t r = begin; r < end; ++r)
+          for (size_t w = 0; w < reached.words; ++w) {
+            uint64_t drawn = 0;
+            const size_t x0 = 64 * w, n = std::min<size_t>(64, reached.nx - x0);
+            const MinMaxBricks::Range* range = &bricks.ranges[r * reached.nx + x0];
+            const MinMaxBricks::Range* above =
+                coarse ? &coarse->ranges[coarse->id(x0 / 2, r % reached.ny / 2, r / reached.ny / 2)] : nullptr;
+            for (size_t x = 0; x < n; x += 2) {
+              if (above && clear(above[x / 2])) continue;
+              for (size_t i = x; i < std::min(x + 2, n); ++i)
+                if (!clear(range[i])) drawn |= uint64_t(1) << i, distance[r * reached.nx + x0 + i] = 0;
+            }
+            reached.bits[r * reached.words + w] = drawn;
+            empty += n - size_t(std::popcount(drawn));
           }
-          mark(r, to, 0);
-        }
         return empty;
       },
       [](size_t a, size_t b) { return a + b; });

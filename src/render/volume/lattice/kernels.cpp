@@ -29,21 +29,6 @@ void sample(const Voxels& voxels, const float* ux, const float* uy, const float*
 }
 
 template <class T>
-void entries(const Voxels& voxels, const LinearTable& table, const float first[3], const float by[3], int s, Run& run) {
-  for (int n = 0; n < run_length; ++n) {
-    const float f = float(s + n);
-    run.ux[n] = first[0] + f * by[0], run.uy[n] = first[1] + f * by[1], run.uz[n] = first[2] + f * by[2];
-  }
-  sample<T>(voxels, run.ux, run.uy, run.uz, run.value);
-  for (int n = 0; n < run_length; ++n) {
-    const float at = (run.value[n] - table.first) * table.per_axis;
-    if (run.value[n] != run.value[n]) run.entry[n] = table.count + 2;
-    else if (!(at >= 0)) run.entry[n] = 0;
-    else run.entry[n] = at > float(table.count) ? table.count + 1 : std::min(int(at), table.count - 1) + 1;
-  }
-}
-
-template <class T>
 void gradients(const Voxels& voxels, const float* const u[3], const float* centre, Gradients& out) {
   alignas(64) float below[run_length], above[run_length], lo[run_length], hi[run_length], apart[run_length];
   float* result[3] = {out.x, out.y, out.z};
@@ -71,36 +56,9 @@ void gradients(const Voxels& voxels, const float* const u[3], const float* centr
   for (float& c : out.per_cell) c = std::sqrt(c);
 }
 
-void shade(const ShadePlan& plan, const LitRay& lit, const Gradients& g, Shading& out) {
-  const auto& m = plan.to_world;
-  const Material& material = lit.material;
-  for (int n = 0; n < run_length; ++n) {
-    const Vec3f normal{m[0][0] * g.x[n] + m[0][1] * g.y[n] + m[0][2] * g.z[n], m[1][0] * g.x[n] + m[1][1] * g.y[n] + m[1][2] * g.z[n],
-                       m[2][0] * g.x[n] + m[2][1] * g.y[n] + m[2][2] * g.z[n]};
-    const float square = dot(normal, normal);
-    const float surface = std::min(1.0f, g.per_cell[n] * plan.per_scale);  // how far this is a surface
-    if (!(square > 0) || !(square < 1e30f)) {
-      out.diffuse[n] = 1, out.specular[n] = 0;
-      continue;
-    }
-    const float side = (dot(normal, lit.direction) > 0 ? -1.0f : 1.0f) / std::sqrt(square);
-    float diffuse = 0, specular = 0;
-    for (const LitRay::One& l : lit.lights) {
-      const float d = side * dot(normal, l.light);
-      if (!(d > 0)) continue;
-      diffuse += l.intensity * d;
-      float h = std::max(0.0f, side * dot(normal, l.half));
-      for (int i = 0; i < 5; ++i) h *= h;  // the material's default power, 32
-      specular += l.intensity * h;
-    }
-    out.diffuse[n] = 1 + surface * (material.ambient + material.diffuse * diffuse - 1);
-    out.specular[n] = surface * (material.specular * specular);
-  }
-}
-
 template <class T>
 Kernels kernels_for() {
-  return {sample<T>, entries<T>, gradients<T>, shade};
+  return {sample<T>, gradients<T>};
 }
 
 }  // namespace

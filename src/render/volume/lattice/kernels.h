@@ -31,12 +31,6 @@ struct Gradients {
   alignas(64) float per_cell[run_length];                         ///< change of the value over the length of a cell
 };
 
-/// Phong terms: a factor of the colour, and white on top of it.
-struct Shading {
-  alignas(64) float diffuse[run_length];
-  alignas(64) float specular[run_length];
-};
-
 struct LightEffects;
 
 /// A light and the half vector towards the viewer, as seen along one ray.
@@ -68,12 +62,8 @@ struct LinearTable {
 struct Kernels {
   /// Trilinear values at places in u (clamped to the lattice); NaN where a corner is NaN.
   void (*sample)(const Voxels& voxels, const float* ux, const float* uy, const float* uz, float* values);
-  /// Places first + (s + n) by, values and table entries of a run.
-  void (*entries)(const Voxels& voxels, const LinearTable& table, const float first[3], const float by[3], int s, Run& run);
   /// Central differences over one cell to each side (one-sided at the border and beside NaN), q = u.
   void (*gradients)(const Voxels& voxels, const float* const u[3], const float* centre, Gradients& out);
-  /// Phong's model on both sides of the gradient; where the field is flat the colour stays as it is.
-  void (*shade)(const ShadePlan& plan, const LitRay& lit, const Gradients& g, Shading& out);
 };
 /// The scalar reference, and the best for this machine.
 Kernels scalar_kernels(const Voxels& voxels);

@@ -116,28 +116,6 @@ HWY_ATTR void sample(const Voxels& voxels, const float* ux, const float* uy, con
 }
 
 template <class T>
-HWY_ATTR void entries(const Voxels& voxels, const LinearTable& table, const float first[3], const float by[3], int s, Run& run) {
-  const D d;
-  const DI di;
-  const Source<T> source(voxels);
-  const F count = hn::Set(d, float(table.count));
-  for (size_t n = 0; n < size_t(run_length); n += hn::Lanes(d)) {
-    const F f = hn::ConvertTo(d, hn::Iota(di, s + int(n)));
-    const F x = hn::Add(hn::Set(d, first[0]), hn::Mul(f, hn::Set(d, by[0]))),
-            y = hn::Add(hn::Set(d, first[1]), hn::Mul(f, hn::Set(d, by[1])));
-    const F z = hn::Add(hn::Set(d, first[2]), hn::Mul(f, hn::Set(d, by[2])));
-    const F v = source.value(place(x, source.top[0]), place(y, source.top[1]), place(z, source.top[2]));
-    hn::Store(x, d, run.ux + n), hn::Store(y, d, run.uy + n), hn::Store(z, d, run.uz + n), hn::Store(v, d, run.value + n);
-    const F at = hn::Mul(hn::Sub(v, hn::Set(d, table.first)), hn::Set(d, table.per_axis));
-    I e = hn::Add(hn::Min(hn::ConvertTo(di, hn::Max(hn::Min(at, count), hn::Zero(d))), hn::Set(di, table.count - 1)), hn::Set(di, 1));
-    e = hn::IfThenElse(hn::RebindMask(di, hn::Gt(at, count)), hn::Set(di, table.count + 1), e);
-    e = hn::IfThenElse(hn::RebindMask(di, hn::Ge(at, hn::Zero(d))), e, hn::Zero(di));
-    e = hn::IfThenElse(hn::RebindMask(di, hn::Eq(v, v)), e, hn::Set(di, table.count + 2));
-    hn::Store(e, di, run.entry + n);
-  }
-}
-
-template <class T>
 HWY_ATTR void gradients(const Voxels& voxels, const float* const u[3], const float* centre, Gradients& out) {
   const D d;
   const Source<T> source(voxels);
@@ -167,43 +145,9 @@ HWY_ATTR void gradients(const Voxels& voxels, const float* const u[3], const flo
   }
 }
 
-HWY_ATTR inline F dot3(F x, F y, F z, float a, float b, float c) {
-  const D d;
-  return hn::Add(hn::Add(hn::Mul(hn::Set(d, a), x), hn::Mul(hn::Set(d, b), y)), hn::Mul(hn::Set(d, c), z));
-}
-
-HWY_ATTR void shade(const ShadePlan& plan, const LitRay& lit, const Gradients& g, Shading& out) {
-  const D d;
-  const auto& m = plan.to_world;
-  const F zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-  for (size_t n = 0; n < size_t(run_length); n += hn::Lanes(d)) {
-    const F gx = hn::Load(d, g.x + n), gy = hn::Load(d, g.y + n), gz = hn::Load(d, g.z + n);
-    const F x = dot3(gx, gy, gz, m[0][0], m[0][1], m[0][2]), y = dot3(gx, gy, gz, m[1][0], m[1][1], m[1][2]),
-            z = dot3(gx, gy, gz, m[2][0], m[2][1], m[2][2]);
-    const F square = hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
-    const auto bent = hn::And(hn::Gt(square, zero), hn::Lt(square, hn::Set(d, 1e30f)));
-    const F surface = hn::Min(hn::Mul(hn::Load(d, g.per_cell + n), hn::Set(d, plan.per_scale)), one);
-    const auto away = hn::Gt(dot3(x, y, z, lit.direction.x, lit.direction.y, lit.direction.z), zero);
-    const F side = hn::Div(hn::IfThenElse(away, hn::Set(d, -1.0f), one), hn::Sqrt(square));
-    F diffuse = zero, specular = zero;
-    for (const LitRay::One& l : lit.lights) {
-      const F c = hn::Mul(side, dot3(x, y, z, l.light.x, l.light.y, l.light.z));
-      const auto lit_side = hn::Gt(c, zero);
-      const F intensity = hn::Set(d, l.intensity);
-      diffuse = hn::Add(diffuse, hn::IfThenElseZero(lit_side, hn::Mul(intensity, c)));
-      F h = hn::Max(hn::Mul(side, dot3(x, y, z, l.half.x, l.half.y, l.half.z)), zero);
-      for (int i = 0; i < 5; ++i) h = hn::Mul(h, h);
-      specular = hn::Add(specular, hn::IfThenElseZero(lit_side, hn::Mul(intensity, h)));
-    }
-    const F factor = hn::Sub(hn::Add(hn::Set(d, lit.material.ambient), hn::Mul(hn::Set(d, lit.material.diffuse), diffuse)), one);
-    hn::Store(hn::IfThenElse(bent, hn::Add(one, hn::Mul(surface, factor)), one), d, out.diffuse + n);
-    hn::Store(hn::IfThenElse(bent, hn::Mul(surface, hn::Mul(hn::Set(d, lit.material.specular), specular)), zero), d, out.specular + n);
-  }
-}
-
 template <class T>
 Kernels kernels_for() {
-  return {sample<T>, entries<T>, gradients<T>, shade};
+  return {sample<T>, gradients<T>};
 }
 #endif
 

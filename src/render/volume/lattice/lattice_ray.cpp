@@ -40,11 +40,18 @@ class Axis {
   long samples_;
 };
 
-template <class T>
-class LatticeRay final : public RayField {
+/// A walker that another one asks for its field.
+class LatticeWalker : public RayField {
  public:
-  LatticeRay(std::shared_ptr<const Volume> v, const Invisible& invisible)
-      : volume_(std::move(v)),
+  virtual float at(double t) = 0;
+};
+
+template <class T>
+class LatticeRay final : public LatticeWalker {
+ public:
+  LatticeRay(std::shared_ptr<const Volume> v, const Invisible& invisible, std::unique_ptr<LatticeWalker> second)
+      : second_(std::move(second)),
+        volume_(std::move(v)),
         v_(*volume_),
         invisible_(invisible),
         axes_{Axis(v_, 0), Axis(v_, 1), Axis(v_, 2)},
@@ -53,6 +60,7 @@ class LatticeRay final : public RayField {
         layer_(v_.voxels.dims[0] * v_.voxels.dims[1]) {}
 
   void start(Vec3 origin, Vec3 direction, double from, double to) override {
+    if (second_) second_->start(origin, direction, from, to);
     c_ = course(v_, origin, direction, from, to);
     t_ = c_.enter, end_ = c_.leave, brick_ = size_t(-1);
     for (int a = 0; a < 3; ++a) {
@@ -86,9 +94,70 @@ class LatticeRay final : public RayField {
 
   double entry() const override { return c_.enter; }
 
-  Vec3f gradient(const Stretch&, double t) override {
-    Vec3 q, slope;
+  Vec3f gradient(const Stretch&, double t) override { return gradient_at(c_.start + c_.along * t); }
+
+  /// Differences of the gradient over half a cell to each side.
+  bool bend(const Stretch&, double t, SecondDerivatives& h) override {
+    // At the border, those of the nearest place whose differences have samples on both sides.
+    Vec3 q = c_.start + c_.along * t, rows[3];
+    for (int a = 0; a < 3; ++a)
+      if (const long last = axes_[a].last(); last >= 4)
+        q[a] = std::clamp(q[a], 0.5 * (axes_[a].sample(1) + axes_[a].sample(2)),
+                          0.5 * (axes_[a].sample(last - 2) + axes_[a].sample(last - 1)));
+    for (int a = 0; a < 3; ++a) {
+      const double edge = v_.cell_length(a, q[a]), from = std::max(q[a] - 0.5 * edge, axes_[a].sample(0)),
+                   to = std::min(q[a] + 0.5 * edge, axes_[a].sample(axes_[a].last()));
+      Vec3 lo = q, hi = q;
+      lo[a] = from, hi[a] = to;
+      const Vec3f below = gradient_at(lo), above = gradient_at(hi);
+      rows[a] = to > from ? Vec3(above - below) / (to - from) : Vec3{0, 0, 0};
+    }
+    // From q to the world by the transpose of world -> q.
+    double m[3][3] = {};
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 3; ++c)
+        for (int a = 0; a < 3; ++a) m[r][c] += v_.to_q.m[a][r] * rows[a][c];
+    h = {float(m[0][0]),
+         float(m[1][1]),
+         float(m[2][2]),
+         float(0.5 * (m[0][1] + m[1][0])),
+         float(0.5 * (m[0][2] + m[2][0])),
+         float(0.5 * (m[1][2] + m[2][1]))};
+    return true;
+  }
+
+  int samples(const Stretch&, double t, float values[8], float shares[8]) override {
+    if (v_.nearest) return 0;
+    long cell[3];
+    double f[3];
+    for (int a = 0; a < 3; ++a) {
+      const double q = std::clamp(c_.start[a] + t * c_.along[a], axes_[a].sample(0), axes_[a].sample(axes_[a].last()));
+      cell[a] = axes_[a].cell(long(v_.u(a, q))), f[a] = axes_[a].fraction(cell[a], q);
+    }
+    load(cell);
+    int n = 0;
+    double all = 0;
+    for (int c = 0; c < 8; ++c) {
+      if (corner_[c] != corner_[c]) continue;
+      const double share = (c & 1 ? f[0] : 1 - f[0]) * (c & 2 ? f[1] : 1 - f[1]) * (c & 4 ? f[2] : 1 - f[2]);
+      values[n] = corner_[c], shares[n++] = float(share), all += share;
+    }
+    for (int i = 0; i < n; ++i) shares[i] = float(double(shares[i]) / all);
+    return all > 0 ? n : 0;
+  }
+
+  float second(const Stretch& s, double t) override { return second_ ? second_->at(t) : (void(s), NAN); }
+  /// Value at t of the ray that was started, base included.
+  float at(double t) override {
+    Vec3 q;
     for (int a = 0; a < 3; ++a) q[a] = std::clamp(c_.start[a] + t * c_.along[a], axes_[a].sample(0), axes_[a].sample(axes_[a].last()));
+    return value_at(q) + v_.base;
+  }
+
+ private:
+  Vec3f gradient_at(Vec3 q) {
+    Vec3 slope;
+    for (int a = 0; a < 3; ++a) q[a] = std::clamp(q[a], axes_[a].sample(0), axes_[a].sample(axes_[a].last()));
     float centre = NAN;
     for (int a = 0; a < 3; ++a) {
       const double edge = v_.cell_length(a, q[a]);
@@ -112,7 +181,6 @@ class LatticeRay final : public RayField {
     return Vec3f(world);
   }
 
- private:
   double crossing(int a) const {
     if (c_.along[a] == 0) return HUGE_VAL;
     return std::max((axes_[a].side(box_[a] + (c_.along[a] > 0)) - c_.start[a]) * per_along_[a], t_);
@@ -252,6 +320,7 @@ class LatticeRay final : public RayField {
     return v_.dual ? around_holes(f) : NAN;
   }
 
+  std::unique_ptr<LatticeWalker> second_;
   std::shared_ptr<const Volume> volume_;
   const Volume& v_;
   Invisible invisible_;
@@ -270,30 +339,35 @@ class LatticeRay final : public RayField {
   bool holes_ = false;
 };
 
+std::unique_ptr<LatticeWalker> walker_of(const std::shared_ptr<const Volume>& v, const Invisible& invisible,
+                                         std::unique_ptr<LatticeWalker> second) {
+  switch (v->voxels.array.type()) {
+    case ElementType::u8: return std::make_unique<LatticeRay<uint8_t>>(v, invisible, std::move(second));
+    case ElementType::i8: return std::make_unique<LatticeRay<int8_t>>(v, invisible, std::move(second));
+    case ElementType::u16: return std::make_unique<LatticeRay<uint16_t>>(v, invisible, std::move(second));
+    case ElementType::i16: return std::make_unique<LatticeRay<int16_t>>(v, invisible, std::move(second));
+    case ElementType::f32: return std::make_unique<LatticeRay<float>>(v, invisible, std::move(second));
+    default: fail_internal("a volume's samples were not narrowed");
+  }
+}
+
 class LatticeSource final : public RaySource {
  public:
-  explicit LatticeSource(std::shared_ptr<const Volume> v) : volume_(std::move(v)) {
+  LatticeSource(std::shared_ptr<const Volume> v, std::shared_ptr<const Volume> second) : volume_(std::move(v)), second_(std::move(second)) {
     base = volume_->base, bounds = volume_->bounds, edge = volume_->edge;
   }
   std::unique_ptr<RayField> walker() const override {
-    switch (volume_->voxels.array.type()) {
-      case ElementType::u8: return std::make_unique<LatticeRay<uint8_t>>(volume_, invisible);
-      case ElementType::i8: return std::make_unique<LatticeRay<int8_t>>(volume_, invisible);
-      case ElementType::u16: return std::make_unique<LatticeRay<uint16_t>>(volume_, invisible);
-      case ElementType::i16: return std::make_unique<LatticeRay<int16_t>>(volume_, invisible);
-      case ElementType::f32: return std::make_unique<LatticeRay<float>>(volume_, invisible);
-      default: fail_internal("a volume's samples were not narrowed");
-    }
+    return walker_of(volume_, invisible, second_ ? walker_of(second_, {}, nullptr) : nullptr);
   }
 
  private:
-  std::shared_ptr<const Volume> volume_;
+  std::shared_ptr<const Volume> volume_, second_;
 };
 
 }  // namespace
 
-std::unique_ptr<RaySource> lattice_source(std::shared_ptr<const Volume> volume) {
-  return std::make_unique<LatticeSource>(std::move(volume));
+std::unique_ptr<RaySource> lattice_source(std::shared_ptr<const Volume> volume, std::shared_ptr<const Volume> second) {
+  return std::make_unique<LatticeSource>(std::move(volume), std::move(second));
 }
 
 }  // namespace sg::volume

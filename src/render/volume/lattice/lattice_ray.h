@@ -10,6 +10,7 @@ namespace sg::volume {
 
 /// Point samples: cubics of the trilinear cells, exactly. Cell fields: trilinear between the middles of the cells; beside a cell
 /// without a value the mean of the corners that have one, as the cubic through four places. Labels: constant around each sample.
-std::unique_ptr<RaySource> lattice_source(std::shared_ptr<const Volume> volume);
+/// `second`: another field of the same grid, for RayField::second; may be null.
+std::unique_ptr<RaySource> lattice_source(std::shared_ptr<const Volume> volume, std::shared_ptr<const Volume> second = nullptr);
 
 }  // namespace sg::volume

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "index/minmax_bricks.h"
+#include "render/volume/lattice/empty_space.h"
 #include "render/volume/lattice/kernels.h"
 #include "render/volume/optics/ray_state.h"
 #include "render/volume/optics/transfer.h"
@@ -29,9 +30,10 @@ void composite_volumes(const Scene& scene, const Projection& projection, const F
 /// What a volume needs of its field, whoever looks at it: kept in the dataset's memo.
 struct LatticeSamples {
   Voxels voxels;
-  float base = 0;               ///< value = stored + base
-  std::vector<uint8_t> hidden;  ///< per cell of the lattice: draws nothing; may be empty
-  MinMaxBricks bricks;
+  float base = 0;                        ///< value = stored + base
+  std::vector<uint8_t> hidden;           ///< per cell of the lattice: draws nothing; may be empty
+  FineBricks fine;                       ///< for empty space
+  MinMaxBricks bricks;                   ///< for maxima
   double lo = HUGE_VAL, hi = -HUGE_VAL;  ///< of the finite values stored; lo > hi when there are none
 };
 
@@ -48,7 +50,7 @@ struct Volume {
   Box3 bounds;                     ///< world
   std::vector<Transfer> transfer;  ///< one
   Kernels kernels{};
-  bool direct = false;  ///< affine, a linear table, no holes to look after: kernels.entries does all
+  bool direct = false;  ///< affine, a linear table, no holes to look after: packets may draw it
   ShadePlan shade_plan{};
 
   // world -> q
@@ -61,12 +63,13 @@ struct Volume {
   double slices_per_q[3] = {};
 
   std::shared_ptr<const LatticeSamples> samples;
-  std::vector<uint8_t> distance;  ///< in bricks to the next that draws something (composite), see empty_space.h
-  bool any_empty = true;          ///< is there a brick that draws nothing?
-  std::vector<double> border[3];  ///< q of the brick sides, dims+1
-  Vec3 margin;                    ///< q: rounding errors of places are smaller
+  std::vector<uint8_t> distance;                  ///< in fine bricks to the next that draws something (composite)
+  bool any_empty = true;                          ///< is there a brick that draws nothing?
+  std::vector<double> border[3], fine_border[3];  ///< q of the sides of bricks, dims+1
+  Vec3 margin;                                    ///< q: rounding errors of places are smaller
 
   const MinMaxBricks& bricks() const { return samples->bricks; }
+  const FineBricks& fine() const { return samples->fine; }
   const std::vector<uint8_t>& hidden() const { return samples->hidden; }
 
   Vec3 q(Vec3 world) const { return to_q * (world - origin); }
@@ -86,19 +89,5 @@ struct Course {
   double enter = 0, leave = -1;  ///< inside the box, and within the limits asked for
 };
 Course course(const Volume& volume, Vec3 origin, Vec3 direction, double from, double to);
-
-/// Integrates [from, to] of one volume or, in common steps (the shortest of theirs), of several that overlap there. Samples lie in the
-/// middle of their steps; the last step has what length is left. Stops when less than knobs.stop_below of the light passes.
-void march(const Volume& volume, const Course& course, double from, double to, const LitRay& lit, const Knobs& knobs, RayState& state);
-void march_together(const Volume* const* volumes, const Course* const* courses, size_t count, double from, double to, const LitRay& lit,
-                    const Knobs& knobs, RayState& state);
-
-/// The largest value along the course, exactly that of the trilinear field.
-struct Maximum {
-  float value;  ///< stored
-  double t;
-  bool found;
-};
-Maximum maximum_along(const Volume& volume, const Course& course, const Knobs& knobs);
 
 }  // namespace sg::volume

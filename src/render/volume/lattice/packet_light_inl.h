@@ -31,7 +31,8 @@ class CellLight {
     for (size_t l = 0; l < plan.lamps.size(); ++l) {
       // Half way between the light and the viewer.
       const Vec3 to = plan.lamps[l].direction;
-      const F x = hn::Sub(hn::Set(d, float(to.x)), ray_[0]), y = hn::Sub(hn::Set(d, float(to.y)), ray_[1]), z = hn::Sub(hn::Set(d, float(to.z)), ray_[2]);
+      const F x = hn::Sub(hn::Set(d, float(to.x)), ray_[0]), y = hn::Sub(hn::Set(d, float(to.y)), ray_[1]),
+              z = hn::Sub(hn::Set(d, float(to.z)), ray_[2]);
       const F length = hn::Sqrt(hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z)));
       const F per = hn::IfThenElseZero(hn::Gt(length, hn::Zero(d)), hn::Div(hn::Set(d, 1.0f), length));
       half_[l][0] = hn::Mul(x, per), half_[l][1] = hn::Mul(y, per), half_[l][2] = hn::Mul(z, per);
@@ -123,7 +124,9 @@ class CellLight {
   }
 
  private:
-  static HWY_INLINE F dot(const F a[3], const F b[3]) { return hn::Add(hn::Add(hn::Mul(a[0], b[0]), hn::Mul(a[1], b[1])), hn::Mul(a[2], b[2])); }
+  static HWY_INLINE F dot(const F a[3], const F b[3]) {
+    return hn::Add(hn::Add(hn::Mul(a[0], b[0]), hn::Mul(a[1], b[1])), hn::Mul(a[2], b[2]));
+  }
 
   /// World gradient at the share s of the way.
   HWY_INLINE void gradient(const F from[3], const F way[3], F s, F out[3]) const {

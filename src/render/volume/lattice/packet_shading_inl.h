@@ -23,9 +23,9 @@ template <class D, class T>
 struct SlopeFinder {
   const Source<D, T>& source;
   Place<D> at[3];
-  Int<D> lower[3], upper[3];           // cells one before and one after, inside the lattice
-  hn::Vec<D> f_lower[3], f_upper[3];   // fractions there
-  hn::Mask<D> first[3], last[3];       // in the first or last cell of an axis?
+  Int<D> lower[3], upper[3];          // cells one before and one after, inside the lattice
+  hn::Vec<D> f_lower[3], f_upper[3];  // fractions there
+  hn::Mask<D> first[3], last[3];      // in the first or last cell of an axis?
   bool inner = true;
 
   HWY_INLINE SlopeFinder(const Source<D, T>& s, hn::Vec<D> x, hn::Vec<D> y, hn::Vec<D> z) : source(s) {
@@ -75,13 +75,13 @@ struct SlopeFinder {
     hi[0] = mixed(d, plane(b00, b01, fx, fy), plane(b10, b11, fx, fy), fz);
     const auto m00 = mixed(d, a00.b, b00.a, fx), m01 = mixed(d, a01.b, b01.a, fx), m10 = mixed(d, a10.b, b10.a, fx),
                m11 = mixed(d, a11.b, b11.a, fx);
-    lo[1] = mixed(d, mixed(d, line(hn::Sub(corner, row), fx), m00, fy),
-                  mixed(d, line(hn::Add(hn::Sub(corner, row), layer), fx), m10, fy), fz);
+    lo[1] =
+        mixed(d, mixed(d, line(hn::Sub(corner, row), fx), m00, fy), mixed(d, line(hn::Add(hn::Sub(corner, row), layer), fx), m10, fy), fz);
     const auto two_rows = hn::Add(row, row), two_layers = hn::Add(layer, layer);
     hi[1] = mixed(d, mixed(d, m01, line(hn::Add(corner, two_rows), fx), fy),
                   mixed(d, m11, line(hn::Add(hn::Add(corner, two_rows), layer), fx), fy), fz);
-    lo[2] = mixed(d, mixed(d, line(hn::Sub(corner, layer), fx), line(hn::Add(hn::Sub(corner, layer), row), fx), fy),
-                  mixed(d, m00, m01, fy), fz);
+    lo[2] = mixed(d, mixed(d, line(hn::Sub(corner, layer), fx), line(hn::Add(hn::Sub(corner, layer), row), fx), fy), mixed(d, m00, m01, fy),
+                  fz);
     hi[2] = mixed(d, mixed(d, m10, m11, fy),
                   mixed(d, line(hn::Add(corner, two_layers), fx), line(hn::Add(hn::Add(corner, two_layers), row), fx), fy), fz);
   }
@@ -90,7 +90,7 @@ struct SlopeFinder {
     return mixed(D(), p.a, p.b, fx);
   }
 
-  HWY_INLINE Slope<D> find(hn::Vec<D> middle) const {
+  HWY_INLINE Slope<D> find() const {
     const D d;
     const auto one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
     hn::Vec<D> lo[3], hi[3], out[3];
@@ -100,6 +100,7 @@ struct SlopeFinder {
       auto change = hn::Sub(hi[a], lo[a]);
       auto slope = hn::Mul(change, half);
       if (!inner || !hn::AllFalse(d, hn::Ne(change, change))) {
+        const auto middle = source.value(at[0], at[1], at[2]);
         const auto lo_good = hn::Eq(lo[a], lo[a]), hi_good = hn::Eq(hi[a], hi[a]);
         auto apart = hn::Add(hn::IfThenElse(first[a], at[a].fraction, one), hn::IfThenElse(last[a], hn::Sub(one, at[a].fraction), one));
         apart = hn::IfThenElse(lo_good, apart, hn::Mul(apart, half));
@@ -118,14 +119,12 @@ template <class D, class T>
 class ShadeQueue {
   using F = hn::Vec<D>;
   static constexpr size_t lanes_ = lanes_of<D>;
-  enum { at_x, at_y, at_z, at_value, at_r, at_g, at_b, at_flash, at_lane, parts };
+  enum { at_sample, at_r, at_g, at_b, at_flash, at_lane, parts };
 
  public:
-  HWY_INLINE ShadeQueue(const PacketPlan& plan, const RayPacket& rays, PacketResult& result)
-      : plan_(plan), rays_(rays), result_(result), source_(plan.volume.voxels) {
-    if (!plan.volume.shaded) return;
+  HWY_INLINE void start(const PacketPlan& plan, const RayPacket& rays) {
+    count_ = 0;
     const D d;
-    for (size_t n = 0; n < lanes_; ++n) result.r[n] = result.g[n] = result.b[n] = 0;
     for (size_t l = 0; l < plan.lamps.size(); ++l) {
       // Half way between the light and the viewer.
       const Vec3 to = plan.lamps[l].direction;
@@ -138,51 +137,60 @@ class ShadeQueue {
     }
   }
 
-  /// Colours and `flash` (the share of what is mirrored) are weighted already.
-  HWY_INLINE void push(hn::Mask<D> which, F x, F y, F z, F value, F r, F g, F b, F flash) {
+  /// The number of the sample; negative: the last, shorter step. Colours and `flash` (the share of what is mirrored) are weighted already.
+  HWY_INLINE void push(const PacketPlan& plan, const RayPacket& rays, PacketResult& result, hn::Mask<D> which, F sample, F r, F g, F b,
+                       F flash) {
     const D d;
-    const F part[parts] = {x, y, z, value, r, g, b, flash, hn::ConvertTo(d, hn::Iota(IntTag<D>(), 0))};
+    const F part[parts] = {sample, r, g, b, flash, hn::ConvertTo(d, hn::Iota(IntTag<D>(), 0))};
     size_t n = 0;
     for (int i = 0; i < parts; ++i) n = hn::CompressStore(part[i], which, d, queue_[i] + count_);
     count_ += n;
     if (count_ < lanes_) return;
-    light(lanes_);
+    light(plan, rays, result, lanes_);
     count_ -= lanes_;
     for (auto& q : queue_) hn::Store(hn::Load(d, q + lanes_), d, q);
   }
-  HWY_INLINE void finish() {
+  HWY_INLINE void finish(const PacketPlan& plan, const RayPacket& rays, PacketResult& result) {
     if (count_ == 0) return;
     // What stands behind the last entry is old: any place will do.
-    const D d;
     for (auto& q : queue_)
       for (size_t n = count_; n < lanes_; ++n) q[n] = q[0];
-    (void)d;
-    light(count_);
+    light(plan, rays, result, count_);
   }
 
  private:
-  HWY_NOINLINE void light(size_t count) {
+  HWY_NOINLINE void light(const PacketPlan& plan, const RayPacket& rays, PacketResult& result, size_t count) {
     const D d;
-    const auto& m = plan_.volume.shade_plan.to_world;
-    const Material& material = plan_.material;
+    const auto& m = plan.volume.shade_plan.to_world;
+    const Material& material = plan.material;
     const F zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-    const SlopeFinder<D, T> finder(source_, hn::Load(d, queue_[at_x]), hn::Load(d, queue_[at_y]), hn::Load(d, queue_[at_z]));
-    const Slope<D> g = finder.find(hn::Load(d, queue_[at_value]));
+    const Source<D, T> source(plan.volume.voxels);
+    const auto lane = hn::IndicesFromVec(d, to_int(d, hn::Load(d, queue_[at_lane])));
+    const F sample = hn::Load(d, queue_[at_sample]);
+    const auto in_last = hn::Lt(sample, zero);
+    F at[3];
+    for (int a = 0; a < 3; ++a) {
+      at[a] = hn::Add(of_lanes(rays.first[a], lane), hn::Mul(sample, of_lanes(rays.by[a], lane)));
+      at[a] = hn::IfThenElse(in_last, of_lanes(rays.last[a], lane), at[a]);
+    }
+    const SlopeFinder<D, T> finder(source, at[0], at[1], at[2]);
+    const Slope<D> g = finder.find();
     const F x = turned(g, m[0]), y = turned(g, m[1]), z = turned(g, m[2]);
     const F square = hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
     const auto bent = hn::And(hn::Gt(square, zero), hn::Lt(square, hn::Set(d, 1e30f)));
-    const F surface = hn::Min(hn::Mul(g.per_cell, hn::Set(d, plan_.volume.shade_plan.per_scale)), one);
-    const auto lane = hn::IndicesFromVec(d, to_int(d, hn::Load(d, queue_[at_lane])));
-    const auto away = hn::Gt(dot(x, y, z, of_lanes(rays_.direction[0], lane), of_lanes(rays_.direction[1], lane), of_lanes(rays_.direction[2], lane)), zero);
+    const F surface = hn::Min(hn::Mul(g.per_cell, hn::Set(d, plan.volume.shade_plan.per_scale)), one);
+    const auto away =
+        hn::Gt(dot(x, y, z, of_lanes(rays.direction[0], lane), of_lanes(rays.direction[1], lane), of_lanes(rays.direction[2], lane)), zero);
     const F side = hn::Div(hn::IfThenElse(away, hn::Set(d, -1.0f), one), hn::Sqrt(square));
     F diffuse = zero, specular = zero;
-    for (size_t l = 0; l < plan_.lamps.size(); ++l) {
-      const Vec3f to(plan_.lamps[l].direction);
-      const F intensity = hn::Set(d, plan_.lamps[l].intensity);
+    for (size_t l = 0; l < plan.lamps.size(); ++l) {
+      const Vec3f to(plan.lamps[l].direction);
+      const F intensity = hn::Set(d, plan.lamps[l].intensity);
       const F c = hn::Mul(side, dot(x, y, z, hn::Set(d, to.x), hn::Set(d, to.y), hn::Set(d, to.z)));
       const auto lit = hn::Gt(c, zero);
       diffuse = hn::Add(diffuse, hn::IfThenElseZero(lit, hn::Mul(intensity, c)));
-      F h = hn::Max(hn::Mul(side, dot(x, y, z, of_lanes(half_[l][0], lane), of_lanes(half_[l][1], lane), of_lanes(half_[l][2], lane))), zero);
+      F h =
+          hn::Max(hn::Mul(side, dot(x, y, z, of_lanes(half_[l][0], lane), of_lanes(half_[l][1], lane), of_lanes(half_[l][2], lane))), zero);
       for (int i = 0; i < 5; ++i) h = hn::Mul(h, h);
       specular = hn::Add(specular, hn::IfThenElseZero(lit, hn::Mul(intensity, h)));
     }
@@ -193,7 +201,7 @@ class ShadeQueue {
     for (const int i : {at_r, at_g, at_b}) hn::Store(hn::Add(hn::Mul(hn::Load(d, queue_[i]), shade), flash), d, queue_[i]);
     for (size_t n = 0; n < count; ++n) {
       const auto to = size_t(queue_[at_lane][n]);
-      result_.r[to] += queue_[at_r][n], result_.g[to] += queue_[at_g][n], result_.b[to] += queue_[at_b][n];
+      result.r[to] += queue_[at_r][n], result.g[to] += queue_[at_g][n], result.b[to] += queue_[at_b][n];
     }
   }
   static HWY_INLINE F dot(F x, F y, F z, F a, F b, F c) { return hn::Add(hn::Add(hn::Mul(a, x), hn::Mul(b, y)), hn::Mul(c, z)); }
@@ -206,13 +214,9 @@ class ShadeQueue {
     return hn::TableLookupLanes(hn::Load(D(), values), lane);
   }
 
-  const PacketPlan& plan_;
-  const RayPacket& rays_;
-  PacketResult& result_;
-  const Source<D, T> source_;
   alignas(64) float half_[PacketPlan::most_lamps][3][most_lanes];
   alignas(64) float queue_[parts][3 * most_lanes];
-  size_t count_ = 0;
+  size_t count_;
 };
 
 }  // namespace sg::volume::HWY_NAMESPACE

@@ -29,7 +29,7 @@ struct PacketPlan {
 };
 
 /// May this volume be drawn by `march_tile`: affine, linear between samples, a linear transfer table, no hidden cells, offsets
-/// of 32 bits? The others take the way of march() and maximum_along().
+/// of 32 bits? The others go by single rays (optics/cast.h).
 bool in_packets(const PacketPlan& plan);
 
 /// Draws the pixels [x0, x1) x [y0, y1): fixed steps of volume.step, or the maximum, behind nothing and before what is in the frame

@@ -98,8 +98,7 @@ HWY_INLINE Pair<D> gather_pair(D d, const T* data, Int<D> at, Int<D> last_load) 
   const auto byte = sizeof(T) == 2 ? hn::ShiftLeft<1>(at) : at;
   const auto from = hn::Min(byte, last_load);
   const auto skipped = hn::ShiftLeft<3>(hn::Sub(byte, from));
-  const auto word = hn::BitCast(
-      di, hn::Shr(hn::BitCast(du, gather_words(d, data, from)), hn::BitCast(du, skipped)));
+  const auto word = hn::BitCast(di, hn::Shr(hn::BitCast(du, gather_words(d, data, from)), hn::BitCast(du, skipped)));
   if constexpr (std::is_signed_v<T>) {
     const auto a = hn::ShiftRight<32 - bits>(hn::ShiftLeft<32 - bits>(word)),
                b = hn::ShiftRight<32 - bits>(hn::ShiftLeft<32 - 2 * bits>(word));
@@ -131,8 +130,7 @@ struct Source {
     const IntTag<D> di;
     row = hn::Set(di, int(voxels.dims[0])), layer = hn::Set(di, int(voxels.dims[0] * voxels.dims[1]));
     last_load = hn::Set(di, int(voxels.array.bytes()) - 4);
-    for (size_t a = 0; a < 3; ++a)
-      top[a] = hn::Set(d, float(voxels.dims[a] - 1)), last_cell[a] = hn::Set(di, int(voxels.dims[a]) - 2);
+    for (size_t a = 0; a < 3; ++a) top[a] = hn::Set(d, float(voxels.dims[a] - 1)), last_cell[a] = hn::Set(di, int(voxels.dims[a]) - 2);
   }
   HWY_INLINE Place<D> place(int axis, hn::Vec<D> u) const {
     const D d;
@@ -140,9 +138,7 @@ struct Source {
     const auto cell = hn::Min(to_int(d, x), last_cell[axis]);
     return {cell, hn::Sub(x, hn::ConvertTo(d, cell))};
   }
-  HWY_INLINE Int<D> offset(Int<D> i, Int<D> j, Int<D> k) const {
-    return hn::Add(i, hn::Add(hn::Mul(j, row), hn::Mul(k, layer)));
-  }
+  HWY_INLINE Int<D> offset(Int<D> i, Int<D> j, Int<D> k) const { return hn::Add(i, hn::Add(hn::Mul(j, row), hn::Mul(k, layer))); }
   HWY_INLINE Pair<D> pair(Int<D> at) const {
     if constexpr (std::is_same_v<T, float>) return gather_pair(D(), data, at);
     else return gather_pair(D(), data, at, last_load);
@@ -161,7 +157,9 @@ struct Source {
 
 /// Pixels of a packet across and down.
 template <class D>
-constexpr int packet_width = lanes_of<D> >= 8 ? 4 : lanes_of<D> >= 4 ? 2 : 1;
+constexpr int packet_width = lanes_of<D> >= 8   ? 4
+                             : lanes_of<D> >= 4 ? 2
+                                                : 1;
 
 template <class DD>
 struct V3 {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Emission and absorption along packets of rays. Every lane has its own place on its own ray: a lane in empty bricks leaps, the
 // others do not wait for it. What is to be lit is queued, so that gradients are taken of full vectors only.
+#include <array>
+#include <memory>
+
 #include "render/volume/lattice/packet_rays.h"
 
 // Targets without gathers of their own share one version.
@@ -16,8 +19,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {
 
-/// Samples between two looks at the bricks.
-constexpr int samples_per_look = 4;
+/// Pairs of samples between two looks at the bricks; pairs, so that two chains of work overlap.
+constexpr int pairs_per_look = 2;
 
 /// Bricks that draw nothing, ready for gathers.
 template <class D>
@@ -29,7 +32,7 @@ struct Space {
   HWY_INLINE explicit Space(const Volume& v) : distance(v.distance.data()) {
     const D d;
     const IntTag<D> di;
-    const auto& dims = v.bricks().dims;
+    const auto& dims = v.fine().dims;
     row = hn::Set(di, int(dims[0])), layer = hn::Set(di, int(dims[0] * dims[1]));
     for (size_t a = 0; a < 3; ++a) last[a] = hn::Set(di, int(dims[a]) - 1), edges[a] = hn::Set(d, float(dims[a]));
     margin = hn::Set(d, float(std::max({v.margin.x, v.margin.y, v.margin.z})));
@@ -41,15 +44,13 @@ template <class D>
 struct Lanes {
   hn::Vec<D> first[3], by[3], per_by[3], s, end;
 
-  HWY_INLINE Lanes(const float (*from)[most_lanes], const RayPacket& r) {
+  HWY_INLINE Lanes(const RayPacket& r, const float (*per)[most_lanes], const float* at) {
     const D d;
-    for (int a = 0; a < 3; ++a) {
-      first[a] = hn::Load(d, from[a]), by[a] = hn::Load(d, r.by[a]);
-      per_by[a] = hn::Div(hn::Set(d, 1.0f), by[a]);
-    }
-    s = hn::Zero(d), end = hn::Load(d, r.steps);
+    for (int a = 0; a < 3; ++a) first[a] = hn::Load(d, r.first[a]), by[a] = hn::Load(d, r.by[a]), per_by[a] = hn::Load(d, per[a]);
+    s = hn::Load(d, at), end = hn::Load(d, r.steps);
   }
-  HWY_INLINE hn::Vec<D> u(int a) const { return hn::Add(first[a], hn::Mul(s, by[a])); }
+  HWY_INLINE hn::Vec<D> u(int a) const { return u(a, s); }
+  HWY_INLINE hn::Vec<D> u(int a, hn::Vec<D> sample) const { return hn::Add(first[a], hn::Mul(sample, by[a])); }
 };
 
 /// Takes the lanes that are `looking` to their next sample in a brick that draws something, or to their end.
@@ -63,7 +64,7 @@ HWY_INLINE void leap(const Source<D, T>& source, const Space<D>& space, Lanes<D>
     auto id = hn::Zero(di);
     for (int a = 2; a >= 0; --a) {
       const auto cell = to_int(d, hn::Max(zero, hn::Min(lanes.u(a), source.top[a])));
-      const auto b = hn::Min(hn::ShiftRight<MinMaxBricks::shift>(cell), space.last[a]);
+      const auto b = hn::Min(hn::ShiftRight<FineBricks::shift>(cell), space.last[a]);
       brick[a] = hn::ConvertTo(d, b);
       id = hn::Add(id, a == 2 ? hn::Mul(b, space.layer) : a == 1 ? hn::Mul(b, space.row) : b);
     }
@@ -76,13 +77,16 @@ HWY_INLINE void leap(const Source<D, T>& source, const Space<D>& space, Lanes<D>
     for (int a = 0; a < 3; ++a) {
       const auto forth = hn::Gt(lanes.by[a], zero);
       const auto side = hn::Add(brick[a], hn::IfThenElse(forth, reach, hn::Sub(one, reach)));
-      const auto at = hn::Add(hn::Mul(side, hn::Set(d, float(MinMaxBricks::edge))), hn::IfThenElse(forth, hn::Neg(space.margin), space.margin));
+      const auto at =
+          hn::Add(hn::Mul(side, hn::Set(d, float(FineBricks::edge))), hn::IfThenElse(forth, hn::Neg(space.margin), space.margin));
       const auto there = hn::Mul(hn::Sub(at, lanes.first[a]), lanes.per_by[a]);
       // Beyond the outermost bricks there is nothing else.
       const auto open = hn::Or(hn::Or(hn::Le(side, zero), hn::Ge(side, space.edges[a])), hn::Eq(lanes.by[a], zero));
       out = hn::IfThenElse(open, out, hn::Min(out, there));
     }
-    const auto next = hn::Min(hn::Max(hn::Add(lanes.s, one), hn::Ceil(out)), lanes.end);
+    // Always by twos, as samples are taken.
+    const auto next = hn::Mul(hn::Floor(hn::Mul(hn::Ceil(out), hn::Set(d, 0.5f))), hn::Set(d, 2.0f));
+    looking = hn::And(looking, hn::Gt(next, lanes.s));
     lanes.s = hn::IfThenElse(looking, next, lanes.s);
     looking = hn::And(looking, hn::Lt(lanes.s, lanes.end));
     if (hn::AllFalse(d, looking)) return;
@@ -130,87 +134,147 @@ HWY_INLINE hn::Vec<D> absorbed(D d, hn::Vec<D> x) {
   return hn::Add(hn::Sub(hn::Set(d, 1.0f), power), hn::Mul(power, e));
 }
 
+/// A packet on its way. The packets of a tile take turns, so that the voxels between two depths are met by all of them while they
+/// are near in the cache.
 template <class D, class T, bool shaded>
-HWY_INLINE void march_packet(const PacketPlan& plan, const RayPacket& rays, PacketResult& result) {
-  const D d;
+class March {
   using F = hn::Vec<D>;
-  const Volume& v = plan.volume;
-  const Source<D, T> source(v.voxels);
-  const Space<D> space(v);
-  const Transfer& transfer = v.transfer[0];
-  const Entries<D> entries(transfer.linear_table());
-  const auto* steps = reinterpret_cast<const float*>(transfer.steps());
-  const bool skip = plan.knobs.skip_empty && v.any_empty;
-  const F stop = hn::Set(d, plan.knobs.stop_below), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
 
-  Lanes<D> lanes(rays.first, rays);
-  F r = hn::Zero(d), g = r, b = r, pass = one, seen_half = hn::Set(d, -1.0f);
-  ShadeQueue<D, T> queue(plan, rays, result);
-  while (true) {
-    const auto on = hn::And(hn::Lt(lanes.s, lanes.end), hn::Ge(pass, stop));
-    if (hn::AllFalse(d, on)) break;
-    if (skip) leap(source, space, lanes, on);
-    // Places do not wait for what was found at those before: lanes that are through count on.
-    for (int look = 0; look < samples_per_look; ++look) {
-      const F x = lanes.u(0), y = lanes.u(1), z = lanes.u(2);
+ public:
+  RayPacket rays;
+  PacketResult result;
+
+  HWY_INLINE void start(const PacketPlan& plan) {
+    const D d;
+    for (int a = 0; a < 3; ++a) hn::Store(hn::Div(hn::Set(d, 1.0f), hn::Load(d, rays.by[a])), d, per_by_[a]);
+    hn::Store(hn::Zero(d), d, s_), hn::Store(hn::Set(d, 1.0f), d, result.transmittance), hn::Store(hn::Set(d, -1.0f), d, seen_half_);
+    hn::Store(hn::Zero(d), d, result.r), hn::Store(hn::Zero(d), d, result.g), hn::Store(hn::Zero(d), d, result.b);
+    if constexpr (shaded) queue_.start(plan, rays);
+  }
+
+  /// Goes on until no ray has samples before `until`; false when all are through.
+  HWY_INLINE bool go(const PacketPlan& plan, float until) {
+    const D d;
+    const Volume& v = plan.volume;
+    const Source<D, T> source(v.voxels);
+    const Space<D> space(v);
+    const Transfer& transfer = v.transfer[0];
+    const Entries<D> entries(transfer.linear_table());
+    const auto* steps = reinterpret_cast<const float*>(transfer.steps());
+    const bool skip = plan.knobs.skip_empty && v.any_empty;
+    const F stop = hn::Set(d, plan.knobs.stop_below), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
+
+    Lanes<D> lanes(rays, per_by_, s_);
+    F r = hn::Load(d, result.r), g = hn::Load(d, result.g), b = hn::Load(d, result.b);
+    F pass = hn::Load(d, result.transmittance), seen_half = hn::Load(d, seen_half_);
+    const F horizon = hn::Min(hn::Set(d, until), lanes.end);
+    while (true) {
+      const auto bright = hn::Ge(pass, stop);
+      if (hn::AllFalse(d, hn::And(hn::Lt(lanes.s, horizon), bright))) break;
+      if (skip) leap(source, space, lanes, hn::And(hn::Lt(lanes.s, lanes.end), bright));
+      // Places do not wait for what was found at those before: lanes that are through count on.
+      for (int look = 0; look < pairs_per_look; ++look) {
+        for (const float second : {0.0f, 1.0f}) {
+          const F s = hn::Add(lanes.s, hn::Set(d, second));
+          const F x = lanes.u(0, s), y = lanes.u(1, s), z = lanes.u(2, s);
+          const F value = source.value(source.place(0, x), source.place(1, y), source.place(2, z));
+          const auto entry = entries.at(value);
+          const Pair<D> b_pass = gather_pair(d, steps + 2, entry);
+          const auto active = hn::And(hn::Lt(s, lanes.end), hn::Ge(pass, stop));
+          const auto drawn = hn::And(active, hn::Lt(b_pass.b, one));
+          seen_half = hn::IfThenElse(hn::And(active, hn::Ge(pass, half)), s, seen_half);
+          const Pair<D> r_g = gather_pair(d, steps, entry);
+          const F weight = hn::IfThenElseZero(drawn, pass);
+          const F wr = hn::Mul(weight, r_g.a), wg = hn::Mul(weight, r_g.b), wb = hn::Mul(weight, b_pass.a);
+          if constexpr (shaded) {
+            if (!hn::AllFalse(d, drawn)) queue_.push(plan, rays, result, drawn, s, wr, wg, wb, hn::Mul(weight, hn::Sub(one, b_pass.b)));
+          } else {
+            r = hn::Add(r, wr), g = hn::Add(g, wg), b = hn::Add(b, wb);
+          }
+          pass = hn::IfThenElse(drawn, hn::Mul(pass, b_pass.b), pass);
+        }
+        lanes.s = hn::Add(lanes.s, hn::Set(d, 2.0f));
+      }
+    }
+    if constexpr (!shaded) hn::Store(r, d, result.r), hn::Store(g, d, result.g), hn::Store(b, d, result.b);
+    hn::Store(pass, d, result.transmittance), hn::Store(seen_half, d, seen_half_), hn::Store(lanes.s, d, s_);
+    return !hn::AllFalse(d, hn::And(hn::Lt(lanes.s, lanes.end), hn::Ge(pass, stop)));
+  }
+
+  /// The last step has what length is left.
+  HWY_INLINE void finish(const PacketPlan& plan) {
+    const D d;
+    const Volume& v = plan.volume;
+    const Source<D, T> source(v.voxels);
+    const Transfer& transfer = v.transfer[0];
+    const Entries<D> entries(transfer.linear_table());
+    F pass = hn::Load(d, result.transmittance);
+    alignas(64) float before[most_lanes];
+    hn::Store(pass, d, before);
+    const F rest = hn::Load(d, rays.rest);
+    const auto last = hn::And(hn::Gt(rest, hn::Zero(d)), hn::Ge(pass, hn::Set(d, plan.knobs.stop_below)));
+    if (!hn::AllFalse(d, last)) {
+      const F x = hn::Load(d, rays.last[0]), y = hn::Load(d, rays.last[1]), z = hn::Load(d, rays.last[2]);
       const F value = source.value(source.place(0, x), source.place(1, y), source.place(2, z));
       const auto entry = entries.at(value);
-      const Pair<D> b_pass = gather_pair(d, steps + 2, entry);
-      const auto active = hn::And(hn::Lt(lanes.s, lanes.end), hn::Ge(pass, stop));
-      const auto drawn = hn::And(active, hn::Lt(b_pass.b, one));
-      seen_half = hn::IfThenElse(hn::And(active, hn::Ge(pass, half)), lanes.s, seen_half);
-      lanes.s = hn::Add(lanes.s, one);
-      if (hn::AllFalse(d, drawn)) continue;
-      const Pair<D> r_g = gather_pair(d, steps, entry);
-      const F weight = hn::IfThenElseZero(drawn, pass);
-      const F wr = hn::Mul(weight, r_g.a), wg = hn::Mul(weight, r_g.b), wb = hn::Mul(weight, b_pass.a);
-      if constexpr (shaded) queue.push(drawn, x, y, z, value, wr, wg, wb, hn::Mul(weight, hn::Sub(one, b_pass.b)));
-      else r = hn::Add(r, wr), g = hn::Add(g, wg), b = hn::Add(b, wb);
-      pass = hn::IfThenElse(drawn, hn::Mul(pass, b_pass.b), pass);
+      const auto* media = reinterpret_cast<const float*>(&transfer.medium(0));
+      const Pair<D> r_g = gather_pair(d, media, entry), b_density = gather_pair(d, media + 2, entry);
+      const auto drawn = hn::And(last, hn::Gt(b_density.b, hn::Zero(d)));
+      if (!hn::AllFalse(d, drawn)) {
+        const F alpha = absorbed(d, hn::Mul(b_density.b, rest));
+        const F weight = hn::IfThenElseZero(drawn, hn::Mul(pass, alpha));
+        const F wr = hn::Mul(weight, r_g.a), wg = hn::Mul(weight, r_g.b), wb = hn::Mul(weight, b_density.a);
+        if constexpr (shaded) {
+          queue_.push(plan, rays, result, drawn, hn::Set(d, -1.0f), wr, wg, wb, weight);
+        } else {
+          hn::Store(hn::Add(hn::Load(d, result.r), wr), d, result.r), hn::Store(hn::Add(hn::Load(d, result.g), wg), d, result.g);
+          hn::Store(hn::Add(hn::Load(d, result.b), wb), d, result.b);
+        }
+        pass = hn::IfThenElse(drawn, hn::Mul(pass, hn::Sub(hn::Set(d, 1.0f), alpha)), pass);
+        hn::Store(pass, d, result.transmittance);
+      }
+    }
+    if constexpr (shaded) queue_.finish(plan, rays, result);
+    for (size_t n = 0; n < hn::Lanes(d); ++n) {
+      result.surface[n] = -1;
+      if (before[n] < 0.5f) result.surface[n] = rays.enter[n] + (double(seen_half_[n]) + 0.5) * v.step;
+      else if (result.transmittance[n] < 0.5f) result.surface[n] = rays.leave[n] - 0.5 * double(rays.rest[n]);
     }
   }
-  alignas(64) float at_half[most_lanes], before[most_lanes];
-  hn::Store(seen_half, d, at_half), hn::Store(pass, d, before);
 
-  // The last step has what length is left.
-  const F rest = hn::Load(d, rays.rest);
-  const auto last = hn::And(hn::Gt(rest, hn::Zero(d)), hn::Ge(pass, stop));
-  if (!hn::AllFalse(d, last)) {
-    const F x = hn::Load(d, rays.last[0]), y = hn::Load(d, rays.last[1]), z = hn::Load(d, rays.last[2]);
-    const F value = source.value(source.place(0, x), source.place(1, y), source.place(2, z));
-    const auto entry = entries.at(value);
-    const auto* media = reinterpret_cast<const float*>(&transfer.medium(0));
-    const Pair<D> r_g = gather_pair(d, media, entry), b_density = gather_pair(d, media + 2, entry);
-    const auto drawn = hn::And(last, hn::Gt(b_density.b, hn::Zero(d)));
-    if (!hn::AllFalse(d, drawn)) {
-      const F alpha = absorbed(d, hn::Mul(b_density.b, rest));
-      const F weight = hn::IfThenElseZero(drawn, hn::Mul(pass, alpha));
-      const F wr = hn::Mul(weight, r_g.a), wg = hn::Mul(weight, r_g.b), wb = hn::Mul(weight, b_density.a);
-      if constexpr (shaded) queue.push(drawn, x, y, z, value, wr, wg, wb, weight);
-      else r = hn::Add(r, wr), g = hn::Add(g, wg), b = hn::Add(b, wb);
-      pass = hn::IfThenElse(drawn, hn::Mul(pass, hn::Sub(one, alpha)), pass);
-    }
-  }
-  if constexpr (shaded) queue.finish();
-  else hn::Store(r, d, result.r), hn::Store(g, d, result.g), hn::Store(b, d, result.b);
-  hn::Store(pass, d, result.transmittance);
-  for (size_t n = 0; n < hn::Lanes(d); ++n) {
-    result.surface[n] = -1;
-    if (before[n] < 0.5f) result.surface[n] = rays.enter[n] + (double(at_half[n]) + 0.5) * v.step;
-    else if (result.transmittance[n] < 0.5f) result.surface[n] = rays.leave[n] - 0.5 * double(rays.rest[n]);
-  }
-}
+ private:
+  alignas(64) float per_by_[3][most_lanes], s_[most_lanes], seen_half_[most_lanes];
+  struct None {};
+  std::conditional_t<shaded, ShadeQueue<D, T>, None> queue_;
+};
+
+constexpr int group = 16;  ///< pixels across of the packets that take turns
+constexpr float samples_per_turn = 16;
 
 template <class D, class T, bool shaded>
 HWY_NOINLINE void march_all(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+  using Packet = March<D, T, shaded>;
   constexpr int lanes = lanes_of<D>, width = packet_width<D>, height = lanes / width;
-  RayPacket rays;
-  PacketResult result;
-  for (int y = y0; y < y1; y += height)
-    for (int x = x0; x < x1; x += width) {
-      if (!set_up<D>(plan, x, y, x1, y1, frame, rays)) continue;
-      march_packet<D, T, shaded>(plan, rays, result);
-      put(plan, rays, result, lanes, frame);
+  constexpr size_t most = size_t(group / width) * size_t(group / height);
+  const auto packets = std::make_unique_for_overwrite<Packet[]>(most);
+  std::array<Packet*, most> turn;
+  for (int top = y0; top < y1; top += group)
+    for (int left = x0; left < x1; left += group) {
+      size_t count = 0;
+      for (int y = top; y < std::min(top + group, y1); y += height)
+        for (int x = left; x < std::min(left + group, x1); x += width)
+          if (set_up<D>(plan, x, y, x1, y1, frame, packets[count].rays)) packets[count].start(plan), turn[count] = &packets[count], ++count;
+      size_t going = count;
+      for (float until = samples_per_turn; going > 0; until += samples_per_turn) {
+        size_t on = 0;
+        for (size_t i = 0; i < going; ++i)
+          if (turn[i]->go(plan, until)) turn[on++] = turn[i];
+        going = on;
+      }
+      for (size_t i = 0; i < count; ++i) {
+        packets[i].finish(plan);
+        put(plan, packets[i].rays, packets[i].result, lanes, frame);
+      }
     }
 }
 

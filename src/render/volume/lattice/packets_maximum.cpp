@@ -33,7 +33,8 @@ struct Walk {
   HWY_INLINE F crossing(int a) const {
     const D d;
     const M forth = hn::Gt(along[a], hn::Zero(d));
-    const F at = hn::Mul(hn::Sub(hn::Mul(hn::Add(box[a], hn::IfThenElse(forth, hn::Set(d, 1.0f), hn::Zero(d))), edge), entry[a]), per_along[a]);
+    const F at =
+        hn::Mul(hn::Sub(hn::Mul(hn::Add(box[a], hn::IfThenElse(forth, hn::Set(d, 1.0f), hn::Zero(d))), edge), entry[a]), per_along[a]);
     const M open = hn::Or(hn::Eq(along[a], hn::Zero(d)), hn::Eq(box[a], hn::IfThenElse(forth, highest[a], lowest[a])));
     return hn::IfThenElse(open, hn::Set(d, HUGE_VALF), hn::Max(at, t));
   }
@@ -108,7 +109,7 @@ class Climb {
       there = hn::Gt(none, none);
       while (!hn::AllFalse(d, looking)) {
         const F hi = highest_in(walk);
-        M here = hn::And(looking, hn::AndNot(hn::Eq(walk.t, from), hn::Gt(hi, skip_ ? best_ : none)));
+        M here = hn::And(looking, hn::AndNot(hn::And(hn::Eq(walk.t, from), hn::Eq(walk.leave(), to)), hn::Gt(hi, skip_ ? best_ : none)));
         there = hn::Or(there, here);
         looking = hn::AndNot(here, looking);
         const M on = walk.advance(looking);
@@ -139,7 +140,7 @@ class Climb {
     const IntTag<D> di;
     const auto& dims = volume_.bricks().dims;
     const auto id = hn::Add(to_int(d, w.box[0]), hn::Add(hn::Mul(to_int(d, w.box[1]), hn::Set(di, int(dims[0]))),
-                                                                 hn::Mul(to_int(d, w.box[2]), hn::Set(di, int(dims[0] * dims[1])))));
+                                                         hn::Mul(to_int(d, w.box[2]), hn::Set(di, int(dims[0] * dims[1])))));
     return hn::BitCast(d, gather_words(d, &volume_.bricks().ranges[0].hi, hn::ShiftLeft<3>(id)));
   }
 
@@ -162,11 +163,13 @@ class Climb {
     for (int a = 0; a < 3; ++a) low[a] = clamped_to<D>(w.box[a], zero, last_cell_[a]), at[a] = to_int(d, low[a]);
     const auto p = source_.offset(at[0], at[1], at[2]);
     const auto above = hn::Add(p, source_.layer);
-    const Pair<D> c[4] = {source_.pair(p), source_.pair(hn::Add(p, source_.row)), source_.pair(above), source_.pair(hn::Add(above, source_.row))};
+    const Pair<D> c[4] = {source_.pair(p), source_.pair(hn::Add(p, source_.row)), source_.pair(above),
+                          source_.pair(hn::Add(above, source_.row))};
     F top = hn::Max(hn::Max(hn::Max(c[0].a, c[0].b), hn::Max(c[1].a, c[1].b)), hn::Max(hn::Max(c[2].a, c[2].b), hn::Max(c[3].a, c[3].b)));
     if (skip_) m = hn::And(m, hn::Gt(top, best_));
     if constexpr (std::is_same_v<T, float>) {  // a cell with a NaN corner is clear
-      const F sum = hn::Add(hn::Add(hn::Add(c[0].a, c[0].b), hn::Add(c[1].a, c[1].b)), hn::Add(hn::Add(c[2].a, c[2].b), hn::Add(c[3].a, c[3].b)));
+      const F sum =
+          hn::Add(hn::Add(hn::Add(c[0].a, c[0].b), hn::Add(c[1].a, c[1].b)), hn::Add(hn::Add(c[2].a, c[2].b), hn::Add(c[3].a, c[3].b)));
       m = hn::And(m, hn::Eq(sum, sum));
     }
     if (hn::AllFalse(d, m)) return;
@@ -183,13 +186,16 @@ class Climb {
       f0[a] = enters, df[a] = hn::Sub(leaves, enters);
     }
     // The cubic a s^3 + b s^2 + c s + v0 through four places, and the zeros of its derivative.
-    const F v0 = along_cell(c, f0, df, zero), v1 = along_cell(c, f0, df, hn::Set(d, 1.0f / 3)), v2 = along_cell(c, f0, df, hn::Set(d, 2.0f / 3)),
-            v3 = along_cell(c, f0, df, one);
+    const F v0 = along_cell(c, f0, df, zero), v1 = along_cell(c, f0, df, hn::Set(d, 1.0f / 3)),
+            v2 = along_cell(c, f0, df, hn::Set(d, 2.0f / 3)), v3 = along_cell(c, f0, df, one);
     offer(m, v0, w.t), offer(m, v3, leave);
     const F q3 = hn::Mul(hn::Set(d, 4.5f), hn::Add(hn::Sub(v3, v0), hn::Mul(hn::Set(d, 3.0f), hn::Sub(v1, v2))));
-    const F q2 = hn::Mul(hn::Set(d, 4.5f), hn::Sub(hn::Add(hn::Sub(hn::Add(v0, v0), hn::Mul(hn::Set(d, 5.0f), v1)), hn::Mul(hn::Set(d, 4.0f), v2)), v3));
-    const F q1 = hn::Mul(hn::Set(d, 0.5f), hn::Add(hn::Sub(hn::Sub(hn::Mul(hn::Set(d, 18.0f), v1), hn::Mul(hn::Set(d, 11.0f), v0)),
-                                                           hn::Mul(hn::Set(d, 9.0f), v2)), hn::Add(v3, v3)));
+    const F q2 = hn::Mul(hn::Set(d, 4.5f),
+                         hn::Sub(hn::Add(hn::Sub(hn::Add(v0, v0), hn::Mul(hn::Set(d, 5.0f), v1)), hn::Mul(hn::Set(d, 4.0f), v2)), v3));
+    const F q1 =
+        hn::Mul(hn::Set(d, 0.5f),
+                hn::Add(hn::Sub(hn::Sub(hn::Mul(hn::Set(d, 18.0f), v1), hn::Mul(hn::Set(d, 11.0f), v0)), hn::Mul(hn::Set(d, 9.0f), v2)),
+                        hn::Add(v3, v3)));
     const F discriminant = hn::Sub(hn::Mul(q2, q2), hn::Mul(hn::Set(d, 3.0f), hn::Mul(q3, q1)));
     m = hn::And(m, hn::Gt(discriminant, zero));
     if (hn::AllFalse(d, m)) return;

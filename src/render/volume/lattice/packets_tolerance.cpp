@@ -39,24 +39,45 @@ struct MediumLanes {
   const Medium::Columns& columns;
 
   struct Line {
-    F lo, hi, origin, at, slope, curve;
+    F lo, hi, origin, at, slope, curve, twist;
     HWY_INLINE F tau(F v) const {
       const F x = hn::Sub(v, origin);
-      return hn::Max(hn::Zero(D()), hn::Add(at, hn::Mul(x, hn::Add(slope, hn::Mul(x, curve)))));
+      return hn::Max(hn::Zero(D()), hn::Add(at, hn::Mul(x, hn::Add(slope, hn::Mul(x, hn::Add(curve, hn::Mul(x, twist)))))));
     }
-    HWY_INLINE F slope_at(F v) const { return hn::Abs(hn::Add(slope, hn::Mul(hn::Add(curve, curve), hn::Sub(v, origin)))); }
+    HWY_INLINE F slope_at(F v) const {
+      const F x = hn::Sub(v, origin);
+      return hn::Abs(hn::Add(slope, hn::Mul(x, hn::Add(hn::Add(curve, curve), hn::Mul(x, hn::Mul(hn::Set(D(), 3.0f), twist))))));
+    }
     HWY_INLINE hn::Mask<D> dark() const {
       const F zero = hn::Zero(D());
-      return hn::And(hn::Eq(at, zero), hn::And(hn::Eq(slope, zero), hn::Eq(curve, zero)));
+      return hn::And(hn::And(hn::Eq(at, zero), hn::Eq(slope, zero)), hn::And(hn::Eq(curve, zero), hn::Eq(twist, zero)));
     }
   };
-  HWY_INLINE explicit MediumLanes(const Medium& m) : medium(m), columns(m.columns()) {}
+  /// As many lines as there are lanes fit a vector: then no gather is needed.
+  bool few;
+  F few_columns[6];
+  HWY_INLINE explicit MediumLanes(const Medium& m) : medium(m), columns(m.columns()), few(m.lines().size() <= size_t(lanes_of<D>)) {
+    const D d;
+    const std::vector<float>* all[6] = {&columns.origin, &columns.hi, &columns.at, &columns.slope, &columns.curve, &columns.twist};
+    for (int c = 0; c < 6; ++c) {
+      alignas(64) float column[most_lanes] = {};
+      if (few) std::copy(all[c]->begin(), all[c]->end(), column);
+      few_columns[c] = hn::Load(d, column);
+    }
+  }
   HWY_INLINE Line line(I i) const {
     const D d;
     Line l;
-    l.origin = hn::GatherIndex(d, columns.origin.data(), i), l.hi = hn::GatherIndex(d, columns.hi.data(), i);
-    l.at = hn::GatherIndex(d, columns.at.data(), i), l.slope = hn::GatherIndex(d, columns.slope.data(), i);
-    l.curve = hn::GatherIndex(d, columns.curve.data(), i);
+    if (few) {
+      const auto which = hn::IndicesFromVec(d, i);
+      l.origin = hn::TableLookupLanes(few_columns[0], which), l.hi = hn::TableLookupLanes(few_columns[1], which);
+      l.at = hn::TableLookupLanes(few_columns[2], which), l.slope = hn::TableLookupLanes(few_columns[3], which);
+      l.curve = hn::TableLookupLanes(few_columns[4], which), l.twist = hn::TableLookupLanes(few_columns[5], which);
+    } else {
+      l.origin = hn::GatherIndex(d, columns.origin.data(), i), l.hi = hn::GatherIndex(d, columns.hi.data(), i);
+      l.at = hn::GatherIndex(d, columns.at.data(), i), l.slope = hn::GatherIndex(d, columns.slope.data(), i);
+      l.curve = hn::GatherIndex(d, columns.curve.data(), i), l.twist = hn::GatherIndex(d, columns.twist.data(), i);
+    }
     l.lo = hn::IfThenElse(hn::RebindMask(d, hn::Eq(i, hn::Zero(IntTag<D>()))), hn::Set(d, -HUGE_VALF), l.origin);
     return l;
   }
@@ -67,7 +88,8 @@ struct MediumLanes {
     at = hn::IfThenElseZero(hn::Ge(at, hn::Zero(d)), hn::Min(at, hn::Set(d, float(Medium::slices))));
     I i = hn::And(gather_words(d, medium.first_lines(), hn::ShiftLeft<1>(to_int(d, at))), hn::Set(di, 0xFFFF));
     for (;;) {
-      const auto beyond = hn::Le(hn::GatherIndex(d, columns.hi.data(), i), v);
+      const auto beyond =
+          hn::Le(few ? hn::TableLookupLanes(few_columns[1], hn::IndicesFromVec(d, i)) : hn::GatherIndex(d, columns.hi.data(), i), v);
       if (hn::AllFalse(d, beyond)) return i;
       i = hn::Sub(i, hn::VecFromMask(di, hn::RebindMask(di, beyond)));
     }
@@ -97,7 +119,8 @@ struct MediumLanes {
     const I low = hn::Set(di, 0xFFFF);
     const hn::RebindToUnsigned<IntTag<D>> du;
     const I g = hn::BitCast(di, hn::ShiftRight<16>(hn::BitCast(du, rg)));
-    return {hn::Mul(hn::ConvertTo(d, hn::And(rg, low)), per), hn::Mul(hn::ConvertTo(d, g), per), hn::Mul(hn::ConvertTo(d, hn::And(b, low)), per)};
+    return {hn::Mul(hn::ConvertTo(d, hn::And(rg, low)), per), hn::Mul(hn::ConvertTo(d, g), per),
+            hn::Mul(hn::ConvertTo(d, hn::And(b, low)), per)};
   }
 };
 
@@ -105,9 +128,7 @@ struct MediumLanes {
 template <class D>
 struct Cubic {
   hn::Vec<D> a, b, c, e, last;  // last: at s = 1
-  HWY_INLINE hn::Vec<D> at(hn::Vec<D> s) const {
-    return hn::Add(a, hn::Mul(s, hn::Add(b, hn::Mul(s, hn::Add(c, hn::Mul(s, e))))));
-  }
+  HWY_INLINE hn::Vec<D> at(hn::Vec<D> s) const { return hn::Add(a, hn::Mul(s, hn::Add(b, hn::Mul(s, hn::Add(c, hn::Mul(s, e)))))); }
 };
 
 /// The trilinear field of a cell along the way from + s * way, corners by rows.
@@ -127,7 +148,8 @@ HWY_INLINE Cubic<D> along_way(D d, const Pair<D>& p00, const Pair<D>& p01, const
   };
   const auto y = [&](const Linear& p, const Linear& q) HWY_ATTR {
     const F rise = hn::Sub(q.a, p.a), bend = hn::Sub(q.b, p.b);
-    return Square{hn::Add(p.a, hn::Mul(from[1], rise)), hn::Add(hn::Add(p.b, hn::Mul(from[1], bend)), hn::Mul(way[1], rise)), hn::Mul(way[1], bend)};
+    return Square{hn::Add(p.a, hn::Mul(from[1], rise)), hn::Add(hn::Add(p.b, hn::Mul(from[1], bend)), hn::Mul(way[1], rise)),
+                  hn::Mul(way[1], bend)};
   };
   const Square p = y(x(p00), x(p01)), q = y(x(p10), x(p11));
   const F da = hn::Sub(q.a, p.a), db = hn::Sub(q.b, p.b), dc = hn::Sub(q.c, p.c);
@@ -175,23 +197,25 @@ class TolerantPacket {
     const IntTag<D> di;
     const I one = hn::Set(di, 1), zero = hn::Zero(di);
     const F stop = hn::Set(d, plan_.budget.stop_below);
-    const auto& bricks = v_.bricks().dims;
+    const auto& bricks = v_.fine().dims;
     const bool skip = plan_.knobs.skip_empty && v_.any_empty;
     I cell[3];
     F t = hn::Zero(d);
     // Cells -1 and n-1 are the halves beyond the outermost samples.
-    for (int a = 0; a < 3; ++a) cell[a] = hn::Min(hn::Max(to_int(d, hn::Floor(start_[a])), hn::Set(di, -1)), hn::Add(source_.last_cell[a], one));
+    for (int a = 0; a < 3; ++a)
+      cell[a] = hn::Min(hn::Max(to_int(d, hn::Floor(start_[a])), hn::Set(di, -1)), hn::Add(source_.last_cell[a], one));
     for (;;) {
       const M on = hn::And(hn::Lt(t, end_), hn::Ge(sum_.pass, stop));
       if (hn::AllFalse(d, on)) break;
       I inside[3], brick[3];
       for (int a = 0; a < 3; ++a) {
         inside[a] = hn::Min(hn::Max(cell[a], zero), source_.last_cell[a]);
-        brick[a] = hn::ShiftRight<MinMaxBricks::shift>(inside[a]);
+        brick[a] = hn::ShiftRight<FineBricks::shift>(inside[a]);
       }
       I free = zero;
       if (skip) {
-        const I id = hn::Add(brick[0], hn::Add(hn::Mul(brick[1], hn::Set(di, int(bricks[0]))), hn::Mul(brick[2], hn::Set(di, int(bricks[0] * bricks[1])))));
+        const I id = hn::Add(
+            brick[0], hn::Add(hn::Mul(brick[1], hn::Set(di, int(bricks[0]))), hn::Mul(brick[2], hn::Set(di, int(bricks[0] * bricks[1])))));
         free = hn::And(gather_words(d, v_.distance.data(), id), hn::Set(di, 255));
       }
       const auto leaps = hn::Gt(free, zero);
@@ -201,7 +225,7 @@ class TolerantPacket {
       I side[3];
       for (int a = 0; a < 3; ++a) {
         const auto up = hn::RebindMask(di, up_[a]);
-        const I reach = hn::ShiftLeft<MinMaxBricks::shift>(hn::Add(brick[a], hn::IfThenElse(up, free, hn::Sub(one, free))));
+        const I reach = hn::ShiftLeft<FineBricks::shift>(hn::Add(brick[a], hn::IfThenElse(up, free, hn::Sub(one, free))));
         side[a] = hn::IfThenElse(leaps, reach, hn::Add(cell[a], hn::IfThenElse(up, one, zero)));
         F there = hn::Mul(hn::Sub(hn::ConvertTo(d, side[a]), start_[a]), per_along_[a]);
         // Beyond the outermost bricks there is nothing else.
@@ -219,7 +243,8 @@ class TolerantPacket {
         if (!hn::AllFalse(d, leaping)) {
           // Inside the cube along the other axes, and never back.
           const I here = to_int(d, hn::Floor(hn::Add(start_[a], hn::Mul(along_[a], leave))));
-          const I forth = hn::IfThenElse(up, hn::Max(cell[a], hn::Min(here, hn::Sub(beyond, one))), hn::Min(cell[a], hn::Max(here, hn::Add(beyond, one))));
+          const I forth = hn::IfThenElse(up, hn::Max(cell[a], hn::Min(here, hn::Sub(beyond, one))),
+                                         hn::Min(cell[a], hn::Max(here, hn::Add(beyond, one))));
           const auto open = hn::Ge(at[a], hn::Set(d, HUGE_VALF));
           const I free_way = hn::Min(hn::Max(here, hn::Set(di, -1)), hn::Add(source_.last_cell[a], one));
           const I leapt = hn::IfThenElse(hn::RebindMask(di, open), hn::IfThenElse(hn::RebindMask(di, still_[a]), cell[a], free_way), forth);
@@ -266,8 +291,8 @@ class TolerantPacket {
     integrate(f, lo, hi, same, corner, inside, from, way, t, hn::Sub(leave, t), look);
   }
 
-  HWY_INLINE void integrate(const Cubic<D>& f, F lo, F hi, M same, I corner, const I inside[3],
-                            const F from[3], const F way[3], F t, F length, M look) {
+  HWY_INLINE void integrate(const Cubic<D>& f, F lo, F hi, M same, I corner, const I inside[3], const F from[3], const F way[3], F t,
+                            F length, M look) {
     const D d;
     const IntTag<D> di;
     const F zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
@@ -296,7 +321,8 @@ class TolerantPacket {
     error = hn::Add(error, hn::IfThenElseZero(hn::Not(same), hn::Mul(beyond, hn::Mul(length, slope))));
     error = hn::Mul(error, pass);
     const F share = hn::Mul(pass, hn::Min(one, hn::Mul(length, tau_mean)));
-    const F allowed = hn::Mul(hn::Set(d, tolerance), hn::Add(hn::Mul(length, hn::Set(d, float(0.3 / plan_.budget.length))), hn::Mul(share, hn::Set(d, 0.6f))));
+    const F allowed = hn::Mul(hn::Set(d, tolerance),
+                              hn::Add(hn::Mul(length, hn::Set(d, float(0.3 / plan_.budget.length))), hn::Mul(share, hn::Set(d, 0.4f))));
     if constexpr (shaded) {
       light_.cell(source_, corner, inside, look);
       error = hn::Max(error, light_.error(from, way, hn::Mul(pass, taken)));
@@ -331,14 +357,16 @@ class TolerantPacket {
       const F per_all = hn::Div(one, hn::Max(all, hn::Set(d, 1e-37f)));
       const F by_emission = hn::Mul(hn::Add(hn::Add(hn::Mul(t0, v), hn::Mul(tm, middle)), hn::Mul(t1, next)), per_all);
       const F weight = hn::Mul(hn::Add(hn::Mul(half, tm), t1), per_all);
-      segment(look, hn::Add(t, hn::Mul(length, s)), part, hn::Mul(part, hn::Mul(all, hn::Set(d, 1.0f / 6))), v, next, by_emission, weight, t, length, from, way);
+      segment(look, hn::Add(t, hn::Mul(length, s)), part, hn::Mul(part, hn::Mul(all, hn::Set(d, 1.0f / 6))), v, next, by_emission, weight,
+              t, length, from, way);
       // On to the next line, or to the next piece.
       k = hn::IfThenElse(ends, hn::Add(k, one), k);
       look = hn::And(look, hn::And(hn::Lt(k, count), hn::Ge(sum_.pass, stop)));
       if (hn::AllFalse(d, look)) return;
       v = next, s = to;
       if (!hn::AllFalse(d, cut)) {
-        at_ = hn::IfThenElse(hn::RebindMask(di, cut), hn::Add(at_, hn::IfThenElse(hn::RebindMask(di, up), hn::Set(di, 1), hn::Set(di, -1))), at_);
+        at_ = hn::IfThenElse(hn::RebindMask(di, cut), hn::Add(at_, hn::IfThenElse(hn::RebindMask(di, up), hn::Set(di, 1), hn::Set(di, -1))),
+                             at_);
         l = medium_.line(at_);
       }
       const F after = hn::Add(k, one), there = hn::Mul(after, per_count);
@@ -360,10 +388,13 @@ class TolerantPacket {
     const F alpha = hn::IfThenElse(hn::Lt(depth, hn::Set(d, 0.02f)), thin, hn::Sub(one, pass));
     auto color = medium_.color(middle);
     F r = hn::Mul(color.r, alpha), g = hn::Mul(color.g, alpha), bl = hn::Mul(color.b, alpha);
-    const M deep = hn::And(hn::And(drawn, hn::Gt(depth, hn::Set(d, 0.1f))), hn::Gt(hn::Mul(hn::Min(hn::Mul(depth, depth), hn::Set(d, 6.0f)), most_hidden_), hn::Set(d, 12.0f)));
+    const M deep = hn::And(hn::And(drawn, hn::Gt(depth, hn::Set(d, 0.1f))),
+                           hn::Gt(hn::Mul(hn::Min(depth, hn::Set(d, 6.0f)), most_hidden_), hn::Set(d, 12.0f)));
     if (!hn::AllFalse(d, deep)) {
       F hidden = hn::Add(hn::Sub(hn::Mul(half, alpha), hn::Div(alpha, hn::Max(depth, hn::Set(d, 0.05f)))), pass);
-      const F series = hn::Mul(hn::Mul(depth, depth), hn::Sub(hn::Set(d, 1.0f / 12), hn::Mul(depth, hn::Sub(hn::Set(d, 1.0f / 24), hn::Mul(depth, hn::Set(d, 1.0f / 80))))));
+      const F series =
+          hn::Mul(hn::Mul(depth, depth),
+                  hn::Sub(hn::Set(d, 1.0f / 12), hn::Mul(depth, hn::Sub(hn::Set(d, 1.0f / 24), hn::Mul(depth, hn::Set(d, 1.0f / 80))))));
       hidden = hn::IfThenElseZero(deep, hn::IfThenElse(hn::Lt(depth, hn::Set(d, 0.2f)), series, hidden));
       const auto front = medium_.color(a), back = medium_.color(b);
       r = hn::Sub(r, hn::Mul(hn::Sub(back.r, front.r), hidden)), g = hn::Sub(g, hn::Mul(hn::Sub(back.g, front.g), hidden));
@@ -374,10 +405,12 @@ class TolerantPacket {
       const F s = hn::Div(hn::Sub(hn::Add(here, hn::Mul(part, weight)), t), hn::Max(length, hn::Set(d, 1e-30f)));
       const auto lit = light_.at(from, way, s);
       const F flash = hn::Mul(lit.specular, alpha);
-      r = hn::Add(hn::Mul(r, lit.diffuse), flash), g = hn::Add(hn::Mul(g, lit.diffuse), flash), bl = hn::Add(hn::Mul(bl, lit.diffuse), flash);
+      r = hn::Add(hn::Mul(r, lit.diffuse), flash), g = hn::Add(hn::Mul(g, lit.diffuse), flash),
+      bl = hn::Add(hn::Mul(bl, lit.diffuse), flash);
     }
     const F before = hn::IfThenElseZero(drawn, sum_.pass);
-    sum_.r = hn::Add(sum_.r, hn::Mul(before, r)), sum_.g = hn::Add(sum_.g, hn::Mul(before, g)), sum_.b = hn::Add(sum_.b, hn::Mul(before, bl));
+    sum_.r = hn::Add(sum_.r, hn::Mul(before, r)), sum_.g = hn::Add(sum_.g, hn::Mul(before, g)),
+    sum_.b = hn::Add(sum_.b, hn::Mul(before, bl));
     const F after = hn::Mul(sum_.pass, pass);
     const M halved = hn::And(drawn, hn::And(hn::Lt(after, half), hn::Lt(sum_.half_at, zero)));
     if (!hn::AllFalse(d, halved)) {

@@ -5,7 +5,6 @@
 #include "data/field_ops.h"
 #include "data/lattice.h"
 #include "data/memo.h"
-#include "render/volume/lattice/empty_space.h"
 #include "render/volume/lattice/lattice_volume.h"
 #include "render/volume/prepare_cast.h"
 
@@ -161,7 +160,8 @@ LatticeSamples take_samples(const VolumeItem& item, const Field& field, std::arr
   for (size_t& n : v.voxels.dims) n = std::max<size_t>(n, 2);
   if (v.voxels.dims != dims) a = dispatch(a, [&](auto view) { return doubled(view.data, dims, v.voxels.dims); });
   v.voxels.array = a;
-  v.bricks = minmax_bricks(v.voxels.array, v.voxels.dims);
+  v.fine = fine_bricks(v.voxels.array, v.voxels.dims);
+  v.bricks = coarse_bricks(v.fine);
   for (const MinMaxBricks::Range& r : v.bricks.ranges) {
     if (std::isfinite(r.lo)) v.lo = std::min(v.lo, double(r.lo));
     if (std::isfinite(r.hi)) v.hi = std::max(v.hi, double(r.hi));
@@ -171,25 +171,33 @@ LatticeSamples take_samples(const VolumeItem& item, const Field& field, std::arr
 
 /// Taken once for all pictures of the field.
 std::shared_ptr<const LatticeSamples> kept_samples(const VolumeItem& item, const Field& field, std::array<size_t, 3> dims) {
-  const std::string key = fmt::format("volume lattice: {} {} {} {}", int(field.association), item.component, wants_small_differences(item), field.name);
+  const std::string key =
+      fmt::format("volume lattice: {} {} {} {}", int(field.association), item.component, wants_small_differences(item), field.name);
   Memo& memo = item.data->memo();
   if (auto kept = memo.find<LatticeSamples>(key)) return kept;
   LatticeSamples s = take_samples(item, field, dims);
   const size_t own = s.voxels.array.raw() == field.array.raw() ? 0 : s.voxels.array.bytes();
-  const size_t bytes = own + s.hidden.size() + s.bricks.size() * sizeof(MinMaxBricks::Range);
+  const size_t bytes = own + s.hidden.size() + (s.bricks.size() + s.fine.size()) * sizeof(MinMaxBricks::Range);
   return memo.keep(key, std::move(s), bytes);
+}
+
+/// q of the sides of `bricks` cubes of so many cells. Beyond the outermost samples values are clamped: those half cells belong to the
+/// outermost bricks.
+std::vector<double> sides(const Volume& v, size_t axis, size_t bricks, size_t edge) {
+  std::vector<double> q(bricks + 1);
+  for (size_t i = 0; i <= bricks; ++i) {
+    const size_t s = std::min(i * edge, v.voxels.dims[axis] - 1);
+    q[i] = v.affine ? double(s) : v.coordinates[axis][s];
+  }
+  q.front() = -HUGE_VAL, q.back() = HUGE_VAL;
+  return q;
 }
 
 void lay_borders(Volume& v) {
   for (int a = 0; a < 3; ++a) {
-    const size_t n = v.bricks().dims[size_t(a)], samples = v.voxels.dims[size_t(a)];
-    v.border[a].resize(n + 1);
-    for (size_t i = 0; i <= n; ++i) {
-      const size_t s = std::min(i * MinMaxBricks::edge, samples - 1);
-      v.border[a][i] = v.affine ? double(s) : v.coordinates[a][s];
-    }
-    // Beyond the outermost samples values are clamped: those half cells belong to the outermost bricks.
-    v.border[a].front() = -HUGE_VAL, v.border[a].back() = HUGE_VAL;
+    const size_t axis = size_t(a), samples = v.voxels.dims[axis];
+    v.border[a] = sides(v, axis, v.bricks().dims[axis], MinMaxBricks::edge);
+    v.fine_border[a] = sides(v, axis, v.fine().dims[axis], FineBricks::edge);
     // Places are floats in u: some units in the last place of the largest.
     v.margin[a] = v.affine ? std::max(1e-3, 1e-6 * double(samples)) : 1e-7 * (v.hi[a] - v.lo[a]);
   }
@@ -252,9 +260,10 @@ Volume prepare(const VolumeItem& item, uint32_t id, const Knobs& knobs) {
 
   const double lo = v.samples->lo, hi = v.samples->hi;
   v.transfer.emplace_back(item.color, item.opacity, unit, v.step, lo + double(v.base), hi + double(v.base), double(v.base));
-  if (item.mode != VolumeItem::Mode::maximum) v.distance = distance_to_drawn(v.bricks(), v.transfer[0], v.any_empty);
+  if (item.mode != VolumeItem::Mode::maximum) v.distance = distance_to_drawn(v.fine(), v.transfer[0], v.any_empty, &v.bricks());
   v.kernels = knobs.simd ? best_kernels(v.voxels) : scalar_kernels(v.voxels);
-  v.direct = v.affine && !v.nearest && v.hidden().empty() && v.transfer[0].linear() && !(v.dual && v.voxels.array.type() == ElementType::f32);
+  v.direct =
+      v.affine && !v.nearest && v.hidden().empty() && v.transfer[0].linear() && !(v.dual && v.voxels.array.type() == ElementType::f32);
   // A gradient in q becomes one in the world by the transpose of world -> q.
   for (int r = 0; r < 3; ++r)
     for (int c = 0; c < 3; ++c) v.shade_plan.to_world[r][c] = float(v.to_q.m[c][r]);

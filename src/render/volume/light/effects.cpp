@@ -37,6 +37,9 @@ void check_light(const VolumeItem& item) {
   if ((l.shadows > 0 || l.occlusion > 0) && item.mode != RayFunction::composite && item.mode != RayFunction::maximum_difference)
     fail_usage("shadows and occlusion are those of emission and absorption; this ray function has none", "volume",
                "use mode=composite, or leave out shadows= and occlusion=");
+  if ((l.shadows > 0 || l.occlusion > 0) && !item.detail.plain())
+    fail_usage("shadows and occlusion need an opacity by the value alone", "volume",
+               "leave out the second axis of the transfer function, or shadows= and occlusion=");
 }
 
 std::shared_ptr<const LightEffects> light_effects(const VolumeItem& item, const RaySource& source, const Medium& medium,

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "render/volume/light/effects.h"
+#include "render/volume/optics/transfer.h"
 
 namespace sg::volume {
 
@@ -16,6 +17,7 @@ struct Caster::Steps {
   long step = 0;
   bool open = false, sampled = false;
   float value = 0, first = 0, last = 0;
+  Optics optics;  // classified before
   Lit lit;
 };
 
@@ -29,7 +31,8 @@ struct Caster::Active {
   size_t next = 0, count = 0;
 
   explicit Active(const CastVolume& v)
-      : volume(&v), walker(v.source->walker()), look{*v.medium, v.budget, v.id, nullptr, v.per_scale, float(v.source->edge)} {}
+      : volume(&v), walker(v.source->walker()), look{*v.medium,     v.budget, v.id, nullptr, v.per_scale, float(v.source->edge),
+                                                     v.detail.get()} {}
 
   /// Is there a stretch to draw? Reads on when all that were read ahead are drawn.
   bool peek() {
@@ -66,7 +69,24 @@ struct Caster::Active {
     const Lit* lit = look.lit ? &steps.lit : nullptr;
     if (volume->item->sampling.classify == "integrated")
       composite_straight(look, steps.from, steps.from + steps.covered, steps.first, steps.last, lit, state);
+    else if (volume->item->sampling.classify == "pre") composite_optics(look, steps.from, steps.covered, steps.optics, lit, state);
     else composite_sample(look, steps.from, steps.covered, steps.value, lit, state);
+  }
+
+  /// Opacities and associated colours of the samples around, interpolated.
+  Optics classified_before(const Stretch& s, double t, float value) {
+    float values[8], shares[8];
+    const int n = walker->samples(s, t, values, shares);
+    if (n == 0) return look.medium.at(value);
+    double opacity = 0;
+    Vec3 glow{0, 0, 0};
+    for (int i = 0; i < n; ++i) {
+      const Optics o = look.medium.at(values[i]);
+      const double a = double(shares[i]) * (1 - exp_negative(double(o.tau) * volume->unit));
+      opacity += a, glow += Vec3(o.color) * a;
+    }
+    if (!(opacity > 0)) return {};
+    return {float(opacity < 1 ? minus_log_one_minus(opacity) / volume->unit : 1e6), Vec3f(glow / opacity)};
   }
 
   /// Draws a stretch in fixed steps; what belongs to a step that goes on is kept.
@@ -76,14 +96,16 @@ struct Caster::Active {
       long k = long(std::floor((t - steps.origin) / h + 1e-9));
       if (steps.open && k != steps.step) flush(state);
       const double end = std::min(s.to, steps.origin + double(k + 1) * h), middle = steps.origin + (double(k) + 0.5) * h;
-      if (!steps.open) steps = {steps.origin, 0, t, k, true, false, 0, s.value(t), 0, {}};
+      if (!steps.open) steps = {steps.origin, 0, t, k, true, false, 0, s.value(t), 0, {}, {}};
       steps.covered += end - t;
       steps.last = s.value(end);
       if (!steps.sampled) {
         steps.sampled = middle >= t && middle < end;
         const double at = std::clamp(middle, t, end);
         steps.value = s.value(at);
-        if (look.lit && (steps.sampled || middle >= end) && !look.medium.clear(steps.value, steps.value))
+        const bool before = volume->item->sampling.classify == "pre";
+        if (before && (steps.sampled || middle >= end)) steps.optics = classified_before(s, at, steps.value);
+        if (look.lit && (steps.sampled || middle >= end) && (before || !look.medium.clear(steps.value, steps.value)))
           steps.lit = light_on(look, *walker, s, at);
       }
       if (!(end > t)) break;
@@ -242,7 +264,7 @@ void Caster::until(double to, RayState& state) {
     }
     for (Active* a : active_)
       if (joint_.size() > 1 || a != only) a->flush(state);
-    if (joint_.size() == 1 && only->volume->step > 0) only->step_through(joint_[0].stretch, state);
+    if (joint_.size() == 1 && only->volume->step > 0 && !only->look.detail) only->step_through(joint_[0].stretch, state);
     else if (joint_.size() == 1) composite(only->look, joint_[0].stretch, *only->walker, state);
     else composite_joint(joint_, state);
     if (state.sum.transmittance < joint_[0].look->budget.stop_below) return;

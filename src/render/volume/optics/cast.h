@@ -18,8 +18,11 @@ struct CastVolume {
   uint32_t id = 0;  ///< item number + 1
   std::unique_ptr<RaySource> source;
   std::unique_ptr<Medium> medium;
+  std::unique_ptr<TransferFunction> transfer;  ///< with a detail that is not plain, else null
+  std::unique_ptr<Detail> detail;
   Budget budget;
   double step = 0;  ///< world length; 0 = by the tolerance
+  double unit = 1;  ///< world length to which opacity refers
   float per_scale = 1;
   std::unique_ptr<std::vector<double>> levels;  ///< stored values
   Material material;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "render/volume/light/effects.h"
+#include "render/volume/optics/transfer.h"
 
 namespace sg::volume {
 
@@ -42,8 +43,8 @@ Lit light_on(const Look& look, RayField& walker, const Stretch& s, double t) {
 
 namespace {
 
-constexpr int most_cuts = 6;  // halvings of a stretch for its light
-constexpr float deep = 0.1f;  // optical depth from which on the order within a segment is seen
+constexpr int most_cuts = 6;   // halvings of a stretch for its light
+constexpr float deep = 0.05f;  // optical depth from which on the order within a segment is seen
 
 /// Where there is light on the ends of a part of a stretch, linear between them.
 struct LitPart {
@@ -152,7 +153,7 @@ class Pieces {
     error += beyond * length * slope;
     error *= pass;
     const float share = pass * std::min(1.0f, denser_ * length * medium.tau(0.25f * (s.b[0] + s.b[1] + s.b[2] + s.b[3])));
-    const float allowed = tolerance * (float(0.3 / look_.budget.length) * length + 0.6f * share);
+    const float allowed = tolerance * (float(0.3 / look_.budget.length) * length + 0.4f * share);
     const float n = std::clamp(std::ceil(std::sqrt(error / allowed)), 1.0f, 64.0f);
     float v = a, f = 0;
     for (float k = 1; k <= n; ++k) {
@@ -195,10 +196,76 @@ void composite_lit(const Look& look, const Stretch& s, float lo, float hi, const
   pieces.whole(s, lo, hi);
 }
 
+/// A place of a medium that depends on more than the value.
+struct Place {
+  float tau = 0;
+  Vec3f glow;  // tau times colour, lit
+};
+
+Place place_at(const Look& look, const Stretch& s, double t, RayField& walker) {
+  const Detail& detail = *look.detail;
+  const float value = s.value(t);
+  Vec3f gradient;
+  bool asked = false;
+  const auto slope = [&] {
+    if (!asked) gradient = walker.gradient(s, t), asked = true;
+    return gradient;
+  };
+  float second = 0;
+  SecondDerivatives h;
+  switch (detail.axis) {
+    case SecondAxis::none: break;
+    case SecondAxis::gradient: second = length(slope()); break;
+    case SecondAxis::field: second = walker.second(s, t); break;
+    case SecondAxis::second_derivative: second = walker.bend(s, t, h) ? second_derivative_along(slope(), h) : NAN; break;
+    case SecondAxis::curvature: second = walker.bend(s, t, h) ? mean_curvature(slope(), h) : NAN; break;
+  }
+  const TransferFunction::Sample o = detail.transfer.at(value, second);
+  if (!(o.opacity > 0)) return {};
+  const float tau =
+      o.opacity < 1 ? std::min(float(minus_log_one_minus(double(o.opacity)) / detail.unit), detail.most_tau) : detail.most_tau;
+  Vec3f c{o.r, o.g, o.b};
+  if (look.lit) {
+    const Lit l = light_on(look, walker, s, t);
+    c = l.color(c);
+  }
+  return {tau, c * tau};
+}
+
+void composite_detailed(const Look& look, const Stretch& s, double from, double to, const Place& a, const Place& b, RayField& walker,
+                        int cuts, RayState& state) {
+  if (state.sum.transmittance < look.budget.stop_below) return;
+  const double middle = 0.5 * (from + to);
+  const Place m = place_at(look, s, middle, walker);
+  const float length = float(to - from);
+  const auto simpson = [length](float x, float y, float z) { return length / 6 * (x + 4 * y + z); };
+  const float depth = simpson(a.tau, m.tau, b.tau), rough = 0.25f * length * (a.tau + 2 * m.tau + b.tau);
+  const Vec3f glow{simpson(a.glow.x, m.glow.x, b.glow.x), simpson(a.glow.y, m.glow.y, b.glow.y), simpson(a.glow.z, m.glow.z, b.glow.z)};
+  const Vec3f rough_glow = (a.glow + m.glow * 2 + b.glow) * (0.25f * length);
+  const float off = std::max(
+      {std::abs(depth - rough), std::abs(glow.x - rough_glow.x), std::abs(glow.y - rough_glow.y), std::abs(glow.z - rough_glow.z)});
+  const float pass = state.sum.transmittance, taken = std::min(1.0f, depth);
+  const float allowed = float(look.budget.tolerance) * (0.3f * float(length / look.budget.length) + 0.3f * pass * taken);
+  // The order of colours within a deep part, too.
+  const bool order = depth > 0.1f && pass * taken > float(look.budget.tolerance);
+  if (cuts < 8 && (pass * std::min(off, 1.0f) > allowed || order)) {
+    composite_detailed(look, s, from, middle, a, m, walker, cuts + 1, state);
+    return composite_detailed(look, s, middle, to, m, b, walker, cuts + 1, state);
+  }
+  if (!(depth > 0)) return;
+  const float alpha = 1 - exp_minus(depth), per = alpha / depth;
+  state.sum.behind(glow.x * per, glow.y * per, glow.z * per, alpha);
+  if (state.surface < 0 && state.sum.transmittance < 0.5f) state.surface = middle, state.surface_id = look.id;
+}
+
 }  // namespace
 
 void composite(const Look& look, const Stretch& s, RayField& walker, RayState& state) {
   const float lo = s.lowest(), hi = s.highest();
+  if (look.detail) {
+    if (!(lo <= hi) || look.detail->transfer.clear(lo, hi)) return;
+    return composite_detailed(look, s, s.from, s.to, place_at(look, s, s.from, walker), place_at(look, s, s.to, walker), walker, 0, state);
+  }
   if (!(lo <= hi) || look.medium.clear(lo, hi)) return;
   if (!look.lit) return Pieces(look, state).whole(s, lo, hi);
   const Lit first = light_on(look, walker, s, s.from), last = light_on(look, walker, s, s.to);
@@ -217,6 +284,15 @@ void composite_sample(const Look& look, double from, double length, float value,
   composite_straight(look, from, from + length, value, value, lit, state);
 }
 
+void composite_optics(const Look& look, double from, double length, const Optics& optics, const Lit* lit, RayState& state) {
+  const float alpha = 1 - exp_minus(optics.tau * float(length));
+  if (!(alpha > 0)) return;
+  const Lit l = lit ? *lit : Lit{};
+  const Vec3f c = l.color(optics.color) * alpha;
+  state.sum.behind(c.x, c.y, c.z, alpha);
+  if (state.surface < 0 && state.sum.transmittance < 0.5f) state.surface = from + 0.5 * length, state.surface_id = look.id;
+}
+
 void composite_joint(const std::vector<Joint>& joint, RayState& state, int cuts) {
   const double from = joint[0].stretch.from, to = joint[0].stretch.to;
   double depth = 0, densest = 0;
@@ -229,6 +305,15 @@ void composite_joint(const std::vector<Joint>& joint, RayState& state, int cuts)
     const Medium& medium = j.look->medium;
     stop = std::max(stop, j.look->budget.stop_below), tolerance = std::min(tolerance, float(j.look->budget.tolerance));
     const float lo = s.lowest(), hi = s.highest();
+    if (j.look->detail) {
+      if (!(lo <= hi) || j.look->detail->transfer.clear(lo, hi)) continue;
+      simple = simple && cuts >= 3;
+      const Place p = place_at(*j.look, s, 0.5 * (from + to), *j.walker);
+      const double d = (to - from) * double(p.tau);
+      depth += d, glow += Vec3(p.glow) * (to - from);
+      if (d > densest) densest = d, id = j.look->id;
+      continue;
+    }
     if (!(lo <= hi) || medium.clear(lo, hi)) continue;
     simple = simple && medium.line_of(lo) == medium.line_of(hi);
     const float mean = 0.25f * (s.b[0] + s.b[1] + s.b[2] + s.b[3]);

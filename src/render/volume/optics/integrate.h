@@ -7,6 +7,7 @@
 #pragma once
 #include <vector>
 
+#include "color/transfer_function.h"
 #include "render/volume/optics/light_model.h"
 #include "render/volume/optics/medium.h"
 #include "render/volume/optics/ray_state.h"
@@ -24,6 +25,14 @@ struct Budget {
 /// exp(-x) for x >= 0 in float arithmetic alone, to 2e-7; the same bits everywhere.
 float exp_minus(float x);
 
+/// A medium that depends on more than the value: it is sampled, see composite().
+struct Detail {
+  const TransferFunction& transfer;
+  SecondAxis axis;
+  double unit;     ///< world length to which opacity refers
+  float most_tau;  ///< stands for that of opacity 1
+};
+
 /// What a volume is made of and how it is lit.
 struct Look {
   const Medium& medium;
@@ -32,18 +41,22 @@ struct Look {
   const LitRay* lit = nullptr;  ///< null = not shaded
   float per_scale = 1;          ///< 1 / change of the value over `edge` from which on there is a surface
   float edge = 1;
+  const Detail* detail = nullptr;  ///< null = the medium tells all
 };
 
 /// Light at t of a stretch; look.lit must not be null.
 Lit light_on(const Look& look, RayField& walker, const Stretch& stretch, double t);
 
-/// Puts one stretch behind what the ray has gathered. `walker` is asked for gradients where the look is lit.
+/// Puts one stretch behind what the ray has gathered. `walker` is asked for gradients where the look is lit. With a detail, tau is
+/// integrated by Simpson's rule on parts that are halved until it agrees with the trapezoid rule, 8 times at most: an estimate, no bound.
 void composite(const Look& look, const Stretch& stretch, RayField& walker, RayState& state);
 
 /// A piece of the ray on which the value goes straight from `a` to `b` (pre-integrated classification is this over a step).
 void composite_straight(const Look& look, double from, double to, float a, float b, const Lit* lit, RayState& state);
 /// One sample that stands for a length.
 void composite_sample(const Look& look, double from, double length, float value, const Lit* lit, RayState& state);
+/// Optics that stand for a length.
+void composite_optics(const Look& look, double from, double length, const Optics& optics, const Lit* lit, RayState& state);
 /// Several media at once on stretches with common ends; cuts them until order does not matter within the budget.
 struct Joint {
   const Look* look;

@@ -31,31 +31,35 @@ class Curve {
   }
   /// The limit from one side.
   Sample beside(double v, double towards) const { return {v, at(std::nextafter(v, towards)).tau}; }
-  /// A parabola from a to b through the middle.
+  /// The cubic through four places at equal distances.
   struct Arc {
-    Sample a, b;
-    double slope, curve;
-    Arc(Sample first, Sample last, double middle) : a(first), b(last) {
-      const double w = b.value - a.value;
-      slope = (4 * middle - 3 * a.tau - b.tau) / w, curve = 2 * (a.tau - 2 * middle + b.tau) / (w * w);
+    double lo, hi, at, slope, curve, twist;
+    Arc(Sample a, double first, double second, Sample b) : lo(a.value), hi(b.value), at(a.tau) {
+      const double w = hi - lo;
+      slope = (-11 * a.tau + 18 * first - 9 * second + 2 * b.tau) / (2 * w);
+      curve = 9 * (2 * a.tau - 5 * first + 4 * second - b.tau) / (2 * w * w);
+      twist = 9 * (-a.tau + 3 * first - 3 * second + b.tau) / (2 * w * w * w);
     }
-    double at(double v) const { return a.tau + (v - a.value) * (slope + (v - a.value) * curve); }
+    double operator()(double v) const {
+      const double d = v - lo;
+      return at + d * (slope + d * (curve + d * twist));
+    }
   };
   /// Appends arcs from a to b.
   void refine(Sample a, Sample b, int depth, std::vector<Arc>& out) const {
-    const double middle = 0.5 * (a.value + b.value);
-    if (!(middle > a.value && middle < b.value)) return out.push_back({a, b, 0.5 * (a.tau + b.tau)});
-    const Sample m = at(middle);
-    const Arc arc(a, b, m.tau);
+    const double middle = 0.5 * (a.value + b.value), third = (b.value - a.value) / 3;
+    if (!(middle > a.value && middle < b.value)) return out.push_back(even(a, b));
+    const Arc arc(a, at(a.value + third).tau, at(b.value - third).tau, b);
     bool good = true;
-    for (double f : {0.25, 0.75, 0.1, 0.9}) {
+    for (double f : {0.5, 0.06, 0.17, 0.83, 0.94}) {
       const Sample s = at(a.value + f * (b.value - a.value));
-      good = good && std::abs(arc.at(s.value) - s.tau) <= plan_.accuracy * std::max(s.tau, plan_.faint);
+      good = good && std::abs(arc(s.value) - s.tau) <= plan_.accuracy * std::max(s.tau, plan_.faint);
     }
     if (good || depth == 0 || out.size() > 4096) return out.push_back(arc);
-    refine(a, m, depth - 1, out);
-    refine(m, b, depth - 1, out);
+    refine(a, at(middle), depth - 1, out);
+    refine(at(middle), b, depth - 1, out);
   }
+  static Arc even(Sample a, Sample b) { return {a, a.tau + (b.tau - a.tau) / 3, b.tau - (b.tau - a.tau) / 3, b}; }
 
  private:
   const ColorScale& scale_;
@@ -102,13 +106,13 @@ void Medium::make_lines(const ColorScale& scale, const OpacityCurve& curve, cons
       if (at[i] < l && l < at[i + 1]) a.tau = b.tau = tau.at(l).tau;
     std::vector<Curve::Arc> arcs;
     if (scale.labels.empty()) tau.refine(a, b, 12, arcs);
-    else arcs.push_back({a, b, 0.5 * (a.tau + b.tau)});
+    else arcs.push_back(Curve::even(a, b));
     for (const Curve::Arc& arc : arcs) {
-      const float from = float(arc.a.value - base), to = float(arc.b.value - base);
-      if (to > from) lines_.push_back({from, to, from, float(arc.a.tau), float(arc.slope), float(arc.curve)});
+      const float from = float(arc.lo - base), to = float(arc.hi - base);
+      if (to > from) lines_.push_back({from, to, from, float(arc.at), float(arc.slope), float(arc.curve), float(arc.twist)});
     }
   }
-  if (lines_.empty()) lines_.push_back({0, 0, 0, float(tau.at(lo).tau), 0, 0});
+  if (lines_.empty()) lines_.push_back({0, 0, 0, float(tau.at(lo).tau), 0, 0, 0});
   bound();
   top_ = lines_.back().hi, accuracy_ = float(plan.accuracy), faint_ = float(plan.faint);
   // Beyond the data nothing is asked, but for rounding errors.
@@ -178,10 +182,14 @@ void Medium::make_colors(const ColorScale& scale, const Plan& plan) {
 void Medium::bound() {
   const size_t n = lines_.size();
   for (const Line& l : lines_) {
-    columns_.origin.push_back(l.origin), columns_.at.push_back(l.at), columns_.slope.push_back(l.slope), columns_.curve.push_back(l.curve);
-    const float width = l.hi - l.lo, top = l.curve < 0 ? std::clamp(-l.slope / (2 * l.curve), 0.0f, width) : 0;
-    columns_.most_tau.push_back(std::max({l.at, l(l.hi), l(l.lo + top)}));
-    columns_.most_slope.push_back(std::max(std::abs(l.slope), std::abs(l.slope + 2 * l.curve * width)));
+    columns_.origin.push_back(l.origin), columns_.at.push_back(l.at), columns_.slope.push_back(l.slope);
+    columns_.curve.push_back(l.curve), columns_.twist.push_back(l.twist);
+    float most = 0, steepest = 0;
+    for (int i = 0; i <= 8; ++i) {
+      const float d = (l.hi - l.lo) * (float(i) / 8);
+      most = std::max(most, l(l.lo + d)), steepest = std::max(steepest, std::abs(l.slope + d * (2 * l.curve + d * 3 * l.twist)));
+    }
+    columns_.most_tau.push_back(most), columns_.most_slope.push_back(steepest);
   }
   for (std::vector<float>* table : {&columns_.most_tau, &columns_.most_slope})
     for (size_t width = 2, row = n; width <= n; width *= 2, row += n) {
@@ -194,8 +202,9 @@ std::vector<Medium::Straight> Medium::straight() const {
   std::vector<Straight> out;
   for (const Line& l : lines_) {
     const float lo = l.origin, hi = std::min(l.hi, top_), width = hi - lo;
-    // A parabola leaves its chord by curve width^2 / 4.
-    const float tau = std::max({l.at, l(hi), faint_}), bend = 0.25f * std::abs(l.curve) * width * width;
+    // A parabola leaves its chord by curve width^2 / 4; a cubic's curve is steepest at an end.
+    const float tau = std::max({l.at, l(hi), faint_}),
+                bend = 0.25f * std::max(std::abs(l.curve), std::abs(l.curve + 3 * l.twist * width)) * width * width;
     const float parts = std::max(std::sqrt(bend / (2 * accuracy_ * tau)), std::abs(axis(hi) - axis(lo)) / color_width_);
     const int n = l.dark() ? 1 : std::clamp(int(std::ceil(parts)), 1, 1024);
     for (int i = 0; i < n; ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Medium: extinction as parabolas over the value, on as few knots as their accuracy allows, and colour as a fine table.
+// Medium: extinction as cubics over the value, on as few knots as their accuracy allows, and colour as a fine table.
 #pragma once
 #include <bit>
 #include <cstdint>
@@ -19,13 +19,13 @@ struct Optics {
 
 class Medium {
  public:
-  /// tau = at + slope d + curve d^2, d = v - origin, for v in [lo, hi].
+  /// tau = at + slope d + curve d^2 + twist d^3, d = v - origin, for v in [lo, hi].
   struct Line {
     float lo, hi;  ///< infinite at the ends
-    float origin, at, slope, curve;
-    bool dark() const { return at == 0 && slope == 0 && curve == 0; }
+    float origin, at, slope, curve, twist;
+    bool dark() const { return at == 0 && slope == 0 && curve == 0 && twist == 0; }
     float operator()(float v) const {
-      const float d = v - origin, t = at + d * (slope + d * curve);
+      const float d = v - origin, t = at + d * (slope + d * (curve + d * twist));
       return t > 0 ? t : 0;
     }
   };
@@ -39,7 +39,7 @@ class Medium {
     double faint = 0.01;       ///< a tau that makes no difference
     double most_tau = 1e6;     ///< stands for that of opacity 1, which has none
   };
-  /// Samples -log(1 - opacity)/unit until parabolas between the knots are right to the accuracy. Every point of the curve is a
+  /// Samples -log(1 - opacity)/unit until cubics between the knots are right to the accuracy. Every point of the curve is a
   /// knot, and so is every jump of colour. Values that the scale does not draw have tau 0.
   Medium(const ColorScale& scale, const OpacityCurve& curve, const Plan& plan);
 
@@ -87,7 +87,7 @@ class Medium {
 
   /// For vector code: the lines by columns, and the largest tau and |slope| of 2^k lines from line i on, at [k * lines + i].
   struct Columns {
-    std::vector<float> origin, hi, at, slope, curve, most_tau, most_slope;
+    std::vector<float> origin, hi, at, slope, curve, twist, most_tau, most_slope;
   };
   const Columns& columns() const { return columns_; }
   // The colours themselves (r, g, b, 0 as u16 per node), their axis, and the slices of lines.

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // What every kind of mesh turns a ray into: stretches on which the field is a cubic. Ray functions and the integral read nothing else.
 #pragma once
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <span>
 
 #include "base/vec.h"
+#include "color/transfer_function.h"
 
 namespace sg::volume {
 
@@ -54,8 +56,13 @@ class RayField {
   virtual double entry() const = 0;
   /// World gradient of the stored value at t of a stretch that `next` gave last or before.
   virtual Vec3f gradient(const Stretch& stretch, double t) = 0;
-  /// Value of the second field there (TransferDetail::second_field); 0 where the source has none.
-  virtual float second(const Stretch&, double) { return 0; }
+  /// Value of the second field there (TransferDetail::second_field); NaN where the source has none.
+  virtual float second(const Stretch&, double) { return NAN; }
+  /// Values of the samples between which the value there is interpolated, and their shares: for classification before interpolation.
+  /// Returns how many (at most 8); 0 where the source cannot say.
+  virtual int samples(const Stretch&, double, float[8], float[8]) { return 0; }
+  /// World second derivatives of the stored value there; false where the source has none.
+  virtual bool bend(const Stretch&, double, SecondDerivatives&) { return false; }
 };
 
 /// A prepared volume of any mesh kind; walkers share it.

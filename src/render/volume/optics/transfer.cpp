@@ -65,6 +65,13 @@ Transfer::Transfer(const ColorScale& scale, const OpacityCurve& curve, double un
   const ColorTable colors = color_table(scale);
   steps_.resize(size_t(count_) + 3), media_.resize(size_t(count_) + 3), drawn_before_.resize(size_t(count_) + 4);
   const double entry = 1 / double(per_axis_);
+  // Spikes of opacity narrower than the table.
+  std::vector<uint8_t> thin(size_t(count_) + 3);
+  for (size_t k = 0; k + 2 < curve.points.size(); ++k) {
+    const float from = float(curve.points[k].x - base), to = float(curve.points[k + 2].x - base);
+    if (!(curve.points[k + 1].y > 0 && (axis(to) - axis(from)) * per_axis_ < 2)) continue;
+    for (int i = std::max(index(from) - 1, 0); i <= std::min(index(to) + 1, count_ + 1); ++i) thin[size_t(i)] = 1;
+  }
   const double beyond = std::max(1e-3 * (last - first), 1e-9 * std::max(std::abs(first), std::abs(last)));
   for (int i = 0; i < count_ + 3; ++i) {
     double value = double(value_on_axis(double(first_) + (double(i) - 0.5) * entry)) + base;
@@ -88,7 +95,7 @@ Transfer::Transfer(const ColorScale& scale, const OpacityCurve& curve, double un
     const double pass = exp_negative(density * step), alpha = 1 - pass;
     media_[size_t(i)] = {color.x, color.y, color.z, float(std::min(density, 1e30))};
     steps_[size_t(i)] = {float(color.x * alpha), float(color.y * alpha), float(color.z * alpha), float(pass)};
-    drawn_before_[size_t(i) + 1] = drawn_before_[size_t(i)] + (density > 0);
+    drawn_before_[size_t(i) + 1] = drawn_before_[size_t(i)] + (density > 0 || thin[size_t(i)]);
   }
 }
 

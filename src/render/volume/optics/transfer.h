@@ -47,6 +47,8 @@ class Transfer {
   LinearTable linear_table() const { return {first_, per_axis_, count_}; }
   const Step* steps() const { return steps_.data(); }
   const Medium& medium(int index) const { return media_[size_t(index)]; }
+  /// May values of this entry draw something? True also for spikes of opacity too narrow for the table.
+  bool draws(int entry) const { return drawn_before_[size_t(entry) + 1] != drawn_before_[size_t(entry)]; }
   /// Does every value in [lo, hi] (stored) draw nothing?
   bool clear(float lo, float hi) const;
 

@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+// render of a time series: one numbered picture per step, the next step read or computed while one is drawn.
+#include <cstdio>
+#include <exception>
+#include <thread>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/text.h"
+#include "cli/cli.h"
+#include "data/memory_budget.h"
+#include "image/codec.h"
+#include "pipeline/picture.h"
+#include "pipeline/picture_parts.h"
+
+namespace sg {
+
+namespace {
+
+constexpr std::string_view mark = "{n}";
+
+// "0:10:6" = 6 times from 0 to 10; "0,1,2.5" = these.
+std::vector<double> parse_times(const std::string& text) {
+  std::vector<double> times;
+  const auto ends = split(text, ':');
+  if (ends.size() == 3) {
+    const auto a = parse_double(ends[0]), b = parse_double(ends[1]);
+    const auto n = parse_int(ends[2]);
+    if (!a || !b || !n || *n < 1 || *n > 1000000)
+      fail_usage(fmt::format("'{}' is no list of times", text), "--times", "FIRST:LAST:COUNT, like 0:10:101");
+    for (int64_t i = 0; i < *n; ++i) times.push_back(*n == 1 ? *a : *a + (*b - *a) * double(i) / double(*n - 1));
+    return times;
+  }
+  for (const std::string_view part : split(text, ',')) {
+    const auto t = parse_double(part);
+    if (!t || !std::isfinite(*t)) fail_usage(fmt::format("'{}' is no list of times", text), "--times", "like 0,0.5,1 or 0:1:101");
+    times.push_back(*t);
+  }
+  if (times.empty()) fail_usage("names no time", "--times", "like 0,0.5,1 or 0:1:101");
+  return times;
+}
+
+std::string numbered(const std::string& pattern, size_t n, size_t count) {
+  const size_t at = pattern.find(mark), digits = std::max<size_t>(3, std::to_string(count - 1).size());
+  return pattern.substr(0, at) + fmt::format("{:0{}}", n, digits) + pattern.substr(at + mark.size());
+}
+
+// The pipeline of one step: readers and sources with a time get it.
+PipelineFile at_time(PipelineFile file, double time, std::optional<size_t> step) {
+  for (PipelineFile::Step& s : file.steps) {
+    if (s.operation == "read") {
+      s.words.push_back(step ? fmt::format("step={}", *step) : "time=" + exact_number(time));
+    } else if (s.from.empty()) {
+      const auto known = operations();
+      const auto op = std::find_if(known.begin(), known.end(), [&](const Operation& o) { return o.name == s.operation; });
+      if (op == known.end() || op->kind != OperationKind::source) continue;
+      const ParamSet p = op->make_params();
+      if (p.schema.find("time")) s.words.push_back("time=" + exact_number(time));
+      else
+        fail_usage(fmt::format("the source '{}' has no time", s.operation), "--times", "a series needs a source with a parameter 'time'");
+    }
+  }
+  return file;
+}
+
+std::vector<Data> results_of(const PipelineFile& file, const std::shared_ptr<Cache>& cache, Context& context) {
+  GraphOptions options;
+  options.cache = cache;
+  const PipelineGraph built = build_graph(file, options);
+  std::vector<Target> targets;
+  for (NodeId n : built.show) targets.push_back({n, {}});
+  if (targets.empty()) targets.push_back({built.last, {}});
+  return built.graph.evaluate(targets, context);
+}
+
+// Computes the results of a step beside the drawing of another, and holds them so that the cache finds them.
+class Ahead {
+ public:
+  Ahead(PipelineFile file, std::shared_ptr<Cache> cache, Context& context)
+      : thread_([this, file = std::move(file), cache = std::move(cache), &context] {
+          try {
+            results_ = results_of(file, cache, context);
+          } catch (...) {
+            // The drawing meets the same error and says it.
+          }
+        }) {}
+  ~Ahead() { wait(); }
+  Ahead(const Ahead&) = delete;
+  Ahead& operator=(const Ahead&) = delete;
+  void wait() {
+    if (thread_.joinable()) thread_.join();
+  }
+
+ private:
+  std::vector<Data> results_;
+  std::thread thread_;
+};
+
+// Colours mean the same in all pictures: where no range is stated, that of up to five steps spread over the series.
+void fix_ranges(PipelineFile& first, const std::vector<PipelineFile>& some, Context& context) {
+  for (size_t i = 0; i < first.show.size(); ++i) {
+    PipelineFile::Show& show = first.show[i];
+    if (!colors_by_field(show.kind) || word_value(show.words, "range") || word_value(show.words, "color")) continue;
+    const std::string named = word_value(show.words, "field").value_or("");
+    if (named == "none") continue;
+    Range all;
+    const int component = int(parse_int(word_value(show.words, "component").value_or("-1")).value_or(-1));
+    for (const PipelineFile& file : some) {
+      const std::vector<Data> data = results_of(file, std::make_shared<Cache>(0), context);
+      for_each_dataset(data[std::min(i, data.size() - 1)], [&](const std::string&, const DatasetPtr& d) {
+        const Field* f = named.empty() ? automatic_field(*d) : d->fields().find(named);
+        if (f && f->association != Association::whole) all.add(d->range(*f, f->components() > 1 ? component : 0));
+      });
+    }
+    if (!(all.lo < all.hi)) continue;
+    if (word_value(show.words, "map").value_or("auto") == "auto" && all.lo < 0 && all.hi > 0 &&
+        std::min(-all.lo, all.hi) > 0.05 * std::max(-all.lo, all.hi)) {
+      const double most = std::max(-all.lo, all.hi);  // values of both signs: no colour for one side only
+      all = {-most, most};
+    }
+    show.words.push_back(fmt::format("range={},{}", exact_number(all.lo), exact_number(all.hi)));
+    context.info(fmt::format("one range for all pictures: {} to {}, that of {} steps spread over the series", short_number(all.lo),
+                             short_number(all.hi), some.size()));
+  }
+}
+
+}  // namespace
+
+bool is_numbered(const std::string& output) { return output.find(mark) != std::string::npos; }
+
+int render_series(const Options& o, const PictureOptions& options, Context& context) {
+  const PipelineFile plain = pipeline_of(o);
+  if (const std::string ext = extension_of(o.output); ext == "mp4" || ext == "webm")
+    fail_usage("movies are not written yet", o.output,
+               "write numbered pictures, like out_{n}.png, and join them with a tool of your choice");
+  std::vector<double> times;
+  bool by_step = false;
+  if (!o.times.empty()) {
+    times = parse_times(o.times);
+  } else if (o.inputs.size() == 1) {
+    times = file_times(o.inputs[0], o.read, context);
+    by_step = true;
+    if (times.empty()) fail_usage("has no time steps", o.inputs[0], "a picture without {n} in its name shows it");
+  } else {
+    fail_usage("a series of a source needs its times", "--times", "FIRST:LAST:COUNT, like --times 0:10:101");
+  }
+  const auto step = [&](const PipelineFile& file, size_t n) {
+    return at_time(file, times[n], by_step ? std::optional<size_t>(n) : std::nullopt);
+  };
+  { AtomicFile probe(numbered(o.output, 0, times.size())); }
+
+  // The first picture chooses the looks of all.
+  const auto cache = std::make_shared<Cache>(0);
+  PictureOptions each = options;
+  each.cache = cache;
+  std::vector<Data> held = results_of(step(plain, 0), cache, context);
+  const size_t one_step = array_memory();
+  PipelineFile chosen = step(plain, 0);
+  PictureOptions look = each;
+  std::vector<std::string> notes;
+  if (chosen.show.empty()) {
+    std::vector<Data> looked;
+    choose_looks(chosen, look, cache, looked, notes, context);
+  } else {
+    for (auto& s : chosen.show)
+      if (colors_by_field(s.kind)) s.words.insert(s.words.end(), options.coloring.begin(), options.coloring.end());
+  }
+  each.coloring.clear();
+  PipelineFile base = chosen;
+  for (size_t i = 0; i < plain.steps.size(); ++i) base.steps[i].words = plain.steps[i].words;  // without the time of the first
+  std::vector<PipelineFile> some;
+  for (size_t i = 0; i < std::min<size_t>(5, times.size()); ++i)
+    some.push_back(step(base, times.size() == 1 ? 0 : i * (times.size() - 1) / (std::min<size_t>(5, times.size()) - 1)));
+  fix_ranges(base, some, context);
+
+  const bool prefetch = o.memory == 0 || 2 * one_step < o.memory;
+  if (!prefetch) context.info("two steps do not fit into the memory allowed: each is read when it is drawn");
+  std::unique_ptr<Ahead> ahead;
+  for (size_t n = 0; n < times.size(); ++n) {
+    context.check();
+    PipelineFile file = step(base, n);
+    if (n > 0 && !prefetch) held.clear();
+    if (ahead) ahead->wait();
+    const std::unique_ptr<Ahead> current = std::move(ahead);  // holds this step until it is drawn
+    if (prefetch && n + 1 < times.size()) ahead = std::make_unique<Ahead>(step(base, n + 1), cache, context);
+    Picture picture = make_picture(file, each, context);
+    held.clear();
+    const std::string name = numbered(o.output, n, times.size());
+    attach_recipe(picture.image, file, name);
+    write_image(name, picture.image);
+    context.progress(double(n + 1) / double(times.size()), "drawing");
+  }
+  if (!o.quiet)
+    std::printf("%s ... %s: %zu pictures, times %s to %s\n", numbered(o.output, 0, times.size()).c_str(),
+                numbered(o.output, times.size() - 1, times.size()).c_str(), times.size(), short_number(times.front()).c_str(),
+                short_number(times.back()).c_str());
+  return 0;
+}
+
+}  // namespace sg

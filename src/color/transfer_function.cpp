@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "color/transfer_function.h"
+
+#include <bit>
+
+#include "base/error.h"
+#include "color/cie.h"
+
+namespace sg {
+
+namespace {
+
+constexpr int table_size = 4096;
+
+// log2 with straight lines between the powers of two: monotone, continuous, exactly invertible. 0 for 1.
+float bit_log(float v) { return float(std::bit_cast<int32_t>(v) - 0x3F800000) * 0x1p-23f; }
+double bit_exp(double a) {
+  return double(std::bit_cast<float>(int32_t(std::clamp(std::lround(a * 0x1p23), -0x3F800000L, 0x3FFFFFFFL)) + 0x3F800000));
+}
+
+Vec4f to_linear(Vec4f c) {
+  return {float(srgb_to_linear(double(c.x))), float(srgb_to_linear(double(c.y))), float(srgb_to_linear(double(c.z))), c.w};
+}
+
+const OpacityCurve& checked(const OpacityCurve& c) {
+  if (c.points.empty()) fail_usage("the opacity curve has no points", "opacity", "write position:opacity pairs, e.g. 0:0,0.3:0.1,1:0.8");
+  return c;
+}
+
+}  // namespace
+
+FastCurve::FastCurve(const OpacityCurve& curve, double base) {
+  for (const Vec2& p : checked(curve).points) x_.push_back(float(p.x - base)), y_.push_back(float(p.y));
+  const size_t n = x_.size();
+  slope_.assign(n, 0);
+  positive_before_.assign(n + 1, 0);
+  for (size_t i = 0; i + 1 < n; ++i) {
+    slope_[i] = x_[i + 1] > x_[i] ? (y_[i + 1] - y_[i]) / (x_[i + 1] - x_[i]) : 0;
+    positive_before_[i + 1] = positive_before_[i] + (y_[i] > 0 || y_[i + 1] > 0);
+  }
+  positive_before_[n] = positive_before_[n - 1];
+  const float width = x_.back() - x_.front();
+  first_.assign(width > 0 ? 1024 : 1, 0);
+  per_slice_ = width > 0 ? float(first_.size()) / width : 0;
+  if (!std::isfinite(per_slice_)) per_slice_ = 0;
+  // The interval in which a slice begins; one early, lest rounding of the slice's number starts a search too late.
+  size_t i = 0;
+  for (size_t s = 0; s < first_.size() && per_slice_ > 0; ++s) {
+    const float begin = x_.front() + float(s) / per_slice_;
+    while (i + 2 < n && x_[i + 1] <= begin) ++i;
+    first_[s] = uint32_t(i);
+  }
+  for (size_t s = first_.size(); s-- > 1;) first_[s] = first_[s - 1];
+}
+
+size_t FastCurve::after(float x) const { return size_t(std::upper_bound(x_.begin(), x_.end(), x) - x_.begin()); }
+
+bool FastCurve::zero(float lo, float hi) const {
+  if (!(lo <= hi)) return false;
+  const size_t a = after(lo), b = after(hi), n = x_.size();
+  if (a == 0 && y_.front() > 0) return false;
+  if (b == n && y_.back() > 0) return false;
+  const size_t first = a == 0 ? 0 : a - 1, last = std::min(b, n - 1);  // intervals [first, last)
+  return last <= first || positive_before_[last] == positive_before_[first];
+}
+
+float FastCurve::most(float lo, float hi) const {
+  float most = std::max(at(lo), at(hi));
+  const size_t a = size_t(std::lower_bound(x_.begin(), x_.end(), lo) - x_.begin()), b = after(hi);
+  for (size_t i = a; i < b; ++i) most = std::max(most, y_[i]);
+  return most;
+}
+
+TransferFunction::Colors::Colors(const ColorScale& s, double b) : scale(s), base(b) {
+  const ColorTable ends = color_table(s, 2);
+  below = ends.below, above = ends.above, nan = ends.nan;
+  if (!s.labels.empty()) return;
+  if (s.kind == ScaleKind::symlog) {
+    const double most = std::max(std::abs(s.lo), std::abs(s.hi));
+    const double threshold = s.linear_threshold > 0 ? s.linear_threshold : most > 0 ? 1e-3 * most : 1;
+    per_threshold = float(1 / threshold);
+  }
+  const double lo = double(axis(float(s.lo - b))), hi = double(axis(float(s.hi - b)));
+  first = float(lo);
+  per_axis = hi > lo ? float(table_size / (hi - lo)) : 0;
+  for (int i = 0; i < table_size; ++i)
+    table.push_back(
+        to_linear(s.color(std::clamp(value_on_axis(lo + (hi - lo) * (i + 0.5) / table_size), std::min(s.lo, s.hi), std::max(s.lo, s.hi)))));
+}
+
+float TransferFunction::Colors::axis(float v) const {
+  if (scale.kind == ScaleKind::linear) return v;
+  const float absolute = float(double(v) + base);
+  if (scale.kind == ScaleKind::log) return absolute > 0 ? bit_log(absolute) : -1e30f;
+  const float m = bit_log(1 + std::abs(absolute) * per_threshold);
+  return absolute < 0 ? -m : m;
+}
+
+double TransferFunction::Colors::value_on_axis(double a) const {
+  if (scale.kind == ScaleKind::linear) return a + base;
+  if (scale.kind == ScaleKind::log) return bit_exp(a);
+  return std::copysign((bit_exp(std::abs(a)) - 1) / double(per_threshold), a);
+}
+
+Vec4f TransferFunction::Colors::at(float v) const {
+  if (v != v) return nan;
+  if (!scale.labels.empty()) return to_linear(scale.color(double(v) + base));
+  const float place = (axis(v) - first) * per_axis;
+  if (place >= 0 && place <= float(table_size)) return table[size_t(std::min(int(place), table_size - 1))];
+  return place < 0 ? below : above;
+}
+
+TransferFunction::TransferFunction(const ColorScale& scale, const OpacityCurve& opacity, const TransferDetail& detail, double base)
+    : colors_(scale, base), curve_(opacity, base), factor_(detail.second_factor, 0) {
+  color_by_second_ = detail.color_by_second;
+  if (color_by_second_) {
+    if (detail.second == SecondAxis::none) fail_usage("colour follows the second axis, but there is none", "transfer function");
+    second_colors_.emplace_back(detail.second_color, 0);
+  }
+  const auto& factors = detail.second_factor.points;
+  with_factor_ = detail.second != SecondAxis::none && !std::all_of(factors.begin(), factors.end(), [](Vec2 p) { return p.y == 1; });
+  most_factor_ = with_factor_ ? factor_.most(-HUGE_VALF, HUGE_VALF) : 1;
+  for (const TransferWidget& w : detail.widgets) {
+    Widget f;
+    f.triangle = w.shape == TransferWidget::Shape::triangle;
+    f.lo = float(w.lo - base), f.hi = float(w.hi - base), f.middle = float(0.5 * (w.lo + w.hi) - base);
+    f.per_half = w.hi > w.lo ? float(2 / (w.hi - w.lo)) : 0;
+    f.second_lo = float(w.second_lo), f.second_hi = float(w.second_hi);
+    f.per_height = w.second_hi > w.second_lo ? float(1 / (w.second_hi - w.second_lo)) : 0;
+    f.opacity = float(w.opacity);
+    f.own_color = w.color.x >= 0 && w.color.y >= 0 && w.color.z >= 0;
+    const Vec4f c = to_linear({w.color.x, w.color.y, w.color.z, 1});
+    f.color = {c.x, c.y, c.z};
+    widgets_.push_back(f);
+  }
+  drawn_lo_ = scale.clamp ? -HUGE_VALF : float(std::min(scale.lo, scale.hi) - base);
+  drawn_hi_ = scale.clamp ? HUGE_VALF : float(std::max(scale.lo, scale.hi) - base);
+}
+
+// The strongest decides the opacity; colours mix by opacity, so that they change smoothly where widgets overlap.
+float TransferFunction::of_widgets(float value, float second, const Vec4f& plain, float* color) const {
+  float most = 0, sum = 0;
+  Vec3f mixed{0, 0, 0};
+  for (const Widget& w : widgets_) {
+    if (!(second >= w.second_lo && second <= w.second_hi)) continue;
+    float from_middle = std::abs(value - w.middle) * w.per_half;
+    if (w.triangle) {
+      const float height = (second - w.second_lo) * w.per_height;  // width 0 at the base point, hi - lo at the top
+      if (!(from_middle < height)) continue;
+      from_middle /= height;
+    }
+    const float a = w.opacity * (1 - from_middle);
+    if (!(a > 0)) continue;
+    most = std::max(most, a), sum += a;
+    mixed = mixed + (w.own_color ? w.color : Vec3f{plain.x, plain.y, plain.z}) * a;
+  }
+  if (color && sum > 0) color[0] = mixed.x / sum, color[1] = mixed.y / sum, color[2] = mixed.z / sum;
+  return most;
+}
+
+float TransferFunction::opacity_and_color(float value, float second, float color[4]) const {
+  const Vec4f c = color_by_second_ ? second_colors_[0].at(second) : colors_.at(value);
+  color[0] = c.x, color[1] = c.y, color[2] = c.z, color[3] = c.w;
+  if (!(value >= drawn_lo_ && value <= drawn_hi_) || c.w == 0) return 0;
+  if (!widgets_.empty()) return of_widgets(value, second, c, color);
+  const float opacity = curve_.at(value);
+  return with_factor_ ? opacity * factor_.at(second) : opacity;
+}
+
+bool TransferFunction::clear(float lo, float hi) const {
+  if (!(lo <= hi)) return false;
+  lo = std::max(lo, drawn_lo_), hi = std::min(hi, drawn_hi_);
+  if (lo > hi || most_factor_ == 0) return true;
+  if (widgets_.empty()) return curve_.zero(lo, hi);
+  return std::all_of(widgets_.begin(), widgets_.end(), [&](const Widget& w) { return w.opacity == 0 || hi <= w.lo || lo >= w.hi; });
+}
+
+float TransferFunction::most_opacity(float lo, float hi) const {
+  if (clear(lo, hi)) return 0;
+  if (widgets_.empty()) return curve_.most(lo, hi) * most_factor_;
+  float most = 0;
+  for (const Widget& w : widgets_) {
+    const float off = std::max({w.lo > hi ? 1.0f : 0.0f, lo > w.middle ? (lo - w.middle) * w.per_half : 0.0f,
+                                hi < w.middle ? (w.middle - hi) * w.per_half : 0.0f});
+    most = std::max(most, w.opacity * std::max(0.0f, 1 - off));
+  }
+  return most;
+}
+
+}  // namespace sg

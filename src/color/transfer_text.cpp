@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "color/transfer_text.h"
+
+#include "base/error.h"
+#include "base/text.h"
+#include "color/colormap_nodes.h"
+#include "color/parse_color.h"
+
+namespace sg {
+
+namespace {
+
+const char* opacity_form = "write position:opacity pairs, e.g. 0:0,0.3:0.1,1:0.8, or @value:opacity, e.g. @-500:0,@200:0.4";
+const char* stops_form = "write position:colour pairs, e.g. 0:#000000,0.4:#aa3311,1:white, or @value:colour";
+
+// A place as a position on the axis; nothing for what is no number.
+std::optional<double> place(std::string_view text, const ColorScale& axis) {
+  const bool absolute = text.starts_with('@');
+  const auto v = parse_double(trim(absolute ? text.substr(1) : text));
+  if (!v || !std::isfinite(*v)) return {};
+  if (!absolute) return *v;
+  if (axis.labels.empty()) return axis.position(*v);
+  return (*v - axis.lo) / (axis.hi - axis.lo);  // labels: between them, too
+}
+// The value there, exactly the one written after an @.
+double value_of(std::string_view text, const ColorScale& axis) {
+  if (text.starts_with('@')) return *parse_double(trim(text.substr(1)));
+  const double t = *parse_double(text);
+  if (axis.kind == ScaleKind::linear || !axis.labels.empty()) return t == 1 ? axis.hi : axis.lo + t * (axis.hi - axis.lo);
+  return axis.value_at(t);
+}
+
+// The two halves of "place:what"; a colour may hold no colon.
+std::pair<std::string_view, std::string_view> halves(std::string_view part) {
+  const size_t colon = part.find(':');
+  if (colon == part.npos) return {part, {}};
+  return {trim(part.substr(0, colon)), trim(part.substr(colon + 1))};
+}
+
+void check_ascends(double before, double now, std::string_view part, const ColorScale& axis, const std::string& word) {
+  if (now < before)
+    fail_usage(fmt::format("'{}' lies below the point before it ({} after {})", part, short_number(axis.value_at(now)),
+                           short_number(axis.value_at(before))),
+               word, "write the points in ascending order; two at one place make a step");
+}
+
+}  // namespace
+
+OpacityCurve parse_opacity(const std::string& text, const ColorScale& axis, const std::string& word) {
+  OpacityCurve curve;
+  curve.points.clear();
+  const auto parts = split(text, ',');
+  if (parts.empty()) fail_usage("the curve is empty", word, opacity_form);
+  double last = -HUGE_VAL;
+  int same = 0;
+  bool last_is_value = false;
+  for (const std::string_view part : parts) {
+    auto [where, how_much] = halves(part);
+    const bool constant = parts.size() == 1 && part.find(':') == part.npos;
+    if (constant) how_much = where, where = "0";
+    const auto t = place(where, axis);
+    const auto y = parse_double(how_much);
+    if (!t || !y) fail_usage(fmt::format("'{}' is not a point of an opacity curve", part), word, opacity_form);
+    if (!std::isfinite(*t)) fail_usage(fmt::format("'{}' has no place on a log scale", where), word, "values there are above 0");
+    if (!(*y >= 0 && *y <= 1)) fail_usage(fmt::format("opacity {} is not between 0 and 1", how_much), word, opacity_form);
+    check_ascends(last, *t, part, axis, word);
+    same = *t == last ? same + 1 : 0;
+    if (same == 2) fail_usage(fmt::format("'{}' is the third point at one place", part), word, "two points at one place make a step");
+    const double x = value_of(where, axis);
+    const bool is_value = where.starts_with('@');
+    if (!curve.points.empty() && axis.kind != ScaleKind::linear && *t > last && !(is_value && last_is_value)) {
+      // Between positions opacity is straight along the scale: bent over values.
+      const Vec2 from = curve.points.back();
+      const int pieces = 16;
+      for (int i = 1; i < pieces; ++i) {
+        const double s = double(i) / pieces;
+        curve.points.push_back({axis.value_at(last + s * (*t - last)), from.y + s * (*y - from.y)});
+      }
+    }
+    curve.points.push_back({x, *y});
+    last = *t, last_is_value = is_value;
+  }
+  return curve;
+}
+
+OpacityCurve parse_opacity(const std::string& text, double lo, double hi) {
+  ColorScale axis;
+  axis.lo = lo, axis.hi = hi;
+  return parse_opacity(text, axis);
+}
+
+std::string opacity_text(const OpacityCurve& curve) {
+  std::string r;
+  for (const Vec2& p : curve.points) r += fmt::format("{}@{}:{}", r.empty() ? "" : ",", exact_number(p.x), exact_number(p.y));
+  return r;
+}
+
+void parse_color_stops(const std::string& text, ColorScale& scale, bool keep_range) {
+  // Commas also stand within "r,g,b": a part without a colon belongs to the one before it.
+  std::vector<std::string> parts;
+  for (const std::string_view part : split(text, ',')) {
+    if (part.find(':') == part.npos && !parts.empty()) parts.back() += "," + std::string(part);
+    else parts.emplace_back(part);
+  }
+  if (parts.empty()) fail_usage("there are no colours", "colors", stops_form);
+  std::vector<ColorNode> nodes;
+  std::string_view first, last;
+  for (const std::string& part : parts) {
+    const auto [where, what] = halves(part);
+    const auto t = place(where, scale);
+    if (!t || what.empty()) fail_usage(fmt::format("'{}' is not a colour at a place", part), "colors", stops_form);
+    if (!std::isfinite(*t)) fail_usage(fmt::format("'{}' has no place on a log scale", where), "colors", "values there are above 0");
+    if (!nodes.empty()) check_ascends(nodes.back().position, *t, part, scale, "colors");
+    if (nodes.size() > 1 && *t == nodes[nodes.size() - 2].position)
+      fail_usage(fmt::format("'{}' is the third colour at one place", part), "colors", "two colours at one place make a step");
+    nodes.push_back({*t, parse_color(what, "colors")});
+    (nodes.size() == 1 ? first : last) = where;
+  }
+  Colormap map{"stops", MapKind::sequential, "Colours as stated.", {}};
+  const bool flat = nodes.front().position == nodes.back().position;
+  if (flat || keep_range) {
+    // The end colours go on to the ends of the range; what lies beyond the range is cut off.
+    std::vector<ColorNode> whole;
+    const auto at = [&](double t) {
+      if (t <= nodes.front().position) return nodes.front().color;
+      for (size_t i = 1; i < nodes.size(); ++i)
+        if (t < nodes[i].position)
+          return lerp(nodes[i - 1].color, nodes[i].color, float((t - nodes[i - 1].position) / (nodes[i].position - nodes[i - 1].position)));
+      return nodes.back().color;
+    };
+    whole.push_back({0, at(0)});
+    for (const ColorNode& n : nodes)
+      if (n.position > 0 && n.position < 1) whole.push_back(n);
+    whole.push_back({1, nodes.back().position <= 1 ? nodes.back().color : at(1)});
+    nodes = std::move(whole);
+  } else {
+    const double lo = value_of(first, scale), hi = value_of(last, scale);
+    scale.lo = lo, scale.hi = hi;
+  }
+  map.colors = sample_nodes(nodes, NodeSpace::rgb);
+  scale.map = std::move(map);
+  scale.labels.clear(), scale.label_names.clear(), scale.limits.clear();
+}
+
+std::string color_stops_text(const ColorScale& scale) {
+  std::string r;
+  const auto add = [&](double t, Vec3f color) {
+    r += fmt::format("{}@{}:{}", r.empty() ? "" : ",", exact_number(scale.value_at(t)), color_text(color));
+  };
+  const auto& c = scale.map.colors;
+  const size_t n = c.size();
+  if (scale.map.categorical()) {
+    for (size_t i = 0; i < n; ++i) add(double(i) / double(n), c[i]), add(double(i + 1) / double(n), c[i]);
+    return r;
+  }
+  // Greedy: the farthest sample to which a straight line misses no colour between by half a step of 8 bits.
+  constexpr float miss = 0.5f / 255;
+  for (size_t i = 0; i < n;) {
+    add(n > 1 ? double(i) / double(n - 1) : 0, c[i]);
+    if (i + 1 == n) break;
+    size_t to = i + 1;
+    for (size_t j = i + 2; j < n; ++j) {
+      bool straight = true;
+      for (size_t k = i + 1; k < j && straight; ++k) {
+        const Vec3f line = lerp(c[i], c[j], float(k - i) / float(j - i));
+        for (int a = 0; a < 3; ++a) straight = straight && std::abs(line[a] - c[k][a]) <= miss;
+      }
+      if (!straight) break;
+      to = j;
+    }
+    i = to;
+  }
+  return r;
+}
+
+std::vector<TransferWidget> parse_widgets(const std::string& text, const ColorScale& value, const ColorScale& second) {
+  const char* form =
+      "write 'triangle LO HI BASE TOP OPACITY COLOR' or 'rectangle LO HI LOW HIGH OPACITY COLOR', several with ; between them; "
+      "LO and HI are positions (or @values), the next two are on the second axis";
+  std::vector<TransferWidget> widgets;
+  for (const std::string_view part : split(text, ';')) {
+    const auto w = words(part);
+    if (w.empty()) continue;
+    TransferWidget r;
+    if (w[0] == "triangle") r.shape = TransferWidget::Shape::triangle;
+    else if (w[0] == "rectangle") r.shape = TransferWidget::Shape::rectangle;
+    else {
+      const std::vector<std::string> names{"triangle", "rectangle"};
+      fail_usage(fmt::format("unknown widget '{}'", w[0]), "widgets", unknown_name_hint(w[0], names));
+    }
+    if (w.size() < 5 || w.size() > 7) fail_usage(fmt::format("'{}' has {} numbers", part, w.size() - 1), "widgets", form);
+    double* ends[4] = {&r.lo, &r.hi, &r.second_lo, &r.second_hi};
+    for (size_t i = 0; i < 4; ++i) {
+      const ColorScale& axis = i < 2 ? value : second;
+      const auto t = place(w[i + 1], axis);
+      if (!t) fail_usage(fmt::format("'{}' in '{}' is not a place", w[i + 1], part), "widgets", form);
+      *ends[i] = value_of(w[i + 1], axis);
+    }
+    if (!(r.lo < r.hi) || !(r.second_lo < r.second_hi))
+      fail_usage(fmt::format("'{}' has no width or no height", part), "widgets", "write the lower end of each axis first");
+    if (w.size() > 5) {
+      const auto y = parse_double(w[5]);
+      if (!y || !(*y >= 0 && *y <= 1)) fail_usage(fmt::format("opacity {} is not between 0 and 1", w[5]), "widgets", form);
+      r.opacity = *y;
+    }
+    r.color = w.size() > 6 && w[6] != "map" ? parse_color(w[6], "widgets") : Vec3f{-1, -1, -1};
+    widgets.push_back(r);
+  }
+  if (widgets.empty()) fail_usage("there are no widgets", "widgets", form);
+  return widgets;
+}
+
+std::string widgets_text(const std::vector<TransferWidget>& widgets) {
+  std::string r;
+  for (const TransferWidget& w : widgets)
+    r += fmt::format("{}{} @{} @{} @{} @{} {} {}", r.empty() ? "" : "; ",
+                     w.shape == TransferWidget::Shape::triangle ? "triangle" : "rectangle", exact_number(w.lo), exact_number(w.hi),
+                     exact_number(w.second_lo), exact_number(w.second_hi), exact_number(w.opacity),
+                     w.color.x < 0 ? "map" : color_text(w.color));
+  return r;
+}
+
+}  // namespace sg

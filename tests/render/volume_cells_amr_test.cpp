@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rays through AMR grids: each leaf once, continuous across levels.
+#include "data/point_positions.h"
+#include "index/locator_meshes.h"
+#include "support/test.h"
+#include "volume_cells_support.h"
+
+using namespace sg;
+using namespace sg::test;
+
+namespace {
+
+double linear(Vec3 p) { return 1 + p.x + 2 * p.y + 3 * p.z; }
+double wavy(Vec3 p) { return std::sin(2 * p.x) * std::cos(p.y) + p.z * p.z; }
+
+DatasetPtr amr_with(const DatasetPtr& grid, const Function& f, Association a) {
+  std::vector<float> v;
+  if (a == Association::cell) {
+    CellMap map(grid);
+    for (size_t c = 0; c < grid->cell_count(); ++c) map.open(c), v.push_back(float(f(map.center())));
+  } else {
+    const Array xyz = point_positions(grid->mesh());
+    for (size_t i = 0; i < xyz.count(); ++i) v.push_back(float(f({xyz.get(i, 0), xyz.get(i, 1), xyz.get(i, 2)})));
+  }
+  DatasetParts parts = grid->parts();
+  parts.fields.add({"f", a, Array::from_vector(v), "", Role::scalars});
+  return make_dataset(std::move(parts));
+}
+
+/// Chord of [-1,1]^3.
+std::pair<double, double> box_chord(Vec3 o, Vec3 d) {
+  const auto [a, b] = chord((o + Vec3(1, 1, 1)) * 0.5, d * 0.5);
+  return {a, b};
+}
+
+}  // namespace
+
+TEST_CASE("volume cells: AMR leaves fill their box once, linear fields are exact and nothing jumps between levels") {
+  for (Association a : {Association::point, Association::cell}) {
+    CAPTURE(int(a));
+    for (const DatasetPtr& grid : {amr(), amr_small()})
+      for (bool straight_field : {true, false}) {
+        const VolumeItem item = item_of(amr_with(grid, straight_field ? Function(linear) : Function(wavy), a), a);
+        Context context;
+        const auto source = volume::cell_source(item, context);
+        const auto walker = source->walker();
+        std::vector<TestRay> rays = some_rays(40);
+        for (TestRay& r : rays) r.o = r.o * 2.0 - Vec3(1, 1, 1);
+        for (double u : {0.0, 0.25, 0.375, 1.0 / 3}) rays.push_back({{-3, u, u}, {1, 0, 0}}), rays.push_back({{u, -u, -3}, {0, 0, 1}});
+        for (const TestRay& ray : rays) {
+          const auto [from, to] = box_chord(ray.o, ray.d);
+          walker->start(ray.o, ray.d, -100, 100);
+          volume::Stretch s[7];
+          double at = from, sum = 0, length = 0, jump = 0;
+          float last = 0;
+          bool first = true;
+          while (const size_t n = walker->next(s))
+            for (size_t i = 0; i < n; ++i) {
+              CHECK(s[i].from == doctest::Approx(at).epsilon(1e-9));
+              if (!first) jump = std::max(jump, double(std::abs(s[i].b[0] - last)));
+              at = s[i].to, last = s[i].b[3], first = false;
+              length += s[i].to - s[i].from;
+              sum += (s[i].to - s[i].from) * double(s[i].b[0] + s[i].b[1] + s[i].b[2] + s[i].b[3]) / 4;
+            }
+          CHECK(length == doctest::Approx(to - from).epsilon(1e-9));
+          CHECK(jump < 1e-5);
+          if (straight_field) CHECK(sum == doctest::Approx((to - from) * linear(ray.o + ray.d * (0.5 * (from + to)))).epsilon(2e-4));
+        }
+      }
+  }
+}
+
+TEST_CASE("volume cells: a flat AMR grid has no volume") {
+  const VolumeItem item = item_of(amr_with(amr(2), linear, Association::cell), Association::cell);
+  CHECK(error_of([&] { gather(item, {}, {0, 0, 1}); }).find("two dimensions") != std::string::npos);
+}
