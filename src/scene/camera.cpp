@@ -86,7 +86,7 @@ Projection::Ray Projection::ray(double px, double py) const {
 
 Projection band_of(const Projection& whole, int first, int rows) {
   Projection p = whole;
-  p.height = rows;
+  p.height = rows, p.rows = whole.rows > 0 ? whole.rows : whole.height;
   p.shift_y = 0.5 * whole.height + whole.shift_y - first - 0.5 * rows;
   return p;
 }

@@ -27,6 +27,7 @@ struct Projection {
   double shift_y = 0;            ///< pixels added to y: a band of a picture is drawn with the projection of the whole, shifted
   double scale = 1;              ///< pixels per unit of (x/z) in perspective, pixels per world unit in parallel
   double near_plane = 0.01, far_plane = 1000;
+  int rows = 0;  ///< of the whole picture of which this is a band; 0 = height
 
   Vec3 to_eye(Vec3 world) const {
     const Vec3 d = world - eye;

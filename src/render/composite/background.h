@@ -10,4 +10,7 @@ namespace sg {
 /// even in sRGB, from `background` in the lowest to `background_top` in the highest row.
 void composite_background(const Scene& scene, Frame& frame);
 
+/// Linear colour of the background behind a row of a picture or of a band of it, whether or not it is painted.
+Vec3f background_of_row(const Scene& scene, const Projection& projection, int row);
+
 }  // namespace sg

@@ -8,6 +8,7 @@
 #include "render/volume/large/bricked_source.h"
 #include "render/volume/lattice/lattice_ray.h"
 #include "render/volume/lattice/reconstructed_ray.h"
+#include "render/volume/light/effects.h"
 
 namespace sg::volume {
 
@@ -22,12 +23,14 @@ std::unique_ptr<RaySource> source_of(const VolumeItem& item, std::shared_ptr<con
   if (auto bricked = bricked_source(item, projection, context.memory_limit / 2, context)) return bricked;
   const VolumeSampling& sampling = item.sampling;
   if (!lattice && sampling.kernel != "linear")
-    fail_usage(fmt::format("kernel '{}' joins the samples of uniform and rectilinear grids; this is a {} mesh", sampling.kernel, item.data->kind()),
+    fail_usage(fmt::format("kernel '{}' joins the samples of uniform and rectilinear grids; this is a {} mesh", sampling.kernel,
+                           item.data->kind()),
                "volume", "leave kernel=linear, or resample to a grid first");
   if (!lattice) return cell_source(item, context);
   if (wants_reconstruction(sampling) && !lattice->nearest) {
     if (item.detail.second == SecondAxis::field)
-      fail_usage("a second field is read with the linear kernel and central gradients only", "volume", "leave kernel and gradient as they are");
+      fail_usage("a second field is read with the linear kernel and central gradients only", "volume",
+                 "leave kernel and gradient as they are");
     return reconstructed_source(std::move(lattice), sampling, &item.data->memo(), &reach);
   }
   std::shared_ptr<const Volume> second;
@@ -68,6 +71,7 @@ void check(const VolumeItem& item) {
     fail_usage("this ray function needs a value to look for", "volume", "name one with levels=");
   for (double l : item.levels)
     if (!std::isfinite(l)) fail_usage(fmt::format("the level {} is no number", l), "volume");
+  check_light(item);
 }
 
 const Field& field_of(const VolumeItem& item) {

@@ -7,11 +7,13 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "data/bricked.h"
+#include "render/composite/background.h"
 #include "render/volume/cells/cell_source.h"
 #include "render/volume/cells/tet_rays.h"
 #include "render/volume/classic/layers.h"
 #include "render/volume/lattice/packets.h"
 #include "render/volume/lattice/reconstructed_ray.h"
+#include "render/volume/light/effects.h"
 #include "render/volume/prepare_cast.h"
 
 namespace sg::volume {
@@ -33,6 +35,7 @@ struct Picture {
     float intensity;
   };
   std::vector<Lamp> lamps;
+  const Scene* fading = nullptr;  // with depth_cue: the scene into whose background it fades
 };
 
 /// What a tile's rays reuse.
@@ -42,8 +45,9 @@ struct Scratch {
   std::vector<Fragment> fragments;
 };
 
-void light(const Picture& picture, Vec3 direction, LitRay& lit) {
-  lit.direction = Vec3f(direction);
+void light(const Picture& picture, int y, Vec3 origin, Vec3 direction, LitRay& lit) {
+  lit.direction = Vec3f(direction), lit.origin = origin, lit.along = direction;
+  if (picture.fading) lit.background = background_of_row(*picture.fading, picture.projection, y);
   lit.lights.clear();
   for (const Picture::Lamp& l : picture.lamps)
     lit.lights.push_back({Vec3f(l.direction), Vec3f(normalize(l.direction - direction)), l.intensity});
@@ -67,7 +71,7 @@ void pixel(const Picture& picture, int x, int y, Scratch& s) {
     s.fragments.assign(picture.fragments.fragments.begin() + picture.fragments.start[p],
                        picture.fragments.fragments.begin() + picture.fragments.start[p + 1]);
   for (Fragment& f : s.fragments) f.depth = float((double(f.depth) - first_depth) / per_length);
-  if (picture.shaded) light(picture, ray.direction, s.lit), cast.lights = &s.lit;
+  if (picture.shaded) light(picture, y, ray.origin, ray.direction, s.lit), cast.lights = &s.lit;
   // The same place in the step for a pixel of the whole picture, whatever band it is drawn in.
   cast.jitter = random_unit(uint64_t(x), uint64_t(std::llround(2 * y - projection.height - 2 * projection.shift_y)));
 
@@ -88,7 +92,7 @@ class Alone {
     if (picture.volumes.size() != 1) return;
     const CastVolume& v = picture.volumes[0];
     const VolumeItem& item = *v.item;
-    if (!item.clip.empty() || v.detail) return;
+    if (!item.clip.empty() || v.detail || v.effects) return;
     const bool composite = item.mode == RayFunction::composite, by_tolerance = composite && !(v.step > 0);
     if (picture.lattices[0]) {
       if (wants_reconstruction(item.sampling)) return;
@@ -144,6 +148,18 @@ class Alone {
 };
 static_assert(tile == TetRays::tile);
 
+void add_effects(const Scene& scene, Picture& picture, const Context& context) {
+  Box3 drawn;
+  for (const CastVolume& v : picture.volumes) drawn.add(v.source->bounds.lo), drawn.add(v.source->bounds.hi);
+  std::vector<Vec3> lamps;
+  for (const Picture::Lamp& l : picture.lamps) lamps.push_back(l.direction);
+  for (CastVolume& v : picture.volumes) {
+    v.effects = light_effects(*v.item, *v.source, *v.medium, lamps, picture.projection, drawn, &context);
+    picture.shaded = picture.shaded || v.effects;
+    if (v.item->light.depth_cue > 0) picture.fading = &scene;
+  }
+}
+
 bool any_fragments(const FragmentLists& fragments, const Frame& frame, int x0, int y0, int x1, int y1) {
   if (fragments.empty()) return false;
   for (int y = y0; y < y1; ++y) {
@@ -196,6 +212,7 @@ void composite_volumes(const Scene& scene, const Projection& projection, const F
                                     : l.direction;
     picture.lamps.push_back({normalize(d), l.intensity});
   }
+  add_effects(scene, picture, context);
   const Alone alone(picture, context);
   const size_t across = size_t(frame.width + tile - 1) / tile, down = size_t(frame.height + tile - 1) / tile;
   parallel_for(

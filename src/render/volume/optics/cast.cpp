@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/volume/light/effects.h"
 #include "render/volume/optics/transfer.h"
 
 namespace sg::volume {
@@ -52,7 +53,10 @@ struct Caster::Active {
     }
     next = count = 0;
     walker->start(ray.origin, ray.direction, from, to);
-    if (volume->item->shaded && ray.lights) lights = *ray.lights, lights.material = volume->material, look.lit = &lights;
+    if ((volume->item->shaded || volume->effects) && ray.lights) {
+      lights = *ray.lights, lights.material = volume->material, look.lit = &lights;
+      lights.effects = volume->effects.get();
+    }
     steps = {};
     // Whatever is passed over, steps are counted from where the ray enters.
     if (volume->step > 0) steps.origin = walker->entry() - (volume->item->sampling.jitter ? ray.jitter * volume->step : 0);
@@ -102,7 +106,7 @@ struct Caster::Active {
         const bool before = volume->item->sampling.classify == "pre";
         if (before && (steps.sampled || middle >= end)) steps.optics = classified_before(s, at, steps.value);
         if (look.lit && (steps.sampled || middle >= end) && (before || !look.medium.clear(steps.value, steps.value)))
-          steps.lit = light_at(*look.lit, walker->gradient(s, at), look.edge, look.per_scale);
+          steps.lit = light_on(look, *walker, s, at);
       }
       if (!(end > t)) break;
       t = end;
@@ -132,16 +136,18 @@ void Caster::collect(Active& active, const CastRay& ray) {
   // A scalar is drawn in the full colour of its value, unless its opacity there is zero.
   const auto put_value = [&](double value, double t) {
     const Optics o = v.medium->at(float(value));
-    if (o.tau > 0) put(float(t), o.color, 1, v.id);
+    if (!(o.tau > 0)) return;
+    const float fade = v.effects && active.look.lit ? v.effects->fade(ray.origin + ray.direction * t) : 0;
+    put(float(t), fade > 0 ? o.color * (1 - fade) + active.lights.background * fade : o.color, 1, v.id);
   };
-  const auto lit_color = [&](float stored, Vec3f gradient) {
-    const Optics o = v.medium->at(stored);
-    Vec3f c = o.color;
-    if (active.look.lit) {
-      const Lit l = light_at(active.lights, gradient, HUGE_VALF, 1);  // a surface by definition
-      c = {c.x * l.diffuse + l.specular, c.y * l.diffuse + l.specular, c.z * l.diffuse + l.specular};
+  const auto put_surface = [&](float stored, double t, Vec3f gradient, float alpha) {
+    Vec3f c = v.medium->at(stored).color;
+    if (active.look.lit) {  // a surface by definition
+      const Lit l = v.effects ? light_at(active.lights, t, gradient, HUGE_VALF, 1) : light_at(active.lights, gradient, HUGE_VALF, 1);
+      c = l.color(c);
+      if (l.opacity != 1 && alpha < 1) alpha = 1 - std::pow(1 - alpha, l.opacity);
     }
-    return c;
+    put(float(t), c, alpha, v.id);
   };
   switch (v.item->mode) {
     case RayFunction::maximum:
@@ -168,7 +174,7 @@ void Caster::collect(Active& active, const CastRay& ray) {
         break;
       }
       Stretch there{f.t, f.t + 1e-6, {}, 0};
-      put(float(f.t), lit_color(float(f.value), walker.gradient(there, f.t)), 1, v.id);
+      put_surface(float(f.value), f.t, walker.gradient(there, f.t), 1);
       break;
     }
     case RayFunction::accumulate: {
@@ -180,7 +186,7 @@ void Caster::collect(Active& active, const CastRay& ray) {
       all_crossings(walker, *v.levels, crossings_);
       for (const Crossing& c : crossings_) {
         const double value = (*v.levels)[c.level] + double(base);
-        put(float(c.t), lit_color(float((*v.levels)[c.level]), c.gradient), float(std::clamp(v.item->opacity.at(value), 0.0, 1.0)), v.id);
+        put_surface(float((*v.levels)[c.level]), c.t, c.gradient, float(std::clamp(v.item->opacity.at(value), 0.0, 1.0)));
       }
       break;
     }
@@ -213,10 +219,10 @@ void Caster::maximum_difference(Active& active) {
       }
       if (!(o.tau > 0)) continue;
       Lit l;
-      if (active.look.lit) l = light_at(active.lights, active.walker->gradient(s, t), active.look.edge, active.look.per_scale);
-      const double alpha = double(1 - exp_minus(float(double(o.tau) * h)));
-      const auto add = [&](double& c, float color) { c += pass * alpha * double(color * l.diffuse + l.specular); };
-      add(r, o.color.x), add(g, o.color.y), add(b, o.color.z);
+      if (active.look.lit) l = light_on(active.look, *active.walker, s, t);
+      const double alpha = double(1 - exp_minus(float(double(o.tau * l.opacity) * h)));
+      const Vec3f c = l.color(o.color);
+      r += pass * alpha * double(c.x), g += pass * alpha * double(c.y), b += pass * alpha * double(c.z);
       pass *= 1 - alpha;
       if (at < 0) at = t;
     }

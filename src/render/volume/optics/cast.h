@@ -26,6 +26,7 @@ struct CastVolume {
   float per_scale = 1;
   std::unique_ptr<std::vector<double>> levels;  ///< stored values
   Material material;
+  std::shared_ptr<const LightEffects> effects;  ///< null = none
 };
 
 /// What a ray of a picture knows before it meets anything.

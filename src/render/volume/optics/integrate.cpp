@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "render/volume/light/effects.h"
 #include "render/volume/optics/transfer.h"
 
 namespace sg::volume {
@@ -33,6 +34,13 @@ Stretch part_of(const Stretch& s, double from, double to) {
   return {from, to, {blossom(a, a, a), blossom(a, a, b), blossom(a, b, b), blossom(b, b, b)}, s.cell};
 }
 
+Lit light_on(const Look& look, RayField& walker, const Stretch& s, double t) {
+  const LightEffects* effects = look.lit->effects;
+  if (!effects) return light_at(*look.lit, walker.gradient(s, t), look.edge, look.per_scale);
+  const Vec3f gradient = effects->needs_gradient(look.lit->material.lit) ? walker.gradient(s, t) : Vec3f{};
+  return light_at(*look.lit, t, gradient, look.edge, look.per_scale);
+}
+
 namespace {
 
 constexpr int most_cuts = 6;   // halvings of a stretch for its light
@@ -42,10 +50,7 @@ constexpr float deep = 0.05f;  // optical depth from which on the order within a
 struct LitPart {
   double from, to;
   Lit first, last;
-  Lit at(double t) const {
-    const float f = to > from ? float((t - from) / (to - from)) : 0;
-    return {first.diffuse + f * (last.diffuse - first.diffuse), first.specular + f * (last.specular - first.specular)};
-  }
+  Lit at(double t) const { return lerp(first, last, to > from ? float((t - from) / (to - from)) : 0); }
 };
 
 class Pieces {
@@ -54,10 +59,17 @@ class Pieces {
 
   const LitPart* lit = nullptr;
 
+  void light(const LitPart& part) {
+    lit = &part;
+    denser_ = std::max(part.first.opacity, part.last.opacity);
+    styled_ = part.first.opacity != 1 || part.last.opacity != 1;
+  }
+
   /// A part of optical depth D: the value goes from a to b, `mean` is its mean by emission, which lies `weight` of the way on. C = c(mean)
   /// A less what the front hides of the change of colour (exact for constant tau and a linear colour).
   void segment(double t, float length, float depth, float a, float b, float mean, float weight) {
     if (!(depth > 0)) return;
+    if (styled_) depth *= lit->at(t + double(length) * double(weight)).opacity;
     const float pass = exp_minus(depth), alpha = depth < 0.02f ? depth * (1 - depth * (0.5f - depth * (1.0f / 6))) : 1 - pass;
     const Medium& medium = look_.medium;
     Vec3f c = medium.color(mean) * alpha;
@@ -72,6 +84,7 @@ class Pieces {
       const Lit l = lit->at(t + double(length) * double(weight));
       const float flash = l.specular * alpha;
       c = c * l.diffuse + Vec3f{flash, flash, flash};
+      if (look_.lit->effects) c += l.tint * alpha;
     }
     Gathered& sum = state_.sum;
     const float before = sum.transmittance;
@@ -128,7 +141,8 @@ class Pieces {
     const Medium& medium = look_.medium;
     const float a = s.b[0], b = s.b[3], length = float(s.to - s.from), pass = state_.sum.transmittance;
     const float tolerance = float(look_.budget.tolerance);
-    const float most = medium.most_tau(lo, hi), slope = medium.most_slope(lo, hi), taken = std::min(1.0f, length * most);
+    const float most = denser_ * medium.most_tau(lo, hi), slope = denser_ * medium.most_slope(lo, hi),
+                taken = std::min(1.0f, length * most);
     const float widths = (medium.axis(hi) - medium.axis(lo)) / medium.color_width();
     const float change = std::min(1.0f, (medium.axis(hi) - medium.axis(lo)) * medium.color_slope());
     // What one piece gets wrong: colours bend on a width; in a deep piece the front shows more of its own colour than a constant tau would
@@ -138,7 +152,7 @@ class Pieces {
     error += change * std::min(1.0f, 0.05f * length * length * most * slope * (hi - lo));
     error += beyond * length * slope;
     error *= pass;
-    const float share = pass * std::min(1.0f, length * medium.tau(0.25f * (s.b[0] + s.b[1] + s.b[2] + s.b[3])));
+    const float share = pass * std::min(1.0f, denser_ * length * medium.tau(0.25f * (s.b[0] + s.b[1] + s.b[2] + s.b[3])));
     const float allowed = tolerance * (float(0.3 / look_.budget.length) * length + 0.4f * share);
     const float n = std::clamp(std::ceil(std::sqrt(error / allowed)), 1.0f, 64.0f);
     float v = a, f = 0;
@@ -153,6 +167,8 @@ class Pieces {
  private:
   const Look& look_;
   RayState& state_;
+  float denser_ = 1;     // largest factor of tau by the light
+  bool styled_ = false;  // is there one at all?
 };
 
 /// Cuts the stretch until the light on its ends tells the light on its way.
@@ -160,12 +176,11 @@ void composite_lit(const Look& look, const Stretch& s, float lo, float hi, const
                    RayState& state) {
   const float depth = float(s.to - s.from) * look.medium.most_tau(lo, hi);
   const float weight = state.sum.transmittance * std::min(depth, 1.0f);
-  const float change = std::abs(last.diffuse - first.diffuse) + std::abs(last.specular - first.specular);
+  const float change = difference(first, last);
   if (cuts < most_cuts && weight * change > 0.25f * float(look.budget.tolerance)) {
     const double middle = 0.5 * (s.from + s.to);
-    const Lit there = light_at(*look.lit, walker.gradient(s, middle), look.edge, look.per_scale);
-    const float off = std::abs(there.diffuse - 0.5f * (first.diffuse + last.diffuse)) +
-                      std::abs(there.specular - 0.5f * (first.specular + last.specular));
+    const Lit there = light_on(look, walker, s, middle);
+    const float off = difference(there, lerp(first, last, 0.5f));
     if (cuts == 0 || weight * off > 0.1f * float(look.budget.tolerance)) {
       const Stretch a = part_of(s, s.from, middle), b = part_of(s, middle, s.to);
       if (!look.medium.clear(a.lowest(), a.highest()))
@@ -177,7 +192,7 @@ void composite_lit(const Look& look, const Stretch& s, float lo, float hi, const
   }
   Pieces pieces(look, state);
   const LitPart part{s.from, s.to, first, last};
-  pieces.lit = &part;
+  pieces.light(part);
   pieces.whole(s, lo, hi);
 }
 
@@ -211,8 +226,8 @@ Place place_at(const Look& look, const Stretch& s, double t, RayField& walker) {
       o.opacity < 1 ? std::min(float(minus_log_one_minus(double(o.opacity)) / detail.unit), detail.most_tau) : detail.most_tau;
   Vec3f c{o.r, o.g, o.b};
   if (look.lit) {
-    const Lit l = light_at(*look.lit, slope(), look.edge, look.per_scale);
-    c = c * l.diffuse + Vec3f{l.specular, l.specular, l.specular};
+    const Lit l = light_on(look, walker, s, t);
+    c = l.color(c);
   }
   return {tau, c * tau};
 }
@@ -253,15 +268,14 @@ void composite(const Look& look, const Stretch& s, RayField& walker, RayState& s
   }
   if (!(lo <= hi) || look.medium.clear(lo, hi)) return;
   if (!look.lit) return Pieces(look, state).whole(s, lo, hi);
-  const Lit first = light_at(*look.lit, walker.gradient(s, s.from), look.edge, look.per_scale);
-  const Lit last = light_at(*look.lit, walker.gradient(s, s.to), look.edge, look.per_scale);
+  const Lit first = light_on(look, walker, s, s.from), last = light_on(look, walker, s, s.to);
   composite_lit(look, s, lo, hi, first, last, walker, 0, state);
 }
 
 void composite_straight(const Look& look, double from, double to, float a, float b, const Lit* lit, RayState& state) {
   Pieces pieces(look, state);
   LitPart part;
-  if (lit) part = {from, to, *lit, *lit}, pieces.lit = &part;
+  if (lit) part = {from, to, *lit, *lit}, pieces.light(part);
   const float third = (b - a) / 3;
   pieces.monotone({from, to, {a, a + third, b - third, b}}, 0, 1, a, b);
 }
@@ -274,7 +288,7 @@ void composite_optics(const Look& look, double from, double length, const Optics
   const float alpha = 1 - exp_minus(optics.tau * float(length));
   if (!(alpha > 0)) return;
   const Lit l = lit ? *lit : Lit{};
-  const Vec3f c = (optics.color * l.diffuse + Vec3f{l.specular, l.specular, l.specular}) * alpha;
+  const Vec3f c = l.color(optics.color) * alpha;
   state.sum.behind(c.x, c.y, c.z, alpha);
   if (state.surface < 0 && state.sum.transmittance < 0.5f) state.surface = from + 0.5 * length, state.surface_id = look.id;
 }
@@ -304,13 +318,12 @@ void composite_joint(const std::vector<Joint>& joint, RayState& state, int cuts)
     simple = simple && medium.line_of(lo) == medium.line_of(hi);
     const float mean = 0.25f * (s.b[0] + s.b[1] + s.b[2] + s.b[3]);
     const Optics o = medium.at(mean);
-    const double d = (to - from) * std::max(0.0, double(o.tau));
+    double d = (to - from) * std::max(0.0, double(o.tau));
     if (!(d > 0)) continue;
     Lit lit;
-    if (j.look->lit) lit = light_at(*j.look->lit, j.walker->gradient(s, 0.5 * (from + to)), j.look->edge, j.look->per_scale);
+    if (j.look->lit) lit = light_on(*j.look, *j.walker, s, 0.5 * (from + to)), d *= double(lit.opacity);
     depth += d;
-    glow +=
-        Vec3{o.color.x * lit.diffuse + lit.specular, o.color.y * lit.diffuse + lit.specular, o.color.z * lit.diffuse + lit.specular} * d;
+    glow += Vec3(lit.color(o.color)) * d;
     if (d > densest) densest = d, id = j.look->id;
   }
   if (depth == 0 && simple) return;

@@ -44,6 +44,9 @@ struct Look {
   const Detail* detail = nullptr;  ///< null = the medium tells all
 };
 
+/// Light at t of a stretch; look.lit must not be null.
+Lit light_on(const Look& look, RayField& walker, const Stretch& stretch, double t);
+
 /// Puts one stretch behind what the ray has gathered. `walker` is asked for gradients where the look is lit. With a detail, tau is
 /// integrated by Simpson's rule on parts that are halved until it agrees with the trapezoid rule, 8 times at most: an estimate, no bound.
 void composite(const Look& look, const Stretch& stretch, RayField& walker, RayState& state);
