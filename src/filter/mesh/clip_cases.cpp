@@ -170,7 +170,7 @@ void ClipTable::divide(std::span<const uint8_t> face, uint32_t pattern, bool joi
 
 namespace {
 
-// Chains of edges that have no partner.
+// Chains of edges that have no partner. Where corners are zero a chain can come to a point again: each round trip is a loop of its own.
 std::vector<Polygon> open_loops(const std::vector<Polygon>& polygons) {
   std::vector<Edge> open;
   for (const Polygon& p : polygons)
@@ -182,17 +182,19 @@ std::vector<Polygon> open_loops(const std::vector<Polygon>& polygons) {
     }
   std::vector<Polygon> loops;
   while (!open.empty()) {
-    Polygon loop{open[0].first};
-    uint8_t at = open[0].second;
-    open.erase(open.begin());
-    while (at != loop[0]) {
-      loop.push_back(at);
-      const auto next = std::find_if(open.begin(), open.end(), [&](const Edge& e) { return e.first == at; });
+    Polygon chain{open[0].first};
+    while (!chain.empty()) {
+      const auto next = std::find_if(open.begin(), open.end(), [&](const Edge& e) { return e.first == chain.back(); });
       if (next == open.end()) break;
-      at = next->second;
+      const uint8_t to = next->second;
       open.erase(next);
+      const auto before = std::find(chain.begin(), chain.end(), to);
+      if (before == chain.end()) chain.push_back(to);
+      else {
+        if (chain.end() - before >= 3) loops.emplace_back(before, chain.end());
+        chain.erase(before + (before == chain.begin() ? 0 : 1), chain.end());
+      }
     }
-    if (loop.size() >= 3) loops.push_back(std::move(loop));
   }
   return loops;
 }
@@ -253,7 +255,25 @@ ClipTable::Faces ClipTable::divided_faces(uint32_t pattern, uint32_t joined, uin
 // Closes what the faces leave open on the inside; the outside gets the same polygons the other way round.
 void ClipTable::add_cut(Faces faces, uint32_t zero, Sides& out) const {
   std::vector<Polygon> cut;
-  for (const Polygon& loop : open_loops(faces.in)) divide_loop(loop, cut);
+  auto has_edge = [&](uint8_t a, uint8_t b) {
+    for (const auto* side : {&faces.in, &faces.out})
+      for (const Polygon& p : *side)
+        for (size_t i = 0; i < p.size(); ++i)
+          if (p[i] == a && p[(i + 1) % p.size()] == b) return true;
+    return false;
+  };
+  for (const Polygon& loop : open_loops(faces.in)) {
+    // Four points around a kept edge of the cell, or one of its faces' parts, leave a tetrahedron there: the other diagonal cuts it off.
+    const bool low = loop.size() == 4 && (has_edge(loop[0], loop[2]) || has_edge(loop[2], loop[0]));
+    const bool high = loop.size() == 4 && (has_edge(loop[1], loop[3]) || has_edge(loop[3], loop[1]));
+    if (low != high) {
+      const size_t s = low ? 1 : 0;
+      cut.push_back({loop[s], loop[s + 1], loop[s + 2]});
+      cut.push_back({loop[s], loop[s + 2], loop[(s + 3) % 4]});
+    } else {
+      divide_loop(loop, cut);
+    }
+  }
   for (const Polygon& p : cut) {
     faces.out.push_back(p);
     faces.in.emplace_back(p.rbegin(), p.rend());
@@ -394,6 +414,14 @@ void ClipTable::star_sides(uint32_t pattern, uint32_t joined, uint32_t zero, con
       add_cone({w(m), w(m + 2), w(m + 3)}, first_inner, around);
       add_cone(p, w(m), rest);
       if (free == 3) add_piece(rest, CellType::tetra, {v(3), w(0), v(0), w(1)}), add_piece(rest, CellType::tetra, {v(3), v(2), w(2), w(1)});
+      continue;
+    }
+    if (n == 4 && free == 2 && top[s % n] != p[s % n] && top[(s + 2) % n] != p[(s + 2) % n]) {  // opposite corners are zero: the same
+      add_cone({w(0), w(1), w(2)}, first_inner, around);
+      add_cone({w(0), w(2), w(3)}, first_inner, around);
+      add_cone(p, w(0), rest);
+      add_piece(rest, CellType::tetra, {v(1), v(2), w(2), w(0)});
+      add_piece(rest, CellType::tetra, {v(2), v(3), w(2), w(0)});
       continue;
     }
     add_cone(top, first_inner, around);
