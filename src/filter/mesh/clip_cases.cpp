@@ -103,6 +103,19 @@ bool standard_cell(const std::vector<const Polygon*>& polygons, size_t vertices,
   for (int i = 0; i < n; ++i)
     for (int k = 0; k < i; ++k)
       if (out.v[i] == out.v[k]) return false;
+  // As many triangles, quads and vertices do not make the same cell: two triangles can share an edge.
+  const LinearTopology& t = *linear_topology(out.type);
+  auto has_face = [&](auto face) {
+    for (const Polygon* p : polygons)
+      for (size_t s = 0; s < p->size() && p->size() == face.size(); ++s) {
+        size_t k = 0;
+        while (k < face.size() && (*p)[(s + k) % face.size()] == out.v[face[k]]) ++k;
+        if (k == face.size()) return true;
+      }
+    return false;
+  };
+  for (size_t f = 0; f < t.face_count(); ++f)
+    if (!has_face(t.face(f))) return false;
   return true;
 }
 
