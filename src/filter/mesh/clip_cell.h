@@ -90,11 +90,12 @@ class CellClipper {
   uint16_t add(uint64_t name, double value);
   uint16_t cut(uint16_t a, uint16_t b, int level);
   void add_region(const ClipTable& table, const uint16_t* corners, int level, bool last, int folded = -1);
-  void clip_ring(const Ring& ring, int level, bool divided, std::vector<Ring>& out);
+  void clip_ring(const Ring& ring, int level, bool side, bool divided, std::vector<Ring>& out);
   std::vector<std::pair<size_t, size_t>> partners(const std::vector<uint16_t>& cuts) const;
   Vec3 place(uint16_t v) const;
   void add_weights(uint16_t v, double share, double* out) const;
   void add_ring(const Ring& ring);
+  std::vector<Ring> cut_rings(const std::vector<Ring>& in, const std::vector<Ring>& out) const;
   std::vector<Ring> clip_faces(const std::vector<Ring>& faces, int level);
 
   struct Waiting {
