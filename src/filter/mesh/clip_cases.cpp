@@ -305,6 +305,11 @@ ClipTable::ClipTable(CellType type) : topology_(linear_topology(type)), place_(p
   }
   for (size_t f = 0; f < topology_->face_count(); ++f)
     for (const uint8_t c : topology_->face(f)) corner_faces_[c] |= 1u << f;
+  size_t n = 0;
+  for (uint8_t c = 1; c < uint8_t(topology_->corners); ++c)
+    if (edge(0, c) >= 0) beside_[n++] = c;
+  const auto at = [&](uint8_t c) { return middle_of(c) - middle_of(0); };
+  if (dot(cross(at(beside_[0]), at(beside_[1])), at(beside_[2])) < 0) std::swap(beside_[0], beside_[1]);
   for (uint32_t p = 0; p < 1u << topology_->corners; ++p) {
     uint32_t mask = 0;
     for (size_t f = 0; f < topology_->face_count(); ++f) {
@@ -355,11 +360,19 @@ void ClipTable::find_cones(uint32_t zero, Sides& s) const {
   }
 }
 
-bool ClipTable::folded(const Sides& sides, const double* h) const {
+bool ClipTable::folded(const Sides& sides, const double* h, const Vec3* places) const {
   if (sides.cones.empty()) return false;
   double at[max_codes][3];
   for (size_t c = 0; c < place_.size(); ++c)
-    for (size_t a = 0; a < 3; ++a) at[c][a] = place_[c][a];
+    for (size_t a = 0; a < 3; ++a) at[c][a] = places ? places[c][int(a)] - places[0][int(a)] : place_[c][a];
+  auto volume = [](const double* p, const double* q, const double* r, const double* s) {
+    const double a[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]}, b[3] = {r[0] - p[0], r[1] - p[1], r[2] - p[2]};
+    return (a[1] * b[2] - a[2] * b[1]) * (s[0] - p[0]) + (a[2] * b[0] - a[0] * b[2]) * (s[1] - p[1]) +
+           (a[0] * b[1] - a[1] * b[0]) * (s[2] - p[2]);
+  };
+  // Flat pieces stay: what rounding makes of them is far less than the cell. Cells turned the other way keep their turn.
+  const double whole = volume(at[0], at[beside_[0]], at[beside_[1]], at[beside_[2]]);
+  const double turn = whole < 0 ? -1 : 1, nothing = -1e-14 * std::abs(whole);
   for (uint32_t left = (sides.in.used | sides.out.used) >> first_cut; left; left &= left - 1) {
     const auto e = size_t(std::countr_zero(left));
     const auto [a, b] = topology_->edges[e];
@@ -379,13 +392,7 @@ bool ClipTable::folded(const Sides& sides, const double* h) const {
       const double share = 1 / double(inner.of.size());
       for (size_t k = 0; k < 3; ++k) top[k] *= share;
     }
-    auto negative = [&](int i, int j, int k) {
-      const double *p = at[c.v[i]], *q = at[c.v[j]], *r = at[c.v[k]];
-      const double a[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]}, b[3] = {r[0] - p[0], r[1] - p[1], r[2] - p[2]};
-      return (a[1] * b[2] - a[2] * b[1]) * (top[0] - p[0]) + (a[2] * b[0] - a[0] * b[2]) * (top[1] - p[1]) +
-                 (a[0] * b[1] - a[1] * b[0]) * (top[2] - p[2]) <
-             0;
-    };
+    auto negative = [&](int i, int j, int k) { return turn * volume(at[c.v[i]], at[c.v[j]], at[c.v[k]], top) < nothing; };
     if (negative(0, 1, 2)) return true;
     if (c.count == 4 && (negative(0, 2, 3) || negative(0, 1, 3) || negative(1, 2, 3))) return true;
   }

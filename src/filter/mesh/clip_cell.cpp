@@ -84,7 +84,12 @@ void CellClipper::add_region(const ClipTable& table, const uint16_t* corners, in
     if (fresh) table.sides(pattern, joined, zero, it->second);
     sides = &it->second;
   }
-  folded_ = !keep_.flat && (folded < 0 ? table.folded(*sides, h) : folded > 0);
+  folded_ = folded > 0 && !keep_.flat;
+  if (folded < 0 && !keep_.flat && !sides->cones.empty()) {
+    Vec3 places[8];
+    for (size_t c = 0; position_ && c < size_t(topology.corners); ++c) places[c] = place(corners[c]);
+    folded_ = table.folded(*sides, h, position_ ? places : nullptr);
+  }
   if (folded_) table.star_sides(pattern, joined, zero, h, own_), sides = &own_;
   const Region& region = kept_outside(level) ? sides->out : sides->in;
 
@@ -169,6 +174,7 @@ void CellClipper::weights(uint16_t v, std::vector<double>& out) const {
 }
 
 Vec3 CellClipper::place(uint16_t v) const {
+  if (v < out_.corners) return position_(size_t(out_.names[v] >> 32));
   std::vector<double> w;
   weights(v, w);
   Vec3 sum;

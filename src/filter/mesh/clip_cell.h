@@ -65,7 +65,8 @@ inline double share_of(uint64_t name, const Values& values, const Keep& keep) {
 /// One per thread. Results stay valid until the next call.
 class CellClipper {
  public:
-  /// `position` is asked for polygons that a level crosses more than twice.
+  /// `position` is asked for polygons that a level crosses more than twice, and for cells with pieces that could be inside out; without
+  /// it the latter are taken for regular ones, as those of grids along the axes are.
   CellClipper(const Keep& keep, std::function<Vec3(size_t)> position) : keep_(keep), position_(std::move(position)) {}
   /// A tetrahedron, pyramid, wedge, voxel or hexahedron. Values in the order of the ids.
   /// `folded`: what folded() said of this cell before, or -1; it costs a look at each piece.
