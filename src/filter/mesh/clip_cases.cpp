@@ -103,6 +103,19 @@ bool standard_cell(const std::vector<const Polygon*>& polygons, size_t vertices,
   for (int i = 0; i < n; ++i)
     for (int k = 0; k < i; ++k)
       if (out.v[i] == out.v[k]) return false;
+  // As many triangles, quads and vertices do not make the same cell: two triangles can share an edge.
+  const LinearTopology& t = *linear_topology(out.type);
+  auto has_face = [&](auto face) {
+    for (const Polygon* p : polygons)
+      for (size_t s = 0; s < p->size() && p->size() == face.size(); ++s) {
+        size_t k = 0;
+        while (k < face.size() && (*p)[(s + k) % face.size()] == out.v[face[k]]) ++k;
+        if (k == face.size()) return true;
+      }
+    return false;
+  };
+  for (size_t f = 0; f < t.face_count(); ++f)
+    if (!has_face(t.face(f))) return false;
   return true;
 }
 
@@ -170,7 +183,7 @@ void ClipTable::divide(std::span<const uint8_t> face, uint32_t pattern, bool joi
 
 namespace {
 
-// Chains of edges that have no partner.
+// Chains of edges that have no partner. Where corners are zero a chain can come to a point again: each round trip is a loop of its own.
 std::vector<Polygon> open_loops(const std::vector<Polygon>& polygons) {
   std::vector<Edge> open;
   for (const Polygon& p : polygons)
@@ -182,17 +195,19 @@ std::vector<Polygon> open_loops(const std::vector<Polygon>& polygons) {
     }
   std::vector<Polygon> loops;
   while (!open.empty()) {
-    Polygon loop{open[0].first};
-    uint8_t at = open[0].second;
-    open.erase(open.begin());
-    while (at != loop[0]) {
-      loop.push_back(at);
-      const auto next = std::find_if(open.begin(), open.end(), [&](const Edge& e) { return e.first == at; });
+    Polygon chain{open[0].first};
+    while (!chain.empty()) {
+      const auto next = std::find_if(open.begin(), open.end(), [&](const Edge& e) { return e.first == chain.back(); });
       if (next == open.end()) break;
-      at = next->second;
+      const uint8_t to = next->second;
       open.erase(next);
+      const auto before = std::find(chain.begin(), chain.end(), to);
+      if (before == chain.end()) chain.push_back(to);
+      else {
+        if (chain.end() - before >= 3) loops.emplace_back(before, chain.end());
+        chain.erase(before + (before == chain.begin() ? 0 : 1), chain.end());
+      }
     }
-    if (loop.size() >= 3) loops.push_back(std::move(loop));
   }
   return loops;
 }
@@ -253,7 +268,25 @@ ClipTable::Faces ClipTable::divided_faces(uint32_t pattern, uint32_t joined, uin
 // Closes what the faces leave open on the inside; the outside gets the same polygons the other way round.
 void ClipTable::add_cut(Faces faces, uint32_t zero, Sides& out) const {
   std::vector<Polygon> cut;
-  for (const Polygon& loop : open_loops(faces.in)) divide_loop(loop, cut);
+  auto has_edge = [&](uint8_t a, uint8_t b) {
+    for (const auto* side : {&faces.in, &faces.out})
+      for (const Polygon& p : *side)
+        for (size_t i = 0; i < p.size(); ++i)
+          if (p[i] == a && p[(i + 1) % p.size()] == b) return true;
+    return false;
+  };
+  for (const Polygon& loop : open_loops(faces.in)) {
+    // Four points around a kept edge of the cell, or one of its faces' parts, leave a tetrahedron there: the other diagonal cuts it off.
+    const bool low = loop.size() == 4 && (has_edge(loop[0], loop[2]) || has_edge(loop[2], loop[0]));
+    const bool high = loop.size() == 4 && (has_edge(loop[1], loop[3]) || has_edge(loop[3], loop[1]));
+    if (low != high) {
+      const size_t s = low ? 1 : 0;
+      cut.push_back({loop[s], loop[s + 1], loop[s + 2]});
+      cut.push_back({loop[s], loop[s + 2], loop[(s + 3) % 4]});
+    } else {
+      divide_loop(loop, cut);
+    }
+  }
   for (const Polygon& p : cut) {
     faces.out.push_back(p);
     faces.in.emplace_back(p.rbegin(), p.rend());
@@ -272,6 +305,11 @@ ClipTable::ClipTable(CellType type) : topology_(linear_topology(type)), place_(p
   }
   for (size_t f = 0; f < topology_->face_count(); ++f)
     for (const uint8_t c : topology_->face(f)) corner_faces_[c] |= 1u << f;
+  size_t n = 0;
+  for (uint8_t c = 1; c < uint8_t(topology_->corners); ++c)
+    if (edge(0, c) >= 0) beside_[n++] = c;
+  const auto at = [&](uint8_t c) { return middle_of(c) - middle_of(0); };
+  if (dot(cross(at(beside_[0]), at(beside_[1])), at(beside_[2])) < 0) std::swap(beside_[0], beside_[1]);
   for (uint32_t p = 0; p < 1u << topology_->corners; ++p) {
     uint32_t mask = 0;
     for (size_t f = 0; f < topology_->face_count(); ++f) {
@@ -322,11 +360,19 @@ void ClipTable::find_cones(uint32_t zero, Sides& s) const {
   }
 }
 
-bool ClipTable::folded(const Sides& sides, const double* h) const {
+bool ClipTable::folded(const Sides& sides, const double* h, const Vec3* places) const {
   if (sides.cones.empty()) return false;
   double at[max_codes][3];
   for (size_t c = 0; c < place_.size(); ++c)
-    for (size_t a = 0; a < 3; ++a) at[c][a] = place_[c][a];
+    for (size_t a = 0; a < 3; ++a) at[c][a] = places ? places[c][int(a)] - places[0][int(a)] : place_[c][a];
+  auto volume = [](const double* p, const double* q, const double* r, const double* s) {
+    const double a[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]}, b[3] = {r[0] - p[0], r[1] - p[1], r[2] - p[2]};
+    return (a[1] * b[2] - a[2] * b[1]) * (s[0] - p[0]) + (a[2] * b[0] - a[0] * b[2]) * (s[1] - p[1]) +
+           (a[0] * b[1] - a[1] * b[0]) * (s[2] - p[2]);
+  };
+  // Flat pieces stay: what rounding makes of them is far less than the cell. Cells turned the other way keep their turn.
+  const double whole = volume(at[0], at[beside_[0]], at[beside_[1]], at[beside_[2]]);
+  const double turn = whole < 0 ? -1 : 1, nothing = -1e-14 * std::abs(whole);
   for (uint32_t left = (sides.in.used | sides.out.used) >> first_cut; left; left &= left - 1) {
     const auto e = size_t(std::countr_zero(left));
     const auto [a, b] = topology_->edges[e];
@@ -346,13 +392,7 @@ bool ClipTable::folded(const Sides& sides, const double* h) const {
       const double share = 1 / double(inner.of.size());
       for (size_t k = 0; k < 3; ++k) top[k] *= share;
     }
-    auto negative = [&](int i, int j, int k) {
-      const double *p = at[c.v[i]], *q = at[c.v[j]], *r = at[c.v[k]];
-      const double a[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]}, b[3] = {r[0] - p[0], r[1] - p[1], r[2] - p[2]};
-      return (a[1] * b[2] - a[2] * b[1]) * (top[0] - p[0]) + (a[2] * b[0] - a[0] * b[2]) * (top[1] - p[1]) +
-                 (a[0] * b[1] - a[1] * b[0]) * (top[2] - p[2]) <
-             0;
-    };
+    auto negative = [&](int i, int j, int k) { return turn * volume(at[c.v[i]], at[c.v[j]], at[c.v[k]], top) < nothing; };
     if (negative(0, 1, 2)) return true;
     if (c.count == 4 && (negative(0, 2, 3) || negative(0, 1, 3) || negative(1, 2, 3))) return true;
   }
@@ -394,6 +434,14 @@ void ClipTable::star_sides(uint32_t pattern, uint32_t joined, uint32_t zero, con
       add_cone({w(m), w(m + 2), w(m + 3)}, first_inner, around);
       add_cone(p, w(m), rest);
       if (free == 3) add_piece(rest, CellType::tetra, {v(3), w(0), v(0), w(1)}), add_piece(rest, CellType::tetra, {v(3), v(2), w(2), w(1)});
+      continue;
+    }
+    if (n == 4 && free == 2 && top[s % n] != p[s % n] && top[(s + 2) % n] != p[(s + 2) % n]) {  // opposite corners are zero: the same
+      add_cone({w(0), w(1), w(2)}, first_inner, around);
+      add_cone({w(0), w(2), w(3)}, first_inner, around);
+      add_cone(p, w(0), rest);
+      add_piece(rest, CellType::tetra, {v(1), v(2), w(2), w(0)});
+      add_piece(rest, CellType::tetra, {v(2), v(3), w(2), w(0)});
       continue;
     }
     add_cone(top, first_inner, around);

@@ -70,9 +70,9 @@ class ClipTable {
   const Sides& at(uint32_t variant) const { return sides_[variant]; }
   /// The same where some values are zero (these corners are in the pattern): cuts at them are the corners themselves.
   void sides(uint32_t pattern, uint32_t joined, uint32_t zero, Sides& out) const;
-  /// Can some piece over an inner point be inside out, for the values `h` of the corners? Seen in the regular cell, where parts of the
-  /// cell's own faces never are.
-  bool folded(const Sides& sides, const double* h) const;
+  /// Can some piece over an inner point be inside out, for the values `h` of the corners? `places` are those of the corners; without them,
+  /// those of the regular cell. Parts of the cell's own faces never are, as these are flat.
+  bool folded(const Sides& sides, const double* h, const Vec3* places = nullptr) const;
   /// Pieces that are never inside out: the faces' parts over the middle of the cell, cut along the rays to it. More of them.
   void star_sides(uint32_t pattern, uint32_t joined, uint32_t zero, const double* h, Sides& out) const;
   /// The cut surface of a pattern without ambiguous faces: cuts as codes, counter-clockwise seen from the inside corners.
@@ -95,6 +95,7 @@ class ClipTable {
   const LinearTopology* topology_;
   std::vector<std::array<double, 3>> place_;
   std::array<std::array<int8_t, 8>, 8> edge_of_;
+  std::array<uint8_t, 3> beside_{};  // the corners joined to the first one, in right-handed order
   std::array<uint32_t, 8> corner_faces_{};
   std::vector<uint32_t> ambiguous_, first_;
   std::vector<Sides> sides_;

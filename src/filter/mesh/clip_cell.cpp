@@ -84,7 +84,12 @@ void CellClipper::add_region(const ClipTable& table, const uint16_t* corners, in
     if (fresh) table.sides(pattern, joined, zero, it->second);
     sides = &it->second;
   }
-  folded_ = !keep_.flat && (folded < 0 ? table.folded(*sides, h) : folded > 0);
+  folded_ = folded > 0 && !keep_.flat;
+  if (folded < 0 && !keep_.flat && !sides->cones.empty()) {
+    Vec3 places[8];
+    for (size_t c = 0; position_ && c < size_t(topology.corners); ++c) places[c] = place(corners[c]);
+    folded_ = table.folded(*sides, h, position_ ? places : nullptr);
+  }
   if (folded_) table.star_sides(pattern, joined, zero, h, own_), sides = &own_;
   const Region& region = kept_outside(level) ? sides->out : sides->in;
 
@@ -169,6 +174,7 @@ void CellClipper::weights(uint16_t v, std::vector<double>& out) const {
 }
 
 Vec3 CellClipper::place(uint16_t v) const {
+  if (v < out_.corners) return position_(size_t(out_.names[v] >> 32));
   std::vector<double> w;
   weights(v, w);
   Vec3 sum;
@@ -192,10 +198,10 @@ std::vector<std::pair<size_t, size_t>> CellClipper::partners(const std::vector<u
   return r;
 }
 
-// The kept part of a polygon. `divided`: a face of a solid, whose quads fall into triangles and quads as in ClipTable.
-void CellClipper::clip_ring(const Ring& ring, int level, bool divided, std::vector<Ring>& out) {
+// The part of a polygon on one side; where all is zero, it is inside. `divided`: a face of a solid, whose quads fall into triangles and
+// quads as in ClipTable.
+void CellClipper::clip_ring(const Ring& ring, int level, bool side, bool divided, std::vector<Ring>& out) {
   const size_t n = ring.size();
-  const bool side = !kept_outside(level);
   std::vector<double> h(n);
   bool positive = false, negative = false;
   for (size_t k = 0; k < n; ++k) {
@@ -209,7 +215,7 @@ void CellClipper::clip_ring(const Ring& ring, int level, bool divided, std::vect
     if (r.size() >= 3) out.push_back(std::move(r));
   };
   if (!negative || !positive) {
-    if (side ? !negative : !positive) keep_ring(ring);
+    if (negative != side) keep_ring(ring);
     return;
   }
   auto crossing = [&](size_t k) {
@@ -271,9 +277,9 @@ const CellPieces& CellClipper::polygon(std::span<const int64_t> ids, std::span<c
   Ring ring(ids.size());
   for (size_t k = 0; k < ring.size(); ++k) ring[k] = uint16_t(k);
   std::vector<Ring> kept, final;
-  clip_ring(ring, 0, false, kept);
+  clip_ring(ring, 0, !kept_outside(0), false, kept);
   if (keep_.between)
-    for (const Ring& r : kept) clip_ring(r, 1, false, final);
+    for (const Ring& r : kept) clip_ring(r, 1, true, false, final);
   for (const Ring& r : keep_.between ? final : kept) add_ring(r);
   return out_;
 }
@@ -307,18 +313,23 @@ const CellPieces& CellClipper::dots(std::span<const int64_t> ids, std::span<cons
   return out_;
 }
 
-// Clips the faces and closes what is open.
-std::vector<CellClipper::Ring> CellClipper::clip_faces(const std::vector<Ring>& faces, int level) {
+// The cut surface: closes what the faces of the inside leave open. The same triangles for both sides.
+std::vector<CellClipper::Ring> CellClipper::cut_rings(const std::vector<Ring>& in, const std::vector<Ring>& out) const {
+  using Edge = std::pair<uint16_t, uint16_t>;
+  std::map<Edge, int> open;
+  std::vector<Edge> all;
+  for (const auto* side : {&in, &out})
+    for (const Ring& f : *side)
+      for (size_t k = 0; k < f.size(); ++k) {
+        const uint16_t a = f[k], b = f[(k + 1) % f.size()];
+        all.push_back(std::minmax(a, b));
+        if (side == &out) continue;
+        const auto partner = open.find({b, a});
+        if (partner == open.end()) ++open[{a, b}];
+        else if (--partner->second == 0) open.erase(partner);
+      }
+  std::sort(all.begin(), all.end());
   std::vector<Ring> r;
-  for (const Ring& f : faces) clip_ring(f, level, true, r);
-  std::map<std::pair<uint16_t, uint16_t>, int> open;
-  for (const Ring& f : r)
-    for (size_t k = 0; k < f.size(); ++k) {
-      const uint16_t a = f[k], b = f[(k + 1) % f.size()];
-      const auto partner = open.find({b, a});
-      if (partner == open.end()) ++open[{a, b}];
-      else if (--partner->second == 0) open.erase(partner);
-    }
   while (!open.empty()) {
     Ring loop{open.begin()->first.first};
     uint16_t at = open.begin()->first.second;
@@ -339,12 +350,33 @@ std::vector<CellClipper::Ring> CellClipper::clip_faces(const std::vector<Ring>& 
       r.push_back(std::move(loop));
       continue;
     }
-    // The same triangles on both sides: around the vertex with the lowest name.
-    const auto lowest = std::min_element(loop.begin(), loop.end(), [&](uint16_t a, uint16_t b) { return out_.names[a] < out_.names[b]; });
-    std::rotate(loop.begin(), lowest, loop.end());
+    // Around the vertex with the lowest name, rather one from which no diagonal is an edge of the faces: that would leave nothing there.
+    auto rank = [&](size_t v) {
+      size_t edges = 0;
+      for (size_t k = 2; k + 1 < loop.size(); ++k)
+        edges += std::binary_search(all.begin(), all.end(), Edge(std::minmax(loop[v], loop[(v + k) % loop.size()])));
+      return std::pair(edges, out_.names[loop[v]]);
+    };
+    size_t best = 0;
+    for (size_t v = 1; v < loop.size(); ++v)
+      if (rank(v) < rank(best)) best = v;
+    std::rotate(loop.begin(), loop.begin() + ptrdiff_t(best), loop.end());
     for (size_t k = 1; k + 1 < loop.size(); ++k) r.push_back({loop[0], loop[k], loop[k + 1]});
   }
   return r;
+}
+
+// Clips the faces and closes what is open. The outside is closed by the cut of the inside, turned round.
+std::vector<CellClipper::Ring> CellClipper::clip_faces(const std::vector<Ring>& faces, int level) {
+  std::vector<Ring> in, out;
+  for (const Ring& f : faces) clip_ring(f, level, true, true, in), clip_ring(f, level, false, true, out);
+  const std::vector<Ring> cut = cut_rings(in, out);
+  std::vector<Ring>& r = kept_outside(level) ? out : in;
+  for (const Ring& f : cut) {
+    if (kept_outside(level)) r.emplace_back(f.rbegin(), f.rend());
+    else r.push_back(f);
+  }
+  return std::move(r);
 }
 
 const CellPieces& CellClipper::polyhedron(std::span<const int64_t> ids, std::span<const double> values, std::vector<Ring> faces) {

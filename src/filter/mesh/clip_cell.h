@@ -65,7 +65,8 @@ inline double share_of(uint64_t name, const Values& values, const Keep& keep) {
 /// One per thread. Results stay valid until the next call.
 class CellClipper {
  public:
-  /// `position` is asked for polygons that a level crosses more than twice.
+  /// `position` is asked for polygons that a level crosses more than twice, and for cells with pieces that could be inside out; without
+  /// it the latter are taken for regular ones, as those of grids along the axes are.
   CellClipper(const Keep& keep, std::function<Vec3(size_t)> position) : keep_(keep), position_(std::move(position)) {}
   /// A tetrahedron, pyramid, wedge, voxel or hexahedron. Values in the order of the ids.
   /// `folded`: what folded() said of this cell before, or -1; it costs a look at each piece.
@@ -90,11 +91,12 @@ class CellClipper {
   uint16_t add(uint64_t name, double value);
   uint16_t cut(uint16_t a, uint16_t b, int level);
   void add_region(const ClipTable& table, const uint16_t* corners, int level, bool last, int folded = -1);
-  void clip_ring(const Ring& ring, int level, bool divided, std::vector<Ring>& out);
+  void clip_ring(const Ring& ring, int level, bool side, bool divided, std::vector<Ring>& out);
   std::vector<std::pair<size_t, size_t>> partners(const std::vector<uint16_t>& cuts) const;
   Vec3 place(uint16_t v) const;
   void add_weights(uint16_t v, double share, double* out) const;
   void add_ring(const Ring& ring);
+  std::vector<Ring> cut_rings(const std::vector<Ring>& in, const std::vector<Ring>& out) const;
   std::vector<Ring> clip_faces(const std::vector<Ring>& faces, int level);
 
   struct Waiting {

@@ -23,6 +23,8 @@ class LatticeClip {
         g_(lattice_dims(job.in->mesh())),
         kind_(lattice_cell_kind(job.in->mesh())),
         table_(*clip_table(kind_.type)),
+        lattice_(job.in->mesh()),
+        bent_(lattice_.view().mode == LatticeView::Mode::listed),
         rows_(std::make_shared<LatticePoints>(LatticePoints{g_, {}, {}})),
         used_(rows_->bits),
         points_(rows_->ranks) {
@@ -144,6 +146,14 @@ class LatticeClip {
     return r;
   }
 
+  Vec3 position(size_t id) const {
+    return lattice_.view().position(uint32_t(id % g_.nx), uint32_t(id / g_.nx % g_.ny), uint32_t(id / g_.nx / g_.ny));
+  }
+  CellClipper clipper() const {
+    if (!bent_) return {job_.keep, {}};
+    return {job_.keep, [this](size_t id) { return position(id); }};
+  }
+
   const CellPieces& pieces(CellClipper& clipper, size_t i, size_t j, size_t k, int folded) const {
     int64_t ids[8];
     double v[8];
@@ -172,7 +182,7 @@ class LatticeClip {
   // The case of each cut cell of some rows: a variant of the table; from `listed` on, one by one.
   static constexpr uint16_t listed = 0xfffe, folded = 0xffff;
   void count_cut(size_t begin, size_t end, PieceCounts& n, std::vector<uint16_t>& cases) const {
-    CellClipper clipper(job_.keep, {});
+    CellClipper clipper = this->clipper();
     each_cut(begin, end, [&](size_t j, size_t k, size_t w, uint64_t left) {
       const size_t rows[4] = {g_.row(j, k), g_.row(j + 1, k), g_.row(j, k + 1), g_.row(j + 1, k + 1)};
       const Bits& inside = job_.keep.outside ? gone_ : kept_;
@@ -227,7 +237,12 @@ class LatticeClip {
     const uint32_t found = table_.variant(pattern, joined);
     if (job_.keep.flat || table_.at(found).cones.empty()) return uint16_t(found);
     if (!ambiguous) heights(i, j, k, h);
-    return table_.folded(table_.at(found), h) ? folded : uint16_t(found);
+    Vec3 places[8];
+    for (size_t c = 0; bent_ && c < 8; ++c) {
+      const size_t q = kind_.corner[c];
+      places[c] = position(i + (q & 1) + g_.nx * (j + (q >> 1 & 1) + g_.ny * (k + (q >> 2))));
+    }
+    return table_.folded(table_.at(found), h, bent_ ? places : nullptr) ? folded : uint16_t(found);
   }
 
   // Numbers of everything on a cell: its corners and the cuts of its edges, whether they are used or not.
@@ -334,7 +349,7 @@ class LatticeClip {
           write_lattice_cells(g_, kind_, whole_, points_, begin, end, connectivity + 8 * first, b.source.data() + first);
           for (size_t c = first; c < last; ++c) offsets[c] = int32_t(8 * c);
           std::fill(types + first, types + last, uint8_t(kind_.type));
-          CellClipper clipper(job_.keep, {});
+          CellClipper clipper = this->clipper();
           PieceWriter writer{b, connectivity, offsets, types, points_.total, points_.total + cuts, piece[chunk], {}, {}};
           writer.at.cells += whole, writer.at.ids += 8 * whole;
           const uint16_t* next = cases[chunk].data();
@@ -373,6 +388,8 @@ class LatticeClip {
   BitRows g_;
   LatticeCellKind kind_;
   const ClipTable& table_;
+  Lattice lattice_;
+  bool bent_;           // cells have shapes of their own
   bool holes_ = false;  // values that are missing or cells that are hidden
   struct Edge {
     uint8_t axis, corner;
