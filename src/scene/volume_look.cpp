@@ -109,6 +109,11 @@ std::string choose_volume_look(const Dataset& data, const Field& field, const Co
     item.opacity.points = {{r.lo, 0}, {r.hi, 1}};
     return "maximum along each ray";
   }
+  const Range values = data.range(field, params.component);
+  if (!values.empty() && values.lo == values.hi) {
+    item.opacity.points = {{values.lo, 0.2}};
+    return fmt::format("every value is {}: drawn evenly", short_number(values.lo, 6));
+  }
   double offset = 0;
   if (anatomy && params.range.empty() && looks_like_ct(data, field, &offset)) {
     ct_look(data.range(field), offset, params.map == "auto", item);

@@ -336,3 +336,15 @@ TEST_CASE("volume: automatic looks say in one line what was chosen and why") {
            {"transfer=boundaries"});
   CHECK(says(none.notes, "no borders"));
 }
+
+TEST_CASE("volume show: a constant field is drawn evenly, not left out") {
+  UniformGrid g;
+  g.dims = {3, 3, 3};
+  FieldSet fields;
+  fields.add({"f", Association::point, Array::from_vector(std::vector<float>(27, 1.0f)), "", Role::scalars});
+  Scene scene;
+  Context context;
+  add_volume(scene, make_dataset(g, fields), {}, context);
+  const auto& item = std::get<VolumeItem>(scene.items.at(0));
+  CHECK(item.opacity.at(1) > 0.1);
+}
