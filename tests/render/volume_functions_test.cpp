@@ -216,3 +216,20 @@ TEST_CASE("volume: skipping and early ends are not seen within the tolerance") {
   CHECK(largest_difference(a, draw(scene_of({v}), view, no_end)) < 0.3f / 512);
   CHECK_FALSE(same_bytes(a, draw(scene_of({v}), view, no_end)));
 }
+
+TEST_CASE("volume: infinite and missing values neither hang nor spread: elsewhere the picture stays") {
+  const auto f = [](Vec3 p) { return p.x > 0.4 && p.y > 0.4 ? (p.z > 0 ? HUGE_VAL : -HUGE_VAL) : p.x < -0.7 ? NAN : bumpy(p); };
+  const DatasetPtr broken = grid(cube(17, -1, 1), f), whole = grid(cube(17, -1, 1), bumpy);
+  for (const double step : {0.0, 0.03})
+    for (const bool shaded : {false, true}) {
+      VolumeItem a = item(broken, grey(-1.7, 1.7), {{{-1.7, 0}, {0, 0.1}, {1.7, 0.9}}}, step), b = a;
+      a.shaded = b.shaded = shaded, b.data = whole;
+      // A column of rays that meets sound cells only, away from the differences that shading takes.
+      for (const double y : {-0.6, 0.013}) {
+        const Frame p = look(scene_of({a}), 0.1, y), q = look(scene_of({b}), 0.1, y);
+        CHECK(largest_difference(p, q) < (step > 0 ? 2e-4f : 2.0f / 512));
+      }
+      const Frame all = draw(scene_of({a}), perspective_view(20, 20, 24, {1.9, 1.4, 2.6}, {0, 0, 0}));
+      for (float c : all.rgba) REQUIRE(c == c);
+    }
+}

@@ -84,6 +84,7 @@ struct MediumLanes {
   HWY_INLINE I line_of(F v) const {
     const D d;
     const IntTag<D> di;
+    v = hn::Min(v, hn::Set(d, 3e38f));  // the last line ends at infinity
     F at = hn::Mul(hn::Sub(v, hn::Set(d, medium.slice_lo())), hn::Set(d, medium.per_slice()));
     at = hn::IfThenElseZero(hn::Ge(at, hn::Zero(d)), hn::Min(at, hn::Set(d, float(Medium::slices))));
     I i = hn::And(gather_words(d, medium.first_lines(), hn::ShiftLeft<1>(to_int(d, at))), hn::Set(di, 0xFFFF));

@@ -47,6 +47,7 @@ class Medium {
   const std::vector<Line>& lines() const { return lines_; }
   /// The line with lo <= v < hi, in about constant time; NaN gives the first.
   int line_of(float v) const {
+    if (v > 3e38f) v = 3e38f;  // the last line ends at infinity
     const float at = (v - slice_lo_) * per_slice_;
     int i = first_[size_t(at >= 0 ? at < float(slices) ? int(at) : slices : 0)];
     while (lines_[size_t(i)].hi <= v) ++i;
