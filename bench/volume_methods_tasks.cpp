@@ -71,6 +71,13 @@ volume::Layer rays(const volume::LayerInput& in) {
   return {std::vector<float>(frame.rgba.begin(), frame.rgba.end())};
 }
 
+/// By the tolerance instead of the item's steps.
+volume::Layer within_tolerance(const volume::LayerInput& in) {
+  VolumeItem item = in.item;
+  item.sampling.step = 0;
+  return rays({item, in.projection, in.opaque, in.lights, in.context});
+}
+
 volume::Layer drawn(const Draw& draw, const VolumeItem& item, const Projection& p) {
   const Frame nothing(p.width, p.height);
   const std::vector<Light> lights = lights_of(Scene{});
@@ -140,6 +147,7 @@ void add_volume_methods_tasks(std::vector<Task>& tasks) {
           tasks.push_back(method(look, n, name, draw, steps, first));
         };
         const bool sum = look.mode == RayFunction::sum, composite = look.mode == RayFunction::composite;
+        if (!sum) add("ray(within 1/512)", within_tolerance);
         if (!sum) add("ray(half-voxel steps)", rays);
         add("slices(view)", sliced(SliceOptions::Stack::view));
         add("slices(axis)", sliced(SliceOptions::Stack::axis));
