@@ -17,13 +17,14 @@ namespace {
 std::vector<double> volumes(const DatasetPtr& d, size_t cells, bool original) {
   std::vector<double> r(cells, 0.0), weights;
   CellMap map(d);
+  const Array from = original ? d->fields().require("original_cell").array : Array();
   for (size_t c = 0; c < d->cell_count(); ++c) {
     map.open(c);
     weights.resize(map.reader().ids().size());
     map.integration_weights(weights);
     double v = 0;
     for (const double w : weights) v += w;
-    r[original ? size_t(d->fields().require("original_cell").array.get(c)) : c] += v;
+    r[original ? size_t(from.get(c)) : c] += v;
   }
   return r;
 }
@@ -51,8 +52,10 @@ Misses misses(const DatasetPtr& d, double value) {
   return r;
 }
 
-// Whole numbers from 0 to levels - 1.
-double step_at(uint64_t seed, uint64_t i, int levels) { return double(random_bits(seed, i) % uint64_t(levels)); }
+// Whole numbers from 0 to levels - 1; without levels any number from 0 to 1.
+double step_at(uint64_t seed, uint64_t i, int levels) {
+  return levels == 0 ? random_unit(seed, i) : double(random_bits(seed, i) % uint64_t(levels));
+}
 
 enum class Shape { straight, sheared, tapered };  // all of them keep faces flat
 Vec3 moved(Vec3 p, Shape s) {
@@ -171,15 +174,15 @@ TEST_CASE("clip: for every way in which corners are below, at and above the valu
       }
 }
 
-TEST_CASE("clip: meshes of stepped values fall apart into parts that make up the whole, at the steps and between them") {
+TEST_CASE("clip: meshes of stepped and of random values fall apart into parts that make up the whole, at the steps and between them") {
   for (const std::string& kind : solid_kinds())
     for (const Shape shape : {Shape::straight, Shape::sheared, Shape::tapered})
-      for (const int levels : {2, 3, 5}) {
+      for (const int levels : {0, 2, 3, 5}) {
         if (kind == "voxel" && shape != Shape::straight) continue;
         uint64_t i = 0;
         const DatasetPtr d = bent(solid_mesh(kind, 4, 1.0, [&](Vec3) { return step_at(uint64_t(levels), i++, levels); }), shape);
         for (const double value : {1.0, 0.5, 2.0}) {
-          if (value >= levels) continue;
+          if (value >= std::max(levels, 1)) continue;
           CAPTURE(kind);
           CAPTURE(int(shape));
           CAPTURE(levels);

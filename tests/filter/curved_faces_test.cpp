@@ -14,20 +14,6 @@ using namespace sg::test::meshes;
 
 namespace {
 
-const CellType curved_solids[] = {CellType::quadratic_tetra,
-                                  CellType::quadratic_hexahedron,
-                                  CellType::quadratic_wedge,
-                                  CellType::triquadratic_hexahedron,
-                                  CellType::biquadratic_quadratic_hexahedron,
-                                  CellType::quadratic_linear_wedge,
-                                  CellType::biquadratic_quadratic_wedge,
-                                  CellType::lagrange_tetra,
-                                  CellType::lagrange_hexahedron,
-                                  CellType::lagrange_wedge,
-                                  CellType::bezier_tetra,
-                                  CellType::bezier_hexahedron,
-                                  CellType::bezier_wedge};
-
 template <class F>
 DatasetPtr moved(const DatasetPtr& in, F f) {
   DatasetParts p = in->parts();
@@ -137,7 +123,7 @@ double length_of_lines(const SurfaceMesh& s) {
 
 TEST_CASE("curved faces: no crack opens where neighbours are split unequally, and the volume is that of the cells") {
   Context ctx;
-  for (CellType type : curved_solids)
+  for (CellType type : curved_solids())
     for (int order : {2, 4}) {
       if (order == 4 && type < CellType::lagrange_curve) continue;
       CAPTURE(cell_type_info(type).name);

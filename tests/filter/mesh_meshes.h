@@ -13,6 +13,16 @@
 
 namespace sg::test::meshes {
 
+/// Solid cells of more than their corners.
+inline const std::vector<CellType>& curved_solids() {
+  using enum CellType;
+  static const std::vector<CellType> types{
+      quadratic_tetra,        quadratic_hexahedron,        quadratic_wedge, triquadratic_hexahedron, biquadratic_quadratic_hexahedron,
+      quadratic_linear_wedge, biquadratic_quadratic_wedge, lagrange_tetra,  lagrange_hexahedron,     lagrange_wedge,
+      bezier_tetra,           bezier_hexahedron,           bezier_wedge};
+  return types;
+}
+
 /// f = x + 2y + 3z - 1.
 inline double linear(Vec3 p) { return p.x + 2 * p.y + 3 * p.z - 1; }
 
