@@ -243,7 +243,12 @@ TEST_CASE("volume: what cannot be shown is said, with what would be right") {
   CHECK(error(v).find("longer step") != std::string::npos);
   v.sampling.step = 0, v.unit_distance = NAN;
   CHECK(error(v).find("unit distance") != std::string::npos);
-  v.unit_distance = 1, v.data = nullptr;
+  v.unit_distance = 1;
+  for (const double tolerance : {0.0, -1.0, HUGE_VAL, double(NAN)}) {
+    v.sampling.tolerance = tolerance;
+    CHECK(error(v).find("tolerance") != std::string::npos);
+  }
+  v.sampling.tolerance = 1.0 / 512, v.data = nullptr;
   CHECK(error(v).find("no dataset") != std::string::npos);
   PointCloud cloud;
   cloud.points.xyz = Array::from_vector<float>({0, 0, 0}, 3);
