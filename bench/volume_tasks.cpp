@@ -84,7 +84,7 @@ Task volume(const char* label, Look look, size_t n, bool bytes, double tolerance
           }};
 }
 
-/// A picture of one ray for 8 x 8 pixels: what progressive rendering shows first.
+/// A picture of one ray for 16 x 16 pixels: what progressive rendering shows first.
 Task first_progressive(size_t n) {
   return {
       "volume_progressive_first", fmt::format("float32 {}^3, 1024x1024", n), "sightglass:progressive", "pixels", [=] {

@@ -28,7 +28,8 @@ void enlarge(const Frame& coarse, int factor, Frame& frame) {
 Frame render_progressively(const Scene& scene, const Camera& camera, const RenderOptions& options, Context& context,
                            const std::function<bool(const Frame&, int coarseness)>& show) {
   Frame frame(std::max(options.width, 1), std::max(options.height, 1));
-  for (const int factor : {8, 4, 2}) {
+  const bool large = size_t(std::max(options.width, 1)) * size_t(std::max(options.height, 1)) >= size_t(1) << 19;
+  for (int factor = large ? 16 : 8; factor > 1; factor /= 2) {
     // A square of pixels with one colour needs no better integral than that.
     Scene rough = scene;
     for (Item& item : rough.items)
