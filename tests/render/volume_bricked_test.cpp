@@ -2,6 +2,7 @@
 #include "base/parallel.h"
 #include "bricked_support.h"
 #include "render/volume/large/brick_tree.h"
+#include "volume_support.h"
 
 using namespace sg;
 using namespace sg::test;
@@ -327,4 +328,20 @@ TEST_CASE("bricked: what cannot be read says so from any walker") {
     const auto ray = source->walker();
     CHECK(error_of([&] { stretches(*ray, {-5, 50, 50}, {1, 0, 0}); }).find("chunk 3") != std::string::npos);
   }
+}
+
+TEST_CASE("bricked: kernels and second fields that bricks do not have are refused, not ignored") {
+  const MadeVolume m = make_volume({100, 100, 100}, 2, bumpy);
+  attach_bricked(*m.dataset, m.volume);
+  VolumeItem item = test::item(m.dataset, test::grey(-2, 2), {});
+  item.field = m.volume->field;
+  const auto shot = [&] {
+    return test::draw(test::scene_of({item}), test::parallel_view(4, 4, 0.01, {0, 0, -1}, {0, 1, 0}, {50, 50, 50}));
+  };
+  const auto error = [&] { return error_of(shot); };
+  CHECK(shot().rgba.size() == 64);
+  item.sampling.kernel = "bspline";
+  CHECK(error().find("linear kernel") != std::string::npos);
+  item.sampling.kernel = "linear", item.detail.second = SecondAxis::field, item.detail.second_field = "g";
+  CHECK(error().find("no second field") != std::string::npos);
 }

@@ -20,7 +20,14 @@ bool needs_level(RayFunction f) {
 
 std::unique_ptr<RaySource> source_of(const VolumeItem& item, std::shared_ptr<const Volume> lattice, const Projection& projection,
                                      Context& context, Range& reach) {
-  if (auto bricked = bricked_source(item, projection, context.memory_limit / 2, context)) return bricked;
+  if (auto bricked = bricked_source(item, projection, context.memory_limit / 2, context)) {
+    if (wants_reconstruction(item.sampling))
+      fail_usage("volumes that memory does not hold are read with the linear kernel and central gradients only", "volume",
+                 "leave kernel and gradient as they are, or allow more --memory");
+    if (item.detail.second == SecondAxis::field)
+      fail_usage("a volume that memory does not hold has no second field beside it", "volume", "allow more --memory");
+    return bricked;
+  }
   const VolumeSampling& sampling = item.sampling;
   if (!lattice && sampling.kernel != "linear")
     fail_usage(fmt::format("kernel '{}' joins the samples of uniform and rectilinear grids; this is a {} mesh", sampling.kernel,

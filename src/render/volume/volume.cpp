@@ -198,7 +198,9 @@ void composite_volumes(const Scene& scene, const Projection& projection, const F
       context.check();
       check(*item);
       std::shared_ptr<const Volume> lattice;
-      if (!bricked_of(*item->data) && (item->data->as<UniformGrid>() || item->data->as<RectilinearGrid>())) {
+      const BrickedPtr bricks = bricked_of(*item->data);
+      const bool in_bricks = bricks && (item->field.empty() || item->field == bricks->field);
+      if (!in_bricks && (item->data->as<UniformGrid>() || item->data->as<RectilinearGrid>())) {
         lattice = std::make_shared<const Volume>(prepare(*item, uint32_t(i + 1), knobs));
         if (!(lattice->hi.x > lattice->lo.x)) continue;  // a grid without extent
       }
