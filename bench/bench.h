@@ -5,6 +5,10 @@
 #include <string>
 #include <vector>
 
+namespace sg {
+struct Camera;
+}
+
 namespace sg::bench {
 
 /// One measurement. setup() runs once in the child, off the clock, and returns the work; work() returns a count that shows
@@ -24,6 +28,8 @@ struct ProcessTask {
 };
 
 std::vector<Task> tasks(const std::string& data_folder);
+/// That of the peers' scripts, turned by so many degrees about the vertical axis.
+Camera peers_camera(double turn);
 /// Families of tasks, a file each.
 void add_contour_tasks(std::vector<Task>& tasks);
 void add_cut_tasks(std::vector<Task>& tasks);

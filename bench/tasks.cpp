@@ -16,8 +16,6 @@
 
 namespace sg::bench {
 
-namespace {
-
 Camera peers_camera(double turn) {
   Camera c;
   const double a = turn * 3.14159265358979323846 / 180;
@@ -31,6 +29,8 @@ Camera peers_camera(double turn) {
   fit_planes(c, box);
   return c;
 }
+
+namespace {
 
 // Reads the file and touches every value of every field.
 double read_all(const std::string& path) {

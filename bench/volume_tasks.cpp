@@ -11,20 +11,6 @@ namespace sg::bench {
 
 namespace {
 
-Camera peers_camera(double turn) {
-  Camera c;
-  const double a = turn * 3.14159265358979323846 / 180;
-  c.position = {2.2 * std::cos(a) + 3.6 * std::sin(a), 2.6, 3.6 * std::cos(a) - 2.2 * std::sin(a)};
-  c.target = {0, 0, 0};
-  c.up = {0, 1, 0};
-  c.view_angle = 40;
-  Box3 box;
-  box.add({-1, -1, -1});
-  box.add({1, 1, 1});
-  fit_planes(c, box);
-  return c;
-}
-
 /// The peers' uint8 field: [-3, 4] on 0..255.
 constexpr double field_lo = -3, field_hi = 4;
 DatasetPtr field_u8(size_t n) {

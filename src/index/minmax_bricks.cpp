@@ -2,56 +2,9 @@
 #include "index/minmax_bricks.h"
 
 #include "base/parallel.h"
+#include "index/brick_row.h"
 
 namespace sg {
-
-namespace {
-
-// The nearest float not above (below) v, so that ranges of 64-bit and large integer values still enclose them.
-template <class T>
-float round_down(T v) {
-  const float f = float(v);
-  if constexpr (sizeof(T) <= 2 || std::is_same_v<T, float>) return f;
-  return double(f) > double(v) || sizeof(T) == 8 ? std::nextafterf(f, -HUGE_VALF) : f;
-}
-template <class T>
-float round_up(T v) {
-  const float f = float(v);
-  if constexpr (sizeof(T) <= 2 || std::is_same_v<T, float>) return f;
-  return double(f) < double(v) || sizeof(T) == 8 ? std::nextafterf(f, HUGE_VALF) : f;
-}
-
-// One row of cubes along x. Rows of samples are folded into one row of minima and one of maxima first: that loop is
-// elementwise and runs at memory speed. `v < lo ? v : lo` keeps lo when v is NaN.
-template <class T>
-void brick_row(const T* values, const std::array<size_t, 3>& dims, size_t y0, size_t z0, std::vector<T>& lo, std::vector<T>& hi,
-               MinMaxBricks::Range* out, size_t bricks) {
-  constexpr size_t edge = MinMaxBricks::edge;
-  using Limits = std::numeric_limits<T>;
-  const T top = Limits::has_infinity ? Limits::infinity() : Limits::max(),
-          bottom = Limits::has_infinity ? -Limits::infinity() : Limits::lowest();
-  const size_t nx = dims[0], y1 = std::min(y0 + edge, dims[1] - 1), z1 = std::min(z0 + edge, dims[2] - 1);
-  lo.assign(nx, top), hi.assign(nx, bottom);
-  T *l = lo.data(), *h = hi.data();
-  for (size_t z = z0; z <= z1; ++z)
-    for (size_t y = y0; y <= y1; ++y) {
-      const T* row = values + nx * (y + dims[1] * z);
-      for (size_t x = 0; x < nx; ++x) {
-        l[x] = row[x] < l[x] ? row[x] : l[x];
-        h[x] = row[x] > h[x] ? row[x] : h[x];
-      }
-    }
-  for (size_t b = 0; b < bricks; ++b) {
-    const size_t x0 = b * edge, x1 = std::min(x0 + edge, nx - 1);
-    T bl = top, bh = bottom;
-    for (size_t x = x0; x <= x1; ++x) bl = std::min(bl, l[x]), bh = std::max(bh, h[x]);
-    // Only a cube of NaN alone leaves bl > bh.
-    if (bl > bh) out[b] = {HUGE_VALF, -HUGE_VALF};
-    else out[b] = {round_down(bl), round_up(bh)};
-  }
-}
-
-}  // namespace
 
 MinMaxBricks minmax_bricks(const Array& values, std::array<size_t, 3> dims) {
   const size_t n = dims[0] * dims[1] * dims[2];
@@ -66,7 +19,7 @@ MinMaxBricks minmax_bricks(const Array& values, std::array<size_t, 3> dims) {
       std::vector<T> lo, hi;
       for (size_t row = begin; row < end; ++row)
         brick_row(view.data, dims, (row % r.dims[1]) * MinMaxBricks::edge, (row / r.dims[1]) * MinMaxBricks::edge, lo, hi,
-                  &r.ranges[row * r.dims[0]], r.dims[0]);
+                  MinMaxBricks::edge, &r.ranges[row * r.dims[0]], r.dims[0]);
     });
   });
   return r;

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "index/brick_row.h"
 
 namespace sg::volume {
 
@@ -37,34 +38,6 @@ void widen_row(const Bits& in, size_t y, size_t z, Bits& out) {
       if (w + 1 < in.words) sum |= from[w + 1] << 63;
     }
     to[w] = sum & in.used(w);
-  }
-}
-
-/// Rows of samples are folded into one row of minima and one of maxima first, at memory speed. `v < lo ? v : lo` keeps lo when v is NaN.
-template <class T>
-void range_row(const T* values, const std::array<size_t, 3>& dims, size_t y0, size_t z0, std::vector<T>& lo, std::vector<T>& hi,
-               MinMaxBricks::Range* out, size_t bricks) {
-  constexpr size_t edge = FineBricks::edge;
-  using Limits = std::numeric_limits<T>;
-  const T top = Limits::has_infinity ? Limits::infinity() : Limits::max(),
-          bottom = Limits::has_infinity ? -Limits::infinity() : Limits::lowest();
-  const size_t nx = dims[0], y1 = std::min(y0 + edge, dims[1] - 1), z1 = std::min(z0 + edge, dims[2] - 1);
-  lo.assign(nx, top), hi.assign(nx, bottom);
-  T *l = lo.data(), *h = hi.data();
-  for (size_t z = z0; z <= z1; ++z)
-    for (size_t y = y0; y <= y1; ++y) {
-      const T* row = values + nx * (y + dims[1] * z);
-      for (size_t x = 0; x < nx; ++x) {
-        l[x] = row[x] < l[x] ? row[x] : l[x];
-        h[x] = row[x] > h[x] ? row[x] : h[x];
-      }
-    }
-  for (size_t b = 0; b < bricks; ++b) {
-    T bl = top, bh = bottom;
-    for (size_t x = b * edge; x <= std::min((b + 1) * edge, nx - 1); ++x) bl = std::min(bl, l[x]), bh = std::max(bh, h[x]);
-    // Only a cube of NaN alone leaves bl > bh.
-    if (bl > bh) out[b] = {HUGE_VALF, -HUGE_VALF};
-    else out[b] = {float(bl), float(bh)};
   }
 }
 
@@ -105,7 +78,7 @@ FineBricks fine_bricks(const Array& values, std::array<size_t, 3> dims) {
     parallel_for(r.dims[1] * r.dims[2], 8, [&](size_t begin, size_t end) {
       std::vector<T> lo, hi;
       for (size_t row = begin; row < end; ++row)
-        range_row(view.data, dims, (row % r.dims[1]) * FineBricks::edge, (row / r.dims[1]) * FineBricks::edge, lo, hi,
+        brick_row(view.data, dims, (row % r.dims[1]) * FineBricks::edge, (row / r.dims[1]) * FineBricks::edge, lo, hi, FineBricks::edge,
                   &r.ranges[row * r.dims[0]], r.dims[0]);
     });
   });
