@@ -10,6 +10,7 @@
 #include "filter/field/gradient.h"
 #include "filter/field/point_cell.h"
 #include "filter/field/resize.h"
+#include "filter/glyph/shapes.h"
 #include "filter/mesh/append.h"
 #include "filter/mesh/clip.h"
 #include "filter/mesh/components.h"
@@ -50,6 +51,7 @@
 #include "filter/surface/quality.h"
 #include "filter/surface/smooth.h"
 #include "filter/surface/surfels.h"
+#include "io/io.h"
 #include "simulate/drift.h"
 #include "simulate/flow_fields.h"
 #include "simulate/point_load.h"
@@ -109,6 +111,7 @@ Request request_of_extract(const ParamSet& params, const Request& wanted) {
 }  // namespace
 
 std::span<const Operation> operations() {
+  set_shape_reader([](const std::string& path, Context& context) { return single_dataset(read_data(path, {}, context), "glyphs"); });
   // The first entry only keeps the array from being empty.
   static constexpr Operation table[] = {
       Operation{},
