@@ -68,8 +68,7 @@ double factor_of(const Field& v, const BarbParams& p, Context& context) {
 }
 
 bool looks_like_degrees(const Box3& box) {
-  return !box.empty() && box.lo.y >= -90.5 && box.hi.y <= 90.5 && box.lo.x >= -360.5 && box.hi.x <= 360.5 &&
-         box.hi.x - box.lo.x > 20;
+  return !box.empty() && box.lo.y >= -90.5 && box.hi.y <= 90.5 && box.lo.x >= -360.5 && box.hi.x <= 360.5 && box.hi.x - box.lo.x > 20;
 }
 
 }  // namespace
@@ -102,11 +101,30 @@ int barb_shape(double knots, bool southern) {
 }
 
 double knots_per(const std::string& unit) {
-  static const std::pair<std::string_view, double> known[] = {
-      {"m/s", 3600.0 / 1852}, {"m s-1", 3600.0 / 1852}, {"m s^-1", 3600.0 / 1852}, {"m s**-1", 3600.0 / 1852}, {"m*s^-1", 3600.0 / 1852},
-      {"meter/second", 3600.0 / 1852}, {"meters/second", 3600.0 / 1852}, {"meter second-1", 3600.0 / 1852}, {"mps", 3600.0 / 1852},
-      {"cm/s", 36.0 / 1852}, {"cm s-1", 36.0 / 1852}, {"km/h", 1000.0 / 1852}, {"km h-1", 1000.0 / 1852}, {"km/hr", 1000.0 / 1852}, {"kph", 1000.0 / 1852}, {"kmh", 1000.0 / 1852},
-      {"mph", 1609.344 / 1852}, {"mi/h", 1609.344 / 1852}, {"ft/s", 0.3048 * 3600 / 1852}, {"kn", 1}, {"kt", 1}, {"kts", 1}, {"knot", 1}, {"knots", 1}};
+  static const std::pair<std::string_view, double> known[] = {{"m/s", 3600.0 / 1852},
+                                                              {"m s-1", 3600.0 / 1852},
+                                                              {"m s^-1", 3600.0 / 1852},
+                                                              {"m s**-1", 3600.0 / 1852},
+                                                              {"m*s^-1", 3600.0 / 1852},
+                                                              {"meter/second", 3600.0 / 1852},
+                                                              {"meters/second", 3600.0 / 1852},
+                                                              {"meter second-1", 3600.0 / 1852},
+                                                              {"mps", 3600.0 / 1852},
+                                                              {"cm/s", 36.0 / 1852},
+                                                              {"cm s-1", 36.0 / 1852},
+                                                              {"km/h", 1000.0 / 1852},
+                                                              {"km h-1", 1000.0 / 1852},
+                                                              {"km/hr", 1000.0 / 1852},
+                                                              {"kph", 1000.0 / 1852},
+                                                              {"kmh", 1000.0 / 1852},
+                                                              {"mph", 1609.344 / 1852},
+                                                              {"mi/h", 1609.344 / 1852},
+                                                              {"ft/s", 0.3048 * 3600 / 1852},
+                                                              {"kn", 1},
+                                                              {"kt", 1},
+                                                              {"kts", 1},
+                                                              {"knot", 1},
+                                                              {"knots", 1}};
   const std::string word = to_lower(std::string(trim(unit)));
   std::vector<std::string> names;
   for (const auto& [name, factor] : known) {

@@ -100,7 +100,8 @@ std::vector<Vec3> grid_places(const Box3& box, double h, size_t limit) {
   for (size_t k = 0; k < n[2]; ++k)
     for (size_t j = 0; j < n[1]; ++j)
       for (size_t i = 0; i < n[0]; ++i)
-        places.push_back(box.lo + box.size() * Vec3((double(i) + 0.5) / double(n[0]), (double(j) + 0.5) / double(n[1]), (double(k) + 0.5) / double(n[2])));
+        places.push_back(box.lo + box.size() * Vec3((double(i) + 0.5) / double(n[0]), (double(j) + 0.5) / double(n[1]),
+                                                    (double(k) + 0.5) / double(n[2])));
   return places;
 }
 
@@ -113,7 +114,8 @@ DatasetPtr even_inside(const DatasetPtr& data, const GlyphPointsParams& p, const
   const size_t limit = std::max<size_t>(size_t(p.count) * 64, 20'000'000);
   DatasetPtr out = inside(data, grid_places(box, h, limit), SIZE_MAX, context);
   // The mesh may fill a part of its box only.
-  for (int round = 0; round < 2 && p.spacing == 0 && double(out->point_count()) < 0.75 * double(p.count) && out->point_count() > 0; ++round) {
+  for (int round = 0; round < 2 && p.spacing == 0 && double(out->point_count()) < 0.75 * double(p.count) && out->point_count() > 0;
+       ++round) {
     h *= std::pow(double(out->point_count()) / double(p.count), 1.0 / axes);
     const double boxes = measure / std::pow(h, axes);
     if (boxes > double(limit)) break;
@@ -162,9 +164,8 @@ DatasetPtr even_points(const DatasetPtr& data, const GlyphPointsParams& p, const
     for (int a = 0; a < 3; ++a) middle[a] = box.lo[a] + (std::floor((q[a] - box.lo[a]) / h) + 0.5) * h;
     all.push_back({box_of(q, h), dot(q - middle, q - middle), i});
   }
-  std::sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) {
-    return std::tie(a.key, a.distance, a.id) < std::tie(b.key, b.distance, b.id);
-  });
+  std::sort(all.begin(), all.end(),
+            [](const Candidate& a, const Candidate& b) { return std::tie(a.key, a.distance, a.id) < std::tie(b.key, b.distance, b.id); });
   std::vector<int64_t> kept;
   for (size_t k = 0; k < all.size(); ++k)
     if (k == 0 || all[k].key != all[k - 1].key) kept.push_back(all[k].id);
@@ -273,9 +274,8 @@ DatasetPtr apart_places(const DatasetPtr& data, const GlyphPointsParams& p, cons
     for (size_t i = 0; i < diameter.size(); ++i) diameter[i] = std::abs(sizes.get(i)) * p.scale;
   }
   std::vector<int64_t> ids = visible_points(*data, 1);
-  std::erase_if(ids, [&](int64_t i) {
-    return !all_finite(at(xyz, size_t(i))) || !std::isfinite(diameter[size_t(i)]) || !(diameter[size_t(i)] > 0);
-  });
+  std::erase_if(
+      ids, [&](int64_t i) { return !all_finite(at(xyz, size_t(i))) || !std::isfinite(diameter[size_t(i)]) || !(diameter[size_t(i)] > 0); });
   std::stable_sort(ids.begin(), ids.end(), [&](int64_t a, int64_t b) { return diameter[size_t(a)] > diameter[size_t(b)]; });
   if (ids.empty()) return chosen(data, ids);
   const Vec3 away = p.view ? normalize(*p.view) : Vec3{};

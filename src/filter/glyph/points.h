@@ -17,13 +17,15 @@ struct GlyphPointsParams {
 };
 inline void describe(Schema& s, GlyphPointsParams& p) {
   s("mode", p.mode,
-    "all points; every n-th point; even: about `count` places on a grid in space; cells: the middle of each cell; random; apart: points whose "
+    "all points; every n-th point; even: about `count` places on a grid in space; cells: the middle of each cell; random; apart: points "
+    "whose "
     "glyphs do not overlap, large ones first; lines: along the lines of a mesh at even spacing.")
       .choices({"all", "every", "even", "cells", "random", "apart", "lines"});
   s("count", p.count, "even, random: about how many places.").range(1, 1e9);
   s("every", p.every, "every: take the first point of so many.").range(1, 1e12);
   s("seed", p.seed, "random: another number gives other places.");
-  s("spacing", p.spacing, "lines, even: distance of places; apart: diameter of a glyph without `diameter`; 0: chosen from the size of the data.")
+  s("spacing", p.spacing,
+    "lines, even: distance of places; apart: diameter of a glyph without `diameter`; 0: chosen from the size of the data.")
       .unit("length")
       .at_least(0);
   s("separation", p.separation, "lines: places nearer than this share of the spacing to one before are left out; 0 keeps all.").range(0, 1);

@@ -57,7 +57,8 @@ struct GlyphJob {
   float pixel_scale;  ///< pixels of this frame per pixel of the final picture
   uint64_t* keys;
 };
-/// The triangles of glyphs order[begin..end) as draw_triangles() draws a surface with the points a*x + b*y + c*z + p, in f32 and that order.
+/// The triangles of glyphs order[begin..end) as draw_triangles() draws a surface with the points a*x + b*y + c*z + p, in f32 and that
+/// order.
 void draw_glyphs(const GlyphJob& job, size_t begin, size_t end, std::vector<TriangleRecord>& large);
 void draw_glyphs_reference(const GlyphJob& job, size_t begin, size_t end, std::vector<TriangleRecord>& large);
 
