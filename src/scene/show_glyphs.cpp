@@ -23,6 +23,16 @@ const Field* color_field(const Dataset& input, const GlyphsShow& p, const Chosen
   return automatic_field(input);
 }
 
+// Mostly: black on it is harder to see than white.
+bool is_dark(const Colormap& map) {
+  float sum = 0;
+  for (int k = 0; k <= 16; ++k) {
+    const Vec3f q = map.at(double(k) / 16);
+    sum += 0.3f * q.x + 0.59f * q.y + 0.11f * q.z;
+  }
+  return sum / 17 < 0.42f;
+}
+
 bool is_direct(const Field& f) {
   const int n = f.components();
   return f.role == Role::colors && (n == 3 || n == 4) && (f.array.type() == ElementType::u8 || is_float(f.array.type()));
@@ -50,12 +60,20 @@ std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const Glyph
   item.color = c.flat ? Vec3f{0.13f, 0.14f, 0.18f} : item.color;
   if (!p.coloring.color.empty()) item.color = parse_color(p.coloring.color, "color");
   std::optional<ColorScale> legend;
-  if (const Field* f = color_field(*input, p, c)) {
+  // Flat ones on a coloured surface are read by their shape: a second scale on the first would hide them.
+  const ColorScale* beneath = nullptr;
+  for (const Item& i : scene.items)
+    if (const auto* s = std::get_if<SurfaceItem>(&i); s && s->color_by && !s->color_by->direct) beneath = &s->color_by->scale;
+  const bool one_color = beneath && c.flat && p.coloring.field.empty();
+  if (one_color && p.coloring.color.empty() && is_dark(beneath->map)) item.color = {1, 1, 1};
+  if (const Field* f = one_color ? nullptr : color_field(*input, p, c)) {
     FieldColor color;
     color.field = f->name, color.component = p.coloring.component;
     color.direct = is_direct(*f) && p.coloring.map == "auto" && p.coloring.component < 0;
     if (!color.direct) {
-      color.scale = choose_scale(*input, *f, p.coloring, context);
+      // The range of what is drawn: a peak between the places would leave all of them in one colour.
+      const Field* drawn = c.data->fields().find(f->name, Association::point);
+      color.scale = drawn ? choose_scale(*c.data, *drawn, p.coloring, context) : choose_scale(*input, *f, p.coloring, context);
       legend = color.scale;
     }
     item.color_by = std::move(color);

@@ -39,8 +39,15 @@ DatasetPtr barb(int knots, double side) {
   double x = -1;
   for (int k = 0; k < s.pennants; ++k, x += pennant * tight) {
     const int32_t from = b.point({x, 0, 0}), to = b.point({x + pennant * tight, 0, 0}), tip = b.point({x - 0.3 * lean, side * stroke, 0});
-    if (side > 0) b.triangle(from, to, tip);
-    else b.triangle(from, tip, to);
+    for (const double z : {-0.012, 0.012}) {  // before a map in its own plane from both sides
+      int32_t corner[3];
+      for (int c = 0; c < 3; ++c) {
+        const size_t at = 3 * size_t(c == 0 ? from : c == 1 ? to : tip);
+        corner[c] = b.point({double(b.xyz[at]), double(b.xyz[at + 1]), z});
+      }
+      if ((side > 0) == (z > 0)) b.triangle(corner[0], corner[1], corner[2]);
+      else b.triangle(corner[0], corner[2], corner[1]);
+    }
     b.line(from, tip), b.line(tip, to);
   }
   if (s.pennants) x += after_pennants * tight;
@@ -68,7 +75,7 @@ double factor_of(const Field& v, const BarbParams& p, Context& context) {
 }
 
 bool looks_like_degrees(const Box3& box) {
-  return !box.empty() && box.lo.y >= -90.5 && box.hi.y <= 90.5 && box.lo.x >= -360.5 && box.hi.x <= 360.5 && box.hi.x - box.lo.x > 20;
+  return !box.empty() && box.lo.y >= -90.5 && box.hi.y <= 90.5 && box.lo.x >= -360.5 && box.hi.x <= 360.5 && box.hi.x - box.lo.x >= 10;
 }
 
 }  // namespace
@@ -147,6 +154,8 @@ DatasetPtr barb_places(const DatasetPtr& data, const std::string& vectors, const
       latitude = f.array.converted(ElementType::f64).made_packed();
     } else if (looks_like_degrees(data->bounds())) {
       latitude = point_positions(data->mesh()).component(1).made_packed();
+      if (data->bounds().lo.y < 0)
+        context.info("barbs: y is taken as latitude, so strokes change sides south of 0 (hemisphere=north keeps them)");
     }
   }
   const size_t n = data->point_count();

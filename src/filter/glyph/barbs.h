@@ -37,7 +37,7 @@ double knots_per(const std::string& unit);
 
 /// The dataset with two more point fields: i32 'barb' (number of the shape, -1 where the wind is not finite) and f64 x 9 'barb frame' (the
 /// turn in the x-y plane). Unit "auto": the field's own, else m/s with a note. Hemisphere: 'latitude' takes the sign of a point field of
-/// degrees, or, where none is named, of y when the data lies within -90..90 and looks like degrees (x within -360..360, wider than 20);
+/// degrees, or, where none is named, of y when the data lies within -90..90 and looks like degrees (x within -360..360, at least 10 wide);
 /// else north.
 DatasetPtr barb_places(const DatasetPtr& data, const std::string& vectors, const BarbParams& p, Context& context);
 

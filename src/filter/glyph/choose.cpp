@@ -68,7 +68,7 @@ int plane_of(const Dataset& d, const Field* vectors) {
 GlyphPointsParams placement(const Dataset& d, const GlyphParams& p, const Field* vectors, int flat_axis, bool barbs, std::string& how) {
   GlyphPointsParams q;
   q.every = p.every, q.seed = p.seed, q.spacing = p.spacing;
-  const int64_t fitting = barbs ? 350 : flat_axis >= 0 ? 900 : 2500;
+  const int64_t fitting = barbs ? 180 : flat_axis >= 0 ? 900 : 2500;
   q.count = p.count > 0 ? p.count : fitting;
   q.mode = p.place;
   if (q.mode == "auto") q.mode = p.count == 0 && p.spacing == 0 && d.point_count() <= size_t(q.count) ? "all" : "even";
@@ -108,6 +108,26 @@ void choose_scale_rule(const GlyphParams& p, const Field* vectors, bool barbs, C
   r.size = GlyphRule::Size::field, r.size_field = scale;
 }
 
+constexpr double faint = 0.02;  // of the largest: hardly seen
+
+// Where most of the data is still, places enough that about as many glyphs are seen as were meant.
+DatasetPtr place(const DatasetPtr& data, GlyphPointsParams q, bool may_add, const Field* vectors, Context& context) {
+  DatasetPtr places = glyph_points(data, q, context);
+  if (!may_add || !vectors || q.mode != "even") return places;
+  for (int round = 0; round < 2; ++round) {
+    const std::vector<double> lengths = size_factors(*places, vectors->name);
+    if (lengths.empty()) return places;
+    const auto seen = double(lengths.end() - std::lower_bound(lengths.begin(), lengths.end(), faint * lengths.back()));
+    const double share = seen / double(places->point_count());
+    if (share > 0.5 || seen > 0.2 * double(q.count)) return places;
+    GlyphPointsParams more = q;
+    more.count = int64_t(std::min(0.3 * double(q.count) / share, std::min(2e5, double(data->point_count()))));
+    if (double(more.count) < 1.2 * double(places->point_count())) return places;
+    places = glyph_points(data, more, context);
+  }
+  return places;
+}
+
 // Scale of the rule from the size asked for, or from the distance of the places.
 void choose_size(const Dataset& input, const GlyphParams& p, bool in_pixels, int flat_axis, ChosenGlyphs& out) {
   if (p.size > 0 && p.factor > 0) fail_usage("size and factor both say how large glyphs are", "glyphs", "give one of them");
@@ -130,10 +150,12 @@ void choose_size(const Dataset& input, const GlyphParams& p, bool in_pixels, int
                                          : round          ? 0.6
                                          : flat_axis >= 0 ? 1.0
                                                           : 1.4);
-    if (const double usual = factors[size_t(0.98 * double(factors.size() - 1))]; p.size == 0 && most > 3 * usual) {
-      // A few giants would make all others invisible.
-      r.largest = 1.5 * size, most = usual;
-      out.note += fmt::format("; those above {} are cut at half as much again", short_number(1.5 * usual, 3));
+    // A few giants would make all others invisible.
+    const auto seen = std::lower_bound(factors.begin(), factors.end(), faint * most) - factors.begin();
+    const double usual = factors[size_t(seen) + size_t(0.95 * double(factors.size() - size_t(seen) - 1))];
+    if (p.size == 0 && most > 2 * usual) {
+      r.largest = 1.6 * size, most = usual;
+      out.note += fmt::format("; those above {} are drawn as long as that", short_number(1.6 * usual, 3));
     }
     r.scale = size / most;
   }
@@ -174,7 +196,7 @@ ChosenGlyphs choose_glyphs(const DatasetPtr& data, const GlyphParams& given, boo
   GlyphPointsParams places = placement(*data, p, vectors, flat_axis, out.barbs, how);
   const double size_given = p.size > 0 ? p.size : 0;
   if (places.mode == "apart" && size_given > 0 && !in_pixels && places.spacing == 0) places.spacing = size_given;
-  out.data = glyph_points(data, places, context);
+  out.data = place(data, places, p.count == 0 && p.spacing == 0 && !out.barbs, vectors, context);
   if (vectors) out.vectors = out.rule.vectors = vectors->name;
   if (places.mode == "lines" && vectors == nullptr && p.vectors.empty() && p.frames.empty()) out.rule.vectors = "tangent";
   out.rule.frames = p.frames.name;
@@ -191,10 +213,11 @@ ChosenGlyphs choose_glyphs(const DatasetPtr& data, const GlyphParams& given, boo
   }
   const std::string shape = out.barbs ? "barbs" : p.shape.shape;
   const std::string of = out.vectors.empty() ? "" : fmt::format(" of '{}'", out.vectors);
-  std::string note = fmt::format("{} {}{} {}", out.data->point_count(), shape == "barbs" ? "barbs" : "glyphs (" + shape + ")", of, how);
+  std::string note = fmt::format("{} {}{} {}", glyph_instances(out.data, out.rule, out.shapes.size())->standing,
+                                 shape == "barbs" ? "barbs" : "glyphs (" + shape + ")", of, how);
   if (out.of > 0) {
     const Field* unit = out.data->fields().find(out.rule.size == GlyphRule::Size::length ? out.rule.vectors : out.rule.size_field);
-    note += fmt::format("; the longest, {}{}, is {}{} long", short_number(out.of, 3), unit && !unit->unit.empty() ? " " + unit->unit : "",
+    note += fmt::format("; one of {}{} is {}{} long", short_number(out.of, 3), unit && !unit->unit.empty() ? " " + unit->unit : "",
                         short_number(out.longest, 3), in_pixels ? " pixels" : "");
   }
   out.note = note + out.note;
