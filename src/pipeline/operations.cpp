@@ -50,6 +50,8 @@
 #include "filter/surface/quality.h"
 #include "filter/surface/smooth.h"
 #include "filter/surface/surfels.h"
+#include "filter/flow/seeds.h"
+#include "filter/flow/streamlines.h"
 #include "simulate/drift.h"
 #include "simulate/flow_fields.h"
 #include "simulate/point_load.h"
