@@ -52,6 +52,8 @@
 #include "filter/surface/surfels.h"
 #include "filter/tensor/stress_measures.h"
 #include "filter/tensor/tensor_measures.h"
+#include "filter/flow/seeds.h"
+#include "filter/flow/streamlines.h"
 #include "simulate/drift.h"
 #include "simulate/flow_fields.h"
 #include "simulate/point_load.h"
