@@ -10,6 +10,8 @@
 #include "filter/field/gradient.h"
 #include "filter/field/point_cell.h"
 #include "filter/field/resize.h"
+#include "filter/flow/lines/even_streamlines.h"
+#include "filter/flow/lines/tubes.h"
 #include "filter/flow/vortex/core_lines.h"
 #include "filter/flow/vortex/ftle.h"
 #include "filter/flow/vortex/measures.h"
