@@ -47,8 +47,13 @@ TEST_CASE("ridges: the crest of a straight wall is found to second order, and no
     const SurfaceMesh& m = *d->as<SurfaceMesh>();
     CHECK(m.lines.size() <= 2);  // the two sides of the peak, where the other principal direction's line crosses
     double worst = 0;
-    for (size_t i = 0; i < m.points.count(); ++i) worst = std::max(worst, std::abs(dot(m.points.at(i), across) - 0.05));
-    CHECK(worst < 0.02);
+    for (size_t i = 0; i < m.points.count(); ++i) {
+      const Vec3 x = m.points.at(i);
+      const double off = std::abs(dot(x, across) - 0.05);
+      CHECK(off < 0.02);
+      // The order is that inside: second derivatives at the border are of first order, and at the peak the gradient vanishes.
+      if (std::abs(x.y) < 0.85 && std::abs(dot(x, along)) > 0.15) worst = std::max(worst, off);
+    }
     CHECK(total(d, "length") > 1.8);
     if (last > 0) CHECK(worst < last / 2.5);
     last = worst;
