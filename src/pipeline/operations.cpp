@@ -52,6 +52,7 @@
 #include "filter/surface/surfels.h"
 #include "filter/tensor/hyperstreamlines.h"
 #include "filter/tensor/stress_measures.h"
+#include "filter/tensor/tensor_glyphs.h"
 #include "filter/tensor/tensor_measures.h"
 #include "filter/tensor/tractography.h"
 #include "simulate/drift.h"
