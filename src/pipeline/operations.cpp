@@ -57,10 +57,13 @@
 #include "filter/surface/quality.h"
 #include "filter/surface/smooth.h"
 #include "filter/surface/surfels.h"
+#include "filter/tensor/hyperstreamlines.h"
 #include "filter/tensor/stress_measures.h"
+#include "filter/tensor/tensor_glyphs.h"
 #include "filter/tensor/tensor_measures.h"
 #include "filter/flow/seeds.h"
 #include "filter/flow/streamlines.h"
+#include "filter/tensor/tractography.h"
 #include "simulate/drift.h"
 #include "simulate/flow_fields.h"
 #include "simulate/point_load.h"
@@ -102,6 +105,14 @@ Data clip_with(const std::vector<Data>& in, const ClipParams& p, Context& ctx) {
 
 Data slice_by(const std::vector<Data>& in, const SliceParams& p, Context& ctx) {
   return with_second_mesh("slice", in, p, ctx, [](auto&&... a) { return slice(a...); });
+}
+
+Data hyperstreamlines_from(const std::vector<Data>& in, const HyperstreamlinesParams& p, Context& ctx) {
+  return with_second_mesh("hyperstreamlines", in, p, ctx, [](auto&&... a) { return hyperstreamlines(a...); });
+}
+
+Data tractography_from(const std::vector<Data>& in, const TractographyParams& p, Context& ctx) {
+  return with_second_mesh("tractography", in, p, ctx, [](auto&&... a) { return tractography(a...); });
 }
 
 // An expression may name any field.
