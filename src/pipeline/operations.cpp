@@ -17,6 +17,7 @@
 #include "filter/flow/vortex/measures.h"
 #include "filter/flow/vortex/parallel_vectors.h"
 #include "filter/flow/vortex/ridges.h"
+#include "filter/glyph/shapes.h"
 #include "filter/mesh/append.h"
 #include "filter/mesh/clip.h"
 #include "filter/mesh/components.h"
@@ -64,6 +65,7 @@
 #include "filter/flow/seeds.h"
 #include "filter/flow/streamlines.h"
 #include "filter/tensor/tractography.h"
+#include "io/io.h"
 #include "simulate/drift.h"
 #include "simulate/flow_fields.h"
 #include "simulate/point_load.h"
@@ -131,6 +133,7 @@ Request request_of_extract(const ParamSet& params, const Request& wanted) {
 }  // namespace
 
 std::span<const Operation> operations() {
+  set_shape_reader([](const std::string& path, Context& context) { return single_dataset(read_data(path, {}, context), "glyphs"); });
   // The first entry only keeps the array from being empty.
   static constexpr Operation table[] = {
       Operation{},
