@@ -31,7 +31,8 @@ double hashed(uint32_t h) {
 double noise_at(Vec3 p, Vec3 n, double footprint, uint32_t seed) {
   const Vec3 a{std::abs(n.x), std::abs(n.y), std::abs(n.z)};
   const bool along_x = a.x > a.y && a.x > a.z, along_y = !along_x && a.y > a.z;
-  const double u = along_x ? p.y : p.x, v = along_x || along_y ? p.z : p.y;
+  const double q = along_x ? p.y : p.x, r = along_x || along_y ? p.z : p.y;
+  const double u = q * double(noise_turn[0]) - r * double(noise_turn[1]), v = q * double(noise_turn[1]) + r * double(noise_turn[0]);
   const int level = int(std::floor(std::log2(footprint)));
   const double f = footprint / std::ldexp(1.0, level) - 1;
   const auto value = [&](int k) {
@@ -73,7 +74,7 @@ void pixel_vectors_reference(const VectorJob& job, VectorBatch& b) {
     const double slope = v.parallel ? -1 / (nz * double(v.scale)) : w / (double(v.scale) * (nx * X + ny * Y + nz));
     const double most = (v.parallel ? 1 : w) * 8 / double(v.scale);
     b.w[i] = float(w), b.wx[i] = float(std::clamp(nx * slope, -most, most)), b.wy[i] = float(std::clamp(-ny * slope, -most, most));
-    b.noise[i] = float(noise_at(hit, normal, (v.parallel ? 1 : z) * double(job.grain) / double(v.scale), job.seed));
+    b.noise[i] = float(noise_at(hit, normal, (v.parallel ? 1 : z) * double(noise_square) * double(job.grain) / double(v.scale), job.seed));
   }
 }
 

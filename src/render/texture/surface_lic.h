@@ -49,6 +49,9 @@ struct VectorJob {
   uint32_t seed;
 };
 
+constexpr float noise_turn[2] = {0.7927f, 0.6096f};  ///< cosine and sine of the angle of the noise's squares
+constexpr float noise_square = 0.8f;                 ///< smallest side of a square, in grains; the next size is mixed in
+
 constexpr size_t vector_batch = 512;
 /// n pixels of one surface: x, y and triangle come in, the rest goes out.
 struct VectorBatch {

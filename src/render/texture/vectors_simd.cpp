@@ -60,14 +60,16 @@ HWY_INLINE F hashed(U h) {  // bits mixed so that each input bit reaches each ou
   return hn::ConvertTo(d, hn::BitCast(di, hn::ShiftRight<8>(h))) * hn::Set(d, 0x1p-24f) - hn::Set(d, 0.5f);
 }
 
-/// Noise of a place: one number per square of the two axes along which the face lies, of a size between two powers of two.
+/// Noise of a place: one number per square of the two axes along which the face lies, of a size between two powers of two. The squares are
+/// turned, for fields that run along an axis.
 HWY_INLINE F noise(V3 p, V3 normal, F footprint, uint32_t seed) {
   const DF d;
   const DI di;
   const DU du;
   const F ax = hn::Abs(normal.x), ay = hn::Abs(normal.y), az = hn::Abs(normal.z);
   const M along_x = hn::And(hn::Gt(ax, ay), hn::Gt(ax, az)), along_y = hn::AndNot(along_x, hn::Gt(ay, az));
-  const F u = hn::IfThenElse(along_x, p.y, p.x), v = hn::IfThenElse(hn::Or(along_x, along_y), p.z, p.y);
+  const F a = hn::IfThenElse(along_x, p.y, p.x), b = hn::IfThenElse(hn::Or(along_x, along_y), p.z, p.y);
+  const F cosine = hn::Set(d, noise_turn[0]), sine = hn::Set(d, noise_turn[1]), u = a * cosine - b * sine, v = a * sine + b * cosine;
   const U axis = hn::BitCast(du, hn::IfThenElseZero(hn::RebindMask(di, along_x), hn::Set(di, 0x2545F491)) +
                                      hn::IfThenElseZero(hn::RebindMask(di, along_y), hn::Set(di, 0x6C8E9CF5)));
   const I bits = hn::BitCast(di, footprint);
@@ -144,7 +146,7 @@ void run(const VectorJob& job, VectorBatch& b) {
     const F most = (v.parallel ? one : w) * hn::Set(d, 8.0f / v.scale);
     const auto limited = [&](F g) { return hn::IfThenElse(hn::Lt(hn::Abs(g), most), g, hn::CopySign(most, g)); };
     hn::Store(w, d, b.w + i), hn::Store(limited(nx * slope), d, b.wx + i), hn::Store(limited(hn::Neg(ny * slope)), d, b.wy + i);
-    const F footprint = (v.parallel ? one : z) * hn::Set(d, job.grain / v.scale);
+    const F footprint = (v.parallel ? one : z) * hn::Set(d, noise_square * job.grain / v.scale);
     hn::Store(noise(a + along, normal, footprint, job.seed), d, b.noise + i);
   }
 }
