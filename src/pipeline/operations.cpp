@@ -10,6 +10,7 @@
 #include "filter/field/gradient.h"
 #include "filter/field/point_cell.h"
 #include "filter/field/resize.h"
+#include "filter/flow/texture/surface_lic.h"
 #include "filter/flow/vortex/core_lines.h"
 #include "filter/flow/vortex/ftle.h"
 #include "filter/flow/vortex/measures.h"
