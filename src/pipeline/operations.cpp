@@ -12,6 +12,7 @@
 #include "filter/field/resize.h"
 #include "filter/flow/lines/even_streamlines.h"
 #include "filter/flow/lines/tubes.h"
+#include "filter/flow/texture/surface_lic.h"
 #include "filter/flow/vortex/core_lines.h"
 #include "filter/flow/vortex/ftle.h"
 #include "filter/flow/vortex/measures.h"
