@@ -10,6 +10,7 @@
 #include "filter/field/gradient.h"
 #include "filter/field/point_cell.h"
 #include "filter/field/resize.h"
+#include "filter/flow/texture/lic.h"
 #include "filter/mesh/append.h"
 #include "filter/mesh/clip.h"
 #include "filter/mesh/components.h"
