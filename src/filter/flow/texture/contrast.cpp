@@ -20,7 +20,7 @@ struct Extent {
 
 }  // namespace
 
-void set_contrast(std::vector<float>& v, const std::string& kind, bool from_zero, const Context& context) {
+void set_contrast(std::span<float> v, const std::string& kind, bool from_zero, const Context& context) {
   if (kind == "none") return;
   const Extent e = parallel_reduce(
       v.size(), grain, Extent(),
@@ -91,8 +91,8 @@ void set_contrast(std::vector<float>& v, const std::string& kind, bool from_zero
   });
 }
 
-std::vector<float> sharpened(const std::vector<float>& v, const int32_t n[3], const Context& context) {
-  std::vector<float> out(v.size());
+Plane<float> sharpened(std::span<const float> v, const int32_t n[3], const Context& context) {
+  Plane<float> out(v.size());
   parallel_for(
       size_t(n[1]) * size_t(n[2]), 16,
       [&](size_t begin, size_t end) {

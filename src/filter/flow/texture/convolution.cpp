@@ -104,10 +104,10 @@ class SharedLines {
         if (x >= t.hi[0] || y >= t.hi[1] || z >= t.hi[2]) continue;
         if (weight_[local(t, x, y, z)] > 0 || tiles_.grid.codes[tiles_.pixel(x, y, z)] == 0) continue;
         batch_.start[0][seeds] = float(x), batch_.start[1][seeds] = float(y), batch_.start[2][seeds] = float(z);
-        if (++seeds == lanes) deposit(t, seeds), seeds = 0;
+        if (++seeds == lanes) deposit(seeds), seeds = 0;
       }
     }
-    if (seeds > 0) deposit(t, seeds);
+    if (seeds > 0) deposit(seeds);
     for (int32_t z = t.lo[2]; z < t.hi[2]; ++z)
       for (int32_t y = t.lo[1]; y < t.hi[1]; ++y)
         for (int32_t x = t.lo[0]; x < t.hi[0]; ++x) {
@@ -122,7 +122,7 @@ class SharedLines {
     return size_t(x - t.lo[0]) + size_t(t.n[0]) * (size_t(y - t.lo[1]) + size_t(t.n[1]) * size_t(z - t.lo[2]));
   }
 
-  void deposit(const Tile& t, int count) {
+  void deposit(int count) {
     for (int lane = count; lane < lanes; ++lane)
       for (int a = 0; a < 3; ++a) batch_.start[a][lane] = batch_.start[a][0];
     trace_lines(tiles_.grid, batch_);
@@ -130,18 +130,15 @@ class SharedLines {
     const auto longest = [&](const int32_t* made) { return std::min(reach_, *std::max_element(made, made + count)); };
     const int first = middle - longest(batch_.back), last = middle + longest(batch_.forth);
     convolve_lines(batch_, weights_, first, last, sums_.data());
-    const auto& g = tiles_.grid;
     for (int m = first; m <= last; ++m)
       for (int lane = 0; lane < count; ++lane) {
-        const int32_t pixel = batch_.pixels[size_t(m) * lanes + size_t(lane)];
-        if (pixel < 0) continue;
-        const int32_t x = pixel % g.n[0], yz = pixel / g.n[0], y = yz % g.n[1], z = yz / g.n[1];
-        if (x < t.lo[0] || x >= t.hi[0] || y < t.lo[1] || y >= t.hi[1] || z < t.lo[2] || z >= t.hi[2]) continue;
+        const size_t at = size_t(m) * lanes + size_t(lane);
+        const int32_t to = batch_.pixels[at];
+        if (to < 0) continue;
         const int k = m - middle;
-        const float total =
+        sum_[size_t(to)] += sums_[at - size_t(first) * lanes];
+        weight_[size_t(to)] +=
             weights_.total(std::min(weights_.steps, batch_.back[lane] + k), std::min(weights_.steps, batch_.forth[lane] - k));
-        const size_t to = local(t, x, y, z);
-        sum_[to] += sums_[size_t(m - first) * lanes + size_t(lane)], weight_[to] += total;
       }
   }
 
@@ -170,8 +167,7 @@ Weights kernel_weights(const std::string& kernel, int steps, double phase, int r
   return r;
 }
 
-std::vector<float> convolve_plain(const DirectionGrid& grid, const Weights& weights, float step, const Context& context) {
-  std::vector<float> out(grid.size());
+void convolve_plain(const DirectionGrid& grid, const Weights& weights, float step, float* out, const Context& context) {
   const Tiles tiles(grid, 128, 32, grid.dimension == 3 ? 8 : 1);
   parallel_for(
       tiles.size(), 1,
@@ -184,17 +180,15 @@ std::vector<float> convolve_plain(const DirectionGrid& grid, const Weights& weig
               for (int32_t x = t.lo[0]; x < t.hi[0]; ++x) {
                 const size_t pixel = tiles.pixel(x, y, z);
                 if (grid.codes[pixel] == 0) out[pixel] = nothing;
-                else lines.add(pixel, x, y, z, out.data());
+                else lines.add(pixel, x, y, z, out);
               }
-          lines.flush(out.data());
+          lines.flush(out);
         }
       },
       &context);
-  return out;
 }
 
-std::vector<float> convolve_fast(const DirectionGrid& grid, const Weights& weights, float step, const Context& context) {
-  std::vector<float> out(grid.size());
+void convolve_fast(const DirectionGrid& grid, const Weights& weights, float step, float* out, const Context& context) {
   const int32_t edge = grid.dimension == 3 ? 32 : 128;
   const Tiles tiles(grid, edge, edge, grid.dimension == 3 ? edge : 1);
   const int reach = int(std::ceil(double(edge) / 2 / double(step)));
@@ -202,10 +196,9 @@ std::vector<float> convolve_fast(const DirectionGrid& grid, const Weights& weigh
       tiles.size(), 1,
       [&](size_t begin, size_t end) {
         SharedLines lines(tiles, weights, step, reach);
-        for (size_t i = begin; i < end; ++i) lines.run(i, out.data());
+        for (size_t i = begin; i < end; ++i) lines.run(i, out);
       },
       &context);
-  return out;
 }
 
 }  // namespace sg::texture

@@ -14,10 +14,10 @@ namespace sg::texture {
 Weights kernel_weights(const std::string& kernel, int steps, double phase, int ripples);
 
 /// A line for each pixel: the weighted mean of the noise along it. Pixels without a direction are NaN. In tiles, in parallel.
-std::vector<float> convolve_plain(const DirectionGrid& grid, const Weights& weights, float step, const Context& context);
+void convolve_plain(const DirectionGrid& grid, const Weights& weights, float step, float* out, const Context& context);
 
 /// Long lines through pixels that none has met yet; each gives a value to all the pixels that it passes in its tile, the means of which are
 /// kept; pixels that are left over get a line of their own. Tiles are fixed and share nothing, so that threads do not matter.
-std::vector<float> convolve_fast(const DirectionGrid& grid, const Weights& weights, float step, const Context& context);
+void convolve_fast(const DirectionGrid& grid, const Weights& weights, float step, float* out, const Context& context);
 
 }  // namespace sg::texture

@@ -179,33 +179,47 @@ Frame make_frame(const DatasetPtr& input, const std::string& field, int64_t reso
       fail_usage(fmt::format("no point of the grid lies in the mesh of {}", data->kind()), std::string(who),
                  "flat data lie in a plane across an axis, solid ones have cells of volume; textures on bent surfaces: surface_lic");
   }
-  // Velocities along the grid's axes, in pixels.
-  const Field& v = f.fields.require(f.velocity_name, Association::point);
-  const size_t n = f.size();
-  f.velocity.resize(n * size_t(f.dimension));
-  const int components = v.components();
-  Vec3 along[3];
-  for (int a = 0; a < f.dimension; ++a) along[a] = f.grid.direction.column(f.axis[a]) / f.grid.spacing[f.axis[a]];
-  f.largest_speed = dispatch(v.array, [&](auto view) {
-    return parallel_reduce(
-        n, 1 << 15, 0.0,
-        [&](size_t begin, size_t end) {
-          float most = 0;
-          for (size_t i = begin; i < end; ++i) {
-            const Vec3 x{double(view(i, 0)), double(view(i, 1)), components > 2 ? double(view(i, 2)) : 0.0};
-            float square = 0;
-            for (int a = 0; a < f.dimension; ++a) {
-              const float c = float(dot(along[a], x));
-              f.velocity[i * size_t(f.dimension) + size_t(a)] = c;
-              square += c * c;
-            }
-            if (square > most) most = square;  // not for NaN
-          }
-          return std::sqrt(double(most));
-        },
-        [](double a, double b) { return std::max(a, b); }, &context);
-  });
   return f;
+}
+
+void velocity_of(const Frame& f, size_t begin, size_t end, float* out) {
+  const Field& v = f.fields.require(f.velocity_name, Association::point);
+  const int components = v.components(), d = f.dimension;
+  if (f.grid.direction == Mat3()) {
+    // The usual case: the grid's axes are the world's.
+    float scale[3];
+    int axis[3];
+    for (int a = 0; a < d; ++a) axis[a] = f.axis[a], scale[a] = axis[a] < components ? float(1 / f.grid.spacing[axis[a]]) : 0.0f;
+    for (int a = 0; a < d; ++a) axis[a] = std::min(axis[a], components - 1);
+    dispatch(v.array, [&](auto view) {
+      const bool packed = view.packed();
+      const auto* x = view.data;
+      if (packed && d == 2)
+        for (size_t i = begin; i < end; ++i, out += 2) {
+          const auto* u = x + i * size_t(components);
+          out[0] = float(u[axis[0]]) * scale[0], out[1] = float(u[axis[1]]) * scale[1];
+        }
+      else
+        for (size_t i = begin; i < end; ++i, out += d)
+          for (int a = 0; a < d; ++a) out[a] = float(view(i, axis[a])) * scale[a];
+    });
+    return;
+  }
+  Vec3 along[3];
+  for (int a = 0; a < d; ++a) along[a] = f.grid.direction.column(f.axis[a]) / f.grid.spacing[f.axis[a]];
+  dispatch(v.array, [&](auto view) {
+    for (size_t i = begin; i < end; ++i, out += d) {
+      const Vec3 x{double(view(i, 0)), double(view(i, 1)), components > 2 ? double(view(i, 2)) : 0.0};
+      for (int a = 0; a < d; ++a) out[a] = float(dot(along[a], x));
+    }
+  });
+}
+
+Plane<float> velocity_of(const Frame& f, const Context& context) {
+  Plane<float> v(f.size() * size_t(f.dimension));
+  parallel_for(
+      f.size(), 1 << 14, [&](size_t begin, size_t end) { velocity_of(f, begin, end, &v[begin * size_t(f.dimension)]); }, &context);
+  return v;
 }
 
 DatasetPtr frame_dataset(const Frame& f, std::vector<Field> more) {
@@ -218,7 +232,8 @@ DatasetPtr frame_dataset(const Frame& f, std::vector<Field> more) {
   return make_dataset(std::move(parts));
 }
 
-std::vector<float> field_on_frame(const Frame& f, const DatasetPtr& from, const Field& field, std::string_view who, Context& context) {
+Array field_on_frame(const Frame& f, const DatasetPtr& from, const Field& field, std::string_view who) {
+  Context context;
   Field taken = field;
   if (!(from->as<UniformGrid>() && field.association == Association::point && field.array.count() == f.size())) {
     const auto* u = from->as<UniformGrid>();
@@ -241,9 +256,7 @@ std::vector<float> field_on_frame(const Frame& f, const DatasetPtr& from, const 
     const DatasetPtr at = probe(make_dataset(to), make_dataset(std::move(parts)), {}, context);
     taken = at->fields().require(field.name);
   }
-  const Array a = taken.array.converted(ElementType::f32).made_packed();
-  const float* x = a.view<float>().data;
-  return std::vector<float>(x, x + a.count() * size_t(a.components()));
+  return taken.array.converted(ElementType::f32).made_packed();
 }
 
 }  // namespace sg::texture

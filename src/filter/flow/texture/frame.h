@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/context.h"
+#include "base/huge_allocator.h"
 #include "data/dataset.h"
 
 namespace sg::texture {
@@ -17,10 +18,8 @@ struct Frame {
   int32_t n[3] = {1, 1, 1};     ///< pixels along them
   double pitch[3] = {1, 1, 1};  ///< world length from pixel to pixel
   std::string velocity_name;
-  std::vector<float> velocity;  ///< `dimension` numbers a pixel, along its axes, in pixels per unit of time; NaN: no value
-  double largest_speed = 0;     ///< of those numbers, not counting NaN
-  FieldSet fields;              ///< of the input, on the points of the grid
-  Array hidden_cells;           ///< u8 GhostBits of the grid's cells where the input had none; may be empty
+  FieldSet fields;     ///< of the input, on the points of the grid
+  Array hidden_cells;  ///< u8 GhostBits of the grid's cells where the input had none; may be empty
   std::optional<double> time;
   std::vector<std::pair<std::string, std::string>> notes;
 
@@ -28,6 +27,11 @@ struct Frame {
   /// Position in pixels of a place in the world (its foot on the plane, when flat), and back.
   Vec3 to_pixels(Vec3 world) const;
 };
+
+/// Velocities of the pixels [begin, end): `dimension` numbers each, along the frame's axes, in pixels per unit of time; NaN: no value.
+void velocity_of(const Frame& frame, size_t begin, size_t end, float* out);
+/// Of all pixels.
+Plane<float> velocity_of(const Frame& frame, const Context& context);
 
 /// `field`: of velocities; empty: the active vectors. `resolution`: pixels along the longest side; 0: the grid's own, or whole multiples up
 /// to 1024 where it is coarser and flat (128 in 3D). Uniform grids of square pixels of that number are taken as they are; all else is
@@ -38,8 +42,8 @@ Frame make_frame(const DatasetPtr& input, const std::string& field, int64_t reso
 /// The dataset of the frame with one more point field (or several).
 DatasetPtr frame_dataset(const Frame& frame, std::vector<Field> more);
 
-/// A point field of `from` on the frame's pixels, as `components` floats each: as it is when the points are the same in number, else
-/// resampled over its own box stretched to the frame's (an image) or in place (`in_place`).
-std::vector<float> field_on_frame(const Frame& frame, const DatasetPtr& from, const Field& field, std::string_view who, Context& context);
+/// A point field of `from` on the frame's pixels, f32 and packed: as it is when there are as many points, else resampled, the image's box
+/// stretched over the frame's. Throws Error(usage) when `from` is no uniform grid of the frame's dimension.
+Array field_on_frame(const Frame& frame, const DatasetPtr& from, const Field& field, std::string_view who);
 
 }  // namespace sg::texture

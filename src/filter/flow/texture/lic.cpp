@@ -38,33 +38,37 @@ void describe(Schema& s, LicParams& p) {
 namespace {
 
 // Directions of the frame; pixels without value or with a speed up to `still` get none.
-std::vector<uint32_t> directions_of(const Frame& f, double still, const Context& context) {
-  std::vector<uint32_t> codes(f.size());
-  const size_t d = size_t(f.dimension);
+Plane<uint32_t> directions_of(const Frame& f, double still, const Context& context) {
+  Plane<uint32_t> codes(f.size());
+  const size_t d = size_t(f.dimension), block = 1024;
   parallel_for(
-      f.size(), 1 << 14,
+      f.size(), 16 * block,
       [&](size_t begin, size_t end) {
-        for (size_t i = begin; i < end; ++i) {
-          const float* v = &f.velocity[i * d];
-          if (still > 0) {
+        std::vector<float> v(block * d);
+        for (size_t first = begin; first < end; first += block) {
+          const size_t n = std::min(block, end - first);
+          velocity_of(f, first, first + n, v.data());
+          encode_directions(f.dimension, v.data(), n, &codes[first]);
+          if (still <= 0) continue;
+          for (size_t i = 0; i < n; ++i) {
             double square = 0;
-            for (size_t a = 0; a < d; ++a) square += double(v[a]) * f.pitch[a] * double(v[a]) * f.pitch[a];
-            if (!(square > still * still)) continue;
+            for (size_t a = 0; a < d; ++a) square += double(v[i * d + a]) * f.pitch[a] * double(v[i * d + a]) * f.pitch[a];
+            if (!(square > still * still)) codes[first + i] = 0;
           }
-          codes[i] = encode_direction(f.dimension, v);
         }
       },
       &context);
   return codes;
 }
 
-struct Smeared {
-  std::vector<float> values;  // of `components` each
-  int components = 1;
-};
+bool has_value(const Frame& f, size_t pixel) {
+  float v[3] = {};
+  velocity_of(f, pixel, pixel + 1, v);
+  return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
+}
 
-// What is to be averaged when there is an image, one component after the other.
-Smeared image_of(const Frame& f, const DatasetPtr& image, const LicParams& p, Context& context) {
+// What is to be averaged when there is an image.
+Array image_of(const Frame& f, const DatasetPtr& image, const LicParams& p) {
   const Field* field = nullptr;
   if (!p.image.empty()) field = &image->fields().require(p.image.name, Association::point);
   if (!field) field = image->fields().active(1);
@@ -72,64 +76,76 @@ Smeared image_of(const Frame& f, const DatasetPtr& image, const LicParams& p, Co
   if (!field) field = image->fields().active(0);
   if (!field || field->association != Association::point)
     fail_usage("the image has no point field", "lic", "image=NAME names one of the second input's");
-  Smeared s;
-  s.components = field->components();
-  s.values = field_on_frame(f, image, *field, "lic", context);
-  return s;
+  return field_on_frame(f, image, *field, "lic");
+}
+
+// One component: convolved as often as asked for, into `out`.
+void average(const DirectionGrid& directions, const float* what, const LicParams& p, float* out, const Context& context) {
+  DirectionGrid grid = directions;
+  const Weights weights = kernel_weights(p.kernel, int(std::lround(p.length / p.step)), p.phase, p.ripples);
+  Plane<float> between;
+  grid.noise = what;
+  for (int pass = 0; pass < p.passes; ++pass) {
+    if (pass > 0) {
+      between = sharpened({out, grid.size()}, grid.n, context);
+      for (float& x : between) x = x == x ? x : 0.5f;
+      grid.noise = between.data();
+    }
+    (p.method == "fast" ? convolve_fast : convolve_plain)(grid, weights, float(p.step), out, context);
+    context.progress(double(pass + 1) / double(p.passes), "averaging along the flow");
+  }
 }
 
 }  // namespace
 
 DatasetPtr lic(const DatasetPtr& input, const DatasetPtr& image, const LicParams& p, Context& context) {
-  const int steps = int(std::lround(p.length / p.step));
   if (!image && !p.image.empty()) fail_usage("image names a field of a second input, and there is none", "lic image");
   const Frame f = make_frame(input, p.field.name, p.resolution, "lic", context);
-  if (!(f.largest_speed > 0)) context.warn(fmt::format("lic: '{}' is zero everywhere, there is no texture", f.velocity_name));
-  const std::vector<uint32_t> codes = directions_of(f, p.still, context);
+  const Plane<uint32_t> codes = directions_of(f, p.still, context);
   DirectionGrid grid;
   grid.dimension = f.dimension;
   std::copy_n(f.n, 3, grid.n);
   grid.codes = codes.data();
-  const Weights weights = kernel_weights(p.kernel, steps, p.phase, p.ripples);
 
-  Smeared what;
-  if (image) what = image_of(f, image, p, context);
-  else what.values = grained_noise(f.n, uint64_t(p.seed), p.grain, p.noise == "sparse", p.density);
-  const size_t n = f.size(), c = size_t(what.components);
+  const bool sparse = p.noise == "sparse" && !image;
+  const size_t n = f.size();
+  Array what;
+  Plane<float> noise;
+  if (image) what = image_of(f, image, p);
+  else noise = grained_noise(f.n, uint64_t(p.seed), p.grain, sparse, p.density);
+  const int components = image ? what.components() : 1;
+  const float* from = image ? what.view<float>().data : noise.data();
   float* out = nullptr;
-  Array result = Array::make<float>(n, what.components, &out);
-  for (size_t k = 0; k < c; ++k) {
-    std::vector<float> one, averaged;
-    if (c > 1) {
-      one.resize(n);
-      for (size_t i = 0; i < n; ++i) one[i] = what.values[i * c + k];
+  Array result = Array::make<float>(n, components, &out);
+  size_t without = 0;
+  for (int k = 0; k < components; ++k) {
+    Plane<float> one, averaged;
+    const float* source = from;
+    float* target = out;
+    if (components > 1) {
+      one.resize(n), averaged.resize(n);
+      for (size_t i = 0; i < n; ++i) one[i] = from[i * size_t(components) + size_t(k)];
+      source = one.data(), target = averaged.data();
     }
-    const std::vector<float>* from = c > 1 ? &one : &what.values;
-    for (int pass = 0; pass < p.passes; ++pass) {
-      grid.noise = from->data();
-      averaged =
-          p.method == "fast" ? convolve_fast(grid, weights, float(p.step), context) : convolve_plain(grid, weights, float(p.step), context);
-      context.progress(double(k * size_t(p.passes) + size_t(pass) + 1) / double(c * size_t(p.passes)), "averaging");
-      if (pass + 1 == p.passes) break;
-      one = sharpened(averaged, f.n, context);
-      for (float& x : one) x = x == x ? x : 0.5f;
-      from = &one;
-    }
-    if (c == 1) set_contrast(averaged, p.contrast, p.noise == "sparse" && !image, context);
-    const size_t d = size_t(f.dimension);
-    const float neutral = p.noise == "sparse" ? 0.0f : 0.5f;
-    parallel_for(n, 1 << 15, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i) {
-        float x = averaged[i];
-        if (codes[i] == 0) {
-          bool value = true;
-          for (size_t a = 0; a < d; ++a) value = value && std::isfinite(f.velocity[i * d + a]);
-          x = !value ? std::numeric_limits<float>::quiet_NaN() : image ? what.values[i * c + k] : neutral;
-        }
-        out[i * c + k] = x;
-      }
-    });
+    average(grid, source, p, target, context);
+    if (components == 1 && !image) set_contrast({target, n}, p.contrast, sparse, context);
+    // Where nothing flows: the image as it is, or the grey of no texture.
+    without = parallel_reduce(
+        n, 1 << 15, size_t(0),
+        [&](size_t begin, size_t end) {
+          size_t count = 0;
+          for (size_t i = begin; i < end; ++i) {
+            if (codes[i] != 0) continue;
+            ++count;
+            target[i] = !has_value(f, i) ? std::numeric_limits<float>::quiet_NaN() : image ? source[i] : sparse ? 0.0f : 0.5f;
+          }
+          return count;
+        },
+        [](size_t a, size_t b) { return a + b; }, &context);
+    if (components > 1)
+      for (size_t i = 0; i < n; ++i) out[i * size_t(components) + size_t(k)] = averaged[i];
   }
+  if (without == n) context.warn(fmt::format("lic: '{}' does not flow anywhere, there is no texture", f.velocity_name));
   return frame_dataset(f, {{"lic", Association::point, std::move(result), "", Role::none}});
 }
 

@@ -9,15 +9,35 @@ namespace sg::texture {
 LineBatch::LineBatch(int most_steps, bool with_pixels)
     : steps(most_steps), noise(size_t(2 * most_steps + 1) * lanes), pixels(with_pixels ? size_t(2 * most_steps + 1) * lanes : 0) {}
 
-uint32_t encode_direction(int dimension, const float* v) {
-  double l = 0;
-  for (int a = 0; a < dimension; ++a) l += double(v[a]) * double(v[a]);
-  if (!(l > 0) || !std::isfinite(l)) return 0;
-  const double s = double(code_scale(dimension)) / std::sqrt(l);
-  const int bits = dimension == 2 ? 16 : 10;
+namespace {
+
+// Without branches, so that the compiler makes vectors of it.
+template <int D>
+inline uint32_t encoded(const float* v) {
+  float most = std::abs(v[0]), x[D], square = 0;
+  for (int a = 1; a < D; ++a) most = std::max(most, std::abs(v[a]));
+  const float inverse = 1 / most;  // squares of tiny numbers vanish
+  for (int a = 0; a < D; ++a) x[a] = v[a] * inverse, square += x[a] * x[a];
+  const bool good = square > 0.9f && square <= float(D) + 0.1f;  // not for 0, infinity and NaN
+  const float scale = good ? code_scale(D) / std::sqrt(square) : 0.0f;
+  constexpr int bits = D == 2 ? 16 : 10;
   uint32_t code = 0;
-  for (int a = 0; a < dimension; ++a) code |= (uint32_t(int32_t(std::nearbyint(v[a] * s))) & ((1u << bits) - 1)) << (bits * a);
+  for (int a = 0; a < D; ++a) {
+    const float y = good ? x[a] * scale : 0.0f;
+    code |= (uint32_t(int32_t(y + (y < 0 ? -0.5f : 0.5f))) & ((1u << bits) - 1)) << (bits * a);
+  }
   return code;
+}
+
+}  // namespace
+
+uint32_t encode_direction(int dimension, const float* v) { return dimension == 2 ? encoded<2>(v) : encoded<3>(v); }
+
+void encode_directions(int dimension, const float* v, size_t n, uint32_t* codes) {
+  if (dimension == 2)
+    for (size_t i = 0; i < n; ++i) codes[i] = encoded<2>(v + 2 * i);
+  else
+    for (size_t i = 0; i < n; ++i) codes[i] = encoded<3>(v + 3 * i);
 }
 
 namespace {
@@ -49,6 +69,21 @@ void look(const DirectionGrid& g, const float* p, float* v) {
   for (int b = 0; b < D; ++b) v[b] = c[0][b];
 }
 
+// The nearest pixel of a place.
+template <int D>
+void record(const DirectionGrid& g, LineBatch& batch, const float* p, size_t row, bool& in_box) {
+  int32_t pixel = 0, local = 0;
+  in_box = true;
+  for (int a = D - 1; a >= 0; --a) {
+    const int32_t i = int32_t(p[a] + 0.5f);
+    pixel = pixel * g.n[a] + i;
+    local = local * (batch.box_hi[a] - batch.box_lo[a]) + (i - batch.box_lo[a]);
+    in_box = in_box && i >= batch.box_lo[a] && i < batch.box_hi[a];
+  }
+  batch.noise[row] = g.noise[pixel];
+  if (!batch.pixels.empty()) batch.pixels[row] = batch.tail == 0 ? pixel : in_box ? local : -1;
+}
+
 template <int D>
 int walk(const DirectionGrid& g, LineBatch& batch, int lane, int way) {
   const float h = float(way) * batch.step / code_scale(D), least = least_direction * code_scale(D);
@@ -72,17 +107,10 @@ int walk(const DirectionGrid& g, LineBatch& batch, int lane, int way) {
     bool inside = true;
     for (int a = 0; a < D; ++a) inside = inside && q[a] >= 0 && q[a] <= float(g.n[a] - 1);
     if (!inside) break;
-    int32_t pixel = 0;
-    bool in_box = true;
-    for (int a = 0, s = 1; a < D; s *= g.n[a], ++a) {
-      last[a] = v[a], p[a] = q[a];
-      const int32_t i = int32_t(p[a] + 0.5f);
-      pixel += i * s;
-      in_box = in_box && i >= batch.box_lo[a] && i < batch.box_hi[a];
-    }
+    for (int a = 0; a < D; ++a) last[a] = v[a], p[a] = q[a];
+    bool in_box;
     const size_t row = size_t(batch.steps + way * (k + 1)) * lanes + size_t(lane);
-    batch.noise[row] = g.noise[pixel];
-    if (!batch.pixels.empty()) batch.pixels[row] = pixel;
+    record<D>(g, batch, p, row, in_box);
     ++made;
     if (in_box) since = k;
     if (batch.tail > 0 && k - since >= batch.tail) break;
@@ -95,11 +123,10 @@ void trace(const DirectionGrid& g, LineBatch& batch) {
   std::fill(batch.noise.begin(), batch.noise.end(), 0.0f);
   std::fill(batch.pixels.begin(), batch.pixels.end(), -1);
   for (int lane = 0; lane < lanes; ++lane) {
-    int32_t pixel = 0;
-    for (int a = 0, s = 1; a < D; s *= g.n[a], ++a) pixel += int32_t(batch.start[a][lane] + 0.5f) * s;
-    const size_t row = size_t(batch.steps) * lanes + size_t(lane);
-    batch.noise[row] = g.noise[pixel];
-    if (!batch.pixels.empty()) batch.pixels[row] = pixel;
+    float p[D];
+    for (int a = 0; a < D; ++a) p[a] = batch.start[a][lane];
+    bool in_box;
+    record<D>(g, batch, p, size_t(batch.steps) * lanes + size_t(lane), in_box);
     batch.forth[lane] = walk<D>(g, batch, lane, 1);
     batch.back[lane] = walk<D>(g, batch, lane, -1);
   }

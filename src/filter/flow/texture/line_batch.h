@@ -19,6 +19,8 @@ struct DirectionGrid {
 /// A vector as its direction alone: two 16-bit numbers, or three of 10 bits (0.1 degrees); 0 where it is zero or NaN. One load brings a
 /// whole direction.
 uint32_t encode_direction(int dimension, const float* v);
+/// The same for n vectors.
+void encode_directions(int dimension, const float* v, size_t n, uint32_t* codes);
 /// Length of a unit vector in the numbers of the code.
 constexpr float code_scale(int dimension) { return dimension == 2 ? 32767.0f : 511.0f; }
 /// Lines end where the interpolated unit vectors cancel to less than this: at critical points, and where there is no flow.
@@ -39,7 +41,8 @@ struct LineBatch {
   int tail = 0;
 
   // Results. Row steps + k is the place after k steps, row steps - k that after k steps back.
-  std::vector<float> noise;                     ///< [2 steps + 1][16], of the nearest pixel; 0 beyond the line's ends
+  std::vector<float> noise;  ///< [2 steps + 1][16], of the nearest pixel; 0 beyond the line's ends
+  /// With a box, numbered in the box (x fastest), -1 outside of it.
   std::vector<int32_t> pixels;                  ///< the nearest pixel, likewise; -1 beyond the ends. Empty: not asked for
   int32_t forth[lanes] = {}, back[lanes] = {};  ///< steps made
 };

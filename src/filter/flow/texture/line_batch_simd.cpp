@@ -101,25 +101,35 @@ struct Walk {
       for (int a = 0; a < D; ++a) q[a] = hn::Add(p[a], hn::Sub(hn::Mul(longer, v[a]), hn::Mul(shorter, last[a])));
     }
     for (int a = 0; a < D; ++a) alive = hn::And(alive, hn::And(hn::Ge(q[a], hn::Zero(df)), hn::Le(q[a], hn::Set(df, float(g.n[a] - 1)))));
-    I at[D], pixel = hn::Zero(di);
-    for (int a = D - 1; a >= 0; --a) {
-      last[a] = v[a];
-      p[a] = hn::IfThenElse(alive, q[a], p[a]);
-      at[a] = hn::ConvertTo(di, hn::Add(p[a], hn::Set(df, 0.5f)));
-      pixel = a == D - 1 ? at[a] : hn::Add(hn::Mul(pixel, hn::Set(di, g.n[a])), at[a]);
-    }
-    const size_t row = size_t(batch.steps + way * (k + 1)) * lanes + size_t(part);
-    hn::StoreU(hn::IfThenElseZero(alive, hn::GatherIndex(df, g.noise, pixel)), df, batch.noise.data() + row);
+    for (int a = 0; a < D; ++a) last[a] = v[a], p[a] = hn::IfThenElse(alive, q[a], p[a]);
     const auto walks = hn::RebindMask(di, alive);
-    if (!batch.pixels.empty()) hn::StoreU(hn::IfThenElse(walks, pixel, hn::Set(di, -1)), di, batch.pixels.data() + row);
     made = hn::IfThenElse(walks, hn::Set(di, k + 1), made);
+    const auto inside = record(way * (k + 1), alive);
     if (batch.tail > 0) {
-      auto inside = walks;
-      for (int a = 0; a < D; ++a)
-        inside = hn::And(inside, hn::And(hn::Gt(at[a], hn::Set(di, batch.box_lo[a] - 1)), hn::Lt(at[a], hn::Set(di, batch.box_hi[a]))));
       since = hn::IfThenElse(inside, hn::Set(di, k), since);
       alive = hn::And(alive, hn::RebindMask(df, hn::Gt(since, hn::Set(di, k - batch.tail))));
     }
+  }
+
+  // The nearest pixels of the lines that are alive; which of them lie in the box?
+  HWY_INLINE hn::Mask<DI> record(int k, M valid) {
+    const DF df;
+    const DI di;
+    I pixel = hn::Zero(di), local = hn::Zero(di);
+    auto inside = hn::RebindMask(di, valid);
+    const bool boxed = batch.tail > 0;
+    for (int a = D - 1; a >= 0; --a) {
+      const I i = hn::ConvertTo(di, hn::Add(p[a], hn::Set(df, 0.5f)));
+      pixel = a == D - 1 ? i : hn::Add(hn::Mul(pixel, hn::Set(di, g.n[a])), i);
+      if (!boxed) continue;
+      const I in = hn::Sub(i, hn::Set(di, batch.box_lo[a])), edge = hn::Set(di, batch.box_hi[a] - batch.box_lo[a]);
+      local = a == D - 1 ? in : hn::Add(hn::Mul(local, edge), in);
+      inside = hn::And(inside, hn::And(hn::Gt(in, hn::Set(di, -1)), hn::Lt(in, edge)));
+    }
+    const size_t row = size_t(batch.steps + k) * lanes + size_t(part);
+    hn::StoreU(hn::IfThenElseZero(valid, hn::GatherIndex(df, g.noise, pixel)), df, batch.noise.data() + row);
+    if (!batch.pixels.empty()) hn::StoreU(hn::IfThenElse(inside, boxed ? local : pixel, hn::Set(di, -1)), di, batch.pixels.data() + row);
+    return inside;
   }
 
   // Rows behind those that were walked.
@@ -136,17 +146,9 @@ struct Walk {
 template <int D>
 void trace(const DirectionGrid& g, LineBatch& batch) {
   const DF df;
-  const DI di;
   for (int part = 0; part < lanes; part += int(hn::Lanes(df))) {
     Walk<D> forth(g, batch, part, 1), back(g, batch, part, -1);
-    I pixel = hn::Zero(di);
-    for (int a = D - 1; a >= 0; --a) {
-      const I at = hn::ConvertTo(di, hn::Add(forth.p[a], hn::Set(df, 0.5f)));
-      pixel = a == D - 1 ? at : hn::Add(hn::Mul(pixel, hn::Set(di, g.n[a])), at);
-    }
-    const size_t row = size_t(batch.steps) * lanes + size_t(part);
-    hn::StoreU(hn::GatherIndex(df, g.noise, pixel), df, batch.noise.data() + row);
-    if (!batch.pixels.empty()) hn::StoreU(pixel, di, batch.pixels.data() + row);
+    forth.record(0, forth.alive);
     int a = 0, b = 0;
     bool more_a = true, more_b = true;
     for (int k = 0; k < batch.steps && (more_a || more_b); ++k) {

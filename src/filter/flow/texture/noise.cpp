@@ -15,8 +15,8 @@ size_t size_of(const int32_t n[3]) { return size_t(n[0]) * size_t(n[1]) * size_t
 
 }  // namespace
 
-std::vector<float> white_noise(const int32_t n[3], uint64_t seed) {
-  std::vector<float> v(size_of(n));
+Plane<float> white_noise(const int32_t n[3], uint64_t seed) {
+  Plane<float> v(size_of(n));
   parallel_for(v.size(), 1 << 14, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; i += 4) {
       const uint64_t bits = random_bits(seed, i / 4);
@@ -26,20 +26,20 @@ std::vector<float> white_noise(const int32_t n[3], uint64_t seed) {
   return v;
 }
 
-std::vector<float> sparse_noise(const int32_t n[3], uint64_t seed, double density) {
-  std::vector<float> v(size_of(n));
+Plane<float> sparse_noise(const int32_t n[3], uint64_t seed, double density) {
+  Plane<float> v(size_of(n));
   parallel_for(v.size(), 1 << 14, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) v[i] = random_unit(seed, i) < density ? 1.0f : 0.0f;
   });
   return v;
 }
 
-std::vector<float> grained_noise(const int32_t n[3], uint64_t seed, double grain, bool sparse, double density) {
+Plane<float> grained_noise(const int32_t n[3], uint64_t seed, double grain, bool sparse, double density) {
   if (grain <= 1) return sparse ? sparse_noise(n, seed, density) : white_noise(n, seed);
   int32_t coarse[3];
   for (int a = 0; a < 3; ++a) coarse[a] = n[a] > 1 ? int32_t(std::ceil((n[a] - 1) / grain)) + 2 : 1;
-  const std::vector<float> c = sparse ? sparse_noise(coarse, seed, density) : white_noise(coarse, seed);
-  std::vector<float> v(size_of(n));
+  const Plane<float> c = sparse ? sparse_noise(coarse, seed, density) : white_noise(coarse, seed);
+  Plane<float> v(size_of(n));
   // Where each pixel lies between the coarse points.
   std::vector<int32_t> at[3];
   std::vector<float> t[3];

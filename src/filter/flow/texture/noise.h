@@ -2,15 +2,16 @@
 // Noise on a grid of pixels or voxels; the value of a pixel depends on the seed and its number alone.
 #pragma once
 #include <cstdint>
-#include <vector>
+
+#include "base/huge_allocator.h"
 
 namespace sg::texture {
 
 /// Even in [0, 1), in steps of 2^-16, so that sums of up to 256 values are exact in floats.
-std::vector<float> white_noise(const int32_t n[3], uint64_t seed);
+Plane<float> white_noise(const int32_t n[3], uint64_t seed);
 /// 1 with the given probability, else 0.
-std::vector<float> sparse_noise(const int32_t n[3], uint64_t seed, double density);
+Plane<float> sparse_noise(const int32_t n[3], uint64_t seed, double density);
 /// The noise `make(n, ...)` on a coarser grid with `grain` pixels between its points, linear between them.
-std::vector<float> grained_noise(const int32_t n[3], uint64_t seed, double grain, bool sparse, double density);
+Plane<float> grained_noise(const int32_t n[3], uint64_t seed, double grain, bool sparse, double density);
 
 }  // namespace sg::texture

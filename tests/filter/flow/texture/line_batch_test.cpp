@@ -17,7 +17,7 @@ namespace {
 struct Swirl {
   int32_t n[3];
   std::vector<uint32_t> codes;
-  std::vector<float> noise;
+  Plane<float> noise;
   DirectionGrid grid;
   Swirl(int dimension, int32_t x, int32_t y, int32_t z) : n{x, y, z}, noise(white_noise(n, 3)) {
     for (int32_t k = 0; k < z; ++k)
@@ -93,7 +93,7 @@ TEST_CASE("lines of a batch: a rotation is walked in circles, a step of one pixe
       const float v[2] = {float(100 - j), float(i - 100)};
       codes.push_back(encode_direction(2, v));
     }
-  const std::vector<float> noise = white_noise(n, 1);
+  const Plane<float> noise = white_noise(n, 1);
   DirectionGrid g;
   std::copy_n(n, 3, g.n);
   g.codes = codes.data(), g.noise = noise.data();
@@ -131,7 +131,7 @@ TEST_CASE("noise: even in [0, 1), the density asked for, and coarse grains keep 
   const int32_t n[3] = {256, 200, 1};
   for (const double grain : {1.0, 2.5}) {
     double mean = 0, square = 0;
-    const std::vector<float> v = grained_noise(n, 5, grain, false, 0);
+    const Plane<float> v = grained_noise(n, 5, grain, false, 0);
     for (const float x : v) mean += double(x), square += double(x) * double(x);
     mean /= double(v.size()), square /= double(v.size());
     CHECK(mean == doctest::Approx(0.5).epsilon(0.02));
