@@ -19,6 +19,7 @@
 #include "filter/flow/vortex/parallel_vectors.h"
 #include "filter/flow/vortex/ridges.h"
 #include "filter/glyph/shapes.h"
+#include "filter/flow/texture/lic.h"
 #include "filter/mesh/append.h"
 #include "filter/mesh/clip.h"
 #include "filter/mesh/components.h"
