@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/flow_field.h"
 
-#include "data/lattice.h"
 #include "filter/field/point_cell.h"
+#include "filter/flow/random_places.h"
 
 namespace sg {
 
@@ -26,30 +26,6 @@ const Field& flow_field_of(const Dataset& d, const std::string& name, std::strin
         std::string(who), "name a vector field by field=");
   return *f;
 }
-
-namespace {
-
-int cells_dimension(const DatasetPtr& d) {
-  if (const auto* amr = d->as<AmrGrid>()) return amr->dimension;
-  if (is_lattice(d->mesh())) {
-    int n = 0;
-    for (const size_t points : lattice_dims(d->mesh())) n += points > 1;
-    return n;
-  }
-  if (const auto* u = d->as<UnstructuredMesh>()) {
-    if (u->types.empty()) return cell_type_info(u->single_type).dimension;
-    int most = 0;
-    bool seen[256] = {};
-    for (const uint8_t t : std::span(u->types.made_packed().view<uint8_t>().data, u->types.count())) seen[t] = true;
-    for (int t = 0; t < 256; ++t)
-      if (seen[t]) most = std::max(most, cell_type_info(CellType(t)).dimension);
-    return most;
-  }
-  if (const auto* s = d->as<SurfaceMesh>()) return s->polygons.size() + s->strips.size() > 0 ? 2 : 1;
-  return 0;
-}
-
-}  // namespace
 
 FlowField::FlowField(DatasetPtr dataset, const std::string& name, Context& context, std::shared_ptr<const CellLocator> index)
     : dataset_(std::move(dataset)) {
@@ -152,11 +128,19 @@ std::span<const int64_t> FlowCursor::ids() const { return state_->locator.ids();
 std::span<const double> FlowCursor::weights() const { return state_->locator.weights(); }
 const FlowField& FlowCursor::field() const { return *state_->field; }
 
-Vec3 FlowCursor::snap(Vec3 x) {
+bool FlowCursor::snap(Vec3 x, Vec3& at) {
   State& s = *state_;
-  if (s.field->dimension() == 3) return x;
+  at = x;
+  if (s.field->dimension() == 3) return true;
   const NearestPlace near = s.locator.nearest(x, s.sized < 0 ? HUGE_VAL : s.length);
-  return near.cell >= 0 ? near.at : x;
+  if (near.cell >= 0) at = near.at;
+  return near.cell >= 0;
+}
+
+Vec3 FlowCursor::snap(Vec3 x) {
+  Vec3 at;
+  snap(x, at);
+  return at;
 }
 
 }  // namespace sg

@@ -76,6 +76,8 @@ class FlowCursor {
   std::span<const int64_t> ids() const;
   std::span<const double> weights() const;
   Vec3 snap(Vec3 x);
+  /// The same; false when there is no place of the mesh within a cell's size.
+  bool snap(Vec3 x, Vec3& at);
   const FlowField& field() const;
 
  private:

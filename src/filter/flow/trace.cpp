@@ -57,7 +57,8 @@ void reverse_tail(std::vector<T>& v, size_t from) {
   std::reverse(v.begin() + ptrdiff_t(from), v.end());
 }
 
-void trace_seed(FlowCursor& flow, Vec3 seed, int64_t number, TraceDirection direction, const TraceOptions& o, TracedLines& out) {
+template <class Flow>
+void trace_seed(Flow& flow, Vec3 seed, int64_t number, TraceDirection direction, const TraceOptions& o, TracedLines& out) {
   const Vec3 x = flow.snap(seed);
   Vec3 v;
   if (!flow(x, 0, v)) return;
@@ -85,16 +86,14 @@ void append(std::vector<T>& to, const std::vector<T>& from) {
   to.insert(to.end(), from.begin(), from.end());
 }
 
-}  // namespace
-
-TracedLines trace_lines(const FlowField& field, std::span<const Vec3> seeds, TraceDirection direction, const TraceOptions& o,
-                        Context& context) {
+template <class Cursor, class Source>
+TracedLines trace_all(const Source& field, std::span<const Vec3> seeds, TraceDirection direction, const TraceOptions& o, Context& context) {
   constexpr size_t grain = 16;
   std::vector<TracedLines> parts((seeds.size() + grain - 1) / grain);
   parallel_for(
       seeds.size(), grain,
       [&](size_t begin, size_t end) {
-        FlowCursor flow(field);
+        Cursor flow(field);
         for (size_t i = begin; i < end; ++i) trace_seed(flow, seeds[i], int64_t(i), direction, o, parts[begin / grain]);
       },
       &context);
@@ -109,6 +108,19 @@ TracedLines trace_lines(const FlowField& field, std::span<const Vec3> seeds, Tra
     p = {};
   }
   return out;
+}
+
+}  // namespace
+
+TracedLines trace_lines(const FlowField& field, std::span<const Vec3> seeds, TraceDirection direction, const TraceOptions& o,
+                        Context& context) {
+  return trace_all<FlowCursor>(field, seeds, direction, o, context);
+}
+
+TracedLines trace_lines(const FlowParts& parts, std::span<const Vec3> seeds, TraceDirection direction, const TraceOptions& o,
+                        Context& context) {
+  if (parts.count() == 1) return trace_all<FlowCursor>(parts.fields().front(), seeds, direction, o, context);
+  return trace_all<PartsCursor>(parts, seeds, direction, o, context);
 }
 
 }  // namespace sg

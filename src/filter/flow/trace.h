@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/schema.h"
-#include "filter/flow/flow_field.h"
+#include "filter/flow/flow_parts.h"
 #include "filter/flow/integrator.h"
 
 namespace sg {
@@ -68,6 +68,9 @@ enum class TraceDirection : uint8_t { forward, backward, both };
 
 /// From all seeds, in parallel: the same lines for any number of threads, in the order of the seeds. Seeds without velocity give no line.
 TracedLines trace_lines(const FlowField& field, std::span<const Vec3> seeds, TraceDirection direction, const TraceOptions& options,
+                        Context& context);
+/// The same through all parts of a collection: lines cross from part to part.
+TracedLines trace_lines(const FlowParts& parts, std::span<const Vec3> seeds, TraceDirection direction, const TraceOptions& options,
                         Context& context);
 
 }  // namespace sg
