@@ -11,6 +11,7 @@
 #include "filter/glyph/instances.h"
 #include "scene/camera.h"
 #include "scene/material.h"
+#include "scene/surface_texture.h"
 #include "scene/volume_item.h"
 
 namespace sg {
@@ -37,6 +38,7 @@ struct SurfaceItem {
   bool edges = false;         ///< draw the edges of the polygons
   DatasetPtr edge_lines;      ///< a SurfaceMesh whose lines are drawn instead (of curved cells: see Skin); null = the polygons' edges
   Vec3f edge_color{0.1f, 0.1f, 0.1f};
+  std::optional<SurfaceTexture> lic;  ///< directions of a vector field as a texture
 };
 
 /// Lines of a SurfaceMesh; constant width on the picture.
@@ -45,7 +47,10 @@ struct LinesItem {
   std::optional<FieldColor> color_by;
   Vec3f color{0.15f, 0.15f, 0.17f};
   double opacity = 1;
-  double width = 1.5;  ///< pixels
+  double width = 1.5;                     ///< pixels
+  bool lit = false;                       ///< light by the direction of the line
+  double halo = 0;                        ///< pixels of border around lines that hide what is behind
+  Vec3f halo_color{0.05f, 0.05f, 0.06f};  ///< sRGB
 };
 
 /// Every point of the dataset (or the vertices of a SurfaceMesh) as a round dot.

@@ -12,6 +12,7 @@ struct MarkRecord {
   double ax, ay, aw, bx, by, bw;
   float from, to;  ///< places of a and b on the segment, after near clipping; equal for dots
   float half;      ///< half the width, pixels
+  float halo = 0;  ///< pixels around that hide what is behind
   uint32_t primitive;
   uint32_t item;  ///< of the prepared scene
   uint32_t group;
@@ -25,7 +26,7 @@ struct Cover {
   uint32_t primitive;
   uint32_t item;
   float alpha;   ///< coverage, later times opacity
-  float s, t;    ///< line: place on the segment; dot: offset from the centre in radii
+  float s, t;    ///< line: place on the segment, 1 for its halo; dot: offset from the centre in radii
   float rgb[3];  ///< linear, not yet multiplied with alpha
 };
 
@@ -49,13 +50,14 @@ class MarkTile {
   void draw(const MarkRecord& m, std::vector<Cover>& out);
 
  private:
+  void add(const Cover& c, uint32_t group, double joint, std::vector<Cover>& out);
   struct Last {
     uint32_t item = 0xFFFFFFFFu, group = 0, at = 0;
   };
   PixelBox box_;
   const Projection& projection_;
   const uint64_t* keys_;
-  std::vector<Last> last_;
+  std::vector<Last> last_, last_halo_;
 };
 
 /// Colours of the covers of lines and dots.

@@ -150,6 +150,9 @@ const SurfaceMesh& surface_mesh(const DatasetPtr& data, const char* what) {
   return *m;
 }
 
+/// Lines show little of themselves: brighter in the dark, and glossy, so that their bends are seen.
+constexpr Material line_material{0.18f, 0.82f, 0.30f, 40, true};
+
 class Preparation {
  public:
   Preparation(PreparedScene& out, Context& context) : out_(out), context_(context) {}
@@ -170,6 +173,7 @@ class Preparation {
     p.color = color_source(s.data, s.color_by, s.color, "surface");
     p.translucent = s.opacity < 1 || p.color.translucent;
     if (!s.flat) p.normals = normals(s, p.triangles);
+    if (s.lic && s.lic->strength > 0) take_texture(*s.lic, p);
     const Array positions = p.triangles.positions;
     const Vec3 origin = p.triangles.origin;
     if (p.triangles.count > 0) push(std::move(p), p.triangles.count);
@@ -198,7 +202,8 @@ class Preparation {
     p.color = color_source(s.data, s.color_by, s.color, "lines");
     const Positions positions = packed_positions(s.data, mesh.points);
     p.positions = positions.xyz, p.origin = positions.origin;
-    p.width = s.width;
+    p.width = s.width, p.shaded = s.lit, p.material = line_material;
+    p.halo = s.halo, p.halo_color = linear_light(s.halo_color);
     push(std::move(p), p.segments->count());
   }
 
@@ -356,6 +361,14 @@ PreparedScenePtr prepare_scene(const Scene& scene, Context& context) {
   }
   out->lights = lights_of(scene);
   return out;
+}
+
+uint32_t PreparedScene::item_of(uint32_t primitive) const {
+  auto it = std::upper_bound(items.begin(), items.end(), primitive,
+                             [](uint32_t p, const raster::PreparedItem& i) { return p < i.first_primitive; });
+  do --it;
+  while (it->primitives == 0);
+  return uint32_t(it - items.begin());
 }
 
 }  // namespace sg

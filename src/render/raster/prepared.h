@@ -71,10 +71,15 @@ struct PreparedItem {
   NormalSet normals;
   Material material;
   bool translucent = false;
+  std::optional<SurfaceTexture> lic;
+  Array lic_vectors;    ///< f32 x 3 packed, per point or cell
+  float lic_least = 0;  ///< vectors whose largest component is not above this have no direction
   // lines
   std::shared_ptr<const SegmentSet> segments;
-  double width = 1;  ///< pixels; also the points' size
-  bool shaded = false;
+  double width = 1;     ///< pixels; also the points' size
+  bool shaded = false;  ///< points as little spheres, lines by their tangents
+  double halo = 0;      ///< pixels
+  Vec3f halo_color;     ///< linear
   // lines and points
   std::shared_ptr<const std::vector<uint32_t>> points;  ///< numbers of the dots that are drawn; null (discs only): all
   Array positions;                                      ///< f32 x 3 packed
@@ -87,6 +92,8 @@ struct PreparedItem {
 
 TriangleSet triangulate(const DatasetPtr& data, bool& any_polygon);
 NormalSet smooth_normals(const TriangleSet& triangles, double feature_angle);
+/// Vectors of a texture as three packed f32 numbers, and the size below which they count as none. Throws Error(usage).
+void take_texture(const SurfaceTexture& texture, PreparedItem& item);
 SegmentSet line_segments(const Dataset& data, const SurfaceMesh& mesh);
 /// Every edge of the polygons and strips once, in order of its points.
 SegmentSet polygon_edges(const Dataset& data, const SurfaceMesh& mesh);
@@ -118,6 +125,10 @@ class PreparedScene {
  public:
   std::vector<raster::PreparedItem> items;  ///< in scene order; edges of a surface are an item of their own
   std::vector<Light> lights;
+
+  /// Number of the item that a primitive belongs to.
+  uint32_t item_of(uint32_t primitive) const;
+  bool textured() const;
 };
 
 }  // namespace sg

@@ -13,6 +13,7 @@
 #include "render/raster/glyphs.h"
 #include "render/raster/marks.h"
 #include "render/raster/shade.h"
+#include "render/texture/textures.h"
 
 namespace sg {
 
@@ -64,20 +65,62 @@ struct TilePixelFragment {
 
 class Drawing {
  public:
-  Drawing(const PreparedScene& scene, const Projection& projection, double pixel_scale, Frame& frame, Context& context)
+  Drawing(const PreparedScene& scene, const Projection& projection, double pixel_scale, Frame& frame, Context& context,
+          const RenderTextures* textures)
       : scene_(scene),
         projection_(projection),
         pixel_scale_(pixel_scale),
         frame_(frame),
         context_(context),
-        grid_(frame.width, frame.height),
+        textures_(textures),
+        grid_(projection.width, projection.height),
         lights_(world_lights(scene.lights, projection)),
-        keys_(frame.pixels()) {}
+        keys_(size_t(projection.width) * size_t(projection.height)) {}
 
   FragmentLists run() {
-    const uint64_t empty = empty_key(float(projection_.far_plane));
+    draw_small();
+    RenderTextures own;
+    if (!textures_ && scene_.textured()) {
+      own = texture();
+      textures_ = &own;
+    }
+    fragments_.resize(grid_.count());
     parallel_for(
-        frame_.pixels(), 1 << 16, [&](size_t begin, size_t end) { std::fill(keys_.data() + begin, keys_.data() + end, empty); }, &context_);
+        grid_.count(), 1, [&](size_t tile, size_t) { draw_tile(tile); }, &context_);
+    return collect();
+  }
+
+  /// The textures of what is seen, after draw_small().
+  RenderTextures texture() {
+    parallel_for(
+        grid_.count(), 1, [&](size_t tile, size_t) { draw_large(opaque_, opaque_bins_, tile, keys_.data()); }, &context_);
+    large_drawn_ = true;
+    RenderTextures t{projection_.width, projection_.height, {}, std::vector<int>(scene_.items.size(), -1)};
+    t.layers.push_back(surface_texture(scene_, views_, keys_.data(), -1, pixel_scale_, context_));
+    for (size_t i = 0; i < scene_.items.size(); ++i) {
+      const PreparedItem& item = scene_.items[i];
+      if (!item.lic) continue;
+      if (!item.translucent) {
+        t.layer_of[i] = 0;
+        continue;
+      }
+      // What is seen through has a picture of its own, of its nearest side.
+      KeyPlane keys(size_t(projection_.width) * size_t(projection_.height));
+      clear(keys);
+      std::vector<TriangleRecord> large;
+      draw_surface(item, views_[i], small_triangle, keys.data(), large);
+      const Bins bins = bin(large.size(), grid_, [&](size_t k) { return pixel_box(large[k], projection_.width, projection_.height); });
+      parallel_for(grid_.count(), 1, [&](size_t tile, size_t) { draw_large(large, bins, tile, keys.data()); });
+      t.layer_of[i] = int(t.layers.size());
+      t.layers.push_back(surface_texture(scene_, views_, keys.data(), int(i), pixel_scale_, context_));
+    }
+    return t;
+  }
+
+  /// Small triangles, discs and records of all that is binned.
+  void draw_small() {
+    clear(keys_);
+    const int width = projection_.width, height = projection_.height;
     size_t opaque_items = 0;
     for (const PreparedItem& item : scene_.items) {
       views_.push_back(eye_view(projection_, item.kind == PreparedItem::Kind::surface ? item.triangles.origin : item.origin));
@@ -85,7 +128,7 @@ class Drawing {
         if (item.glyphs) views_.back() = eye_view(projection_, item.origin);
         if (!item.translucent) only_ = opaque_items++ ? no_item : uint32_t(&item - scene_.items.data());
         if (item.glyphs) draw_glyph_item(item, views_.back(), item.translucent ? translucent_ : opaque_);
-        else draw_surface(item, views_.back(), item.translucent ? translucent_ : opaque_);
+        else draw_surface(item, views_.back(), item.translucent ? 0 : small_triangle, keys_.data(), item.translucent ? translucent_ : opaque_);
       } else if (item.discs) {
         only_ = opaque_items++ ? no_item : uint32_t(&item - scene_.items.data());
         const DiscJob job{views_.back(),
@@ -107,22 +150,23 @@ class Drawing {
         marks_.insert(marks_.end(), m.begin(), m.end());
       }
     }
-    auto triangle_box = [&](const std::vector<TriangleRecord>& r) {
-      return [&](size_t i) { return pixel_box(r[i], frame_.width, frame_.height); };
-    };
+    auto triangle_box = [&](const std::vector<TriangleRecord>& r) { return [&](size_t i) { return pixel_box(r[i], width, height); }; };
     opaque_bins_ = bin(opaque_.size(), grid_, triangle_box(opaque_));
     translucent_bins_ = bin(translucent_.size(), grid_, triangle_box(translucent_));
-    mark_bins_ = bin(marks_.size(), grid_, [&](size_t i) { return mark_box(marks_[i], frame_.width, frame_.height); });
-    fragments_.resize(grid_.count());
-    parallel_for(
-        grid_.count(), 1, [&](size_t tile, size_t) { draw_tile(tile); }, &context_);
-    return collect();
+    mark_bins_ = bin(marks_.size(), grid_, [&](size_t i) { return mark_box(marks_[i], width, height); });
   }
 
  private:
-  void draw_surface(const PreparedItem& item, const EyeView& view, std::vector<TriangleRecord>& large) {
+  void clear(KeyPlane& keys) {
+    const uint64_t empty = empty_key(float(projection_.far_plane));
+    parallel_for(
+        size_t(projection_.width) * size_t(projection_.height), 1 << 16,
+        [&](size_t begin, size_t end) { std::fill(keys.data() + begin, keys.data() + end, empty); }, &context_);
+  }
+
+  void draw_surface(const PreparedItem& item, const EyeView& view, int small, uint64_t* keys, std::vector<TriangleRecord>& large) {
     const TriangleSet& t = item.triangles;
-    const TriangleJob job{view, t.xyz(), t.indices(), item.first_primitive, item.translucent ? 0 : small_triangle, keys_.data()};
+    const TriangleJob job{view, t.xyz(), t.indices(), item.first_primitive, small, keys};
     draw_chunks(t.count, triangle_chunk, large, [&](size_t begin, size_t end, auto& part) { draw_triangles(job, begin, end, part); });
   }
 
@@ -150,21 +194,18 @@ class Drawing {
     });
   }
 
-  uint32_t item_of(uint32_t primitive) const {
-    auto it = std::upper_bound(scene_.items.begin(), scene_.items.end(), primitive,
-                               [](uint32_t p, const PreparedItem& i) { return p < i.first_primitive; });
-    do --it;
-    while (it->primitives == 0);
-    return uint32_t(it - scene_.items.begin());
+  void draw_large(const std::vector<TriangleRecord>& records, const Bins& bins, size_t tile, uint64_t* keys) {
+    const PixelBox box = grid_.box(tile);
+    bins.each(tile, [&](uint32_t i) {
+      PixelBox b = pixel_box(records[i], projection_.width, projection_.height);
+      b = {std::max(b.x0, box.x0), std::max(b.y0, box.y0), std::min(b.x1, box.x1), std::min(b.y1, box.y1)};
+      draw_record(records[i], b, projection_.parallel, keys, projection_.width);
+    });
   }
 
   void draw_tile(size_t tile) {
     const PixelBox box = grid_.box(tile);
-    opaque_bins_.each(tile, [&](uint32_t i) {
-      PixelBox b = pixel_box(opaque_[i], frame_.width, frame_.height);
-      b = {std::max(b.x0, box.x0), std::max(b.y0, box.y0), std::min(b.x1, box.x1), std::min(b.y1, box.y1)};
-      draw_record(opaque_[i], b, projection_.parallel, keys_.data(), frame_.width);
-    });
+    if (!large_drawn_) draw_large(opaque_, opaque_bins_, tile, keys_.data());
     shade_opaque(box);
     if (!translucent_bins_.any(tile) && !mark_bins_.any(tile)) return;
     std::vector<Cover> covers;
@@ -186,6 +227,7 @@ class Drawing {
     if (item.glyphs) shade_glyphs(item, views_[number], float(pixel_scale_), lights_, batch);
     else if (item.discs) shade_discs(item, views_[number], lights_, keys_.data(), batch);
     else shade(job(), batch);
+    if (item.lic) apply_texture(*textures_, item, number, projection_, batch);
   }
 
   /// Calls f(item, batch, first) for runs of at most shade_batch pixels of one item; `of(i)` tells what is seen, `depth_of(i)` how deep.
@@ -254,8 +296,8 @@ class Drawing {
         lowest = std::min(lowest, primitive), highest = std::max(highest, primitive + 1);  // no_primitive + 1 is 0
       }
     if (highest == 0) return;
-    const uint32_t first = item_of(lowest);
-    if (first == item_of(highest - 1)) return shade_single(first, box);
+    const uint32_t first = scene_.item_of(lowest);
+    if (first == scene_.item_of(highest - 1)) return shade_single(first, box);
     std::vector<Seen> seen;
     uint32_t item = 0, from = 1, to = 0;  // the range of primitives of the item that was seen last
     for (int y = box.y0; y <= box.y1; ++y)
@@ -263,7 +305,7 @@ class Drawing {
         const uint32_t primitive = uint32_t(keys_.data()[size_t(y) * size_t(frame_.width) + size_t(x)]);
         if (primitive == no_primitive) continue;
         if (primitive < from || primitive >= to) {
-          item = item_of(primitive);
+          item = scene_.item_of(primitive);
           from = scene_.items[item].first_primitive, to = from + scene_.items[item].primitives;
         }
         seen.push_back({item, uint32_t((y - box.y0) * tile_size + (x - box.x0)), primitive});
@@ -285,7 +327,7 @@ class Drawing {
       PixelBox b = pixel_box(t, frame_.width, frame_.height);
       b = {std::max(b.x0, box.x0), std::max(b.y0, box.y0), std::min(b.x1, box.x1), std::min(b.y1, box.y1)};
       const WPlane plane = w_plane(t);
-      const uint32_t item = item_of(t.primitive);
+      const uint32_t item = scene_.item_of(t.primitive);
       for_each_span(t, b, [&](int y, int x0, int x1) {
         alignas(64) float depth[tile_size + 64];
         span_depths(plane, projection_.parallel, x0, y, x1 - x0 + 1, depth);
@@ -367,6 +409,8 @@ class Drawing {
   const double pixel_scale_;
   Frame& frame_;
   Context& context_;
+  const RenderTextures* textures_;
+  bool large_drawn_ = false;
   const TileGrid grid_;
   const std::vector<WorldLight> lights_;
   KeyPlane keys_;
@@ -382,12 +426,20 @@ class Drawing {
 }  // namespace raster
 
 FragmentLists rasterize_prepared(const PreparedScene& scene, const Projection& projection, double pixel_scale, Frame& frame,
-                                 Context& context) {
+                                 Context& context, const RenderTextures* textures) {
   if (frame.width != projection.width || frame.height != projection.height)
     fail_usage(fmt::format("the frame is {}x{}, the projection {}x{}", frame.width, frame.height, projection.width, projection.height),
                "rasterize", "make both for the same size");
   if (!(pixel_scale > 0)) fail_usage(fmt::format("pixel scale {} is no size", pixel_scale), "rasterize", "it must be above 0");
-  return raster::Drawing(scene, projection, pixel_scale, frame, context).run();
+  return raster::Drawing(scene, projection, pixel_scale, frame, context, textures).run();
+}
+
+std::shared_ptr<const RenderTextures> texture_scene(const PreparedScene& scene, const Projection& projection, Context& context) {
+  if (!scene.textured()) return nullptr;
+  Frame none;
+  raster::Drawing drawing(scene, projection, 1, none, context, nullptr);
+  drawing.draw_small();
+  return std::make_shared<const RenderTextures>(drawing.texture());
 }
 
 FragmentLists rasterize(const Scene& scene, const Projection& projection, double pixel_scale, Frame& frame, Context& context) {

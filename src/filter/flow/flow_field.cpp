@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filter/flow/flow_field.h"
+
+#include "filter/field/point_cell.h"
+#include "filter/flow/flow_access.h"
+#include "filter/flow/random_places.h"
+
+namespace sg {
+
+const Field& flow_field_of(const Dataset& d, const std::string& name, std::string_view who) {
+  const Field* f = nullptr;
+  if (!name.empty()) {
+    f = &d.fields().require(name);
+  } else {
+    const Field* role = d.fields().with_role(Role::vectors);
+    if (role && (role->components() == 2 || role->components() == 3)) f = role;
+    if (!f) f = d.fields().active(3);
+    if (!f) f = d.fields().active(2);
+    if (!f)
+      fail_usage("the data have no vector field", std::string(who), "a field of 2 or 3 components; calc makes one: calc expr='vec(u,v,0)'");
+  }
+  if (f->association == Association::whole)
+    fail_usage(fmt::format("field '{}' belongs to the whole dataset, not to points or cells", f->name), std::string(who));
+  if (f->components() != 2 && f->components() != 3)
+    fail_usage(
+        fmt::format("field '{}' has {} component{}, a velocity has 2 or 3", f->name, f->components(), f->components() == 1 ? "" : "s"),
+        std::string(who), "name a vector field by field=");
+  return *f;
+}
+
+FlowField::FlowField(DatasetPtr dataset, const std::string& name, Context& context, std::shared_ptr<const CellLocator> index)
+    : dataset_(std::move(dataset)) {
+  field_ = flow_field_of(*dataset_, name, "flow");
+  dimension_ = cells_dimension(dataset_);
+  if (dataset_->cell_count() == 0 || dimension_ < 1)
+    fail_usage(fmt::format("there is no flow between the points of a mesh of {} with {} cells", dataset_->kind(), dataset_->cell_count()),
+               "flow", "a grid, or cells of lines, surfaces or volume");
+  access_ = std::make_shared<const FlowAccess>(dataset_, std::move(index), context);
+  if (field_.association == Association::cell) {
+    const DatasetPtr averaged = cell_to_point(dataset_, {{field_.name}}, context);
+    field_ = averaged->fields().require(field_.name, Association::point);
+  }
+  packed_ = field_.array.type() == ElementType::f64   ? field_.array.made_packed()
+            : field_.array.type() == ElementType::f32 ? field_.array.made_packed()
+                                                      : field_.array.converted(ElementType::f32);
+  components_ = field_.components();
+  if (packed_.type() == ElementType::f64) f64_ = packed_.view<double>().data;
+  else f32_ = packed_.view<float>().data;
+  const FieldStats stats = field_stats(packed_, true);
+  largest_speed_ = stats.magnitude.empty() ? 0 : stats.magnitude.hi;
+}
+
+const std::shared_ptr<const CellLocator>& FlowField::locator() const { return access_->locator(); }
+
+}  // namespace sg

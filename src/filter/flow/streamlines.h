@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// streamlines: lines along a steady flow from seeds.
+#pragma once
+#include "filter/flow/seeds.h"
+#include "filter/flow/trace.h"
+
+namespace sg {
+
+struct StreamlinesParams {
+  FieldName field;
+  std::string direction = "both";
+  IntegrationParams integration;
+  StopParams stop;
+  SeedParams seeds;
+  std::vector<std::string> attributes{"fields"};
+};
+void describe(Schema& s, StreamlinesParams& p);
+
+/// A SurfaceMesh of poly-lines, one for each seed that lies in the flow, in the order of the seeds; lines follow the flow, so their first
+/// point is upstream. A collection is one flow: lines cross from part to part, in cells of its highest dimension. A second input is a mesh
+/// whose points are the seeds.
+/// Point fields: "speed" (the active one), "time" and "length" since the seed (negative upstream of it), the velocity under the name of the
+/// field (role vectors; on surfaces its part along the surface); by `attributes`: "fields": all other fields of the mesh (point fields
+/// interpolated, a cell field by its cell; those that all parts of a collection have); "vorticity": the curl of the flow, from the cell's
+/// gradient; "rotation": "angular velocity", half the vorticity along the line (radians a time), and "rotation", its integral over time
+/// since the seed (radians): how far a ribbon has turned.
+/// Cell fields: "seed" (number of the seed) and "stop" (why the line ended downstream, upstream with direction=backward: a StopReason,
+/// labels). Throws Error(usage) without a vector field, and when no seed lies in the flow.
+Data streamlines(const std::vector<Data>& inputs, const StreamlinesParams& p, Context& context);
+
+/// Lines as that mesh, with "seed" and "stop" and the four first fields; f32 positions about the first point's box' centre.
+DatasetPtr lines_dataset(const TracedLines& lines, const std::string& velocity_name, const std::string& unit);
+
+}  // namespace sg
