@@ -2,9 +2,9 @@
 #include "filter/flow/flow_field.h"
 
 #include "base/parallel.h"
+#include "data/mesh_dimension.h"
 #include "filter/field/point_cell.h"
 #include "filter/flow/flow_access.h"
-#include "filter/flow/random_places.h"
 
 namespace sg {
 
@@ -32,7 +32,7 @@ const Field& flow_field_of(const Dataset& d, const std::string& name, std::strin
 FlowField::FlowField(DatasetPtr dataset, const std::string& name, Context& context, std::shared_ptr<const CellLocator> index)
     : dataset_(std::move(dataset)) {
   field_ = flow_field_of(*dataset_, name, "flow");
-  dimension_ = cells_dimension(dataset_);
+  dimension_ = mesh_dimension(*dataset_);
   if (dataset_->cell_count() == 0 || dimension_ < 1)
     fail_usage(fmt::format("there is no flow between the points of a mesh of {} with {} cells", dataset_->kind(), dataset_->cell_count()),
                "flow", "a grid, or cells of lines, surfaces or volume");
