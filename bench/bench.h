@@ -37,6 +37,7 @@ void add_index_tasks(std::vector<Task>& tasks);
 void add_volume_tasks(std::vector<Task>& tasks);
 void add_volume_methods_tasks(std::vector<Task>& tasks);
 void add_volume_cells_tasks(std::vector<Task>& tasks);
+void add_flow_tasks(std::vector<Task>& tasks);
 void add_glyph_tasks(std::vector<Task>& tasks);
 void add_lic_tasks(std::vector<Task>& tasks);
 void add_lic2d_tasks(std::vector<Task>& tasks);
