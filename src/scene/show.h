@@ -33,6 +33,7 @@ struct SurfaceShow {
   double opacity = 1;
   bool edges = false, flat = false, lit = true;
   double feature_angle = 40;
+  std::string texture;
 };
 struct LinesShow {
   ColoringParams coloring;
