@@ -9,6 +9,8 @@
 #include "filter/field/gradient.h"
 #include "filter/field/point_cell.h"
 #include "filter/field/resize.h"
+#include "filter/glyph/choose.h"
+#include "filter/glyph/trails.h"
 #include "filter/flow/lines/even_streamlines.h"
 #include "filter/flow/lines/tubes.h"
 #include "filter/flow/seeds.h"

@@ -6,6 +6,7 @@
 #include "data/field_ops.h"
 #include "filter/mesh/faces.h"
 #include "filter/mesh/surface.h"
+#include "scene/show_glyphs.h"
 #include "scene/show_labels.h"
 #include "scene/show_volume.h"
 #include "scene/texture_color.h"
@@ -308,6 +309,7 @@ std::span<const ShowKind> show_kinds() {
       kind<LinesShow>("lines", "Lines of constant width."),
       kind<PointsShow>("points", "Every point as a dot."),
       kind<LabelsShow>("labels", "Numbers at points, turned along their lines (see line_labels)."),
+      kind<GlyphsShow>("glyphs", "Arrows, barbs and other shapes at points, turned and scaled by fields."),
       kind<OutlineShow>("outline", "The box around the data."),
   };
   return kinds;
