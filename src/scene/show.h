@@ -34,7 +34,11 @@ struct SurfaceShow {
   double opacity = 1;
   bool edges = false, flat = false, lit = true;
   double feature_angle = 40;
+<<<<<<< HEAD
   LicShow lic;
+=======
+  std::string texture;
+>>>>>>> i6/lic2d
 };
 struct LinesShow {
   ColoringParams coloring;
