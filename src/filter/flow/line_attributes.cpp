@@ -2,6 +2,7 @@
 #include "filter/flow/line_attributes.h"
 
 #include "base/parallel.h"
+#include "filter/flow/streamlines.h"
 #include "filter/mesh/surface_builder.h"
 
 namespace sg {
@@ -143,6 +144,10 @@ FieldSet fields_along(const FlowParts& parts, const Dataset& mesh, const std::st
     out.add(std::move(t.field));
   }
   return out;
+}
+
+FieldSet fields_along(const FlowParts& parts, const TracedLines& lines, const std::string& without, Context& context) {
+  return fields_along(parts, *lines_dataset(lines, parts.name(), ""), without, context);
 }
 
 FieldSet rotation_along(const FlowParts& parts, const Dataset& mesh, const std::string& velocity, bool vorticity, bool rotation,

@@ -2,12 +2,11 @@
 // Traced lines as a mesh of poly-lines with what every line has. Internal to filter/flow.
 #pragma once
 #include "filter/flow/packets/packet_lines.h"
+#include "filter/flow/streamlines.h"
 
 namespace sg {
 
-/// Lines of two points and more, in the order of the seeds: point fields "speed", the velocity, "time", "length"; cell fields "seed" and
-/// "stop" (see streamlines.h). f32, about an origin of their own when they lie far from zero.
-DatasetPtr lines_dataset(const TracedLines& lines, const std::string& velocity_name, const std::string& unit);
+/// As lines_dataset() of streamlines.h, in the order of the seeds.
 DatasetPtr lines_dataset(const packets::SeedLines& lines, const std::string& velocity_name, const std::string& unit);
 
 }  // namespace sg

@@ -30,4 +30,8 @@ void describe(Schema& s, StreamlinesParams& p);
 /// in the flow.
 Data streamlines(const std::vector<Data>& inputs, const StreamlinesParams& p, Context& context);
 
+/// Lines of two points and more as that mesh, with the first four point fields and the cell fields. f32, about an origin of their own when
+/// they lie far from zero.
+DatasetPtr lines_dataset(const TracedLines& lines, const std::string& velocity_name, const std::string& unit);
+
 }  // namespace sg

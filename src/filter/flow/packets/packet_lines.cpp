@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
-#include "filter/flow/flow_access.h"
+#include "filter/flow/tet_cursor.h"
 
 namespace sg::packets {
 
@@ -113,6 +113,68 @@ std::optional<SeedLines> trace_in_grid(const FlowField& field, std::span<const V
   return out;
 }
 
+std::optional<SeedLines> trace_in_tets(const FlowField& field, std::span<const Vec3> seeds, TraceDirection direction, const TraceOptions& o,
+                                       Context& context) {
+  const FlowAccess& access = field.access();
+  const SimplexArrays& s = access.simplices;
+  if (!s.f32) return std::nullopt;
+  TetInput t;
+  t.points = s.f32, t.v = field.f32(), t.across = access.walk->across.data();
+  t.wide_ids = s.cells.connectivity.wide;
+  const size_t first = s.cells.begin(0);
+  if (t.wide_ids) t.ids = static_cast<const int64_t*>(s.cells.connectivity.data) + first;
+  else t.ids = static_cast<const int32_t*>(s.cells.connectivity.data) + first;
+  SeedLines out;
+  out.origin = s.origin;
+
+  // Where the seeds are: walks from one to the next, a chunk at a time.
+  const PointVectors vectors{field.f32(), nullptr, 3};
+  const Box3 box = access.walk->box;
+  const auto in_box = [&](Vec3 x) {
+    for (int a = 0; a < 3; ++a)
+      if (!(x[a] >= box.lo[a] && x[a] <= box.hi[a])) return false;
+    return true;
+  };
+  const std::vector<uint32_t> order = in_order(seeds, box);
+  std::vector<TetItem> all(order.size());
+  parallel_for(
+      order.size(), 256,
+      [&](size_t begin, size_t end) {
+        std::optional<LocatorCursor> tree;
+        for (size_t i = begin; i < end; ++i) {
+          const Vec3 x = seeds[order[i]], rel = x - s.origin;
+          for (int a = 0; a < 3; ++a) all[i].x[a] = float(rel[a]), all[i].rest[a] = float(rel[a] - double(float(rel[a])));
+          TetCursor cursor(access, vectors);  // from the bin of the seed, whatever was asked before
+          const TetCursor::Found found = cursor.find(x);
+          all[i].cell = found == TetCursor::Found::here ? int32_t(cursor.cell()) : -1;
+          if (found != TetCursor::Found::lost) continue;
+          if (!tree) tree.emplace(*access.locator());
+          all[i].cell = int32_t(tree->find(x));
+        }
+      },
+      &context);
+  std::vector<TetItem> items;
+  std::vector<uint32_t> seed;
+  for (size_t i = 0; i < all.size(); ++i)
+    if (all[i].cell >= 0) items.push_back(all[i]), seed.push_back(order[i]);
+
+  trace_directions(
+      std::move(items), std::move(seed), seeds.size(), direction, out,
+      [&](float sign, std::span<const TetItem> some, Lines& lines) {
+        std::optional<LocatorCursor> tree;
+        TetInput own = t;
+        own.locate = [&](Vec3 x) -> int64_t {
+          x += s.origin;
+          if (!in_box(x)) return -1;
+          if (!tree) tree.emplace(*access.locator());
+          return tree->find(x);
+        };
+        trace_tets(own, o, sign, some, lines);
+      },
+      context);
+  return out;
+}
+
 }  // namespace
 
 std::optional<SeedLines> trace(const FlowField& field, std::span<const Vec3> seeds, TraceDirection direction, const TraceOptions& o,
@@ -120,6 +182,7 @@ std::optional<SeedLines> trace(const FlowField& field, std::span<const Vec3> see
   const FlowAccess& access = field.access();
   if (!field.f32() || field.components() != 3 || access.any_hidden || !knows(o)) return std::nullopt;
   if (access.kind == FlowAccess::Kind::lattice) return trace_in_grid(field, seeds, direction, o, context);
+  if (access.kind == FlowAccess::Kind::tets) return trace_in_tets(field, seeds, direction, o, context);
   return std::nullopt;
 }
 

@@ -44,6 +44,7 @@ class Tracer {
  public:
   Tracer(Mesh& mesh, const TraceOptions& options, float sign, Lines& out) : mesh_(mesh), o_(options), sign_(sign), out_(out) {
     adaptive_ = o_.scheme == Scheme::dormand_prince;
+    sized_ = o_.unit == TraceOptions::Unit::cells;
     bounded_ = std::isfinite(o_.max_time) || std::isfinite(o_.max_length);
   }
 
@@ -92,7 +93,7 @@ class Tracer {
     mesh_.x(l, &x_[l][0]);
     for (size_t a = 0; a < 3; ++a) start_x_[l][a] = x_[l][a];
     t_[l] = arc_[l] = drift_[l] = 0, steps_[l] = 0, suggested_[l] = 0, retry_[l] = false, away_[l] = false, end_[l] = -1;
-    first_cell_[l] = mesh_.cell(l);
+    first_cell_[l] = o_.closed ? mesh_.cell(l) : 1;
     record(l);
     return true;
   }
@@ -117,7 +118,7 @@ class Tracer {
   HWY_INLINE bool prepare(size_t l, StopReason& why) {
     if (retry_[l]) return true;
     if (steps_[l] >= o_.max_steps) return why = StopReason::steps, false;
-    const float speed = std::sqrt(v_[0][l] * v_[0][l] + v_[1][l] * v_[1][l] + v_[2][l] * v_[2][l]), cell = mesh_.cell(l);
+    const float speed = std::sqrt(v_[0][l] * v_[0][l] + v_[1][l] * v_[1][l] + v_[2][l] * v_[2][l]), cell = sized_ ? mesh_.cell(l) : 1;
     if (!(double(speed) > o_.min_speed)) return why = StopReason::speed, false;
     float h = suggested_[l] > 0 ? suggested_[l] : time_of(o_.step, speed, cell);
     if (adaptive_) {
@@ -241,7 +242,7 @@ class Tracer {
   const TraceOptions& o_;
   const float sign_;
   Lines& out_;
-  bool adaptive_ = false, bounded_ = false;
+  bool adaptive_ = false, bounded_ = false, sized_ = true;
   size_t active_ = 0;
   HWY_ALIGN Lanes3 v_ = {}, start_v_ = {}, move_ = {}, error_ = {}, k_[6] = {};
   HWY_ALIGN float s_[N] = {};

@@ -65,8 +65,7 @@ struct TetInput {
   const float* v = nullptr;
   const void* ids = nullptr;
   bool wide_ids = false;            ///< i64, else i32
-  const int32_t* across = nullptr;  ///< four a cell
-  float lo[3], hi[3];               ///< box of the points
+  const int32_t* across = nullptr;  ///< four a cell, opposite to its corners
   /// A cell that holds a place (less the origin of the points) that the walk lost at a border, or -1.
   std::function<int64_t(Vec3)> locate;
 };
