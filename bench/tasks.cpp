@@ -187,6 +187,7 @@ std::vector<Task> tasks(const std::string& folder) {
   t.push_back(surface("10M", 744));
   for (size_t n : {256, 400})
     for (bool discs : {false, true}) t.push_back(isosurface_picture(n, discs));
+  add_unsteady_tasks(t);
   add_volume_tasks(t);
   return t;
 }
