@@ -34,6 +34,7 @@ Camera peers_camera(double turn);
 void add_contour_tasks(std::vector<Task>& tasks);
 void add_cut_tasks(std::vector<Task>& tasks);
 void add_index_tasks(std::vector<Task>& tasks);
+void add_unsteady_tasks(std::vector<Task>& tasks);
 void add_volume_tasks(std::vector<Task>& tasks);
 void add_volume_methods_tasks(std::vector<Task>& tasks);
 void add_volume_cells_tasks(std::vector<Task>& tasks);
