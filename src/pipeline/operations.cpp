@@ -14,6 +14,7 @@
 #include "filter/flow/vortex/ftle.h"
 #include "filter/flow/vortex/measures.h"
 #include "filter/flow/vortex/parallel_vectors.h"
+#include "filter/flow/topology/topology.h"
 #include "filter/mesh/append.h"
 #include "filter/mesh/clip.h"
 #include "filter/mesh/components.h"
