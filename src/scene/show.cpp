@@ -32,12 +32,18 @@ void describe(Schema& s, SurfaceShow& p) {
   s("flat", p.flat, "One normal per polygon instead of smooth shading.");
   s("lit", p.lit, "Light the surface; false shows the plain colours.");
   s("feature_angle", p.feature_angle, "Edges sharper than this stay sharp when normals are computed.").unit("deg").range(0, 180);
+  describe(s, p.lic);
 }
 
 void describe(Schema& s, LinesShow& p) {
   describe(s, p.coloring);
   s("opacity", p.opacity, "1 hides what is behind, 0 is invisible.").range(0, 1);
   s("width", p.width, "Width of the lines.").unit("pixels").positive();
+  s("lit", p.lit, "Light the lines by their direction: bright across the light, dark along it.");
+  s("halo", p.halo, "Border around each line that hides lines behind it, so that crossings show which is in front.")
+      .unit("pixels")
+      .range(0, 100);
+  s("halo_color", p.halo_color, "Colour of the halos.");
 }
 
 void describe(Schema& s, PointsShow& p) {
@@ -157,6 +163,7 @@ std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const Surfa
   item.flat = p.flat;
   item.material.lit = p.lit;
   item.feature_angle = p.feature_angle;
+  item.lic = surface_texture_of(*item.data, p.lic);
   const SurfaceMesh& mesh = *item.data->as<SurfaceMesh>();
   const auto legend = legend_of(item.color_by);
   if (mesh.lines.size() > 0) {
@@ -192,6 +199,9 @@ std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const Lines
   if (!p.coloring.color.empty()) item.color = parse_color(p.coloring.color, "color");
   item.opacity = p.opacity;
   item.width = p.width;
+  item.lit = p.lit;
+  item.halo = p.halo;
+  item.halo_color = parse_color(p.halo_color, "halo_color");
   auto legend = legend_of(item.color_by);
   scene.items.emplace_back(std::move(item));
   return legend;

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filter/flow/texture/surface_walk.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sg {
+
+namespace {
+
+constexpr int most_idle = 64;  ///< triangles passed without going anywhere, around a point
+
+/// Length to where the first coordinate becomes zero, and which; a coordinate that hardly changes does not.
+double way_out(const std::array<double, 3>& b, const std::array<double, 3>& d, int& edge) {
+  const double still = 1e-10 * std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
+  double least = HUGE_VAL;
+  edge = -1;
+  for (int k = 0; k < 3; ++k)
+    if (d[size_t(k)] < -still) {
+      const double s = std::max(b[size_t(k)], 0.0) / -d[size_t(k)];
+      if (s < least) least = s, edge = k;
+    }
+  return least;
+}
+
+void go(std::array<double, 3>& b, const std::array<double, 3>& d, double s) {
+  double sum = 0;
+  for (size_t k = 0; k < 3; ++k) b[k] = std::max(b[k] + d[k] * s, 0.0), sum += b[k];
+  for (double& k : b) k /= sum;
+}
+
+}  // namespace
+
+struct SurfaceWalk::Frame {
+  uint32_t triangle;
+  Vec3 e1, e2;
+  double a, b, c, inverse;
+  Vec3 v[3];
+};
+
+SurfaceWalk::Frame SurfaceWalk::frame(uint32_t triangle) const {
+  const auto& t = surface_.triangles[triangle];
+  Frame f;
+  f.triangle = triangle;
+  f.e1 = surface_.points[t[1]] - surface_.points[t[0]], f.e2 = surface_.points[t[2]] - surface_.points[t[0]];
+  f.a = dot(f.e1, f.e1), f.b = dot(f.e1, f.e2), f.c = dot(f.e2, f.e2), f.inverse = 1 / (f.a * f.c - f.b * f.b);
+  for (size_t k = 0; k < 3; ++k) f.v[k] = vectors_[per_triangle_ ? triangle : t[k]];
+  return f;
+}
+
+bool SurfaceWalk::rates(const Frame& f, const std::array<double, 3>& b, double sign, Rates& d) const {
+  const Vec3 v = per_triangle_ ? f.v[0] : f.v[0] * b[0] + f.v[1] * b[1] + f.v[2] * b[2];
+  const double x = dot(v, f.e1), y = dot(v, f.e2);
+  const double u = (f.c * x - f.b * y) * f.inverse, w = (f.a * y - f.b * x) * f.inverse;
+  const double length = std::sqrt(u * u * f.a + 2 * u * w * f.b + w * w * f.c);  // of the part along the triangle
+  if (!(length > 1e-9 * std::sqrt(dot(v, v))) || !(length < HUGE_VAL)) return false;
+  const double scale = sign / length;
+  d = {-(u + w) * scale, u * scale, w * scale};
+  return true;
+}
+
+bool SurfaceWalk::slide(const Frame& f, const Place& at, int corner, double sign, Rates& d) const {
+  const size_t j = size_t((corner + 1) % 3), k = size_t((corner + 2) % 3);
+  const auto& t = surface_.triangles[at.triangle];
+  const Vec3 edge = surface_.points[t[k]] - surface_.points[t[j]];
+  const Vec3 v = per_triangle_ ? f.v[0] : f.v[0] * at.b[0] + f.v[1] * at.b[1] + f.v[2] * at.b[2];
+  const double along = dot(v, edge) * sign, size = length(edge);
+  if (!(std::abs(along) > 1e-6 * size * length(v))) return false;
+  d = {0, 0, 0};
+  d[k] = (along > 0 ? 1 : -1) / size, d[j] = -d[k];
+  return true;
+}
+
+bool SurfaceWalk::cross(Place& at, int edge) const {
+  const int32_t next = surface_.across[at.triangle][size_t(edge)];
+  if (next < 0) return false;
+  const auto &t = surface_.triangles[at.triangle], &n = surface_.triangles[size_t(next)];
+  Place to;
+  to.triangle = uint32_t(next);
+  for (size_t k = 0; k < 3; ++k) {
+    const size_t same = n[k] == t[size_t((edge + 1) % 3)]   ? size_t((edge + 1) % 3)
+                        : n[k] == t[size_t((edge + 2) % 3)] ? size_t((edge + 2) % 3)
+                                                            : 3;
+    to.b[k] = same < 3 ? at.b[same] : 0;
+    if (same == 3) to.from = int(k);
+  }
+  at = to;
+  return true;
+}
+
+SurfaceWalk::Place SurfaceWalk::start(uint32_t triangle, uint32_t point) const {
+  Place p;
+  p.triangle = triangle;
+  for (size_t k = 0; k < 3; ++k) p.b[k] = surface_.triangles[triangle][k] == point;
+  return p;
+}
+
+Vec3 SurfaceWalk::position(const Place& at) const {
+  const auto& t = surface_.triangles[at.triangle];
+  return surface_.points[t[0]] * at.b[0] + surface_.points[t[1]] * at.b[1] + surface_.points[t[2]] * at.b[2];
+}
+
+bool SurfaceWalk::advance(Place& at, double length, double sign) const {
+  const double nothing = 1e-12 * length;
+  int idle = 0;
+  Frame f = frame(at.triangle);
+  while (length > nothing) {
+    if (f.triangle != at.triangle) f = frame(at.triangle);
+    Rates d, middle;
+    if (!rates(f, at.b, sign, d)) return false;
+    int edge;
+    double s = std::min(way_out(at.b, d, edge), length);
+    if (s <= nothing && edge == at.from && edge >= 0) {  // both sides run into the edge
+      if (!slide(f, at, edge, sign, d)) return false;
+      s = std::min(way_out(at.b, d, edge), length);
+    } else if (s > nothing) {  // midpoint rule
+      std::array<double, 3> half = at.b;
+      go(half, d, 0.5 * s);
+      if (rates(f, half, sign, middle)) d = middle, s = std::min(way_out(at.b, d, edge), length);
+    }
+    if (s > nothing) go(at.b, d, s), length -= s, idle = 0, at.from = -1;
+    if (!(length > nothing)) return true;
+    if (edge < 0 || ++idle > most_idle) return false;
+    at.b[size_t(edge)] = 0;
+    if (!cross(at, edge)) return false;
+  }
+  return true;
+}
+
+}  // namespace sg
