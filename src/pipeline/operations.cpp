@@ -28,6 +28,7 @@
 #include "filter/flow/vortex/ftle.h"
 #include "filter/flow/vortex/measures.h"
 #include "filter/flow/vortex/parallel_vectors.h"
+#include "filter/flow/topology/topology.h"
 #include "filter/flow/vortex/ridges.h"
 #include "filter/glyph/shapes.h"
 #include "filter/mesh/append.h"
