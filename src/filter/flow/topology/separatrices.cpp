@@ -19,9 +19,11 @@ double distance_to_segment(Vec3 x, Vec3 a, Vec3 b) {
 class Limits {
  public:
   explicit Limits(const CriticalPoints& critical) : points_(critical.points) {
+    // The tracer follows the velocity in the triangles' planes, whose zeros are near those of find_surface_zeros() and not the same.
+    if (critical.dimension == 2 && !critical.plane) part_ = 6;
     for (size_t i = 0; i < points_.size(); ++i) {
       order_.push_back(i);
-      reach_ = std::max(reach_, near_limit * points_[i].size);
+      reach_ = std::max(reach_, part_ * near_limit * points_[i].size);
     }
     std::sort(order_.begin(), order_.end(),
               [&](size_t a, size_t b) { return std::pair(points_[a].at.x, a) < std::pair(points_[b].at.x, b); });
@@ -38,7 +40,7 @@ class Limits {
       const bool ends = sign > 0 ? is_attracting(c.flow.type) : is_repelling(c.flow.type);
       const double within = ends ? near_limit : is_saddle(c.flow.type) ? near_saddle : 0;
       const double d = distance_to_segment(c.at, a, b);
-      if (d < within * c.size && d < nearest) nearest = d, best = int64_t(*i);
+      if (d < part_ * within * c.size && d < nearest) nearest = d, best = int64_t(*i);
     }
     return best;
   }
@@ -46,7 +48,7 @@ class Limits {
  private:
   const std::vector<CriticalPoint>& points_;
   std::vector<size_t> order_;
-  double reach_ = 0;
+  double reach_ = 0, part_ = 1;
 };
 
 void follow(const TracedLines& traced, size_t line, const CriticalPoints& critical, const Limits& limits, double sign, Separatrix& s) {
