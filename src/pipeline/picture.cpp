@@ -237,7 +237,10 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
   scene.background = stated.bottom, scene.background_top = stated.top, scene.transparent = stated.transparent;
   const Annotation annotation = annotation_of(stated, shown, look);
   const double aspect = double(std::max(1, width_beside_legends(annotation, stated))) / stated.height;
-  const Camera camera = make_camera(stated.camera, box, aspect, look.direction, look.up, look.parallel, stated.picture.axes ? 0.11 : 0.05);
+  Camera camera = make_camera(stated.camera, box, aspect, look.direction, look.up, look.parallel, stated.picture.axes ? 0.11 : 0.05);
+  Box3 all = scene_bounds(scene);  // glyphs reach beyond the data
+  all.add(box);
+  fit_planes(camera, all);
   if (stated.picture.axes && !shown.outlined && !box.empty()) scene.items.emplace_back(back_edges(box, camera));
   picture.image = draw_picture(scene, camera, stated, annotation, context);
   return picture;

@@ -73,7 +73,12 @@ GlyphPointsParams placement(const Dataset& d, const GlyphParams& p, const Field*
   q.mode = p.place;
   if (q.mode == "auto") q.mode = p.count == 0 && p.spacing == 0 && d.point_count() <= size_t(q.count) ? "all" : "even";
   if (q.mode == "all" && vectors && vectors->association == Association::cell) q.mode = "cells";
-  how = q.mode == "even" ? "placed evenly" : q.mode == "all" ? "at all points" : q.mode == "cells" ? "one a cell" : "placed " + q.mode;
+  how = q.mode == "even"    ? "placed evenly"
+        : q.mode == "all"   ? "at all points"
+        : q.mode == "cells" ? "one a cell"
+        : q.mode == "lines" ? "along the lines"
+        : q.mode == "every" ? fmt::format("at every {}th point", q.every)
+                            : "placed " + q.mode;
   return q;
 }
 
