@@ -30,7 +30,7 @@ bool is_dark(const Colormap& map) {
     const Vec3f q = map.at(double(k) / 16);
     sum += 0.3f * q.x + 0.59f * q.y + 0.11f * q.z;
   }
-  return sum / 17 < 0.42f;
+  return sum / 17 < 0.5f;
 }
 
 bool is_direct(const Field& f) {

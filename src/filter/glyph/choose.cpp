@@ -68,7 +68,15 @@ int plane_of(const Dataset& d, const Field* vectors) {
 GlyphPointsParams placement(const Dataset& d, const GlyphParams& p, const Field* vectors, int flat_axis, bool barbs, std::string& how) {
   GlyphPointsParams q;
   q.every = p.every, q.seed = p.seed, q.spacing = p.spacing;
-  const int64_t fitting = barbs ? 180 : flat_axis >= 0 ? 900 : 2500;
+  int64_t fitting = barbs ? 180 : flat_axis >= 0 ? 900 : 2500;
+  // A long and narrow box is small on the picture: no more of them along it than can be told apart.
+  const Vec3 size = d.bounds().size();
+  const double along = (barbs ? 22 : 45), step = d.bounds().empty() ? 0 : std::max({size.x, size.y, size.z}) / along;
+  if (step > 0) {
+    double most = 1;
+    for (int a = 0; a < 3; ++a) most *= std::max(size[a] / step, 1.0);
+    fitting = std::min(fitting, std::max<int64_t>(int64_t(most), 60));
+  }
   q.count = p.count > 0 ? p.count : fitting;
   q.mode = p.place;
   if (q.mode == "auto") q.mode = p.count == 0 && p.spacing == 0 && d.point_count() <= size_t(q.count) ? "all" : "even";
