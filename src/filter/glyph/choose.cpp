@@ -12,9 +12,7 @@
 
 namespace sg {
 
-namespace {
-
-const Field* vector_field(const Dataset& d) {
+const Field* automatic_vectors(const Dataset& d) {
   auto fits = [](const Field& f, int components) {
     return f.association != Association::whole && f.components() == components && f.role != Role::normals && f.role != Role::tcoords &&
            f.role != Role::colors && f.role != Role::global_ids && f.role != Role::labels;
@@ -29,6 +27,8 @@ const Field* vector_field(const Dataset& d) {
   return nullptr;
 }
 
+namespace {
+
 bool needs_direction(const std::string& shape) {
   for (const char* name : {"auto", "arrow", "cone", "needle", "line", "arrow2d", "barbs"})
     if (shape == name) return true;
@@ -39,7 +39,7 @@ const Field* wanted_vectors(const Dataset& d, const GlyphParams& p) {
   if (!p.frames.empty()) return nullptr;
   if (p.vectors.name == "none") return nullptr;
   if (p.vectors.empty()) {
-    const Field* f = vector_field(d);
+    const Field* f = automatic_vectors(d);
     if (!f && needs_direction(p.shape.shape)) {
       std::string has;
       for (const std::string& n : d.fields().names()) has += (has.empty() ? "" : ", ") + n;
