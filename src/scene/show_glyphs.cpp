@@ -75,7 +75,7 @@ std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const Glyph
       const Field* drawn = c.data->fields().find(f->name, Association::point);
       color.scale = drawn ? choose_scale(*c.data, *drawn, p.coloring, context) : choose_scale(*input, *f, p.coloring, context);
       legend = color.scale;
-      if (c.of > 0)
+      if (c.of > 0 && p.coloring.range.empty())  // parts of a collection share a legend, not a scale
         legend->title += fmt::format(" ({}: {}{} long)", short_number(c.of, 3), short_number(c.longest, 3), in_pixels ? " pixels" : "");
     }
     item.color_by = std::move(color);

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "data/field_ops.h"
+#include "data/point_positions.h"
 
 namespace sg {
 
@@ -141,6 +142,28 @@ DatasetPtr place(const DatasetPtr& data, GlyphPointsParams q, bool may_add, cons
   return places;
 }
 
+// Half of the places have their nearest neighbour nearer than that; never more than their mean share of the box allows.
+double distance_of_places(const Dataset& input, const Dataset& places) {
+  const size_t n = places.point_count();
+  const double mean = typical_spacing(input, std::max<size_t>(n, 1));
+  if (n < 20 || n > 50000) return mean;
+  const Array xyz = point_positions(places.mesh());
+  auto at = [&](size_t i) { return Vec3{xyz.get(i, 0), xyz.get(i, 1), xyz.get(i, 2)}; };
+  std::vector<Vec3> all;
+  for (size_t i = 0; i < n; ++i) all.push_back(at(i));
+  std::vector<double> nearest;
+  for (size_t k = 0; k < 101; ++k) {
+    const size_t i = k * (n - 1) / 100;
+    double least = HUGE_VAL;
+    for (size_t j = 0; j < n; ++j)
+      if (const Vec3 d = all[j] - all[i]; j != i) least = std::min(least, dot(d, d));
+    if (std::isfinite(least) && least > 0) nearest.push_back(std::sqrt(least));
+  }
+  if (nearest.empty()) return mean;
+  std::nth_element(nearest.begin(), nearest.begin() + ptrdiff_t(nearest.size() / 2), nearest.end());
+  return std::min(mean, 1.25 * nearest[nearest.size() / 2]);
+}
+
 // Scale of the rule from the size asked for, or from the distance of the places.
 void choose_size(const Dataset& input, const GlyphParams& p, bool in_pixels, int flat_axis, ChosenGlyphs& out) {
   if (p.size > 0 && p.factor > 0) fail_usage("size and factor both say how large glyphs are", "glyphs", "give one of them");
@@ -148,14 +171,14 @@ void choose_size(const Dataset& input, const GlyphParams& p, bool in_pixels, int
   const std::string by = r.size == GlyphRule::Size::length ? r.vectors : r.size == GlyphRule::Size::field ? r.size_field : "";
   const std::vector<double> factors = by.empty() ? std::vector<double>{1} : size_factors(*out.data, by);
   if (factors.empty()) {
-    out.note = fmt::format("'{}' is zero or not finite everywhere: there are no glyphs", by);
+    out.note = fmt::format("; '{}' is zero or not finite everywhere: there are no glyphs", by);
     return;
   }
   double most = factors.back();
   if (p.factor > 0) {
     r.scale = p.factor;
   } else {
-    const double apart = p.spacing > 0 ? p.spacing : typical_spacing(input, std::max<size_t>(out.data->point_count(), 1));
+    const double apart = p.spacing > 0 ? p.spacing : distance_of_places(input, *out.data);
     const bool round = !needs_direction(p.shape.shape);
     double size = p.size > 0  ? p.size
                   : in_pixels ? (out.barbs ? 34 : 40)
