@@ -133,9 +133,9 @@ DatasetPtr place(const DatasetPtr& data, GlyphPointsParams q, bool may_add, cons
     if (lengths.empty()) return places;
     const auto seen = double(lengths.end() - std::lower_bound(lengths.begin(), lengths.end(), faint * lengths.back()));
     const double share = seen / double(places->point_count());
-    if (share > 0.5 || seen > 0.2 * double(q.count)) return places;
+    if (share > 0.5 || seen > 0.12 * double(q.count)) return places;
     GlyphPointsParams more = q;
-    more.count = int64_t(std::min(0.3 * double(q.count) / share, std::min(2e5, double(data->point_count()))));
+    more.count = int64_t(std::min(0.18 * double(q.count) / share, std::min(2e5, double(data->point_count()))));
     if (double(more.count) < 1.2 * double(places->point_count())) return places;
     places = glyph_points(data, more, context);
   }
@@ -189,7 +189,7 @@ void choose_size(const Dataset& input, const GlyphParams& p, bool in_pixels, int
     // A few giants would make all others invisible.
     const auto seen = std::lower_bound(factors.begin(), factors.end(), faint * most) - factors.begin();
     const double usual = factors[size_t(seen) + size_t(0.95 * double(factors.size() - size_t(seen) - 1))];
-    if (p.size == 0 && most > 2 * usual) {
+    if (p.size == 0 && most > 1.5 * usual) {
       r.largest = 1.6 * size, most = usual;
       out.note += fmt::format("; those above {} are drawn as long as that", short_number(1.6 * usual, 3));
     }
