@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "render/raster/glyphs.h"
 #include "render/raster/illuminated.h"
 
 namespace sg::raster {
@@ -46,16 +47,21 @@ bool make_record(const PreparedItem& item, const Projection& p, size_t i, MarkRe
   const bool line = item.kind == PreparedItem::Kind::lines;
   Vec3 a = eye_point(item, p, line ? item.segments->points[2 * i] : (*item.points)[i]);
   Vec3 b = line ? eye_point(item, p, item.segments->points[2 * i + 1]) : a;
-  if (!finite(a) || !finite(b) || !clip_depth(p, a, b, m.from, m.to)) return false;
-  if (!line) m.from = m.to = 0;
-  place(p, a, m.ax, m.ay, m.aw), place(p, b, m.bx, m.by, m.bw);
   m.primitive = item.first_primitive + uint32_t(i), m.group = !line                           ? uint32_t(i)
                                                               : item.segments->groups.empty() ? 0
                                                                                               : item.segments->groups[i];
-  return finite({m.ax, m.ay, m.aw}) && finite({m.bx, m.by, m.bw}) && !mark_box(m, p.width, p.height).empty();
+  if (!place_segment(p, a, b, m)) return false;
+  if (!line) m.from = m.to = 0;
+  return true;
 }
 
 }  // namespace
+
+bool place_segment(const Projection& p, Vec3 a, Vec3 b, MarkRecord& m) {
+  if (!finite(a) || !finite(b) || !clip_depth(p, a, b, m.from, m.to)) return false;
+  place(p, a, m.ax, m.ay, m.aw), place(p, b, m.bx, m.by, m.bw);
+  return finite({m.ax, m.ay, m.aw}) && finite({m.bx, m.by, m.bw}) && !mark_box(m, p.width, p.height).empty();
+}
 
 PixelBox mark_box(const MarkRecord& m, int width, int height) {
   const double r = double(m.half) + double(m.halo) + 0.5;
@@ -152,7 +158,8 @@ void color_mark(const PreparedItem& item, const std::vector<WorldLight>& lights,
   Vec4f rgba = source.constant;
   if (source.kind != ColorSource::Kind::constant) {
     size_t a, b;
-    if (source.per_cell) a = b = item.segments->cells[i];
+    if (item.glyphs) a = b = i >> item.glyphs->shift;
+    else if (source.per_cell) a = b = item.segments->cells[i];
     else if (line) a = item.segments->points[2 * size_t(i)], b = item.segments->points[2 * size_t(i) + 1];
     else a = b = (*item.points)[i];
     if (source.nearest) a = b = c.s < 0.5f ? a : b;

@@ -32,6 +32,8 @@ struct Cover {
 
 /// Lines and dots of an item on the picture, those outside left out; in order of their primitives.
 std::vector<MarkRecord> mark_records(const PreparedItem& item, uint32_t number, const Projection& projection, double pixel_scale);
+/// Clips a segment of eye space by depth and puts it on the picture; false when nothing is left. half, primitive and group are given.
+bool place_segment(const Projection& projection, Vec3 a, Vec3 b, MarkRecord& m);
 PixelBox mark_box(const MarkRecord& m, int width, int height);
 
 /// Coverage of a pixel whose centre is `distance` from the middle of a band `2 * half` wide: exact for bands along the pixel rows.

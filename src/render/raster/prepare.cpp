@@ -10,7 +10,7 @@
 #include "data/lattice.h"
 #include "filter/mesh/faces.h"
 #include "filter/mesh/surface.h"
-#include "render/raster/prepared.h"
+#include "render/raster/glyphs.h"
 
 namespace sg {
 
@@ -231,6 +231,39 @@ class Preparation {
     const bool all = p.discs && s.data->as<PointCloud>() && s.data->point_ghost().empty();  // of the discs: no list says more
     if (!all) p.points = derived<std::vector<uint32_t>>(s.data, "points", [&] { return chosen_points(*s.data); });
     push(std::move(p), all ? s.data->point_count() : p.points->size());
+  }
+
+  void operator()(const GlyphsItem& s) {
+    if (!s.data) fail_usage("the item has no data", "glyphs");
+    if (s.shapes.empty() || s.shapes.size() > 255) fail_usage(fmt::format("{} shapes", s.shapes.size()), "glyphs", "give 1 to 255");
+    if (!(s.opacity > 0)) return;
+    if (s.color_by && s.color_by->association == Association::cell)
+      fail_usage(fmt::format("glyphs cannot take the colour of cell field '{}'", s.color_by->field), "glyphs", "use a point field");
+    GlyphSet set;
+    size_t triangles = 0, segments = 0;
+    for (const DatasetPtr& shape : s.shapes) {
+      set.shapes.push_back(glyph_shape(shape, s.feature_angle, s.flat));
+      const GlyphShape& g = *set.shapes.back();
+      set.first_row.push_back(int32_t(set.faces.size() / GlyphShape::row));
+      set.faces.insert(set.faces.end(), g.faces.begin(), g.faces.end());
+      set.smooth = set.smooth || g.smooth;
+      triangles = std::max(triangles, g.triangles), segments = std::max(segments, g.segments.count());
+    }
+    set.instances = glyph_instances(s.data, s.rule, s.shapes.size());
+    set.in_pixels = s.in_pixels;
+    if (set.instances->standing > 1000)
+      set.order = derived<std::vector<uint32_t>>(s.data, "glyph order", [&] { return glyph_order(*set.instances); });
+    const size_t n = set.instances->count();
+    for (const auto& [kind, most] : {std::pair{PreparedItem::Kind::surface, triangles}, std::pair{PreparedItem::Kind::lines, segments}}) {
+      if (most == 0 || set.instances->standing == 0) continue;
+      PreparedItem p = start(kind, s.data, s.opacity);
+      p.color = color_source(s.data, s.color_by, s.color, "glyphs");
+      p.material = s.material, p.width = s.line_width, p.origin = set.instances->origin;
+      p.translucent = s.opacity < 1 || p.color.translucent;
+      set.shift = glyph_shift(n, most);
+      p.glyphs = std::make_shared<const GlyphSet>(set);
+      push(std::move(p), n << set.shift);
+    }
   }
 
   void operator()(const VolumeItem&) {}

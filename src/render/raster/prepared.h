@@ -57,6 +57,8 @@ struct ColorSource {
   const Vec4f& of(float stored) const;
 };
 
+struct GlyphSet;
+
 struct PreparedItem {
   enum class Kind { surface, lines, points } kind = Kind::surface;
   DatasetPtr data;
@@ -84,6 +86,8 @@ struct PreparedItem {
   Vec3 origin;
   bool discs = false;               ///< points as oriented discs: opaque, drawn like triangles
   Array disc_normals, disc_radius;  ///< f32 packed, per point of the dataset
+  // glyphs: polygons of shapes are a surface, their lines are lines; both stand at `origin`
+  std::shared_ptr<const GlyphSet> glyphs;
 };
 
 TriangleSet triangulate(const DatasetPtr& data, bool& any_polygon);

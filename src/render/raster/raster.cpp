@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "render/raster/bins.h"
 #include "render/raster/discs.h"
+#include "render/raster/glyphs.h"
 #include "render/raster/marks.h"
 #include "render/raster/shade.h"
 #include "render/texture/textures.h"
@@ -20,7 +21,7 @@ namespace raster {
 namespace {
 
 constexpr uint32_t no_primitive = 0xFFFFFFFFu, no_item = no_primitive;
-constexpr size_t triangle_chunk = 1 << 14;
+constexpr size_t triangle_chunk = 1 << 14, glyph_chunk = 1 << 10;
 constexpr int small_triangle = 16;  ///< pixels; below this size a triangle is drawn at once
 
 /// The visibility buffer. One is kept between frames: fresh pages cost more than drawing a million triangles.
@@ -124,8 +125,10 @@ class Drawing {
     for (const PreparedItem& item : scene_.items) {
       views_.push_back(eye_view(projection_, item.kind == PreparedItem::Kind::surface ? item.triangles.origin : item.origin));
       if (item.kind == PreparedItem::Kind::surface) {
+        if (item.glyphs) views_.back() = eye_view(projection_, item.origin);
         if (!item.translucent) only_ = opaque_items++ ? no_item : uint32_t(&item - scene_.items.data());
-        draw_surface(item, views_.back(), item.translucent ? 0 : small_triangle, keys_.data(), item.translucent ? translucent_ : opaque_);
+        if (item.glyphs) draw_glyph_item(item, views_.back(), item.translucent ? translucent_ : opaque_);
+        else draw_surface(item, views_.back(), item.translucent ? 0 : small_triangle, keys_.data(), item.translucent ? translucent_ : opaque_);
       } else if (item.discs) {
         only_ = opaque_items++ ? no_item : uint32_t(&item - scene_.items.data());
         const DiscJob job{views_.back(),
@@ -141,7 +144,9 @@ class Drawing {
             n, triangle_chunk, [&](size_t begin, size_t end) { draw_discs(job, back ? n - end : begin, back ? n - begin : end); },
             &context_);
       } else {
-        const std::vector<MarkRecord> m = mark_records(item, uint32_t(&item - scene_.items.data()), projection_, pixel_scale_);
+        const auto number = uint32_t(&item - scene_.items.data());
+        const std::vector<MarkRecord> m =
+            item.glyphs ? glyph_marks(item, number, projection_, pixel_scale_) : mark_records(item, number, projection_, pixel_scale_);
         marks_.insert(marks_.end(), m.begin(), m.end());
       }
     }
@@ -162,11 +167,24 @@ class Drawing {
   void draw_surface(const PreparedItem& item, const EyeView& view, int small, uint64_t* keys, std::vector<TriangleRecord>& large) {
     const TriangleSet& t = item.triangles;
     const TriangleJob job{view, t.xyz(), t.indices(), item.first_primitive, small, keys};
-    const size_t chunks = (t.count + triangle_chunk - 1) / triangle_chunk;
+    draw_chunks(t.count, triangle_chunk, large, [&](size_t begin, size_t end, auto& part) { draw_triangles(job, begin, end, part); });
+  }
+
+  void draw_glyph_item(const PreparedItem& item, const EyeView& view, std::vector<TriangleRecord>& large) {
+    const GlyphJob job{
+        view,        item.glyphs.get(), item.first_primitive, item.translucent ? 0 : small_triangle, !item.translucent, float(pixel_scale_),
+        keys_.data()};
+    draw_chunks(item.glyphs->instances->count(), glyph_chunk, large,
+                [&](size_t begin, size_t end, auto& part) { draw_glyphs(job, begin, end, part); });
+  }
+
+  /// draw(begin, end, records) for chunks of n things; the records go behind `large` in the order of the chunks.
+  template <class F>
+  void draw_chunks(size_t n, size_t chunk, std::vector<TriangleRecord>& large, F&& draw) {
+    const size_t chunks = (n + chunk - 1) / chunk;
     std::vector<std::vector<TriangleRecord>> parts(chunks);
     parallel_for(
-        t.count, triangle_chunk, [&](size_t begin, size_t end) { draw_triangles(job, begin, end, parts[begin / triangle_chunk]); },
-        &context_);
+        n, chunk, [&](size_t begin, size_t end) { draw(begin, end, parts[begin / chunk]); }, &context_);
     std::vector<size_t> start(chunks);
     for (size_t i = 0; i < chunks; ++i) start[i] = parts[i].size();
     const size_t before = large.size(), more = exclusive_scan(start);
@@ -203,9 +221,18 @@ class Drawing {
     uint32_t item, pixel, primitive;
   };
 
-  /// Calls f(item, batch, first) for runs of at most shade_batch pixels of one item; `of(i)` tells what is seen.
-  template <class Of, class F>
-  void shade_runs(size_t n, const PixelBox& box, Of&& of, F&& f) {
+  template <class Job>
+  void shade_batch_of(uint32_t number, ShadeBatch& batch, Job&& job) {
+    const PreparedItem& item = scene_.items[number];
+    if (item.glyphs) shade_glyphs(item, views_[number], float(pixel_scale_), lights_, batch);
+    else if (item.discs) shade_discs(item, views_[number], lights_, keys_.data(), batch);
+    else shade(job(), batch);
+    if (item.lic) apply_texture(*textures_, item, number, projection_, batch);
+  }
+
+  /// Calls f(item, batch, first) for runs of at most shade_batch pixels of one item; `of(i)` tells what is seen, `depth_of(i)` how deep.
+  template <class Of, class DepthOf, class F>
+  void shade_runs(size_t n, const PixelBox& box, Of&& of, DepthOf&& depth_of, F&& f) {
     ShadeBatch batch;
     batch.tile_x = box.x0, batch.tile_y = box.y0;
     for (size_t i = 0; i < n;) {
@@ -217,9 +244,9 @@ class Drawing {
         if (s.item != number) break;
         batch.pixel[batch.n] = s.pixel, batch.triangle[batch.n] = s.primitive - item.first_primitive;
       }
-      if (item.discs) shade_discs(item, views_[number], lights_, keys_.data(), batch);
-      else shade(shade_job(item, views_[number], lights_), batch);
-      if (item.lic) apply_texture(*textures_, item, number, projection_, batch);
+      if (item.glyphs)
+        for (size_t k = 0; k < batch.n; ++k) batch.depth[k] = depth_of(first + k);
+      shade_batch_of(number, batch, [&] { return shade_job(item, views_[number], lights_); });
       f(item, batch, first);
     }
   }
@@ -240,7 +267,7 @@ class Drawing {
   /// Where one item alone is seen, the usual case: pixels go from the keys into the batch without a list between.
   void shade_single(uint32_t number, const PixelBox& box) {
     const PreparedItem& item = scene_.items[number];
-    const ShadeJob job = shade_job(item, views_[number], lights_);
+    const ShadeJob job = item.glyphs ? ShadeJob{} : shade_job(item, views_[number], lights_);
     ShadeBatch batch;
     batch.tile_x = box.x0, batch.tile_y = box.y0;
     for (int y = box.y0; y <= box.y1; ++y) {
@@ -249,13 +276,12 @@ class Drawing {
       for (int x = box.x0; x <= box.x1; ++x) {
         const uint32_t primitive = uint32_t(row[x]);
         batch.pixel[n] = uint32_t((y - box.y0) * tile_size + (x - box.x0)), batch.triangle[n] = primitive - item.first_primitive;
+        batch.depth[n] = key_depth(row[x]);
         n += primitive != no_primitive;
       }
       batch.n = n;
       if (n + tile_size < shade_batch && y < box.y1) continue;
-      if (item.discs) shade_discs(item, views_[number], lights_, keys_.data(), batch);
-      else shade(job, batch);
-      if (item.lic) apply_texture(*textures_, item, number, projection_, batch);
+      shade_batch_of(number, batch, [&]() -> const ShadeJob& { return job; });
       store_opaque(item, batch, box);
       batch.n = 0;
     }
@@ -287,6 +313,7 @@ class Drawing {
     std::stable_sort(seen.begin(), seen.end(), [](const Seen& a, const Seen& b) { return a.item < b.item; });
     shade_runs(
         seen.size(), box, [&](size_t i) { return seen[i]; },
+        [&](size_t i) { return key_depth(keys_.data()[pixel_of(box, seen[i].pixel)]); },
         [&](const PreparedItem& it, const ShadeBatch& b, size_t) { store_opaque(it, b, box); });
   }
 
@@ -317,6 +344,7 @@ class Drawing {
         [&](size_t i) {
           return Seen{covers[i].item, covers[i].pixel, covers[i].primitive};
         },
+        [&](size_t i) { return covers[i].depth; },
         [&](const PreparedItem& it, const ShadeBatch& b, size_t first) {
           for (size_t i = 0; i < b.n; ++i) {
             Cover& c = covers[first + i];
