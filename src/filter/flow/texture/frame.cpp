@@ -42,6 +42,7 @@ std::array<size_t, 3> wanted_dims(const double* extent, const size_t* own, int64
 struct Target {
   UniformGrid grid;
   bool same = false;
+  double pixels_per_cell = HUGE_VAL;
 };
 
 Target target_grid(const Dataset& d, int64_t resolution, std::string_view who) {
@@ -87,6 +88,7 @@ Target target_grid(const Dataset& d, int64_t resolution, std::string_view who) {
   if (u) t.grid.direction = u->direction;
   for (int a = 0; a < 3; ++a) {
     t.grid.spacing[a] = dims[size_t(a)] > 1 ? extent[a] / double(dims[size_t(a)] - 1) : 1.0;
+    if (own[a] > 1 && extent[a] > 0) t.pixels_per_cell = std::min(t.pixels_per_cell, double(dims[size_t(a)] - 1) / double(own[a] - 1));
     if (u && u->spacing[a] < 0) t.grid.spacing[a] = -t.grid.spacing[a];
   }
   return t;
@@ -157,6 +159,7 @@ Frame make_frame(const DatasetPtr& input, const std::string& field, int64_t reso
   }
   const Target target = target_grid(*data, resolution, who);
   f.grid = target.grid;
+  if (!target.same && std::isfinite(target.pixels_per_cell)) f.pixels_per_cell = std::max(1.0, target.pixels_per_cell);
   f.dimension = 0;
   for (int a = 0; a < 3; ++a)
     if (f.grid.dims[size_t(a)] > 1) {

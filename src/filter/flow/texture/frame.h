@@ -17,6 +17,7 @@ struct Frame {
   int axis[3] = {0, 1, 2};      ///< the grid's axis of each axis of the texture
   int32_t n[3] = {1, 1, 1};     ///< pixels along them
   double pitch[3] = {1, 1, 1};  ///< world length from pixel to pixel
+  double pixels_per_cell = 1;   ///< how much finer than the input the grid is, at least 1
   std::string velocity_name;
   FieldSet fields;     ///< of the input, on the points of the grid
   Array hidden_cells;  ///< u8 GhostBits of the grid's cells where the input had none; may be empty
