@@ -45,8 +45,22 @@ std::string numbered(const std::string& pattern, size_t n, size_t count) {
   return pattern.substr(0, at) + fmt::format("{:0{}}", n, digits) + pattern.substr(at + mark.size());
 }
 
-// The pipeline of one step: readers and sources with a time get it.
+// Writes the time where a parameter asks for it: 'lic kernel=ripple phase={t}'. False when none does.
+bool write_time(PipelineFile& file, double time) {
+  constexpr std::string_view here = "{t}";
+  bool written = false;
+  for (PipelineFile::Step& s : file.steps)
+    for (std::string& word : s.words)
+      for (size_t at = word.find(here); at != word.npos; at = word.find(here, at)) {
+        word.replace(at, here.size(), exact_number(time));
+        written = true;
+      }
+  return written;
+}
+
+// The pipeline of one step: the parameters that ask for the time get it, else readers and sources with a time.
 PipelineFile at_time(PipelineFile file, double time, std::optional<size_t> step) {
+  if (write_time(file, time)) return file;
   for (PipelineFile::Step& s : file.steps) {
     if (s.operation == "read") {
       s.words.push_back(step ? fmt::format("step={}", *step) : "time=" + exact_number(time));

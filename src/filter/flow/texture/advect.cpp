@@ -180,7 +180,7 @@ DatasetPtr advect(const DatasetPtr& input, const DatasetPtr& image, const Advect
 
 Data advect_of(const std::vector<Data>& inputs, const AdvectParams& p, Context& context) {
   const DatasetPtr image = inputs.size() > 1 ? single_dataset(inputs[1], "advect") : nullptr;
-  return map_datasets(inputs[0], [&](const DatasetPtr& d) { return advect(d, image, p, context); });
+  return over_parts(inputs[0], "advect", context, [&](const DatasetPtr& d) { return advect(d, image, p, context); });
 }
 
 }  // namespace sg

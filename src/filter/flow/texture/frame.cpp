@@ -136,6 +136,18 @@ Array cells_without_value(const UniformGrid& grid, const Field& valid) {
 
 }  // namespace
 
+bool has_room(const Dataset& d) {
+  const Box3 box = d.bounds();
+  if (box.empty() || d.cell_count() == 0) return false;
+  const Vec3 size = box.size();
+  const double longest = std::max({size.x, size.y, size.z});
+  if ((size.x > flat_enough * longest) + (size.y > flat_enough * longest) + (size.z > flat_enough * longest) < 2) return false;
+  // Curves in a plane have an extent too.
+  const auto types = cell_type_counts(d.mesh());
+  return std::any_of(types.begin(), types.end(),
+                     [](const auto& t) { return t.first.find("Line") == t.first.npos && t.first.find("Vertex") == t.first.npos; });
+}
+
 Vec3 Frame::to_pixels(Vec3 world) const {
   const Vec3 d = world - grid.origin;
   Vec3 p;

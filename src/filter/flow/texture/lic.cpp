@@ -151,7 +151,7 @@ DatasetPtr lic(const DatasetPtr& input, const DatasetPtr& image, const LicParams
 
 Data lic_of(const std::vector<Data>& inputs, const LicParams& p, Context& context) {
   const DatasetPtr image = inputs.size() > 1 ? single_dataset(inputs[1], "lic") : nullptr;
-  return map_datasets(inputs[0], [&](const DatasetPtr& d) { return lic(d, image, p, context); });
+  return over_parts(inputs[0], "lic", context, [&](const DatasetPtr& d) { return lic(d, image, p, context); });
 }
 
 }  // namespace sg

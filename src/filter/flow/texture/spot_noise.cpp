@@ -207,4 +207,8 @@ DatasetPtr spot_noise(const DatasetPtr& input, const SpotNoiseParams& p, Context
   return frame_dataset(f, {{"spot noise", Association::point, std::move(result), "", Role::none}});
 }
 
+Data spot_noise_of(const Data& input, const SpotNoiseParams& p, Context& context) {
+  return over_parts(input, "spot_noise", context, [&](const DatasetPtr& d) { return spot_noise(d, p, context); });
+}
+
 }  // namespace sg

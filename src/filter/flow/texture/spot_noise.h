@@ -24,5 +24,7 @@ void describe(Schema& s, SpotNoiseParams& p);
 /// goes. NaN where the flow has no value. Flat data only. The input's fields come along. Tiles of pixels add the spots that touch them in
 /// the order of their numbers: threads do not matter. Throws Error(usage) as lic() does, and for solid data. O(spots area).
 DatasetPtr spot_noise(const DatasetPtr& input, const SpotNoiseParams& params, Context& context);
+/// The operation.
+Data spot_noise_of(const Data& input, const SpotNoiseParams& params, Context& context);
 
 }  // namespace sg
