@@ -6,6 +6,7 @@
 #include "data/field_ops.h"
 #include "filter/mesh/faces.h"
 #include "filter/mesh/surface.h"
+#include "scene/show_glyphs.h"
 #include "scene/show_labels.h"
 #include "scene/show_volume.h"
 #include "scene/texture_color.h"
@@ -33,6 +34,7 @@ void describe(Schema& s, SurfaceShow& p) {
   s("flat", p.flat, "One normal per polygon instead of smooth shading.");
   s("lit", p.lit, "Light the surface; false shows the plain colours.");
   s("feature_angle", p.feature_angle, "Edges sharper than this stay sharp when normals are computed.").unit("deg").range(0, 180);
+  describe(s, p.lic);
   s("texture", p.texture, "Point field in [0, 1] that darkens and brightens the colours; default: 'lic' or 'spot noise'; 'none' for none.");
 }
 
@@ -40,6 +42,11 @@ void describe(Schema& s, LinesShow& p) {
   describe(s, p.coloring);
   s("opacity", p.opacity, "1 hides what is behind, 0 is invisible.").range(0, 1);
   s("width", p.width, "Width of the lines.").unit("pixels").positive();
+  s("lit", p.lit, "Light the lines by their direction: bright across the light, dark along it.");
+  s("halo", p.halo, "Border around each line that hides lines behind it, so that crossings show which is in front.")
+      .unit("pixels")
+      .range(0, 100);
+  s("halo_color", p.halo_color, "Colour of the halos.");
 }
 
 void describe(Schema& s, PointsShow& p) {
@@ -160,6 +167,7 @@ std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const Surfa
   item.flat = p.flat;
   item.material.lit = p.lit;
   item.feature_angle = p.feature_angle;
+  item.lic = surface_texture_of(*item.data, p.lic);
   const SurfaceMesh& mesh = *item.data->as<SurfaceMesh>();
   const auto legend = legend_of(item.color_by);
   if (mesh.lines.size() > 0) {
@@ -196,6 +204,9 @@ std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const Lines
   if (!p.coloring.color.empty()) item.color = parse_color(p.coloring.color, "color");
   item.opacity = p.opacity;
   item.width = p.width;
+  item.lit = p.lit;
+  item.halo = p.halo;
+  item.halo_color = parse_color(p.halo_color, "halo_color");
   auto legend = legend_of(item.color_by);
   scene.items.emplace_back(std::move(item));
   return legend;
@@ -298,6 +309,7 @@ std::span<const ShowKind> show_kinds() {
       kind<LinesShow>("lines", "Lines of constant width."),
       kind<PointsShow>("points", "Every point as a dot."),
       kind<LabelsShow>("labels", "Numbers at points, turned along their lines (see line_labels)."),
+      kind<GlyphsShow>("glyphs", "Arrows, barbs and other shapes at points, turned and scaled by fields."),
       kind<OutlineShow>("outline", "The box around the data."),
   };
   return kinds;
