@@ -4,8 +4,8 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "filter/flow/texture/back_trace.h"
 #include "filter/flow/texture/frame.h"
-#include "filter/flow/texture/pixel_flow.h"
 
 namespace sg {
 
@@ -24,62 +24,6 @@ void describe(Schema& s, AdvectParams& p) {
 }
 
 namespace {
-
-struct Path {
-  double x[3] = {0, 0, 0};
-  bool left = false;          // the grid
-  double nearest = HUGE_VAL;  // to a place of dye, in pixels squared
-};
-
-struct Tracer {
-  const PixelFlow& flow;
-  double h;  // negative of the time step
-  int64_t steps;
-  bool clamp;
-  std::vector<Vec3> dye;
-  Vec3 pitch;  // dye distances are measured in the world
-
-  void look_for_dye(const double* from, const double* to, Path& p) const {
-    for (const Vec3& d : dye) {
-      // The nearest place of the stretch to the dye.
-      Vec3 a, b;
-      for (int k = 0; k < flow.dimension(); ++k) a[k] = (from[k] - d[k]) * pitch[k], b[k] = (to[k] - d[k]) * pitch[k];
-      const Vec3 w = b - a;
-      const double l = dot(w, w), t = l > 0 ? std::clamp(-dot(a, w) / l, 0.0, 1.0) : 0.0;
-      const Vec3 m = a + t * w;
-      p.nearest = std::min(p.nearest, dot(m, m));
-    }
-  }
-
-  void trace(Path& p) const {
-    const int d = flow.dimension();
-    if (steps == 0) look_for_dye(p.x, p.x, p);
-    for (int64_t s = 0; s < steps; ++s) {
-      double k[4][3] = {}, y[3];
-      bool good = flow.at_nearest(p.x, k[0]);
-      for (int stage = 1; stage < 4 && good; ++stage) {
-        const double part = stage == 3 ? h : h / 2;
-        for (int a = 0; a < d; ++a) y[a] = p.x[a] + part * k[stage - 1][a];
-        good = flow.at_nearest(y, k[stage]);
-      }
-      if (!good) return;
-      double moved = 0;
-      for (int a = 0; a < d; ++a) {
-        const double step = h / 6 * (k[0][a] + 2 * k[1][a] + 2 * k[2][a] + k[3][a]);
-        y[a] = p.x[a] + step, moved += std::abs(step);
-      }
-      look_for_dye(p.x, y, p);
-      for (int a = 0; a < d; ++a) {
-        p.x[a] = y[a];
-        // Rounding may carry a path that runs along the border a little out of it.
-        const double most = flow.n(a) - 1;
-        if (p.x[a] < -1e-6 || p.x[a] > most + 1e-6) p.left = true;
-        p.x[a] = std::clamp(p.x[a], 0.0, most);
-      }
-      if (p.left || !(moved > 0)) return;
-    }
-  }
-};
 
 struct Carried {
   Field field;  // without its array
@@ -111,7 +55,7 @@ std::vector<Carried> fields_to_carry(const Frame& f, const DatasetPtr& image, co
   return r;
 }
 
-void take_value(const Carried& c, const Frame& f, const Path& p, size_t pixel, bool none) {
+void take_value(const Carried& c, const Frame& f, const BackPath& p, size_t pixel, bool none) {
   const PixelWeights w(f.dimension, f.n, p.x);
   const int components = c.field.components();
   dispatch(c.from, [&](auto v) {
@@ -143,24 +87,30 @@ DatasetPtr advect(const DatasetPtr& input, const DatasetPtr& image, const Advect
   if (!p.time) context.info(fmt::format("advect: time {}", short_number(time)));
 
   std::vector<Carried> carried = fields_to_carry(f, image, p);
-  Tracer tracer{flow, 0, int64_t(wanted), p.border == "clamp", {}, {1, 1, 1}};
-  if (tracer.steps > 0) tracer.h = -time / double(tracer.steps);
-  for (size_t i = 0; i < p.dye.size(); i += 3) tracer.dye.push_back(f.to_pixels({p.dye[i], p.dye[i + 1], p.dye[i + 2]}));
-  for (int a = 0; a < f.dimension; ++a) tracer.pitch[a] = f.pitch[a];
+  BackTrace how;
+  how.steps = int64_t(wanted);
+  if (how.steps > 0) how.h = -time / double(how.steps);
+  for (size_t i = 0; i < p.dye.size(); i += 3) how.dye.push_back(f.to_pixels({p.dye[i], p.dye[i + 1], p.dye[i + 2]}));
+  std::copy_n(f.pitch, 3, how.pitch);
+  const bool clamp = p.border == "clamp";
   const double radius = p.dye_radius > 0 ? p.dye_radius : longest * f.pitch[0] / 50;
   float* dye = nullptr;
   Array dyed;
   if (!p.dye.empty()) dyed = Array::make<float>(f.size(), 1, &dye);
 
   parallel_for(
-      f.size(), 4096,
+      f.size(), 1024,
       [&](size_t begin, size_t end) {
+        std::vector<BackPath> paths(end - begin);
         for (size_t i = begin; i < end; ++i) {
-          Path path;
-          path.x[0] = double(i % size_t(f.n[0])), path.x[1] = double(i / size_t(f.n[0]) % size_t(f.n[1]));
-          path.x[2] = double(i / (size_t(f.n[0]) * size_t(f.n[1])));
-          tracer.trace(path);
-          for (const Carried& c : carried) take_value(c, f, path, i, !flow.has_value(i) || (path.left && !tracer.clamp));
+          double* x = paths[i - begin].x;
+          x[0] = double(i % size_t(f.n[0])), x[1] = double(i / size_t(f.n[0]) % size_t(f.n[1]));
+          x[2] = double(i / (size_t(f.n[0]) * size_t(f.n[1])));
+        }
+        trace_back(flow, how, paths.data(), paths.size());
+        for (size_t i = begin; i < end; ++i) {
+          const BackPath& path = paths[i - begin];
+          for (const Carried& c : carried) take_value(c, f, path, i, !flow.has_value(i) || (path.left && !clamp));
           if (dye) {
             const double d = std::sqrt(path.nearest) / radius, t = std::clamp(2 - 2 * d, 0.0, 1.0);
             dye[i] = float(t * t * (3 - 2 * t));

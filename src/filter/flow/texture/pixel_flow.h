@@ -12,7 +12,8 @@ class PixelFlow {
 
   int dimension() const { return dimension_; }
   int32_t n(int axis) const { return n_[axis]; }
-  double largest_speed() const { return largest_speed_; }  ///< not counting NaN
+  double largest_speed() const { return largest_speed_; }     ///< not counting NaN
+  const float* velocity() const { return velocity_.data(); }  ///< `dimension` numbers a pixel
   bool has_value(size_t pixel) const;
 
   /// The velocity; false outside of the grid and where it is NaN.
