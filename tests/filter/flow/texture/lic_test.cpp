@@ -262,7 +262,7 @@ TEST_CASE("lic: a solid grid gives a volume of texture that varies across the fl
     CHECK(across / n == doctest::Approx(2.0 / 12 / 17).epsilon(0.05));
   }
   LicParams p;
-  p.noise = "sparse", p.resolution = 48;
+  p.noise = "sparse", p.resolution = 48, p.density = 0.02, p.grain = 1;
   const std::vector<float> v = values_of(texture_of(d, p), "lic");
   double empty = 0;
   for (const float x : v) empty += x == 0;
