@@ -23,7 +23,7 @@ void describe(Schema& s, LicParams& p) {
   s("ripples", p.ripples, "Waves in the length of the kernel.").range(1, 100);
   s("method", p.method, "plain: a line for each pixel. fast: long lines that share their sums.").choices({"plain", "fast"});
   s("noise", p.noise, "What is averaged: white noise, or sparse dots (the one to look into volumes).").choices({"white", "sparse"});
-  s("density", p.density, "Part of the noise's points that are dots when it is sparse; 0: 0.02 in flat data, 0.004 in solid ones.")
+  s("density", p.density, "Part of the noise's points that are dots when it is sparse; 0: 0.02 in flat data, 0.002 in solid ones.")
       .range(0, 1);
   s("grain", p.grain, "Size of the grains of the noise; 0: 1, sparse dots in solid data 2.").unit("pixels").range(0, 256);
   s("seed", p.seed, "Another number, another noise.");
