@@ -26,8 +26,23 @@ std::string numbered(const std::string& pattern, size_t n, size_t count) {
   return pattern.substr(0, at) + fmt::format("{:0{}}", n, digits) + pattern.substr(at + mark.size());
 }
 
-// The pipeline of one step: readers and sources with a time get it. Where trails are drawn, the times are theirs: their lines stay.
+// Writes the time where a parameter asks for it: 'lic kernel=ripple phase={t}'. False when none does.
+bool write_time(PipelineFile& file, double time) {
+  constexpr std::string_view here = "{t}";
+  bool written = false;
+  for (PipelineFile::Step& s : file.steps)
+    for (std::string& word : s.words)
+      for (size_t at = word.find(here); at != word.npos; at = word.find(here, at)) {
+        word.replace(at, here.size(), exact_number(time));
+        written = true;
+      }
+  return written;
+}
+
+// The pipeline of one step: the parameters that ask for the time get it, else trails, whose lines stay, else readers and sources with a
+// time.
 PipelineFile at_time(PipelineFile file, double time, std::optional<size_t> step) {
+  if (write_time(file, time)) return file;
   bool of_trails = false;
   for (PipelineFile::Step& s : file.steps)
     if (s.operation == "trails" && !step && !word_value(s.words, "time")) s.words.push_back("time=" + exact_number(time)), of_trails = true;
