@@ -11,6 +11,7 @@
 #include "filter/field/resize.h"
 #include "filter/glyph/choose.h"
 #include "filter/glyph/trails.h"
+#include "filter/flow/fronts/stream_surface.h"
 #include "filter/flow/lines/even_streamlines.h"
 #include "filter/flow/lines/tubes.h"
 #include "filter/flow/seeds.h"
