@@ -12,6 +12,7 @@
 #include "filter/glyph/choose.h"
 #include "filter/glyph/trails.h"
 #include "filter/flow/fronts/stream_surface.h"
+#include "filter/flow/fronts/unsteady_surfaces.h"
 #include "filter/flow/lines/even_streamlines.h"
 #include "filter/flow/lines/tubes.h"
 #include "filter/flow/seeds.h"
