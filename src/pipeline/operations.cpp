@@ -14,6 +14,8 @@
 #include "filter/flow/texture/spot_noise.h"
 #include "filter/glyph/choose.h"
 #include "filter/glyph/trails.h"
+#include "filter/flow/fronts/stream_surface.h"
+#include "filter/flow/fronts/unsteady_surfaces.h"
 #include "filter/flow/lines/even_streamlines.h"
 #include "filter/flow/lines/tubes.h"
 #include "filter/flow/seeds.h"
