@@ -19,12 +19,7 @@ void describe(Schema& s, FtleParams& p) {
   s("bounds", p.bounds, "Box of the seeds as xmin,xmax,ymin,ymax,zmin,zmax; default: that of the mesh.").unit("length");
   s("offset", p.offset, "Derivatives from four (3D: six) places this far beside each seed; default: from the neighbouring seeds.")
       .unit("length");
-}
-
-UniformGrid ftle_grid(const Dataset& in, const FtleParams& p) {
-  ResampleParams r;
-  r.dims = p.dims, r.size = p.size, r.bounds = p.bounds;
-  return resample_grid(in, r);
+  describe(s, p.integration);
 }
 
 namespace {
