@@ -2,6 +2,7 @@
 #include "filter/flow/streamlines.h"
 
 #include "base/random.h"
+#include "data/trusted.h"
 #include "filter/flow/line_attributes.h"
 #include "filter/flow/line_mesh.h"
 
@@ -83,7 +84,7 @@ Data streamlines(const std::vector<Data>& inputs, const StreamlinesParams& p, Co
   const bool vorticity = wanted("vorticity"), rotation = wanted("rotation");
   if (vorticity || rotation) add(rotation_along(parts, *lines, parts.name(), vorticity, rotation, context));
   if (wanted("fields")) add(fields_along(parts, *lines, parts.name(), context));
-  return make_dataset(std::move(out));
+  return make_trusted_dataset(std::move(out));
 }
 
 }  // namespace sg
