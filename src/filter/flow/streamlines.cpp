@@ -42,7 +42,7 @@ Data streamlines(const std::vector<Data>& inputs, const StreamlinesParams& p, Co
   if (!(largest > 0)) fail_usage(fmt::format("field '{}' is zero or NaN everywhere: nothing flows", parts.name()), "streamlines");
   StopParams stop = p.stop;
   // Lines that circle would fill the picture.
-  if (!stop.max_length && !stop.max_time) stop.max_length = 4 * parts.bounds().diagonal();
+  if (!stop.max_length && !stop.max_time) stop.max_length = 1.5 * parts.bounds().diagonal();
   const TraceOptions options = trace_options(p.integration, stop, largest);
   std::vector<DatasetPtr> meshes;
   for (const FlowField& f : parts.fields()) meshes.push_back(f.dataset());

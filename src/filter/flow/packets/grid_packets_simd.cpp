@@ -58,12 +58,6 @@ class GridMesh {
       hn::Store(at, di, &base_[l]);
       hn::Store(hn::IfThenElseZero(good, hn::Set(di, -1)), di, ok + l);
     }
-    // All rows are asked for before the first is waited for.
-    const ptrdiff_t dy = g_.stride[1], dz = g_.stride[2];
-    for (size_t l = 0; l < active; ++l) {
-      const float* p = g_.v + base_[l];
-      __builtin_prefetch(p), __builtin_prefetch(p + dy), __builtin_prefetch(p + dz), __builtin_prefetch(p + dz + dy);
-    }
     HWY_ALIGN float out[N][4];
     for (size_t l = 0; l < active; ++l) interpolate(g_.v + base_[l], to_f_[0][l], to_f_[1][l], to_f_[2][l], out[l]);
     for (size_t l = active; l < N; ++l) std::fill_n(out[l], 4, 0.0f);
