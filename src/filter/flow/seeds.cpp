@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/random.h"
+#include "data/mesh_dimension.h"
 #include "data/point_positions.h"
 #include "filter/flow/random_places.h"
 
@@ -23,7 +24,7 @@ void describe(Schema& s, SeedParams& p) {
   s("radius", p.radius, "Radius of sphere or ball; default: a tenth of the mesh's diagonal.").unit("length").positive();
   s("size", p.size, "Edges of the plane (two) or box (three); default: those of the mesh.").unit("length").at_least(0);
   s("counts", p.counts, "Seeds along the edges of plane (two) or box (three); default: as many as count, evenly.").range(1, 1e6);
-  s("count", p.count, "How many seeds (a mesh gives all its points).").range(1, 1e9);
+  s("count", p.count, "How many seeds (a mesh gives all its points); 0: 200, on a line 40, at random on surfaces 60.").range(0, 1e9);
   s("random_seed", p.random_seed, "Other numbers, other random places.");
 }
 
@@ -36,6 +37,11 @@ std::string seed_kind(const SeedParams& p, bool mesh) {
   if (p.normal || p.size.size() == 2 || p.counts.size() == 2) return "plane";
   if (p.size.size() == 3 || p.counts.size() == 3) return "grid";
   return "random";
+}
+
+int64_t seed_count(const SeedParams& p, std::string_view kind, int dimension) {
+  if (p.count > 0) return p.count;
+  return kind == "line" ? 40 : kind == "random" && dimension < 3 ? 60 : 200;
 }
 
 std::vector<Vec3> points_of(const Dataset& mesh) {
@@ -158,9 +164,13 @@ std::vector<Vec3> of_mesh(const DatasetPtr& mesh) {
 
 }  // namespace
 
-std::vector<Vec3> make_seeds(const SeedParams& p, const std::vector<DatasetPtr>& parts, const DatasetPtr& mesh, const SeedPlace& accept,
+std::vector<Vec3> make_seeds(const SeedParams& given, const std::vector<DatasetPtr>& parts, const DatasetPtr& mesh, const SeedPlace& accept,
                              Context& context) {
+  SeedParams p = given;
   const std::string kind = seed_kind(p, bool(mesh));
+  int dimension = 0;
+  for (const DatasetPtr& d : parts) dimension = std::max(dimension, mesh_dimension(*d));
+  p.count = seed_count(p, kind, dimension);
   Box3 box;
   for (const DatasetPtr& d : parts) box.add(d->bounds());
   if (kind == "mesh") return of_mesh(mesh);
