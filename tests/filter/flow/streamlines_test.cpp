@@ -345,6 +345,32 @@ TEST_CASE("seeds: random places fill solids by volume and surfaces by area, and 
   CHECK(seeds_of(shapes::sphere(3).dataset(), {.seeds = "random", .count = 20, .random_seed = 2})[0] != s[0]);
 }
 
+TEST_CASE("seeds: bright pixels of a picture on a plane") {
+  // A picture of 40 x 20 pixels whose right half is white, of three channels.
+  UniformGrid g;
+  g.dims = {40, 20, 1};
+  std::vector<uint8_t> rgb;
+  for (int i = 0; i < 800; ++i) rgb.insert(rgb.end(), 3, i % 40 >= 20 ? 255 : 0);
+  FieldSet fields;
+  fields.add({"picture", Association::point, Array::from_vector(rgb, 3), "", Role::none});
+  const DatasetPtr mesh = mesh_of("uniform", 4, 1), picture = make_dataset(g, fields);
+  SeedParams p;
+  p.seeds = "pixels", p.normal = Vec3(0, 0, 1), p.size = {2, 1}, p.count = 100;
+  const std::vector<Vec3> s = seeds_of(mesh, p, picture);
+  CHECK(double(s.size()) == doctest::Approx(100).epsilon(0.3));
+  for (const Vec3& x : s) {
+    CHECK(x.x > 0);
+    CHECK(x.x <= 1);
+    CHECK(std::abs(x.y) <= 0.5);
+    CHECK(x.z == 0);
+  }
+  CHECK(contains(error_of([&] { seeds_of(mesh, p, mesh); }), "need a picture"));
+  std::vector<uint8_t> black(2400);
+  FieldSet none;
+  none.add({"picture", Association::point, Array::from_vector(black, 3), "", Role::none});
+  CHECK(contains(error_of([&] { seeds_of(mesh, p, make_dataset(g, none)); }), "black"));
+}
+
 TEST_CASE("seeds: numbers that make no seeds are named") {
   const DatasetPtr mesh = mesh_of("uniform", 4, 1);
   const auto said = [&](const SeedParams& p, const char* part) { return contains(error_of([&] { seeds_of(mesh, p); }), part); };
