@@ -2,6 +2,7 @@
 #include "filter/flow/line_mesh.h"
 
 #include "base/parallel.h"
+#include "data/trusted.h"
 
 namespace sg {
 
@@ -44,7 +45,7 @@ struct LineArrays {
     std::string words;
     for (int r = 0; r <= int(StopReason::error); ++r) words += fmt::format("{}{} {}", r ? ", " : "", r, stop_reason_name(StopReason(r)));
     parts.notes.emplace_back("stop", words);
-    return make_dataset(std::move(parts));
+    return make_trusted_dataset(std::move(parts));
   }
 };
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 
 #include "base/random.h"
+#include "data/lattice.h"
+#include "data/mesh_dimension.h"
 #include "data/point_positions.h"
 #include "filter/flow/random_places.h"
 
@@ -23,7 +25,7 @@ void describe(Schema& s, SeedParams& p) {
   s("radius", p.radius, "Radius of sphere or ball; default: a tenth of the mesh's diagonal.").unit("length").positive();
   s("size", p.size, "Edges of the plane (two) or box (three); default: those of the mesh.").unit("length").at_least(0);
   s("counts", p.counts, "Seeds along the edges of plane (two) or box (three); default: as many as count, evenly.").range(1, 1e6);
-  s("count", p.count, "How many seeds (a mesh gives all its points).").range(1, 1e9);
+  s("count", p.count, "How many seeds (a mesh gives all its points); 0: 200, on a line 40, at random on surfaces 60.").range(0, 1e9);
   s("random_seed", p.random_seed, "Other numbers, other random places.");
 }
 
@@ -36,6 +38,11 @@ std::string seed_kind(const SeedParams& p, bool mesh) {
   if (p.normal || p.size.size() == 2 || p.counts.size() == 2) return "plane";
   if (p.size.size() == 3 || p.counts.size() == 3) return "grid";
   return "random";
+}
+
+int64_t seed_count(const SeedParams& p, std::string_view kind, int dimension) {
+  if (p.count > 0) return p.count;
+  return kind == "line" ? 40 : kind == "random" && dimension < 3 ? 60 : 200;
 }
 
 std::vector<Vec3> points_of(const Dataset& mesh) {
@@ -89,7 +96,13 @@ std::vector<Vec3> on_line(const SeedParams& p) {
   return out;
 }
 
-std::vector<Vec3> on_plane(const SeedParams& p, const Box3& box) {
+// A rectangle of seeds: middle, unit axes, edges.
+struct Rectangle {
+  Vec3 center, u, v;
+  double a = 0, b = 0;
+};
+
+Rectangle rectangle(const SeedParams& p, const Box3& box) {
   const Vec3 extent = box.size();
   Vec3 normal = p.normal.value_or(Vec3(0, 0, 0));
   if (!p.normal) normal[extent.x <= extent.y && extent.x <= extent.z ? 0 : extent.y <= extent.z ? 1 : 2] = 1;
@@ -106,13 +119,43 @@ std::vector<Vec3> on_plane(const SeedParams& p, const Box3& box) {
                                                                                                          : Vec3(1, 0, 0);
   const Vec3 u = normalize(pick - normal * dot(pick, normal)), v = cross(normal, u);
   const auto reach = [&](Vec3 d) { return std::abs(d.x) * extent.x + std::abs(d.y) * extent.y + std::abs(d.z) * extent.z; };
-  const double a = p.size.empty() ? reach(u) : p.size[0], b = p.size.empty() ? reach(v) : p.size[1];
-  std::array<size_t, 3> n = even_counts({a, b, 0}, double(p.count));
+  return {p.center.value_or(box.center()), u, v, p.size.empty() ? reach(u) : p.size[0], p.size.empty() ? reach(v) : p.size[1]};
+}
+
+std::vector<Vec3> on_plane(const SeedParams& p, const Box3& box) {
+  const Rectangle r = rectangle(p, box);
+  std::array<size_t, 3> n = even_counts({r.a, r.b, 0}, double(p.count));
   if (!p.counts.empty()) n = {size_t(p.counts[0]), size_t(p.counts[1]), 1};
-  const Vec3 center = p.center.value_or(box.center());
   std::vector<Vec3> out;
   for (size_t j = 0; j < n[1]; ++j)
-    for (size_t i = 0; i < n[0]; ++i) out.push_back(center + u * (a * along(i, n[0])) + v * (b * along(j, n[1])));
+    for (size_t i = 0; i < n[0]; ++i) out.push_back(r.center + r.u * (r.a * along(i, n[0])) + r.v * (r.b * along(j, n[1])));
+  return out;
+}
+
+// Pixels of a picture that is laid over the plane, bright ones more often: about as many as are asked for.
+std::vector<Vec3> of_pixels(const SeedParams& p, const Box3& box, const DatasetPtr& picture) {
+  if (!picture || !is_lattice(picture->mesh()) || lattice_dims(picture->mesh())[2] != 1)
+    fail_usage("seeds of pixels need a picture as second input", "seeds", "read a PNG file, or any grid of one layer, as second input");
+  const Field* f = picture->fields().with_role(Role::scalars);
+  for (const Field& g : picture->fields())
+    if (!f && g.association == Association::point) f = &g;
+  if (!f || f->association != Association::point) fail_usage("the picture has no point field", "seeds");
+  const Rectangle r = rectangle(p, box);
+  const auto dims = lattice_dims(picture->mesh());
+  const int channels = std::min(f->components(), 3);  // without the alpha channel
+  std::vector<double> bright(dims[0] * dims[1]);
+  double sum = 0;
+  for (size_t i = 0; i < bright.size(); ++i) {
+    double total = 0;
+    for (int c = 0; c < channels; ++c) total += f->array.get(i, c);
+    bright[i] = total > 0 ? total : 0;  // NaN too
+    sum += bright[i];
+  }
+  std::vector<Vec3> out;
+  if (!(sum > 0) || !std::isfinite(sum)) fail_usage("the picture is black: no pixel is bright enough for a seed", "seeds");
+  for (size_t i = 0; i < bright.size(); ++i)
+    if (random_unit(uint64_t(p.random_seed), i) < bright[i] / sum * double(p.count))
+      out.push_back(r.center + r.u * (r.a * along(i % dims[0], dims[0])) + r.v * (r.b * along(i / dims[0], dims[1])));
   return out;
 }
 
@@ -158,15 +201,20 @@ std::vector<Vec3> of_mesh(const DatasetPtr& mesh) {
 
 }  // namespace
 
-std::vector<Vec3> make_seeds(const SeedParams& p, const std::vector<DatasetPtr>& parts, const DatasetPtr& mesh, const SeedPlace& accept,
+std::vector<Vec3> make_seeds(const SeedParams& given, const std::vector<DatasetPtr>& parts, const DatasetPtr& mesh, const SeedPlace& accept,
                              Context& context) {
+  SeedParams p = given;
   const std::string kind = seed_kind(p, bool(mesh));
+  int dimension = 0;
+  for (const DatasetPtr& d : parts) dimension = std::max(dimension, mesh_dimension(*d));
+  p.count = seed_count(p, kind, dimension);
   Box3 box;
   for (const DatasetPtr& d : parts) box.add(d->bounds());
   if (kind == "mesh") return of_mesh(mesh);
   if (kind == "points") return listed(p);
   if (kind == "line") return on_line(p);
   if (kind == "plane") return on_plane(p, box);
+  if (kind == "pixels") return of_pixels(p, box, mesh);
   if (kind == "sphere" || kind == "ball") return in_sphere(p, box, kind == "ball");
   if (kind == "grid") return in_grid(p, box);
   std::vector<Vec3> out = random_places(parts, size_t(p.count), uint64_t(p.random_seed), accept, context);

@@ -21,7 +21,7 @@ struct SeedParams {
   std::optional<double> radius;
   std::vector<double> size;
   std::vector<int64_t> counts;
-  int64_t count = 200;
+  int64_t count = 0;  ///< 0: by kind, see seed_count()
   int64_t random_seed = 1;
 };
 void describe(Schema& s, SeedParams& p);
@@ -29,6 +29,9 @@ void describe(Schema& s, SeedParams& p);
 /// What `seeds` stands for: its word, or the kind that the other parameters imply ("auto": mesh when there is one, points, line, sphere,
 /// plane, grid by what is given; else random).
 std::string seed_kind(const SeedParams& p, bool mesh);
+
+/// count, or what stands for it: 200, on a line 40, at random in meshes of surfaces 60 (their lines lie side by side).
+int64_t seed_count(const SeedParams& p, std::string_view kind, int dimension);
 
 /// Is there a place for a seed? Asked from one thread.
 using SeedPlace = std::function<bool(Vec3)>;

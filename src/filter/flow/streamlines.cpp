@@ -2,6 +2,7 @@
 #include "filter/flow/streamlines.h"
 
 #include "base/random.h"
+#include "data/trusted.h"
 #include "filter/flow/line_attributes.h"
 #include "filter/flow/line_mesh.h"
 
@@ -41,7 +42,7 @@ Data streamlines(const std::vector<Data>& inputs, const StreamlinesParams& p, Co
   if (!(largest > 0)) fail_usage(fmt::format("field '{}' is zero or NaN everywhere: nothing flows", parts.name()), "streamlines");
   StopParams stop = p.stop;
   // Lines that circle would fill the picture.
-  if (!stop.max_length && !stop.max_time) stop.max_length = 4 * parts.bounds().diagonal();
+  if (!stop.max_length && !stop.max_time) stop.max_length = 1.5 * parts.bounds().diagonal();
   const TraceOptions options = trace_options(p.integration, stop, largest);
   std::vector<DatasetPtr> meshes;
   for (const FlowField& f : parts.fields()) meshes.push_back(f.dataset());
@@ -83,7 +84,7 @@ Data streamlines(const std::vector<Data>& inputs, const StreamlinesParams& p, Co
   const bool vorticity = wanted("vorticity"), rotation = wanted("rotation");
   if (vorticity || rotation) add(rotation_along(parts, *lines, parts.name(), vorticity, rotation, context));
   if (wanted("fields")) add(fields_along(parts, *lines, parts.name(), context));
-  return make_dataset(std::move(out));
+  return make_trusted_dataset(std::move(out));
 }
 
 }  // namespace sg

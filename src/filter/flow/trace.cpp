@@ -14,7 +14,7 @@ void describe(Schema& s, IntegrationParams& p) {
   s("step_unit", p.step_unit, "What steps are measured in: sizes of the local cell, length, or time.").choices({"cells", "length", "time"});
   s("tolerance", p.tolerance, "dormand_prince: error of one step, in sizes of the local cell.").positive();
   s("min_step", p.min_step, "dormand_prince: smallest step, in step_unit; default: a fiftieth of step.");
-  s("max_step", p.max_step, "dormand_prince: largest step, in step_unit; default: twice step.");
+  s("max_step", p.max_step, "dormand_prince: largest step, in step_unit; default: step, which keeps lines smooth.");
 }
 
 void describe(Schema& s, StopParams& p) {
@@ -38,7 +38,7 @@ TraceOptions trace_options(const IntegrationParams& p, const StopParams& stop, d
            : p.step_unit == "length" ? TraceOptions::Unit::length
                                      : TraceOptions::Unit::time;
   o.step = p.step, o.tolerance = p.tolerance;
-  o.min_step = p.min_step.value_or(p.step / 50), o.max_step = p.max_step.value_or(p.step * 2);
+  o.min_step = p.min_step.value_or(p.step / 50), o.max_step = p.max_step.value_or(p.step);
   if (!(o.min_step > 0) || !(o.max_step >= o.min_step))
     fail_usage(fmt::format("min_step {} and max_step {} leave no step", o.min_step, o.max_step), "integrator", "0 < min_step <= max_step");
   o.max_length = stop.max_length.value_or(HUGE_VAL), o.max_time = stop.max_time.value_or(HUGE_VAL);

@@ -95,6 +95,25 @@ class GridMesh {
     const auto plane = [&](const float* q) { return blend(blend(q[0], q[dy], fy), blend(q[dz], q[dz + dy], fy), fz); };
     for (int c = 0; c < 3; ++c) out[c] = blend(plane(p + c), plane(p + 3 + c), fx);
   }
+#elif HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3
+  // As below, both points of a row in one vector; a masked load reads six numbers and no more.
+  template <class V>
+  static HWY_INLINE V blend(V a, V b, V t) {
+    return hn::Add(a, hn::Mul(t, hn::Sub(b, a)));
+  }
+  HWY_INLINE void interpolate(const float* p, float fx, float fy, float fz, float* HWY_RESTRICT out) const {
+    const hn::CappedTag<float, 8> d;
+    const D4 half;
+    alignas(32) static constexpr int32_t second[8] = {3, 4, 5, 5, 3, 4, 5, 5};
+    const ptrdiff_t dy = g_.stride[1], dz = g_.stride[2];
+    const auto six = hn::FirstN(d, 6);
+    const auto y = hn::Set(d, fy);
+    const auto low = blend(hn::MaskedLoad(six, d, p), hn::MaskedLoad(six, d, p + dy), y);
+    const auto high = blend(hn::MaskedLoad(six, d, p + dz), hn::MaskedLoad(six, d, p + dz + dy), y);
+    const auto row = blend(low, high, hn::Set(d, fz));
+    const auto next = hn::TableLookupLanes(row, hn::SetTableIndices(d, second));
+    hn::Store(blend(hn::LowerHalf(half, row), hn::LowerHalf(half, next), hn::Set(half, fx)), half, out);
+  }
 #else
   static HWY_INLINE hn::Vec<D4> blend(hn::Vec<D4> a, hn::Vec<D4> b, hn::Vec<D4> t) { return hn::Add(a, hn::Mul(t, hn::Sub(b, a))); }
   HWY_INLINE void interpolate(const float* p, float fx, float fy, float fz, float* HWY_RESTRICT out) const {

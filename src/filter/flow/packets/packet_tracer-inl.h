@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The loop over steps that packets of every mesh kind share; included once per target. A Mesh has
+// The loop over steps that packets of every mesh kind share; included once per target, after hwy/highway.h. A Mesh has
 //   void start(size_t lane, const Item&)                 puts a particle at its seed
 //   void velocity(size_t lane, float v[3][N]) -> bool    velocity there
 //   void look(const float (&move)[3][N], size_t active, float (&v)[3][N], int32_t* ok)   velocities at the places moved by `move`
@@ -12,8 +12,6 @@
 #else
 #define SG_PACKET_TRACER_INL_H_
 #endif
-
-#include <hwy/highway.h>
 
 #include "filter/flow/packets/packets.h"
 #include "filter/flow/trace_line.h"
