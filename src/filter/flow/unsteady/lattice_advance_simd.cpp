@@ -30,13 +30,27 @@ HWY_INLINE F4 load(const float* p) {
   return v;
 }
 /// The same point of two steps.
-HWY_INLINE F8 load_two(const float* a, const float* b) { return __builtin_shufflevector(load(a), load(b), 0, 1, 2, 3, 4, 5, 6, 7); }
+HWY_INLINE F8 load_two(const float* a, const float* b) {
+#ifdef __AVX__
+  return reinterpret_cast<F8>(_mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(a)), _mm_loadu_ps(b), 1));
+#else
+  return __builtin_shufflevector(load(a), load(b), 0, 1, 2, 3, 4, 5, 6, 7);
+#endif
+}
+/// Are all four true (all bits set)?
+HWY_INLINE bool all_true(L4 v) {
+#ifdef __AVX__
+  return _mm256_movemask_pd(reinterpret_cast<__m256d>(v)) == 15;
+#else
+  return (v[0] & v[1] & v[2] & v[3]) != 0;
+#endif
+}
 HWY_INLINE F8 all(float x) { return F8{x, x, x, x, x, x, x, x}; }
 HWY_INLINE F8 mix(F8 a, F8 b, F8 f) { return a + f * (b - a); }
 HWY_INLINE Vec3 vec(D4 v) { return {v[0], v[1], v[2]}; }
 
 struct Grid {
-  D4 origin, inverse, cells;
+  D4 origin, inverse, last_cell;
   L4 keep;  // components that have a meaning: three, or two in a flat grid
   const Job* job;
 };
@@ -47,12 +61,12 @@ HWY_INLINE bool velocity(const Grid& g, D4 x, double t, D4& v) {
   const Job& job = *g.job;
   constexpr double slack = 1e-9;
   const D4 zero{}, q = (x - g.origin) * g.inverse;
-  const L4 out = (q < zero - slack) | (q > g.cells + slack) | (q != q);
   const D4 low = q > zero ? q : zero;
-  const D4 most = g.cells - 1.0;
-  const D4 in = low < most ? low : most;  // keeps addresses inside whatever q is
+  const D4 in = low < g.last_cell ? low : g.last_cell;  // keeps addresses inside whatever q is
   const I4 c = __builtin_convertvector(in, I4);
   D4 f = q - __builtin_convertvector(c, D4);
+  const D4 off = f - 0.5, beside = off > zero ? off : -off;
+  const L4 inside = beside <= zero + (0.5 + slack);
   f = f > zero ? f : zero;
   f = f < 1.0 ? f : zero + 1.0;
   const F4 w = __builtin_convertvector(f, F4);
@@ -90,15 +104,14 @@ HWY_INLINE bool velocity(const Grid& g, D4 x, double t, D4& v) {
     sum = sum + (__builtin_shufflevector(part, part, 0, 1, 2, 3) + __builtin_shufflevector(part, part, 4, 5, 6, 7));
   }
   v = reinterpret_cast<D4>(reinterpret_cast<L4>(__builtin_convertvector(sum, D4)) & g.keep);
-  const L4 bad = out | (v - v != zero);
-  return (bad[0] | bad[1] | bad[2]) == 0;
+  return all_true(inside & (v - v == zero));
 }
 
-/// x^(-1/5) for x > 0 by Newton's iteration.
+/// x^(-1/5) for x > 0 by two of Newton's iterations: to 1e-4, enough for the size of a step.
 HWY_INLINE double inverse_fifth_root(double x) {
   const uint64_t bits = std::bit_cast<uint64_t>(x);
   double y = std::bit_cast<double>(uint64_t(0x4CB999999999999A) - bits / 5);
-  for (int n = 0; n < 4; ++n) {
+  for (int n = 0; n < 2; ++n) {
     const double y2 = y * y;
     y = y * (1.2 - 0.2 * x * (y2 * y2 * y));
   }
@@ -111,7 +124,7 @@ HWY_INLINE double next_size(double h, double error) {
 struct Lane {
   Particle* p = nullptr;
   D4 x, k1;
-  double t, h, sign, left, least, wished;
+  double t, h, left, least, wished;
   int halving;
   bool at_border;
   // Of the step just tried:
@@ -122,14 +135,14 @@ struct Lane {
 template <int STEPS>
 class Lanes {
  public:
-  Lanes(const Job& job, std::span<Particle> particles, size_t first, double until, const TraceOptions& o, Way* way)
-      : particles_(particles), first_(first), until_(until), o_(o), way_(way) {
+  Lanes(const Job& job, std::span<Particle> particles, size_t first, double until, int sign, const TraceOptions& o, Way* way)
+      : particles_(particles), first_(first), until_(until), sign_(sign), o_(o), way_(way) {
     g_.job = &job;
     for (int a = 0; a < 3; ++a) {
-      g_.origin[a] = job.origin[a], g_.inverse[a] = job.inverse[a], g_.cells[a] = job.cells[a];
+      g_.origin[a] = job.origin[a], g_.inverse[a] = job.inverse[a], g_.last_cell[a] = job.cells[a] - 1;
       g_.keep[a] = a == job.flat ? 0 : -1;
     }
-    g_.origin[3] = g_.inverse[3] = 0, g_.cells[3] = 1, g_.keep[3] = 0;
+    g_.origin[3] = g_.inverse[3] = 0, g_.last_cell[3] = 0, g_.keep[3] = 0;
   }
 
   void run() {
@@ -147,11 +160,12 @@ class Lanes {
  private:
   static constexpr int width = 4;
 
-  double time_of(double size, double speed) const {
+  /// What a size of 1 in the options' unit takes.
+  double unit_time(double speed) const {
     switch (o_.unit) {
-      case TraceOptions::Unit::cells: return size * g_.job->cell / speed;
-      case TraceOptions::Unit::length: return size / speed;
-      default: return size;
+      case TraceOptions::Unit::cells: return g_.job->cell / speed;
+      case TraceOptions::Unit::length: return 1 / speed;
+      default: return 1;
     }
   }
   double speed_of(D4 v) const { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
@@ -180,8 +194,8 @@ class Lanes {
   bool fill(Lane& l) {
     for (; next_ < particles_.size(); ++next_) {
       Particle& p = particles_[next_];
-      if (p.ended || (!p.started && !start(p))) continue;
-      l.p = &p, l.sign = until_ >= p.t ? 1 : -1;
+      if (p.ended || (until_ - p.t) * sign_ < 0 || (!p.started && !start(p))) continue;
+      l.p = &p;
       l.x = D4{p.x.x, p.x.y, p.x.z, 0}, l.k1 = D4{p.v.x, p.v.y, p.v.z, 0}, l.t = p.t;
       if (!begin_step(l)) continue;
       ++next_;
@@ -202,10 +216,10 @@ class Lanes {
       p.ended = true, p.why = StopReason::steps;
       return false;
     }
-    const double speed = speed_of(l.k1);
-    l.least = time_of(o_.min_step, speed);
-    double h = p.next > 0 ? p.next : time_of(o_.step, speed);
-    h = std::min(std::max(h, l.least), time_of(o_.max_step, speed));
+    const double unit = unit_time(speed_of(l.k1));
+    l.least = o_.min_step * unit;
+    double h = p.next > 0 ? p.next : o_.step * unit;
+    h = std::min(std::max(h, l.least), o_.max_step * unit);
     l.wished = h;
     if (!(h < l.left)) h = l.left;
     else if (h > l.left / 2) h = l.left / 2;
@@ -219,7 +233,7 @@ class Lanes {
     const auto stage = [&](auto&& place, double share, D4* k) {
       for (int i = 0; i < n; ++i) {
         Lane& l = lane[i];
-        const double h = l.sign * l.h;
+        const double h = sign_ * l.h;
         l.ok &= velocity<STEPS>(g_, l.x + h * place(l, i), l.t + share * h, k[i]);
       }
     };
@@ -237,7 +251,7 @@ class Lanes {
         1.0, k6);
     for (int i = 0; i < n; ++i) {
       Lane& l = lane[i];
-      const double h = l.sign * l.h;
+      const double h = sign_ * l.h;
       l.x1 =
           l.x + h * ((35.0 / 384) * l.k1 + (500.0 / 1113) * k3[i] + (125.0 / 192) * k4[i] - (2187.0 / 6784) * k5[i] + (11.0 / 84) * k6[i]);
       l.ok &= velocity<STEPS>(g_, l.x1, l.t + h, l.k7);
@@ -261,7 +275,7 @@ class Lanes {
       return true;
     }
     l.x = l.x1, l.k1 = l.k7;
-    l.t = l.h >= l.left ? until_ : l.t + l.sign * l.h;
+    l.t = l.h >= l.left ? until_ : l.t + sign_ * l.h;
     p.x = vec(l.x), p.v = vec(l.k1), p.t = l.t;
     ++p.steps;
     const double next = next_size(l.h, error);
@@ -277,14 +291,14 @@ class Lanes {
   Grid g_;
   std::span<Particle> particles_;
   size_t first_, next_ = 0;
-  double until_;
+  double until_, sign_;
   const TraceOptions& o_;
   Way* way_;
 };
 
-void run(const Job& job, std::span<Particle> particles, size_t first, double until, const TraceOptions& o, Way* way) {
-  if (job.steps == 2) Lanes<2>(job, particles, first, until, o, way).run();
-  else Lanes<4>(job, particles, first, until, o, way).run();
+void run(const Job& job, std::span<Particle> particles, size_t first, double until, int sign, const TraceOptions& o, Way* way) {
+  if (job.steps == 2) Lanes<2>(job, particles, first, until, sign, o, way).run();
+  else Lanes<4>(job, particles, first, until, sign, o, way).run();
 }
 
 }  // namespace sg::lattice_advance::HWY_NAMESPACE
@@ -294,8 +308,8 @@ HWY_AFTER_NAMESPACE();
 namespace sg::lattice_advance {
 HWY_EXPORT(run);
 
-void run(const Job& job, std::span<Particle> particles, size_t first, double until, const TraceOptions& options, Way* way) {
-  HWY_DYNAMIC_DISPATCH(run)(job, particles, first, until, options, way);
+void run(const Job& job, std::span<Particle> particles, size_t first, double until, int sign, const TraceOptions& options, Way* way) {
+  HWY_DYNAMIC_DISPATCH(run)(job, particles, first, until, sign, options, way);
 }
 }  // namespace sg::lattice_advance
 #endif
