@@ -4,9 +4,9 @@
 #include "base/parallel.h"
 #include "filter/flow/flow_field.h"
 #include "filter/flow/vortex/eigen_general.h"
+#include "filter/flow/vortex/keep_large.h"
 #include "filter/flow/vortex/measures.h"
 #include "filter/flow/vortex/parallel_vectors.h"
-#include "filter/mesh/extract.h"
 
 namespace sg {
 
@@ -99,14 +99,7 @@ DatasetPtr vortex_cores(const DatasetPtr& in, const VortexCoresParams& p, Contex
     angle[a] = std::max(angle[a], turn), angle[b] = std::max(angle[b], turn);
   }
   const DatasetPtr with = parallel_lines_mesh(in, kept, context, {{"swirling strength", swirl}, {"core angle", angle}});
-  const SurfaceMesh& mesh = *with->as<SurfaceMesh>();
-  const Field* length = with->fields().find("length", Association::cell);
-  if (!length || p.min_length <= 0) return with;
-  std::vector<int64_t> stay;
-  for (size_t c = 0; c < mesh.lines.size(); ++c)
-    if (length->array.get(c) >= p.min_length * in->bounds().diagonal()) stay.push_back(int64_t(c));
-  if (stay.empty()) context.info("vortex_cores: no core is long enough; min_length=0 keeps the short ones");
-  return extract_cells(with, stay, "vortex_cores");
+  return long_lines(with, p.min_length * in->bounds().diagonal(), "vortex_cores", context);
 }
 
 }  // namespace sg

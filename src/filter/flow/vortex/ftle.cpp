@@ -2,9 +2,9 @@
 #include "filter/flow/vortex/ftle.h"
 
 #include "base/parallel.h"
-#include "filter/flow/vortex/eigen_general.h"
 #include "filter/flow/vortex/flow_map.h"
 #include "filter/probe/resample.h"
+#include "filter/tensor/sym_tensor.h"
 
 namespace sg {
 
@@ -47,34 +47,21 @@ struct Stretch {
   Vec3 largest{NAN, NAN, NAN}, smallest{NAN, NAN, NAN};
 };
 
-// C = F^T F over the axes that count; its eigenvalues are those of a symmetric matrix, all real.
+// C = F^T F over the axes that count, which span a line, a plane or space.
 Stretch stretch_of(const Vec3 f[3], const bool counts[3], int dimension, double duration) {
-  Mat3 c;
-  for (int a = 0; a < 3; ++a)
-    for (int b = 0; b < 3; ++b) c.m[a][b] = counts[a] && counts[b] ? dot(f[a], f[b]) : 0;
+  const auto c = [&](int a, int b) { return counts[a] && counts[b] ? dot(f[a], f[b]) : 0.0; };
+  const Eigen3 e = eigen_of({c(0, 0), c(1, 1), c(2, 2), c(0, 1), c(1, 2), c(0, 2)});
   Stretch s;
-  GeneralEigenvalues e = general_eigenvalues(c);
-  if (e.complex_pair) {  // a double eigenvalue, by rounding
-    e.real[1] = e.real[2] = e.re;
-    std::sort(e.real, e.real + 3, [](double l, double r) { return l > r; });
+  // Axes that do not count have the eigenvalue 0; their vectors come last among equals only when C has no other 0, so take the values
+  // by the vectors.
+  int last = 0;
+  for (int k = 0, n = 0; k < 3 && n < dimension; ++k) {
+    bool outside = false;
+    for (int a = 0; a < 3; ++a) outside = outside || (!counts[a] && std::abs(e.vector[k][a]) > 0.5);
+    if (!outside) s.values[dimension - 1 - n++] = std::max(e.value[k], 0.0), last = k;
   }
-  // The axes that do not count have the eigenvalue 0: the last ones.
-  for (int k = 0; k < dimension; ++k) s.values[k] = std::max(e.real[dimension - 1 - k], 0.0);
-  if (dimension < 3) s.values[2] = 0;
-  if (dimension < 2) s.values[1] = 0;
-  const double most = s.values[dimension - 1];
-  s.ftle = std::log(std::sqrt(most)) / std::abs(duration);
-  if (dimension == 2) {
-    // In the plane: the eigenvector by the angle, the other across it.
-    const int a = counts[0] ? 0 : 1, b = counts[2] ? 2 : 1;
-    const double angle = 0.5 * std::atan2(2 * c.m[a][b], c.m[a][a] - c.m[b][b]);
-    s.largest = s.smallest = {0, 0, 0};
-    s.largest[a] = std::cos(angle), s.largest[b] = std::sin(angle);
-    s.smallest[a] = -std::sin(angle), s.smallest[b] = std::cos(angle);
-  } else {
-    s.largest = eigenvector_of(c, e.real[0]);
-    s.smallest = eigenvector_of(c, e.real[2]);
-  }
+  s.largest = e.vector[0], s.smallest = e.vector[last];
+  s.ftle = std::log(std::sqrt(s.values[dimension - 1])) / std::abs(duration);
   return s;
 }
 

@@ -5,6 +5,7 @@
 #include "filter/field/gradient.h"
 #include "filter/flow/flow_field.h"
 #include "filter/flow/vortex/eigen_general.h"
+#include "filter/tensor/sym_tensor.h"
 
 namespace sg {
 
@@ -69,15 +70,13 @@ VortexMeasures vortex_measures_of(const Mat3& j, Vec3 u) {
   m.helicity = dot(u, m.vorticity);
   const double lengths = length(u) * m.vorticity_magnitude;
   m.normalized_helicity = lengths > 0 ? m.helicity / lengths : lengths;
-  Mat3 both, d = j;
-  for (int a = 0; a < 3; ++a)
-    for (int b = 0; b < 3; ++b) {
-      double sum = 0;
-      for (int k = 0; k < 3; ++k) sum += s[a][k] * s[k][b] + w[a][k] * w[k][b];
-      both.m[a][b] = sum;
-    }
-  const GeneralEigenvalues l = general_eigenvalues(both);  // symmetric: a pair is one by rounding alone
-  m.lambda2 = l.complex_pair ? l.re : l.real[1];
+  const auto squares = [&](int a, int b) {
+    double sum = 0;
+    for (int k = 0; k < 3; ++k) sum += s[a][k] * s[k][b] + w[a][k] * w[k][b];
+    return sum;
+  };
+  m.lambda2 = eigen_of({squares(0, 0), squares(1, 1), squares(2, 2), squares(0, 1), squares(1, 2), squares(0, 2)}).value[1];
+  Mat3 d = j;
   for (int a = 0; a < 3; ++a) d.m[a][a] -= m.divergence / 3;
   const auto minor = [&](int a, int b) { return d.m[a][a] * d.m[b][b] - d.m[a][b] * d.m[b][a]; };
   const double third = (minor(0, 1) + minor(0, 2) + minor(1, 2)) / 3, half = determinant(d) / 2;
