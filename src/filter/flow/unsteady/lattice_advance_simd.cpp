@@ -10,9 +10,18 @@
 #include <hwy/highway.h>
 
 #include <bit>
+#include <cfloat>
 #include <cstring>
 
 #pragma GCC diagnostic ignored "-Wpsabi"  // all is inlined
+
+// Not by __AVX2__, which does not follow the target of a function.
+#undef SG_LATTICE_AVX2
+#if HWY_TARGET <= HWY_AVX2 && HWY_ARCH_X86
+#define SG_LATTICE_AVX2 1
+#else
+#define SG_LATTICE_AVX2 0
+#endif
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::lattice_advance::HWY_NAMESPACE {
@@ -31,20 +40,36 @@ HWY_INLINE F4 load(const float* p) {
 }
 /// The same point of two steps.
 HWY_INLINE F8 load_two(const float* a, const float* b) {
-#ifdef __AVX__
+#if SG_LATTICE_AVX2
   return reinterpret_cast<F8>(_mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(a)), _mm_loadu_ps(b), 1));
 #else
   return __builtin_shufflevector(load(a), load(b), 0, 1, 2, 3, 4, 5, 6, 7);
 #endif
 }
-/// Are all four true (all bits set)?
-HWY_INLINE bool all_true(L4 v) {
-#ifdef __AVX__
-  return _mm256_movemask_pd(reinterpret_cast<__m256d>(v)) == 15;
+/// a > b ? a : b and a < b ? a : b, b where one is NaN.
+HWY_INLINE D4 larger(D4 a, D4 b) {
+#if SG_LATTICE_AVX2
+  return reinterpret_cast<D4>(_mm256_max_pd(reinterpret_cast<__m256d>(a), reinterpret_cast<__m256d>(b)));
 #else
-  return (v[0] & v[1] & v[2] & v[3]) != 0;
+  return a > b ? a : b;
 #endif
 }
+HWY_INLINE D4 smaller(D4 a, D4 b) {
+#if SG_LATTICE_AVX2
+  return reinterpret_cast<D4>(_mm256_min_pd(reinterpret_cast<__m256d>(a), reinterpret_cast<__m256d>(b)));
+#else
+  return a < b ? a : b;
+#endif
+}
+/// Are the first three at most `most`, and no NaN?
+HWY_INLINE bool at_most(D4 v, D4 most) {
+#if SG_LATTICE_AVX2
+  return (_mm256_movemask_pd(_mm256_cmp_pd(reinterpret_cast<__m256d>(v), reinterpret_cast<__m256d>(most), _CMP_LE_OQ)) & 7) == 7;
+#else
+  return v[0] <= most[0] && v[1] <= most[1] && v[2] <= most[2];
+#endif
+}
+HWY_INLINE D4 absolute(D4 v) { return reinterpret_cast<D4>(reinterpret_cast<L4>(v) & INT64_MAX); }
 HWY_INLINE F8 all(float x) { return F8{x, x, x, x, x, x, x, x}; }
 HWY_INLINE F8 mix(F8 a, F8 b, F8 f) { return a + f * (b - a); }
 HWY_INLINE Vec3 vec(D4 v) { return {v[0], v[1], v[2]}; }
@@ -55,56 +80,60 @@ struct Grid {
   const Job* job;
 };
 
-/// False outside and where a component is not finite; v then means nothing.
-template <int STEPS>
+/// False outside. NaN in the data makes NaN of v (with LAST: false), and places that are NaN lie outside, so that the stages of a step need
+/// not look.
+template <int STEPS, bool LAST = false>
 HWY_INLINE bool velocity(const Grid& g, D4 x, double t, D4& v) {
   const Job& job = *g.job;
-  constexpr double slack = 1e-9;
   const D4 zero{}, q = (x - g.origin) * g.inverse;
-  const D4 low = q > zero ? q : zero;
-  const D4 in = low < g.last_cell ? low : g.last_cell;  // keeps addresses inside whatever q is
-  const I4 c = __builtin_convertvector(in, I4);
-  D4 f = q - __builtin_convertvector(c, D4);
-  const D4 off = f - 0.5, beside = off > zero ? off : -off;
-  const L4 inside = beside <= zero + (0.5 + slack);
-  f = f > zero ? f : zero;
-  f = f < 1.0 ? f : zero + 1.0;
+  const I4 c = __builtin_convertvector(smaller(larger(q, zero), g.last_cell), I4);  // addresses stay inside whatever q is
+  const D4 f = q - __builtin_convertvector(c, D4);
+  bool ok = at_most(absolute(f - 0.5), zero + (0.5 + 1e-9));
   const F4 w = __builtin_convertvector(f, F4);
   size_t dx = job.stride[0], dy = job.stride[1], dz = job.stride[2];
-  size_t at = size_t(c[0]) * dx + size_t(c[1]) * dy + size_t(c[2]) * dz;
+  size_t at = size_t(uint32_t(c[0])) * dx + size_t(uint32_t(c[1])) * dy + size_t(uint32_t(c[2])) * dz;
   const double s = (t - job.begin) * job.scale;
   const F8 fx = all(w[0]), fy = all(w[1]), fz = all(w[2]);
-  float copy[4][8][4];
-  const float* step[4] = {job.step[0], job.step[1], job.step[2], job.step[3]};
+  float copy[STEPS][8][4];
+  const float* step[STEPS];
+  for (int j = 0; j < STEPS; ++j) step[j] = job.step[j];
   if (HWY_UNLIKELY(at == job.last)) {
     for (int j = 0; j < STEPS; ++j) {
-      for (size_t k = 0; k < 8; ++k)
+      for (size_t k = 0; k < 8; ++k) {
         std::memcpy(copy[j][k], job.step[j] + at + (k & 1 ? dx : 0) + (k & 2 ? dy : 0) + (k & 4 ? dz : 0), 3 * sizeof(float));
-      for (auto& corner : copy[j]) corner[3] = 0;
+        copy[j][k][3] = 0;
+      }
       step[j] = copy[j][0];
     }
     at = 0, dx = 4, dy = 8, dz = 16;
   }
-  F4 sum{};
-  for (int j = 0; j < STEPS; j += 2) {
-    const float *a = step[j] + at, *b = step[j + 1] + at;
+  const auto two = [&](const float* a, const float* b) {
     const F8 r0 = mix(load_two(a, b), load_two(a + dx, b + dx), fx);
     const F8 r1 = mix(load_two(a + dy, b + dy), load_two(a + dy + dx, b + dy + dx), fx);
     const F8 r2 = mix(load_two(a + dz, b + dz), load_two(a + dz + dx, b + dz + dx), fx);
     const F8 r3 = mix(load_two(a + dz + dy, b + dz + dy), load_two(a + dz + dy + dx, b + dz + dy + dx), fx);
-    const F8 u = mix(mix(r0, r1, fy), mix(r2, r3, fy), fz);
-    float m[2];
-    for (int k = 0; k < 2; ++k) {
-      const double* p = job.weight[j + k];
-      m[k] = STEPS == 2 ? float(k == 0 ? 1 - s : s) : float(((p[3] * s + p[2]) * s + p[1]) * s + p[0]);
+    return mix(mix(r0, r1, fy), mix(r2, r3, fy), fz);
+  };
+  const auto half = [](F8 u, bool second) {
+    return second ? __builtin_shufflevector(u, u, 4, 5, 6, 7) : __builtin_shufflevector(u, u, 0, 1, 2, 3);
+  };
+  F4 sum;
+  if constexpr (STEPS == 2) {
+    const F8 u = two(step[0] + at, step[1] + at);
+    sum = half(u, false) + float(s) * (half(u, true) - half(u, false));
+  } else {
+    const F8 u[2] = {two(step[0] + at, step[1] + at), two(step[2] + at, step[3] + at)};
+    sum = F4{};
+    for (int j = 0; j < 4; ++j) {
+      const double* p = job.weight[j];
+      const float m = float(((p[3] * s + p[2]) * s + p[1]) * s + p[0]);
+      if (m != 0) sum = sum + m * half(u[j / 2], j % 2);
     }
-    const F8 weight{m[0], m[0], m[0], m[0], m[1], m[1], m[1], m[1]};
-    // A step of no weight may be NaN.
-    const F8 part = reinterpret_cast<F8>(reinterpret_cast<I8>(u * weight) & (weight != F8{}));
-    sum = sum + (__builtin_shufflevector(part, part, 0, 1, 2, 3) + __builtin_shufflevector(part, part, 4, 5, 6, 7));
   }
-  v = reinterpret_cast<D4>(reinterpret_cast<L4>(__builtin_convertvector(sum, D4)) & g.keep);
-  return all_true(inside & (v - v == zero));
+  v = __builtin_convertvector(sum, D4);
+  if (HWY_UNLIKELY(job.flat >= 0)) v = reinterpret_cast<D4>(reinterpret_cast<L4>(v) & g.keep);
+  if (LAST) ok = ok && at_most(absolute(v), zero + double(FLT_MAX));
+  return ok;
 }
 
 /// x^(-1/5) for x > 0 by two of Newton's iterations: to 1e-4, enough for the size of a step.
@@ -177,7 +206,7 @@ class Lanes {
       if (std::abs(off) <= job.cell) p.x[job.flat] = job.origin[job.flat];
     }
     D4 v;
-    p.started = inside_plane(p.x) && velocity<STEPS>(g_, D4{p.x.x, p.x.y, p.x.z, 0}, p.t, v);
+    p.started = inside_plane(p.x) && velocity<STEPS, true>(g_, D4{p.x.x, p.x.y, p.x.z, 0}, p.t, v);
     p.ended = !p.started;
     if (p.started) p.v = vec(v), record(p);
     return p.started;
@@ -254,7 +283,7 @@ class Lanes {
       const double h = sign_ * l.h;
       l.x1 =
           l.x + h * ((35.0 / 384) * l.k1 + (500.0 / 1113) * k3[i] + (125.0 / 192) * k4[i] - (2187.0 / 6784) * k5[i] + (11.0 / 84) * k6[i]);
-      l.ok &= velocity<STEPS>(g_, l.x1, l.t + h, l.k7);
+      l.ok &= velocity<STEPS, true>(g_, l.x1, l.t + h, l.k7);
       l.error = h * ((71.0 / 57600) * l.k1 - (71.0 / 16695) * k3[i] + (71.0 / 1920) * k4[i] - (17253.0 / 339200) * k5[i] +
                      (22.0 / 525) * k6[i] - (1.0 / 40) * l.k7);
     }
