@@ -10,7 +10,7 @@
 namespace sg {
 
 struct SeparatrixOptions {
-  double offset = 0.02;  ///< from a saddle to where tracing begins, in diagonals of its cell
+  double offset = 0.02;  ///< from a saddle to where tracing begins, in diagonals of its cell; on curved surfaces at least 1/2
   TraceOptions trace;
 };
 
