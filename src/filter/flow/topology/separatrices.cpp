@@ -200,7 +200,7 @@ DatasetPtr separatrices_dataset(const std::vector<Separatrix>& lines) {
 
 void describe(Schema& s, SeparatricesParams& p) {
   s("field", p.field, "Velocity; default: the active vectors.");
-  s("centre", p.centre, "As in critical_points: how slowly a spiral may grow for its turning, to be a centre.").at_least(0);
+  describe(s, p.critical);
   s("offset", p.offset, "How far from the saddle tracing begins, in diagonals of its cell.").positive();
   s("border", p.border, "Also from places where the flow touches the border from inside, leaves a wall or comes to one (flat meshes).");
   s("max_steps", p.max_steps, "Most steps of a line.").range(1, 1e9);
@@ -209,7 +209,7 @@ void describe(Schema& s, SeparatricesParams& p) {
 
 DatasetPtr separatrices(const DatasetPtr& in, const SeparatricesParams& p, Context& context) {
   const FlowField flow(in, p.field.name, context);
-  const CriticalPoints critical = find_critical_points(flow, p.centre, context);
+  const CriticalPoints critical = find_critical_points(flow, p.critical, context);
   std::vector<SwitchPoint> border;
   if (p.border && critical.plane) border = find_switch_points(flow, *critical.plane, context);
   SeparatrixOptions options;

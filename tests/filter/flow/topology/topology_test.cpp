@@ -22,7 +22,7 @@ Found all_of(const DatasetPtr& d) {
   Context context;
   const FlowField flow(d, "", context);
   Found f;
-  f.critical = find_critical_points(flow, 0.01, context);
+  f.critical = find_critical_points(flow, {.centre = 0.01}, context);
   if (f.critical.plane) f.border = find_switch_points(flow, *f.critical.plane, context);
   SeparatrixOptions o;
   o.trace.tolerance = 1e-6;
