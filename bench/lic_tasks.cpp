@@ -58,6 +58,7 @@ Task surface_texture(const char* label, int steps, double step) {
 
 void add_lic_tasks(std::vector<Task>& t) {
   t.push_back(surface_texture("40 steps", 40, 0.4));
+  t.push_back(surface_texture("80 steps: the samples of two passes", 80, 0.4));  // ParaView's default convolves twice
   t.push_back(surface_texture("none: the surface alone", 0, 0));
 }
 

@@ -189,7 +189,9 @@ std::vector<Task> tasks(const std::string& folder) {
   t.push_back(surface("10M", 744));
   for (size_t n : {256, 400})
     for (bool discs : {false, true}) t.push_back(isosurface_picture(n, discs));
+  add_unsteady_tasks(t);
   add_volume_tasks(t);
+  add_flow_tasks(t);
   add_glyph_tasks(t);
   return t;
 }

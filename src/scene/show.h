@@ -35,6 +35,7 @@ struct SurfaceShow {
   bool edges = false, flat = false, lit = true;
   double feature_angle = 40;
   LicShow lic;
+  std::string texture;
 };
 struct LinesShow {
   ColoringParams coloring;

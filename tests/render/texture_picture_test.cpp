@@ -27,7 +27,7 @@ TEST_CASE("lic: more samples a pixel, and bands of a picture, have the texture o
 }
 
 TEST_CASE("lic: samples at an item's border take the texture beside them") {
-  Scene s = scene_of({textured(sheet(8, 0.601, 0, [](Vec3) { return Vec3{1, 0.5, 0}; }), 10)});
+  Scene s = scene_of({textured(sheet(8, 0.604, 0, [](Vec3) { return Vec3{1, 0.5, 0}; }), 10)});
   s.transparent = true;
   const Frame two = picture(s, 200, 200, 2);
   const float plain = srgb_decode(0.7f);

@@ -43,7 +43,7 @@ std::optional<LatticeFlow> lattice_flow(const Dataset& d) {
 
 TetWalk make_tet_walk(const Dataset& mesh, const SimplexArrays& s, const Context& context) {
   TetWalk w;
-  w.across = cell_neighbors(mesh.mesh(), &context);
+  w.across = tet_neighbors(s.cells, mesh.point_count(), context);
   w.box = mesh.bounds();
   const size_t n = std::clamp<size_t>(size_t(std::cbrt(double(s.cells.count) / 16)), 1, 64);
   w.bins = {n, n, n};

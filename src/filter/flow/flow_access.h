@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "data/cell_neighbors.h"
 #include "data/lattice.h"
+#include "filter/flow/tet_neighbors.h"
 #include "index/cell_locator.h"
 #include "index/cell_probe.h"
 
@@ -50,11 +50,11 @@ struct LatticePlace {
 
 /// Linear tetrahedra: neighbours, and where to begin to walk.
 struct TetWalk {
-  CellNeighbors across;
+  std::vector<int32_t, HugeAllocator<int32_t>> across;  ///< four a cell, opposite to its corners; -1 for none
   Box3 box;
   std::array<size_t, 3> bins{1, 1, 1};
   std::vector<int32_t> start;  ///< a cell near each bin
-  size_t bytes() const { return across.across.size() * 4 + start.size() * 4; }
+  size_t bytes() const { return across.size() * 4 + start.size() * 4; }
   int32_t near(Vec3 x) const {
     size_t at[3];
     for (int a = 0; a < 3; ++a) {

@@ -104,12 +104,12 @@ struct FlowCursor::State {
       length = lattice->length(), sized = cell;
       return;
     }
-    if (source == Source::tets) {
-      length = tets->length(), sized = cell;
-      return;
-    }
     if (cell == sized) return;
     sized = cell;
+    if (source == Source::tets) {
+      length = tets->length();
+      return;
+    }
     const Vec3 size = open_map().reader().box().size();
     const double largest = std::max({size.x, size.y, size.z});
     double product = 1;

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/flow_field.h"
 
+#include "base/parallel.h"
+#include "data/mesh_dimension.h"
 #include "filter/field/point_cell.h"
 #include "filter/flow/flow_access.h"
-#include "filter/flow/random_places.h"
 
 namespace sg {
 
@@ -31,7 +32,7 @@ const Field& flow_field_of(const Dataset& d, const std::string& name, std::strin
 FlowField::FlowField(DatasetPtr dataset, const std::string& name, Context& context, std::shared_ptr<const CellLocator> index)
     : dataset_(std::move(dataset)) {
   field_ = flow_field_of(*dataset_, name, "flow");
-  dimension_ = cells_dimension(dataset_);
+  dimension_ = mesh_dimension(*dataset_);
   if (dataset_->cell_count() == 0 || dimension_ < 1)
     fail_usage(fmt::format("there is no flow between the points of a mesh of {} with {} cells", dataset_->kind(), dataset_->cell_count()),
                "flow", "a grid, or cells of lines, surfaces or volume");
@@ -46,8 +47,22 @@ FlowField::FlowField(DatasetPtr dataset, const std::string& name, Context& conte
   components_ = field_.components();
   if (packed_.type() == ElementType::f64) f64_ = packed_.view<double>().data;
   else f32_ = packed_.view<float>().data;
-  const FieldStats stats = field_stats(packed_, true);
-  largest_speed_ = stats.magnitude.empty() ? 0 : stats.magnitude.hi;
+  const size_t count = packed_.count();
+  // NaN compares false, and infinities are no speeds.
+  const double largest2 = parallel_reduce(
+      count, 1 << 15, 0.0,
+      [&](size_t begin, size_t end) {
+        const PointVectors v{f32_, f64_, components_};
+        double most = 0;
+        for (size_t i = begin; i < end; ++i) {
+          const Vec3 u = v(i);
+          const double e = dot(u, u);
+          most = e > most && e < HUGE_VAL ? e : most;
+        }
+        return most;
+      },
+      [](double a, double b) { return std::max(a, b); });
+  largest_speed_ = std::sqrt(largest2);
 }
 
 const std::shared_ptr<const CellLocator>& FlowField::locator() const { return access_->locator(); }

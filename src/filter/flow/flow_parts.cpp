@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/flow_parts.h"
 
+#include "base/parallel.h"
+
 namespace sg {
 
 FlowParts::FlowParts(const Data& data, const std::string& field, std::string_view who, Context& context) {
@@ -30,6 +32,29 @@ double FlowParts::largest_speed() const {
   double v = 0;
   for (const FlowField& f : fields_) v = std::max(v, f.largest_speed());
   return v;
+}
+
+double FlowParts::mean_speed() const {
+  using Sum = std::pair<double, double>;
+  Sum all{0, 0};
+  for (const FlowField& f : fields_) {
+    const Sum part = parallel_reduce(
+        f.field().array.count(), 1 << 15, Sum{0, 0},
+        [&](size_t begin, size_t end) {
+          Sum s{0, 0};
+          for (size_t i = begin; i < end; ++i) {
+            const Vec3 v = f.at_point(i);
+            const double e = dot(v, v);
+            if (std::isfinite(e)) s.first += e, s.second += 1;
+          }
+          return s;
+        },
+        [](Sum a, Sum b) {
+          return Sum{a.first + b.first, a.second + b.second};
+        });
+    all = {all.first + part.first, all.second + part.second};
+  }
+  return all.second > 0 ? std::sqrt(all.first / all.second) : 0;
 }
 
 Box3 FlowParts::bounds() const {

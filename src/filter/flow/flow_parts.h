@@ -19,6 +19,8 @@ class FlowParts {
   size_t count() const { return fields_.size(); }
   int dimension() const { return fields_.front().dimension(); }
   double largest_speed() const;
+  /// Root of the mean square over the points that have a velocity.
+  double mean_speed() const;
   Box3 bounds() const;
   const std::string& name() const { return fields_.front().field().name; }
 

@@ -2,6 +2,8 @@
 #include "filter/flow/line_attributes.h"
 
 #include "base/parallel.h"
+#include "filter/flow/streamlines.h"
+#include "filter/mesh/surface_builder.h"
 
 namespace sg {
 
@@ -73,33 +75,44 @@ std::vector<Target> targets_of(const FlowParts& parts, size_t count, const std::
   return out;
 }
 
-// Calls f(first point, end) for the points of the lines in chunks.
-template <class F>
-void over_points(const TracedLines& lines, F&& f, Context& context) {
-  parallel_for(
-      lines.lines(), lines_grain, [&](size_t begin, size_t end) { f(lines.begin[begin], lines.begin[end]); }, &context);
-}
+// The points of lines, as the mesh has them.
+struct LinePoints {
+  CellsView lines;
+  PointReader at;
+  explicit LinePoints(const Dataset& d) : lines(cells_view(d.as<SurfaceMesh>()->lines)), at(d.as<SurfaceMesh>()->points) {}
+
+  // Asks the flow at point i. Rounding may have put the end of a line outside: then a little towards its neighbour.
+  template <class Ask>
+  bool ask(size_t i, size_t first, size_t end, Ask&& f) const {
+    const Vec3 x = at[i];
+    if (f(x)) return true;
+    if (end - first < 2) return false;
+    const Vec3 to = at[i > first ? i - 1 : i + 1];
+    for (const double part : {1e-5, 1e-3, 2e-2})
+      if (f(lerp(x, to, part))) return true;
+    return false;
+  }
+};
 
 }  // namespace
 
-FieldSet fields_along(const FlowParts& parts, const TracedLines& lines, const std::string& without, Context& context) {
-  std::vector<Target> targets = targets_of(parts, lines.points.size(), without);
+FieldSet fields_along(const FlowParts& parts, const Dataset& mesh, const std::string& without, Context& context) {
+  std::vector<Target> targets = targets_of(parts, mesh.point_count(), without);
   FieldSet out;
   if (targets.empty()) return out;
-  over_points(
-      lines,
-      [&](size_t first, size_t end) {
+  const LinePoints points(mesh);
+  parallel_for(
+      points.lines.count, lines_grain,
+      [&](size_t begin, size_t end) {
         PartsCursor cursor(parts);
         Places places;
-        places.first = first;
+        places.first = points.lines.begin(begin);
         const auto flush = [&] {
           for (const Target& t : targets) write(t, places);
           places.first += places.cells.size();
           places.clear();
         };
-        for (size_t i = first; i < end; ++i) {
-          Vec3 v;
-          const bool found = cursor(lines.points[i], v);
+        const auto add = [&](bool found) {
           if (places.cells.size() == block || (!places.cells.empty() && cursor.part() != places.part)) flush();
           places.part = cursor.part();
           places.cells.push_back(found ? cursor.cursor().cell() : -1);
@@ -110,10 +123,17 @@ FieldSet fields_along(const FlowParts& parts, const TracedLines& lines, const st
             places.weights.insert(places.weights.end(), weights.begin(), weights.end());
           }
           places.begin.push_back(uint32_t(places.ids.size()));
+        };
+        for (size_t l = begin; l < end; ++l) {
+          const size_t first = points.lines.begin(l), last = points.lines.end(l);
+          for (size_t i = first; i < last; ++i) {
+            Vec3 v;
+            add(points.ask(i, first, last, [&](Vec3 x) { return cursor(x, v); }));
+          }
         }
         if (!places.cells.empty()) flush();
       },
-      context);
+      &context);
   for (Target& t : targets) {
     if (t.field.association == Association::cell) {
       if (parts.fields().front().dataset()->fields().find(t.field.name, Association::point)) t.field.name += "_cell";
@@ -126,8 +146,16 @@ FieldSet fields_along(const FlowParts& parts, const TracedLines& lines, const st
   return out;
 }
 
-FieldSet rotation_along(const FlowParts& parts, const TracedLines& lines, bool vorticity, bool rotation, Context& context) {
-  const size_t n = lines.points.size();
+FieldSet fields_along(const FlowParts& parts, const TracedLines& lines, const std::string& without, Context& context) {
+  return fields_along(parts, *lines_dataset(lines, parts.name(), ""), without, context);
+}
+
+FieldSet rotation_along(const FlowParts& parts, const Dataset& mesh, const std::string& velocity, bool vorticity, bool rotation,
+                        Context& context) {
+  const LinePoints points(mesh);
+  const size_t n = mesh.point_count();
+  const View<float> time = mesh.fields().require("time", Association::point).array.view<float>();
+  const View<float> u = mesh.fields().require(velocity, Association::point).array.view<float>();
   float *w = nullptr, *turn = nullptr, *sum = nullptr;
   FieldSet out;
   if (vorticity) out.add({"vorticity", Association::point, Array::make<float>(n, 3, &w), "", Role::none});
@@ -136,29 +164,30 @@ FieldSet rotation_along(const FlowParts& parts, const TracedLines& lines, bool v
     out.add({"rotation", Association::point, Array::make<float>(n, 1, &sum), "rad", Role::none});
   }
   parallel_for(
-      lines.lines(), lines_grain,
+      points.lines.count, lines_grain,
       [&](size_t begin, size_t end) {
         PartsCursor cursor(parts);
         std::vector<double> rate;
         for (size_t l = begin; l < end; ++l) {
-          const size_t first = lines.begin[l], last = lines.begin[l + 1];
+          const size_t first = points.lines.begin(l), last = points.lines.end(l);
           rate.assign(last - first, 0);
           size_t seed = first;
           for (size_t i = first; i < last; ++i) {
             Vec3 v, curl(NAN, NAN, NAN);
             Mat3 j;
-            if (cursor.gradient(lines.points[i], v, j)) curl = {j.m[2][1] - j.m[1][2], j.m[0][2] - j.m[2][0], j.m[1][0] - j.m[0][1]};
+            if (points.ask(i, first, last, [&](Vec3 x) { return cursor.gradient(x, v, j); }))
+              curl = {j.m[2][1] - j.m[1][2], j.m[0][2] - j.m[2][0], j.m[1][0] - j.m[0][1]};
             if (w)
               for (int a = 0; a < 3; ++a) w[3 * i + size_t(a)] = float(curl[a]);
-            rate[i - first] = dot(curl, normalize(lines.velocity[i])) / 2;
+            rate[i - first] = dot(curl, normalize(Vec3(double(u(i, 0)), double(u(i, 1)), double(u(i, 2))))) / 2;
             if (turn) turn[i] = float(rate[i - first]);
-            if (std::abs(lines.time[i]) < std::abs(lines.time[seed])) seed = i;
+            if (std::abs(time[i]) < std::abs(time[seed])) seed = i;
           }
           if (!sum) continue;
           // From the seed both ways, by trapezoids; a place without a gradient turns by nothing.
           const auto step = [&](size_t a, size_t b) {
             const double mean = (rate[a - first] + rate[b - first]) / 2;
-            return std::isfinite(mean) ? mean * (lines.time[b] - lines.time[a]) : 0.0;
+            return std::isfinite(mean) ? mean * (double(time[b]) - double(time[a])) : 0.0;
           };
           double total = 0;
           sum[seed] = 0;

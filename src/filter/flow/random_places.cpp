@@ -6,31 +6,10 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
-#include "data/lattice.h"
+#include "data/mesh_dimension.h"
 #include "index/cell_locator.h"
 
 namespace sg {
-
-int cells_dimension(const DatasetPtr& d) {
-  if (const auto* amr = d->as<AmrGrid>()) return amr->dimension;
-  if (is_lattice(d->mesh())) {
-    int n = 0;
-    for (const size_t points : lattice_dims(d->mesh())) n += points > 1;
-    return n;
-  }
-  if (const auto* u = d->as<UnstructuredMesh>()) {
-    if (u->cells.size() == 0) return 0;
-    if (u->types.empty()) return cell_type_info(u->single_type).dimension;
-    int most = 0;
-    bool seen[256] = {};
-    for (const uint8_t t : std::span(u->types.made_packed().view<uint8_t>().data, u->types.count())) seen[t] = true;
-    for (int t = 0; t < 256; ++t)
-      if (seen[t]) most = std::max(most, cell_type_info(CellType(t)).dimension);
-    return most;
-  }
-  if (const auto* s = d->as<SurfaceMesh>()) return s->polygons.size() + s->strips.size() > 0 ? 2 : s->lines.size() > 0 ? 1 : 0;
-  return 0;
-}
 
 namespace {
 
@@ -118,11 +97,11 @@ bool place_in_cell(CellMap& map, double a, double b, double c, Vec3& x) {
 std::vector<Vec3> random_places(const std::vector<DatasetPtr>& meshes, size_t count, uint64_t seed, const std::function<bool(Vec3)>& inside,
                                 Context& context) {
   int dimension = 0;
-  for (const DatasetPtr& d : meshes) dimension = std::max(dimension, cells_dimension(d));
+  for (const DatasetPtr& d : meshes) dimension = std::max(dimension, mesh_dimension(*d));
   std::vector<DatasetPtr> used;
   Box3 box;
   for (const DatasetPtr& d : meshes)
-    if (cells_dimension(d) == dimension && d->cell_count() > 0) used.push_back(d), box.add(d->bounds());
+    if (mesh_dimension(*d) == dimension && d->cell_count() > 0) used.push_back(d), box.add(d->bounds());
   std::vector<Vec3> out;
   if (used.empty() || box.empty() || count == 0) return out;
 

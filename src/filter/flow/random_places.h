@@ -9,9 +9,6 @@
 
 namespace sg {
 
-/// Highest dimension of the cells: 0 (points) to 3.
-int cells_dimension(const DatasetPtr& mesh);
-
 /// Up to `count` places in the cells of the meshes' highest dimension, at which `inside` says yes; fewer when after 100 tries a place there
 /// are not enough. `inside` empty: in any cell that is not hidden. Solids are first tried by throwing into the box, which asks `inside`
 /// alone: it has to be false outside the mesh. Place i of a try depends on (seed, i) only.

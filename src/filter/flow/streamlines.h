@@ -25,10 +25,13 @@ void describe(Schema& s, StreamlinesParams& p);
 /// gradient; "rotation": "angular velocity", half the vorticity along the line (radians a time), and "rotation", its integral over time
 /// since the seed (radians): how far a ribbon has turned.
 /// Cell fields: "seed" (number of the seed) and "stop" (why the line ended downstream, upstream with direction=backward: a StopReason,
-/// labels). Throws Error(usage) without a vector field, and when no seed lies in the flow.
+/// labels). Without max_length and max_time, lines end after four times the mesh's diagonal. Uniform grids and tetrahedra of f32 vectors go
+/// through packets (packets/packets.h). Throws Error(usage) without a vector field, for one that is zero everywhere, and when no seed lies
+/// in the flow.
 Data streamlines(const std::vector<Data>& inputs, const StreamlinesParams& p, Context& context);
 
-/// Lines as that mesh, with "seed" and "stop" and the four first fields; f32 positions about the first point's box' centre.
+/// Lines of two points and more as that mesh, with the first four point fields and the cell fields. f32, about an origin of their own when
+/// they lie far from zero.
 DatasetPtr lines_dataset(const TracedLines& lines, const std::string& velocity_name, const std::string& unit);
 
 }  // namespace sg

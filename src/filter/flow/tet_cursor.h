@@ -10,7 +10,7 @@ struct OpenTet {
   Vec3 a, rows[3];
   Vec3 v, slopes[3];
   double tolerance = 0;
-  double length = 0;  ///< the cubic root of its box' volume
+  double box = 0;  ///< volume of its box
 };
 
 class TetCursor {
@@ -23,7 +23,6 @@ class TetCursor {
     for (int a = 0; a < 3; ++a)
       if (!(x[a] >= w_->box.lo[a] - slack(a) && x[a] <= w_->box.hi[a] + slack(a))) return Found::outside;
     if (cell_ < 0) open(w_->near(x));
-    constexpr int across[4] = {1, 2, 0, 3};  // number of the face opposite to each corner
     for (int n = 0; n < 4096; ++n) {
       const Vec3 d = x - t_.a;
       r_ = {dot(t_.rows[0], d), dot(t_.rows[1], d), dot(t_.rows[2], d)};
@@ -33,7 +32,7 @@ class TetCursor {
         if (r[k] < r[worst]) worst = k;
       if (r[worst] >= -t_.tolerance) return Found::here;
       if (!(r[worst] < 0)) return Found::lost;  // not a number
-      const int32_t next = w_->across.across[size_t(cell_) * 4 + size_t(across[worst])];
+      const int32_t next = w_->across[size_t(cell_) * 4 + size_t(worst)];
       if (next < 0) return Found::lost;
       open(next);
     }
@@ -56,13 +55,12 @@ class TetCursor {
     return j;
   }
   int64_t cell() const { return cell_; }
-  double length() const { return t_.length; }
+  double length() const { return std::cbrt(t_.box); }
   int corners(int64_t ids[8], double weights[8]) const {
     for (int k = 0; k < 4; ++k) ids[k] = s_->id(size_t(cell_), k);
     weights[0] = 1 - r_.x - r_.y - r_.z, weights[1] = r_.x, weights[2] = r_.y, weights[3] = r_.z;
     return 4;
   }
-  const OpenTet& tet() const { return t_; }
 
  private:
   double slack(int a) const { return 1e-9 * (w_->box.hi[a] - w_->box.lo[a]); }
@@ -82,7 +80,7 @@ class TetCursor {
     Vec3 lo = p[0], hi = p[0];
     for (int k = 1; k < 4; ++k)
       for (int a = 0; a < 3; ++a) lo[a] = std::min(lo[a], p[k][a]), hi[a] = std::max(hi[a], p[k][a]);
-    t_.length = std::cbrt((hi.x - lo.x) * (hi.y - lo.y) * (hi.z - lo.z));
+    t_.box = (hi.x - lo.x) * (hi.y - lo.y) * (hi.z - lo.z);
   }
   const SimplexArrays* s_;
   const TetWalk* w_;

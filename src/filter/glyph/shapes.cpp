@@ -19,6 +19,8 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 constexpr std::string_view names[] = {"arrow", "cone", "needle", "line", "arrow2d", "cylinder", "disc", "sphere", "cube", "superquadric"};
 
+constexpr double plate = 0.012;  // half the thickness of flat shapes
+
 /// Points of a solid of revolution about x: rings where the radius is above 0, single points where it is 0.
 struct Profile {
   double x, radius;
@@ -101,17 +103,28 @@ void cube(ShapeBuilder& b) {
     b.triangle(q[0], q[1], q[2]), b.triangle(q[0], q[2], q[3]);
 }
 
+// A thin plate: on a surface in its own plane it lies before the surface from both sides.
 void flat_arrow(ShapeBuilder& b, const GlyphShapeParams& p) {
   const double neck = 1 - p.tip_length, r = p.shaft_radius, t = p.tip_radius;
-  for (const Vec3& q : {Vec3{0, -r, 0}, {neck, -r, 0}, {neck, r, 0}, {0, r, 0}, {neck, -t, 0}, {1, 0, 0}, {neck, t, 0}}) b.point(q);
-  b.triangle(0, 1, 2), b.triangle(0, 2, 3), b.triangle(4, 5, 1), b.triangle(1, 5, 2), b.triangle(2, 5, 6);
+  const Vec3 outline[] = {{0, -r, 0}, {neck, -r, 0}, {neck, -t, 0}, {1, 0, 0}, {neck, t, 0}, {neck, r, 0}, {0, r, 0}};
+  constexpr int n = 7;
+  for (const double z : {-plate, plate})
+    for (const Vec3& q : outline) b.point({q.x, q.y, z});
+  for (const auto& f : {std::array{0, 1, 5}, {0, 5, 6}, {2, 3, 1}, {1, 3, 5}, {5, 3, 4}}) {
+    b.triangle(f[0], f[2], f[1]);
+    b.triangle(n + f[0], n + f[1], n + f[2]);
+  }
+  for (int k = 0; k < n; ++k) {
+    const int next = (k + 1) % n;
+    b.triangle(k, next, n + next), b.triangle(k, n + next, n + k);
+  }
 }
 
 bool build(ShapeBuilder& b, const GlyphShapeParams& p) {
   const std::string& name = p.shape;
   if (name == "arrow") arrow(b, p);
   else if (name == "arrow2d") flat_arrow(b, p);
-  else if (name == "cone") revolve(b, std::array<Profile, 3>{{{0, 0}, {0, 0.2}, {1, 0}}}, p.sides);
+  else if (name == "cone") revolve(b, std::array<Profile, 3>{{{0, 0}, {0, 0.16}, {1, 0}}}, p.sides);
   else if (name == "needle") revolve(b, std::array<Profile, 3>{{{0, 0}, {0.35, 0.04}, {1, 0}}}, p.sides);
   else if (name == "cylinder") revolve(b, std::array<Profile, 4>{{{-0.5, 0}, {-0.5, 0.5}, {0.5, 0.5}, {0.5, 0}}}, p.sides);
   else if (name == "disc") {

@@ -22,11 +22,21 @@ struct Chosen {
   std::vector<Vec3> at;
   std::vector<Eigen3> eigen;
   double spacing = 0;
-  bool negative = false;
+  size_t with_negative = 0;
+  bool negative() const { return with_negative > 0; }
+  /// Stress rather than diffusion with some noise.
+  bool mostly_signed() const { return 10 * with_negative > ids.size(); }
 };
 
 double fa_of(const Eigen3& e, int dimension) { return dimension == 2 ? fractional_anisotropy_2d(e.value) : fractional_anisotropy(e.value); }
 double largest_of(const Eigen3& e) { return std::max({std::abs(e.value[0]), std::abs(e.value[1]), std::abs(e.value[2])}); }
+
+// The colour of a direction, paler the less it is preferred: black balls would hide their shape.
+void paled_direction(Vec3 v, double fa, uint8_t* rgb) {
+  direction_color(v, 1, rgb);
+  const double w = std::min(1.0, 1.5 * fa);
+  for (int c = 0; c < 3; ++c) rgb[c] = uint8_t(std::round(w * rgb[c] + (1 - w) * 215));
+}
 
 double signed_share(const Eigen3& e) {
   const double* l = e.value;
@@ -161,7 +171,7 @@ Chosen choose(const DatasetPtr& in, const TensorField& t, const TensorGlyphsPara
     c.at.push_back(at[size_t(i)]);
     c.eigen.push_back(t.eigen(size_t(i)));
     const double* v = c.eigen.back().value;
-    c.negative |= std::min(v[1], v[2]) < -1e-9 * largest_of(c.eigen.back());
+    c.with_negative += std::min(v[1], v[2]) < -1e-9 * largest_of(c.eigen.back());
   }
   return c;
 }
@@ -291,7 +301,7 @@ DatasetPtr tensor_glyphs(const DatasetPtr& in, const TensorGlyphsParams& p, Cont
   const bool named = color != "auto" && color != "direction" && color != "FA" && color != "sign" && color != "none";
   if (named) in->fields().require(color, t.field.association);
   const Chosen c = choose(in, t, p, ctx);
-  if (color == "auto") color = c.negative || lobes ? "relative" : "direction";
+  if (color == "auto") color = c.mostly_signed() || lobes ? "relative" : "direction";
   const GlyphPattern pattern(shape, p.resolution, p.gamma, p.min_ratio);
   Surface s = build(c, pattern, factors(c, shape, p, ctx), shear, ctx);
   const size_t nv = pattern.vertices();
@@ -303,10 +313,10 @@ DatasetPtr tensor_glyphs(const DatasetPtr& in, const TensorGlyphsParams& p, Cont
   };
   const Role chosen = color == "relative" ? Role::scalars : Role::none;
   if (lobes) add(shear ? "relative shear stress" : "relative normal stress", s.relative, chosen);
-  if (c.negative)
+  if (c.negative())
     add("signed share", repeated<float>(c, nv, 1, [&](size_t g, float* v) { *v = float(signed_share(c.eigen[g])); }),
         lobes ? Role::none : chosen);
-  if (c.negative || lobes || color == "sign") add("sign", s.sign, color == "sign" ? Role::scalars : Role::none);
+  if (c.negative() || lobes || color == "sign") add("sign", s.sign, color == "sign" ? Role::scalars : Role::none);
   const int d = t.dimension;
   add("FA", repeated<float>(c, nv, 1, [&](size_t g, float* v) { *v = float(fa_of(c.eigen[g], d)); }),
       color == "FA" ? Role::scalars : Role::none);
@@ -315,8 +325,7 @@ DatasetPtr tensor_glyphs(const DatasetPtr& in, const TensorGlyphsParams& p, Cont
         Role::none, t.field.unit);
   if (color == "direction")
     add("direction",
-        repeated<uint8_t>(
-            c, nv, 3, [&](size_t g, uint8_t* v) { direction_color(c.eigen[g].vector[0], std::clamp(fa_of(c.eigen[g], d), 0.0, 1.0), v); }),
+        repeated<uint8_t>(c, nv, 3, [&](size_t g, uint8_t* v) { paled_direction(c.eigen[g].vector[0], fa_of(c.eigen[g], d), v); }),
         Role::colors);
   add("Normals", s.normals, Role::normals);
   std::vector<int64_t> ids(c.ids.size() * nv);

@@ -35,8 +35,8 @@ void describe(Schema& s, TensorGlyphsParams& p);
 /// compression) and "sign" (i8: -1, 0, 1 of n.s.n in the direction n of the vertex) where there are negative ones; reynolds: "relative
 /// normal stress" (n.s.n by the largest absolute eigenvalue, -1 to 1); hwy: "relative shear stress"; always "FA", "eigenvalue 1" to "3",
 /// "Normals", the fields of the input (but the tensors), "original_point" or "original_cell". `color`: direction (u8 field "direction" of
-/// |eigenvector 1| times FA, role colors), FA, sign, none, or the name of a field; auto: the relative stress of lobes, the signed share
-/// where there are negative eigenvalues, else direction.
+/// |eigenvector 1|, paler the lower FA is, role colors), FA, sign, none, or the name of a field; auto: the relative stress of lobes, the
+/// signed share where there are negative eigenvalues, else direction.
 DatasetPtr tensor_glyphs(const DatasetPtr& in, const TensorGlyphsParams& p, Context& ctx);
 
 }  // namespace sg

@@ -96,6 +96,40 @@ std::shared_ptr<const GlyphShape> glyph_shape(const DatasetPtr& shape, double fe
                              [&] { return make_shape(shape, feature_angle, flat); });
 }
 
+std::vector<uint32_t> glyph_order(const GlyphInstances& instances) {
+  const size_t n = instances.count();
+  const float* m = instances.data();
+  Box3 box;
+  for (size_t i = 0; i < n; ++i)
+    if (instances.stands(i)) box.add({m[12 * i + 3], m[12 * i + 7], m[12 * i + 11]});
+  constexpr int bits = 10;
+  auto spread = [](uint32_t v) {  // ten bits, two zeros between each
+    v = (v | v << 16) & 0x030000FF;
+    v = (v | v << 8) & 0x0300F00F;
+    v = (v | v << 4) & 0x030C30C3;
+    return (v | v << 2) & 0x09249249;
+  };
+  double per[3];
+  for (int a = 0; a < 3; ++a) per[a] = box.size()[a] > 0 ? ((1 << bits) - 1) / box.size()[a] : 0;
+  std::vector<uint32_t> code(n), order(n), next(n);
+  parallel_for(n, 1 << 14, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      order[i] = uint32_t(i);
+      for (size_t a = 0; a < 3 && instances.stands(i); ++a)
+        code[i] |= spread(uint32_t((double(m[12 * i + 4 * a + 3]) - box.lo[int(a)]) * per[a])) << a;
+    }
+  });
+  for (int pass = 0; pass < 3; ++pass) {  // by digits from the lowest, each pass keeps the order of the one before
+    std::vector<size_t> place(1 << bits);
+    auto digit = [&](uint32_t i) { return code[i] >> (bits * pass) & ((1u << bits) - 1); };
+    for (const uint32_t i : order) ++place[digit(i)];
+    exclusive_scan(place);
+    for (const uint32_t i : order) next[place[digit(i)]++] = i;
+    order.swap(next);
+  }
+  return order;
+}
+
 int glyph_shift(size_t instances, size_t most) {
   int shift = 0;
   while ((size_t(1) << shift) < most) ++shift;
@@ -121,12 +155,13 @@ bool glyph_matrix(const GlyphSet& set, const EyeView& v, float pixel_scale, size
 
 void draw_glyphs_reference(const GlyphJob& job, size_t begin, size_t end, std::vector<TriangleRecord>& large) {
   std::vector<float> xyz;
-  for (size_t i = begin; i < end; ++i) {
+  for (size_t k = begin; k < end; ++k) {
+    const size_t i = job.set->order ? (*job.set->order)[k] : k;
     float m[12];
     if (!glyph_matrix(*job.set, job.view, job.pixel_scale, i, m)) continue;
     const GlyphShape& s = job.set->shape_of(i);
     xyz.resize(3 * s.points);
-    for (size_t k = 0; k < s.points; ++k) glyph_point(m, s.x[k], s.y[k], s.z[k], &xyz[3 * k]);
+    for (size_t p = 0; p < s.points; ++p) glyph_point(m, s.x[p], s.y[p], s.z[p], &xyz[3 * p]);
     const auto first = job.first_primitive + uint32_t(i << job.set->shift);
     draw_triangles_reference({job.view, xyz.data(), s.triangle_list.data(), first, job.small, job.keys}, 0, s.triangles, large);
   }

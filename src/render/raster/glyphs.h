@@ -27,6 +27,7 @@ std::shared_ptr<const GlyphShape> glyph_shape(const DatasetPtr& shape, double fe
 struct GlyphSet {
   std::vector<std::shared_ptr<const GlyphShape>> shapes;
   std::shared_ptr<const GlyphInstances> instances;
+  std::shared_ptr<const std::vector<uint32_t>> order;  ///< glyphs near in space are drawn one after the other: the picture stays in cache
   int shift = 0;
   bool in_pixels = false;          ///< sizes are pixels of the final picture
   std::vector<float> faces;        ///< of all shapes, one after the other
@@ -42,6 +43,8 @@ struct GlyphSet {
     return (s ? first_row[s[primitive >> shift]] : 0) + int32_t(primitive & ((uint32_t(1) << shift) - 1));
   }
 };
+/// The instances along a Morton curve through their box.
+std::vector<uint32_t> glyph_order(const GlyphInstances& instances);
 /// shift for `most` primitives a glyph; fails when the numbers of all of them do not fit 32 bits.
 int glyph_shift(size_t instances, size_t most);
 
@@ -54,7 +57,8 @@ struct GlyphJob {
   float pixel_scale;  ///< pixels of this frame per pixel of the final picture
   uint64_t* keys;
 };
-/// The triangles of glyphs begin..end as draw_triangles() draws a surface with the points a*x + b*y + c*z + p, in f32 and that order.
+/// The triangles of glyphs order[begin..end) as draw_triangles() draws a surface with the points a*x + b*y + c*z + p, in f32 and that
+/// order.
 void draw_glyphs(const GlyphJob& job, size_t begin, size_t end, std::vector<TriangleRecord>& large);
 void draw_glyphs_reference(const GlyphJob& job, size_t begin, size_t end, std::vector<TriangleRecord>& large);
 

@@ -22,6 +22,7 @@ struct GlyphQueue {
   static constexpr size_t room = 2048, waiting = 1024;
   std::vector<int32_t> x, y, corner[3], primitive;
   std::vector<float> w;
+  PixelQueue pixels;
   size_t points = 0, triangles = 0;
 
   GlyphQueue() : x(room), y(room), primitive(waiting + 64), w(room) {
@@ -44,9 +45,10 @@ void draw_queue(const GlyphJob& job, GlyphQueue& q) {
     Setup s;
     I lx, hx, ly, hy;
     pixel_boxes(job.view, c, s, lx, hx, ly, hy);
-    const int32_t* primitive = &q.primitive[t];
-    draw_turned(job.view, job.keys, c, s, real, [&](int k) { return uint32_t(primitive[k]); });
+    const MI live = turn(c, s, real);
+    draw_thin(job.view, job.keys, s, live, hn::LoadU(di, &q.primitive[t]), q.pixels);
   }
+  q.pixels.flush(job.keys);
   q.triangles = q.points = 0;
 }
 
@@ -143,7 +145,12 @@ void draw_glyph_range(const GlyphJob& job, size_t begin, size_t end, std::vector
   const EyeView& v = job.view;
   const size_t lanes = hn::Lanes(DF());
   GlyphQueue q;
-  for (size_t i = begin; i < end; ++i) {
+  for (size_t k = begin; k < end; ++k) {
+    const size_t i = job.set->order ? (*job.set->order)[k] : k;
+    if (job.set->order && k + 12 < end) {
+      const float* later = job.set->instances->data() + 12 * size_t((*job.set->order)[k + 12]);
+      __builtin_prefetch(later), __builtin_prefetch(later + 11);
+    }
     float m[12];
     if (!glyph_matrix(*job.set, v, job.pixel_scale, i, m)) continue;
     const GlyphShape& s = job.set->shape_of(i);
@@ -156,7 +163,7 @@ void draw_glyph_range(const GlyphJob& job, size_t begin, size_t end, std::vector
     GlyphBox box;
     const uint32_t first = job.first_primitive + uint32_t(i << job.set->shift);
     if (!project_glyph(v, s, m, q, box)) {
-      draw_glyphs_reference(job, i, i + 1, large);
+      draw_glyphs_reference(job, k, k + 1, large);
       continue;
     }
     // The pixels whose centres lie in its box, if any.

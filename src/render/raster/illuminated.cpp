@@ -18,7 +18,7 @@ void light_line(const Material& m, const WorldLight* lights, size_t count, Vec3 
     const double cosine = across * v_across > 1e-12 ? std::clamp(dot(to - tangent * lt, v) / (across * v_across), -1.0, 1.0) : 1.0;
     const double angle = std::acos(cosine);  // between viewer and light around the line
     diffuse += strength * across * (std::sin(angle) + (pi - angle) * cosine) / pi;
-    specular += strength * std::pow(std::clamp(across * v_across - lt * vt, 0.0, 1.0), double(m.power));
+    specular += strength * std::sqrt(0.5 * (1 + cosine)) * std::pow(std::clamp(across * v_across - lt * vt, 0.0, 1.0), double(m.power));
   }
   light = float(double(m.ambient) + double(m.diffuse) * diffuse), gloss = float(double(m.specular) * specular);
 }

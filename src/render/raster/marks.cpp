@@ -92,6 +92,12 @@ void MarkTile::draw(const MarkRecord& m, std::vector<Cover>& out) {
   const Projection& p = projection_;
   // On a slope the surface beside a line comes nearer than the line itself: marks are drawn as if that much nearer.
   const double nearer = 2 * (half + 1) / p.scale;
+  double beyond = 0;  // pixels by which a halo may reach over the ends
+  if (m.halo > 0) {
+    const double depth = p.parallel ? std::abs(m.bw - m.aw) : std::abs(m.bw - m.aw) / std::sqrt(m.aw * m.bw);
+    const double steep = depth * p.scale / std::max(std::sqrt(length2), 1e-9);  // pixels of depth per pixel
+    beyond = steep <= 2 ? HUGE_VAL : std::max(0.5, 2 * half / (steep - 2));
+  }
   const PixelBox all = mark_box(m, p.width, p.height);
   for (int y = std::max(box_.y0, all.y0); y <= std::min(box_.y1, all.y1); ++y) {
     const double cy = y + 0.5;
@@ -122,9 +128,9 @@ void MarkTile::draw(const MarkRecord& m, std::vector<Cover>& out) {
       } else c.s = float(ox / std::max(half, 0.5)), c.t = float(oy / std::max(half, 0.5));
       const double joint = 2 * nearer * (p.parallel ? 1 : z);
       if (alpha > 0) add(c, m.group, joint, out);
-      // A halo lies beside its segment, not beyond its ends, and sinks with the distance: it hides what is clearly behind the line, not the
-      // neighbours in a bundle (Everts, Bekker, Roerdink, Isenberg 2009).
-      if (!(dark > 0) || std::abs(free - t) * std::sqrt(length2) > 0.5) continue;
+      // A halo sinks with the distance: it hides what is clearly behind the line, not its neighbours in a bundle (Everts, Bekker, Roerdink,
+      // Isenberg 2009). Beyond the ends of a segment only as far as the line, going on as steeply, stays before it.
+      if (!(dark > 0) || std::abs(free - t) * std::sqrt(length2) > beyond) continue;
       const double sunk = 2 * (half + distance) / p.scale * (p.parallel ? 1 : z);
       c.order = float(std::max(front, 0.0) + sunk), c.t = 1, c.alpha = float(dark);
       if (c.order < key_depth(keys_[size_t(y) * size_t(p.width) + size_t(x)])) add(c, m.group, joint, out);

@@ -80,6 +80,68 @@ HWY_INLINE void draw_small(const EyeView& view, uint64_t* keys, const Setup& s, 
   }
 }
 
+/// Pixels on their way to the keys: what lies far apart in memory is asked for together.
+struct PixelQueue {
+  static constexpr size_t full = 128;
+  alignas(64) int32_t pixel[full + 64], primitive[full + 64];
+  alignas(64) float depth[full + 64];
+  size_t count = 0;
+
+  void flush(uint64_t* keys) {
+    for (size_t i = 0; i < count; ++i) __builtin_prefetch(keys + pixel[i], 1);
+    for (size_t i = 0; i < count; ++i) keep_nearer(keys + pixel[i], depth_key(depth[i], uint32_t(primitive[i])));
+    count = 0;
+  }
+};
+
+/// As draw_small(), for long thin triangles: in each row the lanes begin where their triangles do and go as far as the longest.
+HWY_INLINE void draw_thin(const EyeView& view, uint64_t* keys, const Setup& s, MI live, I primitive, PixelQueue& out) {
+  const DF d;
+  const DI di;
+  const I one = hn::Set(di, 1), zero = hn::Zero(di), width = hn::Set(di, view.width);
+  const int high = hn::GetLane(hn::MaxOfLanes(di, hn::IfThenElseZero(live, (s.last_y - s.first_y) + one)));
+  const I most_y = s.last_y - s.first_y;
+  I first = s.first_y * width + s.first_x;
+  const F most_x = hn::ConvertTo(d, s.last_x - s.first_x), hair = hn::Set(d, 1e-3f);  // what is inside is decided by whole numbers
+  I row[3] = {s.e[0], s.e[1], s.e[2]};
+  F inverse[3];
+  M rises[3], falls[3];
+  for (int k = 0; k < 3; ++k) {
+    inverse[k] = hn::Set(d, -1.0f) / hn::ConvertTo(d, s.step_x[k]);
+    rises[k] = hn::RebindMask(d, hn::Gt(s.step_x[k], zero)), falls[k] = hn::RebindMask(d, hn::Lt(s.step_x[k], zero));
+  }
+  for (int j = 0; j < high; ++j, first = first + width) {
+    F from = hn::Zero(d), to = most_x;
+    for (int k = 0; k < 3; ++k) {
+      const F crossing = hn::ConvertTo(d, row[k] - s.above[k] - one) * inverse[k];
+      from = hn::IfThenElse(rises[k], hn::Max(from, hn::Ceil(crossing - hair)), from);
+      to = hn::IfThenElse(falls[k], hn::Min(to, hn::Floor(crossing + hair)), to);
+    }
+    const M some = hn::And(hn::Le(from, to), hn::RebindMask(d, hn::AndNot(hn::Gt(hn::Set(di, j), most_y), live)));
+    if (!hn::AllFalse(d, some)) {
+      const I start = hn::ConvertTo(di, hn::IfThenElseZero(some, from)), wide = hn::ConvertTo(di, hn::IfThenElseZero(some, to - from));
+      const MI drawn = hn::RebindMask(di, some);
+      const int most = hn::GetLane(hn::MaxOfLanes(di, wide));
+      I e0 = row[0] + s.step_x[0] * start, e1 = row[1] + s.step_x[1] * start, e2 = row[2] + s.step_x[2] * start, at = first + start;
+      for (int i = 0; i <= most; ++i) {
+        const MI inside = hn::And(hn::And(hn::Gt(e0, s.above[0]), hn::Gt(e1, s.above[1])),
+                                  hn::And(hn::Gt(e2, s.above[2]), hn::AndNot(hn::Gt(hn::Set(di, i), wide), drawn)));
+        if (!hn::AllFalse(di, inside)) {
+          F w = (hn::ConvertTo(d, e1) * s.w[0] + hn::ConvertTo(d, e2) * s.w[1] + hn::ConvertTo(d, e0) * s.w[2]) * s.inverse_area;
+          if (!view.parallel) w = hn::Set(d, 1.0f) / w;
+          const size_t more = hn::CompressStore(at, inside, di, out.pixel + out.count);
+          hn::CompressStore(primitive, inside, di, out.primitive + out.count);
+          hn::CompressStore(w, hn::RebindMask(d, inside), d, out.depth + out.count);
+          out.count += more;
+          if (out.count >= PixelQueue::full) out.flush(keys);
+        }
+        e0 = e0 + s.step_x[0], e1 = e1 + s.step_x[1], e2 = e2 + s.step_x[2], at = at + one;
+      }
+    }
+    for (int k = 0; k < 3; ++k) row[k] = row[k] + s.step_y[k];
+  }
+}
+
 HWY_INLINE void edge(const Corner& a, const Corner& b, I px, I py, Setup& s, int k) {
   const DI di;
   const I dx = b.x - a.x, dy = b.y - a.y;
@@ -102,9 +164,8 @@ HWY_INLINE void pixel_boxes(const EyeView& view, const Corner* c, Setup& s, I& l
   s.last_y = hn::Min(hn::ShiftRight<8>(hy - half), hn::Set(di, view.height - 1));
 }
 
-/// Turns the triangles of `small` so that their inside is positive, and draws those that have an area.
-template <class Primitive>
-HWY_INLINE void draw_turned(const EyeView& view, uint64_t* keys, Corner* c, Setup& s, MI small, Primitive&& primitive) {
+/// Turns the triangles of `small` so that their inside is positive; which of them have an area.
+HWY_INLINE MI turn(Corner* c, Setup& s, MI small) {
   const DF d;
   const DI di;
   const I zero = hn::Zero(di), half = hn::Set(di, subpixels / 2);
@@ -120,7 +181,7 @@ HWY_INLINE void draw_turned(const EyeView& view, uint64_t* keys, Corner* c, Setu
   edge(c[0], c[1], px, py, s, 0), edge(c[1], c[2], px, py, s, 1), edge(c[2], c[0], px, py, s, 2);
   for (int k = 0; k < 3; ++k) s.w[k] = c[k].w;
   s.inverse_area = hn::Set(d, 1.0f) / hn::ConvertTo(d, hn::Abs(area));
-  draw_small(view, keys, s, live, primitive);
+  return live;
 }
 
 }  // namespace sg::raster::HWY_NAMESPACE

@@ -95,7 +95,8 @@ HWY_INLINE void draw_block(const TriangleJob& job, const uint32_t* t, size_t cou
   if (!hn::AllFalse(di, big)) store_large(c, bits_of(di, big), first, view, large);
   if (hn::AllFalse(di, small)) return;
 
-  draw_turned(view, job.keys, c, s, small, [&](int k) { return first + uint32_t(k); });
+  const MI live = turn(c, s, small);
+  draw_small(view, job.keys, s, live, [&](int k) { return first + uint32_t(k); });
 }
 
 void draw(const TriangleJob& job, size_t begin, size_t end, std::vector<TriangleRecord>& large) {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.h"
+
 namespace sg {
 
 namespace {
@@ -31,43 +33,51 @@ void go(std::array<double, 3>& b, const std::array<double, 3>& d, double s) {
 
 }  // namespace
 
-struct SurfaceWalk::Frame {
-  uint32_t triangle;
-  Vec3 e1, e2;
-  double a, b, c, inverse;
-  Vec3 v[3];
-};
+SurfaceWalk::SurfaceWalk(const RefinedSurface& surface, std::span<const Vec3> vectors, bool per_triangle)
+    : surface_(surface), frames_(surface.triangles.size()) {
+  parallel_for(frames_.size(), 1 << 13, [&](size_t begin, size_t end) {
+    for (size_t t = begin; t < end; ++t) frames_[t] = frame(t, vectors, per_triangle);
+  });
+}
 
-SurfaceWalk::Frame SurfaceWalk::frame(uint32_t triangle) const {
+SurfaceWalk::Frame SurfaceWalk::frame(size_t triangle, std::span<const Vec3> vectors, bool per_triangle) const {
   const auto& t = surface_.triangles[triangle];
+  const Vec3 e1 = surface_.points[t[1]] - surface_.points[t[0]], e2 = surface_.points[t[2]] - surface_.points[t[0]];
   Frame f;
-  f.triangle = triangle;
-  f.e1 = surface_.points[t[1]] - surface_.points[t[0]], f.e2 = surface_.points[t[2]] - surface_.points[t[0]];
-  f.a = dot(f.e1, f.e1), f.b = dot(f.e1, f.e2), f.c = dot(f.e2, f.e2), f.inverse = 1 / (f.a * f.c - f.b * f.b);
-  for (size_t k = 0; k < 3; ++k) f.v[k] = vectors_[per_triangle_ ? triangle : t[k]];
+  f.a = dot(e1, e1), f.b = dot(e1, e2), f.c = dot(e2, e2), f.least2 = 0;
+  const double inverse = 1 / (f.a * f.c - f.b * f.b);
+  for (size_t k = 0; k < 3; ++k) {
+    const Vec3 v = vectors[per_triangle ? triangle : t[k]];
+    const double x = dot(v, e1), y = dot(v, e2);
+    f.u[k] = (f.c * x - f.b * y) * inverse, f.w[k] = (f.a * y - f.b * x) * inverse;
+    f.least2 = std::max(f.least2, 1e-18 * dot(v, v));
+  }
   return f;
 }
 
-bool SurfaceWalk::rates(const Frame& f, const std::array<double, 3>& b, double sign, Rates& d) const {
-  const Vec3 v = per_triangle_ ? f.v[0] : f.v[0] * b[0] + f.v[1] * b[1] + f.v[2] * b[2];
-  const double x = dot(v, f.e1), y = dot(v, f.e2);
-  const double u = (f.c * x - f.b * y) * f.inverse, w = (f.a * y - f.b * x) * f.inverse;
-  const double length = std::sqrt(u * u * f.a + 2 * u * w * f.b + w * w * f.c);  // of the part along the triangle
-  if (!(length > 1e-9 * std::sqrt(dot(v, v))) || !(length < HUGE_VAL)) return false;
-  const double scale = sign / length;
-  d = {-(u + w) * scale, u * scale, w * scale};
+SurfaceWalk::Along SurfaceWalk::along(const Frame& f, const std::array<double, 3>& b) {
+  const double u = f.u[0] * b[0] + f.u[1] * b[1] + f.u[2] * b[2], w = f.w[0] * b[0] + f.w[1] * b[1] + f.w[2] * b[2];
+  return {u, w, u * u * f.a + 2 * u * w * f.b + w * w * f.c};
+}
+
+bool SurfaceWalk::rates(const Frame& f, const std::array<double, 3>& b, double sign, Rates& d) {
+  const Along v = along(f, b);
+  if (!(v.length2 > f.least2) || !(v.length2 < HUGE_VAL)) return false;
+  const double scale = sign / std::sqrt(v.length2);
+  d = {-(v.u + v.w) * scale, v.u * scale, v.w * scale};
   return true;
 }
 
-bool SurfaceWalk::slide(const Frame& f, const Place& at, int corner, double sign, Rates& d) const {
+bool SurfaceWalk::slide(const Frame& f, const Place& at, int corner, double sign, Rates& d) {
+  constexpr double place[3][2] = {{0, 0}, {1, 0}, {0, 1}};  // corners by e1 and e2
   const size_t j = size_t((corner + 1) % 3), k = size_t((corner + 2) % 3);
-  const auto& t = surface_.triangles[at.triangle];
-  const Vec3 edge = surface_.points[t[k]] - surface_.points[t[j]];
-  const Vec3 v = per_triangle_ ? f.v[0] : f.v[0] * at.b[0] + f.v[1] * at.b[1] + f.v[2] * at.b[2];
-  const double along = dot(v, edge) * sign, size = length(edge);
-  if (!(std::abs(along) > 1e-6 * size * length(v))) return false;
+  const double du = place[k][0] - place[j][0], dw = place[k][1] - place[j][1];
+  const Along v = along(f, at.b);
+  const double product = sign * (v.u * du * f.a + (v.u * dw + v.w * du) * f.b + v.w * dw * f.c);
+  const double size = std::sqrt(du * du * f.a + 2 * du * dw * f.b + dw * dw * f.c);
+  if (!(std::abs(product) > 1e-6 * size * std::sqrt(v.length2))) return false;
   d = {0, 0, 0};
-  d[k] = (along > 0 ? 1 : -1) / size, d[j] = -d[k];
+  d[k] = (product > 0 ? 1 : -1) / size, d[j] = -d[k];
   return true;
 }
 
@@ -103,9 +113,8 @@ Vec3 SurfaceWalk::position(const Place& at) const {
 bool SurfaceWalk::advance(Place& at, double length, double sign) const {
   const double nothing = 1e-12 * length;
   int idle = 0;
-  Frame f = frame(at.triangle);
   while (length > nothing) {
-    if (f.triangle != at.triangle) f = frame(at.triangle);
+    const Frame& f = frames_[at.triangle];
     Rates d, middle;
     if (!rates(f, at.b, sign, d)) return false;
     int edge;

@@ -3,6 +3,7 @@
 
 #include "base/parallel.h"
 #include "filter/flow/unsteady/advance_one.h"
+#include "filter/flow/unsteady/lattice_advance.h"
 
 namespace sg {
 
@@ -47,10 +48,15 @@ void advance_some(const UnsteadyFlow& flow, std::span<Particle> particles, size_
 
 void advance(const UnsteadyFlow& flow, std::span<Particle> particles, double until, const TraceOptions& options, Context& context,
              Way* way) {
+  const auto job = lattice_advance::job_of(flow, options);
   std::vector<Way> parts(way ? (particles.size() + grain - 1) / grain : 0);
   parallel_for(
       particles.size(), grain,
-      [&](size_t begin, size_t end) { advance_some(flow, particles, begin, end, until, options, way ? &parts[begin / grain] : nullptr); },
+      [&](size_t begin, size_t end) {
+        Way* part = way ? &parts[begin / grain] : nullptr;
+        if (job) lattice_advance::run(*job, particles.subspan(begin, end - begin), begin, until, options, part);
+        else advance_some(flow, particles, begin, end, until, options, part);
+      },
       &context);
   if (!way) return;
   for (Way& p : parts) {

@@ -12,10 +12,10 @@ namespace sg {
 
 struct Particle {
   Vec3 x;
+  Vec3 v{0, 0, 0};  ///< velocity there, once it has started
   double t = 0;
-  Vec3 v{0, 0, 0};                       ///< velocity there, once it has started
   double next = 0;                       ///< size of the next step, a time without sign; 0: by the options
-  int64_t steps = 0;                     ///< so far
+  int32_t steps = 0;                     ///< so far
   bool started = false;                  ///< v is known and x lies in the mesh
   bool ended = false;                    ///< moves no more:
   StopReason why = StopReason::outside;  ///< ... outside (also: where there is no velocity) or steps

@@ -60,24 +60,35 @@ Released release_and_advance(UnsteadyRun& run, std::optional<double> every, std:
   return r;
 }
 
-// Lines of one seed after the other, the newest particle first.
+// Lines of one seed after the other, the newest particle first. Some seeds at a time, whose particles lie together in each release.
 LinePoints streaks(const Released& r, std::vector<double>& age, double time) {
-  LinePoints lines;
-  size_t alive = 0;
-  for (const Particle& p : r.all) alive += !p.ended;
-  lines.x.reserve(alive), lines.v.reserve(alive), age.reserve(alive);
-  for (size_t i = 0; i < r.seeds; ++i) {
-    auto close = [&] {
-      if (lines.x.size() > lines.begin.back()) lines.begin.push_back(lines.x.size()), lines.seed.push_back(int64_t(i));
-    };
-    for (size_t k = r.times.size(); k-- > 0;) {
-      const Particle& p = r.all[k * r.seeds + i];
-      if (p.ended) close();
-      else lines.x.push_back(p.x), lines.v.push_back(p.v), age.push_back(time - r.times[k]);
-    }
-    close();
-  }
-  return lines;
+  constexpr size_t grain = 64;
+  const size_t releases = r.times.size();
+  std::vector<size_t> points(r.seeds, 0), lines(r.seeds, 0);
+  const auto each = [&](auto&& f) {  // f(seed, release, particle), release by release
+    parallel_for(r.seeds, grain, [&](size_t begin, size_t end) {
+      for (size_t k = releases; k-- > 0;)
+        for (size_t i = begin; i < end; ++i) f(i, k, r.all[k * r.seeds + i]);
+    });
+  };
+  each([&](size_t i, size_t k, const Particle& p) {
+    if (p.ended) return;
+    ++points[i];
+    lines[i] += k + 1 == releases || r.all[(k + 1) * r.seeds + i].ended;  // a newer one is gone: a new line
+  });
+  std::vector<size_t> point = points, line = lines;
+  LinePoints out;
+  const size_t n = exclusive_scan(point), m = exclusive_scan(line);
+  out.x.resize(n), out.v.resize(n), age.resize(n);
+  out.begin.resize(m + 1), out.seed.resize(m);
+  out.begin[m] = n;
+  each([&](size_t i, size_t k, const Particle& p) {
+    if (p.ended) return;
+    if (k + 1 == releases || r.all[(k + 1) * r.seeds + i].ended) out.begin[line[i]] = point[i], out.seed[line[i]++] = int64_t(i);
+    const size_t at = point[i]++;
+    out.x[at] = p.x, out.v[at] = p.v, age[at] = time - r.times[k];
+  });
+  return out;
 }
 
 struct Streaks {
