@@ -65,7 +65,7 @@ TEST_CASE("gradient_images: the volumes of a series stand side by side" * doctes
   CHECK(a.type() == ElementType::i16);
   const Series s = open_series(data_file(brain), {}, context);
   for (size_t step : {size_t(0), size_t(13), size_t(64)}) {
-    const Array& v = std::get<DatasetPtr>(s.load(step))->fields().require("NIFTI").array;
+    const Array v = std::get<DatasetPtr>(s.load(step))->fields().require("NIFTI").array;
     for (size_t i = 0; i < 1000; i += 37) CHECK(a.get(i, int(step)) == v.get(i));
   }
   CHECK(error_of([&] { gradient_images({}, context); }).find("path names no file") != std::string::npos);
