@@ -12,33 +12,13 @@
 #include "image/codec.h"
 #include "pipeline/picture.h"
 #include "pipeline/picture_parts.h"
+#include "pipeline/series_input.h"
 
 namespace sg {
 
 namespace {
 
 constexpr std::string_view mark = "{n}";
-
-// "0:10:6" = 6 times from 0 to 10; "0,1,2.5" = these.
-std::vector<double> parse_times(const std::string& text) {
-  std::vector<double> times;
-  const auto ends = split(text, ':');
-  if (ends.size() == 3) {
-    const auto a = parse_double(ends[0]), b = parse_double(ends[1]);
-    const auto n = parse_int(ends[2]);
-    if (!a || !b || !n || *n < 1 || *n > 1000000)
-      fail_usage(fmt::format("'{}' is no list of times", text), "--times", "FIRST:LAST:COUNT, like 0:10:101");
-    for (int64_t i = 0; i < *n; ++i) times.push_back(*n == 1 ? *a : *a + (*b - *a) * double(i) / double(*n - 1));
-    return times;
-  }
-  for (const std::string_view part : split(text, ',')) {
-    const auto t = parse_double(part);
-    if (!t || !std::isfinite(*t)) fail_usage(fmt::format("'{}' is no list of times", text), "--times", "like 0,0.5,1 or 0:1:101");
-    times.push_back(*t);
-  }
-  if (times.empty()) fail_usage("names no time", "--times", "like 0,0.5,1 or 0:1:101");
-  return times;
-}
 
 std::string numbered(const std::string& pattern, size_t n, size_t count) {
   const size_t at = pattern.find(mark), digits = std::max<size_t>(3, std::to_string(count - 1).size());
@@ -136,7 +116,7 @@ int render_series(const Options& o, const PictureOptions& options, Context& cont
   std::vector<double> times;
   bool by_step = false;
   if (!o.times.empty()) {
-    times = parse_times(o.times);
+    times = parse_times(o.times, "--times");
   } else if (o.inputs.size() == 1) {
     times = file_times(o.inputs[0], o.read, context);
     by_step = true;

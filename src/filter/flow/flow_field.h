@@ -17,6 +17,8 @@
 
 namespace sg {
 
+class FlowAccess;
+
 /// Shared and immutable. Velocities are interpolated by the cells' shape functions between the points; a cell field is first averaged to
 /// the points (cell_to_point). Two components get z = 0.
 class FlowField {
@@ -28,7 +30,8 @@ class FlowField {
 
   const DatasetPtr& dataset() const { return dataset_; }
   const Field& field() const { return field_; }  ///< on points
-  const std::shared_ptr<const CellLocator>& locator() const { return locator_; }
+  /// Made when it is first asked for.
+  const std::shared_ptr<const CellLocator>& locator() const;
   int dimension() const { return dimension_; }  ///< 3 with solid cells, else 2 (or 1): the mesh is a surface, flat or curved
   double largest_speed() const { return largest_speed_; }
   /// Velocity at a point of the mesh; NaN where it has no value.
@@ -43,12 +46,13 @@ class FlowField {
   const float* f32() const { return f32_; }  ///< packed, or null
   const double* f64() const { return f64_; }
   int components() const { return components_; }
+  const FlowAccess& access() const { return *access_; }
 
  private:
   DatasetPtr dataset_;
   Field field_;
   Array packed_;
-  std::shared_ptr<const CellLocator> locator_;
+  std::shared_ptr<const FlowAccess> access_;
   const float* f32_ = nullptr;
   const double* f64_ = nullptr;
   int components_ = 3, dimension_ = 3;
@@ -64,18 +68,21 @@ class FlowCursor {
   FlowCursor(FlowCursor&&) noexcept;
   ~FlowCursor();
 
-  /// Velocity at x; false outside the mesh, in hidden cells, and where it is NaN. On surfaces: at the nearest place within a cell's size,
-  /// and only the part along the surface.
+  /// Velocity at x; false outside the mesh, in hidden cells, and where it is NaN. On surfaces: at the nearest place within a cell's size
+  /// (not beyond their border), and only the part along the surface.
   bool operator()(Vec3 x, Vec3& v);
   bool operator()(Vec3 x, double, Vec3& v) { return (*this)(x, v); }
   /// The same with the velocity gradient, m[i][j] = dv_i/dx_j: that of the cell's interpolant.
   bool gradient(Vec3 x, Vec3& v, Mat3& j);
-  /// Of the last place: the cell, its size (the d-th root of its box' volume), ids and weights of its points.
+  /// Of the last place: the cell, its size (the d-th root of the volume of its box, in grids of its own volume), ids and weights of its
+  /// points. Where several cells hold the place, any of them.
   int64_t cell() const;
   double cell_length() const;
   std::span<const int64_t> ids() const;
   std::span<const double> weights() const;
   Vec3 snap(Vec3 x);
+  /// The same; false when there is no place of the mesh within a cell's size.
+  bool snap(Vec3 x, Vec3& at);
   const FlowField& field() const;
 
  private:

@@ -7,13 +7,14 @@
 namespace sg {
 
 void describe(Schema& s, IntegrationParams& p) {
-  s("integrator", p.integrator, "Scheme: dormand_prince adapts its steps to the tolerance, the others take steps of one size.")
-      .choices({"euler", "midpoint", "heun", "rk4", "dormand_prince"});
+  s("integrator", p.integrator,
+    "Scheme: dormand_prince adapts its steps to the tolerance, the others take steps of one size; implicit_midpoint is symplectic.")
+      .choices({"euler", "midpoint", "heun", "rk4", "dormand_prince", "implicit_midpoint"});
   s("step", p.step, "Size of a step (dormand_prince: of the first), in step_unit.").positive();
   s("step_unit", p.step_unit, "What steps are measured in: sizes of the local cell, length, or time.").choices({"cells", "length", "time"});
   s("tolerance", p.tolerance, "dormand_prince: error of one step, in sizes of the local cell.").positive();
   s("min_step", p.min_step, "dormand_prince: smallest step, in step_unit; default: a fiftieth of step.");
-  s("max_step", p.max_step, "dormand_prince: largest step, in step_unit; default: ten times step.");
+  s("max_step", p.max_step, "dormand_prince: largest step, in step_unit; default: twice step.");
 }
 
 void describe(Schema& s, StopParams& p) {
@@ -31,13 +32,13 @@ std::string_view stop_reason_name(StopReason r) {
 
 TraceOptions trace_options(const IntegrationParams& p, const StopParams& stop, double largest_speed) {
   TraceOptions o;
-  constexpr std::string_view names[] = {"euler", "midpoint", "heun", "rk4", "dormand_prince"};
+  constexpr std::string_view names[] = {"euler", "midpoint", "heun", "rk4", "dormand_prince", "implicit_midpoint"};
   o.scheme = Scheme(std::find(std::begin(names), std::end(names), p.integrator) - std::begin(names));
   o.unit = p.step_unit == "cells"    ? TraceOptions::Unit::cells
            : p.step_unit == "length" ? TraceOptions::Unit::length
                                      : TraceOptions::Unit::time;
   o.step = p.step, o.tolerance = p.tolerance;
-  o.min_step = p.min_step.value_or(p.step / 50), o.max_step = p.max_step.value_or(p.step * 10);
+  o.min_step = p.min_step.value_or(p.step / 50), o.max_step = p.max_step.value_or(p.step * 2);
   if (!(o.min_step > 0) || !(o.max_step >= o.min_step))
     fail_usage(fmt::format("min_step {} and max_step {} leave no step", o.min_step, o.max_step), "integrator", "0 < min_step <= max_step");
   o.max_length = stop.max_length.value_or(HUGE_VAL), o.max_time = stop.max_time.value_or(HUGE_VAL);
@@ -57,7 +58,8 @@ void reverse_tail(std::vector<T>& v, size_t from) {
   std::reverse(v.begin() + ptrdiff_t(from), v.end());
 }
 
-void trace_seed(FlowCursor& flow, Vec3 seed, int64_t number, TraceDirection direction, const TraceOptions& o, TracedLines& out) {
+template <class Flow>
+void trace_seed(Flow& flow, Vec3 seed, int64_t number, TraceDirection direction, const TraceOptions& o, TracedLines& out) {
   const Vec3 x = flow.snap(seed);
   Vec3 v;
   if (!flow(x, 0, v)) return;
@@ -85,16 +87,14 @@ void append(std::vector<T>& to, const std::vector<T>& from) {
   to.insert(to.end(), from.begin(), from.end());
 }
 
-}  // namespace
-
-TracedLines trace_lines(const FlowField& field, std::span<const Vec3> seeds, TraceDirection direction, const TraceOptions& o,
-                        Context& context) {
+template <class Cursor, class Source>
+TracedLines trace_all(const Source& field, std::span<const Vec3> seeds, TraceDirection direction, const TraceOptions& o, Context& context) {
   constexpr size_t grain = 16;
   std::vector<TracedLines> parts((seeds.size() + grain - 1) / grain);
   parallel_for(
       seeds.size(), grain,
       [&](size_t begin, size_t end) {
-        FlowCursor flow(field);
+        Cursor flow(field);
         for (size_t i = begin; i < end; ++i) trace_seed(flow, seeds[i], int64_t(i), direction, o, parts[begin / grain]);
       },
       &context);
@@ -109,6 +109,19 @@ TracedLines trace_lines(const FlowField& field, std::span<const Vec3> seeds, Tra
     p = {};
   }
   return out;
+}
+
+}  // namespace
+
+TracedLines trace_lines(const FlowField& field, std::span<const Vec3> seeds, TraceDirection direction, const TraceOptions& o,
+                        Context& context) {
+  return trace_all<FlowCursor>(field, seeds, direction, o, context);
+}
+
+TracedLines trace_lines(const FlowParts& parts, std::span<const Vec3> seeds, TraceDirection direction, const TraceOptions& o,
+                        Context& context) {
+  if (parts.count() == 1) return trace_all<FlowCursor>(parts.fields().front(), seeds, direction, o, context);
+  return trace_all<PartsCursor>(parts, seeds, direction, o, context);
 }
 
 }  // namespace sg

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/schema.h"
-#include "filter/flow/flow_field.h"
+#include "filter/flow/flow_parts.h"
 #include "filter/flow/integrator.h"
 
 namespace sg {
@@ -39,12 +39,12 @@ struct TraceOptions {
   Scheme scheme = Scheme::dormand_prince;
   enum class Unit : uint8_t { cells, length, time } unit = Unit::cells;  ///< of the three step sizes
   double step = 0.5;                                                     ///< fixed schemes: every step; dormand_prince: the first one
-  double min_step = 0.01, max_step = 5;
+  double min_step = 0.01, max_step = 1;
   double tolerance = 1e-4;  ///< dormand_prince: error of a step, in cell sizes
   double max_length = HUGE_VAL, max_time = HUGE_VAL;
   int64_t max_steps = 2000;
   double min_speed = 0;  ///< absolute
-  bool closed = true;    ///< end where the line comes back to its seed within 1/100 of a cell
+  bool closed = true;    ///< end where the line comes back to its seed, as closely as steps are exact (1e-4 to 1e-2 of a cell)
 };
 /// Throws Error(usage) for sizes that are not positive or bad names. `largest_speed` scales min_speed.
 TraceOptions trace_options(const IntegrationParams& integration, const StopParams& stop, double largest_speed);
@@ -68,6 +68,9 @@ enum class TraceDirection : uint8_t { forward, backward, both };
 
 /// From all seeds, in parallel: the same lines for any number of threads, in the order of the seeds. Seeds without velocity give no line.
 TracedLines trace_lines(const FlowField& field, std::span<const Vec3> seeds, TraceDirection direction, const TraceOptions& options,
+                        Context& context);
+/// The same through all parts of a collection: lines cross from part to part.
+TracedLines trace_lines(const FlowParts& parts, std::span<const Vec3> seeds, TraceDirection direction, const TraceOptions& options,
                         Context& context);
 
 }  // namespace sg

@@ -21,6 +21,21 @@ inline double time_of(const TraceOptions& o, double size, double speed, double c
 /// Size of the next step from its error (Hairer, Norsett, Wanner II.4), order 5.
 inline double next_step(double h, double error) { return h * std::clamp(0.9 * std::pow(std::max(error, 1e-10), -0.2), 0.2, 5.0); }
 
+/// Where a step passes the plane through `at` across `normal`: the place on the cubic with the velocities at both ends (times the step's
+/// signed length), and how far along, in [0, 1].
+inline Vec3 crossing(Vec3 x0, Vec3 x1, Vec3 m0, Vec3 m1, Vec3 at, Vec3 normal, double& f) {
+  const auto place = [&](double s) {
+    const double q = 1 - s;
+    return (1 + 2 * s) * q * q * x0 + s * s * (3 - 2 * s) * x1 + s * q * q * m0 - s * s * q * m1;
+  };
+  double lo = 0, hi = 1;
+  for (int n = 0; n < 40; ++n) {
+    f = (lo + hi) / 2;
+    (dot(place(f) - at, normal) < 0 ? lo : hi) = f;
+  }
+  return place(f);
+}
+
 }  // namespace detail
 
 /// Appends the points after the seed to `out`; the seed itself is there already as its last point, with velocity `v`. `sign` 1 or -1.
@@ -29,7 +44,7 @@ template <class Flow>
 StopReason trace_line(Flow& flow, double t0, double sign, const TraceOptions& o, TracedLines& out) {
   const Vec3 start = out.points.back(), start_v = out.velocity.back();
   Vec3 x = start, v = start_v;
-  double t = t0, arc = 0, suggested = 0;
+  double t = t0, arc = 0, suggested = 0, drift = 0;
   const double first_cell = flow.cell_length();
   bool away = false;  // from the seed, so that coming back means something
   for (int64_t n = 0;; ++n) {
@@ -44,14 +59,15 @@ StopReason trace_line(Flow& flow, double t0, double sign, const TraceOptions& o,
     h = std::min(h, left);
     Vec3 next, next_v;
     bool done = false, at_border = false;
-    double error = 0;
+    double error = 0, step_error = 0;
     for (int halving = 0; halving <= 10 && !done; ++halving) {
       if (o.scheme == Scheme::dormand_prince) {
         DormandPrinceStep s;
         done = dormand_prince_step(flow, x, t, sign * h, v, s);
         if (done) {
           next = s.x1, next_v = s.k7;
-          error = length(s.error) / (o.tolerance * cell);
+          step_error = length(s.error);
+          error = step_error / (o.tolerance * cell);
           if (error > 1 && h > detail::time_of(o, o.min_step, speed, cell) * 1.001) {
             h = std::max(detail::next_step(h, error), detail::time_of(o, o.min_step, speed, cell));
             done = false, --halving;
@@ -67,13 +83,19 @@ StopReason trace_line(Flow& flow, double t0, double sign, const TraceOptions& o,
     const Vec3 snapped = flow.snap(next);
     arc += length(snapped - x);
     t += sign * h;
-    // Back where it began: the step passes the plane through the seed across the flow, close to the seed.
+    // Back where it began: the step passes the plane through the seed across the flow, as close to the seed as the integration is exact.
+    // What misses it by more is a spiral.
+    drift += step_error;
     if (o.closed) {
-      const double before = dot(x - start, start_v) * sign, after = dot(snapped - start, start_v) * sign;
+      const Vec3 across = sign * start_v;
+      const double before = dot(x - start, across), after = dot(snapped - start, across);
       away = away || length(snapped - start) > first_cell;
-      if (away && before < 0 && after >= 0) {
-        const double f = before / (before - after);
-        if (length(lerp(x, snapped, f) - start) < 0.01 * first_cell) {
+      if (away && before < 0 && after >= 0 && length(snapped - start) < 2 * length(snapped - x)) {
+        double f = 0;
+        const Vec3 back = detail::crossing(x, snapped, (sign * h) * v, (sign * h) * next_v, start, across, f);
+        const double miss =
+            o.scheme == Scheme::dormand_prince ? std::clamp(drift, 1e-4 * first_cell, 1e-2 * first_cell) : 1e-3 * first_cell;
+        if (length(back - start) < miss) {
           out.points.push_back(start), out.velocity.push_back(start_v);
           out.time.push_back(t - sign * h * (1 - f)), out.arc.push_back(arc - (1 - f) * length(snapped - x));
           return StopReason::closed;

@@ -94,3 +94,50 @@ TEST_CASE("trace: a line that leaves a box ends at its border") {
   CHECK(out.points.back().x == doctest::Approx(1).epsilon(1e-3));
   CHECK(out.arc.back() == doctest::Approx(length(out.points.back() - seed)));
 }
+
+TEST_CASE("integrators: the implicit midpoint rule has order 2 and keeps a quadratic stream function for 1000 turns") {
+  AnalyticFlow ellipse{[](Vec3 x, double) { return Vec3(-4 * x.y, x.x, 0); }};  // psi = x^2/2 + 2 y^2, a turn takes pi
+  const auto psi = [](Vec3 x) { return x.x * x.x / 2 + 2 * x.y * x.y; };
+  Vec3 x(1, 0, 0), v;
+  const double h = pi / 40;
+  for (int n = 0; n < 40000; ++n) {
+    ellipse(x, 0, v);
+    REQUIRE(fixed_step(Scheme::implicit_midpoint, ellipse, x, 0, h, v, x));
+  }
+  CHECK(psi(x) == doctest::Approx(0.5).epsilon(1e-10));
+  double last = error_of(Scheme::implicit_midpoint, 16);
+  const double now = error_of(Scheme::implicit_midpoint, 32);
+  CHECK(std::log2(last / now) == doctest::Approx(2).epsilon(0.1));
+}
+
+TEST_CASE("integrators: the implicit midpoint rule keeps cells of a nonlinear flow of the plane from drifting where RK4 drifts") {
+  // psi = cos x + cos y: closed lines about the origin.
+  AnalyticFlow flow{[](Vec3 x, double) { return Vec3(std::sin(x.y), -std::sin(x.x), 0); }};
+  const auto psi = [](Vec3 x) { return std::cos(x.x) + std::cos(x.y); };
+  for (const Scheme s : {Scheme::implicit_midpoint, Scheme::rk4}) {
+    Vec3 x(1.5, 0.2, 0), v;
+    double late = 0;
+    const double start = psi(x);
+    for (int n = 0; n < 20000; ++n) {  // about a thousand turns
+      flow(x, 0, v);
+      REQUIRE(fixed_step(s, flow, x, 0, 0.45, v, x));
+      if (n > 19900) late = std::max(late, std::abs(psi(x) - start));
+    }
+    if (s == Scheme::implicit_midpoint) CHECK(late < 0.02);
+    else CHECK(late > 0.02);
+  }
+}
+
+TEST_CASE("integrators: the energy of a particle on a spring does not drift in 10000 turns of leapfrog") {
+  const auto pull = [](Vec3 x, double) { return -x; };
+  Vec3 x(1, 0, 0), v(0, 0.5, 0), a = pull(x, 0);
+  const auto energy = [&] { return (dot(v, v) + dot(x, x)) / 2; };
+  const double start = energy();
+  double worst = 0;
+  for (int n = 0; n < 10000 * 32; ++n) {
+    symplectic_step(pull, 0, 2 * pi / 32, x, v, a);
+    worst = std::max(worst, std::abs(energy() - start));
+  }
+  CHECK(worst < 0.01 * start);  // swings with h^2, but does not grow
+  CHECK(cross(x, v).z == doctest::Approx(0.5).epsilon(1e-10));
+}

@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: Apache-2.0
+// Velocities by trilinear interpolation of two or four time steps at once, and Dormand-Prince steps of several particles in turn, so that
+// the processor always has one to work at while another waits. The compiler's own vectors: without fused multiply-add every target gives
+// the same bits. The scalar reference is advance_one() over an UnsteadyCursor.
+#include "filter/flow/unsteady/lattice_advance.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "filter/flow/unsteady/lattice_advance_simd.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include <bit>
+#include <cstring>
+
+#pragma GCC diagnostic ignored "-Wpsabi"  // all is inlined
+
+HWY_BEFORE_NAMESPACE();
+namespace sg::lattice_advance::HWY_NAMESPACE {
+
+typedef float F4 __attribute__((vector_size(16)));
+typedef float F8 __attribute__((vector_size(32)));
+typedef int32_t I4 __attribute__((vector_size(16)));
+typedef int32_t I8 __attribute__((vector_size(32)));
+typedef double D4 __attribute__((vector_size(32)));
+typedef int64_t L4 __attribute__((vector_size(32)));
+
+HWY_INLINE F4 load(const float* p) {
+  F4 v;
+  __builtin_memcpy(&v, p, sizeof v);
+  return v;
+}
+/// The same point of two steps.
+HWY_INLINE F8 load_two(const float* a, const float* b) { return __builtin_shufflevector(load(a), load(b), 0, 1, 2, 3, 4, 5, 6, 7); }
+HWY_INLINE F8 all(float x) { return F8{x, x, x, x, x, x, x, x}; }
+HWY_INLINE F8 mix(F8 a, F8 b, F8 f) { return a + f * (b - a); }
+HWY_INLINE Vec3 vec(D4 v) { return {v[0], v[1], v[2]}; }
+
+struct Grid {
+  D4 origin, inverse, cells;
+  L4 keep;  // components that have a meaning: three, or two in a flat grid
+  const Job* job;
+};
+
+/// False outside and where a component is not finite; v then means nothing.
+template <int STEPS>
+HWY_INLINE bool velocity(const Grid& g, D4 x, double t, D4& v) {
+  const Job& job = *g.job;
+  constexpr double slack = 1e-9;
+  const D4 zero{}, q = (x - g.origin) * g.inverse;
+  const L4 out = (q < zero - slack) | (q > g.cells + slack) | (q != q);
+  const D4 low = q > zero ? q : zero;
+  const D4 most = g.cells - 1.0;
+  const D4 in = low < most ? low : most;  // keeps addresses inside whatever q is
+  const I4 c = __builtin_convertvector(in, I4);
+  D4 f = q - __builtin_convertvector(c, D4);
+  f = f > zero ? f : zero;
+  f = f < 1.0 ? f : zero + 1.0;
+  const F4 w = __builtin_convertvector(f, F4);
+  size_t dx = job.stride[0], dy = job.stride[1], dz = job.stride[2];
+  size_t at = size_t(c[0]) * dx + size_t(c[1]) * dy + size_t(c[2]) * dz;
+  const double s = (t - job.begin) * job.scale;
+  const F8 fx = all(w[0]), fy = all(w[1]), fz = all(w[2]);
+  float copy[4][8][4];
+  const float* step[4] = {job.step[0], job.step[1], job.step[2], job.step[3]};
+  if (HWY_UNLIKELY(at == job.last)) {
+    for (int j = 0; j < STEPS; ++j) {
+      for (size_t k = 0; k < 8; ++k)
+        std::memcpy(copy[j][k], job.step[j] + at + (k & 1 ? dx : 0) + (k & 2 ? dy : 0) + (k & 4 ? dz : 0), 3 * sizeof(float));
+      for (auto& corner : copy[j]) corner[3] = 0;
+      step[j] = copy[j][0];
+    }
+    at = 0, dx = 4, dy = 8, dz = 16;
+  }
+  F4 sum{};
+  for (int j = 0; j < STEPS; j += 2) {
+    const float *a = step[j] + at, *b = step[j + 1] + at;
+    const F8 r0 = mix(load_two(a, b), load_two(a + dx, b + dx), fx);
+    const F8 r1 = mix(load_two(a + dy, b + dy), load_two(a + dy + dx, b + dy + dx), fx);
+    const F8 r2 = mix(load_two(a + dz, b + dz), load_two(a + dz + dx, b + dz + dx), fx);
+    const F8 r3 = mix(load_two(a + dz + dy, b + dz + dy), load_two(a + dz + dy + dx, b + dz + dy + dx), fx);
+    const F8 u = mix(mix(r0, r1, fy), mix(r2, r3, fy), fz);
+    float m[2];
+    for (int k = 0; k < 2; ++k) {
+      const double* p = job.weight[j + k];
+      m[k] = STEPS == 2 ? float(k == 0 ? 1 - s : s) : float(((p[3] * s + p[2]) * s + p[1]) * s + p[0]);
+    }
+    const F8 weight{m[0], m[0], m[0], m[0], m[1], m[1], m[1], m[1]};
+    // A step of no weight may be NaN.
+    const F8 part = reinterpret_cast<F8>(reinterpret_cast<I8>(u * weight) & (weight != F8{}));
+    sum = sum + (__builtin_shufflevector(part, part, 0, 1, 2, 3) + __builtin_shufflevector(part, part, 4, 5, 6, 7));
+  }
+  v = reinterpret_cast<D4>(reinterpret_cast<L4>(__builtin_convertvector(sum, D4)) & g.keep);
+  const L4 bad = out | (v - v != zero);
+  return (bad[0] | bad[1] | bad[2]) == 0;
+}
+
+/// x^(-1/5) for x > 0 by Newton's iteration.
+HWY_INLINE double inverse_fifth_root(double x) {
+  const uint64_t bits = std::bit_cast<uint64_t>(x);
+  double y = std::bit_cast<double>(uint64_t(0x4CB999999999999A) - bits / 5);
+  for (int n = 0; n < 4; ++n) {
+    const double y2 = y * y;
+    y = y * (1.2 - 0.2 * x * (y2 * y2 * y));
+  }
+  return y;
+}
+HWY_INLINE double next_size(double h, double error) {
+  return h * std::min(std::max(0.9 * inverse_fifth_root(std::clamp(error, 1e-10, 1e10)), 0.2), 5.0);
+}
+
+struct Lane {
+  Particle* p = nullptr;
+  D4 x, k1;
+  double t, h, sign, left, least, wished;
+  int halving;
+  bool at_border;
+  // Of the step just tried:
+  bool ok;
+  D4 x1, k7, error;
+};
+
+template <int STEPS>
+class Lanes {
+ public:
+  Lanes(const Job& job, std::span<Particle> particles, size_t first, double until, const TraceOptions& o, Way* way)
+      : particles_(particles), first_(first), until_(until), o_(o), way_(way) {
+    g_.job = &job;
+    for (int a = 0; a < 3; ++a) {
+      g_.origin[a] = job.origin[a], g_.inverse[a] = job.inverse[a], g_.cells[a] = job.cells[a];
+      g_.keep[a] = a == job.flat ? 0 : -1;
+    }
+    g_.origin[3] = g_.inverse[3] = 0, g_.cells[3] = 1, g_.keep[3] = 0;
+  }
+
+  void run() {
+    Lane lane[width];
+    int n = 0;
+    for (; n < width && fill(lane[n]); ++n) {
+    }
+    while (n > 0) {
+      try_steps(lane, n);
+      for (int l = 0; l < n; ++l)
+        if (!after_step(lane[l]) && !fill(lane[l])) lane[l--] = lane[--n];
+    }
+  }
+
+ private:
+  static constexpr int width = 4;
+
+  double time_of(double size, double speed) const {
+    switch (o_.unit) {
+      case TraceOptions::Unit::cells: return size * g_.job->cell / speed;
+      case TraceOptions::Unit::length: return size / speed;
+      default: return size;
+    }
+  }
+  double speed_of(D4 v) const { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
+
+  bool start(Particle& p) {
+    const Job& job = *g_.job;
+    if (job.flat >= 0) {
+      const double off = p.x[job.flat] - job.origin[job.flat];
+      if (std::abs(off) <= job.cell) p.x[job.flat] = job.origin[job.flat];
+    }
+    D4 v;
+    p.started = inside_plane(p.x) && velocity<STEPS>(g_, D4{p.x.x, p.x.y, p.x.z, 0}, p.t, v);
+    p.ended = !p.started;
+    if (p.started) p.v = vec(v), record(p);
+    return p.started;
+  }
+  bool inside_plane(Vec3 x) const { return g_.job->flat < 0 || x[g_.job->flat] == g_.job->origin[g_.job->flat]; }
+
+  void record(const Particle& p) {
+    if (!way_) return;
+    way_->particle.push_back(first_ + size_t(&p - particles_.data()));
+    way_->x.push_back(p.x), way_->v.push_back(p.v), way_->t.push_back(p.t);
+  }
+
+  /// The next particle that has a way to go.
+  bool fill(Lane& l) {
+    for (; next_ < particles_.size(); ++next_) {
+      Particle& p = particles_[next_];
+      if (p.ended || (!p.started && !start(p))) continue;
+      l.p = &p, l.sign = until_ >= p.t ? 1 : -1;
+      l.x = D4{p.x.x, p.x.y, p.x.z, 0}, l.k1 = D4{p.v.x, p.v.y, p.v.z, 0}, l.t = p.t;
+      if (!begin_step(l)) continue;
+      ++next_;
+      return true;
+    }
+    return false;
+  }
+
+  /// Size of the next step; false at the end of the interval.
+  bool begin_step(Lane& l) {
+    Particle& p = *l.p;
+    l.left = std::abs(until_ - l.t);
+    if (!(l.left > 1e-12 * std::max(std::abs(until_), l.left))) {
+      p.t = until_;
+      return false;
+    }
+    if (p.steps >= o_.max_steps) {
+      p.ended = true, p.why = StopReason::steps;
+      return false;
+    }
+    const double speed = speed_of(l.k1);
+    l.least = time_of(o_.min_step, speed);
+    double h = p.next > 0 ? p.next : time_of(o_.step, speed);
+    h = std::min(std::max(h, l.least), time_of(o_.max_step, speed));
+    l.wished = h;
+    if (!(h < l.left)) h = l.left;
+    else if (h > l.left / 2) h = l.left / 2;
+    l.h = h, l.halving = 0, l.at_border = false;
+    return true;
+  }
+
+  // A stage of all lanes, then the next: see dormand_prince_step().
+  void try_steps(Lane* lane, int n) {
+    D4 k2[width], k3[width], k4[width], k5[width], k6[width];
+    const auto stage = [&](auto&& place, double share, D4* k) {
+      for (int i = 0; i < n; ++i) {
+        Lane& l = lane[i];
+        const double h = l.sign * l.h;
+        l.ok &= velocity<STEPS>(g_, l.x + h * place(l, i), l.t + share * h, k[i]);
+      }
+    };
+    for (int i = 0; i < n; ++i) lane[i].ok = true;
+    stage([&](const Lane& l, int) { return (1.0 / 5) * l.k1; }, 1.0 / 5, k2);
+    stage([&](const Lane& l, int i) { return (3.0 / 40) * l.k1 + (9.0 / 40) * k2[i]; }, 3.0 / 10, k3);
+    stage([&](const Lane& l, int i) { return (44.0 / 45) * l.k1 - (56.0 / 15) * k2[i] + (32.0 / 9) * k3[i]; }, 4.0 / 5, k4);
+    stage([&](const Lane& l,
+              int i) { return (19372.0 / 6561) * l.k1 - (25360.0 / 2187) * k2[i] + (64448.0 / 6561) * k3[i] - (212.0 / 729) * k4[i]; },
+          8.0 / 9, k5);
+    stage(
+        [&](const Lane& l, int i) {
+          return (9017.0 / 3168) * l.k1 - (355.0 / 33) * k2[i] + (46732.0 / 5247) * k3[i] + (49.0 / 176) * k4[i] - (5103.0 / 18656) * k5[i];
+        },
+        1.0, k6);
+    for (int i = 0; i < n; ++i) {
+      Lane& l = lane[i];
+      const double h = l.sign * l.h;
+      l.x1 =
+          l.x + h * ((35.0 / 384) * l.k1 + (500.0 / 1113) * k3[i] + (125.0 / 192) * k4[i] - (2187.0 / 6784) * k5[i] + (11.0 / 84) * k6[i]);
+      l.ok &= velocity<STEPS>(g_, l.x1, l.t + h, l.k7);
+      l.error = h * ((71.0 / 57600) * l.k1 - (71.0 / 16695) * k3[i] + (71.0 / 1920) * k4[i] - (17253.0 / 339200) * k5[i] +
+                     (22.0 / 525) * k6[i] - (1.0 / 40) * l.k7);
+    }
+  }
+
+  /// What advance_one() does with a step; false when the particle is through with the interval.
+  bool after_step(Lane& l) {
+    Particle& p = *l.p;
+    if (!l.ok) {
+      l.at_border = true, l.h /= 2;
+      if (++l.halving <= 10) return true;
+      p.ended = true, p.why = StopReason::outside;
+      return false;
+    }
+    const double error = speed_of(l.error) / (o_.tolerance * g_.job->cell), least = std::min(l.least, l.left);
+    if (error > 1 && l.h > 1.001 * least) {
+      l.h = std::max(next_size(l.h, error), least);
+      return true;
+    }
+    l.x = l.x1, l.k1 = l.k7;
+    l.t = l.h >= l.left ? until_ : l.t + l.sign * l.h;
+    p.x = vec(l.x), p.v = vec(l.k1), p.t = l.t;
+    ++p.steps;
+    const double next = next_size(l.h, error);
+    p.next = l.h < l.wished && error <= 1 ? std::max(l.wished, next) : next;
+    record(p);
+    if (l.at_border && l.h < l.least) {
+      p.ended = true, p.why = StopReason::outside;
+      return false;
+    }
+    return begin_step(l);
+  }
+
+  Grid g_;
+  std::span<Particle> particles_;
+  size_t first_, next_ = 0;
+  double until_;
+  const TraceOptions& o_;
+  Way* way_;
+};
+
+void run(const Job& job, std::span<Particle> particles, size_t first, double until, const TraceOptions& o, Way* way) {
+  if (job.steps == 2) Lanes<2>(job, particles, first, until, o, way).run();
+  else Lanes<4>(job, particles, first, until, o, way).run();
+}
+
+}  // namespace sg::lattice_advance::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sg::lattice_advance {
+HWY_EXPORT(run);
+
+void run(const Job& job, std::span<Particle> particles, size_t first, double until, const TraceOptions& options, Way* way) {
+  HWY_DYNAMIC_DISPATCH(run)(job, particles, first, until, options, way);
+}
+}  // namespace sg::lattice_advance
+#endif
