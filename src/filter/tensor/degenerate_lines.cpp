@@ -164,14 +164,14 @@ DatasetPtr as_mesh(const std::vector<Segment>& segments, const std::string& unit
   std::sort(keys.begin(), keys.end());
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
   const size_t n = keys.size();
-  std::vector<double> xyz(3 * n), twice(n), once(n), axis(3 * n);
+  std::vector<double> xyz(3 * n), twice(n), once(n), axis(3 * n), mode(n);
   std::vector<int64_t> ids;
   std::vector<int32_t> type;
   for (const Segment& s : segments) {
     for (const FacePoint* p : {&s.a, &s.b}) {
       const size_t i = size_t(std::lower_bound(keys.begin(), keys.end(), p->key) - keys.begin());
       for (int c = 0; c < 3; ++c) xyz[3 * i + size_t(c)] = p->at[c], axis[3 * i + size_t(c)] = p->axis[c];
-      twice[i] = p->twice, once[i] = p->once;
+      twice[i] = p->twice, once[i] = p->once, mode[i] = p->planar ? -1 : 1;
       ids.push_back(int64_t(i));
     }
     type.push_back(s.a.planar);
@@ -181,6 +181,7 @@ DatasetPtr as_mesh(const std::vector<Segment>& segments, const std::string& unit
   if (!segments.empty()) mesh.lines.connectivity = Array::from_vector(std::move(ids)), mesh.lines.fixed = 2;
   FieldSet f;
   f.add({"type", Association::cell, Array::from_vector(std::move(type)), "", Role::labels});
+  f.add({"mode", Association::point, Array::from_vector(std::move(mode)), "", Role::scalars});
   f.add({"eigenvalue", Association::point, Array::from_vector(std::move(twice)), unit, Role::none});
   f.add({"single eigenvalue", Association::point, Array::from_vector(std::move(once)), unit, Role::none});
   f.add({"axis", Association::point, Array::from_vector(std::move(axis), 3), "", Role::none});

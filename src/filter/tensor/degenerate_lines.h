@@ -21,9 +21,9 @@ void describe(Schema& s, DegenerateLinesParams& p);
 /// times its deviator's size, by numbers that depend on the point's id alone; 0 switches that off. `min_gap` leaves out places
 /// whose third eigenvalue differs by less than this share of the field's largest deviator.
 ///
-/// A SurfaceMesh (f64) of poly-lines with the point fields "eigenvalue" (the double one), "single eigenvalue", "axis" (its eigenvector),
-/// and the cell fields "type" (labels: 0 linear, 1 planar), "closed", "length". Ends inside, where parts could not be joined, are counted
-/// in a note. Throws Error(usage) for meshes without solid cells and for 2D tensors.
+/// A SurfaceMesh (f64) of poly-lines with the point fields "mode" (1 linear, -1 planar), "eigenvalue" (the double one), "single
+/// eigenvalue", "axis" (its eigenvector), and the cell fields "type" (labels: 0 linear, 1 planar), "closed", "length". Ends inside, where
+/// parts could not be joined, are counted in a note. Throws Error(usage) for meshes without solid cells and for 2D tensors.
 DatasetPtr degenerate_lines(const DatasetPtr& in, const DegenerateLinesParams& p, Context& ctx);
 
 }  // namespace sg

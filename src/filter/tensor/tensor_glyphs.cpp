@@ -171,7 +171,7 @@ Chosen choose(const DatasetPtr& in, const TensorField& t, const TensorGlyphsPara
     c.at.push_back(at[size_t(i)]);
     c.eigen.push_back(t.eigen(size_t(i)));
     const double* v = c.eigen.back().value;
-    c.with_negative += std::min(v[1], v[2]) < -1e-9 * largest_of(c.eigen.back());
+    c.with_negative += std::min(v[1], v[2]) < -1e-6 * largest_of(c.eigen.back());
   }
   return c;
 }
