@@ -66,6 +66,18 @@ void cut_cell(CellReader& reader, std::vector<Tetra>& out) {
   }
 }
 
+// Eigenvalues of a sum move apart or together by no more than sqrt(2) times the norm of what is added (Weyl): where the mean's differ by
+// more than that of the corners from it, no combination of the corners has equal ones.
+bool may_be_degenerate(std::span<const int64_t> ids, const std::vector<SymTensor>& d) {
+  SymTensor mean;
+  for (int64_t id : ids) mean = mean + d[size_t(id)];
+  mean = (mean * (1 / double(ids.size()))).deviator();
+  double most = 0;
+  for (int64_t id : ids) most = std::max(most, (d[size_t(id)].deviator() - mean).norm());
+  const Eigen3 e = eigen_of(mean);
+  return !(std::min(e.value[0] - e.value[1], e.value[1] - e.value[2]) > 1.42 * most);
+}
+
 // Numbers in [-1, 1] that depend on the point alone.
 SymTensor noise(int64_t id) {
   double v[6];
@@ -224,7 +236,7 @@ DatasetPtr degenerate_lines(const DatasetPtr& input, const DegenerateLinesParams
         for (size_t c = begin; c < end; ++c) {
           if (reader.hidden(c)) continue;
           reader.open(c);
-          if (reader.dimension() != 3) continue;
+          if (reader.dimension() != 3 || !may_be_degenerate(reader.ids(), t.d)) continue;
           cut_cell(reader, tetras);
           for (const Tetra& x : tetras) search.run(x, chunks[begin / grain]);
         }
