@@ -5,7 +5,7 @@
 #include <unordered_map>
 
 #include "filter/flow/line_attributes.h"
-#include "filter/flow/streamlines.h"
+#include "filter/flow/line_mesh.h"
 #include "filter/flow/trace_line.h"
 
 namespace sg {
