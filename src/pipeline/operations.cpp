@@ -77,6 +77,8 @@
 #include "filter/surface/quality.h"
 #include "filter/surface/smooth.h"
 #include "filter/surface/surfels.h"
+#include "filter/tensor/degenerate_lines.h"
+#include "filter/tensor/degenerate_points.h"
 #include "filter/tensor/hyperstreamlines.h"
 #include "filter/tensor/stress_measures.h"
 #include "filter/tensor/tensor_fit.h"
