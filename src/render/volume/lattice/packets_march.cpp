@@ -21,8 +21,8 @@ namespace sg::volume::HWY_NAMESPACE {
 
 /// Samples between two looks at the bricks.
 constexpr int samples_per_look = 4;
-/// Samples are lit by twos; those of a look together when they take less than the first share of the light, those of several looks when
-/// they take less than the second.
+/// Samples half an edge apart or more are lit by twos; those of a look together when they take less than the first share of the light,
+/// those of several looks when they take less than the second.
 constexpr float faint = 1.0f / 32, faintest = 1.0f / 256;
 /// So far ahead samples are asked for: in the next turn or the one after it.
 constexpr float samples_asked_ahead = 48;
@@ -139,21 +139,30 @@ HWY_INLINE hn::Vec<D> absorbed(D d, hn::Vec<D> x) {
   return hn::Add(hn::Sub(hn::Set(d, 1.0f), power), hn::Mul(power, e));
 }
 
-/// What waits for its light: samples that follow each other are lit together, where the middle of what they take lies.
+/// What waits for its light: samples that follow each other are lit together, where the middle of what they take lies; but not samples
+/// before and after a turn of the value, where surfaces begin to show their other side.
 template <class D>
 struct Due {
-  hn::Vec<D> r, g, b, taken, moment;
-  HWY_INLINE Due() { r = g = b = taken = moment = hn::Zero(D()); }
+  static constexpr int parts = 7;
+  hn::Vec<D> r, g, b, taken, moment, value, rise;
+  HWY_INLINE Due() { r = g = b = taken = moment = value = rise = hn::Zero(D()); }
+  HWY_INLINE hn::Mask<D> turns(hn::Vec<D> next) {
+    const D d;
+    const auto after = hn::Sub(next, value);
+    const auto turned = hn::And(hn::Lt(hn::Mul(after, rise), hn::Zero(d)), hn::Gt(taken, hn::Zero(d)));
+    value = next, rise = after;
+    return turned;
+  }
   HWY_INLINE void drop(hn::Mask<D> which) {
     for (hn::Vec<D>* v : {&r, &g, &b, &taken, &moment}) *v = hn::IfThenElseZero(hn::Not(which), *v);
   }
-  HWY_INLINE void load(const float from[5][most_lanes]) {
+  HWY_INLINE void load(const float from[parts][most_lanes]) {
     size_t i = 0;
-    for (hn::Vec<D>* v : {&r, &g, &b, &taken, &moment}) *v = hn::Load(D(), from[i++]);
+    for (hn::Vec<D>* v : {&r, &g, &b, &taken, &moment, &value, &rise}) *v = hn::Load(D(), from[i++]);
   }
-  HWY_INLINE void store(float to[5][most_lanes]) const {
+  HWY_INLINE void store(float to[parts][most_lanes]) const {
     size_t i = 0;
-    for (const hn::Vec<D>* v : {&r, &g, &b, &taken, &moment}) hn::Store(*v, D(), to[i++]);
+    for (const hn::Vec<D>* v : {&r, &g, &b, &taken, &moment, &value, &rise}) hn::Store(*v, D(), to[i++]);
   }
 };
 
@@ -201,6 +210,8 @@ class March {
     const Entries<D> entries(transfer.linear_table());
     const auto* steps = reinterpret_cast<const float*>(transfer.steps());
     const bool skip = skips(plan);
+    // Who asks for shorter steps wants to see each of them lit.
+    [[maybe_unused]] const bool together = v.step > 0.4 * v.edge;
     const F stop = hn::Set(d, plan.knobs.stop_below), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
 
     Lanes<D> lanes(rays, per_by_);
@@ -231,10 +242,13 @@ class March {
         const F wr = hn::Mul(weight, r_g.a), wg = hn::Mul(weight, r_g.b), wb = hn::Mul(weight, b_pass.a);
         if constexpr (shaded) {
           const F taken = hn::Mul(weight, hn::Sub(one, b_pass.b));
+          const auto turned = due.turns(values[k]);
+          if (!hn::AllFalse(d, turned)) push(plan, due, turned);
           due.r = hn::Add(due.r, wr), due.g = hn::Add(due.g, wg), due.b = hn::Add(due.b, wb);
           due.taken = hn::Add(due.taken, taken), due.moment = hn::Add(due.moment, hn::Mul(taken, s));
-          if (k % 2 == 1) {
-            const auto ready = hn::Gt(due.taken, hn::Set(d, k + 1 < samples_per_look ? faint : faintest));
+          if (k % 2 == 1 || !together) {
+            const float enough = !together ? 0 : k + 1 < samples_per_look ? faint : faintest;
+            const auto ready = hn::Gt(due.taken, hn::Set(d, enough));
             if (!hn::AllFalse(d, ready)) push(plan, due, ready);
           }
         } else {
@@ -340,7 +354,7 @@ class March {
 
   alignas(64) float per_by_[3][most_lanes], seen_half_[most_lanes];
   Look looks_[2];
-  alignas(64) float due_[shaded ? 5 : 1][most_lanes];
+  alignas(64) float due_[shaded ? Due<D>::parts : 1][most_lanes];
   int now_;
   bool inside_;  ///< are all samples of whole steps in cells, none beyond the outermost samples?
   struct None {};
