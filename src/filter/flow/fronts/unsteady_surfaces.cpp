@@ -175,7 +175,7 @@ DatasetPtr path_surface(const Series& series, const std::vector<Data>& others, c
         fail_usage(fmt::format("the surface has more than {} points", p.max_points), "path_surface", "a larger spacing or max_points");
       std::vector<Particle> moving;
       for (const Member& m : front) moving.push_back(m.p);
-      advance(run.flow, moving, t, run.options, context);
+      advance(run.flow, moving, t, 1, run.options, context);
       UnsteadyCursor cursor(run.flow);
       std::vector<Member> next;
       const size_t n = front.size();
@@ -262,7 +262,7 @@ DatasetPtr streak_surface(const Series& series, const std::vector<Data>& others,
     each_part(run.flow, now, until, r.spacing, [&](double t) {
       if (int64_t(sheet.particles.size()) > p.max_points)
         fail_usage(fmt::format("the surface has more than {} points", p.max_points), "streak_surface", "a larger spacing or max_points");
-      advance(run.flow, sheet.particles, t, run.options, context);
+      advance(run.flow, sheet.particles, t, 1, run.options, context);
       release(t);
       UnsteadyCursor cursor(run.flow);
       sheet.refine(cursor, t, r.spacing, p.tear * r.spacing, size_t(p.max_points));
@@ -318,7 +318,7 @@ DatasetPtr time_surface(const Series& series, const std::vector<Data>& others, c
     each_part(run.flow, now, until, spacing, [&](double t) {
       if (int64_t(sheet.particles.size()) > p.max_points)
         fail_usage(fmt::format("the surface has more than {} points", p.max_points), "time_surface", "a larger spacing or max_points");
-      advance(run.flow, sheet.particles, t, run.options, context);
+      advance(run.flow, sheet.particles, t, 1, run.options, context);
       UnsteadyCursor cursor(run.flow);
       sheet.refine(cursor, t, spacing, p.tear * spacing, size_t(p.max_points));
     });

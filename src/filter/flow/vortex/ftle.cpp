@@ -150,7 +150,7 @@ DatasetPtr ftle(const Series& given, const FtleParams& p, Context& context) {
     for (size_t i = 0; i < from.size(); ++i) particles[i].x = from[i], particles[i].t = start;
     for (;; k = size_t(ptrdiff_t(k) + sign)) {
       flow.open(k, context);
-      advance(flow, particles, k == last ? until : sign > 0 ? flow.end() : flow.begin(), options, context);
+      advance(flow, particles, k == last ? until : sign > 0 ? flow.end() : flow.begin(), sign, options, context);
       context.check();
       context.progress(std::min(1.0, std::abs((sign > 0 ? flow.end() : flow.begin()) - start) / std::abs(p.duration)), "ftle");
       if (k == last) break;
