@@ -35,6 +35,7 @@
 #include "filter/flow/vortex/parallel_vectors.h"
 #include "filter/flow/topology/topology.h"
 #include "filter/flow/vortex/ridges.h"
+#include "filter/flow/vortex/shear_lines.h"
 #include "filter/glyph/choose.h"
 #include "filter/glyph/trails.h"
 #include "filter/mesh/append.h"
