@@ -40,6 +40,7 @@ void add_volume_methods_tasks(std::vector<Task>& tasks);
 void add_volume_cells_tasks(std::vector<Task>& tasks);
 void add_flow_tasks(std::vector<Task>& tasks);
 void add_glyph_tasks(std::vector<Task>& tasks);
+void add_ftle_tasks(std::vector<Task>& tasks);
 void add_lic_tasks(std::vector<Task>& tasks);
 void add_lic2d_tasks(std::vector<Task>& tasks);
 std::vector<ProcessTask> process_tasks(const std::string& data_folder, const std::string& program);

@@ -193,6 +193,7 @@ std::vector<Task> tasks(const std::string& folder) {
   add_volume_tasks(t);
   add_flow_tasks(t);
   add_glyph_tasks(t);
+  add_ftle_tasks(t);
   return t;
 }
 

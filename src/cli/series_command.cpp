@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "cli/cli.h"
 #include "data/memory_budget.h"
+#include "filter/glyph/choose.h"
 #include "image/codec.h"
 #include "pipeline/picture.h"
 #include "pipeline/picture_parts.h"
@@ -25,8 +26,27 @@ std::string numbered(const std::string& pattern, size_t n, size_t count) {
   return pattern.substr(0, at) + fmt::format("{:0{}}", n, digits) + pattern.substr(at + mark.size());
 }
 
-// The pipeline of one step: readers and sources with a time get it.
+// Writes the time where a parameter asks for it: 'lic kernel=ripple phase={t}'. False when none does.
+bool write_time(PipelineFile& file, double time) {
+  constexpr std::string_view here = "{t}";
+  bool written = false;
+  for (PipelineFile::Step& s : file.steps)
+    for (std::string& word : s.words)
+      for (size_t at = word.find(here); at != word.npos; at = word.find(here, at)) {
+        word.replace(at, here.size(), exact_number(time));
+        written = true;
+      }
+  return written;
+}
+
+// The pipeline of one step: the parameters that ask for the time get it, else trails, whose lines stay, else readers and sources with a
+// time.
 PipelineFile at_time(PipelineFile file, double time, std::optional<size_t> step) {
+  if (write_time(file, time)) return file;
+  bool of_trails = false;
+  for (PipelineFile::Step& s : file.steps)
+    if (s.operation == "trails" && !step && !word_value(s.words, "time")) s.words.push_back("time=" + exact_number(time)), of_trails = true;
+  if (of_trails) return file;
   for (PipelineFile::Step& s : file.steps) {
     if (s.operation == "read") {
       s.words.push_back(step ? fmt::format("step={}", *step) : "time=" + exact_number(time));
@@ -81,15 +101,16 @@ void fix_ranges(PipelineFile& first, const std::vector<PipelineFile>& some, Cont
   for (size_t i = 0; i < first.show.size(); ++i) {
     PipelineFile::Show& show = first.show[i];
     if (!colors_by_field(show.kind) || word_value(show.words, "range") || word_value(show.words, "color")) continue;
-    const std::string named = word_value(show.words, "field").value_or("");
+    std::string named = word_value(show.words, "field").value_or("");
+    if (named.empty() && show.kind == "glyphs") named = word_value(show.words, "vectors").value_or("");
     if (named == "none") continue;
     Range all;
     const int component = int(parse_int(word_value(show.words, "component").value_or("-1")).value_or(-1));
     for (const PipelineFile& file : some) {
       const std::vector<Data> data = results_of(file, std::make_shared<Cache>(0), context);
       for_each_dataset(data[std::min(i, data.size() - 1)], [&](const std::string&, const DatasetPtr& d) {
-        const Field* f = named.empty() ? automatic_field(*d) : d->fields().find(named);
-        if (f && f->association != Association::whole) all.add(d->range(*f, f->components() > 1 ? component : 0));
+        const Field* f = !named.empty() ? d->fields().find(named) : show.kind == "glyphs" ? automatic_vectors(*d) : automatic_field(*d);
+        if (f && f->association != Association::whole && f->role != Role::colors) all.add(d->range(*f, f->components() > 1 ? component : 0));
       });
     }
     if (!(all.lo < all.hi)) continue;

@@ -11,7 +11,12 @@ void add_bounds(const auto& item, Box3& box) {
 
 void add_bounds(const GlyphsItem& item, Box3& box) {
   if (!item.data) return;
-  if (item.in_pixels) return box.add(item.data->bounds());  // how large they are is known on the picture alone
+  if (item.in_pixels) {  // how large they are is known on the picture alone: leave room for one of usual size
+    const Box3 places = item.data->bounds();
+    const Vec3 room = Vec3{1, 1, 1} * (0.05 * places.diagonal());
+    if (!places.empty()) box.add(places.lo - room), box.add(places.hi + room);
+    return;
+  }
   box.add(glyph_bounds(*glyph_instances(item.data, item.rule, item.shapes.size()), shape_boxes(item)));
 }
 

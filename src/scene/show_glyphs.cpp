@@ -30,7 +30,7 @@ bool is_dark(const Colormap& map) {
     const Vec3f q = map.at(double(k) / 16);
     sum += 0.3f * q.x + 0.59f * q.y + 0.11f * q.z;
   }
-  return sum / 17 < 0.42f;
+  return sum / 17 < 0.5f;
 }
 
 bool is_direct(const Field& f) {
@@ -75,6 +75,8 @@ std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const Glyph
       const Field* drawn = c.data->fields().find(f->name, Association::point);
       color.scale = drawn ? choose_scale(*c.data, *drawn, p.coloring, context) : choose_scale(*input, *f, p.coloring, context);
       legend = color.scale;
+      if (c.of > 0 && p.coloring.range.empty())  // parts of a collection share a legend, not a scale
+        legend->title += fmt::format(" ({}: {}{} long)", short_number(c.of, 3), short_number(c.longest, 3), in_pixels ? " pixels" : "");
     }
     item.color_by = std::move(color);
   }

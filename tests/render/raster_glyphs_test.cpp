@@ -238,7 +238,7 @@ TEST_CASE("glyphs: sizes in pixels are the same at any distance and supersamplin
         Camera c = parallel ? front_parallel(10, distance) : front(distance);
         c.far_plane = 1e4;
         const Picture p = draw(scene, c, 100 * scale, 100 * scale, scale);
-        CHECK(double(p.covered()) == doctest::Approx((0.65 * 0.08 + 0.35 * 0.12) * 45 * 45 * scale * scale).epsilon(0.09));
+        CHECK(double(p.covered()) == doctest::Approx((0.65 * 0.1 + 0.35 * 0.14) * 45 * 45 * scale * scale).epsilon(0.1));
       }
   g.shapes = {shape("line")}, g.line_width = 4, g.rule.scale = 40;
   Scene scene;

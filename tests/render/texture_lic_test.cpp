@@ -29,6 +29,23 @@ TEST_CASE("lic: a plane seen face on has variance 1, correlation 1 - k/L along t
   }
 }
 
+TEST_CASE("lic: contrast hardly depends on kernel, step, grain and length of the lines") {
+  for (const LicKernel kernel : {LicKernel::hann, LicKernel::box})
+    for (const double grain : {1.0, 1.5, 4.0})
+      for (const int steps : {10, 40}) {
+        SurfaceItem s = textured(sheet(4, 2, 0, [](Vec3) { return Vec3{0.8, 0.6, 0}; }), steps, 0.5, kernel);
+        s.lic->grain = grain;
+        const LicPlanes p = planes(scene_of({s}), front_parallel(2), 300, 300);
+        double square = 0, count = 0;
+        for (int y = 30; y < 270; ++y)
+          for (int x = 30; x < 270; ++x, ++count) square += std::pow(double(p.value[p.at(x, y)]), 2);
+        CAPTURE(grain);
+        CAPTURE(steps);
+        CHECK(square / count > 0.6);
+        CHECK(square / count < 1.6);
+      }
+}
+
 TEST_CASE("lic: in a flow that turns about an axis the texture is constant along circles") {
   SurfaceItem s = textured(sheet(64, 1, 0, [](Vec3 p) { return Vec3{-p.y, p.x, 0}; }), 40, 0.5);
   const LicPlanes p = planes(scene_of({s}), front_parallel(2), 256, 256);

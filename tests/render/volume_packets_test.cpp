@@ -148,7 +148,7 @@ TEST_CASE("empty space: ranges enclose their cells, distances say what is empty"
   curve.points = {{0.5, 0}, {0.6, 1}};
   const volume::Transfer transfer(grey(0, 1), curve, 1, 1, 0, 1, 0);
   bool any_empty = false;
-  const std::vector<uint8_t> distance = volume::distance_to_drawn(fine, transfer, any_empty);
+  const volume::Distances distance = volume::distance_to_drawn(fine, transfer, any_empty);
   CHECK(any_empty);
   std::vector<uint8_t> empty(fine.size());
   for (size_t i = 0; i < fine.size(); ++i) empty[i] = !(fine.ranges[i].hi >= 0.5f);
@@ -160,7 +160,7 @@ TEST_CASE("empty space: ranges enclose their cells, distances say what is empty"
   }
   CHECK(zeros > 3);
   CHECK(zeros < fine.size());
-  const std::vector<uint8_t> none = volume::distance_to_drawn(fine, volume::Transfer(grey(0, 1), {{{0, 0}}}, 1, 1, 0, 1, 0), any_empty);
+  const volume::Distances none = volume::distance_to_drawn(fine, volume::Transfer(grey(0, 1), {{{0, 0}}}, 1, 1, 0, 1, 0), any_empty);
   CHECK(none[0] == 15);
 }
 

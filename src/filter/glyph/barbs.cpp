@@ -21,6 +21,11 @@ constexpr int steps = most_barb_knots / barb_step;
 // On a staff of length 1.
 constexpr double stroke = 0.42, lean = 0.16, gap = 0.125, pennant = 0.17, after_pennants = 0.07, calm_radius = 0.11;
 
+void stroke_of(ShapeBuilder& b, Vec3 from, Vec3 to) {
+  const int32_t first = b.point(from);
+  b.line(first, b.point(to));
+}
+
 DatasetPtr barb(int knots, double side) {
   ShapeBuilder b;
   if (knots == 0) {
@@ -35,7 +40,7 @@ DatasetPtr barb(int knots, double side) {
   const BarbStrokes s = barb_strokes(knots);
   const double needed = pennant * s.pennants + (s.pennants ? after_pennants : 0) + gap * (s.barbs + s.half);
   const double tight = std::min(1.0, 0.95 / needed);  // more strokes than a staff holds stand closer
-  b.line(b.point({0, 0, 0}), b.point({-1, 0, 0}));
+  b.point({0, 0, 0}), b.point({-1, 0, 0}), b.line(0, 1);
   double x = -1;
   for (int k = 0; k < s.pennants; ++k, x += pennant * tight) {
     const int32_t from = b.point({x, 0, 0}), to = b.point({x + pennant * tight, 0, 0}), tip = b.point({x - 0.3 * lean, side * stroke, 0});
@@ -51,10 +56,10 @@ DatasetPtr barb(int knots, double side) {
     b.line(from, tip), b.line(tip, to);
   }
   if (s.pennants) x += after_pennants * tight;
-  for (int k = 0; k < s.barbs; ++k, x += gap * tight) b.line(b.point({x, 0, 0}), b.point({x - lean, side * stroke, 0}));
+  for (int k = 0; k < s.barbs; ++k, x += gap * tight) stroke_of(b, {x, 0, 0}, {x - lean, side * stroke, 0});
   if (s.half) {
     if (knots == barb_step) x += gap;  // alone it must not look like the end of a whole one
-    b.line(b.point({x, 0, 0}), b.point({x - 0.5 * lean, side * 0.5 * stroke, 0}));
+    stroke_of(b, {x, 0, 0}, {x - 0.5 * lean, side * 0.5 * stroke, 0});
   }
   return std::move(b).made();
 }

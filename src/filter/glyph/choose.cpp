@@ -9,12 +9,11 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "data/field_ops.h"
+#include "data/point_positions.h"
 
 namespace sg {
 
-namespace {
-
-const Field* vector_field(const Dataset& d) {
+const Field* automatic_vectors(const Dataset& d) {
   auto fits = [](const Field& f, int components) {
     return f.association != Association::whole && f.components() == components && f.role != Role::normals && f.role != Role::tcoords &&
            f.role != Role::colors && f.role != Role::global_ids && f.role != Role::labels;
@@ -29,6 +28,8 @@ const Field* vector_field(const Dataset& d) {
   return nullptr;
 }
 
+namespace {
+
 bool needs_direction(const std::string& shape) {
   for (const char* name : {"auto", "arrow", "cone", "needle", "line", "arrow2d", "barbs"})
     if (shape == name) return true;
@@ -39,7 +40,7 @@ const Field* wanted_vectors(const Dataset& d, const GlyphParams& p) {
   if (!p.frames.empty()) return nullptr;
   if (p.vectors.name == "none") return nullptr;
   if (p.vectors.empty()) {
-    const Field* f = vector_field(d);
+    const Field* f = automatic_vectors(d);
     if (!f && needs_direction(p.shape.shape)) {
       std::string has;
       for (const std::string& n : d.fields().names()) has += (has.empty() ? "" : ", ") + n;
@@ -68,12 +69,25 @@ int plane_of(const Dataset& d, const Field* vectors) {
 GlyphPointsParams placement(const Dataset& d, const GlyphParams& p, const Field* vectors, int flat_axis, bool barbs, std::string& how) {
   GlyphPointsParams q;
   q.every = p.every, q.seed = p.seed, q.spacing = p.spacing;
-  const int64_t fitting = barbs ? 180 : flat_axis >= 0 ? 900 : 2500;
+  int64_t fitting = barbs ? 180 : flat_axis >= 0 ? 900 : 2500;
+  // A long and narrow box is small on the picture: no more of them along it than can be told apart.
+  const Vec3 size = d.bounds().size();
+  const double along = (barbs ? 22 : 45), step = d.bounds().empty() ? 0 : std::max({size.x, size.y, size.z}) / along;
+  if (step > 0) {
+    double most = 1;
+    for (int a = 0; a < 3; ++a) most *= std::max(size[a] / step, 1.0);
+    fitting = std::min(fitting, std::max<int64_t>(int64_t(most), 60));
+  }
   q.count = p.count > 0 ? p.count : fitting;
   q.mode = p.place;
   if (q.mode == "auto") q.mode = p.count == 0 && p.spacing == 0 && d.point_count() <= size_t(q.count) ? "all" : "even";
   if (q.mode == "all" && vectors && vectors->association == Association::cell) q.mode = "cells";
-  how = q.mode == "even" ? "placed evenly" : q.mode == "all" ? "at all points" : q.mode == "cells" ? "one a cell" : "placed " + q.mode;
+  how = q.mode == "even"    ? "placed evenly"
+        : q.mode == "all"   ? "at all points"
+        : q.mode == "cells" ? "one a cell"
+        : q.mode == "lines" ? "along the lines"
+        : q.mode == "every" ? fmt::format("at every {}th point", q.every)
+                            : "placed " + q.mode;
   return q;
 }
 
@@ -119,13 +133,35 @@ DatasetPtr place(const DatasetPtr& data, GlyphPointsParams q, bool may_add, cons
     if (lengths.empty()) return places;
     const auto seen = double(lengths.end() - std::lower_bound(lengths.begin(), lengths.end(), faint * lengths.back()));
     const double share = seen / double(places->point_count());
-    if (share > 0.5 || seen > 0.2 * double(q.count)) return places;
+    if (share > 0.5 || seen > 0.12 * double(q.count)) return places;
     GlyphPointsParams more = q;
-    more.count = int64_t(std::min(0.3 * double(q.count) / share, std::min(2e5, double(data->point_count()))));
+    more.count = int64_t(std::min(0.18 * double(q.count) / share, std::min(2e5, double(data->point_count()))));
     if (double(more.count) < 1.2 * double(places->point_count())) return places;
     places = glyph_points(data, more, context);
   }
   return places;
+}
+
+// Half of the places have their nearest neighbour nearer than that; never more than their mean share of the box allows.
+double distance_of_places(const Dataset& input, const Dataset& places) {
+  const size_t n = places.point_count();
+  const double mean = typical_spacing(input, std::max<size_t>(n, 1));
+  if (n < 20 || n > 50000) return mean;
+  const Array xyz = point_positions(places.mesh());
+  auto at = [&](size_t i) { return Vec3{xyz.get(i, 0), xyz.get(i, 1), xyz.get(i, 2)}; };
+  std::vector<Vec3> all;
+  for (size_t i = 0; i < n; ++i) all.push_back(at(i));
+  std::vector<double> nearest;
+  for (size_t k = 0; k < 101; ++k) {
+    const size_t i = k * (n - 1) / 100;
+    double least = HUGE_VAL;
+    for (size_t j = 0; j < n; ++j)
+      if (const Vec3 d = all[j] - all[i]; j != i) least = std::min(least, dot(d, d));
+    if (std::isfinite(least) && least > 0) nearest.push_back(std::sqrt(least));
+  }
+  if (nearest.empty()) return mean;
+  std::nth_element(nearest.begin(), nearest.begin() + ptrdiff_t(nearest.size() / 2), nearest.end());
+  return std::min(mean, 1.25 * nearest[nearest.size() / 2]);
 }
 
 // Scale of the rule from the size asked for, or from the distance of the places.
@@ -135,14 +171,14 @@ void choose_size(const Dataset& input, const GlyphParams& p, bool in_pixels, int
   const std::string by = r.size == GlyphRule::Size::length ? r.vectors : r.size == GlyphRule::Size::field ? r.size_field : "";
   const std::vector<double> factors = by.empty() ? std::vector<double>{1} : size_factors(*out.data, by);
   if (factors.empty()) {
-    out.note = fmt::format("'{}' is zero or not finite everywhere: there are no glyphs", by);
+    out.note = fmt::format("; '{}' is zero or not finite everywhere: there are no glyphs", by);
     return;
   }
   double most = factors.back();
   if (p.factor > 0) {
     r.scale = p.factor;
   } else {
-    const double apart = p.spacing > 0 ? p.spacing : typical_spacing(input, std::max<size_t>(out.data->point_count(), 1));
+    const double apart = p.spacing > 0 ? p.spacing : distance_of_places(input, *out.data);
     const bool round = !needs_direction(p.shape.shape);
     double size = p.size > 0  ? p.size
                   : in_pixels ? (out.barbs ? 34 : 40)
@@ -153,7 +189,7 @@ void choose_size(const Dataset& input, const GlyphParams& p, bool in_pixels, int
     // A few giants would make all others invisible.
     const auto seen = std::lower_bound(factors.begin(), factors.end(), faint * most) - factors.begin();
     const double usual = factors[size_t(seen) + size_t(0.95 * double(factors.size() - size_t(seen) - 1))];
-    if (p.size == 0 && most > 2 * usual) {
+    if (p.size == 0 && most > 1.5 * usual) {
       r.largest = 1.6 * size, most = usual;
       out.note += fmt::format("; those above {} are drawn as long as that", short_number(1.6 * usual, 3));
     }

@@ -21,6 +21,9 @@ struct GlyphParams {
 };
 void describe(Schema& s, GlyphParams& p);
 
+/// The vectors that glyphs show when none are named: by role, else of 3, else of 2 components; points before cells. Null: none.
+const Field* automatic_vectors(const Dataset& data);
+
 struct ChosenGlyphs {
   DatasetPtr data;  ///< the places with their fields
   std::vector<DatasetPtr> shapes;

@@ -123,10 +123,12 @@ Mat3 turn_to(Vec3 v, const std::optional<Vec3>& normal) {
   // Lengths near the ends of the range of numbers must not overflow when they are squared.
   const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
   if (!(largest > 0) || !std::isfinite(largest)) return {{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}};
-  const Vec3 u = normalize(v / largest);
+  Vec3 u = normalize(v / largest);
   Vec3 y, z;
-  if (normal && length(cross(*normal, u)) > 1e-9 * length(*normal)) {
-    y = normalize(cross(*normal, u)), z = cross(u, y);
+  if (normal) {
+    z = normalize(*normal), u = u - z * dot(u, z);
+    if (!(length(u) > 1e-9)) return {{{0, 0, 0}, {0, 0, 0}, {0, 0, 0}}};
+    u = normalize(u), y = cross(z, u);
   } else if (u.x < -1 + 1e-12) {
     y = {0, -1, 0}, z = {0, 0, 1};
   } else {

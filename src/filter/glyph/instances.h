@@ -15,7 +15,7 @@ struct GlyphRule {
 
   std::string vectors;         ///< point field of 2 or 3 components that +x turns to; "" = shapes are not turned
   std::string frames;          ///< point field of 9 numbers, a matrix by rows from the shape to the world; takes the place of `vectors`
-  std::optional<Vec3> normal;  ///< with `vectors`: the shape's z stays on this side (flat shapes); empty = the smallest turn
+  std::optional<Vec3> normal;  ///< flat shapes: z stays along it, +x turns to the part of the vector across it; empty = the smallest turn
   Size size = Size::constant;  ///< factor on `scale`: 1, the vector's length, or the absolute value of `size_field`
   std::string size_field;      ///< point field of one component
   double scale = 1;            ///< world length, or pixels, of a shape of unit size whose factor is 1
@@ -48,8 +48,8 @@ inline void glyph_point(const float* m, float x, float y, float z, float* out) {
   for (int r = 0; r < 3; ++r) out[r] = ((m[4 * r] * x + m[4 * r + 1] * y) + m[4 * r + 2] * z) + m[4 * r + 3];
 }
 
-/// The matrix that takes +x to the direction of v by the smallest turn (x to -x: about z), or with the shape's z on the side of
-/// `normal`. Zero for a vector of no length.
+/// The matrix that takes +x to the direction of v by the smallest turn (x to -x: about z), or, with a normal, that takes z
+/// to it and +x to the direction of the part of v across it. Zero where that has no length.
 Mat3 turn_to(Vec3 v, const std::optional<Vec3>& normal);
 
 /// Box of all glyphs whose shape i lies in boxes[i]; that of the turned boxes, in world coordinates.

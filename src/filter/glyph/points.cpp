@@ -74,7 +74,9 @@ bool fills_its_box(const Dataset& d, const Box3& box) {
 // Those of the places that lie in the mesh, with its fields.
 DatasetPtr inside(const DatasetPtr& data, const std::vector<Vec3>& places, size_t most, Context& context) {
   const Vec3 origin = middle_of(*data);
-  const DatasetPtr probed = probe(cloud(places, origin, {}), data, {}, context);
+  Context quiet(context, 0, 1);
+  quiet.on_log = [](LogLevel, std::string_view) {};  // that many places lie outside is what is expected
+  const DatasetPtr probed = probe(cloud(places, origin, {}), data, {}, quiet);
   const Field& valid = probed->fields().require("valid", Association::point);
   std::vector<int64_t> ids;
   for (size_t i = 0; i < places.size() && ids.size() < most; ++i)

@@ -137,7 +137,7 @@ bool build(ShapeBuilder& b, const GlyphShapeParams& p) {
   } else if (name == "sphere") superquadric(b, 1, 1, p.sides);
   else if (name == "superquadric") superquadric(b, p.alpha, p.beta, std::max(p.sides, 24));
   else if (name == "cube") cube(b);
-  else if (name == "line") b.line(b.point({0, 0, 0}), b.point({1, 0, 0}));
+  else if (name == "line") b.point({0, 0, 0}), b.point({1, 0, 0}), b.line(0, 1);
   else return false;
   return true;
 }

@@ -16,7 +16,7 @@ struct GlyphShapeParams {
   std::string shape = "arrow";
   int sides = 12;
   std::string anchor = "auto";
-  double tip_length = 0.35, tip_radius = 0.12, shaft_radius = 0.04;
+  double tip_length = 0.35, tip_radius = 0.14, shaft_radius = 0.05;
   double alpha = 1, beta = 1;
 };
 void describe(Schema& s, GlyphShapeParams& p);

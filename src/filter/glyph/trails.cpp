@@ -44,6 +44,7 @@ DatasetPtr trails(const DatasetPtr& data, const TrailsParams& p, Context&) {
   const auto* mesh = data->as<SurfaceMesh>();
   if (!mesh || mesh->lines.size() == 0)
     fail_usage(fmt::format("a {} mesh without lines", data->kind()), "trails", "pathlines and streamlines have lines");
+  if (p.color.size() != 3) fail_usage(fmt::format("{} numbers are no colour", p.color.size()), "trails: color", "give red,green,blue");
   const Field& field = times_of(*data, p);
   const Range all = data->range(field, 0);
   const double time = p.time.value_or(all.empty() ? 0 : all.hi);
@@ -92,7 +93,17 @@ DatasetPtr trails(const DatasetPtr& data, const TrailsParams& p, Context&) {
   cells.insert(cells.end(), out.line_cells.begin(), out.line_cells.end());
   carry_gathered(fields, data->fields(), Association::cell, std::span<const int64_t>(cells), Association::cell);
   carry_whole(fields, data->fields());
-  fields.add({"age", Association::point, Array::from_vector(std::move(out.age)), "", Role::scalars});
+  std::vector<uint8_t> rgba;
+  for (const float age : out.age) {
+    for (const double c : p.color) rgba.push_back(uint8_t(std::clamp(c, 0.0, 1.0) * 255 + 0.5));
+    rgba.push_back(uint8_t((1 - age) * 255 + 0.5f));
+  }
+  std::vector<Field> renamed;  // pictures colour by what fades unless they are told
+  for (const Field& f : fields)
+    if (f.role == Role::scalars || f.role == Role::colors) renamed.push_back(f), renamed.back().role = Role::none;
+  for (Field& f : renamed) fields.add(std::move(f));
+  fields.add({"age", Association::point, Array::from_vector(std::move(out.age)), "", Role::none});
+  fields.add({"trail", Association::point, Array::from_vector(std::move(rgba), 4), "", Role::colors});
   SurfaceMesh made;
   made.points = {interpolate(mesh->points.xyz, out.points), mesh->points.origin};
   if (!out.heads.empty()) made.vertices.fixed = 1, made.vertices.connectivity = Array::from_vector(std::move(out.heads));

@@ -9,9 +9,6 @@ namespace sg {
 
 namespace {
 
-// Plane stress has a third principal stress of 0 across the plane.
-Eigen3 principal(const TensorField& t, size_t i) { return eigen_of(t.d[i]); }
-
 // Unit normals where the tensors lie.
 std::vector<Vec3> normals_for(const DatasetPtr& in, const TensorField& t, const TractionParams& p, Context& ctx) {
   const size_t n = t.d.size();
@@ -60,8 +57,16 @@ DatasetPtr stress_measures(const DatasetPtr& in, const StressMeasuresParams& p, 
   if (p.measures.empty()) fail_usage("measures names none", "stress_measures", "von_mises, tresca, mean, max_shear, principal, directions");
   DatasetParts parts = in->parts();
   const std::string& unit = t.field.unit;
+  // Plane stress has a third principal stress of 0 across the plane.
+  std::vector<Eigen3> principal(t.d.size());
+  parallel_for(
+      t.d.size(), 2048,
+      [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) principal[i] = eigen_of(t.d[i]);
+      },
+      &ctx);
   auto scalar = [&](std::string name, auto f) {
-    parts.fields.add(field_beside(t, std::move(name), 1, unit, Role::none, ctx, [&](size_t i, double* v) { *v = f(principal(t, i)); }));
+    parts.fields.add(field_beside(t, std::move(name), 1, unit, Role::none, ctx, [&](size_t i, double* v) { *v = f(principal[i]); }));
   };
   for (const std::string& m : p.measures) {
     if (m == "von_mises") scalar("von Mises stress", [](const Eigen3& e) { return von_mises_of(e.value); });
@@ -72,7 +77,7 @@ DatasetPtr stress_measures(const DatasetPtr& in, const StressMeasuresParams& p, 
       if (m == "principal") scalar(fmt::format("principal stress {}", k + 1), [k](const Eigen3& e) { return e.value[k]; });
       if (m == "directions")
         parts.fields.add(field_beside(t, fmt::format("principal direction {}", k + 1), 3, "", Role::none, ctx, [&](size_t i, double* v) {
-          const Vec3 d = principal(t, i).vector[k];
+          const Vec3 d = principal[i].vector[k];
           v[0] = d.x, v[1] = d.y, v[2] = d.z;
         }));
     }

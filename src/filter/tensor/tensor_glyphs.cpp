@@ -104,7 +104,7 @@ int extents(const Box3& box, double& volume) {
   return dimension;
 }
 
-// The first usable place in each cube; the cubes grow until there are few enough.
+// The usable place nearest to the middle of each cube; the cubes grow until there are few enough.
 std::vector<int64_t> in_cubes(const std::vector<Vec3>& at, const std::vector<uint8_t>& good, int64_t count, double& edge) {
   Box3 box;
   for (size_t i = 0; i < at.size(); ++i)
@@ -117,17 +117,35 @@ std::vector<int64_t> in_cubes(const std::vector<Vec3>& at, const std::vector<uin
   double volume = 1;
   const int dimension = extents(box, volume);
   for (edge = std::pow(volume / double(count), 1.0 / std::max(dimension, 1)) * 0.8;; edge *= 1.05) {
-    std::map<std::array<int64_t, 3>, int64_t> first;
+    std::map<std::array<int64_t, 3>, std::pair<double, int64_t>> nearest;
     for (int64_t i : all) {
       const Vec3 q = (at[size_t(i)] - box.lo) / edge;
-      first.try_emplace({int64_t(q.x), int64_t(q.y), int64_t(q.z)}, i);
+      const std::array<int64_t, 3> cube{int64_t(q.x), int64_t(q.y), int64_t(q.z)};
+      const Vec3 off = q - Vec3(double(cube[0]) + 0.5, double(cube[1]) + 0.5, double(cube[2]) + 0.5);
+      const std::pair<double, int64_t> mine{dot(off, off), i};
+      const auto [there, fresh] = nearest.try_emplace(cube, mine);
+      if (!fresh) there->second = std::min(there->second, mine);
     }
-    if (int64_t(first.size()) > count) continue;
+    if (int64_t(nearest.size()) > count) continue;
     std::vector<int64_t> ids;
-    for (const auto& [cube, i] : first) ids.push_back(i);
+    for (const auto& [cube, place] : nearest) ids.push_back(place.second);
     std::sort(ids.begin(), ids.end());
     return ids;
   }
+}
+
+// Median distance to the nearest other place: what keeps glyphs on curves and in clusters apart. 0 when there are too many to look at.
+double usual_distance(const std::vector<Vec3>& at) {
+  if (at.size() < 2 || at.size() > 5000) return 0;
+  std::vector<double> nearest(at.size(), HUGE_VAL);
+  for (size_t i = 0; i < at.size(); ++i)
+    for (size_t j = i + 1; j < at.size(); ++j) {
+      const Vec3 off = at[i] - at[j];
+      const double d = dot(off, off);
+      nearest[i] = std::min(nearest[i], d), nearest[j] = std::min(nearest[j], d);
+    }
+  std::nth_element(nearest.begin(), nearest.begin() + ptrdiff_t(nearest.size() / 2), nearest.end());
+  return std::sqrt(nearest[nearest.size() / 2]);
 }
 
 Chosen choose(const DatasetPtr& in, const TensorField& t, const TensorGlyphsParams& p, Context& ctx) {
@@ -158,10 +176,12 @@ Chosen choose(const DatasetPtr& in, const TensorField& t, const TensorGlyphsPara
     double edge = 0;
     c.ids = in_cubes(at, kept, p.stride > 0 ? int64_t(at.size()) : p.count, edge);
     Box3 box;
-    for (int64_t i : c.ids) box.add(at[size_t(i)]);
+    std::vector<Vec3> chosen;
+    for (int64_t i : c.ids) box.add(at[size_t(i)]), chosen.push_back(at[size_t(i)]);
     double volume = 1;
     const int dimension = box.empty() ? 0 : extents(box, volume);
-    c.spacing = dimension > 0 ? std::pow(volume / double(c.ids.size()), 1.0 / dimension) : 1;
+    c.spacing = usual_distance(chosen);
+    if (!(c.spacing > 0)) c.spacing = dimension > 0 ? std::pow(volume / double(c.ids.size()), 1.0 / dimension) : 1;
     if (edge > 0) ctx.info(fmt::format("tensor_glyphs: {} of {} places, about {:.3g} apart", c.ids.size(), at.size(), c.spacing));
   }
   if (unusable > 0)
@@ -171,7 +191,7 @@ Chosen choose(const DatasetPtr& in, const TensorField& t, const TensorGlyphsPara
     c.at.push_back(at[size_t(i)]);
     c.eigen.push_back(t.eigen(size_t(i)));
     const double* v = c.eigen.back().value;
-    c.with_negative += std::min(v[1], v[2]) < -1e-9 * largest_of(c.eigen.back());
+    c.with_negative += std::min(v[1], v[2]) < -1e-6 * largest_of(c.eigen.back());
   }
   return c;
 }

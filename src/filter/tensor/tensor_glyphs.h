@@ -24,8 +24,9 @@ void describe(Schema& s, TensorGlyphsParams& p);
 
 /// A SurfaceMesh of one closed surface per tensor (see glyph_shapes.h), with exact normals, at the points (cell fields: at the middles of
 /// the cells). Placed at every stride-th point along each axis of a grid; `stride` 0: all points, or where they are more than `count` the
-/// finest stride that stays below it; other meshes: the first point in each cube of an even division of space. Hidden points and cells,
-/// tensors that are zero or NaN, those with FA below min_fa and those where `mask` is not above 0 get none; a note counts them.
+/// finest stride that stays below it; other meshes: the point nearest to the middle of each cube of an even division of space. Hidden
+/// points and cells, tensors that are zero or NaN, those with FA below min_fa and those where `mask` is not above 0 get none; a note counts
+/// them.
 ///
 /// The longest half axis of all is `size` times half the distance of the glyphs. `scale`: eigenvalues (all alike), normalized (each glyph
 /// as large as it may be), log (sizes by the logarithm of the largest eigenvalue, shapes kept), auto: eigenvalues, or log where the largest

@@ -17,7 +17,7 @@ DatasetPtr with_added(const DatasetPtr& in, std::vector<Field> fields) {
 
 bool is_negative(const double* l, int dimension) {
   const double least = dimension == 2 ? l[1] : l[2];
-  return least < -1e-9 * std::max(std::abs(l[0]), std::abs(least));
+  return least < -1e-6 * std::max(std::abs(l[0]), std::abs(least));  // what rounding to f32 leaves of 0
 }
 
 void treat_negative(double* l, const std::string& how) {

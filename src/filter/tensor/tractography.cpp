@@ -127,7 +127,7 @@ DatasetPtr tractography(const DatasetPtr& in, const DatasetPtr& second, const Tr
     size_t negative = 0;
     for (size_t i = 0; i < sampler.tensors().d.size(); ++i) {
       const Eigen3 e = sampler.tensors().eigen(i);
-      negative += e.value[sampler.tensors().dimension - 1] < -1e-9 * std::abs(e.value[0]);
+      negative += e.value[sampler.tensors().dimension - 1] < -1e-6 * std::abs(e.value[0]);
     }
     warn_negative(negative, sampler.tensors().d.size(), sampler.tensors(), "tractography", "kept", ctx);
   }

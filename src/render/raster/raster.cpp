@@ -128,7 +128,8 @@ class Drawing {
         if (item.glyphs) views_.back() = eye_view(projection_, item.origin);
         if (!item.translucent) only_ = opaque_items++ ? no_item : uint32_t(&item - scene_.items.data());
         if (item.glyphs) draw_glyph_item(item, views_.back(), item.translucent ? translucent_ : opaque_);
-        else draw_surface(item, views_.back(), item.translucent ? 0 : small_triangle, keys_.data(), item.translucent ? translucent_ : opaque_);
+        else
+          draw_surface(item, views_.back(), item.translucent ? 0 : small_triangle, keys_.data(), item.translucent ? translucent_ : opaque_);
       } else if (item.discs) {
         only_ = opaque_items++ ? no_item : uint32_t(&item - scene_.items.data());
         const DiscJob job{views_.back(),

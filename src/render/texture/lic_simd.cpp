@@ -50,63 +50,74 @@ void run_connect(LicPlanes& p, float slack, bool parallel, int first, int last) 
   }
 }
 
+/// The way from a pixel to one side: where it is, how it came, and what it has gathered.
+struct Way {
+  F x, y, dx, dy, bx, by, sum;  // b: at the step before
+  I ix, iy, at, word, steps;
+  M active;
+};
+
+HWY_INLINE void step_on(const ConvolveJob& job, F unit, F weight, Way& w) {
+  const DF d;
+  const DI di;
+  const I one = hn::Set(di, 1), two = hn::Set(di, 2), nothing = hn::Zero(di);
+  const F half = hn::Set(d, 0.5f), more = hn::Set(d, 1.5f);
+  const M turned = hn::Lt(w.dx * w.bx + w.dy * w.by, hn::Zero(d));
+  w.x = w.x + hn::IfThenElse(turned, w.dx, w.dx * more - w.bx * half);
+  w.y = w.y + hn::IfThenElse(turned, w.dy, w.dy * more - w.by * half);
+  const I jx = hn::ConvertTo(di, w.x), jy = hn::ConvertTo(di, w.y);  // positive while active
+  const I ox = jx - w.ix, oy = jy - w.iy, apart = oy + oy + oy + ox;
+  const auto near = hn::And(hn::Lt(hn::Abs(ox), two), hn::Lt(hn::Abs(oy), two));
+  // The bit of that neighbour, moved to the lowest place.
+  const I bit = hn::And(apart + hn::Set(di, 4) + hn::VecFromMask(di, hn::Gt(apart, nothing)), hn::Set(di, 15));
+  const auto open = hn::Or(hn::Ne(hn::And(hn::Shr(w.word, bit), one), nothing), hn::Eq(apart, nothing));
+  w.active = hn::And(w.active, hn::RebindMask(d, hn::And(near, open)));
+  const auto go = hn::RebindMask(di, w.active);
+  w.at = hn::IfThenElse(go, jy * hn::Set(di, job.stride) + jx, w.at), w.ix = jx, w.iy = jy;
+  w.word = hn::GatherIndex(di, reinterpret_cast<const int32_t*>(job.word), w.at);
+  w.bx = w.dx, w.by = w.dy;
+  w.dx = hn::ConvertTo(d, hn::ShiftRight<20>(w.word)) * unit;
+  w.dy = hn::ConvertTo(d, hn::ShiftRight<20>(hn::ShiftLeft<12>(w.word))) * unit;
+  w.sum = w.sum + hn::IfThenElseZero(w.active, hn::GatherIndex(d, job.noise, w.at) * weight);
+  w.steps = w.steps - hn::VecFromMask(di, go);
+  // A place without direction is the end.
+  w.active = hn::And(w.active, hn::RebindMask(d, hn::Ne(hn::And(w.word, hn::Set(di, ~0xFF)), nothing)));
+}
+
 void run_convolve(const ConvolveJob& job, const int32_t* pixels, size_t n) {
   const DF d;
   const DI di;
   const size_t lanes = hn::Lanes(d);
-  const int32_t* words = reinterpret_cast<const int32_t*>(job.word);
   const LicWeights& kernel = *job.weights;
-  const I stride = hn::Set(di, job.stride), one = hn::Set(di, 1), two = hn::Set(di, 2), nothing = hn::Zero(di);
-  const F unit = hn::Set(d, job.step / 2047), half = hn::Set(d, 0.5f), more = hn::Set(d, 1.5f), zero = hn::Zero(d);
+  const float* weight = kernel.weight.data() + kernel.steps;
+  const F unit = hn::Set(d, job.step / 2047), back_unit = hn::Neg(unit), half = hn::Set(d, 0.5f);
   HWY_ALIGN float out[hn::MaxLanes(d)];
+  HWY_ALIGN int32_t xs[hn::MaxLanes(di)], ys[hn::MaxLanes(di)], places[hn::MaxLanes(di)];
   for (size_t first = 0; first < n; first += lanes) {
     const size_t count = std::min(lanes, n - first);
-    HWY_ALIGN int32_t xs[hn::MaxLanes(di)], ys[hn::MaxLanes(di)], places[hn::MaxLanes(di)];
     for (size_t k = 0; k < lanes; ++k) {
       const int32_t place = places[k] = k < count ? pixels[first + k] : 0;  // 0: of the border, without direction
       ys[k] = place / job.stride, xs[k] = place - ys[k] * job.stride;
     }
-    const I start = hn::Load(di, places), x0 = hn::Load(di, xs), y0 = hn::Load(di, ys);
-    const I word0 = hn::GatherIndex(di, words, start);
-    const F dx0 = hn::ConvertTo(d, hn::ShiftRight<20>(word0)) * unit,
-            dy0 = hn::ConvertTo(d, hn::ShiftRight<20>(hn::ShiftLeft<12>(word0))) * unit;
-    F sum = hn::GatherIndex(d, job.noise, start) * hn::Set(d, kernel.weight[size_t(kernel.steps)]);
-    I reached[2];
-    for (int way = 0; way < 2; ++way) {
-      const F sign = hn::Set(d, way == 0 ? -1.0f : 1.0f);
-      F x = hn::ConvertTo(d, x0) + half, y = hn::ConvertTo(d, y0) + half;
-      F dx = dx0 * sign, dy = dy0 * sign, bx = dx, by = dy;  // b: at the step before
-      I ix = x0, iy = y0, at = start, word = word0;
-      auto active = hn::RebindMask(d, hn::Ne(hn::And(word0, hn::Set(di, ~0xFF)), nothing));
-      I steps = nothing;
-      for (int k = 1; k <= kernel.steps; ++k) {
-        const M turned = hn::Lt(dx * bx + dy * by, zero);
-        x = x + hn::IfThenElse(turned, dx, dx * more - bx * half), y = y + hn::IfThenElse(turned, dy, dy * more - by * half);
-        const I jx = hn::ConvertTo(di, x), jy = hn::ConvertTo(di, y);  // positive while active
-        const I ox = jx - ix, oy = jy - iy, apart = oy + oy + oy + ox;
-        const auto near = hn::And(hn::Lt(hn::Abs(ox), two), hn::Lt(hn::Abs(oy), two));
-        // The bit of that neighbour, moved to the lowest place.
-        const I bit = hn::And(apart + hn::Set(di, 4) + hn::VecFromMask(di, hn::Gt(apart, nothing)), hn::Set(di, 15));
-        const auto open = hn::Or(hn::Ne(hn::And(hn::Shr(word, bit), one), nothing), hn::Eq(apart, nothing));
-        active = hn::And(active, hn::RebindMask(d, hn::And(near, open)));
-        if (hn::AllFalse(d, active)) break;
-        const auto go = hn::RebindMask(di, active);
-        at = hn::IfThenElse(go, jy * stride + jx, at), ix = jx, iy = jy;
-        word = hn::GatherIndex(di, words, at);
-        bx = dx, by = dy;
-        dx = hn::ConvertTo(d, hn::ShiftRight<20>(word)) * unit * sign,
-        dy = hn::ConvertTo(d, hn::ShiftRight<20>(hn::ShiftLeft<12>(word))) * unit * sign;
-        const F sample = hn::GatherIndex(d, job.noise, at) * hn::Set(d, kernel.weight[size_t(kernel.steps + (way == 0 ? -k : k))]);
-        sum = sum + hn::IfThenElseZero(active, sample);
-        steps = steps - hn::VecFromMask(di, go);
-        // A place without direction is the end.
-        active = hn::And(active, hn::RebindMask(d, hn::Ne(hn::And(word, hn::Set(di, ~0xFF)), nothing)));
-      }
-      reached[way] = steps;
+    Way on;
+    on.at = hn::Load(di, places), on.ix = hn::Load(di, xs), on.iy = hn::Load(di, ys);
+    on.x = hn::ConvertTo(d, on.ix) + half, on.y = hn::ConvertTo(d, on.iy) + half;
+    on.word = hn::GatherIndex(di, reinterpret_cast<const int32_t*>(job.word), on.at);
+    on.bx = on.dx = hn::ConvertTo(d, hn::ShiftRight<20>(on.word)) * unit;
+    on.by = on.dy = hn::ConvertTo(d, hn::ShiftRight<20>(hn::ShiftLeft<12>(on.word))) * unit;
+    on.sum = hn::Zero(d), on.steps = hn::Zero(di);
+    const M any = on.active = hn::RebindMask(d, hn::Ne(hn::And(on.word, hn::Set(di, ~0xFF)), hn::Zero(di)));
+    const F own = hn::GatherIndex(d, job.noise, on.at) * hn::Set(d, weight[0]);
+    Way back = on;
+    back.bx = back.dx = hn::Neg(on.dx), back.by = back.dy = hn::Neg(on.dy);
+    // Both ways at once: what one waits for, the other computes.
+    for (int k = 1; k <= kernel.steps && !hn::AllFalse(d, hn::Or(on.active, back.active)); ++k) {
+      step_on(job, unit, hn::Set(d, weight[k]), on);
+      step_on(job, back_unit, hn::Set(d, weight[-k]), back);
     }
-    const I entry = reached[0] * hn::Set(di, kernel.steps + 1) + reached[1];
-    const F value = sum * hn::GatherIndex(d, kernel.factor.data(), entry);
-    hn::Store(hn::IfThenElseZero(hn::RebindMask(d, hn::Ne(hn::And(word0, hn::Set(di, ~0xFF)), nothing)), value), d, out);
+    const I entry = back.steps * hn::Set(di, kernel.steps + 1) + on.steps;
+    const F value = (own + back.sum + on.sum) * hn::GatherIndex(d, kernel.factor.data(), entry);
+    hn::Store(hn::IfThenElseZero(any, value), d, out);
     for (size_t k = 0; k < count; ++k) job.value[pixels[first + k]] = out[k];
   }
 }
@@ -159,7 +170,8 @@ void convolve_reference(const ConvolveJob& job, const int32_t* pixels, size_t n)
     const int32_t start = pixels[i], word0 = int32_t(job.word[start]);
     job.value[start] = 0;
     if ((word0 & ~0xFF) == 0) continue;
-    float sum = job.noise[start] * kernel.weight[size_t(kernel.steps)];
+    const float own = job.noise[start] * kernel.weight[size_t(kernel.steps)];
+    float sums[2] = {0, 0};
     int reached[2] = {0, 0};
     for (int way = 0; way < 2; ++way) {
       const float sign = way == 0 ? -1.0f : 1.0f;
@@ -174,11 +186,11 @@ void convolve_reference(const ConvolveJob& job, const int32_t* pixels, size_t n)
         if ((ox != 0 || oy != 0) && !(word >> neighbor_bit(ox, oy) & 1)) break;
         const int at = jy * job.stride + jx;
         ix = jx, iy = jy, word = int32_t(job.word[at]), bx = dx, by = dy, dx = part(word, 0) * sign, dy = part(word, 12) * sign;
-        sum = sum + job.noise[at] * kernel.weight[size_t(kernel.steps + (way == 0 ? -k : k))];
+        sums[way] = sums[way] + job.noise[at] * kernel.weight[size_t(kernel.steps + (way == 0 ? -k : k))];
         ++reached[way];
       }
     }
-    job.value[start] = sum * kernel.factor[size_t(reached[0] * (kernel.steps + 1) + reached[1])];
+    job.value[start] = (own + sums[0] + sums[1]) * kernel.factor[size_t(reached[0] * (kernel.steps + 1) + reached[1])];
   }
 }
 

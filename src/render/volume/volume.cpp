@@ -21,6 +21,7 @@ namespace sg::volume {
 namespace {
 
 constexpr int tile = 16;  // pixels; rays of a tile meet the same voxels
+constexpr int block = 4;  // tiles across and down that one thread draws, so that what they share stays in its cache
 
 struct Picture {
   const Projection& projection;
@@ -112,6 +113,7 @@ class Alone {
   }
 
   /// Draws a tile; false when it has to go by single rays.
+  bool in_blocks() const { return packets_; }  ///< may `draw` take more than a tile at once?
   bool draw(int x0, int y0, int x1, int y1) const {
     if (packets_) packets_(*plan_, x0, y0, x1, y1, picture_.frame);
     else if (tets_) draw_tets(x0, y0, x1, y1);
@@ -216,18 +218,31 @@ void composite_volumes(const Scene& scene, const Projection& projection, const F
   }
   add_effects(scene, picture, context);
   const Alone alone(picture, context);
-  const size_t across = size_t(frame.width + tile - 1) / tile, down = size_t(frame.height + tile - 1) / tile;
+  const int across = (frame.width + tile - 1) / tile, down = (frame.height + tile - 1) / tile;
+  const int blocks_across = (across + block - 1) / block, blocks_down = (down + block - 1) / block;
   parallel_for(
-      across * down, 1,
+      size_t(blocks_across) * size_t(blocks_down), 1,
       [&](size_t begin, size_t end) {
         Scratch scratch{{}, Caster(picture.volumes), {}};
-        for (size_t t = begin; t < end; ++t) {
-          if (knobs.wanted && !(*knobs.wanted)[t]) continue;
-          const int x0 = int(t % across) * tile, y0 = int(t / across) * tile;
-          const int x1 = std::min(x0 + tile, frame.width), y1 = std::min(y0 + tile, frame.height);
-          if (!any_fragments(fragments, frame, x0, y0, x1, y1) && alone.draw(x0, y0, x1, y1)) continue;
+        const auto draw = [&](int tx0, int ty0, int tx1, int ty1) {
+          const int x0 = tx0 * tile, y0 = ty0 * tile, x1 = std::min(tx1 * tile, frame.width), y1 = std::min(ty1 * tile, frame.height);
+          if (!any_fragments(fragments, frame, x0, y0, x1, y1) && alone.draw(x0, y0, x1, y1)) return;
           for (int y = y0; y < y1; ++y)
             for (int x = x0; x < x1; ++x) pixel(picture, x, y, scratch);
+        };
+        for (size_t b = begin; b < end; ++b) {
+          const int tx0 = int(b) % blocks_across * block, ty0 = int(b) / blocks_across * block;
+          const int tx1 = std::min(tx0 + block, across), ty1 = std::min(ty0 + block, down);
+          if (!knobs.wanted && alone.in_blocks()) {
+            const int x1 = std::min(tx1 * tile, frame.width), y1 = std::min(ty1 * tile, frame.height);
+            if (!any_fragments(fragments, frame, tx0 * tile, ty0 * tile, x1, y1)) {
+              alone.draw(tx0 * tile, ty0 * tile, x1, y1);
+              continue;
+            }
+          }
+          for (int ty = ty0; ty < ty1; ++ty)
+            for (int tx = tx0; tx < tx1; ++tx)
+              if (!knobs.wanted || (*knobs.wanted)[size_t(ty) * size_t(across) + size_t(tx)]) draw(tx, ty, tx + 1, ty + 1);
         }
       },
       &context);

@@ -406,3 +406,59 @@ TEST_CASE("unsteady: 1,000 steps, two in memory") {
   CHECK(watched->most == 2);
   CHECK(length(lines.x(999) - went({-1, 0, 0}, 0, 2)) < 1e-5);
 }
+
+TEST_CASE("unsteady: uniform f32 grids take the fast way, with the answer of the general one") {
+  const auto swirl = [](Vec3 x, double t) {
+    return Vec3(std::sin(2 * x.y + t), std::cos(1.5 * x.z - t), std::sin(x.x) * (1 + 0.3 * t)) * 1.5;
+  };
+  for (const char* how : {"linear", "cubic"})
+    for (const bool flat : {false, true}) {
+      const auto box = [&](double) -> Mesh { return flat ? grid(33, {-2, -2, 0.5}, {2, 2, 0.5}, 1) : grid(33, {-2, -2, -2}, {2, 2, 2}); };
+      const auto v = [&](Vec3 x, double t) { return swirl(x, t) * Vec3(1, 1, flat ? 0 : 1); };
+      const auto f32 = series_of(even_times(0, 1.5, 7), box, v, true);
+      Series f64 = f32;  // the same numbers, which only the general way takes
+      f64.load = [&](size_t k) -> Data {
+        const DatasetPtr d = std::get<DatasetPtr>(f32.load(k));
+        DatasetParts parts = d->parts();
+        Field u = parts.fields.require("velocity");
+        u.array = u.array.converted(ElementType::f64);
+        parts.fields.add(u);
+        return make_dataset(std::move(parts));
+      };
+      Context context;
+      PathlinesParams p;
+      p.interpolation = how;
+      p.seeds.seeds = "grid", p.seeds.counts = {9, 9, flat ? 1 : 5};
+      const Lines a{pathlines(f32, {}, p, context)}, b{pathlines(f64, {}, p, context)};
+      REQUIRE(a.mesh().lines.size() == b.mesh().lines.size());
+      size_t same_points = 0, ends = 0;
+      double worst = 0;
+      for (size_t l = 0; l < a.mesh().lines.size(); ++l) {
+        const size_t i = size_t(a.mesh().lines.offsets.get(l + 1)) - 1, k = size_t(b.mesh().lines.offsets.get(l + 1)) - 1;
+        same_points += i == k;
+        const double when = a.value("time", i);
+        if (when == 1.5 && b.value("time", k) == 1.5) worst = std::max(worst, length(a.x(i) - b.x(k))), ++ends;
+        else CHECK(std::abs(when - b.value("time", k)) < 0.01);
+      }
+      CHECK(ends > 20);
+      CHECK(worst < 2e-4);
+      PathlinesParams back = p;
+      back.start = 1.5, back.time = 0;
+      const Lines c{pathlines(f32, {}, back, context)}, d{pathlines(f64, {}, back, context)};
+      CHECK(c.mesh().lines.size() == d.mesh().lines.size());
+      CHECK(std::abs(double(c.points()) - double(d.points())) < 0.02 * double(d.points()));
+    }
+}
+
+TEST_CASE("unsteady: on a flat mesh of cells particles leave over the border, and seeds beside it do not begin") {
+  const auto flat = [](double) -> Mesh {
+    return to_unstructured(test::with_velocity(grid(9, {-2, -2, 0}, {2, 2, 0}, 1), [](Vec3) { return Vec3(); }))->mesh();
+  };
+  const auto v = [](Vec3, double t) { return Vec3(1, 0.2 * t, 0); };
+  Context context;
+  const Lines lines{pathlines(series_of(even_times(0, 4, 5), flat, v), {}, at_points<PathlinesParams>({0, 0, 0, 5, 0, 0}), context)};
+  REQUIRE(lines.mesh().lines.size() == 1);
+  CHECK(std::abs(lines.x(lines.points() - 1).x - 2) < 0.02);
+  CHECK(lines.value("time", lines.points() - 1) < 2.1);
+  CHECK(lines.data->fields().require("stop", Association::cell).array.get(0) == int(StopReason::outside));
+}

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tensors of a known stress and of real files.
 #include "filter/mesh/slice.h"
+#include "filter/tensor/degenerate_points.h"
+#include "filter/tensor/hyperstreamlines.h"
 #include "filter/tensor/stress_measures.h"
+#include "filter/tensor/tensor_glyphs.h"
 #include "filter/tensor/tensor_measures.h"
 #include "filter/tensor/tensor_support.h"
 #include "io/io.h"
@@ -90,4 +93,56 @@ TEST_CASE("notch_stress_fixed: von Mises and the first component agree with the 
     CHECK(mises.get(i) == doctest::Approx(std::sqrt(0.5 * ((xx - yy) * (xx - yy) + (yy - zz) * (yy - zz) + (zz - xx) * (zz - xx)) +
                                                     3 * (xy * xy + yz * yz + xz * xz))));
   }
+}
+
+TEST_CASE("point load: the line of compression on the axis is straight with Boussinesq's stress; for nu = 1/2 all are rays from the load") {
+  Context context;
+  PointLoadParams load;
+  load.grid.type = "f64", load.grid.size = 41;
+  HyperstreamlinesParams p;
+  p.eigenvector = 3, p.section = "line", p.seeds = {0, 0, 1};
+  const DatasetPtr axis = hyperstreamlines(point_load(load, context), p, context);
+  const auto& line = *axis->as<SurfaceMesh>();
+  const Array& value = axis->fields().require("eigenvalue").array;
+  for (size_t i = 0; i < line.points.count(); ++i) {
+    const Vec3 x = line.points.at(i);
+    CHECK(std::hypot(x.x, x.y) < 1e-9);
+    if (x.z > 0.5) CHECK(value.get(i) == doctest::Approx(-3 / (2 * M_PI * x.z * x.z)).epsilon(0.02));
+  }
+  CHECK(axis->bounds().size().z == doctest::Approx(2).epsilon(1e-3));
+
+  double h[3], off[3];
+  for (int n = 0; n < 3; ++n) {
+    load.poisson = 0.5, load.grid.size = 16 << n;
+    p.seeds = {0.33, 0.21, 1.03};
+    const DatasetPtr ray = hyperstreamlines(point_load(load, context), p, context);
+    h[n] = 1.0 / (16 << n), off[n] = 0;
+    const Vec3 right = normalize(Vec3(0.33, 0.21, 1.03));
+    const auto& points = ray->as<SurfaceMesh>()->points;
+    for (size_t i = 0; i < points.count(); ++i) {
+      const Vec3 x = points.at(i);
+      if (x.z > 0.5) off[n] = std::max(off[n], length(x - right * dot(x, right)));
+    }
+    CHECK(points.count() > 20);
+  }
+  CHECK(observed_order(h, off, 3) == doctest::Approx(2).epsilon(0.2));
+}
+
+TEST_CASE("notch_stress_fixed: lines of tension run from end to end, cuts have degenerate points, glyphs lie within" *
+          doctest::skip(no_data())) {
+  Listener l;
+  const DatasetPtr in = std::get<DatasetPtr>(read_data(data_file("tensors/notch_stress_fixed.vtk"), {}, l.context));
+  HyperstreamlinesParams p;
+  p.section = "line", p.seeds = {0.2, 0.05, 0.0051, 0.1, 0.03, 0.0051};
+  const DatasetPtr lines = hyperstreamlines(in, p, l.context);
+  REQUIRE(lines->cell_count() == 2);
+  CHECK(lines->bounds().size().x > 0.39);
+  CHECK(lines->range(lines->fields().require("eigenvalue")).hi <= in->range(in->fields().require("Nodal Stress-normed")).hi * 1.01);
+  SliceParams cut;
+  cut.axis = "z", cut.position = 0.0051;
+  const DatasetPtr points = degenerate_points(slice(in, cut, l.context), {}, l.context);
+  CHECK(points->point_count() >= 4);
+  const DatasetPtr glyphs = tensor_glyphs(in, {}, l.context);
+  CHECK(glyphs->cell_count() > 1000);
+  CHECK(glyphs->bounds().diagonal() < 1.1 * in->bounds().diagonal());
 }

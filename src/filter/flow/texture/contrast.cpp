@@ -48,7 +48,7 @@ void set_contrast(std::span<float> v, const std::string& kind, bool from_zero, c
       [&](size_t begin, size_t end) {
         Counts c(bins, 0);
         for (size_t i = begin; i < end; ++i)
-          if (v[i] == v[i]) ++c[size_t(bin(v[i]))];
+          if (v[i] == v[i] && (!from_zero || v[i] > 0)) ++c[size_t(bin(v[i]))];
         return c;
       },
       [](Counts a, const Counts& b) {
@@ -58,6 +58,7 @@ void set_contrast(std::span<float> v, const std::string& kind, bool from_zero, c
       &context);
   uint64_t total = 0;
   for (const uint64_t c : counts) total += c;
+  if (total == 0) return;
   if (kind == "equalise") {
     std::vector<float> below(bins + 1, 0);
     uint64_t sum = 0;
@@ -82,7 +83,7 @@ void set_contrast(std::span<float> v, const std::string& kind, bool from_zero, c
     }
     return e.hi;
   };
-  const float lo = from_zero ? 0.0f : value_below_which(0.01), hi = value_below_which(from_zero ? 0.998 : 0.99);
+  const float lo = from_zero ? 0.0f : value_below_which(0.01), hi = value_below_which(from_zero ? 0.95 : 0.99);
   if (!(lo < hi)) return;
   const float scale = 1 / (hi - lo);
   parallel_for(v.size(), grain, [&](size_t begin, size_t end) {

@@ -9,7 +9,8 @@
 
 namespace sg::texture {
 
-/// none: as they are. stretch: linear, so that a hundredth of the values lies at each end (`from_zero`: 0 stays 0). equalise: every grey
+/// none: as they are. stretch: linear, so that a hundredth of the values lies at each end (`from_zero`: 0 stays 0, and a twentieth
+/// of the others lies at 1). equalise: every grey
 /// value equally often. NaN stays. Counts are whole numbers: threads do not matter.
 void set_contrast(std::span<float> values, const std::string& kind, bool from_zero, const Context& context);
 

@@ -42,6 +42,7 @@ std::array<size_t, 3> wanted_dims(const double* extent, const size_t* own, int64
 struct Target {
   UniformGrid grid;
   bool same = false;
+  double pixels_per_cell = HUGE_VAL;
 };
 
 Target target_grid(const Dataset& d, int64_t resolution, std::string_view who) {
@@ -87,6 +88,7 @@ Target target_grid(const Dataset& d, int64_t resolution, std::string_view who) {
   if (u) t.grid.direction = u->direction;
   for (int a = 0; a < 3; ++a) {
     t.grid.spacing[a] = dims[size_t(a)] > 1 ? extent[a] / double(dims[size_t(a)] - 1) : 1.0;
+    if (own[a] > 1 && extent[a] > 0) t.pixels_per_cell = std::min(t.pixels_per_cell, double(dims[size_t(a)] - 1) / double(own[a] - 1));
     if (u && u->spacing[a] < 0) t.grid.spacing[a] = -t.grid.spacing[a];
   }
   return t;
@@ -134,6 +136,18 @@ Array cells_without_value(const UniformGrid& grid, const Field& valid) {
 
 }  // namespace
 
+bool has_room(const Dataset& d) {
+  const Box3 box = d.bounds();
+  if (box.empty() || d.cell_count() == 0) return false;
+  const Vec3 size = box.size();
+  const double longest = std::max({size.x, size.y, size.z});
+  if ((size.x > flat_enough * longest) + (size.y > flat_enough * longest) + (size.z > flat_enough * longest) < 2) return false;
+  // Curves in a plane have an extent too.
+  const auto types = cell_type_counts(d.mesh());
+  return std::any_of(types.begin(), types.end(),
+                     [](const auto& t) { return t.first.find("Line") == t.first.npos && t.first.find("Vertex") == t.first.npos; });
+}
+
 Vec3 Frame::to_pixels(Vec3 world) const {
   const Vec3 d = world - grid.origin;
   Vec3 p;
@@ -157,6 +171,7 @@ Frame make_frame(const DatasetPtr& input, const std::string& field, int64_t reso
   }
   const Target target = target_grid(*data, resolution, who);
   f.grid = target.grid;
+  if (!target.same && std::isfinite(target.pixels_per_cell)) f.pixels_per_cell = std::max(1.0, target.pixels_per_cell);
   f.dimension = 0;
   for (int a = 0; a < 3; ++a)
     if (f.grid.dims[size_t(a)] > 1) {

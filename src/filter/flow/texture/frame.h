@@ -17,6 +17,7 @@ struct Frame {
   int axis[3] = {0, 1, 2};      ///< the grid's axis of each axis of the texture
   int32_t n[3] = {1, 1, 1};     ///< pixels along them
   double pitch[3] = {1, 1, 1};  ///< world length from pixel to pixel
+  double pixels_per_cell = 1;   ///< how much finer than the input the grid is, at least 1
   std::string velocity_name;
   FieldSet fields;     ///< of the input, on the points of the grid
   Array hidden_cells;  ///< u8 GhostBits of the grid's cells where the input had none; may be empty
@@ -27,6 +28,19 @@ struct Frame {
   /// Position in pixels of a place in the world (its foot on the plane, when flat), and back.
   Vec3 to_pixels(Vec3 world) const;
 };
+
+/// Is there room for a texture: an extent along two axes at least, and cells? Operations leave such parts of collections as they are.
+bool has_room(const Dataset& data);
+/// f for each dataset; parts of collections that have no room stay as they are, with a note.
+template <class F>
+Data over_parts(const Data& data, std::string_view who, Context& context, F&& f) {
+  const bool alone = std::holds_alternative<DatasetPtr>(data);
+  return map_datasets(data, [&](const DatasetPtr& d) -> DatasetPtr {
+    if (alone || has_room(*d)) return f(d);
+    context.info(std::string(who) + ": a part of " + std::string(d->kind()) + " has no area and stays as it is");
+    return d;
+  });
+}
 
 /// Velocities of the pixels [begin, end): `dimension` numbers each, along the frame's axes, in pixels per unit of time; NaN: no value.
 void velocity_of(const Frame& frame, size_t begin, size_t end, float* out);

@@ -23,8 +23,9 @@ void describe(Schema& s, LicParams& p) {
   s("ripples", p.ripples, "Waves in the length of the kernel.").range(1, 100);
   s("method", p.method, "plain: a line for each pixel. fast: long lines that share their sums.").choices({"plain", "fast"});
   s("noise", p.noise, "What is averaged: white noise, or sparse dots (the one to look into volumes).").choices({"white", "sparse"});
-  s("density", p.density, "Part of the pixels that are dots of sparse noise.").range(1e-6, 1);
-  s("grain", p.grain, "Size of the grains of the noise.").unit("pixels").range(1, 256);
+  s("density", p.density, "Part of the noise's points that are dots when it is sparse; 0: 0.02 in flat data, 0.002 in solid ones.")
+      .range(0, 1);
+  s("grain", p.grain, "Size of the grains of the noise; 0: 1, sparse dots in solid data 2.").unit("pixels").range(0, 256);
   s("seed", p.seed, "Another number, another noise.");
   s("image", p.image, "Field of the second input that is smeared along the flow in place of noise; default: its active scalar or colours.");
   s("contrast", p.contrast, "none: plain averages. stretch: a hundredth of the pixels black, a hundredth white. equalise: all greys alike.")
@@ -112,7 +113,17 @@ DatasetPtr lic(const DatasetPtr& input, const DatasetPtr& image, const LicParams
   Array what;
   Plane<float> noise;
   if (image) what = image_of(f, image, p);
-  else noise = grained_noise(f.n, uint64_t(p.seed), p.grain, sparse, p.density);
+  else {
+    const bool solid = f.dimension == 3;
+    noise = grained_noise(f.n, uint64_t(p.seed),
+                          p.grain > 0       ? p.grain
+                          : sparse && solid ? 2
+                                            : 1,
+                          sparse,
+                          p.density > 0 ? p.density
+                          : solid       ? 0.004
+                                        : 0.02);
+  }
   const int components = image ? what.components() : 1;
   const float* from = image ? what.view<float>().data : noise.data();
   float* out = nullptr;
@@ -151,7 +162,7 @@ DatasetPtr lic(const DatasetPtr& input, const DatasetPtr& image, const LicParams
 
 Data lic_of(const std::vector<Data>& inputs, const LicParams& p, Context& context) {
   const DatasetPtr image = inputs.size() > 1 ? single_dataset(inputs[1], "lic") : nullptr;
-  return map_datasets(inputs[0], [&](const DatasetPtr& d) { return lic(d, image, p, context); });
+  return over_parts(inputs[0], "lic", context, [&](const DatasetPtr& d) { return lic(d, image, p, context); });
 }
 
 }  // namespace sg

@@ -15,7 +15,7 @@ struct LicParams {
   int ripples = 2;
   std::string method = "plain";
   std::string noise = "white";
-  double density = 0.02, grain = 1;
+  double density = 0, grain = 0;
   int64_t seed = 1;
   FieldName image;
   std::string contrast = "stretch";

@@ -83,6 +83,10 @@ DatasetPtr surface_lic(const DatasetPtr& in, const SurfaceLicParams& p, Context&
   for (size_t t = r.triangles.size(); t-- > 0;)
     for (const uint32_t q : r.triangles[t]) home[q] = uint32_t(t);
   const auto noise = [&](uint32_t point) { return random_unit(uint64_t(p.seed), point); };
+  const auto noise_at = [&](const SurfaceWalk::Place& at) {
+    const auto& t = r.triangles[at.triangle];
+    return noise(t[0]) * at.b[0] + noise(t[1]) * at.b[1] + noise(t[2]) * at.b[2];
+  };
   float* lic = nullptr;
   Array result = Array::make<float>(n, 1, &lic);
   parallel_for(
@@ -98,7 +102,7 @@ DatasetPtr surface_lic(const DatasetPtr& in, const SurfaceLicParams& p, Context&
             SurfaceWalk::Place at = walk.start(home[i], uint32_t(i));
             for (int k = 1; k <= p.steps; ++k) {
               if (!walk.advance(at, step, way == 0 ? -1 : 1)) break;
-              sum += kernel.weight(k) * noise(walk.nearest(at)), weights += kernel.weight(k), reached[way] = k, any = true;
+              sum += kernel.weight(k) * noise_at(at), weights += kernel.weight(k), reached[way] = k, any = true;
             }
           }
           if (!any) continue;

@@ -13,16 +13,15 @@ namespace {
 constexpr int most_idle = 64;  ///< triangles passed without going anywhere, around a point
 
 /// Length to where the first coordinate becomes zero, and which; a coordinate that hardly changes does not.
-double way_out(const std::array<double, 3>& b, const std::array<double, 3>& d, int& edge) {
+inline double way_out(const std::array<double, 3>& b, const std::array<double, 3>& d, int& edge) {
   const double still = 1e-10 * std::max({std::abs(d[0]), std::abs(d[1]), std::abs(d[2])});
-  double least = HUGE_VAL;
+  double over = HUGE_VAL, under = 1;  // the least of b / -d as a fraction: one division instead of three
   edge = -1;
-  for (int k = 0; k < 3; ++k)
-    if (d[size_t(k)] < -still) {
-      const double s = std::max(b[size_t(k)], 0.0) / -d[size_t(k)];
-      if (s < least) least = s, edge = k;
-    }
-  return least;
+  for (int k = 0; k < 3; ++k) {
+    const double rate = -d[size_t(k)], left = std::max(b[size_t(k)], 0.0);
+    if (rate > still && left * under < over * rate) over = left, under = rate, edge = k;
+  }
+  return over / under;
 }
 
 void go(std::array<double, 3>& b, const std::array<double, 3>& d, double s) {

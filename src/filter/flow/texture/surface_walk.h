@@ -26,11 +26,6 @@ class SurfaceWalk {
   Place start(uint32_t triangle, uint32_t point) const;
   /// Goes `length` along the field (sign 1) or against it (-1); false when the line ends before, `at` is then where it ended.
   bool advance(Place& at, double length, double sign) const;
-  /// The point of the triangle that is nearest in barycentric coordinates.
-  uint32_t nearest(const Place& at) const {
-    const auto& b = at.b;
-    return surface_.triangles[at.triangle][b[0] >= b[1] && b[0] >= b[2] ? 0 : b[1] >= b[2] ? 1 : 2];
-  }
   Vec3 position(const Place& at) const;
 
  private:

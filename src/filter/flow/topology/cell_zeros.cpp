@@ -116,7 +116,8 @@ struct CellZeros::Basis {
   }
 };
 
-CellZeros::CellZeros(const FlowField& flow, const PlaneFrame* frame) : flow_(flow), frame_(frame), map_(flow.dataset()) {}
+CellZeros::CellZeros(const FlowField& flow, const PlaneFrame* frame, double min_speed)
+    : flow_(flow), frame_(frame), min_speed_(min_speed), map_(flow.dataset()) {}
 CellZeros::~CellZeros() = default;
 
 const CellZeros::Basis& CellZeros::basis_of(const CellShape& shape) {
@@ -141,14 +142,16 @@ CellZeros::Result CellZeros::find(size_t cell, std::vector<CellZero>& out) {
   const auto ids = map_.reader().ids();
   const size_t n = ids.size();
   v_.resize(n), zero_.resize(n);
-  bool all = true, some = false;
+  bool all = true, some = false, slow = true;
   for (size_t k = 0; k < n; ++k) {
     const Vec3 v = flow_.at_point(size_t(ids[k]));
     if (!(std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z))) return Result::none;
     v_[k] = frame_ ? Vec3(dot(v, frame_->e1), dot(v, frame_->e2), 0) : v;
     zero_[k] = v_[k] == Vec3();
+    slow = slow && length(v) < min_speed_;
     all = all && zero_[k], some = some || zero_[k];
   }
+  if (slow) return Result::none;
   if (all) {
     spread_.insert(spread_.end(), ids.begin(), ids.end());
     return Result::spread;

@@ -26,8 +26,8 @@ struct CellZero {
 /// nearly linear fields and may miss one of several. Not thread-safe.
 class CellZeros {
  public:
-  /// `frame`: the plane of a mesh of 2D cells; null: solids only, others have none.
-  CellZeros(const FlowField& flow, const PlaneFrame* frame);
+  /// `frame`: the plane of a mesh of 2D cells; null: solids only, others have none. Cells slower than `min_speed` at all points: none.
+  CellZeros(const FlowField& flow, const PlaneFrame* frame, double min_speed = 0);
   ~CellZeros();
 
   enum class Result : uint8_t {
@@ -54,6 +54,7 @@ class CellZeros {
 
   const FlowField& flow_;
   const PlaneFrame* frame_;
+  double min_speed_;
   CellMap map_;
   std::vector<Vec3> v_, slopes_;  // velocities of the nodes
   std::vector<double> weights_;

@@ -161,7 +161,7 @@ void describe(Schema& s, ClosedOrbitsParams& p) {
 
 DatasetPtr closed_orbits(const DatasetPtr& in, const ClosedOrbitsParams& p, Context& context) {
   const FlowField flow(in, p.field.name, context);
-  const CriticalPoints critical = find_critical_points(flow, 1e-3, context);
+  const CriticalPoints critical = find_critical_points(flow, {}, context);
   if (!critical.plane)
     fail_usage("periodic orbits are found in flat meshes of 2D cells", "closed_orbits", "slice a solid, or flatten the surface");
   SeparatrixOptions options;

@@ -25,14 +25,14 @@ struct Search {
   size_t spread = 0;
 };
 
-Search search_cells(const FlowField& flow, const PlaneFrame* frame, Context& context) {
+Search search_cells(const FlowField& flow, const PlaneFrame* frame, double min_speed, Context& context) {
   const std::vector<uint64_t> cells = cells_that_may_vanish(flow, frame, context);
   constexpr size_t grain = 64;
   std::vector<Search> parts((cells.size() + grain - 1) / grain);
   parallel_for(
       cells.size(), grain,
       [&](size_t begin, size_t end) {
-        CellZeros finder(flow, frame);
+        CellZeros finder(flow, frame, min_speed * flow.largest_speed());
         Search& part = parts[begin / grain];
         std::vector<CellZero> found;
         for (size_t i = begin; i < end; ++i) {
@@ -121,7 +121,8 @@ int index_about(FlowCursor& cursor, const PlaneFrame& frame, Vec3 at, double rad
 
 }  // namespace
 
-CriticalPoints find_critical_points(const FlowField& flow, double centre, Context& context) {
+CriticalPoints find_critical_points(const FlowField& flow, const CriticalOptions& options, Context& context) {
+  const double centre = options.centre;
   CriticalPoints r;
   r.dimension = flow.dimension();
   if (r.dimension < 2)
@@ -130,12 +131,12 @@ CriticalPoints find_critical_points(const FlowField& flow, double centre, Contex
   if (r.dimension == 2) {
     r.plane = plane_of(*flow.dataset());
     if (!r.plane) {
-      find_surface_zeros(flow, centre, r, context);
+      find_surface_zeros(flow, options, r, context);
       return r;
     }
   }
   const PlaneFrame* frame = r.plane ? &*r.plane : nullptr;
-  Search s = search_cells(flow, frame, context);
+  Search s = search_cells(flow, frame, options.min_speed, context);
   r.spread = s.spread;
   std::optional<FlowCursor> cursor;
   for (const Found& f : merged(std::move(s.zeros))) {
@@ -155,10 +156,17 @@ CriticalPoints find_critical_points(const FlowField& flow, double centre, Contex
 
 void describe(Schema& s, CriticalPointsParams& p) {
   s("field", p.field, "Velocity; default: the active vectors.");
+  describe(s, p.options);
+}
+
+void describe(Schema& s, CriticalOptions& p) {
   s("centre", p.centre,
     "A spiral whose growth rate (real part) is at most this part of its turning rate (imaginary part) counts as a centre: sampled flows "
     "without divergence have centres only to rounding.")
       .at_least(0);
+  s("min_speed", p.min_speed,
+    "Cells that are slower than this part of the largest speed at all of their points are left out: noise has many zeros.")
+      .range(0, 1);
 }
 
 std::string summary(const CriticalPoints& found) {
@@ -220,7 +228,7 @@ DatasetPtr critical_points_dataset(const CriticalPoints& found) {
 
 DatasetPtr critical_points(const DatasetPtr& in, const CriticalPointsParams& p, Context& context) {
   const FlowField flow(in, p.field.name, context);
-  const CriticalPoints found = find_critical_points(flow, p.centre, context);
+  const CriticalPoints found = find_critical_points(flow, p.options, context);
   context.info("critical_points: " + summary(found));
   return critical_points_dataset(found);
 }

@@ -30,14 +30,20 @@ struct CriticalPoints {
   std::optional<int> faces_index;  ///< curved surfaces: sum of the indices of all triangles (the Euler number of a closed surface)
 };
 
+struct CriticalOptions {
+  double centre = 1e-3;  ///< see linearise()
+  double min_speed = 0;  ///< cells that are slower than this part of the largest speed at all their points are left out
+};
 /// All isolated zeros of the interpolated velocity. Solids: zeros in space. Flat 2D meshes: of the part in their plane. Curved surfaces:
 /// see surface_zeros.h. Zeros on faces, edges and points of several cells are one. The same for any number of threads.
-/// `centre`: see linearise(). Throws Error(usage) for meshes of lines.
-CriticalPoints find_critical_points(const FlowField& flow, double centre, Context& context);
+/// Throws Error(usage) for meshes of lines.
+CriticalPoints find_critical_points(const FlowField& flow, const CriticalOptions& options, Context& context);
+/// Declares both.
+void describe(Schema& s, CriticalOptions& p);
 
 struct CriticalPointsParams {
   FieldName field;
-  double centre = 1e-3;
+  CriticalOptions options;
 };
 void describe(Schema& s, CriticalPointsParams& p);
 /// A point cloud: "type" (see CriticalType; the names are in the dataset's notes), "index", "eigenvalues real", "eigenvalues imaginary",

@@ -107,6 +107,12 @@ void trace_to_limits(const FlowField& flow, const CriticalPoints& critical, std:
 
 std::vector<Separatrix> find_separatrices(const FlowField& flow, const CriticalPoints& critical, const std::vector<SwitchPoint>& border,
                                           const SeparatrixOptions& options, Context& context) {
+  // On curved surfaces the velocity that the tracer sees jumps at edges by what their bend leaves: no need to follow that in small steps,
+  // and its saddles are a part of a cell from ours.
+  const bool curved = critical.dimension == 2 && !critical.plane;
+  TraceOptions trace = options.trace;
+  if (curved) trace.tolerance = std::max(trace.tolerance, 1e-3);
+  const double offset = curved ? std::max(options.offset, 0.5) : options.offset;
   std::vector<LimitSeed> seeds;
   auto seed = [&](Vec3 from_at, Vec3 at, double sign, Separatrix::Origin origin, size_t from) {
     LimitSeed s{at, sign, {}};
@@ -123,7 +129,7 @@ std::vector<Separatrix> find_separatrices(const FlowField& flow, const CriticalP
       const double sign = c.flow.re[k] > 0 ? 1 : -1;
       if (c.flow.count == 3 && (sign > 0 ? 3 - in : in) != 1) continue;  // one of two: they span a surface
       for (const double side : {1.0, -1.0})
-        seed(c.at, c.at + side * options.offset * c.size * c.flow.vector[k], sign, Separatrix::Origin::saddle, i);
+        seed(c.at, c.at + side * offset * c.size * c.flow.vector[k], sign, Separatrix::Origin::saddle, i);
     }
   }
   for (size_t i = 0; i < border.size(); ++i) {
@@ -133,7 +139,7 @@ std::vector<Separatrix> find_separatrices(const FlowField& flow, const CriticalP
     if (touch || p.type == SwitchType::detachment) seed(p.at, at, 1, Separatrix::Origin::border, i);
     if (touch || p.type == SwitchType::attachment) seed(p.at, at, -1, Separatrix::Origin::border, i);
   }
-  trace_to_limits(flow, critical, seeds, options.trace, context);
+  trace_to_limits(flow, critical, seeds, trace, context);
   std::vector<Separatrix> out;
   for (LimitSeed& s : seeds) out.push_back(std::move(s.line));
   return out;
@@ -194,7 +200,7 @@ DatasetPtr separatrices_dataset(const std::vector<Separatrix>& lines) {
 
 void describe(Schema& s, SeparatricesParams& p) {
   s("field", p.field, "Velocity; default: the active vectors.");
-  s("centre", p.centre, "As in critical_points: how slowly a spiral may grow for its turning, to be a centre.").at_least(0);
+  describe(s, p.critical);
   s("offset", p.offset, "How far from the saddle tracing begins, in diagonals of its cell.").positive();
   s("border", p.border, "Also from places where the flow touches the border from inside, leaves a wall or comes to one (flat meshes).");
   s("max_steps", p.max_steps, "Most steps of a line.").range(1, 1e9);
@@ -203,7 +209,7 @@ void describe(Schema& s, SeparatricesParams& p) {
 
 DatasetPtr separatrices(const DatasetPtr& in, const SeparatricesParams& p, Context& context) {
   const FlowField flow(in, p.field.name, context);
-  const CriticalPoints critical = find_critical_points(flow, p.centre, context);
+  const CriticalPoints critical = find_critical_points(flow, p.critical, context);
   std::vector<SwitchPoint> border;
   if (p.border && critical.plane) border = find_switch_points(flow, *critical.plane, context);
   SeparatrixOptions options;

@@ -10,7 +10,7 @@
 namespace sg {
 
 struct SeparatrixOptions {
-  double offset = 0.02;  ///< from a saddle to where tracing begins, in diagonals of its cell
+  double offset = 0.02;  ///< from a saddle to where tracing begins, in diagonals of its cell; on curved surfaces at least 1/2
   TraceOptions trace;
 };
 
@@ -51,7 +51,7 @@ DatasetPtr separatrices_dataset(const std::vector<Separatrix>& lines);
 
 struct SeparatricesParams {
   FieldName field;
-  double centre = 1e-3;
+  CriticalOptions critical;
   double offset = 0.02;
   bool border = true;
   int64_t max_steps = 2000;

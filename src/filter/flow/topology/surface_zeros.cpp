@@ -154,7 +154,8 @@ void mean_gradient(const Surface& s, int64_t id, double centre, CriticalPoint& c
 
 }  // namespace
 
-void find_surface_zeros(const FlowField& flow, double centre, CriticalPoints& out, Context& context) {
+void find_surface_zeros(const FlowField& flow, const CriticalOptions& options, CriticalPoints& out, Context& context) {
+  const double centre = options.centre;
   const Surface surface(flow, context);
   const auto& triangles = surface.triangles();
   constexpr size_t grain = 4096;
@@ -184,6 +185,9 @@ void find_surface_zeros(const FlowField& flow, double centre, CriticalPoints& ou
     *out.faces_index += part.sum;
     for (const auto& [i, index] : part.found) {
       const Triangle& t = triangles[i];
+      double fastest = 0;
+      for (const int64_t id : t.id) fastest = std::max(fastest, length(flow.at_point(size_t(id))));
+      if (fastest < options.min_speed * flow.largest_speed()) continue;
       Vec3 normal;
       CriticalPoint c = surface.point(t, centre, normal);
       for (size_t k = 0; k < 3; ++k)

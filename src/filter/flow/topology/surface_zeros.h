@@ -11,6 +11,6 @@ namespace sg {
 /// whose sum over a closed surface is its Euler number whatever the velocities are (Poincare-Hopf). The point is the zero of the
 /// interpolant, moved into the triangle where it lies beside it. Points of exactly zero velocity belong to one of their triangles.
 /// Triangles with two or three of them: spread. Fills `out`.
-void find_surface_zeros(const FlowField& flow, double centre, CriticalPoints& out, Context& context);
+void find_surface_zeros(const FlowField& flow, const CriticalOptions& options, CriticalPoints& out, Context& context);
 
 }  // namespace sg

@@ -5,7 +5,7 @@ namespace sg {
 
 void describe(Schema& s, TopologyParams& p) {
   s("field", p.field, "Velocity; default: the active vectors.");
-  s("centre", p.centre, "As in critical_points: how slowly a spiral may grow for its turning, to be a centre.").at_least(0);
+  describe(s, p.critical);
   s("separatrices", p.separatrices, "Trace the lines that part regions of different flow.");
   s("orbits", p.orbits, "Look for periodic orbits (flat meshes).");
   s("border", p.border, "Look for places where the flow touches the border, leaves walls or comes to them (flat meshes).");
@@ -17,7 +17,7 @@ void describe(Schema& s, TopologyParams& p) {
 
 CollectionPtr topology(const DatasetPtr& in, const TopologyParams& p, Context& context) {
   const FlowField flow(in, p.field.name, context);
-  const CriticalPoints critical = find_critical_points(flow, p.centre, context);
+  const CriticalPoints critical = find_critical_points(flow, p.critical, context);
   auto out = std::make_shared<Collection>();
   out->parts.push_back({"critical points", critical_points_dataset(critical)});
   std::string text = "topology: " + summary(critical);

@@ -7,7 +7,7 @@ namespace sg {
 
 struct TopologyParams {
   FieldName field;
-  double centre = 1e-3;
+  CriticalOptions critical;
   bool separatrices = true, orbits = true, border = true;
   double offset = 0.02;
   int64_t max_steps = 2000;
@@ -23,7 +23,7 @@ CollectionPtr topology(const DatasetPtr& in, const TopologyParams& p, Context& c
 
 struct TopologySeedsParams {
   FieldName field;
-  double centre = 1e-3;
+  CriticalOptions critical;
   int64_t count = 8;
   double radius = 0.4;
 };

@@ -78,14 +78,14 @@ void solid_pattern(const CriticalPoint& c, double r, int64_t n, std::vector<Vec3
 
 void describe(Schema& s, TopologySeedsParams& p) {
   s("field", p.field, "Velocity; default: the active vectors.");
-  s("centre", p.centre, "As in critical_points: how slowly a spiral may grow for its turning, to be a centre.").at_least(0);
+  describe(s, p.critical);
   s("count", p.count, "Seeds around each critical point.").range(1, 1e6);
   s("radius", p.radius, "How far the patterns reach, as a part of the way to the nearest other critical point.").positive();
 }
 
 DatasetPtr topology_seeds(const DatasetPtr& in, const TopologySeedsParams& p, Context& context) {
   const FlowField flow(in, p.field.name, context);
-  const CriticalPoints critical = find_critical_points(flow, p.centre, context);
+  const CriticalPoints critical = find_critical_points(flow, p.critical, context);
   const std::vector<double> reach = reaches(critical.points, p.radius, 0.1 * in->bounds().diagonal());
   std::vector<double> xyz;
   std::vector<int32_t> number, type;

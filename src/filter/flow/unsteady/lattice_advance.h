@@ -24,6 +24,6 @@ struct Job {
 std::optional<Job> job_of(const UnsteadyFlow& flow, const TraceOptions& options);
 
 /// As advance() does, of particles whose numbers begin at `first`; adds to `way` unless null. The same bits on every processor.
-void run(const Job& job, std::span<Particle> particles, size_t first, double until, const TraceOptions& options, Way* way);
+void run(const Job& job, std::span<Particle> particles, size_t first, double until, int sign, const TraceOptions& options, Way* way);
 
 }  // namespace sg::lattice_advance

@@ -10,9 +10,18 @@
 #include <hwy/highway.h>
 
 #include <bit>
+#include <cfloat>
 #include <cstring>
 
 #pragma GCC diagnostic ignored "-Wpsabi"  // all is inlined
+
+// Not by __AVX2__, which does not follow the target of a function.
+#undef SG_LATTICE_AVX2
+#if HWY_TARGET <= HWY_AVX2 && HWY_ARCH_X86
+#define SG_LATTICE_AVX2 1
+#else
+#define SG_LATTICE_AVX2 0
+#endif
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::lattice_advance::HWY_NAMESPACE {
@@ -30,75 +39,108 @@ HWY_INLINE F4 load(const float* p) {
   return v;
 }
 /// The same point of two steps.
-HWY_INLINE F8 load_two(const float* a, const float* b) { return __builtin_shufflevector(load(a), load(b), 0, 1, 2, 3, 4, 5, 6, 7); }
+HWY_INLINE F8 load_two(const float* a, const float* b) {
+#if SG_LATTICE_AVX2
+  return reinterpret_cast<F8>(_mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(a)), _mm_loadu_ps(b), 1));
+#else
+  return __builtin_shufflevector(load(a), load(b), 0, 1, 2, 3, 4, 5, 6, 7);
+#endif
+}
+/// a > b ? a : b and a < b ? a : b, b where one is NaN.
+HWY_INLINE D4 larger(D4 a, D4 b) {
+#if SG_LATTICE_AVX2
+  return reinterpret_cast<D4>(_mm256_max_pd(reinterpret_cast<__m256d>(a), reinterpret_cast<__m256d>(b)));
+#else
+  return a > b ? a : b;
+#endif
+}
+HWY_INLINE D4 smaller(D4 a, D4 b) {
+#if SG_LATTICE_AVX2
+  return reinterpret_cast<D4>(_mm256_min_pd(reinterpret_cast<__m256d>(a), reinterpret_cast<__m256d>(b)));
+#else
+  return a < b ? a : b;
+#endif
+}
+/// Are the first three at most `most`, and no NaN?
+HWY_INLINE bool at_most(D4 v, D4 most) {
+#if SG_LATTICE_AVX2
+  return (_mm256_movemask_pd(_mm256_cmp_pd(reinterpret_cast<__m256d>(v), reinterpret_cast<__m256d>(most), _CMP_LE_OQ)) & 7) == 7;
+#else
+  return v[0] <= most[0] && v[1] <= most[1] && v[2] <= most[2];
+#endif
+}
+HWY_INLINE D4 absolute(D4 v) { return reinterpret_cast<D4>(reinterpret_cast<L4>(v) & INT64_MAX); }
 HWY_INLINE F8 all(float x) { return F8{x, x, x, x, x, x, x, x}; }
 HWY_INLINE F8 mix(F8 a, F8 b, F8 f) { return a + f * (b - a); }
 HWY_INLINE Vec3 vec(D4 v) { return {v[0], v[1], v[2]}; }
 
 struct Grid {
-  D4 origin, inverse, cells;
+  D4 origin, inverse, last_cell;
   L4 keep;  // components that have a meaning: three, or two in a flat grid
   const Job* job;
 };
 
-/// False outside and where a component is not finite; v then means nothing.
-template <int STEPS>
+/// False outside. NaN in the data makes NaN of v (with LAST: false), and places that are NaN lie outside, so that the stages of a step need
+/// not look.
+template <int STEPS, bool LAST = false>
 HWY_INLINE bool velocity(const Grid& g, D4 x, double t, D4& v) {
   const Job& job = *g.job;
-  constexpr double slack = 1e-9;
   const D4 zero{}, q = (x - g.origin) * g.inverse;
-  const L4 out = (q < zero - slack) | (q > g.cells + slack) | (q != q);
-  const D4 low = q > zero ? q : zero;
-  const D4 most = g.cells - 1.0;
-  const D4 in = low < most ? low : most;  // keeps addresses inside whatever q is
-  const I4 c = __builtin_convertvector(in, I4);
-  D4 f = q - __builtin_convertvector(c, D4);
-  f = f > zero ? f : zero;
-  f = f < 1.0 ? f : zero + 1.0;
+  const I4 c = __builtin_convertvector(smaller(larger(q, zero), g.last_cell), I4);  // addresses stay inside whatever q is
+  const D4 f = q - __builtin_convertvector(c, D4);
+  bool ok = at_most(absolute(f - 0.5), zero + (0.5 + 1e-9));
   const F4 w = __builtin_convertvector(f, F4);
   size_t dx = job.stride[0], dy = job.stride[1], dz = job.stride[2];
-  size_t at = size_t(c[0]) * dx + size_t(c[1]) * dy + size_t(c[2]) * dz;
+  size_t at = size_t(uint32_t(c[0])) * dx + size_t(uint32_t(c[1])) * dy + size_t(uint32_t(c[2])) * dz;
   const double s = (t - job.begin) * job.scale;
   const F8 fx = all(w[0]), fy = all(w[1]), fz = all(w[2]);
-  float copy[4][8][4];
-  const float* step[4] = {job.step[0], job.step[1], job.step[2], job.step[3]};
+  float copy[STEPS][8][4];
+  const float* step[STEPS];
+  for (int j = 0; j < STEPS; ++j) step[j] = job.step[j];
   if (HWY_UNLIKELY(at == job.last)) {
     for (int j = 0; j < STEPS; ++j) {
-      for (size_t k = 0; k < 8; ++k)
+      for (size_t k = 0; k < 8; ++k) {
         std::memcpy(copy[j][k], job.step[j] + at + (k & 1 ? dx : 0) + (k & 2 ? dy : 0) + (k & 4 ? dz : 0), 3 * sizeof(float));
-      for (auto& corner : copy[j]) corner[3] = 0;
+        copy[j][k][3] = 0;
+      }
       step[j] = copy[j][0];
     }
     at = 0, dx = 4, dy = 8, dz = 16;
   }
-  F4 sum{};
-  for (int j = 0; j < STEPS; j += 2) {
-    const float *a = step[j] + at, *b = step[j + 1] + at;
+  const auto two = [&](const float* a, const float* b) {
     const F8 r0 = mix(load_two(a, b), load_two(a + dx, b + dx), fx);
     const F8 r1 = mix(load_two(a + dy, b + dy), load_two(a + dy + dx, b + dy + dx), fx);
     const F8 r2 = mix(load_two(a + dz, b + dz), load_two(a + dz + dx, b + dz + dx), fx);
     const F8 r3 = mix(load_two(a + dz + dy, b + dz + dy), load_two(a + dz + dy + dx, b + dz + dy + dx), fx);
-    const F8 u = mix(mix(r0, r1, fy), mix(r2, r3, fy), fz);
-    float m[2];
-    for (int k = 0; k < 2; ++k) {
-      const double* p = job.weight[j + k];
-      m[k] = STEPS == 2 ? float(k == 0 ? 1 - s : s) : float(((p[3] * s + p[2]) * s + p[1]) * s + p[0]);
+    return mix(mix(r0, r1, fy), mix(r2, r3, fy), fz);
+  };
+  const auto half = [](F8 u, bool second) {
+    return second ? __builtin_shufflevector(u, u, 4, 5, 6, 7) : __builtin_shufflevector(u, u, 0, 1, 2, 3);
+  };
+  F4 sum;
+  if constexpr (STEPS == 2) {
+    const F8 u = two(step[0] + at, step[1] + at);
+    sum = half(u, false) + float(s) * (half(u, true) - half(u, false));
+  } else {
+    const F8 u[2] = {two(step[0] + at, step[1] + at), two(step[2] + at, step[3] + at)};
+    sum = F4{};
+    for (int j = 0; j < 4; ++j) {
+      const double* p = job.weight[j];
+      const float m = float(((p[3] * s + p[2]) * s + p[1]) * s + p[0]);
+      if (m != 0) sum = sum + m * half(u[j / 2], j % 2);
     }
-    const F8 weight{m[0], m[0], m[0], m[0], m[1], m[1], m[1], m[1]};
-    // A step of no weight may be NaN.
-    const F8 part = reinterpret_cast<F8>(reinterpret_cast<I8>(u * weight) & (weight != F8{}));
-    sum = sum + (__builtin_shufflevector(part, part, 0, 1, 2, 3) + __builtin_shufflevector(part, part, 4, 5, 6, 7));
   }
-  v = reinterpret_cast<D4>(reinterpret_cast<L4>(__builtin_convertvector(sum, D4)) & g.keep);
-  const L4 bad = out | (v - v != zero);
-  return (bad[0] | bad[1] | bad[2]) == 0;
+  v = __builtin_convertvector(sum, D4);
+  if (HWY_UNLIKELY(job.flat >= 0)) v = reinterpret_cast<D4>(reinterpret_cast<L4>(v) & g.keep);
+  if (LAST) ok = ok && at_most(absolute(v), zero + double(FLT_MAX));
+  return ok;
 }
 
-/// x^(-1/5) for x > 0 by Newton's iteration.
+/// x^(-1/5) for x > 0 by two of Newton's iterations: to 1e-4, enough for the size of a step.
 HWY_INLINE double inverse_fifth_root(double x) {
   const uint64_t bits = std::bit_cast<uint64_t>(x);
   double y = std::bit_cast<double>(uint64_t(0x4CB999999999999A) - bits / 5);
-  for (int n = 0; n < 4; ++n) {
+  for (int n = 0; n < 2; ++n) {
     const double y2 = y * y;
     y = y * (1.2 - 0.2 * x * (y2 * y2 * y));
   }
@@ -111,7 +153,7 @@ HWY_INLINE double next_size(double h, double error) {
 struct Lane {
   Particle* p = nullptr;
   D4 x, k1;
-  double t, h, sign, left, least, wished;
+  double t, h, left, least, wished;
   int halving;
   bool at_border;
   // Of the step just tried:
@@ -122,14 +164,14 @@ struct Lane {
 template <int STEPS>
 class Lanes {
  public:
-  Lanes(const Job& job, std::span<Particle> particles, size_t first, double until, const TraceOptions& o, Way* way)
-      : particles_(particles), first_(first), until_(until), o_(o), way_(way) {
+  Lanes(const Job& job, std::span<Particle> particles, size_t first, double until, int sign, const TraceOptions& o, Way* way)
+      : particles_(particles), first_(first), until_(until), sign_(sign), o_(o), way_(way) {
     g_.job = &job;
     for (int a = 0; a < 3; ++a) {
-      g_.origin[a] = job.origin[a], g_.inverse[a] = job.inverse[a], g_.cells[a] = job.cells[a];
+      g_.origin[a] = job.origin[a], g_.inverse[a] = job.inverse[a], g_.last_cell[a] = job.cells[a] - 1;
       g_.keep[a] = a == job.flat ? 0 : -1;
     }
-    g_.origin[3] = g_.inverse[3] = 0, g_.cells[3] = 1, g_.keep[3] = 0;
+    g_.origin[3] = g_.inverse[3] = 0, g_.last_cell[3] = 0, g_.keep[3] = 0;
   }
 
   void run() {
@@ -147,11 +189,12 @@ class Lanes {
  private:
   static constexpr int width = 4;
 
-  double time_of(double size, double speed) const {
+  /// What a size of 1 in the options' unit takes.
+  double unit_time(double speed) const {
     switch (o_.unit) {
-      case TraceOptions::Unit::cells: return size * g_.job->cell / speed;
-      case TraceOptions::Unit::length: return size / speed;
-      default: return size;
+      case TraceOptions::Unit::cells: return g_.job->cell / speed;
+      case TraceOptions::Unit::length: return 1 / speed;
+      default: return 1;
     }
   }
   double speed_of(D4 v) const { return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); }
@@ -163,7 +206,7 @@ class Lanes {
       if (std::abs(off) <= job.cell) p.x[job.flat] = job.origin[job.flat];
     }
     D4 v;
-    p.started = inside_plane(p.x) && velocity<STEPS>(g_, D4{p.x.x, p.x.y, p.x.z, 0}, p.t, v);
+    p.started = inside_plane(p.x) && velocity<STEPS, true>(g_, D4{p.x.x, p.x.y, p.x.z, 0}, p.t, v);
     p.ended = !p.started;
     if (p.started) p.v = vec(v), record(p);
     return p.started;
@@ -180,8 +223,8 @@ class Lanes {
   bool fill(Lane& l) {
     for (; next_ < particles_.size(); ++next_) {
       Particle& p = particles_[next_];
-      if (p.ended || (!p.started && !start(p))) continue;
-      l.p = &p, l.sign = until_ >= p.t ? 1 : -1;
+      if (p.ended || (until_ - p.t) * sign_ < 0 || (!p.started && !start(p))) continue;
+      l.p = &p;
       l.x = D4{p.x.x, p.x.y, p.x.z, 0}, l.k1 = D4{p.v.x, p.v.y, p.v.z, 0}, l.t = p.t;
       if (!begin_step(l)) continue;
       ++next_;
@@ -202,10 +245,10 @@ class Lanes {
       p.ended = true, p.why = StopReason::steps;
       return false;
     }
-    const double speed = speed_of(l.k1);
-    l.least = time_of(o_.min_step, speed);
-    double h = p.next > 0 ? p.next : time_of(o_.step, speed);
-    h = std::min(std::max(h, l.least), time_of(o_.max_step, speed));
+    const double unit = unit_time(speed_of(l.k1));
+    l.least = o_.min_step * unit;
+    double h = p.next > 0 ? p.next : o_.step * unit;
+    h = std::min(std::max(h, l.least), o_.max_step * unit);
     l.wished = h;
     if (!(h < l.left)) h = l.left;
     else if (h > l.left / 2) h = l.left / 2;
@@ -219,7 +262,7 @@ class Lanes {
     const auto stage = [&](auto&& place, double share, D4* k) {
       for (int i = 0; i < n; ++i) {
         Lane& l = lane[i];
-        const double h = l.sign * l.h;
+        const double h = sign_ * l.h;
         l.ok &= velocity<STEPS>(g_, l.x + h * place(l, i), l.t + share * h, k[i]);
       }
     };
@@ -237,10 +280,10 @@ class Lanes {
         1.0, k6);
     for (int i = 0; i < n; ++i) {
       Lane& l = lane[i];
-      const double h = l.sign * l.h;
+      const double h = sign_ * l.h;
       l.x1 =
           l.x + h * ((35.0 / 384) * l.k1 + (500.0 / 1113) * k3[i] + (125.0 / 192) * k4[i] - (2187.0 / 6784) * k5[i] + (11.0 / 84) * k6[i]);
-      l.ok &= velocity<STEPS>(g_, l.x1, l.t + h, l.k7);
+      l.ok &= velocity<STEPS, true>(g_, l.x1, l.t + h, l.k7);
       l.error = h * ((71.0 / 57600) * l.k1 - (71.0 / 16695) * k3[i] + (71.0 / 1920) * k4[i] - (17253.0 / 339200) * k5[i] +
                      (22.0 / 525) * k6[i] - (1.0 / 40) * l.k7);
     }
@@ -261,7 +304,7 @@ class Lanes {
       return true;
     }
     l.x = l.x1, l.k1 = l.k7;
-    l.t = l.h >= l.left ? until_ : l.t + l.sign * l.h;
+    l.t = l.h >= l.left ? until_ : l.t + sign_ * l.h;
     p.x = vec(l.x), p.v = vec(l.k1), p.t = l.t;
     ++p.steps;
     const double next = next_size(l.h, error);
@@ -277,14 +320,14 @@ class Lanes {
   Grid g_;
   std::span<Particle> particles_;
   size_t first_, next_ = 0;
-  double until_;
+  double until_, sign_;
   const TraceOptions& o_;
   Way* way_;
 };
 
-void run(const Job& job, std::span<Particle> particles, size_t first, double until, const TraceOptions& o, Way* way) {
-  if (job.steps == 2) Lanes<2>(job, particles, first, until, o, way).run();
-  else Lanes<4>(job, particles, first, until, o, way).run();
+void run(const Job& job, std::span<Particle> particles, size_t first, double until, int sign, const TraceOptions& o, Way* way) {
+  if (job.steps == 2) Lanes<2>(job, particles, first, until, sign, o, way).run();
+  else Lanes<4>(job, particles, first, until, sign, o, way).run();
 }
 
 }  // namespace sg::lattice_advance::HWY_NAMESPACE
@@ -294,8 +337,8 @@ HWY_AFTER_NAMESPACE();
 namespace sg::lattice_advance {
 HWY_EXPORT(run);
 
-void run(const Job& job, std::span<Particle> particles, size_t first, double until, const TraceOptions& options, Way* way) {
-  HWY_DYNAMIC_DISPATCH(run)(job, particles, first, until, options, way);
+void run(const Job& job, std::span<Particle> particles, size_t first, double until, int sign, const TraceOptions& options, Way* way) {
+  HWY_DYNAMIC_DISPATCH(run)(job, particles, first, until, sign, options, way);
 }
 }  // namespace sg::lattice_advance
 #endif

@@ -20,12 +20,12 @@ void append(std::vector<T>& to, const std::vector<T>& from) {
   to.insert(to.end(), from.begin(), from.end());
 }
 
-void advance_some(const UnsteadyFlow& flow, std::span<Particle> particles, size_t begin, size_t end, double until, const TraceOptions& o,
-                  Way* way) {
+void advance_some(const UnsteadyFlow& flow, std::span<Particle> particles, size_t begin, size_t end, double until, int sign,
+                  const TraceOptions& o, Way* way) {
   UnsteadyCursor cursor(flow);
   for (size_t i = begin; i < end; ++i) {
     Particle& p = particles[i];
-    if (p.ended) continue;
+    if (p.ended || (until - p.t) * sign < 0) continue;
     if (!p.started) {
       if (!detail::start_particle(cursor, p)) continue;
       if (way) add(*way, i, p);
@@ -46,7 +46,7 @@ void advance_some(const UnsteadyFlow& flow, std::span<Particle> particles, size_
 
 }  // namespace
 
-void advance(const UnsteadyFlow& flow, std::span<Particle> particles, double until, const TraceOptions& options, Context& context,
+void advance(const UnsteadyFlow& flow, std::span<Particle> particles, double until, int sign, const TraceOptions& options, Context& context,
              Way* way) {
   const auto job = lattice_advance::job_of(flow, options);
   std::vector<Way> parts(way ? (particles.size() + grain - 1) / grain : 0);
@@ -54,8 +54,8 @@ void advance(const UnsteadyFlow& flow, std::span<Particle> particles, double unt
       particles.size(), grain,
       [&](size_t begin, size_t end) {
         Way* part = way ? &parts[begin / grain] : nullptr;
-        if (job) lattice_advance::run(*job, particles.subspan(begin, end - begin), begin, until, options, part);
-        else advance_some(flow, particles, begin, end, until, options, part);
+        if (job) lattice_advance::run(*job, particles.subspan(begin, end - begin), begin, until, sign, options, part);
+        else advance_some(flow, particles, begin, end, until, sign, options, part);
       },
       &context);
   if (!way) return;
@@ -63,6 +63,31 @@ void advance(const UnsteadyFlow& flow, std::span<Particle> particles, double unt
     append(way->particle, p.particle), append(way->x, p.x), append(way->v, p.v), append(way->t, p.t);
     p = {};
   }
+}
+
+std::vector<size_t> space_order(std::span<const Vec3> places) {
+  Box3 box;
+  for (const Vec3& p : places) box.add(p);
+  const auto spread = [](uint64_t v) {  // 20 bits, two free places behind each
+    v = (v | v << 32) & 0x1F00000000FFFF;
+    v = (v | v << 16) & 0x1F0000FF0000FF;
+    v = (v | v << 8) & 0x100F00F00F00F00F;
+    v = (v | v << 4) & 0x10C30C30C30C30C3;
+    return (v | v << 2) & 0x1249249249249249;
+  };
+  std::vector<std::pair<uint64_t, size_t>> keys(places.size());
+  for (size_t i = 0; i < places.size(); ++i) {
+    uint64_t key = 0;
+    for (int a = 0; a < 3; ++a) {
+      const double s = box.hi[a] > box.lo[a] ? (places[i][a] - box.lo[a]) / (box.hi[a] - box.lo[a]) : 0;
+      key |= spread(uint64_t((s > 0 ? std::min(s, 1.0) : 0.0) * double((1 << 20) - 1))) << a;
+    }
+    keys[i] = {key, i};
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<size_t> order(keys.size());
+  for (size_t i = 0; i < keys.size(); ++i) order[i] = keys[i].second;
+  return order;
 }
 
 void CarriedFields::open(const UnsteadyFlow& flow) {

@@ -29,12 +29,16 @@ struct Way {
   size_t size() const { return t.size(); }
 };
 
-/// Moves every particle that has not ended from its own time to `until`, both in the open interval; `until` may lie before (backwards).
-/// A particle at rest waits. Steps as in TraceOptions (closed, max_length, max_time and min_speed have no meaning here; max_steps counts
-/// those of a particle's life); none crosses the end of an interval. One that starts where there is no velocity ends at once. With `way`
-/// the end of each step is added to it, and the start of those that start. In parallel; the same for any number of threads.
-void advance(const UnsteadyFlow& flow, std::span<Particle> particles, double until, const TraceOptions& options, Context& context,
+/// Moves every particle that has not ended from its own time to `until`, both in the open interval, in the direction `sign` of time; those
+/// whose time is not yet reached wait. A particle at rest stays. Steps as in TraceOptions (closed, max_length, max_time and min_speed have
+/// no meaning here; max_steps counts those of a particle's life); none crosses the end of an interval. One that starts where there is no
+/// velocity ends at once. With `way` the end of each step is added to it, and the start of those that start. In parallel; the same for any
+/// number of threads. Fastest where particles that follow each other are neighbours.
+void advance(const UnsteadyFlow& flow, std::span<Particle> particles, double until, int sign, const TraceOptions& options, Context& context,
              Way* way = nullptr);
+
+/// Numbers of places so that neighbours in space follow each other (Morton order in their box).
+std::vector<size_t> space_order(std::span<const Vec3> places);
 
 /// Fields of the steps at places and times of the open interval.
 class CarriedFields {

@@ -18,7 +18,7 @@ DatasetPtr pathlines(const Series& series, const std::vector<Data>& others, cons
   CarriedFields carried;
   run.each_interval([&](double until) {
     const size_t before = way.size();
-    advance(run.flow, particles, until, run.options, context, &way);
+    advance(run.flow, particles, until, run.sign, run.options, context, &way);
     if (run.carries) carried.sample(run.flow, std::span(way.x).subspan(before), std::span(way.t).subspan(before), context);
   });
 

@@ -26,66 +26,66 @@ std::vector<double> release_times(const UnsteadyRun& run, std::optional<double> 
 }
 
 struct Released {
-  std::vector<Particle> all;  // release by release, each in the order of the seeds
+  std::vector<Particle> all;  // those of a seed together, in the order of release; seeds so that neighbours follow each other
   std::vector<double> times;  // of release
-  size_t seeds = 0, started = 0;
+  std::vector<size_t> slot;   // of a seed: where its particles are, in units of releases
+  std::span<const Particle> of(size_t seed) const { return std::span(all).subspan(slot[seed] * times.size(), times.size()); }
 };
 
 Released release_and_advance(UnsteadyRun& run, std::optional<double> every, std::optional<double> lifetime, const char* who,
                              Context& context) {
   Released r;
   r.times = release_times(run, every, who);
-  r.seeds = run.seeds.size();
-  if (double(r.times.size()) * double(r.seeds) > double(size_t(1) << 31))
-    fail_usage(fmt::format("{} seeds and {} releases make {} particles", r.seeds, r.times.size(), r.times.size() * r.seeds), who,
+  const size_t seeds = run.seeds.size(), releases = r.times.size();
+  if (double(releases) * double(seeds) > double(size_t(1) << 31))
+    fail_usage(fmt::format("{} seeds and {} releases make {} particles", seeds, releases, releases * seeds), who,
                "fewer seeds, or a larger every");
-  r.all.reserve(r.times.size() * r.seeds);
-  size_t released = 0, oldest = 0;
+  const std::vector<size_t> order = space_order(run.seeds);
+  r.slot.resize(seeds);
+  r.all.resize(releases * seeds);
+  for (size_t i = 0; i < seeds; ++i) {
+    r.slot[order[i]] = i;
+    for (size_t k = 0; k < releases; ++k) r.all[i * releases + k].x = run.seeds[order[i]], r.all[i * releases + k].t = r.times[k];
+  }
+  const auto bury = [&](double before) {
+    const size_t old = size_t(std::lower_bound(r.times.begin(), r.times.end(), before) - r.times.begin());
+    for (size_t i = 0; i < seeds; ++i)
+      for (size_t k = 0; k < old; ++k) r.all[i * releases + k].ended = true;
+  };
   run.each_interval([&](double until) {
-    for (; released < r.times.size() && r.times[released] <= until; ++released)
-      for (const Vec3& x : run.seeds) {
-        Particle p;
-        p.x = x, p.t = r.times[released];
-        r.all.push_back(p);
-      }
-    if (lifetime)
-      while (oldest < released && r.times[oldest] < run.flow.begin() - *lifetime) ++oldest;
-    advance(run.flow, std::span(r.all).subspan(oldest * r.seeds), until, run.options, context);
+    if (lifetime) bury(run.flow.begin() - *lifetime);
+    advance(run.flow, r.all, until, 1, run.options, context);
   });
-  for (const Particle& p : r.all) r.started += p.started;
-  if (lifetime)
-    for (size_t k = 0; k < released && r.times[k] < run.time - *lifetime; ++k)
-      for (size_t i = 0; i < r.seeds; ++i) r.all[k * r.seeds + i].ended = true;
-  run.require_some(r.started);
+  size_t started = 0;
+  for (const Particle& p : r.all) started += p.started;
+  if (lifetime) bury(run.time - *lifetime);
+  run.require_some(started);
   return r;
 }
 
-// Lines of one seed after the other, the newest particle first. Some seeds at a time, whose particles lie together in each release.
+// Lines of one seed after the other, the newest particle first.
 LinePoints streaks(const Released& r, std::vector<double>& age, double time) {
   constexpr size_t grain = 64;
-  const size_t releases = r.times.size();
-  std::vector<size_t> points(r.seeds, 0), lines(r.seeds, 0);
-  const auto each = [&](auto&& f) {  // f(seed, release, particle), release by release
-    parallel_for(r.seeds, grain, [&](size_t begin, size_t end) {
-      for (size_t k = releases; k-- > 0;)
-        for (size_t i = begin; i < end; ++i) f(i, k, r.all[k * r.seeds + i]);
+  const size_t releases = r.times.size(), seeds = r.slot.size();
+  std::vector<size_t> points(seeds, 0), lines(seeds, 0);
+  const auto each = [&](auto&& f) {  // f(seed, release, particle, whether a line begins with it)
+    parallel_for(seeds, grain, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) {
+        const std::span<const Particle> p = r.of(i);
+        for (size_t k = releases; k-- > 0;)
+          if (!p[k].ended) f(i, k, p[k], k + 1 == releases || p[k + 1].ended);
+      }
     });
   };
-  each([&](size_t i, size_t k, const Particle& p) {
-    if (p.ended) return;
-    ++points[i];
-    lines[i] += k + 1 == releases || r.all[(k + 1) * r.seeds + i].ended;  // a newer one is gone: a new line
-  });
-  std::vector<size_t> point = points, line = lines;
+  each([&](size_t i, size_t, const Particle&, bool begins) { ++points[i], lines[i] += begins; });
   LinePoints out;
-  const size_t n = exclusive_scan(point), m = exclusive_scan(line);
+  const size_t n = exclusive_scan(points), m = exclusive_scan(lines);
   out.x.resize(n), out.v.resize(n), age.resize(n);
   out.begin.resize(m + 1), out.seed.resize(m);
   out.begin[m] = n;
-  each([&](size_t i, size_t k, const Particle& p) {
-    if (p.ended) return;
-    if (k + 1 == releases || r.all[(k + 1) * r.seeds + i].ended) out.begin[line[i]] = point[i], out.seed[line[i]++] = int64_t(i);
-    const size_t at = point[i]++;
+  each([&](size_t i, size_t k, const Particle& p, bool begins) {
+    if (begins) out.begin[lines[i]] = points[i], out.seed[lines[i]++] = int64_t(i);
+    const size_t at = points[i]++;
     out.x[at] = p.x, out.v[at] = p.v, age[at] = time - r.times[k];
   });
   return out;

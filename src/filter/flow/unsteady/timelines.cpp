@@ -154,17 +154,17 @@ DatasetPtr timelines(const Series& series, const std::vector<Data>& others, cons
   Front front(run, p);
   Snapshots out;
   size_t next = 0;
-  advance(run.flow, front.all, run.start, run.options, context);  // starts them
+  advance(run.flow, front.all, run.start, 1, run.options, context);  // starts them
   front.refine(run.flow);
   out.add(run, front, run.start, 0, context);
   run.require_some(out.lines.x.size());
   run.each_interval([&](double until) {
     for (; next < shown.size() && shown[next] <= until; ++next) {
-      advance(run.flow, front.all, shown[next], run.options, context);
+      advance(run.flow, front.all, shown[next], 1, run.options, context);
       front.refine(run.flow);
       out.add(run, front, shown[next], int64_t(next) + 1, context);
     }
-    advance(run.flow, front.all, until, run.options, context);
+    advance(run.flow, front.all, until, 1, run.options, context);
     front.refine(run.flow);
   });
   if (front.full) context.warn(fmt::format("timelines: the line has {} points and gets no more (most_points)", front.all.size()));

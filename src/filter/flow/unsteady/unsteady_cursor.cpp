@@ -1,24 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <optional>
+
 #include "filter/flow/unsteady/unsteady_flow.h"
 
 namespace sg {
 
 namespace {
 
-// A place in the mesh of one step, for all steps that share it.
+// A place in the base mesh when meshes move.
 class MeshPlace {
  public:
   explicit MeshPlace(const FlowField& field) : locator_(*field.locator()), dimension_(field.dimension()) {}
 
-  // On surfaces, whose lines leave them by rounding and curvature: the nearest place within a cell.
-  bool find(Vec3 x) {
-    cell_ = locator_.find(x);
-    if (cell_ < 0 && dimension_ < 3 && sized_ >= 0) {
-      const NearestPlace near = locator_.nearest(x, length_);
-      if (near.cell >= 0) cell_ = locator_.find(near.at);
-    }
-    return cell_ >= 0;
-  }
+  bool find(Vec3 x) { return (cell_ = locator_.find(x)) >= 0; }
   bool find_nearest(Vec3 x, Vec3& at) {
     const NearestPlace near = locator_.nearest(x);
     at = near.at;
@@ -45,11 +39,9 @@ class MeshPlace {
   }
   double length() const { return length_; }
 
-  Vec3 along_surface(Vec3 v) {
-    if (dimension_ != 2) return v;
+  Vec3 normal() {
     const Mat3 j = open().jacobian(locator_.place().rst);
-    const Vec3 n = normalize(cross(j.column(0), j.column(1)));
-    return v - n * dot(n, v);
+    return normalize(cross(j.column(0), j.column(1)));
   }
 
  private:
@@ -70,32 +62,60 @@ bool finite(Vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::is
 
 struct UnsteadyCursor::State {
   const UnsteadyFlow& flow;
-  std::vector<MeshPlace> places;  // one, or one a step when the meshes changed
-  double w[4] = {0, 0, 0, 0};     // of the steps at the last time
-  double weighed = NAN;           // that time
-  size_t main = 0;                // the place that says what a cell is
-  Vec3 shift{0, 0, 0};            // moving meshes: from the place in the base mesh to that at the last time
+  // One mesh of solids: one cursor, whose place serves all steps. Surfaces and changed meshes: a cursor a step.
+  std::vector<FlowCursor> cursors;
+  bool have[4] = {false, false, false, false};  // which cursors are at the last place
+  std::optional<MeshPlace> moving;
+  double w[4] = {0, 0, 0, 0};  // of the steps at the last time
+  double weighed = NAN;        // that time
+  size_t main = 0;             // the cursor that says what a cell is
+  Vec3 shift{0, 0, 0};         // moving meshes: from the place in the base mesh to that at the last time
 
   explicit State(const UnsteadyFlow& f) : flow(f) {
-    if (f.meshes() == UnsteadyFlow::Meshes::changed)
-      for (const FlowField& s : f.steps()) places.emplace_back(s);
-    else places.emplace_back(f.steps()[f.base()]);
+    if (f.meshes() == UnsteadyFlow::Meshes::moving) {
+      moving.emplace(f.steps()[f.base()]);
+    } else if (f.meshes() == UnsteadyFlow::Meshes::same && f.steps()[0].dimension() == 3) {
+      cursors.emplace_back(f.steps()[f.base()]);
+    } else {
+      for (const FlowField& s : f.steps()) cursors.emplace_back(s);
+      main = f.base();
+    }
   }
 
-  MeshPlace& of(size_t j) { return places[places.size() > 1 ? j : 0]; }
-
-  Vec3 velocity(size_t j) {
-    const auto ids = of(j).ids();
-    const auto n = of(j).weights();
+  Vec3 mixed(std::span<const int64_t> ids, std::span<const double> n, size_t j) const {
     Vec3 v;
     for (size_t k = 0; k < ids.size(); ++k) v += flow.steps()[j].at_point(size_t(ids[k])) * n[k];
     return v;
   }
 
+  bool mix_one(Vec3 x, Vec3& v) {
+    FlowCursor& c = cursors[0];
+    Vec3 own;
+    if (!c(x, own)) return false;
+    const auto ids = c.ids();
+    const auto n = c.weights();
+    v = own * w[flow.base()];
+    for (size_t j = 0; j < flow.steps().size(); ++j)
+      if (w[j] != 0 && j != flow.base()) v += mixed(ids, n, j) * w[j];
+    return true;
+  }
+  bool mix_moving(Vec3 x, Vec3& v) {
+    if (!find_moving(x)) return false;
+    v = {0, 0, 0};
+    for (size_t j = 0; j < flow.steps().size(); ++j)
+      if (w[j] != 0) v += mixed(moving->ids(), moving->weights(), j) * w[j];
+    moving->measure();
+    if (moving->dimension() == 2) {
+      const Vec3 n = moving->normal();
+      v = v - n * dot(n, v);
+    }
+    return true;
+  }
+
   // How far the place found in the base mesh has moved.
   Vec3 moved() {
-    const auto ids = places[0].ids();
-    const auto n = places[0].weights();
+    const auto ids = moving->ids();
+    const auto n = moving->weights();
     Vec3 at, from;
     for (size_t j = 0; j < flow.steps().size(); ++j) {
       if (w[j] == 0 && j != flow.base()) continue;
@@ -113,7 +133,7 @@ struct UnsteadyCursor::State {
 
   // The place y of the base mesh with y + moved(y) = x, by iteration; the mesh of that time holds x when the base mesh holds y.
   bool find_moving(Vec3 x) {
-    MeshPlace& p = places[0];
+    MeshPlace& p = *moving;
     Vec3 y = x;
     double before = HUGE_VAL;
     for (int n = 0, worse = 0; n < 40 && worse < 3; ++n) {
@@ -128,27 +148,29 @@ struct UnsteadyCursor::State {
     return false;
   }
 
-  // Steps whose mesh does not hold x do not count; the one nearest in time has to.
-  bool mix_changed(Vec3 x, Vec3& v) {
+  // Steps whose mesh does not hold x do not count; the one nearest in time has to. With one mesh all hold it, or there is NaN.
+  bool mix_several(Vec3 x, Vec3& v) {
     const size_t b = flow.base();
-    bool have[4] = {};
     bool all = true;
-    for (size_t j = 0; j < flow.steps().size(); ++j)
-      if (w[j] != 0) have[j] = places[j].find(x), all = all && have[j];
+    Vec3 each[4];
+    for (size_t j = 0; j < flow.steps().size(); ++j) {
+      have[j] = w[j] != 0 && cursors[j](x, each[j]);
+      all = all && (have[j] || w[j] == 0);
+    }
     const double s = (weighed - flow.begin()) / (flow.end() - flow.begin());
     main = s <= 0.5 ? b : b + 1;
-    if (!have[main]) return false;
-    double mix[4] = {w[0], w[1], w[2], w[3]};
+    if (!have[main] && w[main] != 0) return false;
+    if (!have[main]) main = main == b ? b + 1 : b;
+    if (!have[main] || (!all && flow.meshes() == UnsteadyFlow::Meshes::same)) return false;
     if (!all) {  // cubic weights need all steps
-      for (double& m : mix) m = 0;
-      if (have[b]) mix[b] = have[b + 1] ? 1 - s : 1;
-      if (have[b + 1]) mix[b + 1] = have[b] ? s : 1;
-      for (int j = 0; j < 4; ++j) w[j] = mix[j];
+      const double mix[2] = {have[b] ? (have[b + 1] ? 1 - s : 1) : 0, have[b + 1] ? (have[b] ? s : 1) : 0};
+      for (double& m : w) m = 0;
+      w[b] = mix[0], w[b + 1] = mix[1];
       weighed = NAN;
     }
     v = {0, 0, 0};
     for (size_t j = 0; j < flow.steps().size(); ++j)
-      if (mix[j] != 0) v += velocity(j) * mix[j];
+      if (w[j] != 0) v += each[j] * w[j];
     return true;
   }
 };
@@ -162,29 +184,24 @@ bool UnsteadyCursor::operator()(Vec3 x, double t, Vec3& v) {
   const double slack = 1e-9 * (s.flow.end() - s.flow.begin());
   if (!(t >= s.flow.begin() - slack && t <= s.flow.end() + slack)) return false;
   if (t != s.weighed) s.flow.time_weights(t, s.w), s.weighed = t;
-  if (s.places.size() > 1) {
-    if (!s.mix_changed(x, v)) return false;
-  } else {
-    if (s.flow.meshes() == UnsteadyFlow::Meshes::moving ? !s.find_moving(x) : !s.places[0].find(x)) return false;
-    v = {0, 0, 0};
-    for (size_t j = 0; j < s.flow.steps().size(); ++j)
-      if (s.w[j] != 0) v += s.velocity(j) * s.w[j];
-  }
-  MeshPlace& p = s.of(s.main);
-  p.measure();
-  v = p.along_surface(v);
+  if (!(s.moving ? s.mix_moving(x, v) : s.cursors.size() == 1 ? s.mix_one(x, v) : s.mix_several(x, v))) return false;
   return finite(v);
 }
 
-double UnsteadyCursor::cell_length() const { return state_->of(state_->main).length(); }
+double UnsteadyCursor::cell_length() const {
+  return state_->moving ? state_->moving->length() : state_->cursors[state_->main].cell_length();
+}
 
 Vec3 UnsteadyCursor::snap(Vec3 x) {
   State& s = *state_;
-  MeshPlace& p = s.of(s.main);
-  if (p.dimension() == 3) return x;
-  const bool moving = s.flow.meshes() == UnsteadyFlow::Meshes::moving;
-  const NearestPlace near = p.nearest(moving ? x - s.shift : x);
-  return near.cell < 0 ? x : moving ? near.at + s.shift : near.at;
+  if (s.flow.steps()[0].dimension() == 3) return x;
+  Vec3 at = x;
+  if (!s.moving) {
+    FlowCursor& c = s.cursors[s.main];
+    return c.snap(x, at) ? at : x;
+  }
+  const NearestPlace near = s.moving->nearest(x - s.shift);
+  return near.cell < 0 ? x : near.at + s.shift;
 }
 
 double UnsteadyCursor::value(std::span<const Array> values, Association association, int component) const {
@@ -192,14 +209,15 @@ double UnsteadyCursor::value(std::span<const Array> values, Association associat
   double sum = 0;
   for (size_t j = 0; j < s.flow.steps().size(); ++j) {
     if (s.w[j] == 0) continue;
-    MeshPlace& p = s.of(j);
-    if (values[j].empty() || p.cell() < 0) return NAN;
+    const FlowCursor* c = s.moving ? nullptr : &s.cursors[s.cursors.size() == 1 ? 0 : j];
+    const int64_t cell = c ? c->cell() : s.moving->cell();
+    if (values[j].empty() || cell < 0) return NAN;
     if (association == Association::cell) {
-      sum += s.w[j] * values[j].get(size_t(p.cell()), component);
+      sum += s.w[j] * values[j].get(size_t(cell), component);
       continue;
     }
-    const auto ids = p.ids();
-    const auto n = p.weights();
+    const auto ids = c ? c->ids() : s.moving->ids();
+    const auto n = c ? c->weights() : s.moving->weights();
     for (size_t k = 0; k < ids.size(); ++k) sum += s.w[j] * n[k] * values[j].get(size_t(ids[k]), component);
   }
   return sum;

@@ -49,7 +49,10 @@ UnsteadyRun::UnsteadyRun(const Series& series, const std::vector<Data>& others, 
                "pathlines go backwards");
   StopParams stop;
   stop.max_steps = p.max_steps;
-  options = trace_options(p.integration, stop, 0);
+  IntegrationParams integration = p.integration;
+  if (!integration.max_step)
+    integration.max_step = std::max(4 * integration.step, integration.min_step.value_or(0));  // intervals bound steps too
+  options = trace_options(integration, stop, 0);
   carries = std::find(p.attributes.begin(), p.attributes.end(), "fields") != p.attributes.end();
   flow.open(flow.interval_of(start, sign), context);
   UnsteadyCursor cursor(flow);

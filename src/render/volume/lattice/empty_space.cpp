@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "index/brick_row.h"
+#include "render/volume/lattice/empty_space_simd.h"
 
 namespace sg::volume {
 
@@ -41,29 +42,13 @@ void widen_row(const Bits& in, size_t y, size_t z, Bits& out) {
   }
 }
 
-/// Transfer::clear for many ranges: where the axis is linear, without branches; says "drawn" an entry too early.
-class Clearness {
- public:
-  explicit Clearness(const Transfer& transfer) : transfer_(transfer) {
-    if (!transfer.linear()) return;
-    const LinearTable t = transfer.linear_table();
-    first_ = t.first, per_axis_ = t.per_axis, last_ = float(t.count + 1);
-    drawn_before_.resize(size_t(t.count) + 3);
-    for (int i = 0; i <= t.count + 1; ++i) drawn_before_[size_t(i) + 1] = uint16_t(drawn_before_[size_t(i)] + transfer.draws(i));
-  }
-  bool operator()(MinMaxBricks::Range r) const {
-    if (drawn_before_.empty()) return transfer_.clear(r.lo, r.hi);
-    // Entry of a value: int(axis) + 1, one more to each side for rounding errors.
-    const float a = std::min(std::max((r.lo - first_) * per_axis_, 0.0f), last_),
-                b = std::min(std::max((r.hi - first_) * per_axis_ + 2, 0.0f), last_);
-    return !(r.lo <= r.hi) || drawn_before_[size_t(int(b)) + 1] == drawn_before_[size_t(int(a))];
-  }
-
- private:
-  const Transfer& transfer_;
-  float first_ = 0, per_axis_ = 0, last_ = 0;
-  std::vector<uint16_t> drawn_before_;
-};
+/// Entries of a transfer function on a linear axis that draw something, counted.
+std::vector<uint32_t> count_drawn(const Transfer& transfer) {
+  const int count = transfer.linear_table().count;
+  std::vector<uint32_t> before(size_t(count) + 3);
+  for (int i = 0; i <= count + 1; ++i) before[size_t(i) + 1] = before[size_t(i)] + transfer.draws(i);
+  return before;
+}
 
 }  // namespace
 
@@ -99,35 +84,40 @@ MinMaxBricks coarse_bricks(const FineBricks& fine) {
   return r;
 }
 
-std::vector<uint8_t> distance_to_drawn(const FineBricks& bricks, const Transfer& transfer, bool& any_empty, const MinMaxBricks* coarse) {
+Distances distance_to_drawn(const FineBricks& bricks, const Transfer& transfer, bool& any_empty) {
   Bits reached(bricks.dims), flat(bricks.dims), newly(bricks.dims);
-  const size_t rows = reached.ny * reached.nz;
-  const Clearness clear(transfer);
-  std::vector<uint8_t> distance(bricks.size() + 3, uint8_t(farthest));
-  const auto mark = [&](size_t row, const uint64_t* bits, int level) {
-    for (size_t w = 0; w < reached.words; ++w)
-      for (uint64_t rest = bits[w]; rest; rest &= rest - 1)
-        distance[row * reached.nx + 64 * w + size_t(std::countr_zero(rest))] = uint8_t(level);
+  const size_t rows = reached.ny * reached.nz, nx = reached.nx;
+  Distances distance;
+  distance.resize(bricks.size() + 3);
+  std::fill(distance.end() - 3, distance.end(), uint8_t(farthest));
+  std::vector<uint32_t> before;
+  DrawnEntries entries{};
+  if (transfer.linear()) {
+    before = count_drawn(transfer);
+    const LinearTable t = transfer.linear_table();
+    entries = {t.first, t.per_axis, float(t.count + 1), before.data()};
+  }
+  const auto count_set = [&](size_t row, const Bits& bits) {
+    size_t n = 0;
+    for (size_t w = 0; w < bits.words; ++w) n += size_t(std::popcount(bits.bits[row * bits.words + w]));
+    return n;
   };
   size_t left = parallel_reduce(
       rows, rows_at_once, size_t(0),
       [&](size_t begin, size_t end) {
         size_t empty = 0;
-        for (size_t r = begin; r < end; ++r)
-          for (size_t w = 0; w < reached.words; ++w) {
-            uint64_t drawn = 0;
-            const size_t x0 = 64 * w, n = std::min<size_t>(64, reached.nx - x0);
-            const MinMaxBricks::Range* range = &bricks.ranges[r * reached.nx + x0];
-            const MinMaxBricks::Range* above =
-                coarse ? &coarse->ranges[coarse->id(x0 / 2, r % reached.ny / 2, r / reached.ny / 2)] : nullptr;
-            for (size_t x = 0; x < n; x += 2) {
-              if (above && clear(above[x / 2])) continue;
-              for (size_t i = x; i < std::min(x + 2, n); ++i)
-                if (!clear(range[i])) drawn |= uint64_t(1) << i, distance[r * reached.nx + x0 + i] = 0;
+        for (size_t r = begin; r < end; ++r) {
+          const MinMaxBricks::Range* range = &bricks.ranges[r * nx];
+          uint64_t* bits = &reached.bits[r * reached.words];
+          uint8_t* to = &distance[r * nx];
+          if (!before.empty()) find_drawn(range, nx, entries, uint8_t(farthest), bits, to);
+          else
+            for (size_t x = 0; x < nx; ++x) {
+              const bool drawn = !transfer.clear(range[x].lo, range[x].hi);
+              bits[x / 64] |= uint64_t(drawn) << x % 64, to[x] = drawn ? uint8_t(0) : uint8_t(farthest);
             }
-            reached.bits[r * reached.words + w] = drawn;
-            empty += n - size_t(std::popcount(drawn));
-          }
+          empty += nx - count_set(r, reached);
+        }
         return empty;
       },
       [](size_t a, size_t b) { return a + b; });
@@ -151,7 +141,7 @@ std::vector<uint8_t> distance_to_drawn(const FineBricks& bricks, const Transfer&
               more[w] = sum & ~old[w], old[w] = sum;
               found += size_t(std::popcount(more[w]));
             }
-            mark(r, more, level);
+            write_level(more, nx, uint8_t(level), &distance[r * nx]);
           }
           return found;
         },

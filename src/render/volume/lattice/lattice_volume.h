@@ -21,7 +21,7 @@ namespace sg::volume {
 /// Switches for tests and benchmarks; the picture must not depend on them (but `stop_below` by less than 1/255).
 struct Knobs {
   bool skip_empty = true;                        ///< pass over empty bricks
-  float stop_below = 1.0f / 4096;                ///< a ray ends when less than this share of the light passes
+  float stop_below = 1.0f / 512;                 ///< a ray ends when less than this share of the light passes
   bool simd = true;                              ///< false: the scalar reference
   const std::vector<uint8_t>* wanted = nullptr;  ///< per tile of 16 x 16 pixels, see composite_volumes; null = all
 };
@@ -64,7 +64,7 @@ struct Volume {
   double slices_per_q[3] = {};
 
   std::shared_ptr<const LatticeSamples> samples;
-  std::vector<uint8_t> distance;                  ///< in fine bricks to the next that draws something (composite)
+  Distances distance;                             ///< in fine bricks to the next that draws something (composite)
   bool any_empty = true;                          ///< is there a brick that draws nothing?
   std::vector<double> border[3], fine_border[3];  ///< q of the sides of bricks, dims+1
   Vec3 margin;                                    ///< q: rounding errors of places are smaller

@@ -138,20 +138,29 @@ struct Source {
     const auto cell = hn::Min(to_int(d, x), last_cell[axis]);
     return {cell, hn::Sub(x, hn::ConvertTo(d, cell))};
   }
+  /// For places that are known to lie in [0, top).
+  HWY_INLINE Place<D> inner_place(hn::Vec<D> u) const {
+    const D d;
+    const auto cell = to_int(d, u);
+    return {cell, hn::Sub(u, hn::ConvertTo(d, cell))};
+  }
   HWY_INLINE Int<D> offset(Int<D> i, Int<D> j, Int<D> k) const { return hn::Add(i, hn::Add(hn::Mul(j, row), hn::Mul(k, layer))); }
   HWY_INLINE Pair<D> pair(Int<D> at) const {
     if constexpr (std::is_same_v<T, float>) return gather_pair(D(), data, at);
     else return gather_pair(D(), data, at, last_load);
   }
   HWY_INLINE hn::Vec<D> value(const Place<D>& x, const Place<D>& y, const Place<D>& z) const {
+    return value(offset(x.cell, y.cell, z.cell), x.fraction, y.fraction, z.fraction);
+  }
+  /// At the fractions of the cell whose lowest corner is sample `at`.
+  HWY_INLINE hn::Vec<D> value(Int<D> at, hn::Vec<D> fx, hn::Vec<D> fy, hn::Vec<D> fz) const {
     const D d;
-    const auto at = offset(x.cell, y.cell, z.cell);
     const auto p00 = pair(at), p01 = pair(hn::Add(at, row));
     const auto above = hn::Add(at, layer);
     const auto p10 = pair(above), p11 = pair(hn::Add(above, row));
-    const auto v0 = mixed(d, mixed(d, p00.a, p00.b, x.fraction), mixed(d, p01.a, p01.b, x.fraction), y.fraction);
-    const auto v1 = mixed(d, mixed(d, p10.a, p10.b, x.fraction), mixed(d, p11.a, p11.b, x.fraction), y.fraction);
-    return mixed(d, v0, v1, z.fraction);
+    const auto v0 = mixed(d, mixed(d, p00.a, p00.b, fx), mixed(d, p01.a, p01.b, fx), fy);
+    const auto v1 = mixed(d, mixed(d, p10.a, p10.b, fx), mixed(d, p11.a, p11.b, fx), fy);
+    return mixed(d, v0, v1, fz);
   }
 };
 

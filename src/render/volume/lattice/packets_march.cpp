@@ -19,8 +19,13 @@
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {
 
-/// Pairs of samples between two looks at the bricks; pairs, so that two chains of work overlap.
-constexpr int pairs_per_look = 2;
+/// Samples between two looks at the bricks.
+constexpr int samples_per_look = 4;
+/// Samples half an edge apart or more are lit by twos; those of a look together when they take less than the first share of the light,
+/// those of several looks when they take less than the second.
+constexpr float faint = 1.0f / 32, faintest = 1.0f / 256;
+/// So far ahead samples are asked for: in the next turn or the one after it.
+constexpr float samples_asked_ahead = 48;
 
 /// Bricks that draw nothing, ready for gathers.
 template <class D>
@@ -44,10 +49,10 @@ template <class D>
 struct Lanes {
   hn::Vec<D> first[3], by[3], per_by[3], s, end;
 
-  HWY_INLINE Lanes(const RayPacket& r, const float (*per)[most_lanes], const float* at) {
+  HWY_INLINE Lanes(const RayPacket& r, const float (*per)[most_lanes]) {
     const D d;
     for (int a = 0; a < 3; ++a) first[a] = hn::Load(d, r.first[a]), by[a] = hn::Load(d, r.by[a]), per_by[a] = hn::Load(d, per[a]);
-    s = hn::Load(d, at), end = hn::Load(d, r.steps);
+    s = hn::Zero(d), end = hn::Load(d, r.steps);
   }
   HWY_INLINE hn::Vec<D> u(int a) const { return u(a, s); }
   HWY_INLINE hn::Vec<D> u(int a, hn::Vec<D> sample) const { return hn::Add(first[a], hn::Mul(sample, by[a])); }
@@ -134,6 +139,33 @@ HWY_INLINE hn::Vec<D> absorbed(D d, hn::Vec<D> x) {
   return hn::Add(hn::Sub(hn::Set(d, 1.0f), power), hn::Mul(power, e));
 }
 
+/// What waits for its light: samples that follow each other are lit together, where the middle of what they take lies; but not samples
+/// before and after a turn of the value, where surfaces begin to show their other side.
+template <class D>
+struct Due {
+  static constexpr int parts = 7;
+  hn::Vec<D> r, g, b, taken, moment, value, rise;
+  HWY_INLINE Due() { r = g = b = taken = moment = value = rise = hn::Zero(D()); }
+  HWY_INLINE hn::Mask<D> turns(hn::Vec<D> next) {
+    const D d;
+    const auto after = hn::Sub(next, value);
+    const auto turned = hn::And(hn::Lt(hn::Mul(after, rise), hn::Zero(d)), hn::Gt(taken, hn::Zero(d)));
+    value = next, rise = after;
+    return turned;
+  }
+  HWY_INLINE void drop(hn::Mask<D> which) {
+    for (hn::Vec<D>* v : {&r, &g, &b, &taken, &moment}) *v = hn::IfThenElseZero(hn::Not(which), *v);
+  }
+  HWY_INLINE void load(const float from[parts][most_lanes]) {
+    size_t i = 0;
+    for (hn::Vec<D>* v : {&r, &g, &b, &taken, &moment, &value, &rise}) *v = hn::Load(D(), from[i++]);
+  }
+  HWY_INLINE void store(float to[parts][most_lanes]) const {
+    size_t i = 0;
+    for (const hn::Vec<D>* v : {&r, &g, &b, &taken, &moment, &value, &rise}) hn::Store(*v, D(), to[i++]);
+  }
+};
+
 /// A packet on its way. The packets of a tile take turns, so that the voxels between two depths are met by all of them while they
 /// are near in the cache.
 template <class D, class T, bool shaded>
@@ -146,59 +178,93 @@ class March {
 
   HWY_INLINE void start(const PacketPlan& plan) {
     const D d;
+    // Places go one way, so all lie inside when the first and the last do. Rays without whole steps stand in the first sample.
+    const F steps = hn::Load(d, rays.steps), zero = hn::Zero(d);
+    const auto none = hn::Eq(steps, zero);
+    inside_ = true;
+    for (size_t a = 0; a < 3; ++a) {
+      const F first = hn::IfThenElseZero(hn::Not(none), hn::Load(d, rays.first[a])), by = hn::Load(d, rays.by[a]);
+      const F last = hn::Add(first, hn::Mul(hn::Sub(steps, hn::Set(d, 1.0f)), by));
+      const F top = hn::Set(d, float(plan.volume.voxels.dims[a] - 1));
+      const auto good = hn::And(hn::And(hn::Ge(first, zero), hn::Lt(first, top)), hn::And(hn::Ge(last, zero), hn::Lt(last, top)));
+      inside_ = inside_ && hn::AllTrue(d, hn::Or(good, none));
+      hn::Store(first, d, rays.first[a]);
+    }
     for (int a = 0; a < 3; ++a) hn::Store(hn::Div(hn::Set(d, 1.0f), hn::Load(d, rays.by[a])), d, per_by_[a]);
-    hn::Store(hn::Zero(d), d, s_), hn::Store(hn::Set(d, 1.0f), d, result.transmittance), hn::Store(hn::Set(d, -1.0f), d, seen_half_);
+    hn::Store(hn::Set(d, 1.0f), d, result.transmittance), hn::Store(hn::Set(d, -1.0f), d, seen_half_);
     hn::Store(hn::Zero(d), d, result.r), hn::Store(hn::Zero(d), d, result.g), hn::Store(hn::Zero(d), d, result.b);
-    if constexpr (shaded) queue_.start(plan, rays);
+    if constexpr (shaded) queue_.start(plan, rays), Due<D>().store(due_);
+    now_ = 0;
+    Lanes<D> lanes(rays, per_by_);
+    look_ahead(Source<D, T>(plan.volume.voxels), Space<D>(plan.volume), skips(plan), lanes, hn::Eq(zero, zero));
   }
 
   /// Goes on until no ray has samples before `until`; false when all are through.
   HWY_INLINE bool go(const PacketPlan& plan, float until) {
     const D d;
+    const IntTag<D> di;
     const Volume& v = plan.volume;
     const Source<D, T> source(v.voxels);
     const Space<D> space(v);
     const Transfer& transfer = v.transfer[0];
     const Entries<D> entries(transfer.linear_table());
     const auto* steps = reinterpret_cast<const float*>(transfer.steps());
-    const bool skip = plan.knobs.skip_empty && v.any_empty;
+    const bool skip = skips(plan);
+    // Who asks for shorter steps wants to see each of them lit.
+    [[maybe_unused]] const bool together = v.step > 0.4 * v.edge;
     const F stop = hn::Set(d, plan.knobs.stop_below), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
 
-    Lanes<D> lanes(rays, per_by_, s_);
+    Lanes<D> lanes(rays, per_by_);
     F r = hn::Load(d, result.r), g = hn::Load(d, result.g), b = hn::Load(d, result.b);
     F pass = hn::Load(d, result.transmittance), seen_half = hn::Load(d, seen_half_);
     const F horizon = hn::Min(hn::Set(d, until), lanes.end);
+    // Values wait for nothing but their samples: the places are known already. Leaps do not wait for the light that the last samples took.
+    auto was_bright = hn::Ge(pass, stop);
+    F first = hn::Load(d, looks_[now_].s);
+    [[maybe_unused]] Due<D> due;
+    if constexpr (shaded) due.load(due_);
     while (true) {
       const auto bright = hn::Ge(pass, stop);
-      if (hn::AllFalse(d, hn::And(hn::Lt(lanes.s, horizon), bright))) break;
-      if (skip) leap(source, space, lanes, hn::And(hn::Lt(lanes.s, lanes.end), bright));
-      // Places do not wait for what was found at those before: lanes that are through count on.
-      for (int look = 0; look < pairs_per_look; ++look) {
-        for (const float second : {0.0f, 1.0f}) {
-          const F s = hn::Add(lanes.s, hn::Set(d, second));
-          const F x = lanes.u(0, s), y = lanes.u(1, s), z = lanes.u(2, s);
-          const F value = source.value(source.place(0, x), source.place(1, y), source.place(2, z));
-          const auto entry = entries.at(value);
-          const Pair<D> b_pass = gather_pair(d, steps + 2, entry);
-          const auto active = hn::And(hn::Lt(s, lanes.end), hn::Ge(pass, stop));
-          const auto drawn = hn::And(active, hn::Lt(b_pass.b, one));
-          seen_half = hn::IfThenElse(hn::And(active, hn::Ge(pass, half)), s, seen_half);
-          const Pair<D> r_g = gather_pair(d, steps, entry);
-          const F weight = hn::IfThenElseZero(drawn, pass);
-          const F wr = hn::Mul(weight, r_g.a), wg = hn::Mul(weight, r_g.b), wb = hn::Mul(weight, b_pass.a);
-          if constexpr (shaded) {
-            if (!hn::AllFalse(d, drawn)) queue_.push(plan, rays, result, drawn, s, wr, wg, wb, hn::Mul(weight, hn::Sub(one, b_pass.b)));
-          } else {
-            r = hn::Add(r, wr), g = hn::Add(g, wg), b = hn::Add(b, wb);
+      if (hn::AllFalse(d, hn::And(hn::Lt(first, horizon), bright))) break;
+      const Look& here = looks_[now_];
+      now_ ^= 1;
+      F values[samples_per_look];
+      for (int k = 0; k < samples_per_look; ++k)
+        values[k] = source.value(hn::Load(di, here.corner[k]), hn::Load(d, here.fraction[k][0]), hn::Load(d, here.fraction[k][1]),
+                                 hn::Load(d, here.fraction[k][2]));
+      for (int k = 0; k < samples_per_look; ++k) {
+        const F s = hn::Add(first, hn::Set(d, float(k)));
+        const auto entry = entries.at(values[k]);
+        const Pair<D> r_g = gather_pair(d, steps, entry), b_pass = gather_pair(d, steps + 2, entry);
+        const auto active = hn::And(hn::Lt(s, lanes.end), hn::Ge(pass, stop));
+        seen_half = hn::IfThenElse(hn::And(active, hn::Ge(pass, half)), s, seen_half);
+        const F weight = hn::IfThenElseZero(active, pass);
+        const F wr = hn::Mul(weight, r_g.a), wg = hn::Mul(weight, r_g.b), wb = hn::Mul(weight, b_pass.a);
+        if constexpr (shaded) {
+          const F taken = hn::Mul(weight, hn::Sub(one, b_pass.b));
+          const auto turned = due.turns(values[k]);
+          if (!hn::AllFalse(d, turned)) push(plan, due, turned);
+          due.r = hn::Add(due.r, wr), due.g = hn::Add(due.g, wg), due.b = hn::Add(due.b, wb);
+          due.taken = hn::Add(due.taken, taken), due.moment = hn::Add(due.moment, hn::Mul(taken, s));
+          if (k % 2 == 1 || !together) {
+            const float enough = !together ? 0 : k + 1 < samples_per_look ? faint : faintest;
+            const auto ready = hn::Gt(due.taken, hn::Set(d, enough));
+            if (!hn::AllFalse(d, ready)) push(plan, due, ready);
           }
-          pass = hn::IfThenElse(drawn, hn::Mul(pass, b_pass.b), pass);
+        } else {
+          r = hn::Add(r, wr), g = hn::Add(g, wg), b = hn::Add(b, wb);
         }
-        lanes.s = hn::Add(lanes.s, hn::Set(d, 2.0f));
+        pass = hn::IfThenElse(active, hn::Mul(pass, b_pass.b), pass);
       }
+      lanes.s = hn::Add(first, hn::Set(d, float(samples_per_look)));
+      look_ahead(source, space, skip, lanes, was_bright);
+      was_bright = bright;
+      first = lanes.s;
     }
-    if constexpr (!shaded) hn::Store(r, d, result.r), hn::Store(g, d, result.g), hn::Store(b, d, result.b);
-    hn::Store(pass, d, result.transmittance), hn::Store(seen_half, d, seen_half_), hn::Store(lanes.s, d, s_);
-    return !hn::AllFalse(d, hn::And(hn::Lt(lanes.s, lanes.end), hn::Ge(pass, stop)));
+    if constexpr (shaded) due.store(due_);
+    else hn::Store(r, d, result.r), hn::Store(g, d, result.g), hn::Store(b, d, result.b);
+    hn::Store(pass, d, result.transmittance), hn::Store(seen_half, d, seen_half_);
+    return !hn::AllFalse(d, hn::And(hn::Lt(first, lanes.end), hn::Ge(pass, stop)));
   }
 
   /// The last step has what length is left.
@@ -234,7 +300,13 @@ class March {
         hn::Store(pass, d, result.transmittance);
       }
     }
-    if constexpr (shaded) queue_.finish(plan, rays, result);
+    if constexpr (shaded) {
+      Due<D> due;
+      due.load(due_);
+      const auto any = hn::Gt(due.taken, hn::Zero(d));
+      if (!hn::AllFalse(d, any)) push(plan, due, any);
+      queue_.finish(plan, rays, result);
+    }
     for (size_t n = 0; n < hn::Lanes(d); ++n) {
       result.surface[n] = -1;
       if (before[n] < 0.5f) result.surface[n] = rays.enter[n] + (double(seen_half_[n]) + 0.5) * v.step;
@@ -243,13 +315,54 @@ class March {
   }
 
  private:
-  alignas(64) float per_by_[3][most_lanes], s_[most_lanes], seen_half_[most_lanes];
+  static bool skips(const PacketPlan& plan) { return plan.knobs.skip_empty && plan.volume.any_empty; }
+
+  HWY_INLINE void push(const PacketPlan& plan, Due<D>& due, hn::Mask<D> which) {
+    queue_.push(plan, rays, result, which, hn::Div(due.moment, due.taken), due.r, due.g, due.b, due.taken);
+    due.drop(which);
+  }
+
+  /// The samples between two looks at the bricks: the cells they lie in.
+  struct Look {
+    alignas(64) float s[most_lanes];  ///< number of the first
+    alignas(64) int32_t corner[samples_per_look][most_lanes];
+    alignas(64) float fraction[samples_per_look][3][most_lanes];
+  };
+
+  /// Takes the lanes to their next samples, notes where those are, and asks for them.
+  HWY_INLINE void look_ahead(const Source<D, T>& source, const Space<D>& space, bool skip, Lanes<D>& lanes, hn::Mask<D> bright) {
+    const D d;
+    const IntTag<D> di;
+    if (skip) leap(source, space, lanes, hn::And(hn::Lt(lanes.s, lanes.end), bright));
+    Look& look = looks_[now_];
+    hn::Store(lanes.s, d, look.s);
+    const F final_sample = hn::Max(hn::Zero(d), hn::Sub(lanes.end, hn::Set(d, 1.0f)));
+    for (int k = 0; k < samples_per_look; ++k) {
+      const F s = hn::Min(hn::Add(lanes.s, hn::Set(d, float(k))), final_sample);
+      Place<D> at[3];
+      for (int a = 0; a < 3; ++a) at[a] = inside_ ? source.inner_place(lanes.u(a, s)) : source.place(a, lanes.u(a, s));
+      hn::Store(source.offset(at[0].cell, at[1].cell, at[2].cell), di, look.corner[k]);
+      for (int a = 0; a < 3; ++a) hn::Store(at[a].fraction, d, look.fraction[k][a]);
+    }
+    if (lanes_of<D> >= 8 && inside_) {
+      alignas(64) int32_t corner[most_lanes];
+      const F s = hn::Min(hn::Add(lanes.s, hn::Set(d, samples_asked_ahead)), final_sample);
+      hn::Store(source.offset(to_int(d, lanes.u(0, s)), to_int(d, lanes.u(1, s)), to_int(d, lanes.u(2, s))), di, corner);
+      for (int n = 0; n < lanes_of<D>; ++n) __builtin_prefetch(source.data + corner[n], 0, 2);
+    }
+  }
+
+  alignas(64) float per_by_[3][most_lanes], seen_half_[most_lanes];
+  Look looks_[2];
+  alignas(64) float due_[shaded ? Due<D>::parts : 1][most_lanes];
+  int now_;
+  bool inside_;  ///< are all samples of whole steps in cells, none beyond the outermost samples?
   struct None {};
   std::conditional_t<shaded, ShadeQueue<D, T>, None> queue_;
 };
 
 constexpr int group = 16;  ///< pixels across of the packets that take turns
-constexpr float samples_per_turn = 16;
+constexpr float samples_per_turn = 32;
 
 template <class D, class T, bool shaded>
 HWY_NOINLINE void march_all(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {

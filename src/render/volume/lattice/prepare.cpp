@@ -260,7 +260,7 @@ Volume prepare(const VolumeItem& item, uint32_t id, const Knobs& knobs) {
 
   const double lo = v.samples->lo, hi = v.samples->hi;
   v.transfer.emplace_back(item.color, item.opacity, unit, v.step, lo + double(v.base), hi + double(v.base), double(v.base));
-  if (item.mode != VolumeItem::Mode::maximum) v.distance = distance_to_drawn(v.fine(), v.transfer[0], v.any_empty, &v.bricks());
+  if (item.mode != VolumeItem::Mode::maximum) v.distance = distance_to_drawn(v.fine(), v.transfer[0], v.any_empty);
   v.kernels = knobs.simd ? best_kernels(v.voxels) : scalar_kernels(v.voxels);
   v.direct =
       v.affine && !v.nearest && v.hidden().empty() && v.transfer[0].linear() && !(v.dual && v.voxels.array.type() == ElementType::f32);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/texture/lic.h"
 
+#include "filter/mesh/to_unstructured.h"
 #include "texture_support.h"
 
 using namespace sg;
@@ -237,6 +238,41 @@ TEST_CASE("lic: coarse grids are refined, bent and broken ones sampled; the fiel
   CHECK(half->cell_ghost().view<uint8_t>()[180 + 200 * 180] == ghost_hidden_cell);
 }
 
+TEST_CASE("lic: the same linear flow has the same texture on every kind of mesh") {
+  const size_t n = 21;
+  const DatasetPtr uniform = flow_2d(n, n, [](double x, double y, float* u) { u[0] = float(1 + 0.02 * y), u[1] = float(0.25 + 0.03 * x); });
+  RectilinearGrid r;
+  std::vector<double> axis;
+  for (size_t i = 0; i < n; ++i) axis.push_back(double(i));
+  r.x = Array::from_vector(std::vector<double>(axis)), r.y = Array::from_vector(std::vector<double>(axis));
+  r.z = Array::from_vector(std::vector<double>{0});
+  CurvilinearGrid c;
+  c.dims = {n, n, 1};
+  std::vector<float> xyz, bent;
+  for (size_t j = 0; j < n; ++j)
+    for (size_t i = 0; i < n; ++i) {
+      // Inner points are shifted, and the linear flow with them.
+      const bool inner = i > 0 && j > 0 && i + 1 < n && j + 1 < n;
+      const double x = double(i) + (inner ? 0.2 * std::sin(double(3 * j + i)) : 0),
+                   y = double(j) + (inner ? 0.2 * std::cos(double(5 * i)) : 0);
+      xyz.insert(xyz.end(), {float(x), float(y), 0});
+      bent.insert(bent.end(), {float(1 + 0.02 * y), float(0.25 + 0.03 * x), 0});
+    }
+  c.points.xyz = Array::from_vector(std::move(xyz), 3);
+  FieldSet of_bent;
+  of_bent.add({"v", Association::point, Array::from_vector(std::move(bent), 3), "", Role::vectors});
+  const DatasetPtr curvilinear = make_dataset(c, of_bent);
+  Context context;
+  LicParams p;
+  p.resolution = 201;
+  const std::vector<float> wanted = values_of(lic(uniform, nullptr, p, context), "lic");
+  for (const DatasetPtr& d : {make_dataset(r, uniform->fields()), curvilinear, to_unstructured(curvilinear, {}, context),
+                              to_unstructured(uniform, {}, context)}) {
+    CAPTURE(d->kind());
+    CHECK(correlation_of(wanted, values_of(lic(d, nullptr, p, context), "lic")) > 0.97);
+  }
+}
+
 TEST_CASE("lic: a solid grid gives a volume of texture that varies across the flow more than along it") {
   UniformGrid g;
   g.dims = {48, 40, 36};
@@ -262,7 +298,7 @@ TEST_CASE("lic: a solid grid gives a volume of texture that varies across the fl
     CHECK(across / n == doctest::Approx(2.0 / 12 / 17).epsilon(0.05));
   }
   LicParams p;
-  p.noise = "sparse", p.resolution = 48;
+  p.noise = "sparse", p.resolution = 48, p.density = 0.02, p.grain = 1;
   const std::vector<float> v = values_of(texture_of(d, p), "lic");
   double empty = 0;
   for (const float x : v) empty += x == 0;

@@ -5,6 +5,7 @@
 #include <hwy/targets.h>
 
 #include "base/random.h"
+#include "filter/flow/texture/back_trace.h"
 #include "filter/flow/texture/convolution.h"
 #include "filter/flow/texture/noise.h"
 #include "texture_support.h"
@@ -140,4 +141,36 @@ TEST_CASE("noise: even in [0, 1), the density asked for, and coarse grains keep 
   double ones = 0;
   for (const float x : sparse_noise(n, 5, 0.03)) ones += double(x);
   CHECK(ones / (256 * 200) == doctest::Approx(0.03).epsilon(0.08));
+}
+
+TEST_CASE("paths back: every kind of processor walks as the reference does, to the bit, around holes and over borders") {
+  const DatasetPtr d = test::flow_2d(70, 50, [](double x, double y, float* u) {
+    u[0] = float(std::sin(y / 6) + 0.2), u[1] = float(std::cos(x / 9));
+    if (std::hypot(x - 40, y - 25) < 6) u[0] = NAN;
+    if (x < 9 && y < 9) u[0] = u[1] = 0;
+  });
+  Context c;
+  const Frame f = make_frame(d, "", 70, "test", c);
+  const PixelFlow flow(f, c);
+  BackTrace how;
+  how.h = -0.7, how.steps = 40, how.dye = {{20, 30, 0}, {60, 10, 0}}, how.pitch[1] = 2;
+  auto paths = [] {
+    std::vector<BackPath> p(70 * 50 - 3);
+    for (size_t i = 0; i < p.size(); ++i) p[i].x[0] = double(i % 70), p[i].x[1] = double(i / 70);
+    return p;
+  };
+  std::vector<BackPath> reference = paths();
+  trace_back_scalar(flow, how, reference.data(), reference.size());
+  on_all_targets([&] {
+    std::vector<BackPath> mine = paths();
+    trace_back(flow, how, mine.data(), mine.size());
+    size_t different = 0, left = 0;
+    for (size_t i = 0; i < mine.size(); ++i) {
+      different += mine[i].x[0] != reference[i].x[0] || mine[i].x[1] != reference[i].x[1] || mine[i].nearest != reference[i].nearest ||
+                   mine[i].left != reference[i].left;
+      left += mine[i].left;
+    }
+    CHECK(different == 0);
+    CHECK(left > 100);
+  });
 }

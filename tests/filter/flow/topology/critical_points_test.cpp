@@ -295,6 +295,17 @@ TEST_CASE("critical points: cells with NaN and hidden cells have none") {
   CHECK(zeros_of(make_dataset(parts)).points.empty());
 }
 
+TEST_CASE("critical points: cells that are slower than asked for are left out") {
+  const DatasetPtr d = plane_grid(
+      33, 9, -1, 1, -0.25, 0.25, [](Vec3 x) { return x.x < 0 ? 1e-3 * Vec3(x.x + 0.51, x.y - 0.01, 0) : Vec3(x.x - 0.51, x.y - 0.01, 0); });
+  Context context;
+  const FlowField flow(d, "", context);
+  CHECK(find_critical_points(flow, {}, context).points.size() == 3);  // one where both parts meet
+  const CriticalPoints fast = find_critical_points(flow, {.min_speed = 0.01}, context);
+  REQUIRE(fast.points.size() == 2);
+  for (const auto& c : fast.points) CHECK(c.at.x > -0.1);
+}
+
 TEST_CASE("critical points: the same for any number of threads and any order of the cells") {
   Context context;
   const DatasetPtr d = cube_grid(30, 0, 2 * M_PI, abc);

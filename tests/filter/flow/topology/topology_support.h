@@ -84,7 +84,7 @@ inline Vec3 double_gyre(Vec3 x, double swing) {
 inline CriticalPoints zeros_of(const DatasetPtr& d, double centre = 1e-3) {
   Context context;
   const FlowField flow(d, "", context);
-  return find_critical_points(flow, centre, context);
+  return find_critical_points(flow, {.centre = centre}, context);
 }
 inline int index_sum(const CriticalPoints& p) {
   int sum = 0;
