@@ -25,15 +25,45 @@ std::string numbered(const std::string& pattern, size_t n, size_t count) {
   return pattern.substr(0, at) + fmt::format("{:0{}}", n, digits) + pattern.substr(at + mark.size());
 }
 
-// The pipeline of one step: readers and sources with a time get it.
+const Operation* operation_of(const PipelineFile::Step& step) {
+  const auto known = operations();
+  const auto op = std::find_if(known.begin(), known.end(), [&](const Operation& o) { return o.name == step.operation; });
+  return op == known.end() ? nullptr : &*op;
+}
+
+// Steps all of whose times an operation on series takes.
+std::vector<char> inside_series(const PipelineFile& file) {
+  std::vector<char> inside(file.steps.size(), 0);
+  const auto mark = [&](const std::string& name) {
+    for (size_t k = 0; k < file.steps.size(); ++k)
+      if (file.steps[k].name == name) inside[k] = 1;
+  };
+  for (size_t i = file.steps.size(); i-- > 0;) {
+    const PipelineFile::Step& s = file.steps[i];
+    const Operation* op = operation_of(s);
+    if (!op || op->kind == OperationKind::source) continue;
+    const bool series = op->run_series != nullptr;
+    if (!series && !inside[i]) continue;
+    if (s.from.empty() && i > 0) inside[i - 1] = 1;
+    for (size_t k = 0; k < s.from.size(); ++k)
+      if (k == 0 || inside[i]) mark(s.from[k]);
+  }
+  return inside;
+}
+
+// The pipeline of one step: readers and sources with a time get it, and so do operations on series, in place of what lies above them.
 PipelineFile at_time(PipelineFile file, double time, std::optional<size_t> step) {
-  for (PipelineFile::Step& s : file.steps) {
+  const std::vector<char> inside = inside_series(file);
+  for (size_t i = 0; i < file.steps.size(); ++i) {
+    PipelineFile::Step& s = file.steps[i];
+    if (inside[i]) continue;
+    const Operation* op = operation_of(s);
     if (s.operation == "read") {
       s.words.push_back(step ? fmt::format("step={}", *step) : "time=" + exact_number(time));
+    } else if (op && op->run_series && !word_value(s.words, "time") && op->make_params().schema.find("time")) {
+      s.words.push_back("time=" + exact_number(time));
     } else if (s.from.empty()) {
-      const auto known = operations();
-      const auto op = std::find_if(known.begin(), known.end(), [&](const Operation& o) { return o.name == s.operation; });
-      if (op == known.end() || op->kind != OperationKind::source) continue;
+      if (!op || op->kind != OperationKind::source) continue;
       const ParamSet p = op->make_params();
       if (p.schema.find("time")) s.words.push_back("time=" + exact_number(time));
       else
