@@ -188,6 +188,7 @@ std::vector<Task> tasks(const std::string& folder) {
   for (size_t n : {256, 400})
     for (bool discs : {false, true}) t.push_back(isosurface_picture(n, discs));
   add_volume_tasks(t);
+  add_volume_error_tasks(t, folder);
   return t;
 }
 
