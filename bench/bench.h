@@ -34,11 +34,17 @@ Camera peers_camera(double turn);
 void add_contour_tasks(std::vector<Task>& tasks);
 void add_cut_tasks(std::vector<Task>& tasks);
 void add_index_tasks(std::vector<Task>& tasks);
+void add_unsteady_tasks(std::vector<Task>& tasks);
 void add_volume_tasks(std::vector<Task>& tasks);
 /// Errors, not times: VTK's pictures lie in the data folder (bench/vtk_volume_picture.py).
 void add_volume_error_tasks(std::vector<Task>& tasks, const std::string& data_folder);
 void add_volume_methods_tasks(std::vector<Task>& tasks);
 void add_volume_cells_tasks(std::vector<Task>& tasks);
+void add_flow_tasks(std::vector<Task>& tasks);
+void add_glyph_tasks(std::vector<Task>& tasks);
+void add_ftle_tasks(std::vector<Task>& tasks);
+void add_lic_tasks(std::vector<Task>& tasks);
+void add_lic2d_tasks(std::vector<Task>& tasks);
 std::vector<ProcessTask> process_tasks(const std::string& data_folder, const std::string& program);
 
 /// Writes the input files that are missing in the folder (formulas as in the peers' scripts).

@@ -176,6 +176,8 @@ std::vector<Task> tasks(const std::string& folder) {
   add_index_tasks(t);
   add_volume_methods_tasks(t);
   add_volume_cells_tasks(t);
+  add_lic_tasks(t);
+  add_lic2d_tasks(t);
   t.push_back(gradients("grid", "uniform256"));
   t.push_back(gradients("tets", "tet1M"));
   t.push_back(writing(folder));
@@ -187,7 +189,11 @@ std::vector<Task> tasks(const std::string& folder) {
   t.push_back(surface("10M", 744));
   for (size_t n : {256, 400})
     for (bool discs : {false, true}) t.push_back(isosurface_picture(n, discs));
+  add_unsteady_tasks(t);
   add_volume_tasks(t);
+  add_flow_tasks(t);
+  add_glyph_tasks(t);
+  add_ftle_tasks(t);
   add_volume_error_tasks(t, folder);
   return t;
 }

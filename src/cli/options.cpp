@@ -60,7 +60,8 @@ void add_picture(CLI::App& a, Options& o) {
   a.add_option("--background", o.background, "Colour, or 'transparent'");
   a.add_option("--picture", o.picture, "Further key=value of the picture (see: sightglass ops picture)")->allow_extra_args(false);
   a.add_option("--times", o.times,
-               "With {n} in the output: the times to draw, like 0:10:101 (first:last:count) or 0,0.5,1; default: all of the file");
+               "With {n} in the output: the times to draw, like 0:10:101 (first:last:count) or 0,0.5,1; default: all of the file. A "
+               "parameter written as {t} takes the time");
   a.add_option("-o,--output", o.output, "Picture to write: .png .jpg .webp; {n} in its name numbers the pictures of a time series");
 }
 

@@ -9,9 +9,11 @@
 #include "base/text.h"
 #include "cli/cli.h"
 #include "data/memory_budget.h"
+#include "filter/glyph/choose.h"
 #include "image/codec.h"
 #include "pipeline/picture.h"
 #include "pipeline/picture_parts.h"
+#include "pipeline/series_input.h"
 
 namespace sg {
 
@@ -19,41 +21,69 @@ namespace {
 
 constexpr std::string_view mark = "{n}";
 
-// "0:10:6" = 6 times from 0 to 10; "0,1,2.5" = these.
-std::vector<double> parse_times(const std::string& text) {
-  std::vector<double> times;
-  const auto ends = split(text, ':');
-  if (ends.size() == 3) {
-    const auto a = parse_double(ends[0]), b = parse_double(ends[1]);
-    const auto n = parse_int(ends[2]);
-    if (!a || !b || !n || *n < 1 || *n > 1000000)
-      fail_usage(fmt::format("'{}' is no list of times", text), "--times", "FIRST:LAST:COUNT, like 0:10:101");
-    for (int64_t i = 0; i < *n; ++i) times.push_back(*n == 1 ? *a : *a + (*b - *a) * double(i) / double(*n - 1));
-    return times;
-  }
-  for (const std::string_view part : split(text, ',')) {
-    const auto t = parse_double(part);
-    if (!t || !std::isfinite(*t)) fail_usage(fmt::format("'{}' is no list of times", text), "--times", "like 0,0.5,1 or 0:1:101");
-    times.push_back(*t);
-  }
-  if (times.empty()) fail_usage("names no time", "--times", "like 0,0.5,1 or 0:1:101");
-  return times;
-}
-
 std::string numbered(const std::string& pattern, size_t n, size_t count) {
   const size_t at = pattern.find(mark), digits = std::max<size_t>(3, std::to_string(count - 1).size());
   return pattern.substr(0, at) + fmt::format("{:0{}}", n, digits) + pattern.substr(at + mark.size());
 }
 
-// The pipeline of one step: readers and sources with a time get it.
+// Writes the time where a parameter asks for it: 'lic kernel=ripple phase={t}'. False when none does.
+bool write_time(PipelineFile& file, double time) {
+  constexpr std::string_view here = "{t}";
+  bool written = false;
+  for (PipelineFile::Step& s : file.steps)
+    for (std::string& word : s.words)
+      for (size_t at = word.find(here); at != word.npos; at = word.find(here, at)) {
+        word.replace(at, here.size(), exact_number(time));
+        written = true;
+      }
+  return written;
+}
+
+const Operation* operation_of(const PipelineFile::Step& step) {
+  const auto known = operations();
+  const auto op = std::find_if(known.begin(), known.end(), [&](const Operation& o) { return o.name == step.operation; });
+  return op == known.end() ? nullptr : &*op;
+}
+
+// Steps all of whose times an operation on series takes.
+std::vector<char> inside_series(const PipelineFile& file) {
+  std::vector<char> inside(file.steps.size(), 0);
+  const auto mark = [&](const std::string& name) {
+    for (size_t k = 0; k < file.steps.size(); ++k)
+      if (file.steps[k].name == name) inside[k] = 1;
+  };
+  for (size_t i = file.steps.size(); i-- > 0;) {
+    const PipelineFile::Step& s = file.steps[i];
+    const Operation* op = operation_of(s);
+    if (!op || op->kind == OperationKind::source) continue;
+    const bool series = op->run_series != nullptr;
+    if (!series && !inside[i]) continue;
+    if (s.from.empty() && i > 0) inside[i - 1] = 1;
+    for (size_t k = 0; k < s.from.size(); ++k)
+      if (k == 0 || inside[i]) mark(s.from[k]);
+  }
+  return inside;
+}
+
+// The pipeline of one step: the parameters that ask for the time get it, else trails, whose lines stay, else readers and sources with a
+// time, and operations on series in place of what lies above them.
 PipelineFile at_time(PipelineFile file, double time, std::optional<size_t> step) {
-  for (PipelineFile::Step& s : file.steps) {
+  if (write_time(file, time)) return file;
+  bool of_trails = false;
+  for (PipelineFile::Step& s : file.steps)
+    if (s.operation == "trails" && !step && !word_value(s.words, "time")) s.words.push_back("time=" + exact_number(time)), of_trails = true;
+  if (of_trails) return file;
+  const std::vector<char> inside = inside_series(file);
+  for (size_t i = 0; i < file.steps.size(); ++i) {
+    PipelineFile::Step& s = file.steps[i];
+    if (inside[i]) continue;
+    const Operation* op = operation_of(s);
     if (s.operation == "read") {
       s.words.push_back(step ? fmt::format("step={}", *step) : "time=" + exact_number(time));
+    } else if (op && op->run_series && !word_value(s.words, "time") && op->make_params().schema.find("time")) {
+      s.words.push_back("time=" + exact_number(time));
     } else if (s.from.empty()) {
-      const auto known = operations();
-      const auto op = std::find_if(known.begin(), known.end(), [&](const Operation& o) { return o.name == s.operation; });
-      if (op == known.end() || op->kind != OperationKind::source) continue;
+      if (!op || op->kind != OperationKind::source) continue;
       const ParamSet p = op->make_params();
       if (p.schema.find("time")) s.words.push_back("time=" + exact_number(time));
       else
@@ -101,15 +131,17 @@ void fix_ranges(PipelineFile& first, const std::vector<PipelineFile>& some, Cont
   for (size_t i = 0; i < first.show.size(); ++i) {
     PipelineFile::Show& show = first.show[i];
     if (!colors_by_field(show.kind) || word_value(show.words, "range") || word_value(show.words, "color")) continue;
-    const std::string named = word_value(show.words, "field").value_or("");
+    std::string named = word_value(show.words, "field").value_or("");
+    if (named.empty() && show.kind == "glyphs") named = word_value(show.words, "vectors").value_or("");
     if (named == "none") continue;
     Range all;
     const int component = int(parse_int(word_value(show.words, "component").value_or("-1")).value_or(-1));
     for (const PipelineFile& file : some) {
       const std::vector<Data> data = results_of(file, std::make_shared<Cache>(0), context);
       for_each_dataset(data[std::min(i, data.size() - 1)], [&](const std::string&, const DatasetPtr& d) {
-        const Field* f = named.empty() ? automatic_field(*d) : d->fields().find(named);
-        if (f && f->association != Association::whole) all.add(d->range(*f, f->components() > 1 ? component : 0));
+        const Field* f = !named.empty() ? d->fields().find(named) : show.kind == "glyphs" ? automatic_vectors(*d) : automatic_field(*d);
+        if (f && f->association != Association::whole && f->role != Role::colors)
+          all.add(d->range(*f, f->components() > 1 ? component : 0));
       });
     }
     if (!(all.lo < all.hi)) continue;
@@ -136,7 +168,7 @@ int render_series(const Options& o, const PictureOptions& options, Context& cont
   std::vector<double> times;
   bool by_step = false;
   if (!o.times.empty()) {
-    times = parse_times(o.times);
+    times = parse_times(o.times, "--times");
   } else if (o.inputs.size() == 1) {
     times = file_times(o.inputs[0], o.read, context);
     by_step = true;

@@ -163,6 +163,25 @@ int64_t LocatorCursor::find(Vec3 x) {
   return s.cell;
 }
 
+int64_t LocatorCursor::find_any(Vec3 x) {
+  State& s = *state_;
+  if (s.index->kind != CellLocator::Index::Kind::tree) return find(x);
+  s.weights_ready = false;
+  if (!std::isfinite(x.x + x.y + x.z)) return s.cell = -1;
+  CellPlace at;
+  if (s.cell >= 0 && s.probe.holds(size_t(s.cell), x, at)) {
+    s.place = at;
+    return s.cell;
+  }
+  int64_t found = -1;
+  s.index->tree().cells_at(x, s.index->tree_slack, [&](uint32_t c) {
+    if (!s.probe.holds(c, x, at)) return false;
+    found = c, s.place = at;
+    return true;
+  });
+  return s.cell = found;
+}
+
 void LocatorCursor::State::make_weights() {
   if (weights_ready) return;
   weights_ready = true;

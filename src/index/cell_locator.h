@@ -45,6 +45,9 @@ class LocatorCursor {
   /// The cell that holds x: of several (shared faces, overlapping cells) the one with the smallest id, whatever was asked before;
   /// AMR: the finest. -1 outside. 2D meshes: within 1e-6 of the mesh's size of the surface. Hidden cells never answer.
   int64_t find(Vec3 x);
+  /// The same without the rule of the smallest id: the cell of the last answer when it holds x, else the first that is found; AMR and
+  /// grids: as find(). For paths through continuous fields.
+  int64_t find_any(Vec3 x);
   /// Point ids and interpolation weights of the last find() that was not -1; they stay valid until the next.
   std::span<const int64_t> ids() const;
   std::span<const double> weights() const;

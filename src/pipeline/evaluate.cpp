@@ -2,14 +2,22 @@
 // Running a plan: from the targets up, each step when it is first asked for.
 #include "pipeline/graph_state.h"
 #include "pipeline/read_part.h"
+#include "pipeline/series_input.h"
 
 namespace sg {
 
-/// One call of Graph::evaluate.
+/// One call of Graph::evaluate, or one time of a series: then the results that belong to that time pass by the cache, which would keep one
+/// step after the other.
 class Evaluation {
  public:
-  Evaluation(const Graph& graph, const Plan& plan, Context& context)
-      : g_(*graph.state_), plan_(plan), context_(context), results_(plan.steps.size()), done_(plan.steps.size(), 0) {
+  Evaluation(const Graph& graph, const Plan& plan, bool one_time, Context& context)
+      : graph_(graph),
+        g_(*graph.state_),
+        plan_(plan),
+        one_time_(one_time),
+        context_(context),
+        results_(plan.steps.size()),
+        done_(plan.steps.size(), 0) {
     for (const Step& s : plan.steps) left_.push_back(s.consumers);
     for (const int t : plan.targets) count_work(t);
     std::fill(done_.begin(), done_.end(), 0);
@@ -42,6 +50,11 @@ class Evaluation {
     context_.check();
     if (auto* given = std::get_if<DataNode>(&g_.nodes[size_t(s.node)].what)) {
       result = given->data;
+    } else if (one_time_ && s.varies) {
+      result = g_.cache->find(s.key);
+      if (result)
+        for (const int in : s.inputs) release(in);
+      else result = compute(s);
     } else {
       bool ran = false;
       result = g_.cache->find_or_compute(s.key, context_, [&] {
@@ -71,7 +84,10 @@ class Evaluation {
     part.progress(0, doing);
     return with_context(doing, [&] {
       if (auto* read = std::get_if<ReadNode>(&node.what)) return read_file(*read, s, part);
-      return std::get<OperationNode>(node.what).found->run(inputs, s.params, part);
+      const Operation& operation = *std::get<OperationNode>(node.what).found;
+      if (s.series < 0) return operation.run(inputs, s.params, part);
+      return operation.run_series(SeriesInput::open(graph_, node, plan_.steps[size_t(s.series)].request, s.params, part), inputs, s.params,
+                                  part);
     });
   }
 
@@ -106,8 +122,10 @@ class Evaluation {
 
   double fraction() const { return total_ ? std::min(1.0, double(ran_) / double(total_)) : 1.0; }
 
+  const Graph& graph_;
   const Graph::State& g_;
   const Plan& plan_;
+  bool one_time_;
   Context& context_;
   std::vector<std::optional<Data>> results_;
   std::vector<int> left_;
@@ -117,7 +135,15 @@ class Evaluation {
 
 std::vector<Data> Graph::evaluate(std::span<const Target> targets, Context& context) const {
   const Plan plan = Planner::make(*this, targets);
-  return Evaluation(*this, plan, context).run();
+  return Evaluation(*this, plan, false, context).run();
+}
+
+Data SeriesInput::evaluate_at(const Graph& graph, NodeId node, Request request, double time, const std::vector<char>& constant,
+                              Context& context) {
+  request.time = time;
+  const Target target{node, std::move(request)};
+  const Plan plan = Planner::make(graph, {&target, 1}, &constant);
+  return Evaluation(graph, plan, true, context).run()[0];
 }
 
 Data Graph::evaluate(NodeId node, const Request& request, Context& context) const {

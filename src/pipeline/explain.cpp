@@ -47,6 +47,7 @@ Estimate estimate_of(const Step& s, const Node& node, const std::vector<PlannedS
   }
   if (auto* given = std::get_if<DataNode>(&node.what)) return {data_bytes(given->data), 0};
   std::vector<uint64_t> in;
+  if (s.series >= 0) in.push_back(before[size_t(s.series)].bytes);
   for (const int i : s.inputs) in.push_back(before[size_t(i)].bytes);
   const Operation& o = *std::get<OperationNode>(node.what).found;
   if (o.estimate) return o.estimate(s.params, in);
@@ -97,7 +98,7 @@ std::vector<PlannedStep> Graph::plan(std::span<const Target> targets) const {
     out.push_back(std::move(p));
   }
   // Needed are the targets and, above them, whatever is not hidden behind a cached result.
-  std::vector<char> needed(out.size(), 0);
+  std::vector<char> needed(out.size(), 0), in_series(out.size(), 0);
   for (const int t : plan.targets) needed[size_t(t)] = 1;
   for (size_t i = out.size(); i-- > 0;) {
     const bool runs = needed[i] && out[i].state != PlannedStep::State::cached;
@@ -105,6 +106,13 @@ std::vector<PlannedStep> Graph::plan(std::span<const Target> targets) const {
     else out[i].seconds = 0;
     if (runs)
       for (const int in : plan.steps[i].inputs) needed[size_t(in)] = 1;
+    if (runs && plan.steps[i].series >= 0) in_series[size_t(plan.steps[i].series)] = 1;
+  }
+  // Behind a series everything is asked for time by time, what hangs on no time once.
+  for (size_t i = out.size(); i-- > 0;) {
+    if (!in_series[i]) continue;
+    if (out[i].state == PlannedStep::State::not_needed) out[i].state = PlannedStep::State::each_time;
+    for (const int in : plan.steps[i].inputs) in_series[size_t(in)] = 1;
   }
   return out;
 }
@@ -128,9 +136,10 @@ std::string Graph::explain(std::span<const Target> targets) const {
     running += runs;
     r += fmt::format("{:<{}}  {:<{}}  {:<8}  {:<10}  {:>12}  {:>8}  {}\n", s.name, name_width, s.does, does_width,
                      key_text(s.key).substr(0, 8),
-                     runs     ? "run"
-                     : cached ? "cached"
-                              : "not needed",
+                     runs                                       ? "run"
+                     : cached                                   ? "cached"
+                     : s.state == PlannedStep::State::each_time ? "each time"
+                                                                : "not needed",
                      (cached ? "" : "~") + human_bytes(s.bytes), runs ? "~" + seconds_text(s.seconds) : "-", request_text(s.request));
   }
   return r + fmt::format("{} of {} steps run, in about {}\n", running, steps.size(), seconds_text(seconds));

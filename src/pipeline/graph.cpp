@@ -64,7 +64,7 @@ NodeId Graph::add_operation(std::string operation, std::vector<std::string> word
     else if (n < lo || (hi >= 0 && n > hi))
       mistake(fmt::format("{}: takes {}{} input{}, not {}", op.operation, hi < 0 ? "at least " : "", lo, lo == 1 ? "" : "s", n));
   }
-  if (op.params && op.found->kind == OperationKind::source) {
+  if (op.params && (op.found->kind == OperationKind::source || op.found->run_series)) {
     const ParamDecl* time = op.params->schema.find("time");
     const bool settable = time && (std::holds_alternative<double*>(time->ref) || std::holds_alternative<std::optional<double>*>(time->ref));
     op.follows_time = settable && std::none_of(op.words.begin(), op.words.end(),

@@ -28,6 +28,8 @@ struct GraphOptions {
   /// Reads a file; null = read_part. ReadOptions already holds the time, piece and fields that the
   /// request needs; it may hold names of fields that a filter makes, so a reader passes over those that the file lacks.
   std::function<Data(const std::string& path, const ReadOptions& options, const Request& request, Context& context)> read;
+  /// Times of a file; null = file_times.
+  std::function<std::vector<double>(const std::string& path, const ReadOptions& options, Context& context)> times;
   /// Names of the fields in a file, when they are cheap to find out; lets validate() check field names. May be null.
   std::function<std::optional<std::vector<std::string>>(const std::string& path, const ReadOptions& options)> field_names;
 };
@@ -45,7 +47,7 @@ struct Mistake {
 
 /// One line of a plan.
 struct PlannedStep {
-  enum class State { run, cached, not_needed };
+  enum class State { run, cached, not_needed, each_time };  ///< each_time: runs once for each time of a series, inside its consumer
   NodeId node = 0;
   std::string name, does;
   Key key;
@@ -96,6 +98,7 @@ class Graph {
  private:
   struct State;
   friend class Planner;
+  friend class SeriesInput;
   friend class Evaluation;
   std::unique_ptr<State> state_;
 };

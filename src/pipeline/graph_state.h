@@ -21,7 +21,7 @@ struct OperationNode {
   std::vector<std::string> words;
   const Operation* found = nullptr;  ///< null: unknown
   std::optional<ParamSet> params;    ///< empty: mistakes in the words
-  bool follows_time = false;         ///< a source whose parameter `time` was left open
+  bool follows_time = false;         ///< a source, or a filter of series, whose parameter `time` was left open
 };
 
 struct Node {
@@ -54,7 +54,9 @@ struct Step {
   ParamSet params;  ///< operations only
   ReadOptions read;
   std::vector<int> inputs;  ///< indices of steps, all smaller than its own
-  int consumers = 0;        ///< inputs of other steps and targets that refer to it
+  int consumers = 0;        ///< inputs of other steps and targets that refer to it; those behind a series alone have none
+  int series = -1;          ///< step of the input that is taken time by time: it stands here for its key, and is never run as such
+  bool varies = false;      ///< its result belongs to the time asked for; known in plans for one time of a series
 };
 
 struct Plan {
@@ -65,7 +67,8 @@ struct Plan {
 /// The friend of Graph that sees its state.
 class Planner {
  public:
-  static Plan make(const Graph& graph, std::span<const Target> targets);
+  /// `constant` (one per node, or null): readers that are not told the time.
+  static Plan make(const Graph& graph, std::span<const Target> targets, const std::vector<char>* constant = nullptr);
   static const Graph::State& state(const Graph& graph) { return *graph.state_; }
 };
 

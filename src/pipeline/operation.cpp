@@ -61,6 +61,11 @@ Request named_or_all(const ParamSet& params, Request request, std::optional<doub
 
 }  // namespace
 
+Series detail::one_step(const Data& data) {
+  auto* d = std::get_if<DatasetPtr>(&data);
+  return {{d && *d ? (*d)->time().value_or(0) : 0.0}, [data](size_t) { return data; }};
+}
+
 Request detail::request_carried(const ParamSet& params, const Request& wanted) { return named_or_all(params, wanted, wanted.time); }
 
 Request detail::request_named(const ParamSet& params, const Request& wanted) {

@@ -9,6 +9,8 @@
 //   R f(const DatasetPtr&, const DatasetPtr&, const P&, Context&)  two inputs: each part of the first, with the second
 //   R f(const Data&, const P&, Context&)                           sees collections whole
 //   R f(const std::vector<Data>&, const P&, Context&)              any number of inputs
+//   R f(const Series&, const P&, Context&)                         all time steps of the input, one at a time
+//   R f(const Series&, const std::vector<Data>&, const P&, Context&)  the same, and further inputs as they are
 // Behind the sentence come hooks: op_version<2>, op_inputs<1, -1>, carries_fields, needs_only_named_fields, or any callable that changes an
 // Operation&.
 #pragma once
@@ -41,9 +43,28 @@ template <class P, class F>
 constexpr bool takes_part = std::is_invocable_v<F, const DatasetPtr&, const P&, Context&>;
 
 template <class P, class F>
+constexpr bool takes_series_alone = std::is_invocable_v<F, const Series&, const P&, Context&>;
+template <class P, class F>
+constexpr bool takes_series_and = std::is_invocable_v<F, const Series&, const std::vector<Data>&, const P&, Context&>;
+template <class P, class F>
+constexpr bool takes_series = takes_series_alone<P, F> || takes_series_and<P, F>;
+
+/// Data at hand as a series of one step.
+Series one_step(const Data& data);
+
+template <class P, class F>
+Data run_series_filter(F f, const Series& series, const std::vector<Data>& others, const ParamSet& params, Context& context) {
+  const P& p = values_of<P>(params);
+  if constexpr (takes_series_alone<P, F>) return f(series, p, context);
+  else return f(series, others, p, context);
+}
+
+template <class P, class F>
 Data run_filter(F f, std::string_view name, const std::vector<Data>& inputs, const ParamSet& params, Context& context) {
   const P& p = values_of<P>(params);
-  if constexpr (takes_list<P, F>) return f(inputs, p, context);
+  if constexpr (takes_series<P, F>)
+    return run_series_filter<P>(f, one_step(inputs[0]), std::vector<Data>(inputs.begin() + 1, inputs.end()), params, context);
+  else if constexpr (takes_list<P, F>) return f(inputs, p, context);
   else if constexpr (takes_whole<P, F>) return f(inputs[0], p, context);
   else if constexpr (takes_two<P, F>) {
     const DatasetPtr second = single_dataset(inputs[1], name);
@@ -59,8 +80,12 @@ constexpr Operation make_filter(std::string_view name, std::string_view family, 
   Operation o{name, family, sentence};
   o.make_params = make_param_set<P>;
   o.run = run;
-  if constexpr (takes_list<P, F>) o.max_inputs = -1;
-  else if constexpr (!takes_whole<P, F> && takes_two<P, F>) o.min_inputs = o.max_inputs = 2;
+  if constexpr (takes_series<P, F>)
+    o.run_series = [](const Series& series, const std::vector<Data>& others, const ParamSet& params, Context& context) -> Data {
+      return run_series_filter<P>(F(), series, others, params, context);
+    };
+  if constexpr (takes_list<P, F> || takes_series_and<P, F>) o.max_inputs = -1;
+  else if constexpr (!takes_series<P, F> && !takes_whole<P, F> && takes_two<P, F>) o.min_inputs = o.max_inputs = 2;
   (hooks(o), ...);
   return o;
 }

@@ -2,7 +2,6 @@
 // The one place that knows all operations: their headers here, one line each in operations.def.
 #include "pipeline/operation_table.h"
 
-// Headers of the operations, sorted.
 #include "filter/field/basics.h"
 #include "filter/field/calc.h"
 #include "filter/field/derivatives.h"
@@ -10,6 +9,31 @@
 #include "filter/field/gradient.h"
 #include "filter/field/point_cell.h"
 #include "filter/field/resize.h"
+#include "filter/flow/fronts/stream_surface.h"
+#include "filter/flow/fronts/unsteady_surfaces.h"
+#include "filter/flow/lines/even_streamlines.h"
+#include "filter/flow/lines/tubes.h"
+#include "filter/flow/seeds.h"
+#include "filter/flow/streamlines.h"
+#include "filter/flow/texture/advect.h"
+#include "filter/flow/texture/lic.h"
+#include "filter/flow/texture/spot_noise.h"
+#include "filter/flow/texture/surface_lic.h"
+#include "filter/flow/topology/closed_orbits.h"
+#include "filter/flow/topology/critical_points.h"
+#include "filter/flow/topology/separatrices.h"
+#include "filter/flow/topology/topology.h"
+#include "filter/flow/unsteady/pathlines.h"
+#include "filter/flow/unsteady/streaklines.h"
+#include "filter/flow/unsteady/timelines.h"
+#include "filter/flow/vortex/core_lines.h"
+#include "filter/flow/vortex/ftle.h"
+#include "filter/flow/vortex/measures.h"
+#include "filter/flow/vortex/parallel_vectors.h"
+#include "filter/flow/vortex/ridges.h"
+#include "filter/flow/vortex/shear_lines.h"
+#include "filter/glyph/choose.h"
+#include "filter/glyph/trails.h"
 #include "filter/mesh/append.h"
 #include "filter/mesh/clip.h"
 #include "filter/mesh/components.h"
@@ -50,11 +74,23 @@
 #include "filter/surface/quality.h"
 #include "filter/surface/smooth.h"
 #include "filter/surface/surfels.h"
+#include "filter/tensor/degenerate_lines.h"
+#include "filter/tensor/degenerate_points.h"
+#include "filter/tensor/hyperstreamlines.h"
+#include "filter/tensor/stress_measures.h"
+#include "filter/tensor/tensor_fit.h"
+#include "filter/tensor/tensor_glyphs.h"
+#include "filter/tensor/tensor_measures.h"
+#include "filter/tensor/tractography.h"
+#include "io/io.h"
+#include "pipeline/gradient_images.h"
 #include "simulate/drift.h"
 #include "simulate/flow_fields.h"
 #include "simulate/point_load.h"
 #include "simulate/scalar_fields.h"
 #include "simulate/tissue_phantom.h"
+
+// Headers of the operations, sorted.
 
 namespace sg {
 
@@ -93,6 +129,14 @@ Data slice_by(const std::vector<Data>& in, const SliceParams& p, Context& ctx) {
   return with_second_mesh("slice", in, p, ctx, [](auto&&... a) { return slice(a...); });
 }
 
+Data hyperstreamlines_from(const std::vector<Data>& in, const HyperstreamlinesParams& p, Context& ctx) {
+  return with_second_mesh("hyperstreamlines", in, p, ctx, [](auto&&... a) { return hyperstreamlines(a...); });
+}
+
+Data tractography_from(const std::vector<Data>& in, const TractographyParams& p, Context& ctx) {
+  return with_second_mesh("tractography", in, p, ctx, [](auto&&... a) { return tractography(a...); });
+}
+
 // An expression may name any field.
 Request request_of_clip(const ParamSet& params, const Request& wanted) {
   Request r = detail::request_carried(params, wanted);
@@ -109,6 +153,7 @@ Request request_of_extract(const ParamSet& params, const Request& wanted) {
 }  // namespace
 
 std::span<const Operation> operations() {
+  set_shape_reader([](const std::string& path, Context& context) { return single_dataset(read_data(path, {}, context), "glyphs"); });
   // The first entry only keeps the array from being empty.
   static constexpr Operation table[] = {
       Operation{},

@@ -5,6 +5,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "color/parse_color.h"
+#include "filter/glyph/choose.h"
 #include "pipeline/picture_parts.h"
 #include "pipeline/transfer_file.h"
 
@@ -118,13 +119,18 @@ std::vector<std::vector<std::string>> words_of_parts(const std::vector<DatasetPt
   if (parts.size() < 2 || !colors_by_field(show.kind) || word_value(show.words, "color")) return words;
   std::string name = word_value(show.words, "field").value_or("");
   if (name == "none") return words;
+  const bool by_vectors = show.kind == "glyphs" && name.empty();  // they choose their field themselves: here the range alone
+  if (by_vectors && word_value(show.words, "shape").value_or("") == "barbs") return words;
+  if (by_vectors) name = word_value(show.words, "vectors").value_or("");
   std::vector<size_t> by_size(parts.size());
   std::iota(by_size.begin(), by_size.end(), size_t(0));
   std::stable_sort(by_size.begin(), by_size.end(), [&](size_t a, size_t b) { return parts[a]->point_count() > parts[b]->point_count(); });
   for (const bool labels : {false, true})  // a mask or a numbering of the largest part says less than values of another
     for (const size_t i : by_size)
       if (name.empty())
-        if (const Field* f = automatic_field(*parts[i]); f && (labels || f->role != Role::labels)) name = f->name;
+        if (const Field* f = by_vectors ? automatic_vectors(*parts[i]) : automatic_field(*parts[i]);
+            f && (labels || f->role != Role::labels))
+          name = f->name;
   if (name.empty()) return words;
   if (name == "band" && is_banded(*parts[by_size[0]])) name = "band low";  // bands of parts differ; their values can be compared
   const int component = int(parse_int(word_value(show.words, "component").value_or("-1")).value_or(-1));
@@ -139,8 +145,10 @@ std::vector<std::vector<std::string>> words_of_parts(const std::vector<DatasetPt
   if (!any) return words;  // the show says what there is instead
   for (size_t i = 0; i < parts.size(); ++i) {
     const Field* f = parts[i]->fields().find(name);
-    std::erase_if(words[i], [](const std::string& w) { return w.starts_with("field="); });
-    words[i].push_back("field=" + (f ? name : std::string("none")));
+    if (!by_vectors) {
+      std::erase_if(words[i], [](const std::string& w) { return w.starts_with("field="); });
+      words[i].push_back("field=" + (f ? name : std::string("none")));
+    }
     if (!f || same || !(all.lo < all.hi)) continue;
     // What choose_scale() does for one mesh, decided once for all.
     const bool automatic =
@@ -237,7 +245,10 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
   scene.background = stated.bottom, scene.background_top = stated.top, scene.transparent = stated.transparent;
   const Annotation annotation = annotation_of(stated, shown, look);
   const double aspect = double(std::max(1, width_beside_legends(annotation, stated))) / stated.height;
-  const Camera camera = make_camera(stated.camera, box, aspect, look.direction, look.up, look.parallel, stated.picture.axes ? 0.11 : 0.05);
+  Camera camera = make_camera(stated.camera, box, aspect, look.direction, look.up, look.parallel, stated.picture.axes ? 0.11 : 0.05);
+  Box3 all = scene_bounds(scene);  // glyphs reach beyond the data
+  all.add(box);
+  fit_planes(camera, all);
   if (stated.picture.axes && !shown.outlined && !box.empty()) scene.items.emplace_back(back_edges(box, camera));
   picture.image = draw_picture(scene, camera, stated, annotation, context);
   return picture;

@@ -68,6 +68,10 @@ constexpr Maker makers[] = {
     {"divergence", "as", ""},
     {"gradient", "as", ""},
     {"curl", "as", ""},
+    {"tensor_measures", "measures", "FA"},
+    {"stress_measures", "", "von Mises stress"},
+    {"direction_colors", "", "direction"},
+    {"traction", "", "normal traction"},
 };
 
 // The field that the last steps were made for, when `d` has it; "" = the data decides.

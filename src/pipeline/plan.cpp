@@ -48,13 +48,29 @@ Key read_key(const std::string& path, const ReadOptions& o, const Request& reque
   return key.key();
 }
 
-Key operation_key(const Operation& o, const ParamSet& params, const std::vector<int>& inputs, const std::vector<Step>& steps) {
+Key operation_key(const Operation& o, const ParamSet& params, const std::vector<int>& inputs, int series, const std::vector<Step>& steps) {
   KeyBuilder key;
   key.add("operation").add(o.name).add(uint64_t(o.version)).add(uint64_t(params.schema.decls().size()));
   for (const ParamDecl& d : params.schema.decls()) key.add(d.name).add(param_text(d));
   key.add(uint64_t(inputs.size()));
   for (const int i : inputs) key.add(steps[size_t(i)].key);
+  if (series >= 0) key.add("all times of").add(steps[size_t(series)].key);
   return key.key();
+}
+
+// The same at any time.
+Request timeless(Request r) {
+  r.time.reset();
+  return r;
+}
+
+// Consumers that may ask for a result; what only a series refers to is evaluated elsewhere.
+void count_consumers(Plan& plan) {
+  std::vector<char> asked(plan.steps.size(), 0);
+  for (const int t : plan.targets) asked[size_t(t)] = 1, ++plan.steps[size_t(t)].consumers;
+  for (size_t i = plan.steps.size(); i-- > 0;)
+    if (asked[i])
+      for (const int in : plan.steps[i].inputs) asked[size_t(in)] = 1, ++plan.steps[size_t(in)].consumers;
 }
 
 ParamSet params_for(const OperationNode& op, const Request& request) {
@@ -68,7 +84,7 @@ ParamSet params_for(const OperationNode& op, const Request& request) {
 
 }  // namespace
 
-Plan Planner::make(const Graph& graph, std::span<const Target> targets) {
+Plan Planner::make(const Graph& graph, std::span<const Target> targets, const std::vector<char>* constant) {
   const Graph::State& g = *graph.state_;
   std::vector<NodeId> sinks;
   for (const Target& t : targets) {
@@ -84,7 +100,10 @@ Plan Planner::make(const Graph& graph, std::span<const Target> targets) {
   for (size_t i = g.nodes.size(); i-- > 0;)
     if (auto* op = std::get_if<OperationNode>(&g.nodes[i].what))
       for (size_t r = 0; r < wanted[i].size(); ++r)
-        for (const NodeId in : g.nodes[i].inputs) want(wanted[size_t(in)], upstream_request(*op->found, *op->params, wanted[i][r]));
+        for (size_t in = 0; in < g.nodes[i].inputs.size(); ++in) {
+          const Request up = upstream_request(*op->found, *op->params, wanted[i][r]);
+          want(wanted[size_t(g.nodes[i].inputs[in])], in == 0 && op->found->run_series ? timeless(up) : up);
+        }
 
   // Down: steps and keys; nodes with equal keys become one step.
   Plan plan;
@@ -102,28 +121,33 @@ Plan Planner::make(const Graph& graph, std::span<const Target> targets) {
       s.node = NodeId(i);
       s.request = request;
       if (auto* read = std::get_if<ReadNode>(&node.what)) {
-        s.read = read_for(read->options, request);
-        s.key = read_key(read->path, s.read, request, bool(g.options.read), g.options.strict);
+        if (constant && (*constant)[i]) s.request = timeless(request);
+        s.read = read_for(read->options, s.request);
+        s.varies = s.request.time && !read->options.time && read->options.step < 0;
+        s.key = read_key(read->path, s.read, s.request, bool(g.options.read), g.options.strict);
       } else if (auto* op = std::get_if<OperationNode>(&node.what)) {
         s.params = params_for(*op, request);
         const Request up = upstream_request(*op->found, *op->params, request);
-        for (const NodeId in : node.inputs) s.inputs.push_back(find_step(in, up));
-        s.key = operation_key(*op->found, s.params, s.inputs, plan.steps);
+        s.varies = op->follows_time && request.time;
+        for (size_t in = 0; in < node.inputs.size(); ++in) {
+          if (in == 0 && op->found->run_series) {
+            s.series = find_step(node.inputs[in], timeless(up));
+          } else {
+            s.inputs.push_back(find_step(node.inputs[in], up));
+            s.varies = s.varies || plan.steps[size_t(s.inputs.back())].varies;
+          }
+        }
+        s.key = operation_key(*op->found, s.params, s.inputs, s.series, plan.steps);
       } else {
         s.key = std::get<DataNode>(node.what).key;
       }
       const auto [at, fresh] = by_key.emplace(s.key, int(plan.steps.size()));
-      if (fresh) {
-        for (const int in : s.inputs) ++plan.steps[size_t(in)].consumers;
-        plan.steps.push_back(std::move(s));
-      }
+      if (fresh) plan.steps.push_back(std::move(s));
       step_of[i].push_back(at->second);
     }
   }
-  for (const Target& t : targets) {
-    plan.targets.push_back(find_step(t.node, t.request));
-    ++plan.steps[size_t(plan.targets.back())].consumers;
-  }
+  for (const Target& t : targets) plan.targets.push_back(find_step(t.node, t.request));
+  count_consumers(plan);
   return plan;
 }
 

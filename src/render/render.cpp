@@ -19,7 +19,8 @@ namespace {
 int chosen_samples(const Scene& scene, int asked) {
   if (asked > 0) return asked;
   for (const Item& item : scene.items)
-    if (std::holds_alternative<SurfaceItem>(item)) return 2;  // lines, dots and volumes have soft edges of their own
+    if (std::holds_alternative<SurfaceItem>(item) || std::holds_alternative<GlyphsItem>(item))
+      return 2;  // lines, dots and volumes have soft edges of their own
   return 1;
 }
 
@@ -84,9 +85,10 @@ Frame render(const Scene& scene, const Camera& camera, const RenderOptions& opti
   const int n = chosen_samples(scene, options.samples);
   const Projection whole = make_projection(camera, options.width * n, options.height * n);
   const auto prepared = prepare_scene(scene, context);
+  const auto textures = n > 1 ? texture_scene(*prepared, make_projection(camera, options.width, options.height), context) : nullptr;
   Frame frame(options.width, options.height);
   auto draw = [&](const Projection& projection, int samples, const std::vector<uint8_t>* wanted, Frame& into) {
-    const FragmentLists fragments = rasterize_prepared(*prepared, projection, samples, into, context);
+    const FragmentLists fragments = rasterize_prepared(*prepared, projection, samples, into, context, textures.get());
     context.check();
     composite_volumes(scene, projection, fragments, into, context, wanted);
   };

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which colours suit a field when nobody says.
+#include <charconv>
 #include <map>
 
 #include "base/text.h"
@@ -61,6 +62,26 @@ void take_categories(const FileColormap& file, const Field& field, ColorScale& s
   s.labels.clear();
   context.warn(fmt::format("the values of '{}' are not the categories of the colour map '{}'; its {} colours are drawn as bands",
                            field.name, s.map.name, file.map.colors.size()));
+}
+
+// Names of labels from the dataset's note "labels of FIELD", lines of "number=name"; empty when one has none.
+std::vector<std::string> noted_names(const Dataset& d, const Field& field, const std::vector<double>& labels) {
+  for (const auto& [name, text] : d.notes()) {
+    if (name != "labels of " + field.name) continue;
+    std::map<double, std::string> known;
+    for (size_t begin = 0; begin < text.size();) {
+      const size_t end = std::min(text.find('\n', begin), text.size()), equal = text.find('=', begin);
+      double number = 0;
+      if (equal < end && std::from_chars(text.data() + begin, text.data() + equal, number).ec == std::errc())
+        known[number] = text.substr(equal + 1, end - equal - 1);
+      begin = end + 1;
+    }
+    std::vector<std::string> names;
+    for (const double l : labels)
+      if (const auto k = known.find(l); k != known.end()) names.push_back(k->second);
+    if (names.size() == labels.size()) return names;
+  }
+  return {};
 }
 
 // The point field whose values lie within the limits of every polygon's band: what the bands are of. Null when there is none.
@@ -213,6 +234,7 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
   if (labels) {
     s.labels = distinct_values(field, 4096);
     if (file) take_categories(*file, field, s, context);
+    else s.label_names = noted_names(data, field, s.labels);
     if (!s.labels.empty()) s.lo = s.labels.front(), s.hi = std::max(s.labels.back(), s.lo + 1);
   }
   if (file) {

@@ -3,14 +3,34 @@
 
 namespace sg {
 
+namespace {
+
+void add_bounds(const auto& item, Box3& box) {
+  if (item.data) box.add(item.data->bounds());
+}
+
+void add_bounds(const GlyphsItem& item, Box3& box) {
+  if (!item.data) return;
+  if (item.in_pixels) {  // how large they are is known on the picture alone: leave room for one of usual size
+    const Box3 places = item.data->bounds();
+    const Vec3 room = Vec3{1, 1, 1} * (0.05 * places.diagonal());
+    if (!places.empty()) box.add(places.lo - room), box.add(places.hi + room);
+    return;
+  }
+  box.add(glyph_bounds(*glyph_instances(item.data, item.rule, item.shapes.size()), shape_boxes(item)));
+}
+
+}  // namespace
+
+std::vector<Box3> shape_boxes(const GlyphsItem& item) {
+  std::vector<Box3> boxes;
+  for (const DatasetPtr& shape : item.shapes) boxes.push_back(shape ? shape->bounds() : Box3{});
+  return boxes;
+}
+
 Box3 scene_bounds(const Scene& scene) {
   Box3 box;
-  for (const Item& item : scene.items)
-    std::visit(
-        [&](const auto& i) {
-          if (i.data) box.add(i.data->bounds());
-        },
-        item);
+  for (const Item& item : scene.items) std::visit([&](const auto& i) { add_bounds(i, box); }, item);
   return box;
 }
 

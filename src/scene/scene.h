@@ -8,8 +8,10 @@
 
 #include "color/color_scale.h"
 #include "data/dataset.h"
+#include "filter/glyph/instances.h"
 #include "scene/camera.h"
 #include "scene/material.h"
+#include "scene/surface_texture.h"
 #include "scene/volume_item.h"
 
 namespace sg {
@@ -36,6 +38,7 @@ struct SurfaceItem {
   bool edges = false;         ///< draw the edges of the polygons
   DatasetPtr edge_lines;      ///< a SurfaceMesh whose lines are drawn instead (of curved cells: see Skin); null = the polygons' edges
   Vec3f edge_color{0.1f, 0.1f, 0.1f};
+  std::optional<SurfaceTexture> lic;  ///< directions of a vector field as a texture
 };
 
 /// Lines of a SurfaceMesh; constant width on the picture.
@@ -44,7 +47,10 @@ struct LinesItem {
   std::optional<FieldColor> color_by;
   Vec3f color{0.15f, 0.15f, 0.17f};
   double opacity = 1;
-  double width = 1.5;  ///< pixels
+  double width = 1.5;                     ///< pixels
+  bool lit = false;                       ///< light by the direction of the line
+  double halo = 0;                        ///< pixels of border around lines that hide what is behind
+  Vec3f halo_color{0.05f, 0.05f, 0.06f};  ///< sRGB
 };
 
 /// Every point of the dataset (or the vertices of a SurfaceMesh) as a round dot.
@@ -59,6 +65,24 @@ struct PointsItem {
   std::string disc_normals, disc_radius;
 };
 
+/// The same few shapes at all points of a dataset: turned, scaled and coloured by its fields. Instances are drawn without making their
+/// geometry.
+struct GlyphsItem {
+  DatasetPtr data;                 ///< its points are the places; any mesh
+  std::vector<DatasetPtr> shapes;  ///< SurfaceMesh datasets of unit size along +x: polygons, strips and lines; 1 to 255
+  GlyphRule rule;
+  bool in_pixels = false;              ///< rule.scale is in pixels of the picture, the same at any distance
+  std::optional<FieldColor> color_by;  ///< a point field; one colour a glyph
+  Vec3f color{0.80f, 0.80f, 0.82f};    ///< sRGB, without color_by
+  double opacity = 1;
+  Material material;
+  bool flat = false;          ///< face normals
+  double feature_angle = 40;  ///< degrees; edges sharper than this are not smoothed
+  double line_width = 1.5;    ///< pixels; of the shapes' lines
+};
+/// The boxes of the shapes, for glyph_bounds().
+std::vector<Box3> shape_boxes(const GlyphsItem& item);
+
 /// Text at a place, over the picture where nothing hides the place.
 struct TextItem {
   Vec3 at;
@@ -68,7 +92,7 @@ struct TextItem {
   std::optional<Vec3f> color;  ///< sRGB; empty = that of the other texts
 };
 
-using Item = std::variant<SurfaceItem, LinesItem, PointsItem, VolumeItem>;
+using Item = std::variant<SurfaceItem, LinesItem, PointsItem, VolumeItem, GlyphsItem>;
 
 struct Light {
   Vec3 direction{0.3, 0.5, 1};  ///< towards the light; in eye space (x right, y up, z towards the viewer) when `follows_camera`

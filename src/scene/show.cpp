@@ -6,8 +6,10 @@
 #include "data/field_ops.h"
 #include "filter/mesh/faces.h"
 #include "filter/mesh/surface.h"
+#include "scene/show_glyphs.h"
 #include "scene/show_labels.h"
 #include "scene/show_volume.h"
+#include "scene/texture_color.h"
 
 namespace sg {
 
@@ -32,12 +34,19 @@ void describe(Schema& s, SurfaceShow& p) {
   s("flat", p.flat, "One normal per polygon instead of smooth shading.");
   s("lit", p.lit, "Light the surface; false shows the plain colours.");
   s("feature_angle", p.feature_angle, "Edges sharper than this stay sharp when normals are computed.").unit("deg").range(0, 180);
+  describe(s, p.lic);
+  s("texture", p.texture, "Point field in [0, 1] that darkens and brightens the colours; default: 'lic' or 'spot noise'; 'none' for none.");
 }
 
 void describe(Schema& s, LinesShow& p) {
   describe(s, p.coloring);
   s("opacity", p.opacity, "1 hides what is behind, 0 is invisible.").range(0, 1);
   s("width", p.width, "Width of the lines.").unit("pixels").positive();
+  s("lit", p.lit, "Light the lines by their direction: bright across the light, dark along it.");
+  s("halo", p.halo, "Border around each line that hides lines behind it, so that crossings show which is in front.")
+      .unit("pixels")
+      .range(0, 100);
+  s("halo_color", p.halo_color, "Colour of the halos.");
 }
 
 void describe(Schema& s, PointsShow& p) {
@@ -54,10 +63,11 @@ void describe(Schema& s, OutlineShow& p) {
 
 namespace {
 
-// Ids: 5, 6, 7, ... in the order of the points or cells, or a name that says so.
+// Ids: 5, 6, 7, ... in the order of the points or cells, or a name that says so; textures.
 bool is_numbering(const Field& f) {
   if (f.components() != 1) return false;
   const std::string name = to_lower(f.name);
+  if (name == "lic" || name == "spot noise") return true;  // a texture goes with the colours of another field
   for (std::string_view end : {"id", "ids", "nodenums", "elemnums", "number", "valid"})
     if (name.ends_with(end)) return true;
   const size_t n = std::min<size_t>(f.array.count(), 1000);
@@ -157,6 +167,7 @@ std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const Surfa
   item.flat = p.flat;
   item.material.lit = p.lit;
   item.feature_angle = p.feature_angle;
+  item.lic = surface_texture_of(*item.data, p.lic);
   const SurfaceMesh& mesh = *item.data->as<SurfaceMesh>();
   const auto legend = legend_of(item.color_by);
   if (mesh.lines.size() > 0) {
@@ -181,6 +192,7 @@ std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const Surfa
     points.size = 8;
     scene.items.emplace_back(std::move(points));
   }
+  apply_texture(item, texture_field(*input, p.texture, item.color_by));
   if (mesh.polygons.size() + mesh.strips.size() > 0) scene.items.emplace_back(std::move(item));
   return legend;
 }
@@ -192,6 +204,9 @@ std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const Lines
   if (!p.coloring.color.empty()) item.color = parse_color(p.coloring.color, "color");
   item.opacity = p.opacity;
   item.width = p.width;
+  item.lit = p.lit;
+  item.halo = p.halo;
+  item.halo_color = parse_color(p.halo_color, "halo_color");
   auto legend = legend_of(item.color_by);
   scene.items.emplace_back(std::move(item));
   return legend;
@@ -294,6 +309,7 @@ std::span<const ShowKind> show_kinds() {
       kind<LinesShow>("lines", "Lines of constant width."),
       kind<PointsShow>("points", "Every point as a dot."),
       kind<LabelsShow>("labels", "Numbers at points, turned along their lines (see line_labels)."),
+      kind<GlyphsShow>("glyphs", "Arrows, barbs and other shapes at points, turned and scaled by fields."),
       kind<OutlineShow>("outline", "The box around the data."),
   };
   return kinds;

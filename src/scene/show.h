@@ -11,6 +11,7 @@
 #include "base/schema.h"
 #include "color/legend_content.h"
 #include "scene/scene.h"
+#include "scene/show_lic.h"
 
 namespace sg {
 
@@ -33,10 +34,15 @@ struct SurfaceShow {
   double opacity = 1;
   bool edges = false, flat = false, lit = true;
   double feature_angle = 40;
+  LicShow lic;
+  std::string texture;
 };
 struct LinesShow {
   ColoringParams coloring;
   double opacity = 1, width = 1.5;
+  bool lit = false;
+  double halo = 0;
+  std::string halo_color = "#0d0d0f";
 };
 struct PointsShow {
   ColoringParams coloring;

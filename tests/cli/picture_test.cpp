@@ -124,7 +124,7 @@ TEST_CASE("ops, colormap and help: everything is explained, JSON is JSON") {
     CHECK(one.status == 0);
     CHECK(one.out.find(o["sentence"].get<std::string>()) != std::string::npos);
   }
-  CHECK(ops["show"].size() == 6);
+  CHECK(ops["show"].size() == 7);
   CHECK(sightglass({"colormap", "jet"}).out.find("114 of 255") != std::string::npos);
   CHECK(sightglass({"colormap", "sight"}).out.find("falls in 0 of 255") != std::string::npos);
   CHECK(sightglass({"--version"}).out.starts_with("sightglass "));

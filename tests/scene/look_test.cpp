@@ -57,6 +57,16 @@ TEST_CASE("choose_scale: labels in pieces get one colour each, noisy integers do
   CHECK_FALSE(looks_like_labels(*real, real->fields()[0]));
 }
 
+TEST_CASE("choose_scale: labels have the names that the dataset notes, when it names all of them") {
+  DatasetParts parts = image<int32_t>(8, [](size_t i, size_t, size_t) { return i < 3 ? 1 : 4; })->parts();
+  parts.notes.emplace_back("labels of v", "1=saddle\n3=node\n4=focus");
+  CHECK(scale_of(make_dataset(parts)).label_names == std::vector<std::string>{"saddle", "focus"});
+  parts.notes.back().second = "1=saddle\nx=node";
+  CHECK(scale_of(make_dataset(parts)).label_names.empty());
+  parts.notes.back().first = "labels of w";
+  CHECK(scale_of(make_dataset(parts)).label_names.empty());
+}
+
 TEST_CASE("choose_scale: a log scale begins at the smallest positive value, and refuses data without one") {
   const auto d = image<float>(4, [](size_t i, size_t, size_t) { return i == 0 ? 0.f : float(i) * 10; });
   ColoringParams p;

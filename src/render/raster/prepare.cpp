@@ -10,7 +10,7 @@
 #include "data/lattice.h"
 #include "filter/mesh/faces.h"
 #include "filter/mesh/surface.h"
-#include "render/raster/prepared.h"
+#include "render/raster/glyphs.h"
 
 namespace sg {
 
@@ -150,6 +150,9 @@ const SurfaceMesh& surface_mesh(const DatasetPtr& data, const char* what) {
   return *m;
 }
 
+/// Lines show little of themselves: brighter in the dark, and glossy, so that their bends are seen.
+constexpr Material line_material{0.18f, 0.82f, 0.30f, 40, true};
+
 class Preparation {
  public:
   Preparation(PreparedScene& out, Context& context) : out_(out), context_(context) {}
@@ -170,6 +173,7 @@ class Preparation {
     p.color = color_source(s.data, s.color_by, s.color, "surface");
     p.translucent = s.opacity < 1 || p.color.translucent;
     if (!s.flat) p.normals = normals(s, p.triangles);
+    if (s.lic && s.lic->strength > 0) take_texture(*s.lic, p);
     const Array positions = p.triangles.positions;
     const Vec3 origin = p.triangles.origin;
     if (p.triangles.count > 0) push(std::move(p), p.triangles.count);
@@ -198,7 +202,8 @@ class Preparation {
     p.color = color_source(s.data, s.color_by, s.color, "lines");
     const Positions positions = packed_positions(s.data, mesh.points);
     p.positions = positions.xyz, p.origin = positions.origin;
-    p.width = s.width;
+    p.width = s.width, p.shaded = s.lit, p.material = line_material;
+    p.halo = s.halo, p.halo_color = linear_light(s.halo_color);
     push(std::move(p), p.segments->count());
   }
 
@@ -226,6 +231,39 @@ class Preparation {
     const bool all = p.discs && s.data->as<PointCloud>() && s.data->point_ghost().empty();  // of the discs: no list says more
     if (!all) p.points = derived<std::vector<uint32_t>>(s.data, "points", [&] { return chosen_points(*s.data); });
     push(std::move(p), all ? s.data->point_count() : p.points->size());
+  }
+
+  void operator()(const GlyphsItem& s) {
+    if (!s.data) fail_usage("the item has no data", "glyphs");
+    if (s.shapes.empty() || s.shapes.size() > 255) fail_usage(fmt::format("{} shapes", s.shapes.size()), "glyphs", "give 1 to 255");
+    if (!(s.opacity > 0)) return;
+    if (s.color_by && s.color_by->association == Association::cell)
+      fail_usage(fmt::format("glyphs cannot take the colour of cell field '{}'", s.color_by->field), "glyphs", "use a point field");
+    GlyphSet set;
+    size_t triangles = 0, segments = 0;
+    for (const DatasetPtr& shape : s.shapes) {
+      set.shapes.push_back(glyph_shape(shape, s.feature_angle, s.flat));
+      const GlyphShape& g = *set.shapes.back();
+      set.first_row.push_back(int32_t(set.faces.size() / GlyphShape::row));
+      set.faces.insert(set.faces.end(), g.faces.begin(), g.faces.end());
+      set.smooth = set.smooth || g.smooth;
+      triangles = std::max(triangles, g.triangles), segments = std::max(segments, g.segments.count());
+    }
+    set.instances = glyph_instances(s.data, s.rule, s.shapes.size());
+    set.in_pixels = s.in_pixels;
+    if (set.instances->standing > 1000)
+      set.order = derived<std::vector<uint32_t>>(s.data, "glyph order", [&] { return glyph_order(*set.instances); });
+    const size_t n = set.instances->count();
+    for (const auto& [kind, most] : {std::pair{PreparedItem::Kind::surface, triangles}, std::pair{PreparedItem::Kind::lines, segments}}) {
+      if (most == 0 || set.instances->standing == 0) continue;
+      PreparedItem p = start(kind, s.data, s.opacity);
+      p.color = color_source(s.data, s.color_by, s.color, "glyphs");
+      p.material = s.material, p.width = s.line_width, p.origin = set.instances->origin;
+      p.translucent = s.opacity < 1 || p.color.translucent;
+      set.shift = glyph_shift(n, most);
+      p.glyphs = std::make_shared<const GlyphSet>(set);
+      push(std::move(p), n << set.shift);
+    }
   }
 
   void operator()(const VolumeItem&) {}
@@ -323,6 +361,14 @@ PreparedScenePtr prepare_scene(const Scene& scene, Context& context) {
   }
   out->lights = lights_of(scene);
   return out;
+}
+
+uint32_t PreparedScene::item_of(uint32_t primitive) const {
+  auto it = std::upper_bound(items.begin(), items.end(), primitive,
+                             [](uint32_t p, const raster::PreparedItem& i) { return p < i.first_primitive; });
+  do --it;
+  while (it->primitives == 0);
+  return uint32_t(it - items.begin());
 }
 
 }  // namespace sg

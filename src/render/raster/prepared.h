@@ -57,6 +57,8 @@ struct ColorSource {
   const Vec4f& of(float stored) const;
 };
 
+struct GlyphSet;
+
 struct PreparedItem {
   enum class Kind { surface, lines, points } kind = Kind::surface;
   DatasetPtr data;
@@ -69,20 +71,29 @@ struct PreparedItem {
   NormalSet normals;
   Material material;
   bool translucent = false;
+  std::optional<SurfaceTexture> lic;
+  Array lic_vectors;    ///< f32 x 3 packed, per point or cell
+  float lic_least = 0;  ///< vectors whose largest component is not above this have no direction
   // lines
   std::shared_ptr<const SegmentSet> segments;
-  double width = 1;  ///< pixels; also the points' size
-  bool shaded = false;
+  double width = 1;     ///< pixels; also the points' size
+  bool shaded = false;  ///< points as little spheres, lines by their tangents
+  double halo = 0;      ///< pixels
+  Vec3f halo_color;     ///< linear
   // lines and points
   std::shared_ptr<const std::vector<uint32_t>> points;  ///< numbers of the dots that are drawn; null (discs only): all
   Array positions;                                      ///< f32 x 3 packed
   Vec3 origin;
   bool discs = false;               ///< points as oriented discs: opaque, drawn like triangles
   Array disc_normals, disc_radius;  ///< f32 packed, per point of the dataset
+  // glyphs: polygons of shapes are a surface, their lines are lines; both stand at `origin`
+  std::shared_ptr<const GlyphSet> glyphs;
 };
 
 TriangleSet triangulate(const DatasetPtr& data, bool& any_polygon);
 NormalSet smooth_normals(const TriangleSet& triangles, double feature_angle);
+/// Vectors of a texture as three packed f32 numbers, and the size below which they count as none. Throws Error(usage).
+void take_texture(const SurfaceTexture& texture, PreparedItem& item);
 SegmentSet line_segments(const Dataset& data, const SurfaceMesh& mesh);
 /// Every edge of the polygons and strips once, in order of its points.
 SegmentSet polygon_edges(const Dataset& data, const SurfaceMesh& mesh);
@@ -114,6 +125,10 @@ class PreparedScene {
  public:
   std::vector<raster::PreparedItem> items;  ///< in scene order; edges of a surface are an item of their own
   std::vector<Light> lights;
+
+  /// Number of the item that a primitive belongs to.
+  uint32_t item_of(uint32_t primitive) const;
+  bool textured() const;
 };
 
 }  // namespace sg

@@ -21,6 +21,7 @@ namespace sg {
 /// layout permits (packed f32 positions, 32-bit triangles).
 class PreparedScene;
 using PreparedScenePtr = std::shared_ptr<const PreparedScene>;
+struct RenderTextures;  ///< see render/texture/textures.h
 /// Throws Error(usage) for an unknown field and for items whose mesh is of the wrong kind.
 PreparedScenePtr prepare_scene(const Scene& scene, Context& context);
 
@@ -28,7 +29,10 @@ PreparedScenePtr prepare_scene(const Scene& scene, Context& context);
 /// cleared (rgba 0, depth infinity, ids 0) and gets opaque colour (alpha 1), depth and ids; the result lists what is translucent and
 /// not hidden by an opaque surface. `pixel_scale`: pixels of this frame per pixel of the final picture (supersampling), for widths.
 FragmentLists rasterize(const Scene& scene, const Projection& projection, double pixel_scale, Frame& frame, Context& context);
+/// `textures`: those of the view, from texture_scene(); null: surfaces with a texture get that of this very frame.
 FragmentLists rasterize_prepared(const PreparedScene& scene, const Projection& projection, double pixel_scale, Frame& frame,
-                                 Context& context);
+                                 Context& context, const RenderTextures* textures = nullptr);
+/// The textures of the whole view `projection` at one sample a pixel, for frames of more samples and bands of them. Null: there are none.
+std::shared_ptr<const RenderTextures> texture_scene(const PreparedScene& scene, const Projection& projection, Context& context);
 
 }  // namespace sg

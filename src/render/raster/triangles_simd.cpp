@@ -7,37 +7,11 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#ifndef SG_RASTER_TRIANGLES_ONCE
-#define SG_RASTER_TRIANGLES_ONCE
-#include <atomic>
-
-namespace sg::raster {
-/// The minimum does not depend on the order in which threads come.
-inline void keep_nearest(uint64_t* slot, uint64_t key) {
-  std::atomic_ref<uint64_t> a(*slot);
-  uint64_t seen = a.load(std::memory_order_relaxed);
-  while (key < seen && !a.compare_exchange_weak(seen, key, std::memory_order_relaxed)) {
-  }
-}
-}  // namespace sg::raster
-#endif
+#include "render/raster/small_triangles-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::raster::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-
-using DF = hn::ScalableTag<float>;
-using DI = hn::RebindToSigned<DF>;
-using DU = hn::RebindToUnsigned<DF>;
-using F = hn::Vec<DF>;
-using I = hn::Vec<DI>;
-using M = hn::Mask<DF>;
-using MI = hn::Mask<DI>;
-
-struct Corner {
-  I x, y;
-  F w, px, py, z;
-};
 
 HWY_INLINE Corner project(const TriangleJob& job, I point) {
   const DF d;
@@ -64,72 +38,10 @@ HWY_INLINE Corner project(const TriangleJob& job, I point) {
   return c;
 }
 
-HWY_INLINE I min3(I a, I b, I c) { return hn::Min(a, hn::Min(b, c)); }
-HWY_INLINE I max3(I a, I b, I c) { return hn::Max(a, hn::Max(b, c)); }
-
 struct Lanes {
   alignas(64) int32_t x[3][64], y[3][64];
   alignas(64) float w[3][64];
 };
-
-struct Setup {
-  I e[3], step_x[3], step_y[3], above[3];
-  I first_x, first_y, last_x, last_y;
-  F w[3], inverse_area;
-};
-
-template <class Mask, class D>
-HWY_INLINE uint64_t bits_of(D d, Mask m) {
-  uint8_t bytes[16] = {};
-  hn::StoreMaskBits(d, m, bytes);
-  uint64_t bits;
-  __builtin_memcpy(&bits, bytes, 8);
-  const size_t lanes = hn::Lanes(d);
-  return lanes < 64 ? bits & ((uint64_t(1) << lanes) - 1) : bits;
-}
-
-/// Draws the lanes of `live` into the keys: all their boxes are walked together, pixel by pixel.
-HWY_INLINE void draw_small(const TriangleJob& job, const Setup& s, MI live, uint32_t first) {
-  const DF d;
-  const DI di;
-  const int wide = hn::GetLane(hn::MaxOfLanes(di, hn::IfThenElseZero(live, (s.last_x - s.first_x) + hn::Set(di, 1))));
-  const int high = hn::GetLane(hn::MaxOfLanes(di, hn::IfThenElseZero(live, (s.last_y - s.first_y) + hn::Set(di, 1))));
-  alignas(64) float depth[64];
-  alignas(64) int32_t fx[64], fy[64];
-  hn::Store(s.first_x, di, fx), hn::Store(s.first_y, di, fy);
-  const I most_x = s.last_x - s.first_x, most_y = s.last_y - s.first_y;
-  I row0 = s.e[0], row1 = s.e[1], row2 = s.e[2];
-  for (int j = 0; j < high; ++j) {
-    I e0 = row0, e1 = row1, e2 = row2;
-    const MI in_row = hn::AndNot(hn::Gt(hn::Set(di, j), most_y), live);
-    for (int i = 0; i < wide; ++i) {
-      const MI inside = hn::And(hn::And(hn::Gt(e0, s.above[0]), hn::Gt(e1, s.above[1])),
-                                hn::And(hn::Gt(e2, s.above[2]), hn::AndNot(hn::Gt(hn::Set(di, i), most_x), in_row)));
-      if (!hn::AllFalse(di, inside)) {
-        // Weights of the corners are the opposite edge functions.
-        F w = (hn::ConvertTo(d, e1) * s.w[0] + hn::ConvertTo(d, e2) * s.w[1] + hn::ConvertTo(d, e0) * s.w[2]) * s.inverse_area;
-        if (!job.view.parallel) w = hn::Set(d, 1.0f) / w;
-        hn::Store(w, d, depth);
-        for (uint64_t bits = bits_of(di, inside); bits; bits &= bits - 1) {
-          const int k = __builtin_ctzll(bits);
-          keep_nearest(job.keys + size_t(fy[k] + j) * size_t(job.view.width) + size_t(fx[k] + i), depth_key(depth[k], first + uint32_t(k)));
-        }
-      }
-      e0 = e0 + s.step_x[0], e1 = e1 + s.step_x[1], e2 = e2 + s.step_x[2];
-    }
-    row0 = row0 + s.step_y[0], row1 = row1 + s.step_y[1], row2 = row2 + s.step_y[2];
-  }
-}
-
-HWY_INLINE void edge(const Corner& a, const Corner& b, I px, I py, Setup& s, int k) {
-  const DI di;
-  const I dx = b.x - a.x, dy = b.y - a.y;
-  s.e[k] = dx * (py - a.y) - dy * (px - a.x);
-  s.step_x[k] = hn::Neg(hn::ShiftLeft<8>(dy)), s.step_y[k] = hn::ShiftLeft<8>(dx);
-  const I zero = hn::Zero(di);
-  const MI owns = hn::Or(hn::Lt(dy, zero), hn::And(hn::Eq(dy, zero), hn::Gt(dx, zero)));
-  s.above[k] = hn::IfThenElse(owns, hn::Set(di, -1), zero);
-}
 
 void store_large(const Corner* c, uint64_t bits, uint32_t first, const EyeView& view, std::vector<TriangleRecord>& large) {
   const DF d;
@@ -171,14 +83,9 @@ HWY_INLINE void draw_block(const TriangleJob& job, const uint32_t* t, size_t cou
   }
 
   // Pixels whose centres lie in the box; most tiny triangles have none.
-  const I lx = min3(c[0].x, c[1].x, c[2].x), hx = max3(c[0].x, c[1].x, c[2].x);
-  const I ly = min3(c[0].y, c[1].y, c[2].y), hy = max3(c[0].y, c[1].y, c[2].y);
-  const I half = hn::Set(di, subpixels / 2), zero = hn::Zero(di);
   Setup s;
-  s.first_x = hn::Max(hn::ShiftRight<8>(lx + (half - hn::Set(di, 1))), zero),
-  s.first_y = hn::Max(hn::ShiftRight<8>(ly + (half - hn::Set(di, 1))), zero);
-  s.last_x = hn::Min(hn::ShiftRight<8>(hx - half), hn::Set(di, view.width - 1)),
-  s.last_y = hn::Min(hn::ShiftRight<8>(hy - half), hn::Set(di, view.height - 1));
+  I lx, hx, ly, hy;
+  pixel_boxes(view, c, s, lx, hx, ly, hy);
   const MI none = hn::Or(hn::Gt(s.first_x, s.last_x), hn::Gt(s.first_y, s.last_y));
   const MI seen = hn::AndNot(none, whole);
   if (hn::AllFalse(di, seen)) return;
@@ -188,20 +95,8 @@ HWY_INLINE void draw_block(const TriangleJob& job, const uint32_t* t, size_t cou
   if (!hn::AllFalse(di, big)) store_large(c, bits_of(di, big), first, view, large);
   if (hn::AllFalse(di, small)) return;
 
-  // Turn them so that the inside is positive.
-  const I area = (c[1].x - c[0].x) * (c[2].y - c[0].y) - (c[1].y - c[0].y) * (c[2].x - c[0].x);
-  const MI turned = hn::Lt(area, zero);
-  const Corner b = c[1];
-  c[1].x = hn::IfThenElse(turned, c[2].x, b.x), c[2].x = hn::IfThenElse(turned, b.x, c[2].x);
-  c[1].y = hn::IfThenElse(turned, c[2].y, b.y), c[2].y = hn::IfThenElse(turned, b.y, c[2].y);
-  const M turned_f = hn::RebindMask(d, turned);
-  c[1].w = hn::IfThenElse(turned_f, c[2].w, b.w), c[2].w = hn::IfThenElse(turned_f, b.w, c[2].w);
-  const MI live = hn::AndNot(hn::Eq(area, zero), small);
-  const I px = hn::ShiftLeft<8>(s.first_x) + half, py = hn::ShiftLeft<8>(s.first_y) + half;
-  edge(c[0], c[1], px, py, s, 0), edge(c[1], c[2], px, py, s, 1), edge(c[2], c[0], px, py, s, 2);
-  for (int k = 0; k < 3; ++k) s.w[k] = c[k].w;
-  s.inverse_area = hn::Set(d, 1.0f) / hn::ConvertTo(d, hn::Abs(area));
-  draw_small(job, s, live, first);
+  const MI live = turn(c, s, small);
+  draw_small(view, job.keys, s, live, [&](int k) { return first + uint32_t(k); });
 }
 
 void draw(const TriangleJob& job, size_t begin, size_t end, std::vector<TriangleRecord>& large) {
@@ -299,7 +194,7 @@ void draw_triangles_reference(const TriangleJob& job, size_t begin, size_t end, 
         float w = (float(twice(1, 2, cx, cy)) * t.w[0] + float(twice(2, 0, cx, cy)) * t.w[1] + float(twice(0, 1, cx, cy)) * t.w[2]) *
                   inverse_area;
         if (!v.parallel) w = 1.0f / w;
-        keep_nearest(job.keys + size_t(y) * size_t(v.width) + size_t(x), depth_key(w, primitive));
+        keep_nearer(job.keys + size_t(y) * size_t(v.width) + size_t(x), depth_key(w, primitive));
       }
     });
   }

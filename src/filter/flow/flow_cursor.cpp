@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <optional>
+
+#include "filter/flow/flow_field.h"
+#include "filter/flow/hex_cursor.h"
+#include "filter/flow/lattice_cursor.h"
+#include "filter/flow/tet_cursor.h"
+
+namespace sg {
+
+struct FlowCursor::State {
+  enum class Source : uint8_t { none, lattice, tets, hexes, locator };
+  const FlowField* field;
+  const FlowAccess* access;
+  Source source = Source::none;  // of the last answer
+  std::optional<LatticeCursor> lattice;
+  std::optional<TetCursor> tets;
+  std::optional<HexCursor> hexes;
+  std::optional<LocatorCursor> locator;  // made when it is needed
+  std::optional<CellReader> reader;      // with hidden cells
+  int64_t cell = -1, sized = -1, framed = -1;
+  double length = 0;
+  Vec3 normal;  // of the surface at the last place
+  int64_t corner[8];
+  double weight[8];
+  std::vector<Vec3> slopes;
+
+  explicit State(const FlowField& f) : field(&f), access(&f.access()) {
+    const PointVectors v{f.f32(), f.f64(), f.components()};
+    if (access->kind == FlowAccess::Kind::lattice) lattice.emplace(access->lattice, v);
+    if (access->kind == FlowAccess::Kind::tets) tets.emplace(*access, v);
+    if (access->kind == FlowAccess::Kind::hexes) hexes.emplace(*access, v);
+    if (access->any_hidden) reader.emplace(access->mesh());
+  }
+  LocatorCursor& by_tree() {
+    if (!locator) locator.emplace(*access->locator());
+    return *locator;
+  }
+
+  bool find(Vec3 x) {
+    if (lattice) {
+      source = Source::lattice;
+      if (!lattice->find(x)) return false;
+      cell = lattice->cell();
+      return !reader || !reader->hidden(size_t(cell));
+    }
+    if (tets) {
+      source = Source::tets;
+      const TetCursor::Found found = tets->find(x);
+      if (found == TetCursor::Found::outside) return false;
+      if (found == TetCursor::Found::lost) {
+        const int64_t c = by_tree().find_any(x);
+        if (c < 0) return false;
+        tets->set(c, x);
+      }
+      cell = tets->cell();
+      return true;
+    }
+    if (hexes) {
+      source = Source::hexes;
+      if (hexes->find(x)) {
+        cell = hexes->cell();
+        return true;
+      }
+      cell = by_tree().find_any(x);
+      if (cell < 0 || hexes->set(cell, x)) return cell >= 0;
+    }
+    source = Source::locator;
+    return find_by_tree(x);
+  }
+  // On surfaces, whose lines leave them by rounding and curvature: the nearest place within a cell, if that is not at their border, where
+  // x lies beside the surface and not above it.
+  bool find_by_tree(Vec3 x) {
+    LocatorCursor& l = by_tree();
+    cell = l.find_any(x);
+    if (cell >= 0) return true;
+    if (field->dimension() == 3 || sized < 0) return false;
+    const NearestPlace near = l.nearest(x, length);
+    if (near.cell < 0) return false;
+    cell = l.find_any(near.at);
+    if (cell < 0) return false;
+    const Vec3 off = x - near.at;
+    const double d = sg::length(off);
+    return d <= 1e-6 * length || field->dimension() != 2 || std::abs(dot(off, surface_normal())) >= 0.5 * d;
+  }
+  CellMap& open_map() {
+    CellMap& map = by_tree().map();
+    if (map.reader().cell() != size_t(cell)) map.open(size_t(cell));
+    return map;
+  }
+  Vec3 surface_normal() {
+    CellMap& map = open_map();
+    const auto at = map.reader().at();
+    if (framed == cell) return normal;
+    if (at.size() == 3 && map.reader().type() == CellType::triangle) {
+      framed = cell;  // flat: the same all over the cell
+      return normal = normalize(cross(at[1] - at[0], at[2] - at[0]));
+    }
+    framed = -1;
+    if (CellShape::find(map.reader().type(), at.size(), map.reader().orders())) {
+      const Mat3 j = map.jacobian(by_tree().place().rst);
+      return normal = normalize(cross(j.column(0), j.column(1)));
+    }
+    // Polygons by Newell's sum, strips by the triangle of the place.
+    Vec3 sum;
+    if (map.reader().type() == CellType::triangle_strip) {
+      const size_t k = std::min(size_t(std::max(by_tree().place().rst.z, 0.0)), at.size() - 3);
+      sum = cross(at[k + 1] - at[k], at[k + 2] - at[k]) * (k % 2 ? -1.0 : 1.0);
+    } else {
+      for (size_t k = 0; k < at.size(); ++k) sum += cross(at[k] - at[0], at[(k + 1) % at.size()] - at[0]);
+    }
+    return normal = normalize(sum);
+  }
+  void measure() {
+    if (source == Source::lattice) {
+      length = lattice->length(), sized = cell;
+      return;
+    }
+    if (cell == sized) return;
+    sized = cell;
+    if (source == Source::tets || source == Source::hexes) {
+      length = source == Source::tets ? tets->length() : hexes->length();
+      return;
+    }
+    const Vec3 size = open_map().reader().box().size();
+    const double largest = std::max({size.x, size.y, size.z});
+    double product = 1;
+    int n = 0;
+    for (int a = 0; a < 3; ++a)
+      if (size[a] > 1e-6 * largest) product *= size[a], ++n;
+    length = n == 3 ? std::cbrt(product) : n == 2 ? std::sqrt(product) : product;
+  }
+  int make_corners() {
+    return lattice ? lattice->corners(corner, weight) : tets ? tets->corners(corner, weight) : hexes->corners(corner, weight);
+  }
+  Vec3 velocity() {
+    if (source == Source::lattice) return lattice->velocity();
+    if (source == Source::tets) return tets->velocity();
+    if (source == Source::hexes) return hexes->velocity();
+    const auto ids = locator->ids();
+    const auto weights = locator->weights();
+    Vec3 v;
+    for (size_t k = 0; k < ids.size(); ++k) v += field->at_point(size_t(ids[k])) * weights[k];
+    if (field->dimension() == 2) {
+      const Vec3 n = surface_normal();
+      v = v - n * dot(n, v);
+    }
+    return v;
+  }
+};
+
+FlowCursor::FlowCursor(const FlowField& field) : state_(std::make_unique<State>(field)) {}
+FlowCursor::FlowCursor(FlowCursor&&) noexcept = default;
+FlowCursor::~FlowCursor() = default;
+
+bool FlowCursor::operator()(Vec3 x, Vec3& v) {
+  State& s = *state_;
+  if (!s.find(x)) return false;
+  v = s.velocity();
+  s.measure();
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+bool FlowCursor::gradient(Vec3 x, Vec3& v, Mat3& j) {
+  if (!(*this)(x, v)) return false;
+  State& s = *state_;
+  if (s.source == State::Source::lattice) {
+    j = s.lattice->gradient();
+    return true;
+  }
+  if (s.source == State::Source::tets || s.source == State::Source::hexes) {
+    j = s.source == State::Source::tets ? s.tets->gradient() : s.hexes->gradient();
+    return true;
+  }
+  CellMap& map = s.open_map();
+  s.slopes.resize(map.reader().ids().size());
+  map.gradient_weights(s.by_tree().place(), s.slopes);
+  for (auto& row : j.m)
+    for (double& e : row) e = 0;
+  const auto ids = map.reader().ids();
+  for (size_t k = 0; k < ids.size(); ++k) {
+    const Vec3 u = s.field->at_point(size_t(ids[k]));
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b) j.m[a][b] += u[a] * s.slopes[k][b];
+  }
+  return true;
+}
+
+int64_t FlowCursor::cell() const { return state_->cell; }
+double FlowCursor::cell_length() const { return state_->length; }
+
+std::span<const int64_t> FlowCursor::ids() const {
+  State& s = *state_;
+  if (s.source == State::Source::locator) return s.locator->ids();
+  if (s.source == State::Source::none) return {};
+  return {s.corner, size_t(s.make_corners())};
+}
+std::span<const double> FlowCursor::weights() const {
+  State& s = *state_;
+  if (s.source == State::Source::locator) return s.locator->weights();
+  if (s.source == State::Source::none) return {};
+  return {s.weight, size_t(s.make_corners())};
+}
+const FlowField& FlowCursor::field() const { return *state_->field; }
+
+bool FlowCursor::snap(Vec3 x, Vec3& at) {
+  State& s = *state_;
+  at = x;
+  if (s.field->dimension() == 3) return true;
+  if (s.lattice) {
+    at = s.lattice->snap(x);
+    return true;
+  }
+  const NearestPlace near = s.by_tree().nearest(x, s.sized < 0 ? HUGE_VAL : s.length);
+  if (near.cell >= 0) at = near.at;
+  return near.cell >= 0;
+}
+
+Vec3 FlowCursor::snap(Vec3 x) {
+  Vec3 at;
+  snap(x, at);
+  return at;
+}
+
+}  // namespace sg

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+// Packets in f32 grids. Which cell and how far in it is worked out for all lanes at once; the eight corners of a lane are loaded as four
+// rows of two points and reduced along y, z and x in vectors of four.
+#include "filter/flow/packets/packets.h"
+
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "filter/flow/packets/grid_packets_simd.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "filter/flow/packets/packet_tracer-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sg::packets::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+class GridMesh {
+ public:
+  explicit GridMesh(const GridInput& g) : g_(g) {}
+
+  void start(size_t l, const GridItem& item) {
+    for (int a = 0; a < 3; ++a) i_[a][l] = item.cell[a], f_[a][l] = item.f[a];
+  }
+  bool velocity(size_t l, float* v) {
+    HWY_ALIGN float out[4];
+    interpolate(base(i_, l), f_[0][l], f_[1][l], f_[2][l], out);
+    for (int a = 0; a < 3; ++a) v[a] = out[a];
+    return std::isfinite(v[0] + v[1] + v[2]);
+  }
+  HWY_INLINE void look(const Lanes3& move, size_t active, Lanes3& v, int32_t* ok) {
+    const DF d;
+    const DI di;
+    for (size_t l = 0; l < N; l += hn::Lanes(d)) {
+      auto good = hn::Eq(hn::Zero(di), hn::Zero(di));
+      auto at = hn::Zero(di);
+      for (int a = 0; a < 3; ++a) {
+        auto q = hn::Mul(hn::Set(d, g_.to_grid[a][0]), hn::Load(d, &move[0][l]));
+        q = hn::Add(q, hn::Mul(hn::Set(d, g_.to_grid[a][1]), hn::Load(d, &move[1][l])));
+        q = hn::Add(q, hn::Mul(hn::Set(d, g_.to_grid[a][2]), hn::Load(d, &move[2][l])));
+        q = hn::Add(q, hn::Load(d, &f_[a][l]));
+        const auto sane = hn::Lt(hn::Abs(q), hn::Set(d, 1e9f));  // no NaN either
+        q = hn::IfThenElseZero(sane, q);
+        const auto whole = hn::Floor(q);
+        auto part = hn::Sub(q, whole);
+        auto i = hn::Add(hn::Load(di, &i_[a][l]), hn::ConvertTo(di, whole));
+        // The last plane of points belongs to the last cell.
+        const auto cells = hn::Set(di, g_.cells[a]), last = hn::Set(di, g_.cells[a] - 1);
+        const auto end = hn::And(hn::Eq(i, cells), hn::RebindMask(di, hn::Eq(part, hn::Zero(d))));
+        i = hn::IfThenElse(end, last, i);
+        part = hn::IfThenElse(hn::RebindMask(d, end), hn::Set(d, 1.0f), part);
+        good = hn::And(good, hn::And(hn::RebindMask(di, sane), hn::And(hn::Gt(i, hn::Set(di, -1)), hn::Lt(i, cells))));
+        i = hn::Min(hn::Max(i, hn::Zero(di)), last);
+        hn::Store(i, di, &to_i_[a][l]);
+        hn::Store(part, d, &to_f_[a][l]);
+        at = hn::Add(at, hn::Mul(i, hn::Set(di, g_.stride[a])));
+      }
+      hn::Store(at, di, &base_[l]);
+      hn::Store(hn::IfThenElseZero(good, hn::Set(di, -1)), di, ok + l);
+    }
+    HWY_ALIGN float out[N][4];
+    for (size_t l = 0; l < active; ++l) interpolate(g_.v + base_[l], to_f_[0][l], to_f_[1][l], to_f_[2][l], out[l]);
+    for (size_t l = active; l < N; ++l) std::fill_n(out[l], 4, 0.0f);
+    for (size_t l = 0; l < N; l += hn::Lanes(d)) {
+      hn::Vec<DF> x, y, z, rest;
+      hn::LoadInterleaved4(d, out[l], x, y, z, rest);
+      hn::Store(x, d, &v[0][l]), hn::Store(y, d, &v[1][l]), hn::Store(z, d, &v[2][l]);
+      const auto sum = hn::Add(hn::Add(x, y), z);
+      const auto finite = hn::Lt(hn::Abs(sum), hn::Set(d, 3e38f));
+      hn::Store(hn::And(hn::Load(di, ok + l), hn::IfThenElseZero(hn::RebindMask(di, finite), hn::Set(di, -1))), di, ok + l);
+    }
+  }
+  void go(size_t l) {
+    for (int a = 0; a < 3; ++a) i_[a][l] = to_i_[a][l], f_[a][l] = to_f_[a][l];
+  }
+  void copy(size_t to, size_t from) {
+    for (int a = 0; a < 3; ++a) i_[a][to] = i_[a][from], f_[a][to] = f_[a][from];
+  }
+  void x(size_t l, float* out) const {
+    const float q[3] = {float(i_[0][l]) + f_[0][l], float(i_[1][l]) + f_[1][l], float(i_[2][l]) + f_[2][l]};
+    for (int a = 0; a < 3; ++a) out[a] = g_.to_world[a][0] * q[0] + g_.to_world[a][1] * q[1] + g_.to_world[a][2] * q[2];
+  }
+  float cell(size_t) const { return g_.length; }
+
+ private:
+  using D4 = hn::CappedTag<float, 4>;
+  const float* base(const int32_t (&i)[3][N], size_t l) const {
+    return g_.v + i[0][l] * g_.stride[0] + i[1][l] * g_.stride[1] + i[2][l] * g_.stride[2];
+  }
+  // Two neighbours along x are six numbers in a row: x0 y0 z0 x1 and z0 x1 y1 z1, so that nothing behind the last point is read.
+#if HWY_TARGET == HWY_SCALAR
+  void interpolate(const float* p, float fx, float fy, float fz, float* HWY_RESTRICT out) const {
+    const auto blend = [](float a, float b, float t) { return a + t * (b - a); };
+    const ptrdiff_t dy = g_.stride[1], dz = g_.stride[2];
+    const auto plane = [&](const float* q) { return blend(blend(q[0], q[dy], fy), blend(q[dz], q[dz + dy], fy), fz); };
+    for (int c = 0; c < 3; ++c) out[c] = blend(plane(p + c), plane(p + 3 + c), fx);
+  }
+#elif HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3
+  // As below, both points of a row in one vector; a masked load reads six numbers and no more.
+  template <class V>
+  static HWY_INLINE V blend(V a, V b, V t) {
+    return hn::Add(a, hn::Mul(t, hn::Sub(b, a)));
+  }
+  HWY_INLINE void interpolate(const float* p, float fx, float fy, float fz, float* HWY_RESTRICT out) const {
+    const hn::CappedTag<float, 8> d;
+    const D4 half;
+    alignas(32) static constexpr int32_t second[8] = {3, 4, 5, 5, 3, 4, 5, 5};
+    const ptrdiff_t dy = g_.stride[1], dz = g_.stride[2];
+    const auto six = hn::FirstN(d, 6);
+    const auto y = hn::Set(d, fy);
+    const auto low = blend(hn::MaskedLoad(six, d, p), hn::MaskedLoad(six, d, p + dy), y);
+    const auto high = blend(hn::MaskedLoad(six, d, p + dz), hn::MaskedLoad(six, d, p + dz + dy), y);
+    const auto row = blend(low, high, hn::Set(d, fz));
+    const auto next = hn::TableLookupLanes(row, hn::SetTableIndices(d, second));
+    hn::Store(blend(hn::LowerHalf(half, row), hn::LowerHalf(half, next), hn::Set(half, fx)), half, out);
+  }
+#else
+  static HWY_INLINE hn::Vec<D4> blend(hn::Vec<D4> a, hn::Vec<D4> b, hn::Vec<D4> t) { return hn::Add(a, hn::Mul(t, hn::Sub(b, a))); }
+  HWY_INLINE void interpolate(const float* p, float fx, float fy, float fz, float* HWY_RESTRICT out) const {
+    const D4 d;
+    const ptrdiff_t dy = g_.stride[1], dz = g_.stride[2];
+    const auto y = hn::Set(d, fy), z = hn::Set(d, fz);
+    const auto a = blend(blend(hn::LoadU(d, p), hn::LoadU(d, p + dy), y), blend(hn::LoadU(d, p + dz), hn::LoadU(d, p + dz + dy), y), z);
+    const float* q = p + 2;
+    const auto b = blend(blend(hn::LoadU(d, q), hn::LoadU(d, q + dy), y), blend(hn::LoadU(d, q + dz), hn::LoadU(d, q + dz + dy), y), z);
+    hn::Store(blend(a, hn::Shuffle0321(b), hn::Set(d, fx)), d, out);
+  }
+#endif
+
+  const GridInput g_;
+  HWY_ALIGN int32_t i_[3][N] = {}, to_i_[3][N] = {}, base_[N] = {};
+  HWY_ALIGN Lanes3 f_ = {}, to_f_ = {};
+};
+
+void grid(const GridInput& input, const TraceOptions& options, float sign, std::span<const GridItem> items, Lines& out) {
+  GridMesh mesh(input);
+  Tracer<GridMesh> tracer(mesh, options, sign, out);
+  tracer.run(items);
+}
+
+}  // namespace sg::packets::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sg::packets {
+HWY_EXPORT(grid);
+void trace_grid(const GridInput& input, const TraceOptions& options, float sign, std::span<const GridItem> items, Lines& out) {
+  HWY_DYNAMIC_DISPATCH(grid)(input, options, sign, items, out);
+}
+}  // namespace sg::packets
+#endif

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filter/flow/streamlines.h"
+
+#include "base/random.h"
+#include "data/trusted.h"
+#include "filter/flow/line_attributes.h"
+#include "filter/flow/line_mesh.h"
+
+namespace sg {
+
+void describe(Schema& s, StreamlinesParams& p) {
+  s("field", p.field, "Velocity: a point or cell field of 2 or 3 components; default: the active vectors.");
+  s("direction", p.direction, "Along the flow, against it, or both from each seed, as one line.").choices({"forward", "backward", "both"});
+  describe(s, p.integration);
+  describe(s, p.stop);
+  describe(s, p.seeds);
+  s("attributes", p.attributes,
+    "What lines carry beside speed, time, length and velocity: the mesh's other fields; the vorticity; how the flow turns about the line.")
+      .choices({"fields", "vorticity", "rotation", "none"});
+}
+
+namespace {
+
+std::string no_line_hint(const FlowParts& parts, std::span<const Vec3> seeds) {
+  const Box3 b = parts.bounds();
+  size_t in = 0;
+  for (const Vec3& s : seeds) {
+    bool all = true;
+    for (int a = 0; a < 3; ++a) all = all && s[a] >= b.lo[a] && s[a] <= b.hi[a];
+    in += all;
+  }
+  if (in > 0) return "the flow has no value there: hidden cells, holes, or NaN";
+  return fmt::format("the mesh lies in x {:.6g} to {:.6g}, y {:.6g} to {:.6g}, z {:.6g} to {:.6g}", b.lo.x, b.hi.x, b.lo.y, b.hi.y, b.lo.z,
+                     b.hi.z);
+}
+
+}  // namespace
+
+Data streamlines(const std::vector<Data>& inputs, const StreamlinesParams& p, Context& context) {
+  const FlowParts parts(inputs[0], p.field.name, "streamlines", context);
+  const double largest = parts.largest_speed();
+  if (!(largest > 0)) fail_usage(fmt::format("field '{}' is zero or NaN everywhere: nothing flows", parts.name()), "streamlines");
+  StopParams stop = p.stop;
+  // Lines that circle would fill the picture.
+  if (!stop.max_length && !stop.max_time) stop.max_length = 1.5 * parts.bounds().diagonal();
+  const TraceOptions options = trace_options(p.integration, stop, largest);
+  std::vector<DatasetPtr> meshes;
+  for (const FlowField& f : parts.fields()) meshes.push_back(f.dataset());
+  PartsCursor cursor(parts);
+  // Seeds that nobody placed go where much flows: into vessels, not into the still parts around them.
+  double much = 0;
+  uint64_t asked = 0;
+  const bool chosen = p.seeds.seeds != "auto";
+  const SeedPlace flows = [&](Vec3 x) {
+    Vec3 v;
+    const double chance = random_unit(uint64_t(p.seeds.random_seed) + 17, asked++);
+    if (!cursor(x, v)) return false;
+    if (!(much > 0)) much = parts.mean_speed();
+    const double s = length(v) / much;
+    return chosen ? s > 0 : chance < s * s;
+  };
+  const std::vector<Vec3> at = make_seeds(p.seeds, meshes, seed_mesh_of(inputs, "streamlines"), flows, context);
+  const TraceDirection direction = p.direction == "both"      ? TraceDirection::both
+                                   : p.direction == "forward" ? TraceDirection::forward
+                                                              : TraceDirection::backward;
+  const std::string& unit = parts.fields().front().field().unit;
+  DatasetPtr lines;
+  if (parts.count() == 1)
+    if (const auto by_packets = packets::trace(parts.fields().front(), at, direction, options, context))
+      lines = lines_dataset(*by_packets, parts.name(), unit);
+  if (!lines) lines = lines_dataset(trace_lines(parts, at, direction, options, context), parts.name(), unit);
+  const size_t count = lines->cell_count();
+  if (count == 0) fail_usage(fmt::format("none of {} seeds lies in the flow", at.size()), "streamlines", no_line_hint(parts, at));
+  if (count < at.size()) context.info(fmt::format("streamlines: {} of {} seeds lie outside the flow", at.size() - count, at.size()));
+  DatasetParts out = lines->parts();
+  out.time = meshes.front()->time();
+  const auto add = [&](const FieldSet& more) {
+    for (const Field& f : more)
+      if (!out.fields.find(f.name, f.association)) out.fields.add(f);
+  };
+  const auto wanted = [&](std::string_view word) {
+    return std::find(p.attributes.begin(), p.attributes.end(), word) != p.attributes.end();
+  };
+  const bool vorticity = wanted("vorticity"), rotation = wanted("rotation");
+  if (vorticity || rotation) add(rotation_along(parts, *lines, parts.name(), vorticity, rotation, context));
+  if (wanted("fields")) add(fields_along(parts, *lines, parts.name(), context));
+  return make_trusted_dataset(std::move(out));
+}
+
+}  // namespace sg

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// streamlines: lines along a steady flow from seeds.
+#pragma once
+#include "filter/flow/seeds.h"
+#include "filter/flow/trace.h"
+
+namespace sg {
+
+struct StreamlinesParams {
+  FieldName field;
+  std::string direction = "both";
+  IntegrationParams integration;
+  StopParams stop;
+  SeedParams seeds;
+  std::vector<std::string> attributes{"fields"};
+};
+void describe(Schema& s, StreamlinesParams& p);
+
+/// A SurfaceMesh of poly-lines, one for each seed that lies in the flow, in the order of the seeds; lines follow the flow, so their first
+/// point is upstream. A collection is one flow: lines cross from part to part, in cells of its highest dimension. A second input is a mesh
+/// whose points are the seeds.
+/// Point fields: "speed" (the active one), "time" and "length" since the seed (negative upstream of it), the velocity under the name of the
+/// field (role vectors; on surfaces its part along the surface); by `attributes`: "fields": all other fields of the mesh (point fields
+/// interpolated, a cell field by its cell; those that all parts of a collection have); "vorticity": the curl of the flow, from the cell's
+/// gradient; "rotation": "angular velocity", half the vorticity along the line (radians a time), and "rotation", its integral over time
+/// since the seed (radians): how far a ribbon has turned.
+/// Cell fields: "seed" (number of the seed) and "stop" (why the line ended downstream, upstream with direction=backward: a StopReason,
+/// labels). Without max_length and max_time, lines end after one and a half times the mesh's diagonal. Uniform grids and tetrahedra of f32
+/// vectors go through packets (packets/packets.h). Throws Error(usage) without a vector field, for one that is zero everywhere, and when no
+/// seed lies in the flow.
+Data streamlines(const std::vector<Data>& inputs, const StreamlinesParams& p, Context& context);
+
+/// Lines of two points and more as that mesh, with the first four point fields and the cell fields. f32, about an origin of their own when
+/// they lie far from zero.
+DatasetPtr lines_dataset(const TracedLines& lines, const std::string& velocity_name, const std::string& unit);
+
+}  // namespace sg

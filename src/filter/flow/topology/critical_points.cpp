@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filter/flow/topology/critical_points.h"
+
+#include <algorithm>
+
+#include "base/parallel.h"
+#include "filter/flow/topology/cell_scan.h"
+#include "filter/flow/topology/cell_zeros.h"
+#include "filter/flow/topology/surface_zeros.h"
+#include "filter/flow/topology/winding.h"
+#include "filter/mesh/surface_builder.h"
+
+namespace sg {
+
+namespace {
+
+struct Found {
+  CellZero zero;
+  int64_t cell;
+};
+
+struct Search {
+  std::vector<Found> zeros;  // in order of cells
+  std::vector<int64_t> spread_points;
+  size_t spread = 0;
+};
+
+Search search_cells(const FlowField& flow, const PlaneFrame* frame, double min_speed, Context& context) {
+  const std::vector<uint64_t> cells = cells_that_may_vanish(flow, frame, context);
+  constexpr size_t grain = 64;
+  std::vector<Search> parts((cells.size() + grain - 1) / grain);
+  parallel_for(
+      cells.size(), grain,
+      [&](size_t begin, size_t end) {
+        CellZeros finder(flow, frame, min_speed * flow.largest_speed());
+        Search& part = parts[begin / grain];
+        std::vector<CellZero> found;
+        for (size_t i = begin; i < end; ++i) {
+          found.clear();
+          part.spread += finder.find(cells[i], found) == CellZeros::Result::spread;
+          std::sort(found.begin(), found.end(), [](const CellZero& a, const CellZero& b) {
+            return std::tuple(a.rst.z, a.rst.y, a.rst.x, a.at.x, a.at.y, a.at.z) <
+                   std::tuple(b.rst.z, b.rst.y, b.rst.x, b.at.x, b.at.y, b.at.z);
+          });
+          for (const CellZero& z : found) part.zeros.push_back({z, int64_t(cells[i])});
+        }
+        part.spread_points = std::move(finder.spread_points());
+      },
+      &context);
+  Search all;
+  for (Search& p : parts) {
+    all.zeros.insert(all.zeros.end(), p.zeros.begin(), p.zeros.end());
+    all.spread_points.insert(all.spread_points.end(), p.spread_points.begin(), p.spread_points.end());
+    all.spread += p.spread;
+  }
+  std::sort(all.spread_points.begin(), all.spread_points.end());
+  all.spread_points.erase(std::unique(all.spread_points.begin(), all.spread_points.end()), all.spread_points.end());
+  // A point of zero velocity in an area of zeros is not isolated.
+  std::erase_if(all.zeros, [&](const Found& f) {
+    return f.zero.node >= 0 && std::binary_search(all.spread_points.begin(), all.spread_points.end(), f.zero.node);
+  });
+  return all;
+}
+
+// Zeros on the borders of cells are found by each of them: the first stands for all, with the mean of their gradients.
+std::vector<Found> merged(std::vector<Found> zeros) {
+  std::vector<size_t> order;
+  for (size_t i = 0; i < zeros.size(); ++i)
+    if (zeros[i].zero.border) order.push_back(i);
+  std::sort(order.begin(), order.end(),
+            [&](size_t a, size_t b) { return std::tuple(zeros[a].zero.at.x, a) < std::tuple(zeros[b].zero.at.x, b); });
+  std::vector<size_t> first(zeros.size());
+  for (size_t i = 0; i < first.size(); ++i) first[i] = i;
+  auto root = [&](size_t i) {
+    while (first[i] != i) i = first[i] = first[first[i]];
+    return i;
+  };
+  for (size_t i = 0; i < order.size(); ++i) {
+    const CellZero& a = zeros[order[i]].zero;
+    for (size_t j = i + 1; j < order.size(); ++j) {
+      const CellZero& b = zeros[order[j]].zero;
+      const double reach = 1e-5 * std::min(a.size, b.size);
+      if (b.at.x - a.at.x > 1e-5 * a.size) break;
+      // Two zeros of one cell are two.
+      if (zeros[order[i]].cell == zeros[order[j]].cell || length(a.at - b.at) > reach) continue;
+      const size_t p = root(order[i]), q = root(order[j]);
+      first[std::max(p, q)] = std::min(p, q);
+    }
+  }
+  std::vector<Mat3> sum(zeros.size());
+  std::vector<int> count(zeros.size(), 0);
+  for (size_t i = 0; i < zeros.size(); ++i) {
+    const size_t r = root(i);
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b) sum[r].m[a][b] = (count[r] ? sum[r].m[a][b] : 0) + zeros[i].zero.gradient.m[a][b];
+    ++count[r];
+  }
+  std::vector<Found> out;
+  for (size_t i = 0; i < zeros.size(); ++i) {
+    if (root(i) != i) continue;
+    Found f = zeros[i];
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b) f.zero.gradient.m[a][b] = sum[i].m[a][b] / count[i];
+    out.push_back(f);
+  }
+  return out;
+}
+
+// Where the gradient does not tell the index: by a walk around the point.
+int index_about(FlowCursor& cursor, const PlaneFrame& frame, Vec3 at, double radius) {
+  constexpr size_t n = 720;
+  std::vector<Vec2> v;
+  for (size_t i = 0; i < n; ++i) {
+    const double angle = 2 * M_PI * double(i) / double(n);
+    Vec3 u;
+    if (!cursor(at + radius * (std::cos(angle) * frame.e1 + std::sin(angle) * frame.e2), u)) return 0;
+    v.push_back(frame.project(u));
+  }
+  return winding_index(v).value_or(0);
+}
+
+}  // namespace
+
+CriticalPoints find_critical_points(const FlowField& flow, const CriticalOptions& options, Context& context) {
+  const double centre = options.centre;
+  CriticalPoints r;
+  r.dimension = flow.dimension();
+  if (r.dimension < 2)
+    fail_usage("the mesh has no cells of area or volume", "critical_points",
+               "a grid or mesh of 2D or solid cells; tri- or tetrahedra between points");
+  if (r.dimension == 2) {
+    r.plane = plane_of(*flow.dataset());
+    if (!r.plane) {
+      find_surface_zeros(flow, options, r, context);
+      return r;
+    }
+  }
+  const PlaneFrame* frame = r.plane ? &*r.plane : nullptr;
+  Search s = search_cells(flow, frame, options.min_speed, context);
+  r.spread = s.spread;
+  std::optional<FlowCursor> cursor;
+  for (const Found& f : merged(std::move(s.zeros))) {
+    CriticalPoint c;
+    c.at = f.zero.at, c.gradient = f.zero.gradient, c.cell = f.cell, c.size = f.zero.size;
+    c.flow = frame ? linearise_in_plane(c.gradient, frame->e1, frame->e2, centre) : linearise(c.gradient, centre);
+    c.index = c.flow.index;
+    if (frame && c.flow.type == CriticalType::degenerate) {
+      if (!cursor) cursor.emplace(flow);
+      c.index = index_about(*cursor, *frame, c.at, 0.02 * c.size);
+    }
+    r.points.push_back(c);
+    if (frame) r.normal.push_back(frame->normal);
+  }
+  return r;
+}
+
+void describe(Schema& s, CriticalPointsParams& p) {
+  s("field", p.field, "Velocity; default: the active vectors.");
+  describe(s, p.options);
+}
+
+void describe(Schema& s, CriticalOptions& p) {
+  s("centre", p.centre,
+    "A spiral whose growth rate (real part) is at most this part of its turning rate (imaginary part) counts as a centre: sampled flows "
+    "without divergence have centres only to rounding.")
+      .at_least(0);
+  s("min_speed", p.min_speed,
+    "Cells that are slower than this part of the largest speed at all of their points are left out: noise has many zeros.")
+      .range(0, 1);
+}
+
+std::string summary(const CriticalPoints& found) {
+  size_t count[critical_types] = {};
+  int sum = 0;
+  for (const CriticalPoint& c : found.points) ++count[size_t(c.flow.type)], sum += c.index;
+  std::string text = fmt::format("{} critical point{}", found.points.size(), found.points.size() == 1 ? "" : "s");
+  const char* sign = ": ";
+  for (int t = 0; t < critical_types; ++t) {
+    if (!count[t]) continue;
+    text += fmt::format("{}{} {}", sign, count[t], critical_type_name(CriticalType(t)));
+    sign = "; ";
+  }
+  if (!found.points.empty()) text += fmt::format("; indices sum to {}", sum);
+  if (found.spread > 0)
+    text += fmt::format("; {} cell{} with lines or areas of zeros left out", found.spread, found.spread == 1 ? "" : "s");
+  return text;
+}
+
+DatasetPtr critical_points_dataset(const CriticalPoints& found) {
+  const size_t n = found.points.size();
+  const size_t vectors = found.dimension == 3 ? 3 : 2;
+  std::vector<double> xyz, re, im, gradient, normal;
+  std::vector<std::vector<double>> vector(vectors);
+  std::vector<int32_t> type, index;
+  std::vector<int64_t> cell;
+  auto push = [](std::vector<double>& to, Vec3 v) { to.insert(to.end(), {v.x, v.y, v.z}); };
+  for (size_t i = 0; i < n; ++i) {
+    const CriticalPoint& c = found.points[i];
+    push(xyz, c.at);
+    type.push_back(int32_t(c.flow.type)), index.push_back(c.index), cell.push_back(c.cell);
+    for (size_t k = 0; k < vectors; ++k) {
+      re.push_back(c.flow.re[k]), im.push_back(c.flow.im[k]);
+      push(vector[k], c.flow.vector[k]);
+    }
+    for (const auto& row : c.gradient.m) gradient.insert(gradient.end(), row, row + 3);
+    if (!found.normal.empty()) push(normal, found.normal[i]);
+  }
+  DatasetParts parts;
+  PointCloud cloud;
+  cloud.points.xyz = Array::from_vector(std::move(xyz), 3);
+  parts.mesh = std::move(cloud);
+  auto add = [&](std::string name, Array a, Role role = Role::none) {
+    parts.fields.add({std::move(name), Association::point, std::move(a), "", role});
+  };
+  add("type", Array::from_vector(std::move(type)), Role::labels);
+  add("index", Array::from_vector(std::move(index)));
+  add("eigenvalues real", Array::from_vector(std::move(re), int(vectors)));
+  add("eigenvalues imaginary", Array::from_vector(std::move(im), int(vectors)));
+  for (size_t k = 0; k < vectors; ++k) add(fmt::format("eigenvector {}", k + 1), Array::from_vector(std::move(vector[k]), 3));
+  add("gradient", Array::from_vector(std::move(gradient), 9), Role::tensors);
+  if (!found.normal.empty()) add("normal", Array::from_vector(std::move(normal), 3), Role::normals);
+  parts.fields.add(id_field("cell", Association::point, std::move(cell)));
+  std::string names;
+  for (int t = 0; t < critical_types; ++t) names += fmt::format("{}{}={}", t ? "\n" : "", t, critical_type_name(CriticalType(t)));
+  parts.notes.emplace_back("labels of type", names);
+  return make_dataset(std::move(parts));
+}
+
+DatasetPtr critical_points(const DatasetPtr& in, const CriticalPointsParams& p, Context& context) {
+  const FlowField flow(in, p.field.name, context);
+  const CriticalPoints found = find_critical_points(flow, p.options, context);
+  context.info("critical_points: " + summary(found));
+  return critical_points_dataset(found);
+}
+
+}  // namespace sg

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filter/flow/topology/separatrices.h"
+
+#include <algorithm>
+
+namespace sg {
+
+namespace {
+
+constexpr double near_limit = 0.1, near_saddle = 0.05;  // diagonals of the cell of a critical point within which a line has come to it
+
+double distance_to_segment(Vec3 x, Vec3 a, Vec3 b) {
+  const Vec3 d = b - a;
+  const double l2 = dot(d, d), t = l2 > 0 ? std::clamp(dot(x - a, d) / l2, 0.0, 1.0) : 0;
+  return length(x - a - t * d);
+}
+
+// Critical points in order of x, so that those near a line are few.
+class Limits {
+ public:
+  explicit Limits(const CriticalPoints& critical) : points_(critical.points) {
+    // The tracer follows the velocity in the triangles' planes, whose zeros are near those of find_surface_zeros() and not the same.
+    if (critical.dimension == 2 && !critical.plane) part_ = 6;
+    for (size_t i = 0; i < points_.size(); ++i) {
+      order_.push_back(i);
+      reach_ = std::max(reach_, part_ * near_limit * points_[i].size);
+    }
+    std::sort(order_.begin(), order_.end(),
+              [&](size_t a, size_t b) { return std::pair(points_[a].at.x, a) < std::pair(points_[b].at.x, b); });
+  }
+  /// The critical point to which a line that moves from a to b has come, -1 for none. `from` does not count while `left` is false.
+  int64_t reached(Vec3 a, Vec3 b, double sign, int64_t from, bool left) const {
+    const double lo = std::min(a.x, b.x) - reach_, hi = std::max(a.x, b.x) + reach_;
+    auto i = std::lower_bound(order_.begin(), order_.end(), lo, [&](size_t p, double x) { return points_[p].at.x < x; });
+    int64_t best = -1;
+    double nearest = HUGE_VAL;
+    for (; i != order_.end() && points_[*i].at.x <= hi; ++i) {
+      const CriticalPoint& c = points_[*i];
+      if (int64_t(*i) == from && !left) continue;
+      const bool ends = sign > 0 ? is_attracting(c.flow.type) : is_repelling(c.flow.type);
+      const double within = ends ? near_limit : is_saddle(c.flow.type) ? near_saddle : 0;
+      const double d = distance_to_segment(c.at, a, b);
+      if (d < part_ * within * c.size && d < nearest) nearest = d, best = int64_t(*i);
+    }
+    return best;
+  }
+
+ private:
+  const std::vector<CriticalPoint>& points_;
+  std::vector<size_t> order_;
+  double reach_ = 0, part_ = 1;
+};
+
+void follow(const TracedLines& traced, size_t line, const CriticalPoints& critical, const Limits& limits, double sign, Separatrix& s) {
+  const int64_t from = s.origin == Separatrix::Origin::saddle ? s.from : -1;
+  const Vec3 start = s.points.empty() ? traced.points[traced.begin[line]] : s.points[0];
+  bool left = from < 0;
+  s.stop = traced.stop[line];
+  for (size_t i = traced.begin[line]; i < traced.begin[line + 1]; ++i) {
+    const Vec3 x = traced.points[i];
+    left = left || length(x - start) > critical.points[size_t(from)].size;
+    if (!s.points.empty()) {
+      const int64_t to = limits.reached(s.points.back(), x, sign, from, left);
+      if (to >= 0) {
+        s.points.push_back(critical.points[size_t(to)].at), s.speed.push_back(0);
+        s.to = to, s.stop = StopReason::speed;
+        return;
+      }
+    }
+    s.points.push_back(x), s.speed.push_back(length(traced.velocity[i]));
+  }
+}
+
+}  // namespace
+
+void trace_to_limits(const FlowField& flow, const CriticalPoints& critical, std::vector<LimitSeed>& seeds, const TraceOptions& options,
+                     Context& context) {
+  const Limits limits(critical);
+  for (const double sign : {1.0, -1.0}) {
+    std::vector<Vec3> at;
+    std::vector<size_t> number;
+    for (size_t i = 0; i < seeds.size(); ++i)
+      if (seeds[i].sign == sign) at.push_back(seeds[i].at), number.push_back(i);
+    // Backward lines are reported seed last by nobody: trace_lines() gives each line from its seed on, or turned round.
+    const TracedLines traced = trace_lines(flow, at, sign > 0 ? TraceDirection::forward : TraceDirection::backward, options, context);
+    for (size_t k = 0; k < traced.lines(); ++k) {
+      LimitSeed& seed = seeds[number[size_t(traced.seed[k])]];
+      if (sign > 0) {
+        follow(traced, k, critical, limits, sign, seed.line);
+        continue;
+      }
+      TracedLines turned;
+      const auto first = ptrdiff_t(traced.begin[k]), last = ptrdiff_t(traced.begin[k + 1]);
+      turned.points.assign(traced.points.begin() + first, traced.points.begin() + last);
+      turned.velocity.assign(traced.velocity.begin() + first, traced.velocity.begin() + last);
+      const bool seed_last = std::abs(traced.time[size_t(first)]) > std::abs(traced.time[size_t(last) - 1]);
+      if (seed_last) {
+        std::reverse(turned.points.begin(), turned.points.end());
+        std::reverse(turned.velocity.begin(), turned.velocity.end());
+      }
+      turned.begin.push_back(turned.points.size()), turned.stop.push_back(traced.stop[k]);
+      follow(turned, 0, critical, limits, sign, seed.line);
+    }
+  }
+  std::erase_if(seeds, [](const LimitSeed& s) { return s.line.points.size() < 2; });
+}
+
+std::vector<Separatrix> find_separatrices(const FlowField& flow, const CriticalPoints& critical, const std::vector<SwitchPoint>& border,
+                                          const SeparatrixOptions& options, Context& context) {
+  // On curved surfaces the velocity that the tracer sees jumps at edges by what their bend leaves: no need to follow that in small steps,
+  // and its saddles are a part of a cell from ours.
+  const bool curved = critical.dimension == 2 && !critical.plane;
+  TraceOptions trace = options.trace;
+  if (curved) trace.tolerance = std::max(trace.tolerance, 1e-3);
+  const double offset = curved ? std::max(options.offset, 0.5) : options.offset;
+  std::vector<LimitSeed> seeds;
+  auto seed = [&](Vec3 from_at, Vec3 at, double sign, Separatrix::Origin origin, size_t from) {
+    LimitSeed s{at, sign, {}};
+    s.line.origin = origin, s.line.from = int64_t(from), s.line.unstable = sign > 0;
+    s.line.points = {from_at}, s.line.speed = {0};
+    seeds.push_back(std::move(s));
+  };
+  for (size_t i = 0; i < critical.points.size(); ++i) {
+    const CriticalPoint& c = critical.points[i];
+    if (!is_saddle(c.flow.type)) continue;
+    int in = 0;
+    for (size_t k = 0; k < size_t(c.flow.count); ++k) in += c.flow.re[k] < 0;
+    for (size_t k = 0; k < size_t(c.flow.count); ++k) {
+      const double sign = c.flow.re[k] > 0 ? 1 : -1;
+      if (c.flow.count == 3 && (sign > 0 ? 3 - in : in) != 1) continue;  // one of two: they span a surface
+      for (const double side : {1.0, -1.0})
+        seed(c.at, c.at + side * offset * c.size * c.flow.vector[k], sign, Separatrix::Origin::saddle, i);
+    }
+  }
+  for (size_t i = 0; i < border.size(); ++i) {
+    const SwitchPoint& p = border[i];
+    const bool touch = p.type == SwitchType::inner;
+    const Vec3 at = p.at + (touch ? 1e-3 : 0.1) * p.size * p.inward;
+    if (touch || p.type == SwitchType::detachment) seed(p.at, at, 1, Separatrix::Origin::border, i);
+    if (touch || p.type == SwitchType::attachment) seed(p.at, at, -1, Separatrix::Origin::border, i);
+  }
+  trace_to_limits(flow, critical, seeds, trace, context);
+  std::vector<Separatrix> out;
+  for (LimitSeed& s : seeds) out.push_back(std::move(s.line));
+  return out;
+}
+
+std::vector<Separatrix> separatrix_circles(const CriticalPoints& critical, double radius, int points) {
+  std::vector<Separatrix> out;
+  for (size_t i = 0; i < critical.points.size(); ++i) {
+    const CriticalPoint& c = critical.points[i];
+    if (c.flow.count != 3 || !is_saddle(c.flow.type)) continue;
+    int in = 0;
+    for (const double re : c.flow.re) in += re < 0;
+    std::vector<Vec3> span;
+    for (size_t k = 0; k < 3; ++k)
+      if ((c.flow.re[k] < 0) == (in == 2)) span.push_back(c.flow.vector[k]);
+    if (span.size() != 2) continue;
+    const Vec3 u = normalize(span[0]), w = normalize(span[1] - u * dot(u, span[1]));
+    Separatrix s;
+    s.origin = Separatrix::Origin::circle, s.from = int64_t(i), s.unstable = in == 1;
+    for (int k = 0; k <= points; ++k) {
+      const double angle = 2 * M_PI * (k % points) / points;
+      s.points.push_back(c.at + radius * c.size * (std::cos(angle) * u + std::sin(angle) * w));
+      s.speed.push_back(length(c.gradient * (s.points.back() - c.at)));
+    }
+    out.push_back(std::move(s));
+  }
+  return out;
+}
+
+DatasetPtr separatrices_dataset(const std::vector<Separatrix>& lines) {
+  std::vector<double> xyz, speed;
+  std::vector<int64_t> ids, offsets{0};
+  std::vector<int32_t> origin, from, to, unstable;
+  for (const Separatrix& s : lines) {
+    for (size_t i = 0; i < s.points.size(); ++i) {
+      ids.push_back(int64_t(xyz.size() / 3));
+      xyz.insert(xyz.end(), {s.points[i].x, s.points[i].y, s.points[i].z});
+      speed.push_back(s.speed[i]);
+    }
+    offsets.push_back(int64_t(ids.size()));
+    origin.push_back(int32_t(s.origin)), from.push_back(int32_t(s.from)), to.push_back(int32_t(s.to)), unstable.push_back(s.unstable);
+  }
+  SurfaceMesh mesh;
+  mesh.points.xyz = Array::from_vector(std::move(xyz), 3);
+  mesh.lines.connectivity = Array::from_vector(std::move(ids));
+  mesh.lines.offsets = Array::from_vector(std::move(offsets));
+  DatasetParts parts;
+  parts.mesh = std::move(mesh);
+  parts.fields.add({"speed", Association::point, Array::from_vector(std::move(speed)), "", Role::none});
+  auto add = [&](const char* name, std::vector<int32_t> v) {
+    parts.fields.add({name, Association::cell, Array::from_vector(std::move(v)), "", Role::labels});
+  };
+  add("unstable", std::move(unstable)), add("origin", std::move(origin)), add("from", std::move(from)), add("to", std::move(to));
+  parts.notes.emplace_back("labels of unstable", "0=stable\n1=unstable");
+  parts.notes.emplace_back("labels of origin", "0=saddle\n1=border\n2=circle");
+  return make_dataset(std::move(parts));
+}
+
+void describe(Schema& s, SeparatricesParams& p) {
+  s("field", p.field, "Velocity; default: the active vectors.");
+  describe(s, p.critical);
+  s("offset", p.offset, "How far from the saddle tracing begins, in diagonals of its cell.").positive();
+  s("border", p.border, "Also from places where the flow touches the border from inside, leaves a wall or comes to one (flat meshes).");
+  s("max_steps", p.max_steps, "Most steps of a line.").range(1, 1e9);
+  s("tolerance", p.tolerance, "Error of one step, in sizes of the local cell.").positive();
+}
+
+DatasetPtr separatrices(const DatasetPtr& in, const SeparatricesParams& p, Context& context) {
+  const FlowField flow(in, p.field.name, context);
+  const CriticalPoints critical = find_critical_points(flow, p.critical, context);
+  std::vector<SwitchPoint> border;
+  if (p.border && critical.plane) border = find_switch_points(flow, *critical.plane, context);
+  SeparatrixOptions options;
+  options.offset = p.offset;
+  options.trace.tolerance = p.tolerance, options.trace.max_steps = p.max_steps, options.trace.min_speed = 1e-9 * flow.largest_speed();
+  const auto lines = find_separatrices(flow, critical, border, options, context);
+  context.info(fmt::format("separatrices: {} line{} from {}", lines.size(), lines.size() == 1 ? "" : "s", summary(critical)));
+  return separatrices_dataset(lines);
+}
+
+}  // namespace sg

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filter/flow/topology/topology.h"
+
+namespace sg {
+
+void describe(Schema& s, TopologyParams& p) {
+  s("field", p.field, "Velocity; default: the active vectors.");
+  describe(s, p.critical);
+  s("separatrices", p.separatrices, "Trace the lines that part regions of different flow.");
+  s("orbits", p.orbits, "Look for periodic orbits (flat meshes).");
+  s("border", p.border, "Look for places where the flow touches the border, leaves walls or comes to them (flat meshes).");
+  s("offset", p.offset, "How far from a saddle tracing begins, in diagonals of its cell.").positive();
+  s("max_steps", p.max_steps, "Most steps of a line.").range(1, 1e9);
+  s("tolerance", p.tolerance, "Error of one step, in sizes of the local cell.").positive();
+  s("circle", p.circle, "Solids: radius of the seed circles of separating surfaces, in diagonals of the saddle's cell.").positive();
+}
+
+CollectionPtr topology(const DatasetPtr& in, const TopologyParams& p, Context& context) {
+  const FlowField flow(in, p.field.name, context);
+  const CriticalPoints critical = find_critical_points(flow, p.critical, context);
+  auto out = std::make_shared<Collection>();
+  out->parts.push_back({"critical points", critical_points_dataset(critical)});
+  std::string text = "topology: " + summary(critical);
+  std::vector<SwitchPoint> border;
+  if (p.border && critical.plane) border = find_switch_points(flow, *critical.plane, context);
+  std::vector<Separatrix> lines;
+  if (p.separatrices || p.orbits) {
+    SeparatrixOptions options;
+    options.offset = p.offset;
+    options.trace.tolerance = p.tolerance, options.trace.max_steps = p.max_steps, options.trace.min_speed = 1e-9 * flow.largest_speed();
+    lines = find_separatrices(flow, critical, border, options, context);
+  }
+  if (p.separatrices && !lines.empty()) {
+    out->parts.push_back({"separatrices", separatrices_dataset(lines)});
+    text += fmt::format("; {} separatrices", lines.size());
+  }
+  if (p.orbits && critical.plane) {
+    const auto orbits = find_closed_orbits(flow, critical, lines, {}, context);
+    if (!orbits.empty()) {
+      out->parts.push_back({"closed orbits", orbits_dataset(orbits)});
+      text += fmt::format("; {} periodic orbit{}", orbits.size(), orbits.size() == 1 ? "" : "s");
+    }
+  }
+  if (!border.empty()) {
+    out->parts.push_back({"switch points", switch_points_dataset(border)});
+    text += fmt::format("; {} switch point{} of the border", border.size(), border.size() == 1 ? "" : "s");
+  }
+  if (critical.dimension == 3) {
+    const auto circles = separatrix_circles(critical, p.circle, 32);
+    if (!circles.empty()) out->parts.push_back({"separation circles", separatrices_dataset(circles)});
+  }
+  context.info(text);
+  return out;
+}
+
+}  // namespace sg

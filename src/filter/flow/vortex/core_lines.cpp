@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filter/flow/vortex/core_lines.h"
+
+#include "base/parallel.h"
+#include "filter/flow/flow_field.h"
+#include "filter/flow/vortex/eigen_general.h"
+#include "filter/flow/vortex/keep_large.h"
+#include "filter/flow/vortex/measures.h"
+#include "filter/flow/vortex/parallel_vectors.h"
+
+namespace sg {
+
+void describe(Schema& s, VortexCoresParams& p) {
+  s("field", p.field, "Velocity; default: the active vector.");
+  s("method", p.method, "sujudi_haimes: velocity along the real eigenvector of its gradient. levy: velocity along the vorticity.")
+      .choices({"sujudi_haimes", "levy"});
+  s("min_swirl", p.min_swirl, "Weakest turning that counts, as a part of the strongest swirling strength on any core.").range(0, 1);
+  s("max_angle", p.max_angle, "Largest angle between a core and the flow on it; 90 keeps all.").unit("deg").range(0, 90);
+  s("min_length", p.min_length, "Shortest core, as a part of the mesh's diagonal.").range(0, 1);
+}
+
+namespace {
+
+// Of each point of the lines: interpolated velocity and gradient.
+struct AtPoint {
+  Vec3 u;
+  Mat3 j;
+};
+
+AtPoint at_point(const ParallelLines& lines, const ParallelPoint& p, std::span<const Vec3> u, const View<double>& g) {
+  AtPoint r;
+  for (auto& row : r.j.m)
+    for (double& e : row) e = 0;
+  for (uint32_t k = p.first; k < p.first + p.count; ++k) {
+    const double w = lines.weights[k];
+    const auto id = size_t(lines.ids[k]);
+    r.u += u[id] * w;
+    for (int m = 0; m < 9; ++m) r.j.m[m / 3][m % 3] += w * g(id, m);
+  }
+  return r;
+}
+
+double angle_between(Vec3 a, Vec3 b) {
+  const double l = length(a) * length(b);
+  return l > 0 ? std::acos(std::min(1.0, std::abs(dot(a, b)) / l)) * 180 / 3.14159265358979323846 : 0;
+}
+
+}  // namespace
+
+DatasetPtr vortex_cores(const DatasetPtr& in, const VortexCoresParams& p, Context& context) {
+  Field velocity = flow_field_of(*in, p.field.name, "vortex_cores");
+  const std::vector<Vec3> u = point_vectors(in, velocity, context);
+  DatasetPtr data = in;
+  if (velocity.association == Association::cell) {  // its gradient is wanted at the points too
+    std::vector<double> xyz;
+    for (const Vec3& v : u) xyz.insert(xyz.end(), {v.x, v.y, v.z});
+    DatasetParts parts = in->parts();
+    velocity = {velocity.name, Association::point, Array::from_vector(std::move(xyz), 3), velocity.unit, Role::vectors};
+    parts.fields.remove(velocity.name, Association::cell);
+    parts.fields.add(velocity);
+    data = make_dataset(std::move(parts));
+  }
+  const Array gradients = velocity_gradients(data, velocity, context);
+  const View<double> g = gradients.view<double>();
+  std::vector<Vec3> w(u.size());
+  const bool levy = p.method == "levy";
+  parallel_for(u.size(), 1 << 14, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      Mat3 j;
+      for (int k = 0; k < 9; ++k) j.m[k / 3][k % 3] = g(i, k);
+      w[i] = levy ? Vec3(j.m[2][1] - j.m[1][2], j.m[0][2] - j.m[2][0], j.m[1][0] - j.m[0][1]) : j * u[i];
+    }
+  });
+  ParallelLines lines = parallel_lines(data, u, w, context);
+
+  std::vector<double> swirl(lines.points.size()), angle(lines.points.size(), 0);
+  std::vector<AtPoint> at(lines.points.size());
+  double strongest = 0;
+  for (size_t i = 0; i < swirl.size(); ++i) {
+    at[i] = at_point(lines, lines.points[i], u, g);
+    const GeneralEigenvalues e = general_eigenvalues(at[i].j);
+    swirl[i] = e.complex_pair ? e.im : 0;
+    // u must be the eigenvector of the real eigenvalue: with u = ratio * J u, that is 1/ratio.
+    if (e.complex_pair && !levy && std::abs(1 / lines.points[i].ratio - e.real[0]) > 1e-3 * (e.im + std::abs(e.real[0]))) {
+      const Vec3 along = eigenvector_of(at[i].j, e.real[0]);
+      if (angle_between(along, at[i].u) > 5) swirl[i] = 0;
+    }
+    strongest = std::max(strongest, swirl[i]);
+  }
+  ParallelLines kept = lines;
+  kept.segments.clear(), kept.cells.clear();
+  const double least = std::max(p.min_swirl * strongest, 1e-300);
+  for (size_t s = 0; s < lines.cells.size(); ++s) {
+    const uint32_t a = lines.segments[2 * s], b = lines.segments[2 * s + 1];
+    const Vec3 along = lines.points[b].at - lines.points[a].at;
+    const double turn = angle_between(along, at[a].u + at[b].u);
+    if (swirl[a] < least || swirl[b] < least || turn > p.max_angle) continue;
+    kept.segments.push_back(a), kept.segments.push_back(b), kept.cells.push_back(lines.cells[s]);
+    angle[a] = std::max(angle[a], turn), angle[b] = std::max(angle[b], turn);
+  }
+  const DatasetPtr with = parallel_lines_mesh(in, kept, context, {{"swirling strength", swirl}, {"core angle", angle}});
+  return long_lines(with, p.min_length * in->bounds().diagonal(), "vortex_cores", context);
+}
+
+}  // namespace sg

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filter/flow/vortex/ftle.h"
+
+#include "base/parallel.h"
+#include "filter/flow/unsteady/particles.h"
+#include "filter/probe/resample.h"
+#include "filter/tensor/sym_tensor.h"
+
+namespace sg {
+
+void describe(Schema& s, FtleParams& p) {
+  s("field", p.field, "Velocity; default: the active vector.");
+  s("duration", p.duration, "How long places are carried; negative: back in time.").unit("time");
+  s("start", p.start, "Time at which they start; default: the first of the series (backwards the last).").unit("time");
+  s("times", p.times, "Times of a series that a source computes: FIRST:LAST:COUNT or a list; default: those of the file.");
+  s("interpolation", p.interpolation, "Between the time steps.").choices({"linear", "cubic"});
+  s("dims", p.dims, "Seeds along x, y and z; default: from size.").at_least(1);
+  s("size", p.size, "Seeds along the longest axis, the others in proportion.").range(2, 1e6);
+  s("bounds", p.bounds, "Box of the seeds as xmin,xmax,ymin,ymax,zmin,zmax; default: that of the mesh.").unit("length");
+  s("offset", p.offset, "Derivatives from four (3D: six) places this far beside each seed; default: from the neighbouring seeds.")
+      .unit("length");
+  describe(s, p.integration);
+}
+
+namespace {
+
+// Difference of the map along an axis from what is known on both sides of x.
+bool difference(const Vec3* less, const Vec3& here, bool here_known, const Vec3* more, double step, Vec3& out) {
+  if (less && more) out = (*more - *less) / (2 * step);
+  else if (more && here_known) out = (*more - here) / step;
+  else if (less && here_known) out = (here - *less) / step;
+  else return false;
+  return true;
+}
+
+struct Stretch {
+  double ftle = NAN, values[3] = {NAN, NAN, NAN};
+  Vec3 largest{NAN, NAN, NAN}, smallest{NAN, NAN, NAN};
+};
+
+// C = F^T F over the axes that count, which span a line, a plane or space.
+Stretch stretch_of(const Vec3 f[3], const bool counts[3], int dimension, double duration) {
+  const auto c = [&](int a, int b) { return counts[a] && counts[b] ? dot(f[a], f[b]) : 0.0; };
+  const Eigen3 e = eigen_of({c(0, 0), c(1, 1), c(2, 2), c(0, 1), c(1, 2), c(0, 2)});
+  Stretch s;
+  // Axes that do not count have the eigenvalue 0; their vectors come last among equals only when C has no other 0, so take the values
+  // by the vectors.
+  int last = 0;
+  for (int k = 0, n = 0; k < 3 && n < dimension; ++k) {
+    bool outside = false;
+    for (int a = 0; a < 3; ++a) outside = outside || (!counts[a] && std::abs(e.vector[k][a]) > 0.5);
+    if (!outside) s.values[dimension - 1 - n++] = std::max(e.value[k], 0.0), last = k;
+  }
+  s.largest = e.vector[0], s.smallest = e.vector[last];
+  s.ftle = std::log(std::sqrt(s.values[dimension - 1])) / std::abs(duration);
+  return s;
+}
+
+void check_duration(double duration) {
+  if (!(std::abs(duration) > 0) || !std::isfinite(duration)) fail_usage("carries nothing", "duration", "a time, positive or negative");
+}
+
+}  // namespace
+
+DatasetPtr ftle_of(const UniformGrid& grid, double duration, std::optional<double> offset, const FlowMap& map) {
+  check_duration(duration);
+  if (offset && !(*offset > 0)) fail_usage("is no distance", "offset", "a small positive length");
+  const std::array<size_t, 3> n = grid.dims;
+  const size_t count = n[0] * n[1] * n[2];
+  bool counts[3];
+  std::vector<int> axes;
+  for (int a = 0; a < 3; ++a)
+    if ((counts[a] = n[size_t(a)] > 1)) axes.push_back(a);
+  const int dimension = int(axes.size());
+  if (dimension == 0) fail_usage("one seed has no neighbours", "dims", "two or more along some axis");
+  // The seeds, and behind each the places beside it.
+  const size_t each = offset ? 1 + 2 * axes.size() : 1;
+  std::vector<Vec3> from(count * each), to;
+  std::vector<uint8_t> known;
+  parallel_for(count, 1 << 12, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const Vec3 index(double(i % n[0]), double(i / n[0] % n[1]), double(i / (n[0] * n[1])));
+      const Vec3 x = from[i * each] = grid.origin + grid.direction * (grid.spacing * index);
+      for (size_t k = 1; k < each; ++k)
+        from[i * each + k] = x + grid.direction.column(axes[(k - 1) / 2]) * (k % 2 ? -*offset : *offset);
+    }
+  });
+  map(from, to, known);
+
+  float *value = nullptr, *went = nullptr, *values = nullptr, *largest = nullptr, *smallest = nullptr;
+  const auto dims = size_t(dimension);
+  Array arrays[5] = {Array::make<float>(count, 1, &value), Array::make<float>(count, 3, &went), Array::make<float>(count, dimension, &values),
+                     Array::make<float>(count, 3, &largest), Array::make<float>(count, 3, &smallest)};
+  parallel_for(count, 1 << 12, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const size_t index[3] = {i % n[0], i / n[0] % n[1], i / (n[0] * n[1])}, step[3] = {1, n[0], n[0] * n[1]}, here = i * each;
+      Vec3 f[3];
+      bool all = true;
+      for (size_t k = 0; k < axes.size(); ++k) {
+        const auto a = size_t(axes[k]);
+        const size_t less = offset ? here + 1 + 2 * k : here - step[a], more = offset ? less + 1 : here + step[a];
+        const bool has_less = (offset || index[a] > 0) && known[less], has_more = (offset || index[a] + 1 < n[a]) && known[more];
+        all = all && difference(has_less ? &to[less] : nullptr, to[here], known[here], has_more ? &to[more] : nullptr,
+                                offset ? *offset : grid.spacing[int(a)], f[a]);
+      }
+      const Stretch s = all ? stretch_of(f, counts, dimension, duration) : Stretch();
+      value[i] = float(s.ftle);
+      for (size_t k = 0; k < dims; ++k) values[dims * i + k] = float(s.values[k]);
+      for (int k = 0; k < 3; ++k) {
+        went[3 * i + size_t(k)] = known[here] ? float(to[here][k]) : NAN;
+        largest[3 * i + size_t(k)] = float(s.largest[k]), smallest[3 * i + size_t(k)] = float(s.smallest[k]);
+      }
+    }
+  });
+  DatasetParts parts;
+  parts.mesh = grid;
+  constexpr const char* names[] = {"ftle", "flow map", "stretch", "stretch direction", "shrink direction"};
+  for (int k = 0; k < 5; ++k)
+    parts.fields.add({names[k], Association::point, std::move(arrays[k]), k == 0 ? "1/time" : "", k == 0 ? Role::scalars : Role::none});
+  return make_dataset(std::move(parts));
+}
+
+DatasetPtr ftle(const Series& given, const FtleParams& p, Context& context) {
+  if (given.times.empty()) fail_usage("a series of no steps", "ftle");
+  check_duration(p.duration);
+  const int sign = p.duration < 0 ? -1 : 1;
+  Series series = given;
+  const double start = p.start.value_or(given.times.size() == 1 ? 0.0 : sign > 0 ? given.times.front() : given.times.back());
+  const double until = start + p.duration;
+  if (given.times.size() == 1) {  // steady: the same at both ends of the way
+    series.times = {std::min(start, until), std::max(start, until)};
+    series.load = [only = single_dataset(given.load(0), "ftle")](size_t) -> Data { return only; };
+  } else if (std::min(start, until) < given.times.front() || std::max(start, until) > given.times.back()) {
+    fail_usage(fmt::format("from {:.6g} to {:.6g} is not in the series, which lasts from {:.6g} to {:.6g}", start, until, given.times.front(),
+                           given.times.back()),
+               "ftle", "another start or duration");
+  }
+  UnsteadyFlow flow(series, p.field.name, p.interpolation == "cubic" ? TimeInterpolation::cubic : TimeInterpolation::linear, context);
+  size_t k = flow.interval_of(start, sign);
+  const size_t last = flow.interval_of(until, -sign);
+  flow.open(k, context);
+  StopParams stop;
+  stop.max_steps = 1000000000, stop.closed = false;
+  const TraceOptions options = trace_options(p.integration, stop, flow.largest_speed());
+  ResampleParams r;
+  r.dims = p.dims, r.size = p.size, r.bounds = p.bounds;
+  const UniformGrid grid = resample_grid(*flow.steps()[flow.base()].dataset(), r);
+  return ftle_of(grid, p.duration, p.offset, [&](std::span<const Vec3> from, std::vector<Vec3>& to, std::vector<uint8_t>& known) {
+    std::vector<Particle> particles(from.size());
+    for (size_t i = 0; i < from.size(); ++i) particles[i].x = from[i], particles[i].t = start;
+    for (;; k = size_t(ptrdiff_t(k) + sign)) {
+      flow.open(k, context);
+      advance(flow, particles, k == last ? until : sign > 0 ? flow.end() : flow.begin(), sign, options, context);
+      context.check();
+      context.progress(std::min(1.0, std::abs((sign > 0 ? flow.end() : flow.begin()) - start) / std::abs(p.duration)), "ftle");
+      if (k == last) break;
+    }
+    to.resize(from.size()), known.resize(from.size());
+    for (size_t i = 0; i < from.size(); ++i) to[i] = particles[i].x, known[i] = particles[i].started && !particles[i].ended;
+  });
+}
+
+}  // namespace sg

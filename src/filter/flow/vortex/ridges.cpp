@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filter/flow/vortex/ridges.h"
+
+#include "base/parallel.h"
+#include "data/field_ops.h"
+#include "data/mesh_dimension.h"
+#include "filter/field/derivatives.h"
+#include "filter/field/gradient.h"
+#include "filter/flow/vortex/keep_large.h"
+#include "filter/mesh/components.h"
+#include "filter/mesh/extract.h"
+#include "filter/scalar/contour.h"
+#include "filter/scalar/isolines.h"
+#include "filter/tensor/sym_tensor.h"
+
+namespace sg {
+
+void describe(Schema& s, RidgesParams& p) {
+  s("field", p.field, "Scalar field of points; default: the active scalar.");
+  s("kind", p.kind, "Crests or troughs.").choices({"ridges", "valleys"});
+  s("limit", p.limit, "Ridges: only where the field is at least this; valleys: at most. Default: no limit.").unit("@field");
+  s("strength", p.strength, "Weakest curvature across that counts, as a part of the strongest.").range(0, 1);
+  s("min_length", p.min_length, "Shortest line, or smallest extent of a surface, as a part of the mesh's diagonal.").range(0, 1);
+}
+
+namespace {
+
+constexpr const char *slope_name = "ridge slope of it", *bend_name = "ridge bend of it", *zero_name = "ridge condition of it";
+
+struct Height {
+  Vec3 g;
+  SymTensor h;
+};
+
+Height height_at(const View<double>& g, const View<double>& h, size_t i, double sign) {
+  return {Vec3(g(i, 0), g(i, 1), g(i, 2)) * sign, SymTensor{h(i, 0), h(i, 4), h(i, 8), h(i, 1), h(i, 5), h(i, 2)} * sign};
+}
+
+// The axis along which a 2D mesh has no extent: its normal.
+int flat_axis(const DatasetPtr& in) {
+  const Vec3 size = in->bounds().size();
+  for (int a = 0; a < 3; ++a)
+    if (size[a] <= 1e-9 * in->bounds().diagonal()) return a;
+  fail_usage("this mesh is a bent or tilted surface; ridges are found in flat meshes along two axes and in volumes", "ridges",
+             "resample it on a grid");
+}
+
+// How strong the ridge is at a place where the condition holds; 0 when it is one of the other zeros.
+// `cell`: size of a cell, by which a place on the crest may be off.
+double strength_at(const Height& x, int flat, double cell) {
+  const Eigen3 e = eigen_of(x.h);
+  int least = 2;
+  if (flat >= 0) {  // the normal is no direction of the mesh
+    double lowest = HUGE_VAL;
+    for (int k = 0; k < 3; ++k)
+      if (std::abs(e.vector[k][flat]) < 0.5 && e.value[k] < lowest) lowest = e.value[k], least = k;
+  }
+  if (!(e.value[least] < 0)) return 0;
+  // The gradient must be free of this eigenvector: Newton's step to the crest is short. (Where it is free of another one, the step is
+  // long, except beside a peak, where all of them meet.)
+  if (std::abs(dot(x.g, e.vector[least])) > -0.3 * cell * e.value[least]) return 0;
+  return -e.value[least];
+}
+
+}  // namespace
+
+DatasetPtr ridges(const DatasetPtr& in, const RidgesParams& p, Context& context) {
+  const Field* found = p.field.empty() ? in->fields().active(1) : &in->fields().require(p.field.name);
+  if (!found) fail_usage("the data have no scalar field", "ridges");
+  const Field field = *found;
+  if (field.components() != 1 || field.association != Association::point)
+    fail_usage(fmt::format("field '{}' is no scalar on points", field.name), "ridges", "magnitude, component or cell_to_point make one");
+  const int dimension = mesh_dimension(*in);
+  if (dimension < 2) fail_usage("a mesh of lines or points has no ridges", "ridges");
+  const int flat = dimension == 2 ? flat_axis(in) : -1;
+  const double sign = p.kind == "ridges" ? 1 : -1;
+
+  const DatasetPtr first = gradient(in, {{field.name}, slope_name}, context);
+  const DatasetPtr second = hessian(first, {{field.name}, bend_name}, context);
+  const Array slopes = second->fields().require(slope_name).array.converted(ElementType::f64);
+  const Array bends = second->fields().require(bend_name).array.converted(ElementType::f64);
+  const View<double> g = slopes.view<double>(), h = bends.view<double>();
+  double* zero = nullptr;
+  Array condition = Array::make<double>(g.count, 1, &zero);
+  parallel_for(g.count, 1 << 13, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const Height x = height_at(g, h, i, sign);
+      const Vec3 hg = x.h * x.g;
+      const double size = length(x.g) * x.h.norm();
+      zero[i] = flat >= 0 ? cross(x.g, hg)[flat] : dot(cross(x.g, hg), x.h * hg) / (size > 0 ? size : 1);
+    }
+  });
+  DatasetParts parts = in->parts();
+  parts.fields.add({slope_name, Association::point, slopes, "", Role::none});
+  parts.fields.add({bend_name, Association::point, bends, "", Role::none});
+  // The contour keeps 32 bits: the largest value is 1.
+  const Range range = field_stats(condition).range[0];
+  const double most = std::max(std::abs(range.lo), std::abs(range.hi));
+  for (size_t i = 0; i < g.count && most > 0; ++i) zero[i] /= most;
+  parts.fields.add({zero_name, Association::point, std::move(condition), "", Role::none});
+  ContourParams c;
+  c.field = {zero_name}, c.values = {0}, c.normals = false;
+  const DatasetPtr all = contour(make_dataset(std::move(parts)), c, context);
+
+  const View<double> ga = all->fields().require(slope_name, Association::point).array.view<double>();
+  const View<double> ha = all->fields().require(bend_name, Association::point).array.view<double>();
+  const Array values = scalar_of(all->fields().require(field.name, Association::point), 0, ElementType::f64);
+  const View<double> v = values.view<double>();
+  const Vec3 size = in->bounds().size();
+  double measure = 1;
+  for (int a = 0; a < 3; ++a) measure *= a == flat ? 1 : size[a];
+  const double cell = std::pow(measure / double(std::max<size_t>(1, in->cell_count())), 1.0 / dimension);
+  std::vector<double> strength(all->point_count());
+  parallel_for(strength.size(), 1 << 12, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) strength[i] = strength_at(height_at(ga, ha, i, sign), flat, cell);
+  });
+  double strongest = 0;
+  for (const double s : strength) strongest = std::max(strongest, s);
+  std::vector<uint8_t> good(strength.size());
+  for (size_t i = 0; i < good.size(); ++i)
+    good[i] = strength[i] > 0 && strength[i] >= p.strength * strongest && (!p.limit || sign * v(i) >= sign * *p.limit);
+  const SurfaceMesh& mesh = *all->as<SurfaceMesh>();
+  const CellsView cells = cells_view(flat >= 0 ? mesh.lines : mesh.polygons);
+  std::vector<int64_t> stay;
+  for (size_t k = 0; k < cells.count; ++k) {
+    bool every = true;
+    for (size_t m = cells.begin(k); m < cells.end(k); ++m) every = every && good[size_t(cells.connectivity[m])];
+    if (every) stay.push_back(int64_t(k));
+  }
+  DatasetParts out = all->parts();
+  for (const char* scratch : {slope_name, bend_name, zero_name}) out.fields.remove(scratch, Association::point);
+  out.fields.add({"ridge strength", Association::point, Array::from_vector(std::move(strength)), "", Role::none});
+  const DatasetPtr kept = extract_cells(make_dataset(std::move(out)), stay, "ridges");
+  if (stay.empty()) return kept;
+  const double shortest = p.min_length * in->bounds().diagonal();
+  if (flat >= 0) return long_lines(polylines(kept, {}, context), shortest, "ridges", context);
+  return large_parts(components(kept, {}, context), shortest, "ridges", context);
+}
+
+}  // namespace sg

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// The shapes of glyphs: small surface meshes of unit size along +x.
+#pragma once
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/context.h"
+#include "base/schema.h"
+#include "data/dataset.h"
+
+namespace sg {
+
+/// Which shape, and how finely it is made.
+struct GlyphShapeParams {
+  std::string shape = "arrow";
+  int sides = 12;
+  std::string anchor = "auto";
+  double tip_length = 0.35, tip_radius = 0.14, shaft_radius = 0.05;
+  double alpha = 1, beta = 1;
+};
+void describe(Schema& s, GlyphShapeParams& p);
+
+/// arrow, cone, needle, line, arrow2d, cylinder, disc, sphere, cube, superquadric; wind barbs have a table of shapes (glyph/barbs.h).
+std::span<const std::string_view> glyph_shape_names();
+
+/// A shape by name, or the surface of a file. Extents:
+///   arrow, cone, needle, line, arrow2d   from 0 to 1 along x; the last is a thin plate in the x-y plane, needle a thin double cone, line
+///   one
+///                                        segment (drawn with constant width)
+///   cylinder, sphere, cube, superquadric  -1/2 to 1/2 along x and across it; disc: of diameter 1 across x, flat
+///   a file                               its longest edge of the box is 1, the middle of the box at 0
+/// `anchor`: tail, middle or tip stands at the point ("auto": as listed). Solids are closed and their faces look outward.
+/// superquadric: (cos^beta p, sgn sin^alpha t sin^beta p, cos^alpha t sin^beta p) / 2 about the x axis (Barr 1981, Kindlmann 2004).
+/// Throws Error(usage) for an unknown name with a hint, Error(data) for files that cannot be read.
+DatasetPtr glyph_shape_mesh(const GlyphShapeParams& p, Context& context);
+
+/// How files are read: the reader stands in a layer further down, which says here what it is. Without one, shapes from files are an error.
+using ShapeReader = DatasetPtr (*)(const std::string& path, Context& context);
+void set_shape_reader(ShapeReader reader);
+
+/// Moves the shape's points along x.
+DatasetPtr shifted_shape(const DatasetPtr& shape, double by);
+
+/// Puts a shape together: f32 points, polygons as triangles, lines of two points.
+struct ShapeBuilder {
+  std::vector<float> xyz;
+  std::vector<int32_t> triangles, lines;
+
+  int32_t point(Vec3 p) {
+    for (int a = 0; a < 3; ++a) xyz.push_back(float(p[a]));
+    return int32_t(xyz.size() / 3) - 1;
+  }
+  void triangle(int32_t a, int32_t b, int32_t c) { triangles.insert(triangles.end(), {a, b, c}); }
+  void line(int32_t a, int32_t b) { lines.insert(lines.end(), {a, b}); }
+  DatasetPtr made() &&;
+};
+
+}  // namespace sg

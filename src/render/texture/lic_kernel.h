@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Weights of a LIC kernel, and what they do to the variance of noise.
+#pragma once
+#include <vector>
+
+#include "scene/surface_texture.h"
+
+namespace sg::raster {
+
+/// Weight of the sample k steps forward (k < 0: back) at [steps + k], and for lines that end after `back` and `forward` steps the factor
+/// that brings a weighted sum of the noise to variance 1. With the factor known beforehand, the contrast of a texture does not hang on the
+/// picture, and does not flicker.
+struct LicWeights {
+  int steps = 0;
+  std::vector<float> weight;  ///< 2 * steps + 1
+  std::vector<float> factor;  ///< [back * (steps + 1) + forward]
+};
+
+/// Hann and box kernels; with a phase, times the ripples 1 + cos(2 pi (4 k / (2 steps + 1) - phase)) of Cabral and Leedom's moving
+/// textures. `grain`: steps across a grain of noise, whose correlation over d steps is taken as max(0, 1 - d / grain). O(steps^2 * grain).
+LicWeights lic_weights(const SurfaceTexture& texture, double grain);
+
+/// Brightness 0 to 1 of a value of variance 1: about its share of the normal distribution for contrast 1.
+inline float lic_brightness(float value, float contrast) {
+  const float s = 0.8f * contrast * value;  // s / sqrt(1 + s^2) follows 2 Phi(value) - 1 within 0.02
+  return 0.5f + 0.5f * s / __builtin_sqrtf(1 + s * s);
+}
+
+}  // namespace sg::raster
