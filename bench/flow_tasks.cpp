@@ -33,13 +33,15 @@ Field abc_field(const Mesh& mesh) {
   return {"abc", Association::point, values, "", Role::vectors};
 }
 
-DatasetPtr flow_input(bool tets) {
-  const DatasetPtr plain = tets ? tetrahedra(55) : nullptr;
+enum class Cells { grid, tets, hexes };
+
+DatasetPtr flow_input(Cells cells) {
+  const DatasetPtr plain = cells == Cells::tets ? tetrahedra(55) : cells == Cells::hexes ? hexahedra(100) : nullptr;
   UniformGrid g;
   g.dims = {128, 128, 128};
   g.origin = {-1, -1, -1};
   g.spacing = Vec3(1, 1, 1) * (2.0 / 127);
-  const Mesh mesh = tets ? plain->mesh() : Mesh(g);
+  const Mesh mesh = plain ? plain->mesh() : Mesh(g);
   FieldSet fields;
   fields.add(abc_field(mesh));
   return make_dataset(mesh, std::move(fields));
@@ -59,12 +61,17 @@ DatasetPtr flow_seeds(size_t n) {
   return make_dataset(std::move(cloud));
 }
 
-Task streamlines_task(bool tets, const char* scheme, const char* label) {
+Task streamlines_task(Cells cells, const char* scheme, const char* label) {
   constexpr size_t seeds = 10000;
-  return {"streamlines", fmt::format("{} x {} seeds x <=1000 steps", tets ? "tet1M" : "uniform128", seeds),
+  return {"streamlines",
+          fmt::format("{} x {} seeds x <=1000 steps",
+                      cells == Cells::tets    ? "tet1M"
+                      : cells == Cells::hexes ? "hex1M"
+                                              : "uniform128",
+                      seeds),
           fmt::format("sightglass:streamlines({})", label), "steps", [=] {
             // As for the peers, every run gets a mesh that nothing is known of.
-            const DatasetPtr first = flow_input(tets), from = flow_seeds(seeds);
+            const DatasetPtr first = flow_input(cells), from = flow_seeds(seeds);
             auto pool = std::make_shared<std::vector<DatasetPtr>>();
             for (int i = 0; i < 16; ++i) pool->push_back(make_dataset(first->parts()));
             return [=] {
@@ -76,7 +83,7 @@ Task streamlines_task(bool tets, const char* scheme, const char* label) {
               p.integration.integrator = scheme;
               p.integration.step = 0.5 * h, p.integration.min_step = 0.05 * h, p.integration.max_step = 2 * h;
               p.integration.step_unit = "length";
-              p.integration.tolerance = 1e-6 / (tets ? 2.0 / 55 : h);  // theirs is a length
+              p.integration.tolerance = 1e-6 / (cells == Cells::tets ? 2.0 / 55 : h);  // theirs is a length
               p.stop.max_steps = 1000, p.stop.min_speed = 1e-12, p.stop.closed = false, p.stop.max_length = 1e6;
               Context context;
               const Data out = streamlines({Data(input), Data(from)}, p, context);
@@ -89,9 +96,9 @@ Task streamlines_task(bool tets, const char* scheme, const char* label) {
 }  // namespace
 
 void add_flow_tasks(std::vector<Task>& t) {
-  for (const bool tets : {false, true}) {
-    t.push_back(streamlines_task(tets, "rk4", "RK4"));
-    t.push_back(streamlines_task(tets, "dormand_prince", "RK45"));
+  for (const Cells cells : {Cells::grid, Cells::tets, Cells::hexes}) {
+    t.push_back(streamlines_task(cells, "rk4", "RK4"));
+    t.push_back(streamlines_task(cells, "dormand_prince", "RK45"));
   }
 }
 

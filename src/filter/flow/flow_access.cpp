@@ -76,9 +76,27 @@ FlowAccess::FlowAccess(DatasetPtr mesh, std::shared_ptr<const CellLocator> index
     kind = Kind::lattice;
     return;
   }
+  if (const auto* c = d.as<CurvilinearGrid>(); c && !any_hidden && c->dims[0] > 1 && c->dims[1] > 1 && c->dims[2] > 1) {
+    curvilinear = std::make_shared<const Lattice>(d.mesh());
+    kind = Kind::hexes;
+    return;
+  }
   const auto* u = d.as<UnstructuredMesh>();
   if (!u || any_hidden || d.cell_count() == 0 || d.cell_count() >= size_t(INT32_MAX)) return;
   simplices = SimplexArrays(d);
+  const auto hexahedron = [](uint8_t t) { return t == uint8_t(CellType::hexahedron); };
+  if (simplices.types ? std::all_of(simplices.types, simplices.types + simplices.cells.count, hexahedron)
+                      : simplices.single == CellType::hexahedron) {
+    constexpr const char* key = "flow/hex_neighbors";
+    hex_neighbors = d.memo().find<CellNeighbors>(key);
+    if (!hex_neighbors) {
+      CellNeighbors made = cell_neighbors(d.mesh(), &context);
+      const size_t bytes = made.across.size() * 4;
+      hex_neighbors = d.memo().keep<CellNeighbors>(key, std::move(made), bytes);
+    }
+    if (hex_neighbors->fixed == 6) kind = Kind::hexes;
+    return;
+  }
   if (!simplices.all(CellType::tetra)) return;
   constexpr const char* key = "flow/tet_walk";
   walk = d.memo().find<TetWalk>(key);

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "data/cell_neighbors.h"
 #include "data/lattice.h"
 #include "filter/flow/tet_neighbors.h"
 #include "index/cell_locator.h"
@@ -70,7 +71,7 @@ TetWalk make_tet_walk(const Dataset& mesh, const SimplexArrays& simplices, const
 
 class FlowAccess {
  public:
-  enum class Kind : uint8_t { lattice, tets, cells };
+  enum class Kind : uint8_t { lattice, tets, hexes, cells };
   /// `index`: a locator of the same mesh, of this or another dataset, or null: made when it is first needed.
   FlowAccess(DatasetPtr mesh, std::shared_ptr<const CellLocator> index, const Context& context);
 
@@ -78,6 +79,8 @@ class FlowAccess {
   LatticeFlow lattice;
   SimplexArrays simplices;
   std::shared_ptr<const TetWalk> walk;
+  std::shared_ptr<const Lattice> curvilinear;          ///< hexes: of a grid,
+  std::shared_ptr<const CellNeighbors> hex_neighbors;  ///< or of a mesh
   bool any_hidden = false;
   const std::shared_ptr<const CellLocator>& locator() const;
   const DatasetPtr& mesh() const { return mesh_; }

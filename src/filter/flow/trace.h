@@ -39,7 +39,7 @@ struct TraceOptions {
   Scheme scheme = Scheme::dormand_prince;
   enum class Unit : uint8_t { cells, length, time } unit = Unit::cells;  ///< of the three step sizes
   double step = 0.5;                                                     ///< fixed schemes: every step; dormand_prince: the first one
-  double min_step = 0.01, max_step = 0.5;
+  double min_step = 0.01, max_step = 1;
   double tolerance = 1e-4;  ///< dormand_prince: error of a step, in cell sizes
   double max_length = HUGE_VAL, max_time = HUGE_VAL;
   int64_t max_steps = 2000;

@@ -308,8 +308,9 @@ void describe(Schema& s, TensorGlyphsParams& p) {
   s("size", p.size, "Length of the longest glyph as a share of the distance between glyphs.").positive();
   s("factor", p.factor, "Half axis = absolute eigenvalue times this, in place of scale and size.").positive();
   s("color", p.color,
-    "direction (red x, green y, blue z), FA, sign, none, or the name of a field; auto: direction, or the relative stress where there are "
-    "negative eigenvalues.");
+    "direction (red x, green y, blue z), FA, sign, none, or the name of a field; auto: the relative stress of lobes, the signed share "
+    "where "
+    "more than a tenth have negative eigenvalues, else direction.");
   s("resolution", p.resolution, "Rows of faces from pole to pole.").range(2, 200);
 }
 

@@ -12,8 +12,7 @@ UnsteadyFlow::UnsteadyFlow(Series series, std::string field, TimeInterpolation i
   const auto& t = series_.times;
   if (t.size() < 2)
     fail_usage(fmt::format("the series has {} time step{}", t.size(), t.size() == 1 ? "" : "s"), "unsteady flow",
-               "two at least; streamlines follow a flow that stands still, and several files are one series when a quoted pattern names "
-               "them, like 'run/*.vtu'");
+               "two at least; streamlines follow a flow that stands still");
   for (size_t i = 0; i < t.size(); ++i) {
     if (!std::isfinite(t[i])) fail_data(fmt::format("step {} has the time {}", i, t[i]), "unsteady flow", "a finite number");
     if (i > 0 && !(t[i] > t[i - 1]))
