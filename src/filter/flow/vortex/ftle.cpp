@@ -129,7 +129,7 @@ DatasetPtr ftle(const Series& given, const FtleParams& p, Context& context) {
   const double until = start + p.duration;
   if (given.times.size() == 1) {  // steady: the same at both ends of the way
     series.times = {std::min(start, until), std::max(start, until)};
-    series.load = [only = single_dataset(given.load(0), "ftle")](size_t) -> Data { return only; };
+    series.load = [only = given.load(0)](size_t) -> Data { return only; };
   } else if (std::min(start, until) < given.times.front() || std::max(start, until) > given.times.back()) {
     fail_usage(fmt::format("from {:.6g} to {:.6g} is not in the series, which lasts from {:.6g} to {:.6g}", start, until,
                            given.times.front(), given.times.back()),
