@@ -37,7 +37,7 @@ Data over_parts(const Data& data, std::string_view who, Context& context, F&& f)
   const bool alone = std::holds_alternative<DatasetPtr>(data);
   return map_datasets(data, [&](const DatasetPtr& d) -> DatasetPtr {
     if (alone || has_room(*d)) return f(d);
-    context.info(std::string(who) + ": a part of " + std::string(d->kind()) + " has no area and stays as it is");
+    context.info(std::string(who) + ": a part without area, like points or lines, stays as it is");
     return d;
   });
 }

@@ -120,7 +120,7 @@ DatasetPtr surface_lic(const DatasetPtr& in, const SurfaceLicParams& p, Context&
 
   DatasetParts parts = r.dataset->parts();
   FieldSet fields;
-  fields.add({"lic", Association::point, result, "", Role::scalars});
+  fields.add({"lic", Association::point, result, "", Role::none});
   for (const Field& g : parts.fields)
     if (!(g.name == "lic" && g.association == Association::point)) fields.add(g);
   parts.fields = std::move(fields);
