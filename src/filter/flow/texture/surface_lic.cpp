@@ -35,7 +35,7 @@ DatasetPtr surface_lic(const DatasetPtr& in, const SurfaceLicParams& p, Context&
   const std::vector<Vec3> vectors = vectors_of(f);
   const SurfaceWalk walk(r, vectors, f.association == Association::cell);
   const SurfaceConvolution lines{p.steps, p.step, p.kernel, p.stretch, p.seed};
-  return textured_surface(r, {{"lic", Association::point, convolve_surface(r, walk, lines, {}, context), "", Role::scalars}});
+  return textured_surface(r, {{"lic", Association::point, convolve_surface(r, walk, lines, {}, context), "", Role::none}});
 }
 
 }  // namespace sg

@@ -302,7 +302,8 @@ DatasetPtr parallel_lines_mesh(const DatasetPtr& data, const ParallelLines& line
 namespace {
 
 DatasetPtr of_mesh(const DatasetPtr& in, const ParallelVectorsParams& p, Context& context) {
-  if (p.b.empty()) fail_usage("names one field only", "parallel_vectors", "b=FIELD, the second vector field");
+  if (p.b.empty())
+    fail_usage("there is no second vector field", "parallel_vectors", "b=FIELD names it; a=FIELD the first (default: the active vectors)");
   const std::vector<Vec3> a = point_vectors(in, flow_field_of(*in, p.a.name, "parallel_vectors"), context);
   const std::vector<Vec3> b = point_vectors(in, flow_field_of(*in, p.b.name, "parallel_vectors"), context);
   return parallel_lines_mesh(in, parallel_lines(in, a, b, context), context);

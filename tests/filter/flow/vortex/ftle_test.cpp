@@ -150,3 +150,19 @@ TEST_CASE("ftle: of a series of grids it approaches the known values of the doub
   late.duration = 10, late.start = 8;
   CHECK(test::error_of([&] { ftle(series, late, context); }).find("from 8 to 18") != std::string::npos);
 }
+
+TEST_CASE("ftle: without a duration the mean speed goes a tenth of the diagonal, and solid meshes get 64 seeds along an axis") {
+  Context context;
+  UniformGrid g = grid_of({11, 6, 6}, {0, 0, 0}, 1);
+  FieldSet fields;
+  std::vector<float> v;
+  for (int i = 0; i < 11 * 6 * 6; ++i) v.insert(v.end(), {0, 2, 0});
+  fields.add({"wind", Association::point, Array::from_vector(std::move(v), 3), "", Role::vectors});
+  const DatasetPtr d = ftle(steady(make_dataset(Mesh(g), std::move(fields))), {}, context);
+  const UniformGrid& seeds = *d->as<UniformGrid>();
+  CHECK(seeds.dims[0] == 64);
+  const Array& went = d->fields().require("flow map").array;
+  const double way = 0.1 * std::sqrt(100.0 + 25 + 25);  // a uniform flow of speed 2 goes as far in way / 2
+  CHECK(went.get(0, 1) == doctest::Approx(way).epsilon(1e-4));
+  CHECK(went.get(0, 0) == doctest::Approx(0));
+}
