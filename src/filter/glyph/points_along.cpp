@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Even spacing along lines, for barbs on streamlines (Pilar & Ware 2013).
+// Even spacing along lines, for barbs on streamlines (Pilar, Ware 2013).
 #include "filter/glyph/points_along.h"
 
 #include <fmt/core.h>

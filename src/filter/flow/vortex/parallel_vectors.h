@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines along which two vector fields are parallel (Peikert and Roth 1999), exact for fields that are linear in tetrahedra.
+// Lines along which two vector fields are parallel (Peikert, Roth 1999), exact for fields that are linear in tetrahedra.
 #pragma once
 #include <functional>
 #include <span>

@@ -21,7 +21,7 @@ void describe(Schema& s, RidgesParams& p);
 
 /// Height ridges (Eberly 1996): where the gradient g has no part along the eigenvector of the smallest eigenvalue of the Hessian H, and
 /// that eigenvalue is negative: a maximum across the crest. They are the zeros of det(g, Hg, H^2 g) (in the plane: of g x Hg), contoured
-/// and then sorted by those conditions (Peikert and Sadlo 2008), so no eigenvector needs a sign. At a peak or pass, where the zeros of the
+/// and then sorted by those conditions (Peikert, Sadlo 2008), so no eigenvector needs a sign. At a peak or pass, where the zeros of the
 /// other directions cross, a surface may have a gap of a cell; lines are joined over three. Derivatives are those of the operations
 /// gradient and hessian; noisy fields should be smoothed first (gaussian_smooth). kind=valleys: of -f.
 ///

@@ -2,6 +2,7 @@
 #include "filter/flow/vortex/ridges.h"
 
 #include "base/parallel.h"
+#include "filter/flow/flow_support.h"
 #include "support/test.h"
 
 using namespace sg;
@@ -10,17 +11,12 @@ namespace {
 
 template <class F>
 DatasetPtr height(std::array<size_t, 3> n, F&& f) {
-  UniformGrid g;
-  g.dims = n;
-  g.origin = {-1, -1, n[2] > 1 ? -1.0 : 0.0};
   const double h = 2.0 / double(n[0] - 1);
-  g.spacing = {h, h, h};
-  std::vector<double> v;
-  for (size_t k = 0; k < n[2]; ++k)
-    for (size_t j = 0; j < n[1]; ++j)
-      for (size_t i = 0; i < n[0]; ++i) v.push_back(f(g.origin + Vec3(double(i), double(j), double(k)) * h));
+  const UniformGrid g = test::even_grid(n, {-1, -1, n[2] > 1 ? -1.0 : 0.0}, h);
+  Array v = test::at_points(
+      g, [&](Vec3 x) { return Vec3(f(x), 0, 0); }, 1);
   FieldSet fields;
-  fields.add({"height", Association::point, Array::from_vector(std::move(v)), "", Role::scalars});
+  fields.add({"height", Association::point, std::move(v), "", Role::scalars});
   return make_dataset(Mesh(g), std::move(fields));
 }
 
