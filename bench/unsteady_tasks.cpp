@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Particles in an ABC flow whose strength swings: 21 time steps of 64^3 in memory, 10,000 seeds, released again at each step (streaklines,
-// particles) or once (pathlines), as the peers' filters do.
+// particles) or once (pathlines), as the peers' filters do: RK4, one step an
+// interval; and with the error control that is our default.
 #include <numbers>
 
 #include "base/parallel.h"
@@ -57,12 +58,15 @@ std::vector<Data> seeds() {
 }
 
 template <class Params, class Filter>
-Task unsteady(const char* name, Filter filter) {
-  return {"particles_unsteady", "uniform64 x 20 time steps x 10000 seeds", fmt::format("sightglass:{}", name), "points out", [=] {
+Task unsteady(const char* name, Filter filter, bool adapts) {
+  Params params;
+  if (!adapts) params.integration.integrator = "rk4", params.integration.step_unit = "time", params.integration.step = 0.02;
+  return {"particles_unsteady", "uniform64 x 20 time steps x 10000 seeds",
+          fmt::format("sightglass:{}{}", name, adapts ? "(dormand_prince)" : ""), "points out", [=] {
             const Series series = swinging_flow();
             return [=, others = seeds()] {
               Context context;
-              return double(filter(series, others, Params(), context)->point_count());
+              return double(filter(series, others, params, context)->point_count());
             };
           }};
 }
@@ -70,9 +74,11 @@ Task unsteady(const char* name, Filter filter) {
 }  // namespace
 
 void add_unsteady_tasks(std::vector<Task>& tasks) {
-  tasks.push_back(unsteady<ParticlesParams>("particles", particles));
-  tasks.push_back(unsteady<StreaklinesParams>("streaklines", streaklines));
-  tasks.push_back(unsteady<PathlinesParams>("pathlines", pathlines));
+  for (const bool adapts : {false, true}) {
+    tasks.push_back(unsteady<ParticlesParams>("particles", particles, adapts));
+    tasks.push_back(unsteady<StreaklinesParams>("streaklines", streaklines, adapts));
+    tasks.push_back(unsteady<PathlinesParams>("pathlines", pathlines, adapts));
+  }
 }
 
 }  // namespace sg::bench

@@ -39,21 +39,51 @@ bool write_time(PipelineFile& file, double time) {
   return written;
 }
 
+const Operation* operation_of(const PipelineFile::Step& step) {
+  const auto known = operations();
+  const auto op = std::find_if(known.begin(), known.end(), [&](const Operation& o) { return o.name == step.operation; });
+  return op == known.end() ? nullptr : &*op;
+}
+
+// Steps all of whose times an operation on series takes.
+std::vector<char> inside_series(const PipelineFile& file) {
+  std::vector<char> inside(file.steps.size(), 0);
+  const auto mark = [&](const std::string& name) {
+    for (size_t k = 0; k < file.steps.size(); ++k)
+      if (file.steps[k].name == name) inside[k] = 1;
+  };
+  for (size_t i = file.steps.size(); i-- > 0;) {
+    const PipelineFile::Step& s = file.steps[i];
+    const Operation* op = operation_of(s);
+    if (!op || op->kind == OperationKind::source) continue;
+    const bool series = op->run_series != nullptr;
+    if (!series && !inside[i]) continue;
+    if (s.from.empty() && i > 0) inside[i - 1] = 1;
+    for (size_t k = 0; k < s.from.size(); ++k)
+      if (k == 0 || inside[i]) mark(s.from[k]);
+  }
+  return inside;
+}
+
 // The pipeline of one step: the parameters that ask for the time get it, else trails, whose lines stay, else readers and sources with a
-// time.
+// time, and operations on series in place of what lies above them.
 PipelineFile at_time(PipelineFile file, double time, std::optional<size_t> step) {
   if (write_time(file, time)) return file;
   bool of_trails = false;
   for (PipelineFile::Step& s : file.steps)
     if (s.operation == "trails" && !step && !word_value(s.words, "time")) s.words.push_back("time=" + exact_number(time)), of_trails = true;
   if (of_trails) return file;
-  for (PipelineFile::Step& s : file.steps) {
+  const std::vector<char> inside = inside_series(file);
+  for (size_t i = 0; i < file.steps.size(); ++i) {
+    PipelineFile::Step& s = file.steps[i];
+    if (inside[i]) continue;
+    const Operation* op = operation_of(s);
     if (s.operation == "read") {
       s.words.push_back(step ? fmt::format("step={}", *step) : "time=" + exact_number(time));
+    } else if (op && op->run_series && !word_value(s.words, "time") && op->make_params().schema.find("time")) {
+      s.words.push_back("time=" + exact_number(time));
     } else if (s.from.empty()) {
-      const auto known = operations();
-      const auto op = std::find_if(known.begin(), known.end(), [&](const Operation& o) { return o.name == s.operation; });
-      if (op == known.end() || op->kind != OperationKind::source) continue;
+      if (!op || op->kind != OperationKind::source) continue;
       const ParamSet p = op->make_params();
       if (p.schema.find("time")) s.words.push_back("time=" + exact_number(time));
       else
@@ -110,7 +140,8 @@ void fix_ranges(PipelineFile& first, const std::vector<PipelineFile>& some, Cont
       const std::vector<Data> data = results_of(file, std::make_shared<Cache>(0), context);
       for_each_dataset(data[std::min(i, data.size() - 1)], [&](const std::string&, const DatasetPtr& d) {
         const Field* f = !named.empty() ? d->fields().find(named) : show.kind == "glyphs" ? automatic_vectors(*d) : automatic_field(*d);
-        if (f && f->association != Association::whole && f->role != Role::colors) all.add(d->range(*f, f->components() > 1 ? component : 0));
+        if (f && f->association != Association::whole && f->role != Role::colors)
+          all.add(d->range(*f, f->components() > 1 ? component : 0));
       });
     }
     if (!(all.lo < all.hi)) continue;

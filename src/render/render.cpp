@@ -19,7 +19,8 @@ namespace {
 int chosen_samples(const Scene& scene, int asked) {
   if (asked > 0) return asked;
   for (const Item& item : scene.items)
-    if (std::holds_alternative<SurfaceItem>(item) || std::holds_alternative<GlyphsItem>(item)) return 2;  // lines, dots and volumes have soft edges of their own
+    if (std::holds_alternative<SurfaceItem>(item) || std::holds_alternative<GlyphsItem>(item))
+      return 2;  // lines, dots and volumes have soft edges of their own
   return 1;
 }
 

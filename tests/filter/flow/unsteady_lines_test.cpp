@@ -412,7 +412,8 @@ TEST_CASE("unsteady: uniform f32 grids take the fast way, with the answer of the
     return Vec3(std::sin(2 * x.y + t), std::cos(1.5 * x.z - t), std::sin(x.x) * (1 + 0.3 * t)) * 1.5;
   };
   for (const char* how : {"linear", "cubic"})
-    for (const bool flat : {false, true}) {
+    for (const int kind : {0, 1, 2}) {
+      const bool flat = kind == 1;
       const auto box = [&](double) -> Mesh { return flat ? grid(33, {-2, -2, 0.5}, {2, 2, 0.5}, 1) : grid(33, {-2, -2, -2}, {2, 2, 2}); };
       const auto v = [&](Vec3 x, double t) { return swirl(x, t) * Vec3(1, 1, flat ? 0 : 1); };
       const auto f32 = series_of(even_times(0, 1.5, 7), box, v, true);
@@ -428,6 +429,8 @@ TEST_CASE("unsteady: uniform f32 grids take the fast way, with the answer of the
       Context context;
       PathlinesParams p;
       p.interpolation = how;
+      if (kind == 2) p.integration.integrator = "rk4";
+      else p.integration.tolerance = 1e-6;
       p.seeds.seeds = "grid", p.seeds.counts = {9, 9, flat ? 1 : 5};
       const Lines a{pathlines(f32, {}, p, context)}, b{pathlines(f64, {}, p, context)};
       REQUIRE(a.mesh().lines.size() == b.mesh().lines.size());
@@ -441,12 +444,12 @@ TEST_CASE("unsteady: uniform f32 grids take the fast way, with the answer of the
         else CHECK(std::abs(when - b.value("time", k)) < 0.01);
       }
       CHECK(ends > 20);
-      CHECK(worst < 2e-4);
+      CHECK(worst < (kind == 2 ? 1e-5 : 3e-4));  // sizes of adaptive steps differ a little, and the field has kinks
       PathlinesParams back = p;
       back.start = 1.5, back.time = 0;
       const Lines c{pathlines(f32, {}, back, context)}, d{pathlines(f64, {}, back, context)};
       CHECK(c.mesh().lines.size() == d.mesh().lines.size());
-      CHECK(std::abs(double(c.points()) - double(d.points())) < 0.02 * double(d.points()));
+      CHECK(std::abs(double(c.points()) - double(d.points())) < (kind == 2 ? 0.01 : 0.15) * double(d.points()));
     }
 }
 

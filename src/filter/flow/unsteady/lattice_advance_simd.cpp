@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Velocities by trilinear interpolation of two or four time steps at once, and Dormand-Prince steps of several particles in turn, so that
+// Velocities by trilinear interpolation of two or four time steps at once, and steps of several particles in turn, so that
 // the processor always has one to work at while another waits. The compiler's own vectors: without fused multiply-add every target gives
 // the same bits. The scalar reference is advance_one() over an UnsteadyCursor.
 #include "filter/flow/unsteady/lattice_advance.h"
@@ -80,6 +80,18 @@ struct Grid {
   const Job* job;
 };
 
+/// Two steps interpolated in a cell whose first point lies at a and b.
+HWY_INLINE F8 in_cell(const float* a, const float* b, size_t dx, size_t dy, size_t dz, F8 fx, F8 fy, F8 fz) {
+  const F8 r0 = mix(load_two(a, b), load_two(a + dx, b + dx), fx);
+  const F8 r1 = mix(load_two(a + dy, b + dy), load_two(a + dy + dx, b + dy + dx), fx);
+  a += dz, b += dz;
+  const F8 r2 = mix(load_two(a, b), load_two(a + dx, b + dx), fx);
+  const F8 r3 = mix(load_two(a + dy, b + dy), load_two(a + dy + dx, b + dy + dx), fx);
+  return mix(mix(r0, r1, fy), mix(r2, r3, fy), fz);
+}
+HWY_INLINE F4 first_half(F8 u) { return __builtin_shufflevector(u, u, 0, 1, 2, 3); }
+HWY_INLINE F4 second_half(F8 u) { return __builtin_shufflevector(u, u, 4, 5, 6, 7); }
+
 /// False outside. NaN in the data makes NaN of v (with LAST: false), and places that are NaN lie outside, so that the stages of a step need
 /// not look.
 template <int STEPS, bool LAST = false>
@@ -107,27 +119,18 @@ HWY_INLINE bool velocity(const Grid& g, D4 x, double t, D4& v) {
     }
     at = 0, dx = 4, dy = 8, dz = 16;
   }
-  const auto two = [&](const float* a, const float* b) {
-    const F8 r0 = mix(load_two(a, b), load_two(a + dx, b + dx), fx);
-    const F8 r1 = mix(load_two(a + dy, b + dy), load_two(a + dy + dx, b + dy + dx), fx);
-    const F8 r2 = mix(load_two(a + dz, b + dz), load_two(a + dz + dx, b + dz + dx), fx);
-    const F8 r3 = mix(load_two(a + dz + dy, b + dz + dy), load_two(a + dz + dy + dx, b + dz + dy + dx), fx);
-    return mix(mix(r0, r1, fy), mix(r2, r3, fy), fz);
-  };
-  const auto half = [](F8 u, bool second) {
-    return second ? __builtin_shufflevector(u, u, 4, 5, 6, 7) : __builtin_shufflevector(u, u, 0, 1, 2, 3);
-  };
   F4 sum;
   if constexpr (STEPS == 2) {
-    const F8 u = two(step[0] + at, step[1] + at);
-    sum = half(u, false) + float(s) * (half(u, true) - half(u, false));
+    const F8 u = in_cell(step[0] + at, step[1] + at, dx, dy, dz, fx, fy, fz);
+    sum = first_half(u) + float(s) * (second_half(u) - first_half(u));
   } else {
-    const F8 u[2] = {two(step[0] + at, step[1] + at), two(step[2] + at, step[3] + at)};
+    const F8 u[2] = {in_cell(step[0] + at, step[1] + at, dx, dy, dz, fx, fy, fz),
+                     in_cell(step[2] + at, step[3] + at, dx, dy, dz, fx, fy, fz)};
     sum = F4{};
     for (int j = 0; j < 4; ++j) {
       const double* p = job.weight[j];
       const float m = float(((p[3] * s + p[2]) * s + p[1]) * s + p[0]);
-      if (m != 0) sum = sum + m * half(u[j / 2], j % 2);
+      if (m != 0) sum = sum + m * (j % 2 ? second_half(u[j / 2]) : first_half(u[j / 2]));
     }
   }
   v = __builtin_convertvector(sum, D4);
@@ -146,8 +149,10 @@ HWY_INLINE double inverse_fifth_root(double x) {
   }
   return y;
 }
+/// 0.9 error^(-1/5) times h, between a fifth and twice of it.
 HWY_INLINE double next_size(double h, double error) {
-  return h * std::min(std::max(0.9 * inverse_fifth_root(std::clamp(error, 1e-10, 1e10)), 0.2), 5.0);
+  if (error <= 0.018) return 2 * h;  // 0.45^5: most steps
+  return h * std::max(0.9 * inverse_fifth_root(std::min(error, 1e10)), 0.2);
 }
 
 struct Lane {
@@ -161,7 +166,8 @@ struct Lane {
   D4 x1, k7, error;
 };
 
-template <int STEPS>
+/// Dormand-Prince, or RK4 with steps of one size.
+template <int STEPS, bool ADAPTS>
 class Lanes {
  public:
   Lanes(const Job& job, std::span<Particle> particles, size_t first, double until, int sign, const TraceOptions& o, Way* way)
@@ -223,6 +229,7 @@ class Lanes {
   bool fill(Lane& l) {
     for (; next_ < particles_.size(); ++next_) {
       Particle& p = particles_[next_];
+      __builtin_prefetch(&p + 8);
       if (p.ended || (until_ - p.t) * sign_ < 0 || (!p.started && !start(p))) continue;
       l.p = &p;
       l.x = D4{p.x.x, p.x.y, p.x.z, 0}, l.k1 = D4{p.v.x, p.v.y, p.v.z, 0}, l.t = p.t;
@@ -247,11 +254,11 @@ class Lanes {
     }
     const double unit = unit_time(speed_of(l.k1));
     l.least = o_.min_step * unit;
-    double h = p.next > 0 ? p.next : o_.step * unit;
-    h = std::min(std::max(h, l.least), o_.max_step * unit);
+    double h = ADAPTS && p.next > 0 ? p.next : o_.step * unit;
+    if (ADAPTS) h = std::min(std::max(h, l.least), o_.max_step * unit);
     l.wished = h;
     if (!(h < l.left)) h = l.left;
-    else if (h > l.left / 2) h = l.left / 2;
+    else if (ADAPTS && h > l.left / 2) h = l.left / 2;
     l.h = h, l.halving = 0, l.at_border = false;
     return true;
   }
@@ -259,7 +266,7 @@ class Lanes {
   // A stage of all lanes, then the next: see dormand_prince_step().
   void try_steps(Lane* lane, int n) {
     D4 k2[width], k3[width], k4[width], k5[width], k6[width];
-    const auto stage = [&](auto&& place, double share, D4* k) {
+    const auto stage = [&](auto&& place, double share, D4* k) __attribute__((always_inline)) {
       for (int i = 0; i < n; ++i) {
         Lane& l = lane[i];
         const double h = sign_ * l.h;
@@ -267,6 +274,18 @@ class Lanes {
       }
     };
     for (int i = 0; i < n; ++i) lane[i].ok = true;
+    if constexpr (!ADAPTS) {
+      stage([&](const Lane& l, int) { return 0.5 * l.k1; }, 0.5, k2);
+      stage([&](const Lane&, int i) { return 0.5 * k2[i]; }, 0.5, k3);
+      stage([&](const Lane&, int i) { return k3[i]; }, 1.0, k4);
+      for (int i = 0; i < n; ++i) {
+        Lane& l = lane[i];
+        const double h = sign_ * l.h;
+        l.x1 = l.x + (h / 6) * (l.k1 + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]);
+        l.ok &= velocity<STEPS, true>(g_, l.x1, l.t + h, l.k7);
+      }
+      return;
+    }
     stage([&](const Lane& l, int) { return (1.0 / 5) * l.k1; }, 1.0 / 5, k2);
     stage([&](const Lane& l, int i) { return (3.0 / 40) * l.k1 + (9.0 / 40) * k2[i]; }, 3.0 / 10, k3);
     stage([&](const Lane& l, int i) { return (44.0 / 45) * l.k1 - (56.0 / 15) * k2[i] + (32.0 / 9) * k3[i]; }, 4.0 / 5, k4);
@@ -298,8 +317,8 @@ class Lanes {
       p.ended = true, p.why = StopReason::outside;
       return false;
     }
-    const double error = speed_of(l.error) / (o_.tolerance * g_.job->cell), least = std::min(l.least, l.left);
-    if (error > 1 && l.h > 1.001 * least) {
+    const double error = !ADAPTS ? 0 : speed_of(l.error) / (o_.tolerance * g_.job->cell), least = std::min(l.least, l.left);
+    if (ADAPTS && error > 1 && l.h > 1.001 * least) {
       l.h = std::max(next_size(l.h, error), least);
       return true;
     }
@@ -307,8 +326,10 @@ class Lanes {
     l.t = l.h >= l.left ? until_ : l.t + sign_ * l.h;
     p.x = vec(l.x), p.v = vec(l.k1), p.t = l.t;
     ++p.steps;
-    const double next = next_size(l.h, error);
-    p.next = l.h < l.wished && error <= 1 ? std::max(l.wished, next) : next;
+    if (ADAPTS) {
+      const double next = next_size(l.h, error);
+      p.next = l.h < l.wished && error <= 1 ? std::max(l.wished, next) : next;
+    }
     record(p);
     if (l.at_border && l.h < l.least) {
       p.ended = true, p.why = StopReason::outside;
@@ -326,8 +347,14 @@ class Lanes {
 };
 
 void run(const Job& job, std::span<Particle> particles, size_t first, double until, int sign, const TraceOptions& o, Way* way) {
-  if (job.steps == 2) Lanes<2>(job, particles, first, until, sign, o, way).run();
-  else Lanes<4>(job, particles, first, until, sign, o, way).run();
+  const auto go = [&](auto lanes) { lanes.run(); };
+  if (o.scheme == Scheme::rk4) {
+    if (job.steps == 2) go(Lanes<2, false>(job, particles, first, until, sign, o, way));
+    else go(Lanes<4, false>(job, particles, first, until, sign, o, way));
+  } else {
+    if (job.steps == 2) go(Lanes<2, true>(job, particles, first, until, sign, o, way));
+    else go(Lanes<4, true>(job, particles, first, until, sign, o, way));
+  }
 }
 
 }  // namespace sg::lattice_advance::HWY_NAMESPACE

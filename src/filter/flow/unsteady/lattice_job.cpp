@@ -6,7 +6,8 @@ namespace sg::lattice_advance {
 std::optional<Job> job_of(const UnsteadyFlow& flow, const TraceOptions& options) {
   const Dataset& mesh = *flow.steps()[0].dataset();
   const auto* g = mesh.as<UniformGrid>();
-  if (!g || options.scheme != Scheme::dormand_prince || flow.meshes() != UnsteadyFlow::Meshes::same) return std::nullopt;
+  const bool known = options.scheme == Scheme::dormand_prince || options.scheme == Scheme::rk4;
+  if (!g || !known || flow.meshes() != UnsteadyFlow::Meshes::same) return std::nullopt;
   if (!(g->direction == Mat3()) || !mesh.cell_ghost().empty() || !mesh.point_ghost().empty()) return std::nullopt;
   for (const FlowField& f : flow.steps())
     if (!f.f32() || f.components() != 3) return std::nullopt;

@@ -4,6 +4,7 @@
 #include "base/text.h"
 #include "data/point_positions.h"
 #include "data/trusted.h"
+#include "filter/flow/flow_parts.h"
 
 namespace sg {
 
@@ -12,8 +13,7 @@ UnsteadyFlow::UnsteadyFlow(Series series, std::string field, TimeInterpolation i
   const auto& t = series_.times;
   if (t.size() < 2)
     fail_usage(fmt::format("the series has {} time step{}", t.size(), t.size() == 1 ? "" : "s"), "unsteady flow",
-               "two at least; streamlines follow a flow that stands still, and several files are one series when a quoted pattern names "
-               "them, like 'run/*.vtu'");
+               "two at least; streamlines follow a flow that stands still");
   for (size_t i = 0; i < t.size(); ++i) {
     if (!std::isfinite(t[i])) fail_data(fmt::format("step {} has the time {}", i, t[i]), "unsteady flow", "a finite number");
     if (i > 0 && !(t[i] > t[i - 1]))
@@ -31,12 +31,11 @@ size_t UnsteadyFlow::interval_of(double t, int sign) const {
 FlowField UnsteadyFlow::load(size_t step, Context& context) const {
   return with_context(fmt::format("taking time step {} (time {})", step, exact_number(times()[step])), [&] {
     const Data data = series_.load(step);
-    if (auto* c = std::get_if<CollectionPtr>(&data); c && *c) {
-      size_t parts = 0;
-      for_each_dataset(data, [&](const std::string&, const DatasetPtr&) { ++parts; });
-      if (parts > 1) fail_usage(fmt::format("the data have {} parts", parts), "unsteady flow", "the filter append makes one mesh of them");
-    }
-    const DatasetPtr d = single_dataset(data, "unsteady flow");
+    std::string name = field_;
+    const std::vector<DatasetPtr> parts = flow_meshes(data, name, "unsteady flow");
+    if (parts.size() > 1)
+      fail_usage(fmt::format("the data have {} parts", parts.size()), "unsteady flow", "the filter append makes one mesh of them");
+    const DatasetPtr& d = parts.front();
     std::shared_ptr<const CellLocator> index;
     for (const FlowField& open : steps_)
       if (!index && same_mesh(*open.dataset(), *d)) index = open.locator();

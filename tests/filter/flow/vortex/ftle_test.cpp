@@ -50,8 +50,7 @@ TEST_CASE("ftle: of the flow diag(l, -l) it is l everywhere, for any duration an
       const auto velocity = [=](Vec3 x, double) { return Vec3(l * x.x, -l * x.y, 0); };
       for (const auto& dims : {std::array<size_t, 3>{5, 4, 1}, std::array<size_t, 3>{4, 5, 3}}) {
         Context context;
-        const DatasetPtr d = ftle_of(
-            grid_of(dims, {-1, -1, -1}, 0.4), duration, {}, map_of(velocity, 0, duration));
+        const DatasetPtr d = ftle_of(grid_of(dims, {-1, -1, -1}, 0.4), duration, {}, map_of(velocity, 0, duration));
         const Field& f = d->fields().require("ftle");
         for (size_t i = 0; i < d->point_count(); ++i) CHECK(f.array.get(i) == doctest::Approx(l).epsilon(1e-5));
         // Forward it pulls along x, backward along y.
