@@ -120,7 +120,7 @@ TEST_CASE("tensor_lic: on a plane the variance is 1/L, the correlation 1 - k/L a
 }
 
 TEST_CASE("tensor_lic: a constant tensor gives the texture of its eigenvector, whatever its angle and size, on points and on cells") {
-  const int n = 60;
+  const int n = 40;
   Listener quiet;
   for (const double angle : {0.3, 1.2, 1.5707, 2.0, 2.9})
     for (const double size : {1.0, 1e-200, 1e200})
@@ -134,8 +134,12 @@ TEST_CASE("tensor_lic: a constant tensor gives the texture of its eigenvector, w
         p.density = 0, p.steps = 12, p.step = 1;
         const DatasetPtr a = run(d, p), b = surface_lic(d, q, quiet.context);
         double worst = 0;
-        for (size_t i = 0; i < a->point_count(); ++i) worst = std::max(worst, double(std::abs(lic_of(a)[i] - lic_of(b)[i])));
+        int cut = 0;  // corners of the plane that lines only touch: noise here, neutral there
+        for (size_t i = 0; i < a->point_count(); ++i)
+          if (lic_of(b)[i] == 0.5f) ++cut;
+          else worst = std::max(worst, double(std::abs(lic_of(a)[i] - lic_of(b)[i])));
         CHECK(worst < 1e-5);
+        CHECK(cut <= 2);
       }
 }
 
@@ -241,28 +245,17 @@ TEST_CASE("tensor_lic: lines go on across creases, right angles too, as on the u
         around.push_back(outer({-std::sin(middle), std::cos(middle), slope}));
       }
       const SurfaceAxisWalk helix(prism, around, true);
-      const double turns = slope > 1 ? 0.25 : 2, climb = turns * sides * side * slope;
       uint32_t start = 0;
       for (uint32_t t = 0; t < prism.triangles.size(); ++t)  // half way up
         if (std::abs(prism.points[prism.triangles[t][0]].z - 15) < 0.5) start = t;
-      SurfaceAxisWalk::Place up = helix.start(start, prism.triangles[start][0]);
-      const Vec3 from = helix.position(up);
-      const double length_of_turns = turns * sides * side * std::sqrt(1 + slope * slope);
-      bool whole = true;
-      if (slope > 1) {
-        // Almost along the edges: up or down to the border, which it meets by a quarter turn at the most.
-        whole = helix.advance(up, 10 * std::sqrt(1 + 1 / (slope * slope)), 1);
-        CHECK(whole);
-        CHECK(std::abs(helix.position(up).z - from.z) == doctest::Approx(10).epsilon(1e-6));
-        continue;
-      }
-      whole = helix.advance(up, length_of_turns, 1);
-      if (std::abs(climb) < 14) {
-        REQUIRE(whole);
-        const Vec3 to = helix.position(up);
-        CHECK(std::abs(std::abs(to.z - from.z) - climb) < 1e-6);
-        CHECK(std::hypot(to.x - from.x, to.y - from.y) < 1e-6);
-      }
+      SurfaceAxisWalk::Place at = helix.start(start, prism.triangles[start][0]);
+      const Vec3 from = helix.position(at);
+      // Twice around; when steep 10 up or down, almost along the edges.
+      const double around_by = slope > 1 ? 10 / slope : 2 * sides * side;
+      REQUIRE(helix.advance(at, around_by * std::sqrt(1 + slope * slope), 1));
+      const Vec3 to = helix.position(at);
+      CHECK(std::abs(std::abs(to.z - from.z) - around_by * slope) < 1e-6);
+      if (slope < 1) CHECK(std::hypot(to.x - from.x, to.y - from.y) < 1e-6);
     }
   }
 }
@@ -316,7 +309,7 @@ TEST_CASE("tensor_lic: isotropic tensors keep the noise or are gray, and the tex
   };
   r = run(growing, f);
   CHECK(r->fields().require("in-plane anisotropy", Association::point).array.view<float>()[40] == doctest::Approx(0.4));
-  CHECK(column_variance(r, 1) > 0.06);  // plain noise has 1/12
+  CHECK(column_variance(r, 0) > 0.06);  // plain noise has 1/12
   CHECK(column_variance(r, 48) < 0.01);
   f.isotropic = "gray";
   const DatasetPtr gray = run(growing, f);
@@ -396,7 +389,7 @@ TEST_CASE("tensor_lic: what is no tensor, no surface or too fine is refused, asy
   for (int i = 0; i < 25; ++i) v.insert(v.end(), {1, 1, 0, 0, 0, 0, 0, 0, 0});
   skew.fields.add({"t", Association::point, Array::from_vector(std::move(v), 9), ""});
   Listener heard;
-  tensor_lic(make_dataset(skew), {}, heard.context);
+  tensor_lic(make_dataset(skew), plain(5), heard.context);
   CHECK(heard.warnings.find("25 of 25") != std::string::npos);
   CHECK(heard.warnings.find("not symmetric") == heard.warnings.rfind("not symmetric"));
 }
