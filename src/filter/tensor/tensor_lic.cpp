@@ -88,7 +88,7 @@ DatasetPtr tensor_lic(const DatasetPtr& in, const TensorLicParams& p, Context& c
     for (size_t i = 0; i < faded.size(); ++i) faded[i] = part[i] >= 0 ? 0.5f + (v[i] - 0.5f) * part[i] : 0.5f;
     lic = Array::from_vector(std::move(faded));
   }
-  return textured_surface(r, {{"lic", Association::point, std::move(lic), "", Role::scalars},
+  return textured_surface(r, {{"lic", Association::point, std::move(lic), "", Role::none},
                               {"in-plane anisotropy", Association::point, Array::from_vector(std::move(anisotropy)), "", Role::none}});
 }
 

@@ -148,7 +148,7 @@ TEST_CASE("ftle: of a series of grids it approaches the known values of the doub
 
 TEST_CASE("ftle: without a duration the mean speed goes a tenth of the diagonal, and solid meshes get 64 seeds along an axis") {
   Context context;
-  UniformGrid g = grid_of({11, 6, 6}, {0, 0, 0}, 1);
+  UniformGrid g = test::even_grid({11, 6, 6}, {0, 0, 0}, 1);
   FieldSet fields;
   std::vector<float> v;
   for (int i = 0; i < 11 * 6 * 6; ++i) v.insert(v.end(), {0, 2, 0});
