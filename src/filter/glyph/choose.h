@@ -36,7 +36,7 @@ struct ChosenGlyphs {
 };
 
 /// `in_pixels`: sizes are pixels of a picture (size 0: 34 for barbs, 40 for others). Defaults: the active vectors; flat arrows for flat
-/// data whose vectors lie in it, else arrows; at most 2500 places evenly (900 in a plane, 350 barbs), all points where there are fewer; the
+/// data whose vectors lie in it, else arrows; at most 2500 places evenly (900 in a plane, 180 barbs), all points where there are fewer; the
 /// vectors' lengths as sizes, the longest about as long as places are apart. Throws Error(usage).
 ChosenGlyphs choose_glyphs(const DatasetPtr& data, const GlyphParams& p, bool in_pixels, Context& context);
 

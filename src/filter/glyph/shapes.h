@@ -25,10 +25,9 @@ void describe(Schema& s, GlyphShapeParams& p);
 std::span<const std::string_view> glyph_shape_names();
 
 /// A shape by name, or the surface of a file. Extents:
-///   arrow, cone, needle, line, arrow2d   from 0 to 1 along x; the last is a thin plate in the x-y plane, needle a thin double cone, line
-///   one
-///                                        segment (drawn with constant width)
-///   cylinder, sphere, cube, superquadric  -1/2 to 1/2 along x and across it; disc: of diameter 1 across x, flat
+///   arrow, cone, needle, line, arrow2d   from 0 to 1 along x; arrow2d is a thin plate in the x-y plane, needle a thin double cone, line
+///                                        one segment (drawn with constant width)
+///   cylinder, sphere, cube, superquadric -1/2 to 1/2 along x and across it; disc: of diameter 1 across x, flat
 ///   a file                               its longest edge of the box is 1, the middle of the box at 0
 /// `anchor`: tail, middle or tip stands at the point ("auto": as listed). Solids are closed and their faces look outward.
 /// superquadric: (cos^beta p, sgn sin^alpha t sin^beta p, cos^alpha t sin^beta p) / 2 about the x axis (Barr 1981, Kindlmann 2004).

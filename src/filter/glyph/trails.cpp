@@ -38,24 +38,13 @@ struct Cut {
   }
 };
 
-}  // namespace
-
-DatasetPtr trails(const DatasetPtr& data, const TrailsParams& p, Context&) {
-  const auto* mesh = data->as<SurfaceMesh>();
-  if (!mesh || mesh->lines.size() == 0)
-    fail_usage(fmt::format("the mesh ({}) has no lines", data->kind()), "trails", "pathlines and streamlines have lines");
-  if (p.color.size() != 3) fail_usage(fmt::format("{} numbers are no colour", p.color.size()), "trails: color", "give red,green,blue");
-  const Field& field = times_of(*data, p);
-  const Range all = data->range(field, 0);
-  const double time = p.time.value_or(all.empty() ? 0 : all.hi);
-  const double length = p.length > 0 ? p.length : all.empty() || !(all.hi > all.lo) ? 1 : 0.1 * (all.hi - all.lo);
+// The parts of the lines from `length` before `time` on to it.
+Cut cut_lines(const SurfaceMesh& mesh, const View<double>& t, double time, double length) {
   const double from = time - length;
-  const CellsView lines = cells_view(mesh->lines);
-  const Array times = field.array.converted(ElementType::f64).made_packed();
-  const View<double> t = times.view<double>();
+  const CellsView lines = cells_view(mesh.lines);
   Cut out;
   for (size_t c = 0; c < lines.count; ++c) {
-    const auto cell = int64_t(mesh->vertices.size() + c);
+    const auto cell = int64_t(mesh.vertices.size() + c);
     bool open = false;
     for (size_t k = 0; k < lines.size(c); ++k) {
       const auto b = uint32_t(lines.point(c, k));
@@ -85,6 +74,32 @@ DatasetPtr trails(const DatasetPtr& data, const TrailsParams& p, Context&) {
     }
     if (open) out.end_line(cell);
   }
+  return out;
+}
+
+// The colour, fading with age.
+Array faded(const std::vector<double>& color, const std::vector<float>& ages) {
+  std::vector<uint8_t> rgba;
+  for (const float age : ages) {
+    for (const double c : color) rgba.push_back(uint8_t(std::clamp(c, 0.0, 1.0) * 255 + 0.5));
+    rgba.push_back(uint8_t((1 - age) * 255 + 0.5f));
+  }
+  return Array::from_vector(std::move(rgba), 4);
+}
+
+}  // namespace
+
+DatasetPtr trails(const DatasetPtr& data, const TrailsParams& p, Context&) {
+  const auto* mesh = data->as<SurfaceMesh>();
+  if (!mesh || mesh->lines.size() == 0)
+    fail_usage(fmt::format("the mesh ({}) has no lines", data->kind()), "trails", "pathlines and streamlines have lines");
+  if (p.color.size() != 3) fail_usage(fmt::format("{} numbers are no colour", p.color.size()), "trails: color", "give red,green,blue");
+  const Field& field = times_of(*data, p);
+  const Range all = data->range(field, 0);
+  const double time = p.time.value_or(all.empty() ? 0 : all.hi);
+  const double length = p.length > 0 ? p.length : all.empty() || !(all.hi > all.lo) ? 1 : 0.1 * (all.hi - all.lo);
+  const Array times = field.array.converted(ElementType::f64).made_packed();
+  Cut out = cut_lines(*mesh, times.view<double>(), time, length);
   FieldSet fields;
   carry_interpolated(fields, data->fields(), out.points);
   if (!p.heads) out.heads.clear(), out.head_cells.clear();
@@ -93,17 +108,13 @@ DatasetPtr trails(const DatasetPtr& data, const TrailsParams& p, Context&) {
   cells.insert(cells.end(), out.line_cells.begin(), out.line_cells.end());
   carry_gathered(fields, data->fields(), Association::cell, std::span<const int64_t>(cells), Association::cell);
   carry_whole(fields, data->fields());
-  std::vector<uint8_t> rgba;
-  for (const float age : out.age) {
-    for (const double c : p.color) rgba.push_back(uint8_t(std::clamp(c, 0.0, 1.0) * 255 + 0.5));
-    rgba.push_back(uint8_t((1 - age) * 255 + 0.5f));
-  }
+  const Array rgba = faded(p.color, out.age);
   std::vector<Field> renamed;  // pictures colour by what fades unless they are told
   for (const Field& f : fields)
     if (f.role == Role::scalars || f.role == Role::colors) renamed.push_back(f), renamed.back().role = Role::none;
   for (Field& f : renamed) fields.add(std::move(f));
   fields.add({"age", Association::point, Array::from_vector(std::move(out.age)), "", Role::none});
-  fields.add({"trail", Association::point, Array::from_vector(std::move(rgba), 4), "", Role::colors});
+  fields.add({"trail", Association::point, rgba, "", Role::colors});
   SurfaceMesh made;
   made.points = {interpolate(mesh->points.xyz, out.points), mesh->points.origin};
   if (!out.heads.empty()) made.vertices.fixed = 1, made.vertices.connectivity = Array::from_vector(std::move(out.heads));

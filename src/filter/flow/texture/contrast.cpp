@@ -36,11 +36,9 @@ void set_contrast(std::span<float> v, const std::string& kind, bool from_zero, c
         return Extent{std::min(a.lo, b.lo), std::max(a.hi, b.hi)};
       },
       &context);
-  if (!(e.lo < e.hi)) {
-    // All the same: a constant stays what it is.
-    return;
-  }
+  if (!(e.lo < e.hi)) return;  // a constant stays what it is
   const float per_bin = float(bins) / (e.hi - e.lo);
+  if (!(per_bin > 0 && std::isfinite(per_bin))) return;  // infinite or hardly different values have no bins
   auto bin = [&](float x) { return std::clamp(int((x - e.lo) * per_bin), 0, bins - 1); };
   using Counts = std::vector<uint64_t>;
   const Counts counts = parallel_reduce(

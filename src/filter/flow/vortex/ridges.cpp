@@ -133,21 +133,11 @@ DatasetPtr with_joined_ends(const DatasetPtr& in, double gap) {
   return make_dataset(std::move(parts));
 }
 
-}  // namespace
-
-DatasetPtr ridges(const DatasetPtr& in, const RidgesParams& p, Context& context) {
-  const Field* found = p.field.empty() ? in->fields().active(1) : &in->fields().require(p.field.name);
-  if (!found) fail_usage("the data have no scalar field", "ridges");
-  const Field field = *found;
-  if (field.components() != 1 || field.association != Association::point)
-    fail_usage(fmt::format("field '{}' is no scalar on points", field.name), "ridges", "magnitude, component or cell_to_point make one");
-  const int dimension = mesh_dimension(*in);
-  if (dimension < 2) fail_usage("a mesh of lines or points has no ridges", "ridges");
-  const int flat = dimension == 2 ? flat_axis(in) : -1;
-  const double sign = p.kind == "ridges" ? 1 : -1;
-
-  const bool smoothed = p.smooth > 0 && (in->as<UniformGrid>() || in->as<RectilinearGrid>());
-  const DatasetPtr even = smoothed ? gaussian_smooth(in, {{field.name}, {p.smooth * mean_cell(*in, dimension, flat)}, ""}, context) : in;
+// Lines (of a flat mesh) or surfaces where the gradient is free of some eigenvector of the Hessian, with both as fields. `smooth`: the
+// width of the Gaussian that grids are smoothed with before.
+DatasetPtr where_free(const DatasetPtr& in, const Field& field, double smooth, int flat, double sign, Context& context) {
+  const bool smoothed = smooth > 0 && (in->as<UniformGrid>() || in->as<RectilinearGrid>());
+  const DatasetPtr even = smoothed ? gaussian_smooth(in, {{field.name}, {smooth}, ""}, context) : in;
   const DatasetPtr first = gradient(even, {{field.name}, slope_name}, context);
   const DatasetPtr second = hessian(first, {{field.name}, bend_name}, context);
   const Array slopes = second->fields().require(slope_name).array.converted(ElementType::f64);
@@ -173,15 +163,18 @@ DatasetPtr ridges(const DatasetPtr& in, const RidgesParams& p, Context& context)
   parts.fields.add({zero_name, Association::point, std::move(condition), "", Role::none});
   ContourParams c;
   c.field = {zero_name}, c.values = {0}, c.normals = false;
-  const DatasetPtr all = contour(make_dataset(std::move(parts)), c, context);
+  return contour(make_dataset(std::move(parts)), c, context);
+}
 
+// The cells whose points are all on ridges that are strong and high enough. `strength`: of all points.
+std::vector<int64_t> cells_on_ridges(const DatasetPtr& all, const RidgesParams& p, const Field& field, int flat, double sign, double cell,
+                                     std::vector<double>& strength) {
   const View<double> ga = all->fields().require(slope_name, Association::point).array.view<double>();
   const View<double> ha = all->fields().require(bend_name, Association::point).array.view<double>();
   const Array values = scalar_of(all->fields().require(field.name, Association::point), 0, ElementType::f64);
   const View<double> v = values.view<double>();
-  const double cell = mean_cell(*in, dimension, flat);
   // A third of a cell off is on the crest; up to half of one counts beside such a place, so that a line does not break where it is sharp.
-  std::vector<double> strength(all->point_count());
+  strength.resize(all->point_count());
   std::vector<uint8_t> on(strength.size());
   parallel_for(strength.size(), 1 << 12, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
@@ -205,6 +198,25 @@ DatasetPtr ridges(const DatasetPtr& in, const RidgesParams& p, Context& context)
     }
     if (every && any) stay.push_back(int64_t(k));
   }
+  return stay;
+}
+
+}  // namespace
+
+DatasetPtr ridges(const DatasetPtr& in, const RidgesParams& p, Context& context) {
+  const Field* found = p.field.empty() ? in->fields().active(1) : &in->fields().require(p.field.name);
+  if (!found) fail_usage("the data have no scalar field", "ridges");
+  const Field field = *found;
+  if (field.components() != 1 || field.association != Association::point)
+    fail_usage(fmt::format("field '{}' is no scalar on points", field.name), "ridges", "magnitude, component or cell_to_point make one");
+  const int dimension = mesh_dimension(*in);
+  if (dimension < 2) fail_usage("a mesh of lines or points has no ridges", "ridges");
+  const int flat = dimension == 2 ? flat_axis(in) : -1;
+  const double sign = p.kind == "ridges" ? 1 : -1;
+  const double cell = mean_cell(*in, dimension, flat);
+  const DatasetPtr all = where_free(in, field, p.smooth * cell, flat, sign, context);
+  std::vector<double> strength;
+  const std::vector<int64_t> stay = cells_on_ridges(all, p, field, flat, sign, cell, strength);
   DatasetParts out = all->parts();
   for (const char* scratch : {slope_name, bend_name, zero_name}) out.fields.remove(scratch, Association::point);
   out.fields.add({"ridge strength", Association::point, Array::from_vector(std::move(strength)), "", Role::none});
