@@ -263,8 +263,9 @@ TEST_CASE("tensor_lic: lines go on across creases, right angles too, as on the u
 TEST_CASE("tensor_lic: on a sphere the texture of the latitudes' tensor is constant along them, that of the other along meridians") {
   const DatasetPtr d = globe(40, [](Vec3 p) { return outer(tangent(p, {0, 0, 0}), 2) + outer(p, 50); });  // 50 across the surface
   for (const int which : {1, 2}) {
-    TensorLicParams p = plain(which == 1 ? 150 : 8, which);
-    p.step = 0.1;
+    TensorLicParams p = plain(which == 1 ? 400 : 15, which);
+    p.step = 0.05;
+    CAPTURE(which);
     const DatasetPtr r = run(d, p);
     const View<float> v = lic_of(r);
     double along = 0, across = 0;  // squared differences of neighbours
