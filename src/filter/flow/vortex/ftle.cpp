@@ -81,16 +81,16 @@ DatasetPtr ftle_of(const UniformGrid& grid, double duration, std::optional<doubl
     for (size_t i = begin; i < end; ++i) {
       const Vec3 index(double(i % n[0]), double(i / n[0] % n[1]), double(i / (n[0] * n[1])));
       const Vec3 x = from[i * each] = grid.origin + grid.direction * (grid.spacing * index);
-      for (size_t k = 1; k < each; ++k)
-        from[i * each + k] = x + grid.direction.column(axes[(k - 1) / 2]) * (k % 2 ? -*offset : *offset);
+      for (size_t k = 1; k < each; ++k) from[i * each + k] = x + grid.direction.column(axes[(k - 1) / 2]) * (k % 2 ? -*offset : *offset);
     }
   });
   map(from, to, known);
 
   float *value = nullptr, *went = nullptr, *values = nullptr, *largest = nullptr, *smallest = nullptr;
   const auto dims = size_t(dimension);
-  Array arrays[5] = {Array::make<float>(count, 1, &value), Array::make<float>(count, 3, &went), Array::make<float>(count, dimension, &values),
-                     Array::make<float>(count, 3, &largest), Array::make<float>(count, 3, &smallest)};
+  Array arrays[5] = {Array::make<float>(count, 1, &value), Array::make<float>(count, 3, &went),
+                     Array::make<float>(count, dimension, &values), Array::make<float>(count, 3, &largest),
+                     Array::make<float>(count, 3, &smallest)};
   parallel_for(count, 1 << 12, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       const size_t index[3] = {i % n[0], i / n[0] % n[1], i / (n[0] * n[1])}, step[3] = {1, n[0], n[0] * n[1]}, here = i * each;
@@ -131,8 +131,8 @@ DatasetPtr ftle(const Series& given, const FtleParams& p, Context& context) {
     series.times = {std::min(start, until), std::max(start, until)};
     series.load = [only = single_dataset(given.load(0), "ftle")](size_t) -> Data { return only; };
   } else if (std::min(start, until) < given.times.front() || std::max(start, until) > given.times.back()) {
-    fail_usage(fmt::format("from {:.6g} to {:.6g} is not in the series, which lasts from {:.6g} to {:.6g}", start, until, given.times.front(),
-                           given.times.back()),
+    fail_usage(fmt::format("from {:.6g} to {:.6g} is not in the series, which lasts from {:.6g} to {:.6g}", start, until,
+                           given.times.front(), given.times.back()),
                "ftle", "another start or duration");
   }
   UnsteadyFlow flow(series, p.field.name, p.interpolation == "cubic" ? TimeInterpolation::cubic : TimeInterpolation::linear, context);
@@ -141,7 +141,10 @@ DatasetPtr ftle(const Series& given, const FtleParams& p, Context& context) {
   flow.open(k, context);
   StopParams stop;
   stop.max_steps = 1000000000, stop.closed = false;
-  const TraceOptions options = trace_options(p.integration, stop, flow.largest_speed());
+  // Nobody sees the ways themselves: the tolerance alone says how long steps may be.
+  IntegrationParams integration = p.integration;
+  if (!integration.max_step) integration.max_step = 8 * integration.step;
+  const TraceOptions options = trace_options(integration, stop, flow.largest_speed());
   ResampleParams r;
   r.dims = p.dims, r.size = p.size, r.bounds = p.bounds;
   const UniformGrid grid = resample_grid(*flow.steps()[flow.base()].dataset(), r);
