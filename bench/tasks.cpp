@@ -194,6 +194,7 @@ std::vector<Task> tasks(const std::string& folder) {
   add_flow_tasks(t);
   add_glyph_tasks(t);
   add_ftle_tasks(t);
+  add_volume_error_tasks(t, folder);
   return t;
 }
 

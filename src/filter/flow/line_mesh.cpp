@@ -21,10 +21,6 @@ struct LineArrays {
     fields.add({"time", Association::point, Array::make<float>(n, 1, &time), "", Role::none});
     fields.add({"length", Association::point, Array::make<float>(n, 1, &arc), "", Role::none});
   }
-  // Small numbers far from zero keep their digits; those about zero stay as they are.
-  void set_origin(const Box3& box) {
-    if (!box.empty() && length(box.center()) > 8 * box.diagonal()) points.origin = box.center();
-  }
   DatasetPtr finish(std::vector<int64_t> begin, std::vector<int64_t> seed, std::vector<uint8_t> stop) {
     SurfaceMesh mesh;
     mesh.points = std::move(points);
@@ -51,6 +47,8 @@ struct LineArrays {
 
 }  // namespace
 
+Vec3 near_origin(const Box3& box) { return !box.empty() && length(box.center()) > 8 * box.diagonal() ? box.center() : Vec3(); }
+
 DatasetPtr lines_dataset(const TracedLines& lines, const std::string& velocity_name, const std::string& unit) {
   std::vector<int64_t> begin{0}, seed;
   std::vector<size_t> first;
@@ -64,7 +62,7 @@ DatasetPtr lines_dataset(const TracedLines& lines, const std::string& velocity_n
     for (size_t i = lines.begin[l]; i < lines.begin[l + 1]; ++i) box.add(lines.points[i]);
   }
   LineArrays out(size_t(begin.back()), velocity_name, unit);
-  out.set_origin(box);
+  out.points.origin = near_origin(box);
   parallel_for(first.size(), 64, [&](size_t from, size_t to) {
     for (size_t l = from; l < to; ++l)
       for (size_t i = size_t(begin[l]), k = first[l]; i < size_t(begin[l + 1]); ++i, ++k) {
@@ -105,7 +103,7 @@ DatasetPtr lines_dataset(const packets::SeedLines& lines, const std::string& vel
         a.add(b);
         return a;
       });
-  out.set_origin(box);
+  out.points.origin = near_origin(box);
   const Vec3 shift = lines.origin - out.points.origin;
   const auto put = [&](const Record& r, size_t i, float sign) {
     for (int a = 0; a < 3; ++a) out.xyz[3 * i + size_t(a)] = float(shift[a] + double(r.x[a])), out.v[3 * i + size_t(a)] = r.v[a];

@@ -9,4 +9,8 @@ namespace sg {
 /// As lines_dataset() of streamlines.h, in the order of the seeds.
 DatasetPtr lines_dataset(const packets::SeedLines& lines, const std::string& velocity_name, const std::string& unit);
 
+/// What f32 positions within the box should count from: its middle where that is far from zero, so that small numbers keep their digits,
+/// else zero, so that those about zero stay as they are.
+Vec3 near_origin(const Box3& box);
+
 }  // namespace sg

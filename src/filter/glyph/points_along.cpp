@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Even spacing along lines, for barbs on streamlines (Pilar & Ware 2013).
+// Even spacing along lines, for barbs on streamlines (Pilar, Ware 2013).
 #include "filter/glyph/points_along.h"
 
 #include <fmt/core.h>
@@ -12,7 +12,7 @@ namespace sg {
 DatasetPtr points_along_lines(const DatasetPtr& data, const GlyphPointsParams& p) {
   const auto* mesh = data->as<SurfaceMesh>();
   if (!mesh || mesh->lines.size() == 0)
-    fail_usage(fmt::format("a {} mesh without lines", data->kind()), "glyph_points: mode=lines",
+    fail_usage(fmt::format("the mesh ({}) has no lines", data->kind()), "glyph_points: mode=lines",
                "streamlines, isolines and the like have lines");
   const double spacing = p.spacing > 0 ? p.spacing : 0.06 * data->bounds().diagonal();
   const CellsView lines = cells_view(mesh->lines);

@@ -43,7 +43,7 @@ struct Cut {
 DatasetPtr trails(const DatasetPtr& data, const TrailsParams& p, Context&) {
   const auto* mesh = data->as<SurfaceMesh>();
   if (!mesh || mesh->lines.size() == 0)
-    fail_usage(fmt::format("a {} mesh without lines", data->kind()), "trails", "pathlines and streamlines have lines");
+    fail_usage(fmt::format("the mesh ({}) has no lines", data->kind()), "trails", "pathlines and streamlines have lines");
   if (p.color.size() != 3) fail_usage(fmt::format("{} numbers are no colour", p.color.size()), "trails: color", "give red,green,blue");
   const Field& field = times_of(*data, p);
   const Range all = data->range(field, 0);

@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "base/text.h"
+#include "data/mesh_dimension.h"
 #include "data/trusted.h"
 #include "filter/field/point_cell.h"
 #include "filter/scalar/contour_active.h"
@@ -273,22 +274,11 @@ DatasetPtr assemble(const Dataset& input, const Field& field, const std::vector<
   return make_trusted_dataset(std::move(parts));
 }
 
-// Has the mesh solids (or, failing that, faces) to cut?
-int mesh_dimension(const Dataset& input) {
-  if (is_lattice(input.mesh())) {
-    int axes = 0;
-    for (size_t n : lattice_dims(input.mesh())) axes += n > 1;
-    return axes;
-  }
-  int dimension = 0;
-  bool thin = false;
-  for (const auto& [name, count] : cell_type_counts(input.mesh()))
-    for (int t = 0; t < 256; ++t)
-      if (const CellTypeInfo* info = cell_type_info(uint8_t(t)); info && info->name == name && count) {
-        dimension = std::max(dimension, info->dimension);
-        thin = thin || info->dimension < 2;
-      }
-  if (dimension < 2 && input.cell_count() > 0) fail_usage("the mesh has only points and lines; a contour needs faces or solids", "contour");
+// 3: solids to cut, 2: faces.
+int dimension_to_cut(const Dataset& input) {
+  const int dimension = mesh_dimension(input);
+  if (dimension < 2 && input.cell_count() > 0 && !is_lattice(input.mesh()))
+    fail_usage("the mesh has only points and lines; a contour needs faces or solids", "contour");
   return dimension;
 }
 
@@ -302,7 +292,7 @@ DatasetPtr contour(const DatasetPtr& given, const ContourParams& params, Context
   if (params.from_cells) std::tie(input, name.name) = averaged_to_points(given, params.field, context);
   const Field& field = choose_field(*input, name);
   const int component = choose_component(field, params.component);
-  const int dimension = mesh_dimension(*input);
+  const int dimension = dimension_to_cut(*input);
   std::vector<double> values = params.values;
   if (values.empty()) {
     const Range range = input->range(field, component);

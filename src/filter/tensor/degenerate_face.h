@@ -16,7 +16,7 @@ struct DegeneratePlace {
 };
 
 /// Values of the seven cubic forms whose weighted sum of squares is the discriminant of the characteristic polynomial: all vanish exactly
-/// where two eigenvalues are equal (Zheng and Pang 2004; Parlett 2002). (l1-l2)^2 (l2-l3)^2 (l3-l1)^2 = f0^2 + f1^2 + f2^2 + f3^2 + 15
+/// where two eigenvalues are equal (Zheng, Pang 2004; Parlett 2002). (l1-l2)^2 (l2-l3)^2 (l3-l1)^2 = f0^2 + f1^2 + f2^2 + f3^2 + 15
 /// (f4^2 + f5^2 + f6^2).
 void degeneracy_forms(const SymTensor& d, double (&f)[7]);
 

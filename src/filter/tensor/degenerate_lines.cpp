@@ -212,7 +212,7 @@ void describe(Schema& s, DegenerateLinesParams& p) {
 
 DatasetPtr degenerate_lines(const DatasetPtr& input, const DegenerateLinesParams& p, Context& ctx) {
   if (const int dimension = dimension_of_cells(input); dimension != 3)
-    fail_usage(fmt::format("a {} mesh with cells of dimension {} has no degenerate lines", input->kind(), dimension), "degenerate_lines",
+    fail_usage(fmt::format("a mesh ({}) with cells of dimension {} has no degenerate lines", input->kind(), dimension), "degenerate_lines",
                dimension == 2 ? "degenerate_points finds those of flat meshes and surfaces" : "a mesh of solid cells");
   const DatasetPtr in = tessellate(input, {}, ctx);
   TensorField t = read_point_tensors(in, p.tensors, "degenerate_lines", ctx);

@@ -12,7 +12,7 @@ struct DegenerateLinesParams {
 };
 void describe(Schema& s, DegenerateLinesParams& p);
 
-/// Lines along which a 3D tensor field has a double eigenvalue (Zheng and Pang 2004): the larger two are equal (planar) or the smaller two
+/// Lines along which a 3D tensor field has a double eigenvalue (Zheng, Pang 2004): the larger two are equal (planar) or the smaller two
 /// (linear). All cells are cut into tetrahedra from their corner with the smallest point id, neighbours alike, with the tensor linear in
 /// each; curved cells are made linear first (tessellate). The exact places on the faces (degenerate_face.h) are joined within each
 /// tetrahedron along the tangent of the line.

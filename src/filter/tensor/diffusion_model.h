@@ -17,7 +17,7 @@ struct DiffusionResult {
   bool raised = false;                        ///< the unconstrained tensor was not positive
 };
 
-/// Stejskal and Tanner 1965: ln S_i = ln S0 - b_i g_i^T D g_i (Basser, Mattiello, Le Bihan 1994).
+/// Stejskal, Tanner 1965: ln S_i = ln S0 - b_i g_i^T D g_i (Basser, Mattiello, Le Bihan 1994).
 class DiffusionModel {
  public:
   /// Throws Error(usage) when the gradients do not determine the seven unknowns: fewer than six directions in general position, or one b

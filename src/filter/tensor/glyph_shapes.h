@@ -32,7 +32,7 @@ class GlyphPattern {
   ///   cylinder            elliptic, along the eigenvector that differs most: the first where linear (cl >= cp), else the third;
   ///   superquadric        Kindlmann 2004: the exponents (1-cp)^gamma, (1-cl)^gamma of a superquadric along the same axis make edges where
   ///                       eigenvectors are certain and roundness where they are not; cl, cp of the absolute eigenvalues, by the trace;
-  ///   reynolds            radius |n.s.n| in the direction n (Moore et al. 1994, "Reynolds" glyph): lobes;
+  ///   reynolds            radius |n.s.n| in the direction n (Moore, Schorn, Moore 1996, "Reynolds" glyph): lobes;
   ///   hwy                 radius sqrt(|s n|^2 - (n.s.n)^2), the shear on the plane across n (Hashash, Yao, Wotring 2003).
   /// Normals are exact. `out` has room for vertices().
   void make(const Eigen3& e, double factor, GlyphVertex* out) const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hyperstreamlines: lines along one eigenvector whose section shows the other two (Delmarcelle and Hesselink 1993).
+// Hyperstreamlines: lines along one eigenvector whose section shows the other two (Delmarcelle, Hesselink 1993).
 #pragma once
 #include "filter/tensor/tensor_field.h"
 

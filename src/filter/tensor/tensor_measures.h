@@ -39,7 +39,7 @@ struct DirectionColorsParams {
 void describe(Schema& s, DirectionColorsParams& p);
 
 /// Adds the u8 field "direction" of 3 components (role colors): red, green and blue are the absolute x, y and z of an eigenvector, times FA
-/// (`weight`: FA, cl, none) to the power 1/gamma (Pajevic and Pierpaoli 1999). NaN tensors are black.
+/// (`weight`: FA, cl, none) to the power 1/gamma (Pajevic, Pierpaoli 1999). NaN tensors are black.
 DatasetPtr direction_colors(const DatasetPtr& in, const DirectionColorsParams& p, Context& ctx);
 
 /// The colour of a direction: round(255 |v| weight), v of length 1.

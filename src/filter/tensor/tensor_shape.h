@@ -24,7 +24,7 @@ inline double deviation_of(const double* l) {
   return m * std::sqrt((a * a + b * b + 1) / 3);
 }
 
-/// Fractional anisotropy sqrt(3/2) |D - MD I| / |D| = sqrt(1/2) sqrt(sum of squared differences) / |D| (Basser and Pierpaoli 1996): 0 for
+/// Fractional anisotropy sqrt(3/2) |D - MD I| / |D| = sqrt(1/2) sqrt(sum of squared differences) / |D| (Basser, Pierpaoli 1996): 0 for
 /// a sphere, 1 for a line; above 1 only with negative eigenvalues. 0 for the zero tensor.
 inline double fractional_anisotropy(const double* l) {
   const double n = norm_of(l);
@@ -40,7 +40,7 @@ inline double relative_anisotropy(const double* l) {
   const double d = deviation_of(l);
   return d == 0 ? 0 : d / (std::sqrt(3.0) * mean_of(l));
 }
-/// 3 sqrt(6) det(A/|A|) of the deviator A (Ennis and Kindlmann 2006): 1 for a line, 0 orthotropic, -1 for a disc. NaN where the deviator
+/// 3 sqrt(6) det(A/|A|) of the deviator A (Ennis, Kindlmann 2006): 1 for a line, 0 orthotropic, -1 for a disc. NaN where the deviator
 /// is below 1e-13 of the tensor: there is none.
 inline double tensor_mode(const double* l) {
   const double d = deviation_of(l);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A velocity on every kind of mesh.
 #pragma once
-#include "data/point_positions.h"
 #include "filter/cell_meshes.h"
+#include "filter/flow/flow_support.h"
 #include "filter/flow/trace.h"
 #include "filter/mesh_meshes.h"
 #include "filter/surface_shapes.h"
@@ -12,28 +12,16 @@ namespace sg::test::flow {
 /// The mesh with the point field "u" of a function of position.
 template <class T = double, class F>
 DatasetPtr with_velocity(const DatasetPtr& mesh, F&& u, int components = 3) {
-  const Array at = point_positions(mesh->mesh());
-  std::vector<T> v;
-  for (size_t i = 0; i < at.count(); ++i) {
-    const Vec3 p = u(Vec3(at.get(i, 0), at.get(i, 1), at.get(i, 2)));
-    for (int c = 0; c < components; ++c) v.push_back(T(p[c]));
-  }
   DatasetParts parts = mesh->parts();
-  parts.fields.add({"u", Association::point, Array::from_vector(std::move(v), components), "m/s", Role::vectors});
+  parts.fields.add({"u", Association::point, at_points<T>(mesh->mesh(), u, components), "m/s", Role::vectors});
   return make_dataset(std::move(parts));
 }
 
 /// Every point moved.
 template <class F>
 DatasetPtr moved(const DatasetPtr& mesh, F&& f) {
-  const Array at = point_positions(mesh->mesh());
-  std::vector<double> xyz;
-  for (size_t i = 0; i < at.count(); ++i) {
-    const Vec3 p = f(Vec3(at.get(i, 0), at.get(i, 1), at.get(i, 2)));
-    xyz.insert(xyz.end(), {p.x, p.y, p.z});
-  }
   DatasetParts parts = mesh->parts();
-  std::get<UnstructuredMesh>(parts.mesh).points = {Array::from_vector(std::move(xyz), 3), {}};
+  std::get<UnstructuredMesh>(parts.mesh).points = {at_points(mesh->mesh(), f), {}};
   return make_dataset(std::move(parts));
 }
 

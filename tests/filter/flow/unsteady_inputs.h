@@ -8,22 +8,18 @@
 
 #include "data/dataset.h"
 #include "data/lattice.h"
-#include "data/point_positions.h"
+#include "filter/flow/flow_support.h"
 
 namespace sg::test {
 
 /// The mesh with a field "velocity" v(x), and "height" z + x.
 inline DatasetPtr with_velocity(const Mesh& mesh, const std::function<Vec3(Vec3)>& v, bool f32 = false) {
-  const Array p = point_positions(mesh);
-  std::vector<double> u(3 * p.count()), h(p.count());
-  for (size_t i = 0; i < p.count(); ++i) {
-    const Vec3 x{p.get(i, 0), p.get(i, 1), p.get(i, 2)}, w = v(x);
-    u[3 * i] = w.x, u[3 * i + 1] = w.y, u[3 * i + 2] = w.z, h[i] = x.z + x.x;
-  }
   FieldSet fields;
-  Array velocity = Array::from_vector(std::move(u), 3);
-  fields.add({"velocity", Association::point, f32 ? velocity.converted(ElementType::f32) : velocity, "", Role::none});
-  fields.add({"height", Association::point, Array::from_vector(std::move(h)), "", Role::none});
+  fields.add({"velocity", Association::point, f32 ? at_points<float>(mesh, v) : at_points(mesh, v), "", Role::none});
+  fields.add({"height", Association::point,
+              at_points(
+                  mesh, [](Vec3 x) { return Vec3(x.z + x.x, 0, 0); }, 1),
+              "", Role::none});
   return make_dataset(mesh, fields);
 }
 

@@ -155,7 +155,7 @@ TEST_CASE("glyph_points: along lines at even spacing, with tangents, and not bes
   CHECK(p->fields().require("line", Association::point).array.get(7) == 8);
   CHECK(p->fields().require("tangent").array.get(3, 0) == 1);
   CHECK(run(two_lines(), {.mode = "lines", .spacing = 2})->point_count() == 6);  // the other line is too near
-  CHECK(error_of([] { run(box_grid(3, 3, 1), {.mode = "lines"}); }).find("without lines") != std::string::npos);
+  CHECK(error_of([] { run(box_grid(3, 3, 1), {.mode = "lines"}); }).find("has no lines") != std::string::npos);
 }
 
 TEST_CASE("trails: the stretch before a time, cut exactly, with ages and heads") {
@@ -182,5 +182,5 @@ TEST_CASE("trails: the stretch before a time, cut exactly, with ages and heads")
   CHECK(trails(two_lines(), {.time = 20, .length = 1}, context)->cell_count() == 0);
   CHECK(trails(two_lines(), {}, context)->as<SurfaceMesh>()->lines.size() == 1);  // the last second: 9 to 10
   CHECK(error_of([&] { trails(two_lines(), {.field = {"tim"}}, context); }).find("'tim'") != std::string::npos);
-  CHECK(error_of([&] { trails(scattered(5), {}, context); }).find("without lines") != std::string::npos);
+  CHECK(error_of([&] { trails(scattered(5), {}, context); }).find("has no lines") != std::string::npos);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// even_streamlines: lines that fill the picture evenly (Jobard and Lefer 1997), in the plane, on surfaces and in space.
+// even_streamlines: lines that fill the picture evenly (Jobard, Lefer 1997), in the plane, on surfaces and in space.
 #pragma once
 #include <optional>
 

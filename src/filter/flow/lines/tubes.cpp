@@ -76,7 +76,7 @@ DatasetPtr assemble(const DatasetPtr& lines, std::vector<Body>& parts) {
 DatasetPtr lines_of(const DatasetPtr& in, const char* who, Context& context) {
   const DatasetPtr surface = surface_of(in, context);
   if (surface->as<SurfaceMesh>()->lines.size() == 0)
-    fail_usage(fmt::format("a mesh of {} has no lines", in->kind()), who, "streamlines, isolines or feature_edges make lines");
+    fail_usage(fmt::format("the mesh ({}) has no lines", in->kind()), who, "streamlines, isolines or feature_edges make lines");
   return surface;
 }
 

@@ -10,7 +10,7 @@
 namespace sg::texture {
 
 /// kernel: box; hanning, (1 + cos(pi s/(L+1)))/2; ripple, that times a wave (1 + cos(2 pi ripples s/(2L+1) + 2 pi phase))/2, which moves
-/// forward as the phase grows (Cabral and Leedom 1993). The box has the same weight everywhere.
+/// forward as the phase grows (Cabral, Leedom 1993). The box has the same weight everywhere.
 Weights kernel_weights(const std::string& kernel, int steps, double phase, int ripples);
 
 /// A line for each pixel: the weighted mean of the noise along it. Pixels without a direction are NaN. In tiles, in parallel.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Frame: the grid of pixels (or voxels) on which a texture of a flow is made, the flow on it and the fields carried to it.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "base/context.h"
 #include "base/huge_allocator.h"
 #include "data/dataset.h"
+#include "data/mesh_dimension.h"
 
 namespace sg::texture {
 
@@ -31,13 +33,18 @@ struct Frame {
 
 /// Is there room for a texture: an extent along two axes at least, and cells? Operations leave such parts of collections as they are.
 bool has_room(const Dataset& data);
-/// f for each dataset; parts of collections that have no room stay as they are, with a note.
+/// f for each dataset; parts of collections that have no room, or fewer dimensions than the others (the skins of a solid), stay as they
+/// are, with a note.
 template <class F>
 Data over_parts(const Data& data, std::string_view who, Context& context, F&& f) {
   const bool alone = std::holds_alternative<DatasetPtr>(data);
+  int dimension = 0;
+  for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) {
+    if (has_room(*d)) dimension = std::max(dimension, mesh_dimension(*d));
+  });
   return map_datasets(data, [&](const DatasetPtr& d) -> DatasetPtr {
-    if (alone || has_room(*d)) return f(d);
-    context.info(std::string(who) + ": a part of " + std::string(d->kind()) + " has no area and stays as it is");
+    if (alone || (has_room(*d) && mesh_dimension(*d) == dimension)) return f(d);
+    context.info(std::string(who) + ": a part without area (like points or lines), or of fewer dimensions than others, stays as it is");
     return d;
   });
 }

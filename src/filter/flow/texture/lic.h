@@ -26,7 +26,7 @@ struct LicParams {
 void describe(Schema& s, LicParams& p);
 
 /// The field "lic" in [0, 1] on a uniform grid: noise, or the field `image` of a second input, averaged along the streamlines of a vector
-/// field (Cabral and Leedom 1993); with method=fast along streamlines that share their sums (Stalling and Hege 1995), so that a pixel's
+/// field (Cabral, Leedom 1993); with method=fast along streamlines that share their sums (Stalling, Hege 1995), so that a pixel's
 /// value is the mean of those of places in it: the same statistics, not the same numbers. Any flat mesh gives a picture (see
 /// texture::make_frame for the grid), a solid one a volume of texture. The input's fields come along, interpolated, to be colours under the
 /// texture. An image gives "lic" as many components as it has, in its own numbers (no contrast).

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "base/random.h"
 #include "data/cell_topology.h"
 
 namespace sg {
@@ -13,126 +12,16 @@ namespace {
 constexpr double border = 1e-9;     // zeros that far out are in the cell: neighbours may both miss them by rounding
 constexpr double on_border = 1e-6;  // zeros that near to the border may be another cell's too
 
-// Solves a square system by elimination with pivots; false when it is singular.
-bool solve_dense(std::vector<double>& a, std::vector<double>& b, size_t n, size_t right) {
-  for (size_t k = 0; k < n; ++k) {
-    size_t pivot = k;
-    for (size_t i = k + 1; i < n; ++i)
-      if (std::abs(a[i * n + k]) > std::abs(a[pivot * n + k])) pivot = i;
-    if (!(std::abs(a[pivot * n + k]) > 0)) return false;
-    for (size_t j = 0; j < n; ++j) std::swap(a[k * n + j], a[pivot * n + j]);
-    for (size_t j = 0; j < right; ++j) std::swap(b[k * right + j], b[pivot * right + j]);
-    for (size_t i = 0; i < n; ++i) {
-      if (i == k) continue;
-      const double f = a[i * n + k] / a[k * n + k];
-      if (f == 0) continue;
-      for (size_t j = k; j < n; ++j) a[i * n + j] -= f * a[k * n + j];
-      for (size_t j = 0; j < right; ++j) b[i * right + j] -= f * b[k * right + j];
-    }
-  }
-  for (size_t i = 0; i < n; ++i)
-    for (size_t j = 0; j < right; ++j) b[i * right + j] /= a[i * n + i];
-  return true;
-}
-
-double binomial(int n, int k) {
-  double r = 1;
-  for (int i = 1; i <= k; ++i) r = r * (n - k + i) / i;
-  return r;
-}
-double bernstein(int n, int k, double x) { return binomial(n, k) * std::pow(x, k) * std::pow(1 - x, n - k); }
-
 }  // namespace
-
-// How the coefficients of a cell's interpolant follow from its node values.
-struct CellZeros::Basis {
-  const CellShape* shape;
-  bool pyramid;
-  ZeroDomain domain;
-  std::vector<double> matrix;  // coefficients x nodes
-  BernsteinZeros solver;
-
-  Basis(const CellShape& s, int degree)
-      : shape(&s), pyramid(s.base() == CellType::pyramid), domain(domain_of(s)), solver(s.dimension(), degree) {
-    fill(degree);
-  }
-  static ZeroDomain domain_of(const CellShape& s) {
-    const CellType b = s.base();
-    return b == CellType::triangle || b == CellType::tetra ? ZeroDomain::simplex
-           : b == CellType::wedge                          ? ZeroDomain::prism
-                                                           : ZeroDomain::box;
-  }
-  // A pyramid is a box whose upper face has shrunk to the apex.
-  Vec3 reference(Vec3 u) const {
-    if (!pyramid) return u;
-    return {0.5 + (u.x - 0.5) * (1 - u.z), 0.5 + (u.y - 0.5) * (1 - u.z), u.z};
-  }
-  void fill(int n) {
-    const int d = shape->dimension();
-    const auto m = size_t(n + 1);
-    const size_t size = solver.size(), nodes = shape->nodes();
-    matrix.assign(size * nodes, 0);
-    // Samples; those of pyramids stay below the apex, where the shape functions are quotients of zeros.
-    auto sample = [&](int i, int axis) { return double(i) / (pyramid && axis == 2 ? n + 0.5 : n); };
-    for (size_t p = 0; p < size; ++p) {
-      const Vec3 u(sample(int(p % m), 0), sample(int(p / m % m), 1), d == 3 ? sample(int(p / m / m), 2) : 0);
-      shape->values(reference(u), &matrix[p * nodes]);
-    }
-    for (int axis = 0; axis < d; ++axis) {
-      std::vector<double> a(m * m), inverse(m * m, 0.0);
-      for (size_t i = 0; i < m; ++i) {
-        inverse[i * m + i] = 1;
-        for (size_t j = 0; j < m; ++j) a[i * m + j] = bernstein(n, int(j), sample(int(i), axis));
-      }
-      solve_dense(a, inverse, m, m);
-      const size_t step = axis == 0 ? 1 : axis == 1 ? m : m * m;
-      std::vector<double> line(m);
-      for (size_t first = 0; first < size; ++first) {
-        if (first / step % m) continue;
-        for (size_t k = 0; k < nodes; ++k) {
-          for (size_t i = 0; i < m; ++i) line[i] = matrix[(first + i * step) * nodes + k];
-          for (size_t i = 0; i < m; ++i) {
-            double sum = 0;
-            for (size_t j = 0; j < m; ++j) sum += inverse[i * m + j] * line[j];
-            matrix[(first + i * step) * nodes + k] = sum;
-          }
-        }
-      }
-    }
-  }
-  // The largest difference between the polynomial and the shape functions at a few places.
-  double misfit() {
-    std::vector<double> n(shape->nodes());
-    double worst = 0;
-    for (size_t k = 0; k < shape->nodes(); ++k) {
-      for (size_t i = 0; i < solver.size(); ++i) solver.coefficients(0)[i] = matrix[i * shape->nodes() + k];
-      for (uint64_t i = 0; i < 4; ++i) {
-        const Vec3 u(random_unit(1, 3 * i), random_unit(1, 3 * i + 1), shape->dimension() == 3 ? 0.9 * random_unit(1, 3 * i + 2) : 0);
-        shape->values(reference(u), n.data());
-        worst = std::max(worst, std::abs(solver.value(u).x - n[k]));
-      }
-    }
-    return worst;
-  }
-};
 
 CellZeros::CellZeros(const FlowField& flow, const PlaneFrame* frame, double min_speed)
     : flow_(flow), frame_(frame), min_speed_(min_speed), map_(flow.dataset()) {}
 CellZeros::~CellZeros() = default;
 
-const CellZeros::Basis& CellZeros::basis_of(const CellShape& shape) {
+BernsteinBasis& CellZeros::basis_of(const CellShape& shape) {
   for (const auto& b : bases_)
-    if (b->shape == &shape) return *b;
-  const auto o = shape.orders();
-  const int lowest = std::max({o[0], o[1], o[2], 1});
-  std::unique_ptr<Basis> best;
-  for (int degree = lowest; degree <= lowest + 3; ++degree) {
-    auto b = std::make_unique<Basis>(shape, degree);
-    const bool exact = b->misfit() < 1e-9;
-    if (!best || exact) best = std::move(b);
-    if (exact) break;
-  }
-  return *bases_.emplace_back(std::move(best));
+    if (&b->shape() == &shape) return *b;
+  return *bases_.emplace_back(std::make_unique<BernsteinBasis>(shape));
 }
 
 CellZeros::Result CellZeros::find(size_t cell, std::vector<CellZero>& out) {
@@ -289,22 +178,13 @@ CellZeros::Result CellZeros::find_bilinear(std::vector<CellZero>& out) {
 }
 
 CellZeros::Result CellZeros::find_polynomial(const CellShape& shape, std::vector<CellZero>& out) {
-  auto& basis = const_cast<Basis&>(basis_of(shape));
-  const size_t n = v_.size();
-  const auto rational = map_.reader().weights();
-  for (int c = 0; c < shape.dimension(); ++c) {
-    const auto to = basis.solver.coefficients(c);
-    for (size_t i = 0; i < to.size(); ++i) {
-      double sum = 0;
-      for (size_t k = 0; k < n; ++k) sum += basis.matrix[i * n + k] * v_[k][c] * (rational.empty() ? 1 : rational[k]);
-      to[i] = sum;
-    }
-  }
+  BernsteinBasis& basis = basis_of(shape);
+  basis.set(v_, map_.reader().weights());
   found_.clear();
   // Of a pyramid whose apex is zero, all other zeros would lie on lines from there.
-  const bool apex = basis.pyramid && !is_high_order(shape.type()) && zero_[4];
+  const bool apex = basis.pyramid() && !is_high_order(shape.type()) && zero_[4];
   if (apex) found_.push_back({0.5, 0.5, 1});
-  const bool isolated = apex || basis.solver.solve(basis.domain, found_, known_);
+  const bool isolated = apex || basis.solve(found_, known_);
   for (const Vec3 u : found_) {
     const Vec3 rst = apex ? Vec3(0.5, 0.5, 1 - 1e-9) : basis.reference(u);
     add(rst, std::max(shape.outside(rst), apex ? 0.0 : -HUGE_VAL), out);

@@ -6,7 +6,7 @@
 
 #include "data/cell_map.h"
 #include "filter/flow/flow_field.h"
-#include "filter/flow/topology/bernstein_zeros.h"
+#include "filter/flow/topology/bernstein_basis.h"
 #include "filter/flow/topology/plane_frame.h"
 
 namespace sg {
@@ -40,8 +40,7 @@ class CellZeros {
   std::vector<int64_t>& spread_points() { return spread_; }
 
  private:
-  struct Basis;
-  const Basis& basis_of(const CellShape& shape);
+  BernsteinBasis& basis_of(const CellShape& shape);
   Result find_linear(std::vector<CellZero>& out);
   Result find_bilinear(std::vector<CellZero>& out);
   Result find_polynomial(const CellShape& shape, std::vector<CellZero>& out);
@@ -62,7 +61,7 @@ class CellZeros {
   std::vector<int64_t> spread_;
   std::vector<std::array<Vec3, 2>> known_;  // edges of zeros, in the coordinates of the solver
   std::vector<Vec3> found_;
-  std::vector<std::unique_ptr<Basis>> bases_;
+  std::vector<std::unique_ptr<BernsteinBasis>> bases_;
 };
 
 }  // namespace sg

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "filter/flow/vortex/eigen_general.h"
+
 namespace sg {
 
 namespace {
@@ -28,34 +30,6 @@ Vec3 null_vector(const Mat3& m, int k, double scale) {
     if (std::abs(n[a]) < std::abs(n[small])) small = a;
   const Vec3 u = normalize(cross(n, axis[small]));
   return k % 2 ? cross(n, u) : u;
-}
-
-// Real parts and the one imaginary part of the eigenvalues: (a, b, c) or a and b +- i im (then c = b).
-struct Roots {
-  double a, b, c, im;
-};
-
-Roots eigenvalues(const Mat3& m, double scale) {
-  const double mean = (m.m[0][0] + m.m[1][1] + m.m[2][2]) / 3;
-  Mat3 d = m;
-  for (int i = 0; i < 3; ++i) d.m[i][i] -= mean;
-  // x^3 - 3 p x - 2 q = 0
-  double p = 0;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) p += d.m[i][j] * d.m[j][i];
-  p /= 6;
-  const double q = determinant(d) / 2, s3 = scale * scale * scale;
-  if (std::abs(p) < 1e-15 * scale * scale && std::abs(q) < 1e-18 * s3) return {mean, mean, mean, 0};
-  double square = q * q - p * p * p;
-  if (std::abs(square) < 1e-14 * (q * q + std::abs(p * p * p))) square = 0;
-  if (square <= 0) {
-    const double r = std::sqrt(std::max(p, 0.0)), angle = std::acos(std::clamp(q / (r * r * r), -1.0, 1.0)) / 3;
-    const double third = 2 * M_PI / 3;
-    return {mean + 2 * r * std::cos(angle), mean + 2 * r * std::cos(angle - third), mean + 2 * r * std::cos(angle + third), 0};
-  }
-  const double u = std::copysign(std::cbrt(std::abs(q) + std::sqrt(square)), q), v = p / u;
-  const double x = u + v;
-  return {mean + x, mean - x / 2, mean - x / 2, std::sqrt(3.0) / 2 * std::abs(u - v)};
 }
 
 double largest_entry(const Mat3& m) {
@@ -113,25 +87,26 @@ Linearisation linearise(const Mat3& m, double centre) {
     r.vector = {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1)};
     return r;
   }
-  Roots e = eigenvalues(m, scale);
-  if (e.im < real_part * scale) e.im = 0;
+  const GeneralEigenvalues e = general_eigenvalues(m);
+  const bool spirals = e.complex_pair && e.im >= real_part * scale;
   auto shifted = [&](double value) {
     Mat3 s = m;
     for (int i = 0; i < 3; ++i) s.m[i][i] -= value;
     return s;
   };
-  if (e.im > 0) {
+  if (spirals) {
     // The plane of the pair is across the left eigenvector of the real one.
-    const Vec3 along = null_vector(shifted(e.a), 0, scale), left = null_vector(transpose(shifted(e.a)), 0, scale);
+    const Vec3 along = null_vector(shifted(e.real[0]), 0, scale), left = null_vector(transpose(shifted(e.real[0])), 0, scale);
     Vec3 x = cross(left, std::abs(left.x) < 0.6 ? Vec3(1, 0, 0) : Vec3(0, 1, 0));
     x = normalize(x);
-    const Vec3 y = normalize((e.b * x - m * x) / e.im);
-    const size_t real = e.a >= e.b ? 0 : 2, pair = e.a >= e.b ? 1 : 0;
-    r.re[real] = e.a, r.vector[real] = along;
-    r.re[pair] = r.re[pair + 1] = e.b, r.im[pair] = e.im, r.im[pair + 1] = -e.im;
+    const Vec3 y = normalize((e.re * x - m * x) / e.im);
+    const size_t real = e.real[0] >= e.re ? 0 : 2, pair = e.real[0] >= e.re ? 1 : 0;
+    r.re[real] = e.real[0], r.vector[real] = along;
+    r.re[pair] = r.re[pair + 1] = e.re, r.im[pair] = e.im, r.im[pair + 1] = -e.im;
     r.vector[pair] = x, r.vector[pair + 1] = y;
   } else {
-    r.re = {e.a, e.b, e.c};
+    if (e.complex_pair) r.re = {e.real[0], e.re, e.re};
+    else r.re = {e.real[0], e.real[1], e.real[2]};
     std::sort(r.re.begin(), r.re.end(), std::greater<>());
     int same = 0;
     for (size_t k = 0; k < 3; ++k) {

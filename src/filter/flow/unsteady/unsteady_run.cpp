@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "base/text.h"
+#include "filter/flow/line_mesh.h"
 
 namespace sg {
 
@@ -83,8 +84,7 @@ Points positions(const std::vector<Vec3>& x) {
   Points points;
   float* xyz = nullptr;
   points.xyz = Array::make<float>(x.size(), 3, &xyz);
-  // Small numbers far from zero keep their digits; those about zero stay as they are.
-  if (!box.empty() && length(box.center()) > 8 * box.diagonal()) points.origin = box.center();
+  points.origin = near_origin(box);
   parallel_for(x.size(), 1 << 14, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)
       for (int a = 0; a < 3; ++a) xyz[3 * i + size_t(a)] = float(x[i][a] - points.origin[a]);

@@ -16,13 +16,13 @@ struct VortexCoresParams {
 };
 void describe(Schema& s, VortexCoresParams& p);
 
-/// sujudi_haimes: where the velocity is an eigenvector of its gradient whose other eigenvalues are complex (Sujudi and Haimes 1995), that
-/// is u parallel to J u (Peikert and Roth 1999). levy: u parallel to curl u (Levy, Degani, Seginer 1990), in the same places. Derivatives
+/// sujudi_haimes: where the velocity is an eigenvector of its gradient whose other eigenvalues are complex (Sujudi, Haimes 1995), that
+/// is u parallel to J u (Peikert, Roth 1999). levy: u parallel to curl u (Levy, Degani, Seginer 1990), in the same places. Derivatives
 /// are those of the operation gradient. Straight cores of linear flows come out exactly; bent ones are off by a part that grows with their
 /// curvature (that is the definition's, not the grid's).
 ///
 /// Poly-lines with the fields of the input and "swirling strength" (1/time), "core angle" (degrees between core and velocity); pieces that
 /// turn too weakly, run across the flow or are short are left out. Throws Error(usage) for flat meshes.
-DatasetPtr vortex_cores(const DatasetPtr& in, const VortexCoresParams& p, Context& context);
+Data vortex_cores(const Data& in, const VortexCoresParams& p, Context& context);
 
 }  // namespace sg

@@ -2,6 +2,7 @@
 #include "filter/flow/vortex/ftle.h"
 
 #include "base/parallel.h"
+#include "filter/flow/flow_parts.h"
 #include "filter/flow/unsteady/particles.h"
 #include "filter/probe/resample.h"
 #include "filter/tensor/sym_tensor.h"
@@ -10,12 +11,15 @@ namespace sg {
 
 void describe(Schema& s, FtleParams& p) {
   s("field", p.field, "Velocity; default: the active vector.");
-  s("duration", p.duration, "How long places are carried; negative: back in time.").unit("time");
+  s("duration", p.duration,
+    "How long places are carried; negative: back in time. Default: as long as the series lasts, or in a steady flow until "
+    "the mean speed has gone a tenth of the mesh's diagonal.")
+      .unit("time");
   s("start", p.start, "Time at which they start; default: the first of the series (backwards the last).").unit("time");
   s("times", p.times, "Times of a series that a source computes: FIRST:LAST:COUNT or a list; default: those of the file.");
   s("interpolation", p.interpolation, "Between the time steps.").choices({"linear", "cubic"});
   s("dims", p.dims, "Seeds along x, y and z; default: from size.").at_least(1);
-  s("size", p.size, "Seeds along the longest axis, the others in proportion.").range(2, 1e6);
+  s("size", p.size, "Seeds along the longest axis, the others in proportion; 0: 256, in space 64.").range(0, 1e6);
   s("bounds", p.bounds, "Box of the seeds as xmin,xmax,ymin,ymax,zmin,zmax; default: that of the mesh.").unit("length");
   s("offset", p.offset, "Derivatives from four (3D: six) places this far beside each seed; default: from the neighbouring seeds.")
       .unit("length");
@@ -58,6 +62,20 @@ Stretch stretch_of(const Vec3 f[3], const bool counts[3], int dimension, double 
 
 void check_duration(double duration) {
   if (!(std::abs(duration) > 0) || !std::isfinite(duration)) fail_usage("carries nothing", "duration", "a time, positive or negative");
+}
+
+// The mean speed goes a tenth of the diagonal.
+double steady_duration(const Dataset& d, const std::string& name) {
+  const Array a = flow_field_of(d, name, "ftle").array.converted(ElementType::f64);
+  const View<double> v = a.view<double>();
+  double sum = 0;
+  size_t n = 0;
+  for (size_t i = 0; i < v.count; ++i) {
+    double square = 0;
+    for (int k = 0; k < a.components(); ++k) square += v(i, k) * v(i, k);
+    if (std::isfinite(square)) sum += std::sqrt(square), ++n;
+  }
+  return sum > 0 ? 0.1 * d.bounds().diagonal() * double(n) / sum : 1;
 }
 
 }  // namespace
@@ -122,14 +140,24 @@ DatasetPtr ftle_of(const UniformGrid& grid, double duration, std::optional<doubl
 
 DatasetPtr ftle(const Series& given, const FtleParams& p, Context& context) {
   if (given.times.empty()) fail_usage("a series of no steps", "ftle");
-  check_duration(p.duration);
-  const int sign = p.duration < 0 ? -1 : 1;
+  if (p.duration) check_duration(*p.duration);
+  const bool steady = given.times.size() == 1;
+  DatasetPtr only;
+  if (steady) {
+    std::string name = p.field.name;
+    only = flow_meshes(given.load(0), name, "ftle").front();
+  }
+  const double whole = steady ? 0 : given.times.back() - p.start.value_or(given.times.front());
+  const double duration = p.duration ? *p.duration : steady ? steady_duration(*only, p.field.name) : whole;
+  check_duration(duration);
+  if (!p.duration) context.info(fmt::format("ftle: duration={:.4g}", duration));
+  const int sign = duration < 0 ? -1 : 1;
   Series series = given;
-  const double start = p.start.value_or(given.times.size() == 1 ? 0.0 : sign > 0 ? given.times.front() : given.times.back());
-  const double until = start + p.duration;
-  if (given.times.size() == 1) {  // steady: the same at both ends of the way
+  const double start = p.start.value_or(steady ? 0.0 : sign > 0 ? given.times.front() : given.times.back());
+  const double until = start + duration;
+  if (steady) {  // steady: the same at both ends of the way
     series.times = {std::min(start, until), std::max(start, until)};
-    series.load = [only = single_dataset(given.load(0), "ftle")](size_t) -> Data { return only; };
+    series.load = [only](size_t) -> Data { return only; };
   } else if (std::min(start, until) < given.times.front() || std::max(start, until) > given.times.back()) {
     fail_usage(fmt::format("from {:.6g} to {:.6g} is not in the series, which lasts from {:.6g} to {:.6g}", start, until,
                            given.times.front(), given.times.back()),
@@ -146,16 +174,21 @@ DatasetPtr ftle(const Series& given, const FtleParams& p, Context& context) {
   if (!integration.max_step) integration.max_step = 8 * integration.step;
   const TraceOptions options = trace_options(integration, stop, flow.largest_speed());
   ResampleParams r;
-  r.dims = p.dims, r.size = p.size, r.bounds = p.bounds;
-  const UniformGrid grid = resample_grid(*flow.steps()[flow.base()].dataset(), r);
-  return ftle_of(grid, p.duration, p.offset, [&](std::span<const Vec3> from, std::vector<Vec3>& to, std::vector<uint8_t>& known) {
+  r.dims = p.dims, r.size = p.size == 0 ? 256 : std::max<int64_t>(p.size, 2), r.bounds = p.bounds;
+  const Dataset& shape = *flow.steps()[flow.base()].dataset();
+  UniformGrid grid = resample_grid(shape, r);
+  if (p.size == 0 && p.dims.empty() && std::min({grid.dims[0], grid.dims[1], grid.dims[2]}) > 1) {
+    r.size = 64;
+    grid = resample_grid(shape, r);
+  }
+  return ftle_of(grid, duration, p.offset, [&](std::span<const Vec3> from, std::vector<Vec3>& to, std::vector<uint8_t>& known) {
     std::vector<Particle> particles(from.size());
     for (size_t i = 0; i < from.size(); ++i) particles[i].x = from[i], particles[i].t = start;
     for (;; k = size_t(ptrdiff_t(k) + sign)) {
       flow.open(k, context);
       advance(flow, particles, k == last ? until : sign > 0 ? flow.end() : flow.begin(), sign, options, context);
       context.check();
-      context.progress(std::min(1.0, std::abs((sign > 0 ? flow.end() : flow.begin()) - start) / std::abs(p.duration)), "ftle");
+      context.progress(std::min(1.0, std::abs((sign > 0 ? flow.end() : flow.begin()) - start) / std::abs(duration)), "ftle");
       if (k == last) break;
     }
     to.resize(from.size()), known.resize(from.size());

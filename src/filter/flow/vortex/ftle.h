@@ -14,11 +14,11 @@ namespace sg {
 
 struct FtleParams {
   FieldName field;
-  double duration = 1;
+  std::optional<double> duration;
   std::optional<double> start;
   std::string times, interpolation = "linear";
   std::vector<int64_t> dims;
-  int64_t size = 256;
+  int64_t size = 0;
   std::vector<double> bounds;
   std::optional<double> offset;
   IntegrationParams integration{.tolerance = 1e-5};  ///< max_step of dormand_prince by default: 8 step
@@ -37,7 +37,8 @@ using FlowMap = std::function<void(std::span<const Vec3> from, std::vector<Vec3>
 DatasetPtr ftle_of(const UniformGrid& grid, double duration, std::optional<double> offset, const FlowMap& map);
 
 /// FTLE of a time series from `start` (default: its first time; backwards its last one) over `duration`, or of a steady flow when there is
-/// one step. duration < 0: backward, which shows attracting structures. Throws Error(usage) when the series does not last as long.
+/// one step. Without a duration: the whole series, or the time in which the mean speed of a steady flow goes a tenth of the mesh's
+/// diagonal. duration < 0: backward, which shows attracting structures. Throws Error(usage) when the series does not last as long.
 DatasetPtr ftle(const Series& series, const FtleParams& p, Context& context);
 
 }  // namespace sg

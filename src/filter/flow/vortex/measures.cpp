@@ -139,10 +139,25 @@ DatasetPtr vortex_measures(const DatasetPtr& in, const VortexMeasuresParams& p, 
         }
       },
       &context);
+  // The first measure is what is looked at next; the velocity stays the vector field that others follow.
   DatasetParts parts = in->parts();
-  for (size_t k = 0; k < asked.size(); ++k)
-    parts.fields.add({std::string(asked[k]->name), velocity.association, std::move(arrays[k]), "",
-                      asked[k]->components == 3 ? Role::vectors : Role::none});
+  FieldSet fields;
+  for (Field f : parts.fields) {
+    if (f.role == Role::scalars) f.role = Role::none;
+    if (f.name == velocity.name && f.association == velocity.association && f.role == Role::none && f.components() == 3)
+      f.role = Role::vectors;
+    fields.add(std::move(f));
+  }
+  bool first = true;
+  for (size_t k = 0; k < asked.size(); ++k) {
+    const bool scalar = asked[k]->components == 1;
+    fields.add({std::string(asked[k]->name), velocity.association, std::move(arrays[k]), "",
+                !scalar ? Role::vectors
+                : first ? Role::scalars
+                        : Role::none});
+    first = first && !scalar;
+  }
+  parts.fields = std::move(fields);
   return make_dataset(std::move(parts));
 }
 

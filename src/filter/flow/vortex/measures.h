@@ -20,7 +20,7 @@ struct VortexMeasures {
   Vec3 vorticity;              ///< curl u
   double vorticity_magnitude;  ///< |curl u|
   double q;                    ///< (|W|^2 - |S|^2)/2, > 0 in a vortex (Hunt, Wray, Moin 1988), 1/time^2
-  double lambda2;              ///< middle eigenvalue of S^2 + W^2, < 0 in a vortex (Jeong and Hussain 1995), 1/time^2; 2D: -q
+  double lambda2;              ///< middle eigenvalue of S^2 + W^2, < 0 in a vortex (Jeong, Hussain 1995), 1/time^2; 2D: -q
   double delta;                ///< discriminant of J's eigenvalues, > 0 where two are complex (Chong, Perry, Cantwell 1990), 1/time^6
   double swirling_strength;    ///< imaginary part of the complex eigenvalues (Zhou et al. 1999); 0 where there are none
   double helicity;             ///< u . curl u, length/time^2

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// shear_lines: lines along which a plane flow shears most in a finite time (Haller and Beron-Vera 2012).
+// shear_lines: lines along which a plane flow shears most in a finite time (Haller, Beron-Vera 2012).
 #pragma once
 #include "base/context.h"
 #include "base/schema.h"

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "base/parallel.h"
+#include "filter/flow/flow_support.h"
 #include "filter/flow/trace.h"
 #include "support/test.h"
 
@@ -14,24 +15,10 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-// Velocity at the points of a grid of n^3 on [-1,1]^3.
+// In [-1,1]^3, n points a side.
 template <class F>
 DatasetPtr flow_on_grid(size_t n, F&& velocity) {
-  UniformGrid g;
-  g.dims = {n, n, n};
-  g.origin = {-1, -1, -1};
-  const double h = 2.0 / double(n - 1);
-  g.spacing = {h, h, h};
-  std::vector<double> v;
-  for (size_t k = 0; k < n; ++k)
-    for (size_t j = 0; j < n; ++j)
-      for (size_t i = 0; i < n; ++i) {
-        const Vec3 u = velocity(Vec3(-1 + h * double(i), -1 + h * double(j), -1 + h * double(k)));
-        v.insert(v.end(), {u.x, u.y, u.z});
-      }
-  FieldSet fields;
-  fields.add({"velocity", Association::point, Array::from_vector(std::move(v), 3), "", Role::vectors});
-  return make_dataset(Mesh(g), std::move(fields));
+  return test::cube_flow(n, -1, 1, velocity);
 }
 
 struct Surface {

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "base/parallel.h"
+#include "filter/flow/flow_support.h"
 #include "support/test.h"
 
 using namespace sg;
@@ -16,13 +17,7 @@ Series oscillating() {
   Series s;
   for (int k = 0; k <= 40; ++k) s.times.push_back(0.05 * k);
   s.load = [times = s.times](size_t k) -> Data {
-    UniformGrid g;
-    g.dims = {3, 3, 3}, g.origin = {-2, -2, -2}, g.spacing = {2, 2, 2};
-    std::vector<double> v;
-    for (int i = 0; i < 27; ++i) v.insert(v.end(), {U, V * std::cos(W * times[k]), 0});
-    FieldSet fields;
-    fields.add({"velocity", Association::point, Array::from_vector(std::move(v), 3), "", Role::vectors});
-    return make_dataset(Mesh(g), std::move(fields));
+    return test::cube_flow(3, -2, 2, [&](Vec3) { return Vec3(U, V * std::cos(W * times[k]), 0); });
   };
   return s;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/lines/even_streamlines.h"
 
+#include "filter/flow/flow_support.h"
 #include "support/test.h"
 
 using namespace sg;
@@ -9,20 +10,7 @@ namespace {
 
 template <class F>
 DatasetPtr flow_on(std::array<size_t, 3> n, F&& velocity) {
-  UniformGrid g;
-  g.dims = n;
-  const double h = 1.0 / double(n[0] - 1);
-  g.spacing = {h, h, h};
-  std::vector<float> v;
-  for (size_t k = 0; k < n[2]; ++k)
-    for (size_t j = 0; j < n[1]; ++j)
-      for (size_t i = 0; i < n[0]; ++i) {
-        const Vec3 u = velocity(Vec3(double(i), double(j), double(k)) * h);
-        v.insert(v.end(), {float(u.x), float(u.y), float(u.z)});
-      }
-  FieldSet fields;
-  fields.add({"velocity", Association::point, Array::from_vector(std::move(v), 3), "", Role::vectors});
-  return make_dataset(Mesh(g), std::move(fields));
+  return test::velocity_on<float>(test::even_grid(n, {}, 1.0 / double(n[0] - 1)), velocity);
 }
 
 struct Lines {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "data/cell_shape.h"
-#include "data/point_positions.h"
+#include "filter/flow/flow_support.h"
 #include "filter/flow/topology/critical_points.h"
 #include "filter/mesh_meshes.h"
 
@@ -13,15 +13,7 @@ namespace sg::test::topology {
 /// The mesh with the point field "velocity" = f(position).
 template <class F>
 DatasetPtr with_velocity(const DatasetPtr& d, F&& f) {
-  const Array at = point_positions(d->mesh());
-  std::vector<double> v;
-  for (size_t i = 0; i < at.count(); ++i) {
-    const Vec3 u = f(Vec3(at.get(i, 0), at.get(i, 1), at.get(i, 2)));
-    v.insert(v.end(), {u.x, u.y, u.z});
-  }
-  FieldSet fields;
-  fields.add({"velocity", Association::point, Array::from_vector(std::move(v), 3), "", Role::vectors});
-  return make_dataset(d->mesh(), std::move(fields));
+  return velocity_on(d->mesh(), f);
 }
 
 /// [x0,x1] x [y0,y1] as nx*ny points.
@@ -65,11 +57,7 @@ DatasetPtr plane_cells(CellType type, size_t nodes, int n, P&& place) {
 /// The cube [lo, hi]^3 with n points a side.
 template <class F>
 DatasetPtr cube_grid(size_t n, double lo, double hi, F&& f) {
-  UniformGrid g;
-  g.dims = {n, n, n};
-  g.origin = {lo, lo, lo};
-  g.spacing = Vec3(1, 1, 1) * ((hi - lo) / double(n - 1));
-  return with_velocity(make_dataset(g), f);
+  return cube_flow(n, lo, hi, f);
 }
 
 inline Vec3 taylor_green(Vec3 x) { return {std::cos(x.x) * std::sin(x.y), -std::sin(x.x) * std::cos(x.y), 0}; }

@@ -2,6 +2,7 @@
 #include "filter/flow/vortex/ftle.h"
 
 #include "base/parallel.h"
+#include "filter/flow/flow_support.h"
 #include "support/test.h"
 
 using namespace sg;
@@ -29,12 +30,6 @@ Series steady(const DatasetPtr& d) {
   return {{0}, [=](size_t) -> Data { return d; }};
 }
 
-UniformGrid grid_of(std::array<size_t, 3> n, Vec3 origin, double spacing) {
-  UniformGrid g;
-  g.dims = n, g.origin = origin, g.spacing = {spacing, spacing, spacing};
-  return g;
-}
-
 // Shadden, Lekien, Marsden 2005 with A = 0.1, epsilon = 0.25, period 10.
 Vec3 gyre_velocity(Vec3 x, double t) {
   const double pi = 3.14159265358979323846, e = 0.25 * std::sin(2 * pi / 10 * t);
@@ -50,8 +45,7 @@ TEST_CASE("ftle: of the flow diag(l, -l) it is l everywhere, for any duration an
       const auto velocity = [=](Vec3 x, double) { return Vec3(l * x.x, -l * x.y, 0); };
       for (const auto& dims : {std::array<size_t, 3>{5, 4, 1}, std::array<size_t, 3>{4, 5, 3}}) {
         Context context;
-        const DatasetPtr d = ftle_of(
-            grid_of(dims, {-1, -1, -1}, 0.4), duration, {}, map_of(velocity, 0, duration));
+        const DatasetPtr d = ftle_of(test::even_grid(dims, {-1, -1, -1}, 0.4), duration, {}, map_of(velocity, 0, duration));
         const Field& f = d->fields().require("ftle");
         for (size_t i = 0; i < d->point_count(); ++i) CHECK(f.array.get(i) == doctest::Approx(l).epsilon(1e-5));
         // Forward it pulls along x, backward along y.
@@ -71,7 +65,7 @@ TEST_CASE("ftle: the double gyre has its known values, with order 2 in the spaci
     double error[4], h[4];
     for (int level = 0; level < 4; ++level) {
       h[level] = 2e-3 / (1 << level);
-      const UniformGrid g = grid_of({3, 3, 1}, k.at - Vec3(h[level], h[level], 0), h[level]);
+      const UniformGrid g = test::even_grid({3, 3, 1}, k.at - Vec3(h[level], h[level], 0), h[level]);
       const DatasetPtr d = ftle_of(g, 15, {}, map_of(gyre_velocity, 0, 15));
       error[level] = std::abs(d->fields().require("ftle").array.get(4) - k.ftle);
     }
@@ -91,7 +85,7 @@ TEST_CASE("ftle: places that leave the flow have neighbours on one side only, or
     }
   FieldSet two;
   two.add({"velocity", Association::point, Array::from_vector(std::move(velocities), 2), "", Role::vectors});
-  const DatasetPtr in = make_dataset(Mesh(grid_of({65, 33, 1}, {0, 0, 0}, 1 / 32.0)), std::move(two));
+  const DatasetPtr in = make_dataset(Mesh(test::even_grid({65, 33, 1}, {0, 0, 0}, 1 / 32.0)), std::move(two));
   FtleParams p;
   p.duration = 2, p.size = 40;
   set_thread_count(1);
@@ -107,7 +101,7 @@ TEST_CASE("ftle: places that leave the flow have neighbours on one side only, or
           ftle(steady(in), none, context);
         }).find("duration") != std::string::npos);
   // Uniform wind: whatever reaches the border has left.
-  UniformGrid g = grid_of({11, 11, 1}, {0, 0, 0}, 0.1);
+  UniformGrid g = test::even_grid({11, 11, 1}, {0, 0, 0}, 0.1);
   FieldSet fields;
   std::vector<float> v;
   for (int i = 0; i < 121; ++i) v.insert(v.end(), {1, 0, 0});
@@ -134,7 +128,7 @@ TEST_CASE("ftle: of a series of grids it approaches the known values of the doub
       }
     FieldSet fields;
     fields.add({"velocity", Association::point, Array::from_vector(std::move(v), 3), "", Role::vectors});
-    return make_dataset(Mesh(grid_of({size_t(n), size_t(n + 1) / 2, 1}, {0, 0, 0}, 2.0 / (n - 1))), std::move(fields));
+    return make_dataset(Mesh(test::even_grid({size_t(n), size_t(n + 1) / 2, 1}, {0, 0, 0}, 2.0 / (n - 1))), std::move(fields));
   };
   const struct {
     Vec3 at;
@@ -150,4 +144,20 @@ TEST_CASE("ftle: of a series of grids it approaches the known values of the doub
   FtleParams late;
   late.duration = 10, late.start = 8;
   CHECK(test::error_of([&] { ftle(series, late, context); }).find("from 8 to 18") != std::string::npos);
+}
+
+TEST_CASE("ftle: without a duration the mean speed goes a tenth of the diagonal, and solid meshes get 64 seeds along an axis") {
+  Context context;
+  UniformGrid g = grid_of({11, 6, 6}, {0, 0, 0}, 1);
+  FieldSet fields;
+  std::vector<float> v;
+  for (int i = 0; i < 11 * 6 * 6; ++i) v.insert(v.end(), {0, 2, 0});
+  fields.add({"wind", Association::point, Array::from_vector(std::move(v), 3), "", Role::vectors});
+  const DatasetPtr d = ftle(steady(make_dataset(Mesh(g), std::move(fields))), {}, context);
+  const UniformGrid& seeds = *d->as<UniformGrid>();
+  CHECK(seeds.dims[0] == 64);
+  const Array& went = d->fields().require("flow map").array;
+  const double way = 0.1 * std::sqrt(100.0 + 25 + 25);  // a uniform flow of speed 2 goes as far in way / 2
+  CHECK(went.get(0, 1) == doctest::Approx(way).epsilon(1e-4));
+  CHECK(went.get(0, 0) == doctest::Approx(0));
 }

@@ -3,6 +3,7 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "filter/flow/flow_support.h"
 #include "filter/flow/vortex/eigen_general.h"
 #include "support/test.h"
 
@@ -19,20 +20,10 @@ Mat3 matrix(std::initializer_list<double> v) {
 
 // The flow of Arnold, Beltrami and Childress on n^3 points of its period.
 DatasetPtr abc_grid(size_t n) {
-  const double a = std::sqrt(3.0), b = std::sqrt(2.0), c = 1, h = 2 * 3.14159265358979323846 / double(n - 1);
-  UniformGrid g;
-  g.dims = {n, n, n};
-  g.spacing = {h, h, h};
-  std::vector<double> v;
-  for (size_t k = 0; k < n; ++k)
-    for (size_t j = 0; j < n; ++j)
-      for (size_t i = 0; i < n; ++i) {
-        const double x = h * double(i), y = h * double(j), z = h * double(k);
-        v.insert(v.end(), {a * std::sin(z) + c * std::cos(y), b * std::sin(x) + a * std::cos(z), c * std::sin(y) + b * std::cos(x)});
-      }
-  FieldSet fields;
-  fields.add({"velocity", Association::point, Array::from_vector(std::move(v), 3), "", Role::vectors});
-  return make_dataset(Mesh(g), std::move(fields));
+  const double a = std::sqrt(3.0), b = std::sqrt(2.0), c = 1;
+  return test::cube_flow(n, 0, 2 * M_PI, [=](Vec3 x) {
+    return Vec3(a * std::sin(x.z) + c * std::cos(x.y), b * std::sin(x.x) + a * std::cos(x.z), c * std::sin(x.y) + b * std::cos(x.x));
+  });
 }
 
 }  // namespace
