@@ -148,7 +148,7 @@ TEST_CASE("ftle: of a series of grids it approaches the known values of the doub
 
 TEST_CASE("ftle: without a duration the mean speed goes a tenth of the diagonal, and solid meshes get 64 seeds along an axis") {
   Context context;
-  UniformGrid g = grid_of({11, 6, 6}, {0, 0, 0}, 1);
+  UniformGrid g = test::even_grid({11, 6, 6}, {0, 0, 0}, 1);
   FieldSet fields;
   std::vector<float> v;
   for (int i = 0; i < 11 * 6 * 6; ++i) v.insert(v.end(), {0, 2, 0});
@@ -160,4 +160,36 @@ TEST_CASE("ftle: without a duration the mean speed goes a tenth of the diagonal,
   const double way = 0.1 * std::sqrt(100.0 + 25 + 25);  // a uniform flow of speed 2 goes as far in way / 2
   CHECK(went.get(0, 1) == doctest::Approx(way).epsilon(1e-4));
   CHECK(went.get(0, 0) == doctest::Approx(0));
+}
+
+TEST_CASE("ftle: steps as long as the tolerance lets them be give the values of short ones") {
+  const int n = 201, steps = 41;
+  Series series;
+  for (int k = 0; k < steps; ++k) series.times.push_back(10.0 * k / (steps - 1));
+  series.load = [&](size_t k) -> Data {
+    std::vector<float> v;
+    for (int j = 0; j < (n + 1) / 2; ++j)
+      for (int i = 0; i < n; ++i) {
+        const Vec3 u = gyre_velocity({2.0 * i / (n - 1), 2.0 * j / (n - 1), 0}, series.times[k]);
+        v.insert(v.end(), {float(u.x), float(u.y)});
+      }
+    FieldSet fields;
+    fields.add({"velocity", Association::point, Array::from_vector(std::move(v), 2), "", Role::vectors});
+    return make_dataset(Mesh(test::even_grid({size_t(n), size_t(n + 1) / 2, 1}, {0, 0, 0}, 2.0 / (n - 1))), std::move(fields));
+  };
+  Context context;
+  FtleParams p;
+  p.duration = 10, p.dims = {128, 64, 1};
+  const DatasetPtr d = ftle(series, p, context);
+  p.integration.max_step = 0.1, p.integration.tolerance = 1e-7;
+  const DatasetPtr exact = ftle(series, p, context);
+  const Array &a = d->fields().require("ftle").array, &b = exact->fields().require("ftle").array;
+  double worst = 0, sum = 0;
+  for (size_t i = 0; i < a.count(); ++i) {
+    REQUIRE(std::isfinite(a.get(i)));
+    const double e = std::abs(a.get(i) - b.get(i));
+    worst = std::max(worst, e), sum += e;
+  }
+  CHECK(worst < 1e-3);
+  CHECK(sum / double(a.count()) < 2e-5);
 }
