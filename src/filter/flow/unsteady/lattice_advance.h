@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// advance() for the case that matters most: 3-component f32 velocities on a uniform grid along the axes that stays the same,
-// Dormand-Prince. Several particles are under way at once, each a vector of its three components. Internal to unsteady/.
+// advance() for the case that matters most: f32 velocities on a uniform grid along the axes that stays the same, Dormand-Prince. Several
+// particles are under way at once, each a vector of its three components (in the plane: flat_advance.h). Internal to unsteady/.
 #pragma once
 #include <optional>
 
@@ -11,6 +11,7 @@ namespace sg::lattice_advance {
 struct Job {
   const float* step[4] = {};     ///< velocities of the open steps (those missing of 2 or 4 repeat the last, with weight 0)
   int steps = 2;                 ///< 2 or 4
+  int components = 3;            ///< of the velocities; 2 only where flat_advance takes the job
   size_t stride[3] = {0, 0, 0};  ///< floats from a point to the next along each axis; 0 along the axis without cells
   size_t last = 0;               ///< floats before the last cell, whose last point has nothing behind it
   double origin[3] = {0, 0, 0}, inverse[3] = {0, 0, 0}, cells[3] = {1, 1, 1};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filter/flow/unsteady/lattice_advance.h"
+#include "filter/flow/unsteady/flat_advance.h"
 
 namespace sg::lattice_advance {
 
@@ -10,9 +10,10 @@ std::optional<Job> job_of(const UnsteadyFlow& flow, const TraceOptions& options)
   if (!g || !known || flow.meshes() != UnsteadyFlow::Meshes::same) return std::nullopt;
   if (!(g->direction == Mat3()) || !mesh.cell_ghost().empty() || !mesh.point_ghost().empty()) return std::nullopt;
   for (const FlowField& f : flow.steps())
-    if (!f.f32() || f.components() != 3) return std::nullopt;
+    if (!f.f32() || f.components() != flow.steps()[0].components()) return std::nullopt;
   Job job;
-  size_t stride = 3;
+  job.components = flow.steps()[0].components();
+  auto stride = size_t(job.components);
   double product = 1;
   int solid = 0;
   for (int a = 0; a < 3; ++a) {
@@ -30,6 +31,7 @@ std::optional<Job> job_of(const UnsteadyFlow& flow, const TraceOptions& options)
     }
     stride *= n;
   }
+  if (job.components == 2 && !flat_advance::takes(job)) return std::nullopt;
   job.cell = solid == 3 ? std::cbrt(product) : std::sqrt(product);
   const size_t n = flow.steps().size();
   job.steps = n > 2 ? 4 : 2;

@@ -3,7 +3,7 @@
 
 #include "base/parallel.h"
 #include "filter/flow/unsteady/advance_one.h"
-#include "filter/flow/unsteady/lattice_advance.h"
+#include "filter/flow/unsteady/flat_advance.h"
 
 namespace sg {
 
@@ -54,7 +54,9 @@ void advance(const UnsteadyFlow& flow, std::span<Particle> particles, double unt
       particles.size(), grain,
       [&](size_t begin, size_t end) {
         Way* part = way ? &parts[begin / grain] : nullptr;
-        if (job) lattice_advance::run(*job, particles.subspan(begin, end - begin), begin, until, sign, options, part);
+        const auto some = particles.subspan(begin, end - begin);
+        if (job && flat_advance::takes(*job)) flat_advance::run(*job, some, begin, until, sign, options, part);
+        else if (job) lattice_advance::run(*job, some, begin, until, sign, options, part);
         else advance_some(flow, particles, begin, end, until, sign, options, part);
       },
       &context);

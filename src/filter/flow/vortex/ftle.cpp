@@ -169,7 +169,10 @@ DatasetPtr ftle(const Series& given, const FtleParams& p, Context& context) {
   flow.open(k, context);
   StopParams stop;
   stop.max_steps = 1000000000, stop.closed = false;
-  const TraceOptions options = trace_options(p.integration, stop, flow.largest_speed());
+  // Nobody sees the ways themselves: the tolerance alone says how long steps may be.
+  IntegrationParams integration = p.integration;
+  if (!integration.max_step) integration.max_step = 8 * integration.step;
+  const TraceOptions options = trace_options(integration, stop, flow.largest_speed());
   ResampleParams r;
   r.dims = p.dims, r.size = p.size == 0 ? 256 : std::max<int64_t>(p.size, 2), r.bounds = p.bounds;
   const Dataset& shape = *flow.steps()[flow.base()].dataset();

@@ -21,7 +21,7 @@ struct FtleParams {
   int64_t size = 0;
   std::vector<double> bounds;
   std::optional<double> offset;
-  IntegrationParams integration{.tolerance = 1e-5};
+  IntegrationParams integration{.tolerance = 1e-5};  ///< max_step of dormand_prince by default: 8 step
 };
 void describe(Schema& s, FtleParams& p);
 

@@ -161,3 +161,35 @@ TEST_CASE("ftle: without a duration the mean speed goes a tenth of the diagonal,
   CHECK(went.get(0, 1) == doctest::Approx(way).epsilon(1e-4));
   CHECK(went.get(0, 0) == doctest::Approx(0));
 }
+
+TEST_CASE("ftle: steps as long as the tolerance lets them be give the values of short ones") {
+  const int n = 201, steps = 41;
+  Series series;
+  for (int k = 0; k < steps; ++k) series.times.push_back(10.0 * k / (steps - 1));
+  series.load = [&](size_t k) -> Data {
+    std::vector<float> v;
+    for (int j = 0; j < (n + 1) / 2; ++j)
+      for (int i = 0; i < n; ++i) {
+        const Vec3 u = gyre_velocity({2.0 * i / (n - 1), 2.0 * j / (n - 1), 0}, series.times[k]);
+        v.insert(v.end(), {float(u.x), float(u.y)});
+      }
+    FieldSet fields;
+    fields.add({"velocity", Association::point, Array::from_vector(std::move(v), 2), "", Role::vectors});
+    return make_dataset(Mesh(test::even_grid({size_t(n), size_t(n + 1) / 2, 1}, {0, 0, 0}, 2.0 / (n - 1))), std::move(fields));
+  };
+  Context context;
+  FtleParams p;
+  p.duration = 10, p.dims = {128, 64, 1};
+  const DatasetPtr d = ftle(series, p, context);
+  p.integration.max_step = 0.1, p.integration.tolerance = 1e-7;
+  const DatasetPtr exact = ftle(series, p, context);
+  const Array &a = d->fields().require("ftle").array, &b = exact->fields().require("ftle").array;
+  double worst = 0, sum = 0;
+  for (size_t i = 0; i < a.count(); ++i) {
+    REQUIRE(std::isfinite(a.get(i)));
+    const double e = std::abs(a.get(i) - b.get(i));
+    worst = std::max(worst, e), sum += e;
+  }
+  CHECK(worst < 1e-3);
+  CHECK(sum / double(a.count()) < 2e-5);
+}
