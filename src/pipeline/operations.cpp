@@ -80,6 +80,7 @@
 #include "filter/tensor/stress_measures.h"
 #include "filter/tensor/tensor_fit.h"
 #include "filter/tensor/tensor_glyphs.h"
+#include "filter/tensor/tensor_lic.h"
 #include "filter/tensor/tensor_measures.h"
 #include "filter/tensor/tractography.h"
 #include "io/io.h"

@@ -2,30 +2,40 @@
 #include "filter/flow/flow_parts.h"
 
 #include "base/parallel.h"
+#include "data/mesh_dimension.h"
 
 namespace sg {
 
-FlowParts::FlowParts(const Data& data, const std::string& field, std::string_view who, Context& context) {
+std::vector<DatasetPtr> flow_meshes(const Data& data, std::string& field, std::string_view who) {
   if (std::holds_alternative<TablePtr>(data))
     fail_usage("needs a mesh but got a table", std::string(who), "make points of its rows first: table_to_points x=... y=... z=...");
   std::vector<DatasetPtr> all;
   for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) { all.push_back(d); });
   if (all.empty()) fail_usage("got no mesh", std::string(who));
-  std::string name = field;
+  const auto has = [&](const Dataset& d) {
+    if (!field.empty()) return d.fields().find(field) != nullptr;
+    return d.fields().with_role(Role::vectors) || d.fields().active(3) || d.fields().active(2);
+  };
   int dimension = 0;
-  std::vector<FlowField> made;
+  for (const DatasetPtr& d : all)
+    if (d->cell_count() > 0 && has(*d)) dimension = std::max(dimension, mesh_dimension(*d));
+  std::vector<DatasetPtr> out;
   for (const DatasetPtr& d : all) {
-    // A lone mesh, and the last hope of a collection, tell what is wrong.
-    const bool must = made.empty() && &d == &all.back();
-    if (!must && (d->cell_count() == 0 || (!name.empty() && !d->fields().find(name)))) continue;
-    if (!must && name.empty() && !d->fields().with_role(Role::vectors) && !d->fields().active(3) && !d->fields().active(2)) continue;
-    const Field& f = flow_field_of(*d, name, who);
-    if (name.empty()) name = f.name;
-    made.emplace_back(d, name, context);
-    dimension = std::max(dimension, made.back().dimension());
+    if (d->cell_count() == 0 || mesh_dimension(*d) != dimension || !has(*d)) continue;
+    if (field.empty()) field = flow_field_of(*d, field, who).name;
+    out.push_back(d);
   }
-  for (FlowField& f : made)
-    if (f.dimension() == dimension) fields_.push_back(std::move(f));
+  // A mesh alone, or the first of many, tells what is wrong.
+  if (out.empty()) flow_field_of(*all.front(), field, who), out.push_back(all.front());
+  return out;
+}
+
+FlowParts::FlowParts(const Data& data, const std::string& field, std::string_view who, Context& context) {
+  std::string name = field;
+  for (const DatasetPtr& d : flow_meshes(data, name, who)) {
+    flow_field_of(*d, name, who);
+    fields_.emplace_back(d, name, context);
+  }
 }
 
 double FlowParts::largest_speed() const {

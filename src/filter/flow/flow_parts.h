@@ -7,7 +7,12 @@
 
 namespace sg {
 
-/// The parts of the highest cell dimension that have the vector field; at least one.
+/// Through which meshes of a collection a flow goes: those of the highest cell dimension among those that have the field (with an empty
+/// name: the active vectors of the first that has any; `field` then becomes its name). At least one. Node sets, boundary patches and
+/// parts without the field are passed over. Throws Error(usage) naming `who` when no part has it, and for tables.
+std::vector<DatasetPtr> flow_meshes(const Data& data, std::string& field, std::string_view who);
+
+/// The flow_meshes() of a collection.
 class FlowParts {
  public:
   /// `field` as for FlowField, in every part by the name of the first that has it. Throws Error(usage) naming `who` when no part has it,

@@ -1,55 +1,57 @@
 // SPDX-License-Identifier: Apache-2.0
-// SurfaceWalk: lines of a vector field from triangle to triangle of a surface.
+// SurfaceWalk: lines of a vector field from triangle to triangle of a surface; SurfaceAxisWalk: of the eigenvectors of a tensor field.
 #pragma once
 #include <array>
 #include <span>
 #include <vector>
 
 #include "filter/flow/texture/refined_surface.h"
+#include "filter/flow/texture/surface_directions.h"
 
 namespace sg {
 
-/// Walks a surface with vectors on its points (linear in each triangle) or its triangles; keeps a reference to the surface. Only the part
-/// of a vector along the triangle counts. Crossing an edge, a line goes on by the neighbour's own vectors: what unfolding both triangles
-/// would give for a field that is continuous along the surface.
-class SurfaceWalk {
+/// Walks a surface with vectors (tensors) on its points, linear in each triangle, or its triangles; keeps a reference to the surface. Only
+/// their part along the triangle counts. Crossing an edge, a line goes on by the neighbour's own directions: what unfolding both triangles
+/// would give for a field that is continuous along the surface. Directions without a sign take the one nearer to the way the line goes,
+/// which is carried across edges by unfolding them.
+template <class Directions>
+class SurfaceWalker {
  public:
   /// A place on the surface in barycentric coordinates.
   struct Place {
     uint32_t triangle = 0;
     std::array<double, 3> b{1, 0, 0};
-    int from = -1;  ///< the corner opposite the edge that the line came in by
+    int from = -1;             ///< the corner opposite the edge that the line came in by
+    double ahead[2] = {0, 0};  ///< directions without a sign: the way the line goes, by the triangle's edges; 0 at the start
   };
 
-  SurfaceWalk(const RefinedSurface& surface, std::span<const Vec3> vectors, bool per_triangle);
+  SurfaceWalker(const RefinedSurface& surface, std::span<const typename Directions::Value> values, bool per_triangle);
 
   Place start(uint32_t triangle, uint32_t point) const;
-  /// Goes `length` along the field (sign 1) or against it (-1); false when the line ends before, `at` is then where it ended.
+  /// Goes `length` along the field (sign 1) or against it (-1); false when the line ends before, `at` is then where it ended. Directions
+  /// without a sign: 1 and -1 are the two ways from the start.
   bool advance(Place& at, double length, double sign) const;
   Vec3 position(const Place& at) const;
 
  private:
   using Rates = std::array<double, 3>;
-  /// A triangle with the edges e1, e2 from its first corner: the vectors of its corners along it as u e1 + w e2, and the products of the
-  /// edges.
-  struct Frame {
-    double u[3], w[3];
-    double a, b, c;  // e1.e1, e1.e2, e2.e2
-    double least2;   // square of the length below which there is no direction
-  };
-  struct Along {
-    double u, w, length2;
-  };
-  static Along along(const Frame& f, const std::array<double, 3>& b);
-  Frame frame(size_t triangle, std::span<const Vec3> vectors, bool per_triangle) const;
+  using Frame = typename Directions::Frame;
+  Frame frame(size_t triangle, std::span<const typename Directions::Value> values, bool per_triangle) const;
   /// Change of the barycentric coordinates per length; false without direction.
-  static bool rates(const Frame& f, const std::array<double, 3>& b, double sign, Rates& d);
+  static bool rates(const Frame& f, const std::array<double, 3>& b, const double (&ahead)[2], double sign, Rates& d);
   bool cross(Place& at, int edge) const;
-  /// Rates along the edge opposite a corner, for fields that run into it from both sides.
-  static bool slide(const Frame& f, const Place& at, int corner, double sign, Rates& d);
+  /// The way the line goes after unfolding the triangles `f` and `g` at an edge, given by its ends in both.
+  static void unfold(const Frame& f, const Frame& g, const size_t (&ends)[2][2], double (&ahead)[2]);
+  /// Turns rates into those along the edge opposite a corner, for fields that run into it from both sides.
+  static bool slide(const Frame& f, int corner, Rates& d);
 
   const RefinedSurface& surface_;
   std::vector<Frame> frames_;
 };
+
+using SurfaceWalk = SurfaceWalker<VectorDirections>;
+using SurfaceAxisWalk = SurfaceWalker<AxisDirections>;
+extern template class SurfaceWalker<VectorDirections>;
+extern template class SurfaceWalker<AxisDirections>;
 
 }  // namespace sg

@@ -4,6 +4,7 @@
 #include "base/text.h"
 #include "data/point_positions.h"
 #include "data/trusted.h"
+#include "filter/flow/flow_parts.h"
 
 namespace sg {
 
@@ -30,12 +31,11 @@ size_t UnsteadyFlow::interval_of(double t, int sign) const {
 FlowField UnsteadyFlow::load(size_t step, Context& context) const {
   return with_context(fmt::format("taking time step {} (time {})", step, exact_number(times()[step])), [&] {
     const Data data = series_.load(step);
-    if (auto* c = std::get_if<CollectionPtr>(&data); c && *c) {
-      size_t parts = 0;
-      for_each_dataset(data, [&](const std::string&, const DatasetPtr&) { ++parts; });
-      if (parts > 1) fail_usage(fmt::format("the data have {} parts", parts), "unsteady flow", "the filter append makes one mesh of them");
-    }
-    const DatasetPtr d = single_dataset(data, "unsteady flow");
+    std::string name = field_;
+    const std::vector<DatasetPtr> parts = flow_meshes(data, name, "unsteady flow");
+    if (parts.size() > 1)
+      fail_usage(fmt::format("the data have {} parts", parts.size()), "unsteady flow", "the filter append makes one mesh of them");
+    const DatasetPtr& d = parts.front();
     std::shared_ptr<const CellLocator> index;
     for (const FlowField& open : steps_)
       if (!index && same_mesh(*open.dataset(), *d)) index = open.locator();

@@ -2,7 +2,7 @@
 #include "filter/flow/vortex/core_lines.h"
 
 #include "base/parallel.h"
-#include "filter/flow/flow_field.h"
+#include "filter/flow/flow_parts.h"
 #include "filter/flow/vortex/eigen_general.h"
 #include "filter/flow/vortex/keep_large.h"
 #include "filter/flow/vortex/measures.h"
@@ -47,7 +47,9 @@ double angle_between(Vec3 a, Vec3 b) {
 
 }  // namespace
 
-DatasetPtr vortex_cores(const DatasetPtr& in, const VortexCoresParams& p, Context& context) {
+namespace {
+
+DatasetPtr of_mesh(const DatasetPtr& in, const VortexCoresParams& p, Context& context) {
   Field velocity = flow_field_of(*in, p.field.name, "vortex_cores");
   const std::vector<Vec3> u = point_vectors(in, velocity, context);
   DatasetPtr data = in;
@@ -100,6 +102,14 @@ DatasetPtr vortex_cores(const DatasetPtr& in, const VortexCoresParams& p, Contex
   }
   const DatasetPtr with = parallel_lines_mesh(in, kept, context, {{"swirling strength", swirl}, {"core angle", angle}});
   return long_lines(with, p.min_length * in->bounds().diagonal(), "vortex_cores", context);
+}
+
+}  // namespace
+
+Data vortex_cores(const Data& in, const VortexCoresParams& p, Context& context) {
+  std::string field = p.field.name;
+  return each_flow_mesh(
+      flow_meshes(in, field, "vortex_cores"), [&](const DatasetPtr& d) { return of_mesh(d, p, context); }, context);
 }
 
 }  // namespace sg

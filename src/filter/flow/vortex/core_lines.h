@@ -23,6 +23,6 @@ void describe(Schema& s, VortexCoresParams& p);
 ///
 /// Poly-lines with the fields of the input and "swirling strength" (1/time), "core angle" (degrees between core and velocity); pieces that
 /// turn too weakly, run across the flow or are short are left out. Throws Error(usage) for flat meshes.
-DatasetPtr vortex_cores(const DatasetPtr& in, const VortexCoresParams& p, Context& context);
+Data vortex_cores(const Data& in, const VortexCoresParams& p, Context& context);
 
 }  // namespace sg

@@ -7,8 +7,9 @@
 #include "base/parallel.h"
 #include "data/cell_reader.h"
 #include "filter/field/point_cell.h"
-#include "filter/flow/flow_field.h"
+#include "filter/flow/flow_parts.h"
 #include "filter/flow/vortex/eigen_general.h"
+#include "filter/mesh/append.h"
 #include "filter/probe/field_sampler.h"
 #include "filter/scalar/isolines.h"
 
@@ -184,6 +185,13 @@ struct Work {
 
 }  // namespace
 
+Data each_flow_mesh(const std::vector<DatasetPtr>& meshes, const std::function<DatasetPtr(const DatasetPtr&)>& f, Context& context) {
+  if (meshes.size() == 1) return f(meshes.front());
+  std::vector<Data> lines;
+  for (const DatasetPtr& d : meshes) lines.push_back(f(d));
+  return append(lines, {}, context);
+}
+
 std::vector<Vec3> point_vectors(const DatasetPtr& in, const Field& given, Context& context) {
   Field field = given;
   if (field.association == Association::cell)
@@ -291,12 +299,22 @@ DatasetPtr parallel_lines_mesh(const DatasetPtr& data, const ParallelLines& line
   return none ? segments : polylines(segments, {}, context);
 }
 
-DatasetPtr parallel_vectors(const DatasetPtr& in, const ParallelVectorsParams& p, Context& context) {
+namespace {
+
+DatasetPtr of_mesh(const DatasetPtr& in, const ParallelVectorsParams& p, Context& context) {
   if (p.b.empty())
     fail_usage("there is no second vector field", "parallel_vectors", "b=FIELD names it; a=FIELD the first (default: the active vectors)");
   const std::vector<Vec3> a = point_vectors(in, flow_field_of(*in, p.a.name, "parallel_vectors"), context);
   const std::vector<Vec3> b = point_vectors(in, flow_field_of(*in, p.b.name, "parallel_vectors"), context);
   return parallel_lines_mesh(in, parallel_lines(in, a, b, context), context);
+}
+
+}  // namespace
+
+Data parallel_vectors(const Data& in, const ParallelVectorsParams& p, Context& context) {
+  std::string field = p.a.name;
+  return each_flow_mesh(
+      flow_meshes(in, field, "parallel_vectors"), [&](const DatasetPtr& d) { return of_mesh(d, p, context); }, context);
 }
 
 }  // namespace sg

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lines along which two vector fields are parallel (Peikert and Roth 1999), exact for fields that are linear in tetrahedra.
 #pragma once
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -48,7 +49,10 @@ inline void describe(Schema& s, ParallelVectorsParams& p) {
   s("b", p.b, "Second vector field, parallel or opposite to the first on the lines.");
 }
 /// Poly-lines with the fields of the input and "parallel ratio" (a over b).
-DatasetPtr parallel_vectors(const DatasetPtr& in, const ParallelVectorsParams& p, Context& context);
+Data parallel_vectors(const Data& in, const ParallelVectorsParams& p, Context& context);
+
+/// f of each mesh; several results as one mesh.
+Data each_flow_mesh(const std::vector<DatasetPtr>& meshes, const std::function<DatasetPtr(const DatasetPtr&)>& f, Context& context);
 
 /// A vector field's values at the points of the mesh, in double; cell fields averaged.
 std::vector<Vec3> point_vectors(const DatasetPtr& in, const Field& field, Context& context);

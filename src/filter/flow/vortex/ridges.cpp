@@ -5,6 +5,7 @@
 #include "data/field_ops.h"
 #include "data/mesh_dimension.h"
 #include "filter/field/derivatives.h"
+#include "filter/field/gaussian_smooth.h"
 #include "filter/field/gradient.h"
 #include "filter/flow/vortex/keep_large.h"
 #include "filter/mesh/components.h"
@@ -19,8 +20,10 @@ void describe(Schema& s, RidgesParams& p) {
   s("field", p.field, "Scalar field of points; default: the active scalar.");
   s("kind", p.kind, "Crests or troughs.").choices({"ridges", "valleys"});
   s("limit", p.limit, "Ridges: only where the field is at least this; valleys: at most. Default: no limit.").unit("@field");
+  s("smooth", p.smooth, "Standard deviation, in cells, of the Gaussian that uniform and rectilinear grids are averaged with before.")
+      .range(0, 100);
   s("strength", p.strength, "Weakest curvature across that counts, as a part of the strongest.").range(0, 1);
-  s("min_length", p.min_length, "Shortest line, or smallest extent of a surface, as a part of the mesh's diagonal.").range(0, 1);
+  s("min_length", p.min_length, "Smallest extent of a connected piece, as a part of the mesh's diagonal.").range(0, 1);
 }
 
 namespace {
@@ -45,9 +48,16 @@ int flat_axis(const DatasetPtr& in) {
              "resample it on a grid");
 }
 
+double mean_cell(const Dataset& d, int dimension, int flat) {
+  const Vec3 size = d.bounds().size();
+  double measure = 1;
+  for (int a = 0; a < 3; ++a) measure *= a == flat ? 1 : size[a];
+  return std::pow(measure / double(std::max<size_t>(1, d.cell_count())), 1.0 / dimension);
+}
+
 // How strong the ridge is at a place where the condition holds; 0 when it is one of the other zeros.
-// `cell`: size of a cell, by which a place on the crest may be off.
-double strength_at(const Height& x, int flat, double cell) {
+// `off`: how far, by Newton's step, a place on the crest may be from it.
+double strength_at(const Height& x, int flat, double off) {
   const Eigen3 e = eigen_of(x.h);
   int least = 2;
   if (flat >= 0) {  // the normal is no direction of the mesh
@@ -58,8 +68,69 @@ double strength_at(const Height& x, int flat, double cell) {
   if (!(e.value[least] < 0)) return 0;
   // The gradient must be free of this eigenvector: Newton's step to the crest is short. (Where it is free of another one, the step is
   // long, except beside a peak, where all of them meet.)
-  if (std::abs(dot(x.g, e.vector[least])) > -0.3 * cell * e.value[least]) return 0;
+  if (std::abs(dot(x.g, e.vector[least])) > -off * e.value[least]) return 0;
   return -e.value[least];
+}
+
+// Where the lines of two directions cross, stumps of the wrong one are left: lines that short with a free end.
+DatasetPtr without_hairs(const DatasetPtr& in, double shortest) {
+  const SurfaceMesh& mesh = *in->as<SurfaceMesh>();
+  const CellsView lines = cells_view(mesh.lines);
+  const Field& length = in->fields().require("length", Association::cell);
+  std::vector<int> ends(mesh.points.count(), 0);
+  for (size_t c = 0; c < lines.count; ++c) ++ends[size_t(lines.point(c, 0))], ++ends[size_t(lines.connectivity[lines.end(c) - 1])];
+  std::vector<int64_t> stay;
+  for (size_t c = 0; c < lines.count; ++c) {
+    const int a = ends[size_t(lines.point(c, 0))], b = ends[size_t(lines.connectivity[lines.end(c) - 1])];
+    const bool hair = length.array.get(c) < shortest && (a == 1) != (b == 1);
+    if (!hair) stay.push_back(int64_t(c));
+  }
+  return extract_cells(in, stay, "ridges");
+}
+
+// Peaks and passes along a crest each leave a gap where the zeros of the other direction cross: free ends that are each other's nearest
+// within `gap` are joined.
+DatasetPtr with_joined_ends(const DatasetPtr& in, double gap) {
+  const SurfaceMesh& mesh = *in->as<SurfaceMesh>();
+  const CellsView lines = cells_view(mesh.lines);
+  std::vector<int> used(mesh.points.count(), 0);
+  std::vector<int64_t> ends;
+  for (size_t c = 0; c < lines.count; ++c)
+    for (const int64_t id : {lines.point(c, 0), int64_t(lines.connectivity[lines.end(c) - 1])}) ++used[size_t(id)], ends.push_back(id);
+  std::erase_if(ends, [&](int64_t id) { return used[size_t(id)] != 1; });
+  const auto at = [&](int64_t id) { return mesh.points.at(size_t(id)); };
+  std::sort(ends.begin(), ends.end(), [&](int64_t a, int64_t b) { return at(a).x != at(b).x ? at(a).x < at(b).x : a < b; });
+  std::vector<size_t> nearest(ends.size(), SIZE_MAX);
+  for (size_t i = 0; i < ends.size(); ++i) {
+    double least = gap;
+    const auto look = [&](size_t j) {
+      const double d = length(at(ends[i]) - at(ends[j]));
+      if (d < least) least = d, nearest[i] = j;
+    };
+    for (size_t j = i; j-- > 0 && at(ends[i]).x - at(ends[j]).x < gap;) look(j);
+    for (size_t j = i + 1; j < ends.size() && at(ends[j]).x - at(ends[i]).x < gap; ++j) look(j);
+  }
+  std::vector<int64_t> connectivity, offsets{0};
+  for (size_t c = 0; c < lines.count; ++c) {
+    for (size_t k = lines.begin(c); k < lines.end(c); ++k) connectivity.push_back(lines.connectivity[k]);
+    offsets.push_back(int64_t(connectivity.size()));
+  }
+  for (size_t i = 0; i < ends.size(); ++i) {
+    const size_t j = nearest[i];
+    if (j == SIZE_MAX || j < i || nearest[j] != i) continue;
+    connectivity.insert(connectivity.end(), {ends[i], ends[j]});
+    offsets.push_back(int64_t(connectivity.size()));
+  }
+  DatasetParts parts = in->parts();
+  SurfaceMesh joined;
+  joined.points = mesh.points;
+  joined.lines.connectivity = Array::from_vector(std::move(connectivity)), joined.lines.offsets = Array::from_vector(std::move(offsets));
+  parts.mesh = std::move(joined);
+  FieldSet points;
+  for (const Field& f : in->fields())
+    if (f.association != Association::cell) points.add(f);
+  parts.fields = std::move(points), parts.cell_ghost = {};
+  return make_dataset(std::move(parts));
 }
 
 }  // namespace
@@ -75,7 +146,9 @@ DatasetPtr ridges(const DatasetPtr& in, const RidgesParams& p, Context& context)
   const int flat = dimension == 2 ? flat_axis(in) : -1;
   const double sign = p.kind == "ridges" ? 1 : -1;
 
-  const DatasetPtr first = gradient(in, {{field.name}, slope_name}, context);
+  const bool smoothed = p.smooth > 0 && (in->as<UniformGrid>() || in->as<RectilinearGrid>());
+  const DatasetPtr even = smoothed ? gaussian_smooth(in, {{field.name}, {p.smooth * mean_cell(*in, dimension, flat)}, ""}, context) : in;
+  const DatasetPtr first = gradient(even, {{field.name}, slope_name}, context);
   const DatasetPtr second = hessian(first, {{field.name}, bend_name}, context);
   const Array slopes = second->fields().require(slope_name).array.converted(ElementType::f64);
   const Array bends = second->fields().require(bend_name).array.converted(ElementType::f64);
@@ -106,16 +179,18 @@ DatasetPtr ridges(const DatasetPtr& in, const RidgesParams& p, Context& context)
   const View<double> ha = all->fields().require(bend_name, Association::point).array.view<double>();
   const Array values = scalar_of(all->fields().require(field.name, Association::point), 0, ElementType::f64);
   const View<double> v = values.view<double>();
-  const Vec3 size = in->bounds().size();
-  double measure = 1;
-  for (int a = 0; a < 3; ++a) measure *= a == flat ? 1 : size[a];
-  const double cell = std::pow(measure / double(std::max<size_t>(1, in->cell_count())), 1.0 / dimension);
+  const double cell = mean_cell(*in, dimension, flat);
+  // A third of a cell off is on the crest; up to half of one counts beside such a place, so that a line does not break where it is sharp.
   std::vector<double> strength(all->point_count());
+  std::vector<uint8_t> on(strength.size());
   parallel_for(strength.size(), 1 << 12, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) strength[i] = strength_at(height_at(ga, ha, i, sign), flat, cell);
+    for (size_t i = begin; i < end; ++i) {
+      const Height x = height_at(ga, ha, i, sign);
+      strength[i] = strength_at(x, flat, cell / 2), on[i] = strength_at(x, flat, 0.3 * cell) > 0;
+    }
   });
   double strongest = 0;
-  for (const double s : strength) strongest = std::max(strongest, s);
+  for (size_t i = 0; i < on.size(); ++i) strongest = std::max(strongest, on[i] ? strength[i] : 0);
   std::vector<uint8_t> good(strength.size());
   for (size_t i = 0; i < good.size(); ++i)
     good[i] = strength[i] > 0 && strength[i] >= p.strength * strongest && (!p.limit || sign * v(i) >= sign * *p.limit);
@@ -123,9 +198,12 @@ DatasetPtr ridges(const DatasetPtr& in, const RidgesParams& p, Context& context)
   const CellsView cells = cells_view(flat >= 0 ? mesh.lines : mesh.polygons);
   std::vector<int64_t> stay;
   for (size_t k = 0; k < cells.count; ++k) {
-    bool every = true;
-    for (size_t m = cells.begin(k); m < cells.end(k); ++m) every = every && good[size_t(cells.connectivity[m])];
-    if (every) stay.push_back(int64_t(k));
+    bool every = true, any = false;
+    for (size_t m = cells.begin(k); m < cells.end(k); ++m) {
+      const auto id = size_t(cells.connectivity[m]);
+      every = every && good[id], any = any || on[id];
+    }
+    if (every && any) stay.push_back(int64_t(k));
   }
   DatasetParts out = all->parts();
   for (const char* scratch : {slope_name, bend_name, zero_name}) out.fields.remove(scratch, Association::point);
@@ -133,8 +211,10 @@ DatasetPtr ridges(const DatasetPtr& in, const RidgesParams& p, Context& context)
   const DatasetPtr kept = extract_cells(make_dataset(std::move(out)), stay, "ridges");
   if (stay.empty()) return kept;
   const double shortest = p.min_length * in->bounds().diagonal();
-  if (flat >= 0) return long_lines(polylines(kept, {}, context), shortest, "ridges", context);
-  return large_parts(components(kept, {}, context), shortest, "ridges", context);
+  if (flat < 0) return large_parts(components(kept, {}, context), shortest, "ridges", context);
+  const DatasetPtr whole = with_joined_ends(without_hairs(polylines(kept, {}, context), 1.5 * cell), 3 * cell);
+  const DatasetPtr large = large_parts(components(whole, {}, context), shortest, "ridges", context);  // crossing lines end each other
+  return large->cell_count() > 0 ? polylines(large, {}, context) : large;
 }
 
 }  // namespace sg

@@ -53,7 +53,7 @@ TEST_CASE("vortex cores: the axis of a linear swirl comes out exactly, as one li
     for (const char* method : {"sujudi_haimes", "levy"}) {
       VortexCoresParams p;
       p.method = method;
-      const DatasetPtr core = vortex_cores(mesh, p, context);
+      const DatasetPtr core = single_dataset(vortex_cores(mesh, p, context), "test");
       const SurfaceMesh& m = *core->as<SurfaceMesh>();
       CAPTURE(method);
       REQUIRE(m.lines.size() == 1);
@@ -76,7 +76,7 @@ TEST_CASE("vortex cores: of a smooth bent vortex they lie near its centre line")
     const double a = r - 0.6, fall = std::exp(-2 * (a * a + x.z * x.z));
     return along * fall + (out * -x.z + Vec3(0, 0, a)) * (12 * fall);
   };
-  const DatasetPtr core = vortex_cores(flow_on_grid(33, ring), {}, context);
+  const DatasetPtr core = single_dataset(vortex_cores(flow_on_grid(33, ring), {}, context), "test");
   const SurfaceMesh& m = *core->as<SurfaceMesh>();
   REQUIRE(m.lines.size() >= 1);
   for (size_t i = 0; i < m.points.count(); ++i) {
@@ -89,7 +89,7 @@ TEST_CASE("vortex cores: of a smooth bent vortex they lie near its centre line")
 
 TEST_CASE("vortex cores: flow without turning has none, and flat meshes are refused") {
   Context context;
-  const DatasetPtr none = vortex_cores(flow_on_grid(5, [](Vec3 x) { return Vec3(x.x, -x.y, 1); }), {}, context);
+  const DatasetPtr none = single_dataset(vortex_cores(flow_on_grid(5, [](Vec3 x) { return Vec3(x.x, -x.y, 1); }), {}, context), "test");
   CHECK(none->cell_count() == 0);
   UniformGrid flat;
   flat.dims = {4, 4, 1};
@@ -99,13 +99,29 @@ TEST_CASE("vortex cores: flow without turning has none, and flat meshes are refu
   CHECK(test::error_of([&] { vortex_cores(plane, {}, context); }).find("critical_points") != std::string::npos);
 }
 
+TEST_CASE("vortex cores: of a collection the solid parts count, and its node sets and skins do not") {
+  Context context;
+  SurfaceMesh skin;
+  skin.points.xyz = Array::from_vector(std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 0}, 3);
+  skin.polygons.fixed = 3, skin.polygons.connectivity = Array::from_vector(std::vector<int32_t>{0, 1, 2});
+  FieldSet fields;
+  fields.add({"velocity", Association::point, Array::from_vector(std::vector<double>(9, 1.0), 3), "", Role::vectors});
+  auto both = std::make_shared<Collection>();
+  both->parts.push_back({"skin", make_dataset(Mesh(skin), fields)});
+  both->parts.push_back({"nodes", make_dataset(Mesh(PointCloud{skin.points}), fields)});
+  both->parts.push_back({"solid", flow_on_grid(9, swirl)});
+  const DatasetPtr core = single_dataset(vortex_cores(CollectionPtr(both), {}, context), "test");
+  CHECK(core->as<SurfaceMesh>()->lines.size() == 1);
+  CHECK(line_length(*core) == doctest::Approx(2 / axis.z).epsilon(1e-9));
+}
+
 TEST_CASE("parallel vectors: the same lines for any number of threads, and NaN leaves a gap") {
   Context context;
   const DatasetPtr in = flow_on_grid(17, [](Vec3 x) { return x.z > 0.5 ? Vec3(NAN, NAN, NAN) : swirl(x); });
   set_thread_count(1);
-  const DatasetPtr one = vortex_cores(in, {}, context);
+  const DatasetPtr one = single_dataset(vortex_cores(in, {}, context), "test");
   set_thread_count(8);
-  const DatasetPtr many = vortex_cores(in, {}, context);
+  const DatasetPtr many = single_dataset(vortex_cores(in, {}, context), "test");
   set_thread_count(0);
   REQUIRE(one->point_count() == many->point_count());
   const Array &a = one->as<SurfaceMesh>()->points.xyz, &b = many->as<SurfaceMesh>()->points.xyz;

@@ -42,10 +42,10 @@ TEST_CASE("ridges: the crest of a straight wall is found to second order, and no
   double last = 0;
   for (const size_t n : {41, 81}) {
     RidgesParams p;
-    p.strength = 0.2;
+    p.strength = 0.2, p.smooth = 0;
     const DatasetPtr d = ridges(height({n, n, 1}, wall), p, context);
     const SurfaceMesh& m = *d->as<SurfaceMesh>();
-    CHECK(m.lines.size() <= 2);  // the two sides of the peak, where the other principal direction's line crosses
+    CHECK(m.lines.size() == 1);  // over the peak, where the other principal direction's line crosses
     double worst = 0;
     for (size_t i = 0; i < m.points.count(); ++i) {
       const Vec3 x = m.points.at(i);
@@ -67,7 +67,7 @@ TEST_CASE("ridges: a ring has a circle, its negative the same valley, and a limi
     return (2 + x.x) * std::exp(-20 * r * r);
   };
   RidgesParams p;
-  p.strength = 0.15;
+  p.strength = 0.15, p.smooth = 0.5;
   const DatasetPtr crest = ridges(height({101, 101, 1}, ring), p, context);
   CHECK(total(crest, "length") == doctest::Approx(2 * 3.14159265 * 0.6).epsilon(0.02));
   p.kind = "valleys";
