@@ -65,17 +65,10 @@ void check_duration(double duration) {
 }
 
 // The mean speed goes a tenth of the diagonal.
-double steady_duration(const Dataset& d, const std::string& name) {
-  const Array a = flow_field_of(d, name, "ftle").array.converted(ElementType::f64);
-  const View<double> v = a.view<double>();
-  double sum = 0;
-  size_t n = 0;
-  for (size_t i = 0; i < v.count; ++i) {
-    double square = 0;
-    for (int k = 0; k < a.components(); ++k) square += v(i, k) * v(i, k);
-    if (std::isfinite(square)) sum += std::sqrt(square), ++n;
-  }
-  return sum > 0 ? 0.1 * d.bounds().diagonal() * double(n) / sum : 1;
+double steady_duration(const Data& data, const std::string& name, Context& context) {
+  const FlowParts flow(data, name, "ftle", context);
+  const double speed = flow.mean_speed();
+  return speed > 0 ? 0.1 * flow.bounds().diagonal() / speed : 1;
 }
 
 }  // namespace
@@ -142,13 +135,9 @@ DatasetPtr ftle(const Series& given, const FtleParams& p, Context& context) {
   if (given.times.empty()) fail_usage("a series of no steps", "ftle");
   if (p.duration) check_duration(*p.duration);
   const bool steady = given.times.size() == 1;
-  DatasetPtr only;
-  if (steady) {
-    std::string name = p.field.name;
-    only = flow_meshes(given.load(0), name, "ftle").front();
-  }
+  const Data only = steady ? given.load(0) : Data();
   const double whole = steady ? 0 : given.times.back() - p.start.value_or(given.times.front());
-  const double duration = p.duration ? *p.duration : steady ? steady_duration(*only, p.field.name) : whole;
+  const double duration = p.duration ? *p.duration : steady ? steady_duration(only, p.field.name, context) : whole;
   check_duration(duration);
   if (!p.duration) context.info(fmt::format("ftle: duration={:.4g}", duration));
   const int sign = duration < 0 ? -1 : 1;
