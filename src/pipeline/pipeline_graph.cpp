@@ -85,7 +85,23 @@ class GraphBuilder {
       if (built_.last >= 0) inputs.push_back(built_.last);  // keeps the number of inputs, so that one mistake is told once
     }
     if (step.from.empty() && wants_input(step.operation) && built_.last >= 0) inputs.push_back(built_.last);
-    return built_.graph.add_operation(step.operation, step.words, std::move(inputs), step.name);
+    return built_.graph.add_operation(step.operation, with_paths(step), std::move(inputs), step.name);
+  }
+
+  // Parameters that name files (unit "file") are relative to the pipeline file, as those of read are.
+  std::vector<std::string> with_paths(const PipelineFile::Step& step) const {
+    std::vector<std::string> words = step.words;
+    const auto op =
+        std::find_if(options_.operations.begin(), options_.operations.end(), [&](const Operation& o) { return o.name == step.operation; });
+    if (op == options_.operations.end()) return words;
+    const ParamSet params = op->make_params();
+    for (std::string& word : words) {
+      const size_t sign = word.find('=');
+      const ParamDecl* d = sign == word.npos ? nullptr : params.schema.find(word.substr(0, sign));
+      if (d && d->unit_ == "file" && sign + 1 < word.size())
+        word = word.substr(0, sign + 1) + path_beside(file_.origin, word.substr(sign + 1));
+    }
+    return words;
   }
 
   bool wants_input(const std::string& operation) const {

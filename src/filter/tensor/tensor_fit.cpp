@@ -87,8 +87,10 @@ bool wanted(std::span<const double> signal, const GradientTable& t, const Tensor
 void describe(Schema& s, TensorFitParams& p) {
   s("field", p.field, "Field with one component for each gradient; default: the first with as many components as there are b-values.");
   s("fields", p.fields, "In its place: fields of one component, in the order of the gradients.");
-  s("bvals", p.bvals, "Text file of b-values in s/mm^2, one a volume; default: the field 'bval' that comes with a NIfTI file.");
-  s("bvecs", p.bvecs, "Text file of directions, three rows or three columns; default: the field 'bvec' that comes with a NIfTI file.");
+  s("bvals", p.bvals, "Text file of b-values in s/mm^2, one a volume; default: the field 'bval' that comes with a NIfTI file.")
+      .unit("file");
+  s("bvecs", p.bvecs, "Text file of directions, three rows or three columns; default: the field 'bvec' that comes with a NIfTI file.")
+      .unit("file");
   s("frame", p.frame,
     "What the directions are relative to. fsl: the axes of the image, x turned where they are right-handed, as FSL's files are; voxel: the "
     "axes of the image; world: x, y, z of the mesh.")
