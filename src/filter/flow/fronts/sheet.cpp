@@ -76,12 +76,15 @@ bool Sheet::split(UnsteadyCursor& flow, double t, double longest) {
 void Sheet::refine(UnsteadyCursor& flow, double t, double longest, double tear, size_t most) {
   for (int pass = 0; pass < 8 && particles.size() < most && split(flow, t, longest); ++pass) {
   }
+  // Particles rest where they left the flow: with one or two of them a triangle reaches the border, until the others have gone on.
   std::erase_if(triangles, [&](const std::array<uint32_t, 3>& tri) {
+    int ended = 0;
     for (size_t k = 0; k < 3; ++k) {
       const Particle &a = particles[tri[k]], &b = particles[tri[(k + 1) % 3]];
-      if (a.ended || length(a.x - b.x) > tear) return true;
+      ended += a.ended;
+      if (length(a.x - b.x) > (a.ended || b.ended ? 1.5 * longest : tear)) return true;
     }
-    return false;
+    return ended == 3;
   });
 }
 

@@ -16,8 +16,9 @@ struct Sheet {
   /// Adds a particle; its number.
   uint32_t add(Vec3 x, double t, double seed_parameter);
   /// Puts a particle into the middle of every edge longer than `longest`, until none is (or eight times); then leaves out triangles with an
-  /// edge longer than `tear` or a particle that has ended. New particles take the time `t`. Edges are split in the order of their ends, so
-  /// neighbours agree. Stops splitting above `most` particles.
+  /// edge longer than `tear`, and those of particles that have all ended or of whose edges one to an ended particle is longer than one and
+  /// a half times `longest`. New particles take the time `t`. Edges are split in the order of their ends, so neighbours agree. Stops
+  /// splitting above `most` particles.
   void refine(UnsteadyCursor& flow, double t, double longest, double tear, size_t most);
 
  private:
