@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Vectors of points and the light on them, for files that are compiled once for each target and have included Highway. Inside
-// render/raster only. No fused multiply-add and no libm: every target gives the same bits.
+// render only. No fused multiply-add and no libm: every target gives the same bits.
 #if defined(SG_RASTER_LIGHT_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef SG_RASTER_LIGHT_INL
 #undef SG_RASTER_LIGHT_INL

@@ -8,35 +8,15 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "render/raster/light-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace sg::raster::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using DF = hn::ScalableTag<float>;
-using DI = hn::RebindToSigned<DF>;
 using DU = hn::RebindToUnsigned<DF>;
-using F = hn::Vec<DF>;
-using I = hn::Vec<DI>;
 using U = hn::Vec<DU>;
-using M = hn::Mask<DF>;
 
-struct V3 {
-  F x, y, z;
-};
-HWY_INLINE V3 operator-(V3 a, V3 b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-HWY_INLINE V3 operator+(V3 a, V3 b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-HWY_INLINE V3 operator*(V3 a, F s) { return {a.x * s, a.y * s, a.z * s}; }
-HWY_INLINE F dot3(V3 a, V3 b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-HWY_INLINE V3 cross3(V3 a, V3 b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
-HWY_INLINE V3 set3(const float* a) {
-  const DF d;
-  return {hn::Set(d, a[0]), hn::Set(d, a[1]), hn::Set(d, a[2])};
-}
-HWY_INLINE V3 gather3(const float* base, I index) {
-  const DF d;
-  const I at = index + index + index;
-  return {hn::GatherIndex(d, base, at), hn::GatherIndex(d, base + 1, at), hn::GatherIndex(d, base + 2, at)};
-}
 HWY_INLINE F largest(V3 a) { return hn::Max(hn::Max(hn::Abs(a.x), hn::Abs(a.y)), hn::Abs(a.z)); }
 
 /// A unit vector, or zero for none. Sizes from 1e-30 to 1e30 are brought near 1 before they are squared.

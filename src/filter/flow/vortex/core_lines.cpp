@@ -45,10 +45,6 @@ double angle_between(Vec3 a, Vec3 b) {
   return l > 0 ? std::acos(std::min(1.0, std::abs(dot(a, b)) / l)) * 180 / 3.14159265358979323846 : 0;
 }
 
-}  // namespace
-
-namespace {
-
 DatasetPtr of_mesh(const DatasetPtr& in, const VortexCoresParams& p, Context& context) {
   Field velocity = flow_field_of(*in, p.field.name, "vortex_cores");
   const std::vector<Vec3> u = point_vectors(in, velocity, context);
