@@ -78,7 +78,11 @@ class Surroundings {
     if (dimension_ != 2 || reader_.dimension() != 2) return;
     const auto at = reader_.at();
     Vec3 n{0, 0, 0};
-    for (size_t k = 1; k + 1 < at.size(); ++k) n = n + cross(at[k] - at[0], at[k + 1] - at[0]);
+    for (size_t k = 1; k + 1 < at.size(); ++k) {
+      // Points of pixels and strips go to and fro, and so do these triangles.
+      const Vec3 t = cross(at[k] - at[0], at[k + 1] - at[0]);
+      n = dot(t, n) < 0 ? n - t : n + t;
+    }
     normal_ = dot(n, normal_) < 0 ? normal_ - n : normal_ + n;
   }
   void add_ring(int64_t i, bool own) {

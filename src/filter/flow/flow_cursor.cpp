@@ -4,6 +4,7 @@
 #include "filter/flow/flow_field.h"
 #include "filter/flow/hex_cursor.h"
 #include "filter/flow/lattice_cursor.h"
+#include "filter/flow/surface_normal.h"
 #include "filter/flow/tet_cursor.h"
 
 namespace sg {
@@ -97,19 +98,7 @@ struct FlowCursor::State {
       return normal = normalize(cross(at[1] - at[0], at[2] - at[0]));
     }
     framed = -1;
-    if (CellShape::find(map.reader().type(), at.size(), map.reader().orders())) {
-      const Mat3 j = map.jacobian(by_tree().place().rst);
-      return normal = normalize(cross(j.column(0), j.column(1)));
-    }
-    // Polygons by Newell's sum, strips by the triangle of the place.
-    Vec3 sum;
-    if (map.reader().type() == CellType::triangle_strip) {
-      const size_t k = std::min(size_t(std::max(by_tree().place().rst.z, 0.0)), at.size() - 3);
-      sum = cross(at[k + 1] - at[k], at[k + 2] - at[k]) * (k % 2 ? -1.0 : 1.0);
-    } else {
-      for (size_t k = 0; k < at.size(); ++k) sum += cross(at[k] - at[0], at[(k + 1) % at.size()] - at[0]);
-    }
-    return normal = normalize(sum);
+    return normal = sg::surface_normal(map, by_tree().place().rst);
   }
   void measure() {
     if (source == Source::lattice) {

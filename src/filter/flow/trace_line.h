@@ -89,7 +89,7 @@ StopReason trace_line(Flow& flow, double t0, double sign, const TraceOptions& o,
     if (o.closed) {
       const Vec3 across = sign * start_v;
       const double before = dot(x - start, across), after = dot(snapped - start, across);
-      away = away || length(snapped - start) > first_cell;
+      away = away || length(snapped - start) > first_cell || dot(next_v, start_v) < 0;  // orbits may be smaller than large cells
       if (away && before < 0 && after >= 0 && length(snapped - start) < 2 * length(snapped - x)) {
         double f = 0;
         const Vec3 back = detail::crossing(x, snapped, (sign * h) * v, (sign * h) * next_v, start, across, f);

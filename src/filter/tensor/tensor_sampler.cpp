@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "data/lattice.h"
+#include "filter/flow/surface_normal.h"
 
 namespace sg {
 
@@ -99,8 +100,7 @@ bool TensorCursor::find(Vec3 x) {
     if (cell_ >= 0) {
       CellMap& map = locator_.map();
       if (map.reader().cell() != size_t(cell_)) map.open(size_t(cell_));
-      const Mat3 j = map.jacobian(locator_.place().rst);
-      const Vec3 n = normalize(cross(j.column(0), j.column(1))), off = x - near.at;
+      const Vec3 n = surface_normal(map, locator_.place().rst), off = x - near.at;
       if (std::abs(dot(n, off)) < 0.5 * length(off)) cell_ = -1;
     }
   }
@@ -144,8 +144,7 @@ bool TensorCursor::eigen(Vec3 x, Eigen3& e) {
   }
   CellMap& map = locator_.map();
   if (map.reader().cell() != size_t(cell_)) map.open(size_t(cell_));
-  const Mat3 j = map.jacobian(locator_.place().rst);
-  const Vec3 n = normalize(cross(j.column(0), j.column(1)));
+  const Vec3 n = surface_normal(map, locator_.place().rst);
   if (!(length(n) > 0)) return false;
   e = eigen_across(d, n);
   return true;

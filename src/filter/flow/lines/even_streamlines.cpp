@@ -6,6 +6,7 @@
 
 #include "filter/flow/line_attributes.h"
 #include "filter/flow/line_mesh.h"
+#include "filter/flow/surface_normal.h"
 #include "filter/flow/trace_line.h"
 
 namespace sg {
@@ -117,8 +118,7 @@ class Filler {
     map->open(size_t(std::max<int64_t>(0, flow_.cursor().cell())));
     CellPlace place;
     map->locate(x, place, 1e-3);
-    const Mat3 j = map->jacobian(place.rst);
-    return normalize(cross(j.column(0), j.column(1)));
+    return surface_normal(*map, place.rst);
   }
 
   // Goes on in stretches until the line ends or comes too near to another one, or to itself further along.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <optional>
 
+#include "filter/flow/surface_normal.h"
 #include "filter/flow/unsteady/unsteady_flow.h"
 
 namespace sg {
@@ -39,10 +40,7 @@ class MeshPlace {
   }
   double length() const { return length_; }
 
-  Vec3 normal() {
-    const Mat3 j = open().jacobian(locator_.place().rst);
-    return normalize(cross(j.column(0), j.column(1)));
-  }
+  Vec3 normal() { return surface_normal(open(), locator_.place().rst); }
 
  private:
   CellMap& open() {

@@ -5,6 +5,7 @@
 #include "data/point_positions.h"
 #include "data/trusted.h"
 #include "filter/flow/flow_parts.h"
+#include "filter/mesh/append.h"
 
 namespace sg {
 
@@ -33,9 +34,8 @@ FlowField UnsteadyFlow::load(size_t step, Context& context) const {
     const Data data = series_.load(step);
     std::string name = field_;
     const std::vector<DatasetPtr> parts = flow_meshes(data, name, "unsteady flow");
-    if (parts.size() > 1)
-      fail_usage(fmt::format("the data have {} parts", parts.size()), "unsteady flow", "the filter append makes one mesh of them");
-    const DatasetPtr& d = parts.front();
+    // Several parts are one mesh: particles cross from one to the next.
+    const DatasetPtr d = parts.size() > 1 ? append({parts.begin(), parts.end()}, {.part = false}, context) : parts.front();
     std::shared_ptr<const CellLocator> index;
     for (const FlowField& open : steps_)
       if (!index && same_mesh(*open.dataset(), *d)) index = open.locator();
@@ -44,7 +44,7 @@ FlowField UnsteadyFlow::load(size_t step, Context& context) const {
       bare.mesh = d->mesh(), bare.point_ghost = d->point_ghost(), bare.cell_ghost = d->cell_ghost();
       index = std::make_shared<const CellLocator>(make_trusted_dataset(std::move(bare)), context);
     }
-    return FlowField(d, field_, context, std::move(index));
+    return FlowField(d, parts.size() > 1 ? name : field_, context, std::move(index));
   });
 }
 

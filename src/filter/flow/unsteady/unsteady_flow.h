@@ -27,8 +27,8 @@ class UnsteadyFlow {
   /// that move along, so that a particle at rest in its cell stays in it); or nothing in common (then they are mixed at places in space).
   enum class Meshes : uint8_t { same, moving, changed };
 
-  /// `field` as in FlowField. Nothing is loaded yet. Throws Error(usage) for a series of one step and Error(data) for times that do not
-  /// grow.
+  /// `field` as in FlowField; the parts of a collection that have it (flow_meshes) are joined to one mesh. Nothing is loaded yet. Throws
+  /// Error(usage) for a series of one step and Error(data) for times that do not grow.
   UnsteadyFlow(Series series, std::string field, TimeInterpolation interpolation, Context& context);
 
   const std::vector<double>& times() const { return series_.times; }

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/lines/even_streamlines.h"
 
-#include "filter/flow/flow_support.h"
-#include "support/test.h"
+#include "filter/every_mesh.h"
 
 using namespace sg;
 
@@ -69,6 +68,22 @@ TEST_CASE("even streamlines: in uniform wind through a box they stand as a grid 
   for (const auto& line : found.lines) {
     CHECK(std::abs(line.front().x - line.back().x) < 1e-6);
     CHECK(line.back().z - line.front().z > 0.98);
+  }
+}
+
+TEST_CASE("even streamlines: straight and even in uniform wind on every kind of flat mesh") {
+  for (const test::MeshKind& kind : test::flat_meshes()) {
+    CAPTURE(kind.name);
+    Context context;
+    EvenStreamlinesParams p;
+    p.spacing = 0.25;
+    const Lines found(even_streamlines(test::flow::with_velocity(kind.make(8, 1), [](Vec3) { return Vec3(0, 3, 0); }), p, context));
+    CHECK(found.nearest_pair() > 0.25 * 0.999);
+    CHECK(found.lines.size() >= 7);
+    for (const auto& line : found.lines) {
+      CHECK(std::abs(line.front().x - line.back().x) < 1e-6);
+      CHECK(line.back().y - line.front().y > 1.9);
+    }
   }
 }
 
