@@ -64,12 +64,12 @@ constexpr double end_time = 1.5;
 
 void check_closed_forms(const Case& c) {
   Context context;
-  const Series series = on_meshes(c.meshes, 31, end_time, sheared);
+  const Series series = on_meshes(c.meshes, 16, end_time, sheared);
   const double z = c.flat ? 0 : 0.2;
   const Vec3 seeds[] = {{-0.9, 0.3, z}, {-0.3, 0.1, -z}};
   const std::vector<double> list{-0.9, 0.3, z, -0.3, 0.1, -z};
   const auto with = [&](auto p) {
-    p.interpolation = "cubic", p.integration.tolerance = 1e-7;
+    p.interpolation = "cubic", p.integration.tolerance = 1e-5;
     return p;
   };
   const Lines paths{pathlines(series, {}, with(seeded_at<PathlinesParams>(list)), context)};
@@ -79,7 +79,7 @@ void check_closed_forms(const Case& c) {
   const Lines times{timelines(series, {}, tp, context)};
   StreamlinesParams sp = seeded_at<StreamlinesParams>(list);
   sp.direction = "forward", sp.integration.tolerance = 1e-7, sp.stop.max_time = 1.2;
-  const Lines streams{std::get<DatasetPtr>(streamlines({series.load(30)}, sp, context))};
+  const Lines streams{std::get<DatasetPtr>(streamlines({series.load(15)}, sp, context))};
 
   double worst[4] = {0, 0, 0, 0};
   REQUIRE(paths.mesh().lines.size() == 2);
@@ -105,10 +105,10 @@ void check_closed_forms(const Case& c) {
     worst[3] = std::max(worst[3], length(streams.x(i) - at));
   });
   CHECK(paths.value("time", paths.points() - 1) == doctest::Approx(end_time));
-  CHECK(streaks.points() == 62);
-  CHECK(worst[0] < 5e-5);  // cubic in time, steps of 1/20
-  CHECK(worst[1] < 5e-5);
-  CHECK(worst[2] < 5e-5);
+  CHECK(streaks.points() == 32);
+  CHECK(worst[0] < 5e-4);  // cubic in time, steps of 1/10
+  CHECK(worst[1] < 5e-4);
+  CHECK(worst[2] < 5e-4);
   CHECK(worst[3] < 1e-6);
   // They are four lines, not one.
   const Vec3 path_end = carried(seeds[0], 0, end_time), streak_middle = carried(seeds[0], end_time / 2, end_time);
