@@ -59,7 +59,7 @@ std::vector<StreakFront::Insertion> StreakFront::wanted(size_t slot, double begi
   std::vector<Insertion> out;
   const double turn = std::cos(r.angle);
   const auto joined = [&](size_t i) {  // with the next
-    return i >= first_[slot] && i + 1 < first_[slot + 1] && under_way(all_[i]) && under_way(all_[i + 1]) && born_[i + 1] <= until;
+    return i >= first_[slot] && i < first_[slot + 1] - 1 && under_way(all_[i]) && under_way(all_[i + 1]) && born_[i + 1] <= until;
   };
   const auto bends = [&](size_t i) {  // at particle i
     if (!joined(i) || i == first_[slot] || !joined(i - 1)) return false;
@@ -70,7 +70,7 @@ std::vector<StreakFront::Insertion> StreakFront::wanted(size_t slot, double begi
     if (!joined(i)) continue;
     const double gap = length(all_[i + 1].x - all_[i].x), a = born_[i], b = born_[i + 1];
     if (!(gap > r.spacing || (gap > r.shortest && (bends(i) || bends(i + 1))))) continue;
-    if (!(b - a > 1e-9 * std::max(std::abs(a), std::abs(b)))) continue;
+    if (!(b - a > 1e-13 * std::max(std::abs(a), std::abs(b)))) continue;
     Insertion n;
     n.after = i, n.particle.steps = all_[i].steps, n.particle.x = seed_[slot];
     // The seed's own place is where the line is at the beginning of the interval.
@@ -79,7 +79,7 @@ std::vector<StreakFront::Insertion> StreakFront::wanted(size_t slot, double begi
     } else {
       n.born = (a + b) / 2, n.particle.t = begin;
       std::vector<Node> nodes;
-      if (joined(i - 1) && before_[i - 1].started) nodes.push_back({born_[i - 1], before_[i - 1].x});
+      if (joined(i - 1)) nodes.push_back({born_[i - 1], before_[i - 1].x});
       nodes.push_back({a, before_[i].x}), nodes.push_back({b, before_[i + 1].x});
       if (joined(i + 1) && born_[i + 2] <= begin) nodes.push_back({born_[i + 2], before_[i + 2].x});
       else if (b < begin) nodes.push_back({begin, seed_[slot]});
@@ -103,8 +103,8 @@ void StreakFront::insert(const std::vector<std::vector<Insertion>>& more, std::v
       all.push_back(all_[i]), before.push_back(before_[i]), born.push_back(born_[i]);
       if (k == more[s].size() || more[s][k].after != i) continue;
       const Particle& p = advanced[next++];
-      // One that is not in the flow at all would tear the line.
-      if (p.started) all.push_back(p), before.push_back(more[s][k].particle), born.push_back(more[s][k].born), before.back().started = true;
+      // One that is not in the flow (on land) tears the line.
+      all.push_back(p), before.push_back(more[s][k].particle), born.push_back(more[s][k].born);
       ++k;
     }
     first_[s] = begin;

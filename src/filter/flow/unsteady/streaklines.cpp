@@ -35,8 +35,8 @@ StreakFront release(const UnsteadyRun& run, std::optional<double> every, const c
   return {run.seeds, times};
 }
 
-// Lines of one seed after the other, the newest particle first.
-LinePoints streaks(const StreakFront& r, std::vector<double>& age, double time) {
+// Lines of one seed after the other, the newest particle first. Gaps that refinement could not fill (wider than `torn`) are no lines.
+LinePoints streaks(const StreakFront& r, std::vector<double>& age, double time, double torn) {
   constexpr size_t grain = 64;
   const size_t seeds = r.seeds();
   std::vector<size_t> points(seeds, 0), lines(seeds, 0);
@@ -45,7 +45,7 @@ LinePoints streaks(const StreakFront& r, std::vector<double>& age, double time) 
       for (size_t i = begin; i < end; ++i) {
         const std::span<const Particle> p = r.of(i);
         for (size_t k = p.size(); k-- > 0;)
-          if (!p[k].ended) f(i, k, p[k], k + 1 == p.size() || p[k + 1].ended);
+          if (!p[k].ended) f(i, k, p[k], k + 1 == p.size() || p[k + 1].ended || length(p[k].x - p[k + 1].x) > torn);
       }
     });
   };
@@ -69,10 +69,10 @@ struct Streaks {
   FieldSet more;
 };
 
-Streaks streaks_with_fields(UnsteadyRun& run, const StreakFront& r, Context& context) {
+Streaks streaks_with_fields(UnsteadyRun& run, const StreakFront& r, double torn, Context& context) {
   Streaks out;
   std::vector<double> age;
-  out.lines = streaks(r, age, run.time);
+  out.lines = streaks(r, age, run.time, torn);
   if (run.carries) {
     CarriedFields carried;
     carried.open(run.flow);
@@ -112,7 +112,7 @@ DatasetPtr streaklines(const Series& series, const std::vector<Data>& others, co
   run.each_interval([&](double until) { front.advance(run.flow, until, run.options, p.refine ? &finer : nullptr, context); });
   run.require_some(front.started());
   if (front.full()) context.warn(fmt::format("streaklines: {} particles, and lines are refined no more (most_points)", front.size()));
-  Streaks s = streaks_with_fields(run, front, context);
+  Streaks s = streaks_with_fields(run, front, p.refine && !front.full() ? 8 * finer.spacing : HUGE_VAL, context);
   return run.finished(
       lines_of(s.lines, {"age", Association::point, s.age, "", Role::scalars}, run.velocity(), run.time, std::move(s.more), {}));
 }
@@ -133,7 +133,7 @@ DatasetPtr particles(const Series& series, const std::vector<Data>& others, cons
   const size_t started = front.started();
   if (p.lifetime) front.bury(run.time - *p.lifetime);
   run.require_some(started);
-  Streaks s = streaks_with_fields(run, front, context);
+  Streaks s = streaks_with_fields(run, front, HUGE_VAL, context);
   return run.finished(
       points_of(s.lines, {"age", Association::point, s.age, "", Role::scalars}, run.velocity(), run.time, std::move(s.more)));
 }

@@ -156,6 +156,9 @@ std::string NcFile::text(const Variable* v, const char* name) const {
   const int id = v ? v->id : NC_GLOBAL;
   int type = 0;
   size_t n = 0;
+  if (std::string_view(name) == "units" && nc_inq_att(id_, id, name, &type, &n) != NC_NOERR)
+    for (const char* other : {"Unit", "Units", "unit"})  // not as CF says, but as some write
+      if (nc_inq_att(id_, id, other, &type, &n) == NC_NOERR) name = other;
   if (nc_inq_att(id_, id, name, &type, &n) != NC_NOERR || n == 0 || n > file_size_ * most_packing) return {};
   if (type == NC_CHAR) {
     std::string s(n, '\0');
