@@ -73,7 +73,7 @@ void add_picture(CLI::App& a, Options& o) {
       "between); default: all of the file. A parameter written as {t} takes the time");
   a.add_option("--fps", o.fps, "Films: pictures per second")->check(CLI::Range(0.1, 1000.0));
   a.add_option("-o,--output", o.output,
-               "Picture to write: .png .jpg .webp; {n} in its name numbers the pictures of a time series; .webm: a film of them");
+               "Picture to write: .png .jpg .webp; {n} in its name numbers the pictures of a time series; .webm, .mp4: a film of them");
 }
 
 Vec3 triple(const std::string& text, const char* option, double least) {

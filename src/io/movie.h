@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Films: pictures one after the other into a .webm file (VP9). The encoder is in a plug-in.
+// Films: pictures one after the other into a .webm file (VP9, by an encoder in a plug-in), or into .mp4 by the program ffmpeg.
 #pragma once
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,8 @@
 #include "image/webm.h"
 
 namespace sg {
+
+class FfmpegPipe;
 
 struct MovieSettings {
   int width = 0, height = 0;  ///< of the film, even; 0: of the first picture, with a row or column more where that is odd
@@ -19,14 +22,16 @@ struct MovieSettings {
 /// Takes a picture (null: there are no more) and gives the encoded ones that are ready.
 using MovieEncoder = std::function<std::vector<VideoFrame>(const Image* picture)>;
 
-/// Is it the name of a film (.webm, or .mp4, of which MovieWriter says that it is not written)?
+/// Is it the name of a film (.webm, .mp4)?
 bool is_movie(const std::string& path);
 
-/// Encoded pictures are kept in memory; the file is written beside and renamed by finish(). The same bytes for any number of threads.
+/// The file is written beside and renamed by finish(). Encoded pictures of .webm are kept in memory until then; its bytes are the same for
+/// any number of threads.
 class MovieWriter {
  public:
-  /// Throws Error(usage) for what is not .webm, Error(data) when the file cannot be written or the encoder is not there.
+  /// Throws Error(usage) for other names, Error(data) when the file cannot be written or the encoder is not there.
   MovieWriter(std::string path, MovieSettings settings);
+  ~MovieWriter();
   /// Throws Error(usage) for a picture of another size than the first. Transparent pixels are shown over white.
   void add(const Image& picture);
   void finish();
@@ -37,6 +42,7 @@ class MovieWriter {
   int width_ = 0, height_ = 0;
   MovieEncoder encoder_;
   std::vector<VideoFrame> frames_;
+  std::unique_ptr<FfmpegPipe> other_;
 };
 
 }  // namespace sg

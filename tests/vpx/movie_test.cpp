@@ -7,6 +7,7 @@
 
 #include <bit>
 #include <cmath>
+#include <cstdlib>
 
 #include "base/file.h"
 #include "base/parallel.h"
@@ -100,9 +101,33 @@ TEST_CASE("movie: the same bytes for any number of threads") {
   CHECK(one == eight);
 }
 
+TEST_CASE("movie: .mp4 goes through ffmpeg, and without it there is a hint and no file") {
+  const std::string path = test::temp_folder() + "b.mp4", before = std::getenv("PATH");
+  ::setenv("PATH", "/no/such/folder", 1);
+  {
+    MovieWriter writer(path, {});
+    CHECK(test::error_of([&] { writer.add(frame(32, 32, 0)); }).find("or write a .webm, which needs no other program") !=
+          std::string::npos);
+  }
+  ::setenv("PATH", before.c_str(), 1);
+  CHECK_FALSE(file_exists(path));
+  if (std::system("ffmpeg -version >/dev/null 2>&1") != 0) return;
+  {
+    MovieWriter writer(path, {});
+    for (int n = 0; n < 5; ++n) writer.add(frame(161, 99, n));
+    writer.finish();
+  }
+  CHECK(MappedFile(path).text().substr(4, 4) == "ftyp");
+  for (const std::string& name : folder_entries(test::temp_folder())) CHECK(name.find("partial") == std::string::npos);
+  {
+    MovieWriter dropped(test::temp_folder() + "c.mp4", {});
+    dropped.add(frame(64, 64, 0));
+  }
+  for (const std::string& name : folder_entries(test::temp_folder())) CHECK(name.find("c.mp4") == std::string::npos);
+}
+
 TEST_CASE("movie: what cannot be written is said before anything is drawn, and nothing is left behind") {
-  CHECK(test::error_of([] { MovieWriter(test::temp_folder() + "a.mp4", {}); }).find("films are written as .webm alone") !=
-        std::string::npos);
+  CHECK(test::error_of([] { MovieWriter(test::temp_folder() + "a.gif", {}); }).find("can write: .webm .mp4") != std::string::npos);
   CHECK(test::error_of([] { MovieWriter("/no/such/folder/a.webm", {}); }).find("/no/such/folder/a.webm") != std::string::npos);
   const std::string path = test::temp_folder() + "never.webm";
   {

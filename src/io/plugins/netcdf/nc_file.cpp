@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/plugins/netcdf/nc_file.h"
 
+#ifdef SG_QUIET_HDF5
+#include <hdf5.h>
+#endif
 #include <netcdf.h>
 
 #include "base/bytes.h"
@@ -65,6 +68,9 @@ size_t Variable::count() const {
 }
 
 NcFile::NcFile(const std::string& path) : path_(path) {
+#ifdef SG_QUIET_HDF5
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // belongs to the thread; the library says so for the first one alone
+#endif
   check_classic(path);
   {
     const MappedFile file(path);
