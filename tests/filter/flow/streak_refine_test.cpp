@@ -35,22 +35,23 @@ TEST_CASE("streaklines: particles that come between are where their release time
   const auto box = [](double) -> Mesh { return grid(33, {-2, -2, -2}, {2, 2, 2}, 5); };
   Context context;
   auto p = seeded_at<StreaklinesParams>({-1.4, 0, 0});
-  p.interpolation = "cubic", p.integration.tolerance = 1e-8, p.spacing = 0.05;
+  p.interpolation = "cubic", p.integration.tolerance = 1e-8, p.spacing = 0.02;
   const Lines lines{streaklines(series_of(even_times(0, 2, 41), box, v), {}, p, context)};
+  CHECK(lines.points() > 60);
   for (size_t i = 0; i < lines.points(); ++i) {
     const double age = lines.value("age", i), t0 = 2 - age;
     const Vec3 truth(-1.5 + 0.1 * std::exp(age), 0.5 / 3 * (std::sin(6.0) - std::sin(3 * t0)), 0);
     CHECK(length(lines.x(i) - truth) < 2e-4);
-    if (i > 0) CHECK(length(lines.x(i) - lines.x(i - 1)) < 0.0501);
+    if (i > 0) CHECK(length(lines.x(i) - lines.x(i - 1)) < 0.0201);
   }
   p.refine = false;
   const Lines plain{streaklines(series_of(even_times(0, 2, 41), box, v), {}, p, context)};
   CHECK(plain.points() == 41);
-  p.refine = true, p.most_points = 60;
+  p.refine = true, p.most_points = 45;
   std::string told;
-  context.on_log = [&](LogLevel, std::string_view text) { told = text; };
+  context.on_log = [&](LogLevel, std::string_view text) { told += text; };
   const Lines few{streaklines(series_of(even_times(0, 2, 41), box, v), {}, p, context)};
-  CHECK(few.points() <= 60);
+  CHECK(few.points() <= 45);
   CHECK(told.find("most_points") != std::string::npos);
 }
 
@@ -111,7 +112,7 @@ TEST_CASE("unsteady: the parts of a collection are one flow") {
   const size_t a = one.points() - 1, b = two.points() - 1;
   CHECK(two.value("time", b) == 2);
   CHECK(length(one.x(a) - two.x(b)) < 1e-5);
-  CHECK(length(two.x(size_t(two.mesh().lines.offsets.get(1)) - 1) - went({-0.5, 0.1, 0.2}, 0, 2)) < 1e-3);
+  CHECK(length(two.x(size_t(two.mesh().lines.offsets.get(1)) - 1) - went({-0.5, 0.1, 0.2}, 0, 2)) < 3e-3);
 }
 
 TEST_CASE("unsteady: times that do not grow, and steps without the field, are named") {
