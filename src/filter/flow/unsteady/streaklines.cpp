@@ -112,7 +112,7 @@ DatasetPtr streaklines(const Series& series, const std::vector<Data>& others, co
   run.each_interval([&](double until) { front.advance(run.flow, until, run.options, p.refine ? &finer : nullptr, context); });
   run.require_some(front.started());
   if (front.full()) context.warn(fmt::format("streaklines: {} particles, and lines are refined no more (most_points)", front.size()));
-  Streaks s = streaks_with_fields(run, front, p.refine && !front.full() ? 8 * finer.spacing : HUGE_VAL, context);
+  Streaks s = streaks_with_fields(run, front, p.refine && !front.full() ? 2 * finer.spacing : HUGE_VAL, context);
   return run.finished(
       lines_of(s.lines, {"age", Association::point, s.age, "", Role::scalars}, run.velocity(), run.time, std::move(s.more), {}));
 }
