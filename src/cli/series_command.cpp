@@ -2,6 +2,7 @@
 // render of a time series: one numbered picture per step, the next step read or computed while one is drawn.
 #include <cstdio>
 #include <exception>
+#include <mutex>
 #include <set>
 #include <thread>
 
@@ -228,11 +229,31 @@ class Sink {
   std::unique_ptr<MovieWriter> movie_;
 };
 
+// The pipeline of a series with the looks that its first picture gets.
+PipelineFile with_looks(const PipelineFile& plain, PipelineFile first, const PictureOptions& options, Context& context) {
+  std::vector<std::string> notes;
+  std::vector<Data> looked;
+  if (first.show.empty()) choose_looks(first, options, options.cache, looked, notes, context);
+  else
+    for (auto& s : first.show)
+      if (colors_by_field(s.kind)) s.words.insert(s.words.end(), options.coloring.begin(), options.coloring.end());
+  for (size_t i = 0; i < plain.steps.size(); ++i) first.steps[i].words = plain.steps[i].words;  // without its time
+  return first;
+}
+
 }  // namespace
 
 bool is_numbered(const std::string& output) { return output.find(mark) != std::string::npos || is_movie(output); }
 
-int render_series(const Options& o, const PictureOptions& options, Context& context) {
+int render_series(const Options& o, const PictureOptions& options, Context& outer) {
+  // One picture after the other says the same; two are under way at a time.
+  std::mutex mutex;
+  std::set<std::string> told;
+  Context context(outer, 0, 1);
+  context.on_log = [&](LogLevel level, std::string_view text) {
+    const std::lock_guard lock(mutex);
+    if (told.emplace(text).second) outer.log(level, text);
+  };
   const PipelineFile plain = pipeline_of(o);
   bool by_step = false;
   std::vector<size_t> numbers;
@@ -249,19 +270,8 @@ int render_series(const Options& o, const PictureOptions& options, Context& cont
   each.cache = cache;
   std::vector<Data> held = results_of(step(plain, 0), cache, context);
   const size_t one_step = array_memory();
-  PipelineFile chosen = step(plain, 0);
-  PictureOptions look = each;
-  std::vector<std::string> notes;
-  if (chosen.show.empty()) {
-    std::vector<Data> looked;
-    choose_looks(chosen, look, cache, looked, notes, context);
-  } else {
-    for (auto& s : chosen.show)
-      if (colors_by_field(s.kind)) s.words.insert(s.words.end(), options.coloring.begin(), options.coloring.end());
-  }
+  PipelineFile base = with_looks(plain, step(plain, 0), each, context);
   each.coloring.clear();
-  PipelineFile base = chosen;
-  for (size_t i = 0; i < plain.steps.size(); ++i) base.steps[i].words = plain.steps[i].words;  // without the time of the first
   std::vector<PipelineFile> some;
   for (size_t i = 0; i < std::min<size_t>(5, times.size()); ++i)
     some.push_back(step(base, times.size() == 1 ? 0 : i * (times.size() - 1) / (std::min<size_t>(5, times.size()) - 1)));

@@ -147,8 +147,8 @@ std::vector<double> stated_times(const std::string& text, size_t steps) {
   return times;
 }
 
-// What the files themselves say of time; `known` false: the steps are counted.
-bool own_times(Steps& s, const ReadOptions& options, Context& context) {
+// Finds the steps, and what the files themselves say of their times; false when these are to be counted. `order`: they have to grow.
+bool own_times(Steps& s, bool order, const ReadOptions& options, Context& context) {
   bool known = true, inside = false;
   for (size_t i = 0; i < s.files.size(); ++i) {
     context.check();
@@ -161,7 +161,7 @@ bool own_times(Steps& s, const ReadOptions& options, Context& context) {
     known = known && time && std::isfinite(*time);
     s.places.emplace_back(i, -1), s.times.push_back(time.value_or(0));
   }
-  if (!known || s.files.size() == 1) return known;
+  if (!known || !order || s.files.size() == 1) return known;
   const bool all_same =
       s.times.size() == s.files.size() && std::all_of(s.times.begin(), s.times.end(), [&](double t) { return t == s.times[0]; });
   if (all_same) return false;
@@ -188,7 +188,7 @@ std::shared_ptr<const Steps> steps_of(const std::string& path, ReadOptions optio
   }
   const std::string stated = options.times;
   options.times.clear(), options.time.reset(), options.step = -1;
-  const bool have = own_times(*steps, options, context);
+  const bool have = own_times(*steps, stated.empty(), options, context);
   if (!stated.empty()) steps->times = stated_times(stated, steps->times.size());
   else if (!have)
     for (size_t k = 0; k < steps->times.size(); ++k) steps->times[k] = double(k);
