@@ -111,3 +111,24 @@ TEST_CASE("film: a series becomes a .webm") {
   CHECK(sightglass({"render", "flow_{n}.vti", "--times", "90:95", "-o", "film.webm"}, files()).err.find("it has 0 to 11") !=
         std::string::npos);
 }
+
+TEST_CASE("series: real currents over degrees, day by day" * doctest::skip(no_data())) {
+  const std::string f = folder_of(data_file("vectors/globcurrent-2002-01/20020101000000-GLOBCURRENT-L4-CUReul_hs-ALT_SUM-v02.0-fv01.0.nc"));
+  const std::vector<std::string> flow{
+      "info", f + "*.nc", "-f", "calc expr=vec(eastward_eulerian_current_velocity,northward_eulerian_current_velocity,0) name=current",
+      "-f"};
+  auto args = flow;
+  args.push_back("pathlines points=29,-33,0 geographic=true attributes=none");
+  const Ran r = sightglass(args);
+  INFO(r.err);
+  REQUIRE(r.status == 0);
+  CHECK(r.err.empty());
+  // The Agulhas current goes south-west along the coast, 1 to 2 m/s: some hundred kilometres in a few days.
+  CHECK(r.out.find("PolyLine 1") != std::string::npos);
+  const size_t at = r.out.find("bounds  x ");
+  REQUIRE(at != std::string::npos);
+  CHECK(std::stod(r.out.substr(at + 10)) < 28);
+  args = flow;
+  args.push_back("pathlines points=29,-33,0");
+  CHECK(sightglass(args).err.find("geographic=true converts it") != std::string::npos);
+}

@@ -84,6 +84,9 @@ std::vector<StreakFront::Insertion> StreakFront::wanted(size_t slot, double begi
       if (joined(i + 1) && born_[i + 2] <= begin) nodes.push_back({born_[i + 2], before_[i + 2].x});
       else if (b < begin) nodes.push_back({begin, seed_[slot]});
       n.particle.x = place_at(nodes, n.born);
+      // Where nodes lie too far apart for a cubic, it may leave the line, and the mesh.
+      const Vec3 middle = (before_[i].x + before_[i + 1].x) / 2;
+      if (!(length(n.particle.x - middle) <= 0.5 * length(before_[i + 1].x - before_[i].x))) n.particle.x = middle;
     }
     out.push_back(n);
   }

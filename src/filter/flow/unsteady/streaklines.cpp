@@ -35,17 +35,26 @@ StreakFront release(const UnsteadyRun& run, std::optional<double> every, const c
   return {run.seeds, times};
 }
 
-// Lines of one seed after the other, the newest particle first. Gaps that refinement could not fill (wider than `torn`) are no lines.
+// Lines of one seed after the other, the newest particle first. Gaps that refinement could not
+// fill (wider than `torn`: releases of one moment, as far as numbers tell them apart) are no lines, and what it left alone is left out.
 LinePoints streaks(const StreakFront& r, std::vector<double>& age, double time, double torn) {
   constexpr size_t grain = 64;
   const size_t seeds = r.seeds();
   std::vector<size_t> points(seeds, 0), lines(seeds, 0);
+  const bool refined = torn < HUGE_VAL;
+  const auto joined = [&](std::span<const Particle> p, size_t k) {  // with the next
+    return k + 1 < p.size() && !p[k].ended && !p[k + 1].ended && !(length(p[k].x - p[k + 1].x) > torn);
+  };
   const auto each = [&](auto&& f) {  // f(seed, release, particle, whether a line begins with it)
     parallel_for(seeds, grain, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) {
         const std::span<const Particle> p = r.of(i);
-        for (size_t k = p.size(); k-- > 0;)
-          if (!p[k].ended) f(i, k, p[k], k + 1 == p.size() || p[k + 1].ended || length(p[k].x - p[k + 1].x) > torn);
+        const bool several = refined && std::count_if(p.begin(), p.end(), [](const Particle& q) { return !q.ended; }) > 1;
+        for (size_t k = p.size(); k-- > 0;) {
+          if (p[k].ended) continue;
+          const bool begins = !joined(p, k), alone = begins && !(k > 0 && joined(p, k - 1));
+          if (!(alone && several)) f(i, k, p[k], begins);
+        }
       }
     });
   };
