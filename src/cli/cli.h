@@ -26,7 +26,4 @@ bool is_numbered(const std::string& output);
 /// One picture per time step, all with the looks and colours of one; the next step is loaded while one is drawn.
 int render_series(const Options& o, const PictureOptions& options, Context& context);
 
-/// The pipeline that the options of render and convert describe.
-PipelineFile pipeline_of(const Options& o);
-
 }  // namespace sg

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/text.h"
+#include "cli/chain.h"
 #include "cli/cli.h"
 #include "color/colormap_file.h"
 #include "image/codec.h"

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "io/file_series.h"
 
 namespace sg {
 
@@ -28,6 +29,8 @@ void add_common(CLI::App& a, Options& o, RawText& raw) {
 
 void add_reading(CLI::App& a, Options& o, RawText& raw) {
   a.add_option("--time", raw.time, "Time series: the step nearest to this time");
+  a.add_flag("--series", o.series, "The files are one series in time (like 'flow_*.vtk' in quotes, or flow_{n}.vtk, which need no flag)");
+  a.add_option("--series-times", o.read.times, "Times of the files of a series: START:STEP, like 0:0.5, or a list");
   a.add_option("--step", o.read.step, "Time series: this step, counted from 0")->check(CLI::NonNegativeNumber);
   a.add_option("--fields", raw.fields, "Read only these fields, like T,velocity");
   a.add_option("--region", raw.region, "Grids: read points i0,i1,j0,j1,k0,k1 only");
@@ -42,7 +45,12 @@ void add_reading(CLI::App& a, Options& o, RawText& raw) {
 }
 
 void add_pipeline(CLI::App& a, Options& o) {
-  a.add_option("-f,--filter", o.filters, "An operation and its parameters: 'contour field=T values=300,400'; may be repeated, they chain")
+  a.add_option(
+       "-f,--filter", o.filters,
+       "An operation and its parameters: 'contour field=T values=300,400'; may be repeated, they chain. with=FILE: a further input, or a "
+       "step "
+       "of the chain by its operation or by the name in front ('seeds: topology_seeds'); on=STEP: that one instead of the step before; "
+       "'input' is what is read")
       ->allow_extra_args(false);
   a.add_option("-s,--source", o.source, "Compute the data instead of reading a file: 'gyroid size=128'");
   a.add_flag("--explain", o.explain, "Print the plan and what it will cost, run nothing");
@@ -59,10 +67,13 @@ void add_picture(CLI::App& a, Options& o) {
   a.add_option("--title", o.title, "Text above the picture");
   a.add_option("--background", o.background, "Colour, or 'transparent'");
   a.add_option("--picture", o.picture, "Further key=value of the picture (see: sightglass ops picture)")->allow_extra_args(false);
-  a.add_option("--times", o.times,
-               "With {n} in the output: the times to draw, like 0:10:101 (first:last:count) or 0,0.5,1; default: all of the file. A "
-               "parameter written as {t} takes the time");
-  a.add_option("-o,--output", o.output, "Picture to write: .png .jpg .webp; {n} in its name numbers the pictures of a time series");
+  a.add_option(
+      "--times", o.times,
+      "With {n} in the output, or a film: the times to draw, like 0:10:101 (first:last:count), 0,0.5,1 or 0:114 (the steps of the file in "
+      "between); default: all of the file. A parameter written as {t} takes the time");
+  a.add_option("--fps", o.fps, "Films: pictures per second")->check(CLI::Range(0.1, 1000.0));
+  a.add_option("-o,--output", o.output,
+               "Picture to write: .png .jpg .webp; {n} in its name numbers the pictures of a time series; .webm, .mp4: a film of them");
 }
 
 Vec3 triple(const std::string& text, const char* option, double least) {
@@ -260,6 +271,8 @@ Options parse_options(int argc, char** argv) {
     fail_unknown(a, e);
   }
   finish_raw(raw, o);
+  if (o.series && o.inputs.empty()) fail_usage("names no files", "--series", "like --series flow_*.vtk");
+  if (o.series) o.inputs = {series_path(std::move(o.inputs), true)};
   o.command = first;
   return o;
 }

@@ -20,10 +20,12 @@ struct Options {
   std::vector<std::string> picture;  ///< key=value for the picture, from the flags above and --picture
   ReadOptions read;
   WriteOptions write;
+  double fps = 25;    ///< of films
   std::string sheet;  ///< demo: contact sheet
   int threads = 0;
   size_t memory = 0;
-  bool json = false, quick = false, all_times = false, quiet = false, verbose = false, explain = false, recipe = false;
+  bool json = false, quick = false, all_times = false, quiet = false, verbose = false, explain = false, recipe = false,
+       series = false;  ///< series: all inputs are one
 };
 
 /// Parses; for --help and --version prints to stdout and sets command to "". Throws Error(usage).

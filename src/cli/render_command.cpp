@@ -9,39 +9,18 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/text.h"
+#include "cli/chain.h"
 #include "cli/cli.h"
 #include "cli/info.h"
 #include "filter/mesh/piece.h"
 #include "image/codec.h"
+#include "io/file_series.h"
 #include "pipeline/picture.h"
-#include "pipeline/read_params.h"
 #include "pipeline/slabs.h"
 
 namespace sg {
 
 namespace {
-
-// "contour field=T values=1,2" -> operation and words.
-void split_words(const std::string& text, const char* option, std::string& first, std::vector<std::string>& rest) {
-  std::vector<std::string> all = quoted_words(text);
-  if (all.empty()) fail_usage("is empty", option, "write a name and key=value words");
-  first = all[0];
-  rest.assign(all.begin() + 1, all.end());
-}
-
-void add_picture_words(const Options& o, PipelineFile& file) {
-  auto add = [&](const char* key, const std::string& value) {
-    if (!value.empty()) file.picture.push_back(fmt::format("{}={}", key, value));
-  };
-  add("size", o.size), add("title", o.title), add("background", o.background);
-  for (const std::string& group : o.picture)
-    for (const std::string& w : quoted_words(group)) file.picture.push_back(w);
-  for (const std::string& w : quoted_words(o.camera)) {
-    const bool named = w.find('=') == std::string::npos;
-    if (named && (w == "parallel" || w == "perspective")) file.picture.push_back("camera.projection=" + w);
-    else file.picture.push_back(named ? "camera.view=" + w : "camera." + w);
-  }
-}
 
 // A picture that cannot be written is found out before any work is done.
 void check_output(const std::string& path) {
@@ -56,7 +35,11 @@ void check_output(const std::string& path) {
 }
 
 std::string stem_of(const std::string& path) {
-  const std::string name = file_name_of(path);
+  std::string name = file_name_of(names_series(path) ? path.substr(0, path.find(',')) : path);
+  for (const std::string_view mark : {"{n}", "*", "?"})  // of the pattern of a series
+    if (names_series(path))
+      for (size_t at = name.find(mark); at != name.npos; at = name.find(mark)) name.erase(at, mark.size());
+  if (name.empty() || name[0] == '.') name = "series" + name;
   const size_t dot = name.rfind('.');
   return dot == std::string::npos || dot == 0 ? name : name.substr(0, dot);
 }
@@ -105,41 +88,6 @@ int render_to(PipelineFile& file, const std::string& output, const PictureOption
 
 }  // namespace
 
-PipelineFile pipeline_of(const Options& o) {
-  if (o.inputs.empty() == o.source.empty())
-    fail_usage(o.inputs.empty() ? "name a file to read, or a source to compute with --source" : "name files or a --source, not both",
-               "sightglass " + o.command, fmt::format("see: sightglass {} --help", o.command));
-  PipelineFile file;
-  auto chain = [&](std::string name) {
-    for (size_t i = 0; i < o.filters.size(); ++i) {
-      PipelineFile::Step step;
-      split_words(o.filters[i], "-f", step.operation, step.words);
-      step.name = fmt::format("{}_{}{}", name, step.operation, i + 1);
-      file.steps.push_back(std::move(step));
-    }
-    for (const std::string& text : o.shows) {
-      PipelineFile::Show show;
-      split_words(text, "--show", show.kind, show.words);
-      show.of = file.steps.back().name;
-      file.show.push_back(std::move(show));
-    }
-  };
-  for (size_t i = 0; i < o.inputs.size(); ++i) {
-    const std::string name = o.inputs.size() == 1 ? "input" : fmt::format("input{}", i + 1);
-    file.steps.push_back({name, "read", read_words(o.inputs[i], o.read), {}, 0});
-    chain(name);
-  }
-  if (!o.source.empty()) {
-    PipelineFile::Step step;
-    split_words(o.source, "--source", step.operation, step.words);
-    step.name = "source";
-    file.steps.push_back(std::move(step));
-    chain("source");
-  }
-  add_picture_words(o, file);
-  return file;
-}
-
 int run_render(const Options& o, Context& context) {
   PipelineFile file = pipeline_of(o);
   PictureOptions options;
@@ -147,7 +95,8 @@ int run_render(const Options& o, Context& context) {
   if (!o.map.empty()) options.coloring.push_back("map=" + o.map);
   if (!o.scale.empty()) options.coloring.push_back("scale=" + o.scale);
   if (is_numbered(o.output)) return render_series(o, options, context);
-  if (!o.times.empty()) fail_usage("several times need several pictures", "--times", "number them: -o out_{n}.png");
+  if (!o.times.empty())
+    fail_usage("several times need several pictures", "--times", "number them: -o out_{n}.png, or make a film: -o film.webm");
   const std::string output = !o.output.empty() ? o.output : (o.inputs.empty() ? file.steps[0].operation : stem_of(o.inputs[0])) + ".png";
   return render_to(file, output, options, o, context);
 }

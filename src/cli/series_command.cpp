@@ -2,15 +2,19 @@
 // render of a time series: one numbered picture per step, the next step read or computed while one is drawn.
 #include <cstdio>
 #include <exception>
+#include <mutex>
+#include <set>
 #include <thread>
 
 #include "base/error.h"
 #include "base/file.h"
 #include "base/text.h"
+#include "cli/chain.h"
 #include "cli/cli.h"
 #include "data/memory_budget.h"
 #include "filter/glyph/choose.h"
 #include "image/codec.h"
+#include "io/movie.h"
 #include "pipeline/picture.h"
 #include "pipeline/picture_parts.h"
 #include "pipeline/series_input.h"
@@ -66,8 +70,8 @@ std::vector<char> inside_series(const PipelineFile& file) {
 }
 
 // The pipeline of one step: the parameters that ask for the time get it, else trails, whose lines stay, else readers and sources with a
-// time, and operations on series in place of what lies above them.
-PipelineFile at_time(PipelineFile file, double time, std::optional<size_t> step) {
+// time, and operations on series in place of what lies above them. `still`: steps that read the same at all times.
+PipelineFile at_time(PipelineFile file, double time, std::optional<size_t> step, const std::set<std::string>& still) {
   if (write_time(file, time)) return file;
   bool of_trails = false;
   for (PipelineFile::Step& s : file.steps)
@@ -79,6 +83,7 @@ PipelineFile at_time(PipelineFile file, double time, std::optional<size_t> step)
     if (inside[i]) continue;
     const Operation* op = operation_of(s);
     if (s.operation == "read") {
+      if (still.count(s.name)) continue;
       s.words.push_back(step ? fmt::format("step={}", *step) : "time=" + exact_number(time));
     } else if (op && op->run_series && !word_value(s.words, "time") && op->make_params().schema.find("time")) {
       s.words.push_back("time=" + exact_number(time));
@@ -156,30 +161,108 @@ void fix_ranges(PipelineFile& first, const std::vector<PipelineFile>& some, Cont
   }
 }
 
-}  // namespace
-
-bool is_numbered(const std::string& output) { return output.find(mark) != std::string::npos; }
-
-int render_series(const Options& o, const PictureOptions& options, Context& context) {
-  const PipelineFile plain = pipeline_of(o);
-  if (const std::string ext = extension_of(o.output); ext == "mp4" || ext == "webm")
-    fail_usage("movies are not written yet", o.output,
-               "write numbered pictures, like out_{n}.png, and join them with a tool of your choice");
+// "0:114" = those of the file in between; for sources 0, 1, ... 114.
+std::vector<double> times_to_draw(const Options& o, bool& by_step, std::vector<size_t>& numbers, Context& context) {
+  const auto ends = split(o.times, ':');
+  const bool range = ends.size() == 2;
+  if (!o.times.empty() && !range) return parse_times(o.times, "--times");
+  const auto first = range ? parse_double(ends[0]) : -HUGE_VAL, last = range ? parse_double(ends[1]) : HUGE_VAL;
+  if (!first || !last || !(*first <= *last))
+    fail_usage(fmt::format("'{}' is no range of times", o.times), "--times", "FIRST:LAST, FIRST:LAST:COUNT, or a list");
   std::vector<double> times;
-  bool by_step = false;
-  if (!o.times.empty()) {
-    times = parse_times(o.times, "--times");
-  } else if (o.inputs.size() == 1) {
-    times = file_times(o.inputs[0], o.read, context);
+  if (o.inputs.size() == 1) {
+    const std::vector<double> all = file_times(o.inputs[0], o.read, context);
     by_step = true;
-    if (times.empty()) fail_usage("has no time steps", o.inputs[0], "a picture without {n} in its name shows it");
+    if (all.empty()) fail_usage("has no time steps", o.inputs[0], "a picture without {n} in its name shows it");
+    for (size_t k = 0; k < all.size(); ++k)
+      if (all[k] >= *first && all[k] <= *last) times.push_back(all[k]), numbers.push_back(k);
+    if (times.empty())
+      fail_usage(
+          fmt::format("no time step of '{}' lies there: it has {} to {}", o.inputs[0], exact_number(all.front()), exact_number(all.back())),
+          "--times", "FIRST:LAST in the times of the file");
+  } else if (range && *last - *first < 1e6) {
+    for (int k = 0; *first + k <= *last; ++k) times.push_back(*first + k);
   } else {
     fail_usage("a series of a source needs its times", "--times", "FIRST:LAST:COUNT, like --times 0:10:101");
   }
-  const auto step = [&](const PipelineFile& file, size_t n) {
-    return at_time(file, times[n], by_step ? std::optional<size_t>(n) : std::nullopt);
+  return times;
+}
+
+// Further inputs that stand still.
+std::set<std::string> reads_without_time(const PipelineFile& file, Context& context) {
+  std::set<std::string> still;
+  for (size_t i = 0; i < file.steps.size(); ++i)
+    if (file.steps[i].operation == "read" && file.steps[i].name.starts_with("with"))
+      if (const auto path = word_value(file.steps[i].words, "path"); path && file_times(*path, {}, context).empty())
+        still.insert(file.steps[i].name);
+  return still;
+}
+
+// Where the pictures go: numbered files, or frames of one film.
+class Sink {
+ public:
+  Sink(const Options& o, size_t count) : output_(o.output), count_(count) {
+    if (!is_movie(output_)) {
+      AtomicFile probe(numbered(output_, 0, count));
+      return;
+    }
+    settings_.fps = o.fps;
+    movie_ = std::make_unique<MovieWriter>(output_, settings_);
+  }
+  void add(Image image, const PipelineFile& file, size_t n) {
+    if (movie_) return movie_->add(image);
+    const std::string name = numbered(output_, n, count_);
+    attach_recipe(image, file, name);
+    write_image(name, image);
+  }
+  /// What was written.
+  std::string finish() {
+    if (!movie_) return numbered(output_, 0, count_) + " ... " + numbered(output_, count_ - 1, count_);
+    movie_->finish();
+    return output_;
+  }
+
+ private:
+  std::string output_;
+  size_t count_;
+  MovieSettings settings_;
+  std::unique_ptr<MovieWriter> movie_;
+};
+
+// The pipeline of a series with the looks that its first picture gets.
+PipelineFile with_looks(const PipelineFile& plain, PipelineFile first, const PictureOptions& options, Context& context) {
+  std::vector<std::string> notes;
+  std::vector<Data> looked;
+  if (first.show.empty()) choose_looks(first, options, options.cache, looked, notes, context);
+  else
+    for (auto& s : first.show)
+      if (colors_by_field(s.kind)) s.words.insert(s.words.end(), options.coloring.begin(), options.coloring.end());
+  for (size_t i = 0; i < plain.steps.size(); ++i) first.steps[i].words = plain.steps[i].words;  // without its time
+  return first;
+}
+
+}  // namespace
+
+bool is_numbered(const std::string& output) { return output.find(mark) != std::string::npos || is_movie(output); }
+
+int render_series(const Options& o, const PictureOptions& options, Context& outer) {
+  // One picture after the other says the same; two are under way at a time.
+  std::mutex mutex;
+  std::set<std::string> told;
+  Context context(outer, 0, 1);
+  context.on_log = [&](LogLevel level, std::string_view text) {
+    const std::lock_guard lock(mutex);
+    if (told.emplace(text).second) outer.log(level, text);
   };
-  { AtomicFile probe(numbered(o.output, 0, times.size())); }
+  const PipelineFile plain = pipeline_of(o);
+  bool by_step = false;
+  std::vector<size_t> numbers;
+  const std::vector<double> times = times_to_draw(o, by_step, numbers, context);
+  const std::set<std::string> still = reads_without_time(plain, context);
+  const auto step = [&](const PipelineFile& file, size_t n) {
+    return at_time(file, times[n], by_step ? std::optional<size_t>(numbers[n]) : std::nullopt, still);
+  };
+  Sink sink(o, times.size());
 
   // The first picture chooses the looks of all.
   const auto cache = std::make_shared<Cache>(0);
@@ -187,19 +270,8 @@ int render_series(const Options& o, const PictureOptions& options, Context& cont
   each.cache = cache;
   std::vector<Data> held = results_of(step(plain, 0), cache, context);
   const size_t one_step = array_memory();
-  PipelineFile chosen = step(plain, 0);
-  PictureOptions look = each;
-  std::vector<std::string> notes;
-  if (chosen.show.empty()) {
-    std::vector<Data> looked;
-    choose_looks(chosen, look, cache, looked, notes, context);
-  } else {
-    for (auto& s : chosen.show)
-      if (colors_by_field(s.kind)) s.words.insert(s.words.end(), options.coloring.begin(), options.coloring.end());
-  }
+  PipelineFile base = with_looks(plain, step(plain, 0), each, context);
   each.coloring.clear();
-  PipelineFile base = chosen;
-  for (size_t i = 0; i < plain.steps.size(); ++i) base.steps[i].words = plain.steps[i].words;  // without the time of the first
   std::vector<PipelineFile> some;
   for (size_t i = 0; i < std::min<size_t>(5, times.size()); ++i)
     some.push_back(step(base, times.size() == 1 ? 0 : i * (times.size() - 1) / (std::min<size_t>(5, times.size()) - 1)));
@@ -217,14 +289,12 @@ int render_series(const Options& o, const PictureOptions& options, Context& cont
     if (prefetch && n + 1 < times.size()) ahead = std::make_unique<Ahead>(step(base, n + 1), cache, context);
     Picture picture = make_picture(file, each, context);
     held.clear();
-    const std::string name = numbered(o.output, n, times.size());
-    attach_recipe(picture.image, file, name);
-    write_image(name, picture.image);
+    sink.add(std::move(picture.image), file, n);
     context.progress(double(n + 1) / double(times.size()), "drawing");
   }
+  const std::string what = sink.finish();
   if (!o.quiet)
-    std::printf("%s ... %s: %zu pictures, times %s to %s\n", numbered(o.output, 0, times.size()).c_str(),
-                numbered(o.output, times.size() - 1, times.size()).c_str(), times.size(), short_number(times.front()).c_str(),
+    std::printf("%s: %zu pictures, times %s to %s\n", what.c_str(), times.size(), short_number(times.front()).c_str(),
                 short_number(times.back()).c_str());
   return 0;
 }

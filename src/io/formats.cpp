@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "data/lattice.h"
 #include "data/lattice_crop.h"
+#include "io/file_series.h"
 #include "io/plugin.h"
 
 namespace sg {
@@ -95,6 +96,7 @@ auto with_format(std::string path, const ReadOptions& options, F&& f) {
 }  // namespace
 
 Data read_data(const std::string& path, const ReadOptions& options, Context& context) {
+  if (names_series(path)) return read_of_series(path, options, context);
   return with_format(path, options, [&](const Format& f, const std::string& at) {
     Data data = f.read(at, options, context);
     if (options.region.whole() || (f.honours & honours_region)) return data;
@@ -105,11 +107,12 @@ Data read_data(const std::string& path, const ReadOptions& options, Context& con
 }
 
 const Format& find_format(const std::string& path, const ReadOptions& options) {
-  std::string at = path;
+  std::string at = names_series(path) ? series_files(path).front() : path;
   return format_of(at, options);
 }
 
 std::vector<double> file_times(const std::string& path, const ReadOptions& options, Context& context) {
+  if (names_series(path)) return times_of_series(path, options, context);
   return with_format(path, options, [&](const Format& f, const std::string& at) {
     return f.times ? f.times(at, options, context) : std::vector<double>();
   });

@@ -25,6 +25,7 @@ struct Package {
 constexpr Package packages[] = {
     {"hdf5", "HDF5", "libhdf5-103-1"}, {"netcdf", "netCDF", "libnetcdf19"},      {"cgns", "CGNS", "libcgns3.4"},
     {"gdcm", "DICOM", "libgdcm3.0"},   {"openvdb", "OpenVDB", "libopenvdb10.0"}, {"tiff", "TIFF", "libtiff6"},
+    {"vpx", "films", "libvpx7"},
 };
 
 const Package& package_of(std::string_view plugin) {

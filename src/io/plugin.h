@@ -12,6 +12,7 @@
 #include "base/parallel.h"
 #include "data/memory_budget.h"
 #include "io/io.h"
+#include "io/movie.h"
 
 namespace sg {
 
@@ -32,6 +33,7 @@ struct PluginFormat {
   void (*write)(const std::string& path, const Data&, const WriteOptions&, Context&) = nullptr;
   std::vector<double> (*times)(const std::string& path, const ReadOptions&, Context&) = nullptr;
   PluginArray (*array)(const std::string& path, const PluginSelection&, Context&) = nullptr;
+  MovieEncoder (*movie)(const MovieSettings&) = nullptr;
 };
 
 /// What plug-ins are told of set_memory_limit() when they are loaded.

@@ -6,6 +6,7 @@
 
 #include "base/file.h"
 #include "base/text.h"
+#include "io/file_series.h"
 #include "pipeline/graph_state.h"
 
 namespace sg {
@@ -127,6 +128,17 @@ void check_fields(const std::vector<Node>& nodes, NodeId id, const GraphOptions&
   }
 }
 
+// What is missing of a file or of the files of a series; "" when nothing is.
+std::string missing_file(const std::string& path) {
+  if (!names_series(path)) return file_exists(path) ? "" : path + ": no such file";
+  try {
+    series_files(path);
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "";
+}
+
 }  // namespace
 
 std::vector<Mistake> find_mistakes(const std::vector<Node>& nodes, const GraphOptions& options, std::span<const NodeId> sinks) {
@@ -141,8 +153,9 @@ std::vector<Mistake> find_mistakes(const std::vector<Node>& nodes, const GraphOp
     const Node& node = nodes[i];
     const auto id = NodeId(i);
     if (!node.mistake.empty()) out.push_back({id, ErrorKind::usage, step_label(node, id) + ": " + node.mistake});
-    if (auto* read = std::get_if<ReadNode>(&node.what); read && !file_exists(read->path))
-      out.push_back({id, ErrorKind::data, fmt::format("{}: {}: no such file", step_label(node, id), read->path)});
+    if (auto* read = std::get_if<ReadNode>(&node.what))
+      if (const std::string missing = missing_file(read->path); !missing.empty())
+        out.push_back({id, ErrorKind::data, step_label(node, id) + ": " + missing});
     check_fields(nodes, id, options, out);
   }
   return out;

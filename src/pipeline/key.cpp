@@ -6,6 +6,7 @@
 
 #include "base/file.h"
 #include "base/text.h"
+#include "io/file_series.h"
 
 namespace sg {
 
@@ -79,9 +80,25 @@ std::vector<FileState> file_and_parts(const std::string& path) {
   return files;
 }
 
+namespace {
+
+// Of a series its files alone: looking into the headers of a thousand of them would take longer than reading one.
+std::vector<FileState> files_behind(const std::string& path) {
+  if (!names_series(path)) return file_and_parts(path);
+  std::vector<FileState> files;
+  try {
+    for (const std::string& f : series_files(path)) files.push_back(file_state(f));
+  } catch (const Error&) {  // no such files: a missing file has a key as well
+  }
+  return files;
+}
+
+}  // namespace
+
 Key file_key(const std::string& path, bool strict) {
   KeyBuilder key;
-  for (const FileState& f : file_and_parts(path)) {
+  key.add(path);
+  for (const FileState& f : files_behind(path)) {
     key.add(f.path).add(uint64_t(f.exists)).add(f.size).add(uint64_t(f.modified));
     if (!strict || !f.exists) continue;
     const MappedFile file(f.path);

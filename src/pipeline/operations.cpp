@@ -7,6 +7,7 @@
 #include "filter/field/derivatives.h"
 #include "filter/field/gaussian_smooth.h"
 #include "filter/field/gradient.h"
+#include "filter/field/join_fields.h"
 #include "filter/field/point_cell.h"
 #include "filter/field/resize.h"
 #include "filter/flow/fronts/stream_surface.h"

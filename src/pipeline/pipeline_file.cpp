@@ -131,6 +131,7 @@ class FileParser {
       if (!op) continue;
       step.operation = op->first.text;
       if (step.operation == "read" && op->second.kind == Kind::scalar) step.words = {"path=" + op->second.text};
+      else if (step.operation == "read" && op->second.kind == Kind::list) add_word("path", op->second, op->second.line, "read", step.words);
       else if (step.operation == "read" && op->second.kind != Kind::map) mistake(op->second.line, of + ": read: needs the name of a file");
       else step.words = parse_words(op->second, step.operation);
       for (const auto& [k, v] : body.pairs)

@@ -4,6 +4,7 @@
 
 #include "base/file.h"
 #include "base/text.h"
+#include "io/file_series.h"
 #include "pipeline/graph_state.h"
 #include "pipeline/pipeline_file.h"
 #include "pipeline/read_params.h"
@@ -67,7 +68,7 @@ class GraphBuilder {
       return built_.graph.add_data(DatasetPtr(), "mistake", step.name);
     }
     if (!step.from.empty()) mistake(step.line, fmt::format("step '{}': read takes no input", step.name));
-    return built_.graph.add_read(path_beside(file_.origin, params.path), options, step.name);
+    return built_.graph.add_read(series_beside(file_.origin, params.path), options, step.name);
   }
 
   NodeId add_operation(const PipelineFile::Step& step) {

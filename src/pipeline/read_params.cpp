@@ -4,7 +4,10 @@
 namespace sg {
 
 void describe(Schema& s, ReadParams& p) {
-  s("path", p.path, "File to read; its format is found from its content.");
+  s("path", p.path,
+    "File to read; its format is found from its content. Several files as one series in time: flow_{n}.vtk ({n}: a number), flow_*.vtk, "
+    "or a list.")
+      .unit("file");
   s("fields", p.fields, "Fields to load; default: those that are needed.");
   s("dims", p.dims, "Raw bricks: points along x, y, z.").at_least(1);
   s("type", p.type, "Raw bricks: type of the numbers, like u8, u16 or f32.");
@@ -14,6 +17,8 @@ void describe(Schema& s, ReadParams& p) {
   s("spacing", p.spacing, "Raw bricks: distance of the points along x, y, z.").positive();
   s("time", p.time, "Of a series: the step nearest to this time.");
   s("step", p.step, "Of a series: this step, 0 is the first; -1: by time, else the format's default.").at_least(-1);
+  s("times", p.times, "Of several files as a series: their times, START:STEP or a list; default: those in the files, else 0, 1, 2, ...")
+      .unit("time");
   s("region", p.region, "Of a grid: first and last point along x, y, z: i0,i1,j0,j1,k0,k1, counted from 0.").at_least(0);
   s("stride", p.stride, "Of a grid: every n-th point, one number or one per axis.").at_least(1);
   s("piece", p.piece, "Which of the pieces, counted from 0.").at_least(0);
@@ -62,6 +67,7 @@ ReadOptions read_options(const ReadParams& p) {
   o.raw_spacing = p.spacing;
   o.time = p.time;
   o.step = p.step;
+  o.times = p.times;
   o.region = region_of(p);
   if (p.piece >= p.pieces) fail_usage(fmt::format("there is no piece {} of {}", p.piece, p.pieces), "read piece", "pieces count from 0");
   o.piece = p.piece, o.pieces = p.pieces, o.ghost_levels = p.ghost_levels;
@@ -80,6 +86,7 @@ std::vector<std::string> read_words(const std::string& path, const ReadOptions& 
   p.spacing = o.raw_spacing;
   p.time = o.time;
   p.step = o.step;
+  p.times = o.times;
   const LatticeRegion& r = o.region;
   if (r.lo != LatticeRegion().lo || r.hi != LatticeRegion().hi)
     for (size_t a = 0; a < 3; ++a)

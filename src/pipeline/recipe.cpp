@@ -7,6 +7,8 @@
 #include "base/file.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "io/file_series.h"
+#include "pipeline/key.h"
 #include "pipeline/picture.h"
 
 namespace sg {
@@ -28,7 +30,15 @@ std::string folder_hash(const std::string& path) {
   return fmt::format("{:016x}", XXH3_64bits(all.data(), all.size()));
 }
 
+// Of several files: their names and sizes.
+std::string series_hash(const std::string& path) {
+  std::string all;
+  for (const std::string& f : series_files(path)) all += fmt::format("{} {}\n", file_name_of(f), file_state(f).size);
+  return fmt::format("{:016x}", XXH3_64bits(all.data(), all.size()));
+}
+
 std::string content_hash(const std::string& path) {
+  if (names_series(path)) return series_hash(path);
   if (is_folder(path)) return folder_hash(path);
   const MappedFile file(path);
   constexpr size_t block = size_t(4) << 20;
@@ -47,6 +57,15 @@ std::string relative_to_folder(const std::string& path, const std::string& folde
   return r.empty() ? target.string() : r.string();
 }
 
+bool is_there(const std::string& path) {
+  if (!names_series(path)) return file_exists(path);
+  try {
+    return !series_files(path).empty();
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 void replace_path(std::vector<std::string>& words, const std::string& path) {
   for (std::string& w : words)
     if (w.starts_with("path=")) w = "path=" + path;
@@ -62,8 +81,8 @@ void attach_recipe(Image& image, const PipelineFile& file, const std::string& pi
     if (step.operation != "read") continue;
     const auto stated = word_value(step.words, "path");
     if (!stated) continue;
-    const std::string path = path_beside(file.origin, *stated);
-    const std::string relative = relative_to_folder(path, folder);
+    const std::string path = series_beside(file.origin, *stated);
+    const std::string relative = map_series(path, [&](const std::string& part) { return relative_to_folder(part, folder); });
     replace_path(step.words, relative);
     inputs += fmt::format("{} xxh3-4m {}\n", content_hash(path), relative);
   }
@@ -87,8 +106,8 @@ PipelineFile recipe_in(const Image& image, const std::string& picture_path, std:
     for (std::string_view line : split(*inputs, '\n')) {
       const size_t a = line.find(' '), b = a == line.npos ? line.npos : line.find(' ', a + 1);
       if (b == line.npos) continue;
-      const std::string path = path_beside(picture_path, line.substr(b + 1));
-      if (file_exists(path) && content_hash(path) != line.substr(0, a)) changed.push_back(path);
+      const std::string path = series_beside(picture_path, std::string(line.substr(b + 1)));
+      if (is_there(path) && content_hash(path) != line.substr(0, a)) changed.push_back(path);
     }
   return file;
 }

@@ -194,7 +194,7 @@ TEST_CASE("pipeline file: every mistake of form is told with its line, all at on
       "  f: {contour: {values: [[1]]}}\n"              // 9
       "  g: {contour: {words: ['a,b']}}\n"             // 10
       "  h: {contour: , from: {x: 1}}\n"               // 11
-      "  i: {read: [1]}\n"                             // 12
+      "  i: {read: [[1]]}\n"                           // 12
       "  i: {read: x}\n"                               // 13
       "  j: {contour: {a: 1, a: 2}}\n"                 // 14
       "  k: {contour: {a=b: 1}}\n"                     // 15
@@ -216,7 +216,7 @@ TEST_CASE("pipeline file: every mistake of form is told with its line, all at on
                            "p.yaml:9: contour values: the items of a list must be values",
                            "p.yaml:10: contour words: 'a,b': an item of a list has no comma",
                            "p.yaml:11: step 'h': from: must be the name",
-                           "p.yaml:12: step 'i': read: needs the name of a file",
+                           "p.yaml:12: read path: the items of a list must be values",
                            "p.yaml:13: steps: the key 'i' stands twice",
                            "p.yaml:14: contour: the key 'a' stands twice",
                            "p.yaml:15: contour: 'a=b' is no name",

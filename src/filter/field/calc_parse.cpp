@@ -345,6 +345,16 @@ class Parser {
   void need_size(int r, int n, size_t place) {
     if (components(r) != n) fail(fmt::format("needs {} numbers, not {}", n, components(r)), {}, place);
   }
+  // A number, like 0 for what a plane has not, has any unit.
+  Unit common_unit(const std::vector<int>& a) const {
+    std::optional<Unit> common;
+    for (const int r : a) {
+      if (program_.code[size_t(r)].op == Op::constant) continue;
+      if (common && !(*common == units_[size_t(r)])) return {};
+      common = units_[size_t(r)];
+    }
+    return common.value_or(Unit());
+  }
   int call_n(const FunctionN& f, const std::vector<int>& a, size_t place) {
     switch (f.op) {
       case Op::mag: return emit({f.op, 1, a[0]}, unit(a[0]));
@@ -360,7 +370,7 @@ class Parser {
         return emit({f.op, 3, a[0], a[1]}, unit(a[0]).times(unit(a[1])));
       case Op::vec:
         for (const int r : a) need_size(r, 1, place);
-        return emit({f.op, 3, a[0], a[1], a[2]}, unit(a[0]) == unit(a[1]) && unit(a[1]) == unit(a[2]) ? unit(a[0]) : Unit());
+        return emit({f.op, 3, a[0], a[1], a[2]}, common_unit(a));
       case Op::clamp: {
         const int n = joint(a[0], a[1], place);
         if (components(a[2]) != 1 && components(a[2]) != n) fail("has limits of another size", {}, place);

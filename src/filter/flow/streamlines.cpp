@@ -3,6 +3,7 @@
 
 #include "base/random.h"
 #include "data/trusted.h"
+#include "filter/flow/geographic.h"
 #include "filter/flow/line_attributes.h"
 #include "filter/flow/line_mesh.h"
 
@@ -14,6 +15,7 @@ void describe(Schema& s, StreamlinesParams& p) {
   describe(s, p.integration);
   describe(s, p.stop);
   describe(s, p.seeds);
+  s("geographic", p.geographic, "x and y are degrees and the velocity is in m/s: it is converted (times are seconds, lengths degrees).");
   s("attributes", p.attributes,
     "What lines carry beside speed, time, length and velocity: the mesh's other fields; the vorticity; how the flow turns about the line.")
       .choices({"fields", "vorticity", "rotation", "none"});
@@ -34,10 +36,16 @@ std::string no_line_hint(const FlowParts& parts, std::span<const Vec3> seeds) {
                      b.hi.z);
 }
 
+Data converted(const Data& data, std::string field) {
+  flow_meshes(data, field, "streamlines");
+  return geographic_flow(data, field, 1, "streamlines");
+}
+
 }  // namespace
 
 Data streamlines(const std::vector<Data>& inputs, const StreamlinesParams& p, Context& context) {
-  const FlowParts parts(inputs[0], p.field.name, "streamlines", context);
+  const FlowParts parts(p.geographic ? converted(inputs[0], p.field.name) : inputs[0], p.field.name, "streamlines", context);
+  if (!p.geographic) warn_of_degrees(*parts.fields().front().dataset(), parts.fields().front().field(), "streamlines", context);
   const double largest = parts.largest_speed();
   if (!(largest > 0)) fail_usage(fmt::format("field '{}' is zero or NaN everywhere: nothing flows", parts.name()), "streamlines");
   StopParams stop = p.stop;
@@ -84,7 +92,8 @@ Data streamlines(const std::vector<Data>& inputs, const StreamlinesParams& p, Co
   const bool vorticity = wanted("vorticity"), rotation = wanted("rotation");
   if (vorticity || rotation) add(rotation_along(parts, *lines, parts.name(), vorticity, rotation, context));
   if (wanted("fields")) add(fields_along(parts, *lines, parts.name(), context));
-  return make_trusted_dataset(std::move(out));
+  const DatasetPtr traced = make_trusted_dataset(std::move(out));
+  return p.geographic ? in_metres(traced, parts.name(), 1) : traced;
 }
 
 }  // namespace sg

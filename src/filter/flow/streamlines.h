@@ -12,6 +12,7 @@ struct StreamlinesParams {
   IntegrationParams integration;
   StopParams stop;
   SeedParams seeds;
+  bool geographic = false;  ///< see geographic.h
   std::vector<std::string> attributes{"fields"};
 };
 void describe(Schema& s, StreamlinesParams& p);

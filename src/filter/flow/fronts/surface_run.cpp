@@ -22,7 +22,7 @@ DatasetPtr seed_lines(const std::vector<Data>& others, const char* who) {
 UnsteadyParams run_params(const UnsteadySurfaceParams& p, const std::vector<Vec3>& seeds) {
   UnsteadyParams u;
   u.field = p.field, u.times = p.times, u.start = p.start, u.time = p.time, u.interpolation = p.interpolation;
-  u.integration = p.integration;
+  u.integration = p.integration, u.geographic = p.geographic;
   for (const Vec3& x : seeds) u.seeds.points.insert(u.seeds.points.end(), {x.x, x.y, x.z});
   return u;
 }

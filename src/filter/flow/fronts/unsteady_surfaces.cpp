@@ -18,6 +18,7 @@ void describe_shared(Schema& s, UnsteadySurfaceParams& p) {
   s("time", p.time, "When it ends; default: the last time of the series.").unit("time");
   s("interpolation", p.interpolation, "Between time steps.").choices({"linear", "cubic"});
   describe(s, p.integration);
+  s("geographic", p.geographic, "x and y are degrees and the velocity is in m/s: it is converted.");
   s("spacing", p.spacing, "Longest edge of the surface; default: a 100th of the mesh's diagonal.").unit("length").positive();
   s("tear", p.tear, "A gap wider than this many spacings that cannot be filled is left open.").range(1, 1e6);
   s("max_points", p.max_points, "Most points of the surface.").range(4, 1e9);
@@ -111,7 +112,7 @@ DatasetPtr streak_surface(const Series& series, const std::vector<Data>& others,
         UnsteadyCursor cursor(run.flow);
         sheet.refine(cursor, t, r.spacing, p.tear * r.spacing, size_t(p.max_points));
       });
-  return surface_dataset(collect(sheet), run.velocity(), run.start, run.time, true);
+  return run.finished(surface_dataset(collect(sheet), run.velocity(), run.start, run.time, true));
 }
 
 DatasetPtr time_surface(const Series& series, const std::vector<Data>& others, const TimeSurfaceParams& p, Context& context) {
@@ -140,7 +141,7 @@ DatasetPtr time_surface(const Series& series, const std::vector<Data>& others, c
         UnsteadyCursor cursor(run.flow);
         sheet.refine(cursor, t, spacing, p.tear * spacing, size_t(p.max_points));
       });
-  return surface_dataset(collect(sheet), run.velocity(), run.start, run.time, false);
+  return run.finished(surface_dataset(collect(sheet), run.velocity(), run.start, run.time, false));
 }
 
 }  // namespace sg

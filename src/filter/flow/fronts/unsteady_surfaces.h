@@ -16,6 +16,7 @@ struct UnsteadySurfaceParams {
   std::optional<double> spacing;
   double tear = 8;
   int64_t max_points = 2000000;
+  bool geographic = false;  ///< see flow/geographic.h
 };
 
 struct PathSurfaceParams : UnsteadySurfaceParams {

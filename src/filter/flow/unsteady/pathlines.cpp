@@ -53,8 +53,8 @@ DatasetPtr pathlines(const Series& series, const std::vector<Data>& others, cons
   for (const Field& f : carried.take(order)) more.add(f);
   std::vector<Field> per_line;
   per_line.push_back({"stop", Association::cell, Array::from_vector(std::move(stop)), "", Role::labels});
-  return lines_of(lines, {"time", Association::point, times, "", Role::scalars}, run.velocity(), run.time, std::move(more),
-                  std::move(per_line));
+  return run.finished(lines_of(lines, {"time", Association::point, times, "", Role::scalars}, run.velocity(), run.time, std::move(more),
+                               std::move(per_line)));
 }
 
 }  // namespace sg

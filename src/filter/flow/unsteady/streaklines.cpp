@@ -2,6 +2,7 @@
 #include "filter/flow/unsteady/streaklines.h"
 
 #include "base/parallel.h"
+#include "filter/flow/unsteady/streak_front.h"
 
 namespace sg {
 
@@ -25,55 +26,35 @@ std::vector<double> release_times(const UnsteadyRun& run, std::optional<double> 
   return out;
 }
 
-struct Released {
-  std::vector<Particle> all;  // those of a seed together, in the order of release; seeds so that neighbours follow each other
-  std::vector<double> times;  // of release
-  std::vector<size_t> slot;   // of a seed: where its particles are, in units of releases
-  std::span<const Particle> of(size_t seed) const { return std::span(all).subspan(slot[seed] * times.size(), times.size()); }
-};
-
-Released release_and_advance(UnsteadyRun& run, std::optional<double> every, std::optional<double> lifetime, const char* who,
-                             Context& context) {
-  Released r;
-  r.times = release_times(run, every, who);
-  const size_t seeds = run.seeds.size(), releases = r.times.size();
+StreakFront release(const UnsteadyRun& run, std::optional<double> every, const char* who) {
+  const std::vector<double> times = release_times(run, every, who);
+  const size_t seeds = run.seeds.size(), releases = times.size();
   if (double(releases) * double(seeds) > double(size_t(1) << 31))
     fail_usage(fmt::format("{} seeds and {} releases make {} particles", seeds, releases, releases * seeds), who,
                "fewer seeds, or a larger every");
-  const std::vector<size_t> order = space_order(run.seeds);
-  r.slot.resize(seeds);
-  r.all.resize(releases * seeds);
-  for (size_t i = 0; i < seeds; ++i) {
-    r.slot[order[i]] = i;
-    for (size_t k = 0; k < releases; ++k) r.all[i * releases + k].x = run.seeds[order[i]], r.all[i * releases + k].t = r.times[k];
-  }
-  const auto bury = [&](double before) {
-    const size_t old = size_t(std::lower_bound(r.times.begin(), r.times.end(), before) - r.times.begin());
-    for (size_t i = 0; i < seeds; ++i)
-      for (size_t k = 0; k < old; ++k) r.all[i * releases + k].ended = true;
-  };
-  run.each_interval([&](double until) {
-    if (lifetime) bury(run.flow.begin() - *lifetime);
-    advance(run.flow, r.all, until, 1, run.options, context);
-  });
-  size_t started = 0;
-  for (const Particle& p : r.all) started += p.started;
-  if (lifetime) bury(run.time - *lifetime);
-  run.require_some(started);
-  return r;
+  return {run.seeds, times};
 }
 
-// Lines of one seed after the other, the newest particle first.
-LinePoints streaks(const Released& r, std::vector<double>& age, double time) {
+// Lines of one seed after the other, the newest particle first. Gaps that refinement could not
+// fill (wider than `torn`: releases of one moment, as far as numbers tell them apart) are no lines, and what it left alone is left out.
+LinePoints streaks(const StreakFront& r, std::vector<double>& age, double time, double torn) {
   constexpr size_t grain = 64;
-  const size_t releases = r.times.size(), seeds = r.slot.size();
+  const size_t seeds = r.seeds();
   std::vector<size_t> points(seeds, 0), lines(seeds, 0);
+  const bool refined = torn < HUGE_VAL;
+  const auto joined = [&](std::span<const Particle> p, size_t k) {  // with the next
+    return k + 1 < p.size() && !p[k].ended && !p[k + 1].ended && !(length(p[k].x - p[k + 1].x) > torn);
+  };
   const auto each = [&](auto&& f) {  // f(seed, release, particle, whether a line begins with it)
     parallel_for(seeds, grain, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) {
         const std::span<const Particle> p = r.of(i);
-        for (size_t k = releases; k-- > 0;)
-          if (!p[k].ended) f(i, k, p[k], k + 1 == releases || p[k + 1].ended);
+        const bool several = refined && std::count_if(p.begin(), p.end(), [](const Particle& q) { return !q.ended; }) > 1;
+        for (size_t k = p.size(); k-- > 0;) {
+          if (p[k].ended) continue;
+          const bool begins = !joined(p, k), alone = begins && !(k > 0 && joined(p, k - 1));
+          if (!(alone && several)) f(i, k, p[k], begins);
+        }
       }
     });
   };
@@ -86,7 +67,7 @@ LinePoints streaks(const Released& r, std::vector<double>& age, double time) {
   each([&](size_t i, size_t k, const Particle& p, bool begins) {
     if (begins) out.begin[lines[i]] = points[i], out.seed[lines[i]++] = int64_t(i);
     const size_t at = points[i]++;
-    out.x[at] = p.x, out.v[at] = p.v, age[at] = time - r.times[k];
+    out.x[at] = p.x, out.v[at] = p.v, age[at] = time - r.born(i)[k];
   });
   return out;
 }
@@ -97,10 +78,10 @@ struct Streaks {
   FieldSet more;
 };
 
-Streaks streaks_with_fields(UnsteadyRun& run, const Released& r, Context& context) {
+Streaks streaks_with_fields(UnsteadyRun& run, const StreakFront& r, double torn, Context& context) {
   Streaks out;
   std::vector<double> age;
-  out.lines = streaks(r, age, run.time);
+  out.lines = streaks(r, age, run.time, torn);
   if (run.carries) {
     CarriedFields carried;
     carried.open(run.flow);
@@ -122,13 +103,27 @@ Streaks streaks_with_fields(UnsteadyRun& run, const Released& r, Context& contex
 void describe(Schema& s, StreaklinesParams& p) {
   describe(s, p, "First release; default: the first time of the series.", "Moment of the lines; default: the last time of the series.");
   s("every", p.every, "Time between releases; default: at each time step.").unit("time").positive();
+  s("refine", p.refine, "Releases more where a line stretches or bends.");
+  s("spacing", p.spacing, "Refined: neighbours that part by more get another between them; default: a hundredth of the mesh's diagonal.")
+      .unit("length")
+      .positive();
+  s("angle", p.angle, "Refined: where a line turns by more, neighbours get others between them.").unit("deg").range(1, 180);
+  s("most_points", p.most_points, "Most particles; with so many lines are refined no more.").range(2, 1e9);
 }
 
 DatasetPtr streaklines(const Series& series, const std::vector<Data>& others, const StreaklinesParams& p, Context& context) {
   UnsteadyRun run(series, others, p, "streaklines", false, context);
-  const Released r = release_and_advance(run, p.every, {}, "streaklines", context);
-  Streaks s = streaks_with_fields(run, r, context);
-  return lines_of(s.lines, {"age", Association::point, s.age, "", Role::scalars}, run.velocity(), run.time, std::move(s.more), {});
+  StreakFront front = release(run, p.every, "streaklines");
+  StreakFront::Refinement finer;
+  finer.spacing = p.spacing.value_or(0.01 * length(run.flow.steps()[0].dataset()->bounds().size()));
+  finer.angle = p.angle * M_PI / 180, finer.shortest = finer.spacing / 16;  // a fold is not followed below this
+  finer.most = std::max(size_t(p.most_points), front.size());
+  run.each_interval([&](double until) { front.advance(run.flow, until, run.options, p.refine ? &finer : nullptr, context); });
+  run.require_some(front.started());
+  if (front.full()) context.warn(fmt::format("streaklines: {} particles, and lines are refined no more (most_points)", front.size()));
+  Streaks s = streaks_with_fields(run, front, p.refine && !front.full() ? 2 * finer.spacing : HUGE_VAL, context);
+  return run.finished(
+      lines_of(s.lines, {"age", Association::point, s.age, "", Role::scalars}, run.velocity(), run.time, std::move(s.more), {}));
 }
 
 void describe(Schema& s, ParticlesParams& p) {
@@ -139,9 +134,17 @@ void describe(Schema& s, ParticlesParams& p) {
 
 DatasetPtr particles(const Series& series, const std::vector<Data>& others, const ParticlesParams& p, Context& context) {
   UnsteadyRun run(series, others, p, "particles", false, context);
-  const Released r = release_and_advance(run, p.every, p.lifetime, "particles", context);
-  Streaks s = streaks_with_fields(run, r, context);
-  return points_of(s.lines, {"age", Association::point, s.age, "", Role::scalars}, run.velocity(), run.time, std::move(s.more));
+  StreakFront front = release(run, p.every, "particles");
+  run.each_interval([&](double until) {
+    if (p.lifetime) front.bury(run.flow.begin() - *p.lifetime);
+    front.advance(run.flow, until, run.options, nullptr, context);
+  });
+  const size_t started = front.started();
+  if (p.lifetime) front.bury(run.time - *p.lifetime);
+  run.require_some(started);
+  Streaks s = streaks_with_fields(run, front, HUGE_VAL, context);
+  return run.finished(
+      points_of(s.lines, {"age", Association::point, s.age, "", Role::scalars}, run.velocity(), run.time, std::move(s.more)));
 }
 
 }  // namespace sg

@@ -6,13 +6,18 @@
 namespace sg {
 
 struct StreaklinesParams : UnsteadyParams {
-  std::optional<double> every;
+  std::optional<double> every, spacing;
+  bool refine = true;
+  double angle = 15;
+  int64_t most_points = 10'000'000;
 };
 void describe(Schema& s, StreaklinesParams& p);
 
 /// At each seed a particle is released every `every` (default: at the times of the series, and at the start) up to `time`; those of one
-/// seed, the newest first, make its line at `time`. A line breaks where a particle has left the mesh; a piece of one particle is a vertex.
-/// Point fields: "age" (active, f64), "speed", the velocity, the mesh's other fields at `time`. Cell field: "seed".
+/// seed, the newest first, make its line at `time`. Where neighbours part by more than `spacing`, or the line turns by more than `angle`
+/// between neighbours that are not very near, others come between them (see StreakFront). A line breaks where a particle has left the mesh;
+/// a piece of one particle is a vertex, or with `refine` left out beside others of the seed. Point fields: "age" (active, f64), "speed",
+/// the velocity, the mesh's other fields at `time`. Cell field: "seed".
 DatasetPtr streaklines(const Series& series, const std::vector<Data>& others, const StreaklinesParams& p, Context& context);
 
 struct ParticlesParams : UnsteadyParams {

@@ -176,8 +176,8 @@ DatasetPtr timelines(const Series& series, const std::vector<Data>& others, cons
   for (const Field& f : out.carried.take(order)) more.add(f);
   std::vector<Field> per_line;
   per_line.push_back({"time", Association::cell, Array::from_vector(std::move(out.line_time)), "", Role::none});
-  return lines_of(out.lines, {"time", Association::point, Array::from_vector(std::move(out.time)), "", Role::scalars}, run.velocity(),
-                  run.time, std::move(more), std::move(per_line), "line");
+  return run.finished(lines_of(out.lines, {"time", Association::point, Array::from_vector(std::move(out.time)), "", Role::scalars},
+                               run.velocity(), run.time, std::move(more), std::move(per_line), "line"));
 }
 
 }  // namespace sg

@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/unsteady/unsteady_flow.h"
 
+#include "base/error.h"
 #include "base/text.h"
 #include "data/point_positions.h"
 #include "data/trusted.h"
 #include "filter/flow/flow_parts.h"
+#include "filter/flow/geographic.h"
 #include "filter/mesh/append.h"
 
 namespace sg {
 
-UnsteadyFlow::UnsteadyFlow(Series series, std::string field, TimeInterpolation interpolation, Context&)
-    : series_(std::move(series)), field_(std::move(field)), interpolation_(interpolation) {
+UnsteadyFlow::UnsteadyFlow(Series series, std::string field, TimeInterpolation interpolation, Context&, bool geographic)
+    : series_(std::move(series)), field_(std::move(field)), interpolation_(interpolation), geographic_(geographic) {
   const auto& t = series_.times;
   if (t.size() < 2)
     fail_usage(fmt::format("the series has {} time step{}", t.size(), t.size() == 1 ? "" : "s"), "unsteady flow",
@@ -29,13 +31,43 @@ size_t UnsteadyFlow::interval_of(double t, int sign) const {
   return size_t(std::clamp<ptrdiff_t>(at - all.begin() - 1, 0, ptrdiff_t(intervals()) - 1));
 }
 
-FlowField UnsteadyFlow::load(size_t step, Context& context) const {
+namespace {
+
+// Where the step comes from, for messages.
+std::string source_of(const Data& data) {
+  std::string file;
+  for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) {
+    for (const auto& [key, text] : d->notes())
+      if (key == "file" && file.empty()) file = text;
+  });
+  return file;
+}
+
+// The parts of a collection through which the flow goes, as one mesh; `field` becomes the name of the velocity.
+DatasetPtr one_mesh(const Data& data, std::string& field, Context& context) {
+  const auto take = [&] {
+    const std::vector<DatasetPtr> parts = flow_meshes(data, field, "unsteady flow");
+    if (parts.size() == 1) return parts.front();
+    Context quiet(context, 0, 1);  // the same of each step
+    quiet.on_log = nullptr, quiet.on_progress = nullptr;
+    AppendParams p;
+    p.part = false;
+    return append(std::vector<Data>(parts.begin(), parts.end()), p, quiet);
+  };
+  const std::string file = source_of(data);
+  return file.empty() ? take() : with_context(fmt::format("looking at '{}'", file), take);
+}
+
+}  // namespace
+
+FlowField UnsteadyFlow::load(size_t step, Context& context) {
   return with_context(fmt::format("taking time step {} (time {})", step, exact_number(times()[step])), [&] {
-    const Data data = series_.load(step);
     std::string name = field_;
-    const std::vector<DatasetPtr> parts = flow_meshes(data, name, "unsteady flow");
-    // Several parts are one mesh: particles cross from one to the next.
-    const DatasetPtr d = parts.size() > 1 ? append({parts.begin(), parts.end()}, {.part = false}, context) : parts.front();
+    DatasetPtr d = one_mesh(series_.load(step), name, context);
+    if (geographic_) {
+      seconds_ = seconds_of_time(*d);
+      d = std::get<DatasetPtr>(geographic_flow(d, name, seconds_, "unsteady flow"));
+    }
     std::shared_ptr<const CellLocator> index;
     for (const FlowField& open : steps_)
       if (!index && same_mesh(*open.dataset(), *d)) index = open.locator();
@@ -44,7 +76,7 @@ FlowField UnsteadyFlow::load(size_t step, Context& context) const {
       bare.mesh = d->mesh(), bare.point_ghost = d->point_ghost(), bare.cell_ghost = d->cell_ghost();
       index = std::make_shared<const CellLocator>(make_trusted_dataset(std::move(bare)), context);
     }
-    return FlowField(d, parts.size() > 1 ? name : field_, context, std::move(index));
+    return FlowField(d, name, context, std::move(index));
   });
 }
 

@@ -29,7 +29,8 @@ class UnsteadyFlow {
 
   /// `field` as in FlowField; the parts of a collection that have it (flow_meshes) are joined to one mesh. Nothing is loaded yet. Throws
   /// Error(usage) for a series of one step and Error(data) for times that do not grow.
-  UnsteadyFlow(Series series, std::string field, TimeInterpolation interpolation, Context& context);
+  /// `geographic`: velocities in m/s over degrees are converted, see geographic.h.
+  UnsteadyFlow(Series series, std::string field, TimeInterpolation interpolation, Context& context, bool geographic = false);
 
   const std::vector<double>& times() const { return series_.times; }
   size_t intervals() const { return series_.times.size() - 1; }
@@ -53,14 +54,18 @@ class UnsteadyFlow {
   /// Where the points of the open steps are, for Meshes::moving: 3 packed f64 a point.
   std::span<const Array> positions() const { return positions_; }
   TimeInterpolation interpolation() const { return interpolation_; }
+  /// With `geographic`: seconds in a unit of time.
+  double seconds() const { return seconds_; }
   /// Largest speed in the open steps.
   double largest_speed() const;
 
  private:
-  FlowField load(size_t step, Context& context) const;
+  FlowField load(size_t step, Context& context);
   Series series_;
   std::string field_;
   TimeInterpolation interpolation_;
+  bool geographic_ = false;
+  double seconds_ = 1;
   size_t interval_ = SIZE_MAX, base_ = 0;
   std::vector<FlowField> steps_;
   std::vector<size_t> numbers_;

@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "base/text.h"
+#include "filter/flow/geographic.h"
 #include "filter/flow/line_mesh.h"
 
 namespace sg {
@@ -21,6 +22,8 @@ void describe(Schema& s, UnsteadyParams& p, const std::string& start, const std:
   describe(s, p.integration);
   s("max_steps", p.max_steps, "Most steps of one particle.").range(1, 1e9);
   describe(s, p.seeds);
+  s("geographic", p.geographic,
+    "x and y are degrees and the velocity is in m/s: it is converted, to the file's unit of time (lengths stay degrees).");
   s("attributes", p.attributes, "What is carried beside velocity and time: the mesh's other fields.").choices({"fields", "none"});
 }
 
@@ -38,8 +41,9 @@ double checked_time(const UnsteadyFlow& flow, std::optional<double> t, double ot
 
 UnsteadyRun::UnsteadyRun(const Series& series, const std::vector<Data>& others, const UnsteadyParams& p, std::string who, bool backward,
                          Context& context)
-    : flow(series, p.field.name, p.interpolation == "cubic" ? TimeInterpolation::cubic : TimeInterpolation::linear, context),
+    : flow(series, p.field.name, p.interpolation == "cubic" ? TimeInterpolation::cubic : TimeInterpolation::linear, context, p.geographic),
       who_(std::move(who)),
+      geographic_(p.geographic),
       context_(context) {
   if (others.size() > 1) fail_usage(fmt::format("takes a series and one mesh of seeds, got {} more", others.size()), who_);
   start = checked_time(flow, p.start, flow.times().front(), "start", who_);
@@ -56,6 +60,7 @@ UnsteadyRun::UnsteadyRun(const Series& series, const std::vector<Data>& others, 
   options = trace_options(integration, stop, 0);
   carries = std::find(p.attributes.begin(), p.attributes.end(), "fields") != p.attributes.end();
   flow.open(flow.interval_of(start, sign), context);
+  if (!geographic_) warn_of_degrees(*flow.steps()[flow.base()].dataset(), velocity(), who_, context);
   UnsteadyCursor cursor(flow);
   const double largest = flow.largest_speed();
   const SeedPlace flows = [&](Vec3 x) {
@@ -66,6 +71,10 @@ UnsteadyRun::UnsteadyRun(const Series& series, const std::vector<Data>& others, 
   inputs.insert(inputs.end(), others.begin(), others.end());
   const size_t nearest = start - flow.begin() <= flow.end() - start ? flow.base() : flow.base() + 1;
   seeds = make_seeds(p.seeds, {flow.steps()[nearest].dataset()}, seed_mesh_of(inputs, who_), flows, context);
+}
+
+DatasetPtr UnsteadyRun::finished(DatasetPtr traced) const {
+  return geographic_ ? in_metres(traced, velocity().name, flow.seconds()) : traced;
 }
 
 void UnsteadyRun::require_some(size_t started) const {

@@ -18,6 +18,7 @@ struct UnsteadyParams {
   IntegrationParams integration;
   int64_t max_steps = 100000;
   SeedParams seeds;
+  bool geographic = false;  ///< see flow/geographic.h
   std::vector<std::string> attributes{"fields"};
 };
 /// `start`, `time`: the sentences of these two, whose meaning belongs to the operation.
@@ -54,10 +55,13 @@ class UnsteadyRun {
   }
   /// Ends with an Error(usage) when nothing of `moved` particles has begun.
   void require_some(size_t started) const;
+  /// What was traced, with velocities as they are in the file.
+  DatasetPtr finished(DatasetPtr traced) const;
   const Field& velocity() const { return flow.steps()[flow.base()].field(); }
 
  private:
   std::string who_;
+  bool geographic_ = false;
   Context& context_;
 };
 

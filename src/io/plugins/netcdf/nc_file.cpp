@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/plugins/netcdf/nc_file.h"
 
+#ifdef SG_QUIET_HDF5
+#include <hdf5.h>
+#endif
 #include <netcdf.h>
 
 #include "base/bytes.h"
@@ -65,6 +68,9 @@ size_t Variable::count() const {
 }
 
 NcFile::NcFile(const std::string& path) : path_(path) {
+#ifdef SG_QUIET_HDF5
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // belongs to the thread; the library says so for the first one alone
+#endif
   check_classic(path);
   {
     const MappedFile file(path);
@@ -156,6 +162,9 @@ std::string NcFile::text(const Variable* v, const char* name) const {
   const int id = v ? v->id : NC_GLOBAL;
   int type = 0;
   size_t n = 0;
+  if (std::string_view(name) == "units" && nc_inq_att(id_, id, name, &type, &n) != NC_NOERR)
+    for (const char* other : {"Unit", "Units", "unit"})  // not as CF says, but as some write
+      if (nc_inq_att(id_, id, other, &type, &n) == NC_NOERR) name = other;
   if (nc_inq_att(id_, id, name, &type, &n) != NC_NOERR || n == 0 || n > file_size_ * most_packing) return {};
   if (type == NC_CHAR) {
     std::string s(n, '\0');

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/chain.h"
+
+#include <map>
+
+#include "base/error.h"
+#include "base/file.h"
+#include "base/text.h"
+#include "io/file_series.h"
+#include "pipeline/read_params.h"
+
+namespace sg {
+
+namespace {
+
+// "contour field=T values=1,2" -> operation and words; "NAME: operation ..." -> label too.
+struct Words {
+  std::string label, first;
+  std::vector<std::string> rest;
+  Words(const std::string& text, const char* option) {
+    std::vector<std::string> all = quoted_words(text);
+    if (all.size() > 1 && all[0].size() > 1 && all[0].back() == ':') label = all[0].substr(0, all[0].size() - 1), all.erase(all.begin());
+    if (all.empty()) fail_usage("is empty", option, "write a name and key=value words");
+    first = all[0];
+    rest.assign(all.begin() + 1, all.end());
+  }
+  /// The value of a word that is for the chain, not for the operation; it is taken out.
+  std::string take(std::string_view key) {
+    const std::string value = word_value(rest, key).value_or("");
+    std::erase_if(rest, [&](const std::string& w) { return w.starts_with(key) && w.size() > key.size() && w[key.size()] == '='; });
+    return value;
+  }
+};
+
+void add_picture_words(const Options& o, PipelineFile& file) {
+  auto add = [&](const char* key, const std::string& value) {
+    if (!value.empty()) file.picture.push_back(fmt::format("{}={}", key, value));
+  };
+  add("size", o.size), add("title", o.title), add("background", o.background);
+  for (const std::string& group : o.picture)
+    for (const std::string& w : quoted_words(group)) file.picture.push_back(w);
+  for (const std::string& w : quoted_words(o.camera)) {
+    const bool named = w.find('=') == std::string::npos;
+    if (named && (w == "parallel" || w == "perspective")) file.picture.push_back("camera.projection=" + w);
+    else file.picture.push_back(named ? "camera.view=" + w : "camera." + w);
+  }
+}
+
+class Chains {
+ public:
+  explicit Chains(const Options& o) : o_(o) {}
+
+  void add(PipelineFile::Step begin) {
+    const std::string base = begin.name;
+    std::vector<PipelineFile::Step> chain;
+    names_.clear();
+    names_["input"] = names_[base] = base;
+    std::string before = base;
+    chain.push_back(std::move(begin));
+    for (size_t i = 0; i < o_.filters.size(); ++i) {
+      Words words(o_.filters[i], "-f");
+      PipelineFile::Step step;
+      step.operation = words.first;
+      step.name = words.label.empty() ? fmt::format("{}_{}{}", base, words.first, i + 1) : fmt::format("{}_{}", base, words.label);
+      if (!words.label.empty() && names_.count(words.label)) fail_usage(fmt::format("'{}' names two steps", words.label), "-f");
+      const std::string on = words.take("on"), with = words.take("with");
+      if (!on.empty() || !with.empty()) step.from.push_back(on.empty() ? before : step_named(on, "-f " + words.first + " on"));
+      for (const std::string& name : inputs_in(with)) step.from.push_back(further_input(name, "-f " + words.first + " with"));
+      step.words = std::move(words.rest);
+      before = names_[words.first] = step.name;
+      if (!words.label.empty()) names_[words.label] = step.name;
+      chain.push_back(std::move(step));
+    }
+    // What chains begin with comes first; a step without `from` takes the one before it.
+    for (PipelineFile::Step& read : further_) file.steps.push_back(std::move(read));
+    further_.clear();
+    for (PipelineFile::Step& step : chain) file.steps.push_back(std::move(step));
+    for (const std::string& text : o_.shows) {
+      Words words(text, "--show");
+      PipelineFile::Show show;
+      show.kind = words.first;
+      const std::string of = words.take("of");
+      show.of = of.empty() ? before : step_named(of, "--show " + words.first + " of");
+      show.words = std::move(words.rest);
+      file.show.push_back(std::move(show));
+    }
+  }
+
+  PipelineFile file;
+
+ private:
+  std::string step_named(const std::string& name, const std::string& where) const {
+    if (const auto at = names_.find(name); at != names_.end()) return at->second;
+    std::vector<std::string> known;
+    for (const auto& [n, step] : names_) known.push_back(n);
+    fail_usage(fmt::format("there is no step '{}' before it", name), where, unknown_name_hint(name, known));
+  }
+
+  static std::vector<std::string> inputs_in(const std::string& text) {
+    if (text.empty()) return {};
+    if (file_exists(text)) return {text};  // a comma in its name
+    std::vector<std::string> names;
+    for (const std::string_view part : split(text, ',')) names.emplace_back(part);
+    return names;
+  }
+
+  // A step of the chain, or a file, which is read once.
+  std::string further_input(const std::string& name, const std::string& where) {
+    if (const auto at = names_.find(name); at != names_.end()) return at->second;
+    if (const auto at = files_.find(name); at != files_.end()) return at->second;
+    if (!file_exists(name) && !names_series(name)) {
+      std::vector<std::string> known;
+      for (const auto& [n, step] : names_) known.push_back(n);
+      fail_usage(fmt::format("'{}' is neither a file nor a step before it", name), where, unknown_name_hint(name, known));
+    }
+    PipelineFile::Step read{fmt::format("with{}", files_.size() + 1), "read", read_words(name, {}), {}, 0};
+    further_.push_back(read);
+    return files_[name] = read.name;
+  }
+
+  const Options& o_;
+  std::map<std::string, std::string> names_, files_;  // what is said -> the step
+  std::vector<PipelineFile::Step> further_;
+};
+
+}  // namespace
+
+PipelineFile pipeline_of(const Options& o) {
+  if (o.inputs.empty() == o.source.empty())
+    fail_usage(o.inputs.empty() ? "name a file to read, or a source to compute with --source" : "name files or a --source, not both",
+               "sightglass " + o.command, fmt::format("see: sightglass {} --help", o.command));
+  Chains chains(o);
+  for (size_t i = 0; i < o.inputs.size(); ++i)
+    chains.add({o.inputs.size() == 1 ? "input" : fmt::format("input{}", i + 1), "read", read_words(o.inputs[i], o.read), {}, 0});
+  if (!o.source.empty()) {
+    Words words(o.source, "--source");
+    chains.add({"source", words.first, std::move(words.rest), {}, 0});
+  }
+  add_picture_words(o, chains.file);
+  return chains.file;
+}
+
+}  // namespace sg
