@@ -200,6 +200,22 @@ DatasetPtr as_mesh(const std::vector<Segment>& segments, const std::string& unit
   return make_dataset(mesh, std::move(f));
 }
 
+// Where eigenvalues are equal all over a surface, cells cut it into pieces of lines that go on nowhere.
+void tell_of_surfaces(const Dataset& lines, Context& ctx) {
+  const CellsView c = cells_view(lines.as<SurfaceMesh>()->lines);
+  constexpr size_t short_piece = 4, many = 50;
+  size_t pieces = 0, points_in_them = 0, points = 0;
+  for (size_t l = 0; l < c.count; ++l) {
+    points += c.size(l);
+    if (c.size(l) <= short_piece && c.point(l, 0) != c.point(l, c.size(l) - 1)) ++pieces, points_in_them += c.size(l);
+  }
+  if (pieces >= many && 4 * points_in_them >= points)
+    ctx.warn(
+        fmt::format("degenerate_lines: {} of {} lines end within three cells: eigenvalues are equal all over surfaces (as in symmetric "
+                    "data), of which lines show only pieces",
+                    pieces, c.count));
+}
+
 }  // namespace
 
 void describe(Schema& s, DegenerateLinesParams& p) {
@@ -250,7 +266,9 @@ DatasetPtr degenerate_lines(const DatasetPtr& input, const DegenerateLinesParams
   if (segments.empty()) return parts;
   PolylinesParams joined;
   joined.fields = {"type"};
-  return polylines(parts, joined, ctx);
+  const DatasetPtr lines = polylines(parts, joined, ctx);
+  tell_of_surfaces(*lines, ctx);
+  return lines;
 }
 
 }  // namespace sg

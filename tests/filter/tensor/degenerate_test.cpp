@@ -254,3 +254,17 @@ TEST_CASE("degenerate points and lines: the same bytes for 1 and 8 threads; the 
   CHECK(degenerate_points(same, {}, l.context)->point_count() == 0);
   CHECK(l.notes.find("4 cells are degenerate throughout") != std::string::npos);
 }
+
+TEST_CASE("degenerate_lines: eigenvalues that are equal all over a surface are told of, a plain line is not") {
+  Listener l;
+  // Equal where x^2 + y^2 + z^2 = 1/2: a sphere, cut into pieces.
+  const DatasetPtr sphere = tensor_grid({17, 17, 17}, {-1, -1, -1}, {1, 1, 1}, [](Vec3 p) { return diagonal(3, dot(p, p), 0.5); });
+  degenerate_lines(sphere, {}, l.context);
+  CHECK(l.warnings.find("all over surfaces") != std::string::npos);
+  Listener quiet;
+  const DatasetPtr axis = tensor_grid({17, 17, 17}, {-1, -1, -1}, {1, 1, 1}, [](Vec3 p) {
+    return SymTensor{3, p.x + 0.03 - 0.1 * p.z, -p.x - 0.03 + 0.1 * p.z, 0, p.y + 0.011, 0};
+  });
+  CHECK(degenerate_lines(axis, {}, quiet.context)->cell_count() > 0);
+  CHECK(quiet.warnings.empty());
+}
