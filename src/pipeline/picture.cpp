@@ -86,7 +86,7 @@ void check_shows(const PipelineFile& file) {
 
 bool same_legend(const Legend& a, const Legend& b) {
   return a.title == b.title && a.map.name == b.map.name && a.lo == b.lo && a.hi == b.hi && a.kind == b.kind && a.labels == b.labels &&
-         a.limits == b.limits && a.glyph == b.glyph;
+         a.limits == b.limits && (!a.glyph || !b.glyph || a.glyph->length == b.glyph->length);
 }
 
 bool has_nan(const Scene& scene) {
@@ -195,8 +195,9 @@ Shown collect(const PipelineFile& file, const std::vector<Data>& results, const 
       if (const auto path = show.kind == "volume" ? word_value(words[k], "save") : std::nullopt; path && !path->empty())
         save_transfer_file(path_beside(file.origin, *path), std::get<VolumeItem>(s.scene.items.back()));
       if (!legend || !stated.picture.legend) continue;
-      if (std::none_of(s.legends.begin(), s.legends.end(), [&](const Legend& have) { return same_legend(have, *legend); }))
-        s.legends.push_back(*legend);
+      const auto have = std::find_if(s.legends.begin(), s.legends.end(), [&](const Legend& l) { return same_legend(l, *legend); });
+      if (have == s.legends.end()) s.legends.push_back(*legend);
+      else if (legend->glyph && (!have->glyph || have->glyph->most < legend->glyph->most)) have->glyph = legend->glyph;
     }
   }
   return s;

@@ -79,7 +79,7 @@ Image draw_picture(const Scene& scene, const Camera& camera, const StatedPicture
   for (Legend& l : with_texts.legends)
     if (l.glyph && annotation.box) {
       const double depth = projection.to_eye(annotation.box->center()).z;
-      l.glyph->pixels = l.glyph->in_pixels ? l.glyph->length
+      l.glyph->pixels = l.glyph->in_pixels    ? l.glyph->length
                         : projection.parallel ? l.glyph->length * projection.scale
                         : depth > 0           ? l.glyph->length * projection.scale / depth
                                               : 0;

@@ -178,7 +178,9 @@ bool looks_like_labels(const Dataset& data, const Field& field) {
 }
 
 bool two_sided(const Field& field, const Range& r) {
-  return r.lo < 0 && r.hi > 0 && std::min(-r.lo, r.hi) > 0.05 * std::max(-r.lo, r.hi) && !habit_of(field).one_sided;
+  const FieldHabit habit = habit_of(field);
+  if (habit.one_sided || !(r.lo < 0 && r.hi > 0)) return false;
+  return habit.two_sided || std::min(-r.lo, r.hi) > 0.05 * std::max(-r.lo, r.hi);
 }
 
 ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringParams& p, Context& context) {

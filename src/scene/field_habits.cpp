@@ -15,19 +15,13 @@ struct Known {
 };
 using Shows = FieldHabit::Shows;
 constexpr Known known[] = {
-    {"ftle", {Shows::high, true, true}},
-    {"Q", {Shows::high, false, true}},
-    {"delta", {Shows::high, false, true}},
-    {"lambda2", {Shows::low, false, true}},
-    {"Okubo-Weiss", {Shows::low, false, true}},
-    {"swirling strength", {Shows::high, false, true}},
-    {"vorticity", {Shows::high, false, true}},
-    {"vorticity magnitude", {Shows::high, false, true}},
-    {"strain rate", {Shows::high, false, true}},
-    {"helicity", {Shows::any, false, true}},
-    {"divergence", {Shows::any, false, true}},
-    {"speed", {Shows::any, false, true}},
-    {"lic", {Shows::fibres, false, false}},
+    {"ftle", {Shows::high, true, false, true}},         {"Q", {Shows::high, false, true, true}},
+    {"delta", {Shows::high, false, true, true}},        {"lambda2", {Shows::low, false, true, true}},
+    {"Okubo-Weiss", {Shows::low, false, true, true}},   {"swirling strength", {Shows::high, false, false, true}},
+    {"vorticity", {Shows::high, false, false, true}},   {"vorticity magnitude", {Shows::high, false, false, true}},
+    {"strain rate", {Shows::high, false, false, true}}, {"helicity", {Shows::any, false, true, true}},
+    {"divergence", {Shows::any, false, true, true}},    {"speed", {Shows::any, false, false, true}},
+    {"lic", {Shows::fibres, false, false, false}},
 };
 
 constexpr size_t most_samples = 400000;
@@ -95,7 +89,7 @@ ShownRange shown_range(std::span<const FieldOf> fields, int component, bool symm
   const double high = quantile(v, inside);
   if (symmetric) {
     const double end = rounded(high);
-    if (end > 0 && reach > (tailed ? 2 : 4) * end) s = {{-end, end}, whole.lo < -end, whole.hi > end};
+    if (end > 0 && reach > (tailed ? 2 : 4) * end) s = {{-end, end}, whole.lo<-end, whole.hi> end};
     return s;
   }
   const double low = quantile(v, 1 - inside), width = high - low;
@@ -110,8 +104,9 @@ void take_shown_range(const ShownRange& shown, const Range& whole, const std::st
   if (!shown.cut_low && !shown.cut_high) return;
   if (shown.cut_low && !s.below) s.below = s.map.at(0);
   if (shown.cut_high && !s.above) s.above = s.map.at(1);
-  context.info(fmt::format("'{}' reaches from {} to {}, but fewer than one value in 200 lies outside the colours; range={},{} has all", name,
-                           short_number(whole.lo, 3), short_number(whole.hi, 3), short_number(whole.lo, 4), short_number(whole.hi, 4)));
+  context.info(fmt::format("'{}' reaches from {} to {}, but fewer than one value in 200 lies outside the colours; range={},{} has all",
+                           name, short_number(whole.lo, 3), short_number(whole.hi, 3), short_number(whole.lo, 4),
+                           short_number(whole.hi, 4)));
 }
 
 }  // namespace sg

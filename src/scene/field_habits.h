@@ -13,6 +13,7 @@ struct FieldHabit {
   /// Which values are to be seen in a volume; fibres: the few that are not zero, as solid strands.
   enum class Shows { any, high, low, fibres } shows = Shows::any;
   bool one_sided = false;  ///< its negative values are no other kind: a sequential map
+  bool two_sided = false;  ///< its signs are two kinds, however unlike their reach
   bool tailed = false;     ///< derivatives: single extreme values say little
 };
 /// Of "ftle", "Q", "lambda2", "swirling strength", "speed", "lic" and their like; the plain one for all others.
@@ -23,9 +24,9 @@ struct ShownRange {
   Range range;
   bool cut_low = false, cut_high = false;
 };
-/// The range of one field of several datasets (magnitude where `component` is -1), without its tails: where fewer than one value in 200 lies
-/// beyond an end and they reach far (tailed habits: the range would double; others only when signed: four times), the end is where they
-/// begin. `symmetric`: the same reach on both sides of zero. Empty without finite values.
+/// The range of one field of several datasets (magnitude where `component` is -1), without its tails: where fewer than one value in 200
+/// lies beyond an end and they reach far (tailed habits: the range would double; others only when signed: four times), the end is where
+/// they begin. `symmetric`: the same reach on both sides of zero. Empty without finite values.
 struct FieldOf {
   const Dataset* data;
   const Field* field;

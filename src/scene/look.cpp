@@ -70,7 +70,7 @@ void look_at_grid(const Dataset& d, const Field& f, Look& look) {
   VolumeItem item;
   if (habit_of(f).shows == FieldHabit::Shows::fibres)
     if (const Field* speed = d.fields().find("speed", f.association); speed && speed->components() == 1)
-      look.shows[0].words.push_back("color_by=speed");  // strands of one colour say less
+      look.shows[0].words.insert(look.shows[0].words.end(), {"color_by=speed", "tolerance=0.01"});  // one colour says less
   item.color = choose_scale(d, f, params, quiet);
   const std::string why = choose_volume_look(d, f, params, item);
   look.reason = fmt::format("scalar field '{}' on a 3D grid: volume; {}", f.name, why);

@@ -200,20 +200,18 @@ DatasetPtr as_mesh(const std::vector<Segment>& segments, const std::string& unit
   return make_dataset(mesh, std::move(f));
 }
 
-// Where eigenvalues are equal all over a surface, cells cut it into pieces of lines that go on nowhere.
-void tell_of_surfaces(const Dataset& lines, Context& ctx) {
-  const CellsView c = cells_view(lines.as<SurfaceMesh>()->lines);
-  constexpr size_t short_piece = 4, many = 50;
-  size_t pieces = 0, points_in_them = 0, points = 0;
-  for (size_t l = 0; l < c.count; ++l) {
-    points += c.size(l);
-    if (c.size(l) <= short_piece && c.point(l, 0) != c.point(l, c.size(l) - 1)) ++pieces, points_in_them += c.size(l);
-  }
-  if (pieces >= many && 4 * points_in_them >= points)
+// Where eigenvalues are equal all over a surface, cells cut it into many lines that end after a few cells.
+void tell_of_surfaces(const Dataset& lines, double diagonal, Context& ctx) {
+  constexpr size_t many = 50;
+  constexpr double little = 0.1;  // of the diagonal
+  const Array &length = lines.fields().require("length").array, &closed = lines.fields().require("closed").array;
+  size_t pieces = 0;
+  for (size_t l = 0; l < length.count(); ++l) pieces += closed.get(l) == 0 && length.get(l) < little * diagonal;
+  if (pieces >= many && 2 * pieces >= length.count())
     ctx.warn(
-        fmt::format("degenerate_lines: {} of {} lines end within three cells: eigenvalues are equal all over surfaces (as in symmetric "
-                    "data), of which lines show only pieces",
-                    pieces, c.count));
+        fmt::format("degenerate_lines: {} of {} lines end after less than a tenth of the data: eigenvalues are equal all over surfaces (as "
+                    "in symmetric data), of which lines show only pieces",
+                    pieces, length.count()));
 }
 
 }  // namespace
@@ -267,7 +265,7 @@ DatasetPtr degenerate_lines(const DatasetPtr& input, const DegenerateLinesParams
   PolylinesParams joined;
   joined.fields = {"type"};
   const DatasetPtr lines = polylines(parts, joined, ctx);
-  tell_of_surfaces(*lines, ctx);
+  tell_of_surfaces(*lines, in->bounds().diagonal(), ctx);
   return lines;
 }
 

@@ -219,7 +219,7 @@ std::vector<double> factors(const Chosen& c, TensorShape shape, const TensorGlyp
   std::string scale = p.scale;
   double longest = most;  // larger ones are drawn as if they were that large
   if (scale == "auto") {
-    scale = most > 5 * median ? "log" : "eigenvalues";
+    scale = most > (c.with_negative == 0 ? 5 : 2.5) * median ? "log" : "eigenvalues";
     if (scale == "eigenvalues" && c.with_negative == 0) longest = std::min(most, 1.6 * median);
     ctx.info(fmt::format("tensor_glyphs: scale={}; the largest eigenvalue is {:.3g} times the median{}", scale, most / median,
                          longest < most ? "; those above 1.6 times it are drawn as that" : ""));
@@ -317,7 +317,7 @@ void describe(Schema& s, TensorGlyphsParams& p) {
   s("min_fa", p.min_fa, "No glyphs where the fractional anisotropy is below this.").range(0, 10);
   s("scale", p.scale,
     "Sizes by the eigenvalues, by their logarithm, or normalized (all alike large); auto: log where the largest is more than 5 times the "
-    "median, else eigenvalues, of positive tensors up to 1.6 times the median.")
+    "median (with negative ones 2.5 times), else eigenvalues, of positive tensors up to 1.6 times the median.")
       .choices({"auto", "eigenvalues", "log", "normalized"});
   s("size", p.size, "Length of the longest glyph as a share of the distance between glyphs.").positive();
   s("factor", p.factor, "Half axis = absolute eigenvalue times this, in place of scale and size.").positive();

@@ -203,8 +203,13 @@ void draw_glyph(Overlay& overlay, const ColorScale& s, const GlyphLegend& g, con
   const Vec3f color{c.x, c.y, c.z};
   if (g.points) {
     const double tip = std::min(0.9 * f, 0.4 * size), half = 0.4 * tip, shaft = std::max(0.5, 0.12 * tip);
-    overlay.polygon({{x, y - shaft}, {x + size - tip, y - shaft}, {x + size - tip, y - half}, {x + size, y},
-                     {x + size - tip, y + half}, {x + size - tip, y + shaft}, {x, y + shaft}},
+    overlay.polygon({{x, y - shaft},
+                     {x + size - tip, y - shaft},
+                     {x + size - tip, y - half},
+                     {x + size, y},
+                     {x + size - tip, y + half},
+                     {x + size - tip, y + shaft},
+                     {x, y + shaft}},
                     color, true);
   } else {
     std::vector<Vec2> rim;

@@ -19,7 +19,8 @@ SeedCurveParams across_the_flow(const FlowParts& parts, Context& context) {
   if (speed(middle) < 0.5 * much) {
     std::vector<DatasetPtr> meshes;
     for (const FlowField& f : parts.fields()) meshes.push_back(f.dataset());
-    const std::vector<Vec3> places = random_places(meshes, 40, 1, [&](Vec3 x) { return speed(x) >= much; }, context);
+    const std::vector<Vec3> places = random_places(
+        meshes, 40, 1, [&](Vec3 x) { return speed(x) >= much; }, context);
     double nearest = HUGE_VAL;
     const Vec3 center = middle;
     for (const Vec3& x : places)
@@ -47,9 +48,10 @@ SeedCurveParams across_the_flow(const FlowParts& parts, Context& context) {
   SeedCurveParams p;
   p.from = far(-1), p.to = far(1);
   if (!(length(*p.to - *p.from) > 0)) p.from = middle - side * step, p.to = middle + side * step;
-  context.info(fmt::format("seeds: a line across the flow, from={:.4g},{:.4g},{:.4g} to={:.4g},{:.4g},{:.4g}; points=, or center= and radius= "
-                           "make others",
-                           p.from->x, p.from->y, p.from->z, p.to->x, p.to->y, p.to->z));
+  context.info(
+      fmt::format("seeds: a line across the flow, from={:.4g},{:.4g},{:.4g} to={:.4g},{:.4g},{:.4g}; points=, or center= and radius= "
+                  "make others",
+                  p.from->x, p.from->y, p.from->z, p.to->x, p.to->y, p.to->z));
   return p;
 }
 

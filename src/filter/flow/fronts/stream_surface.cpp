@@ -5,6 +5,7 @@
 #include "filter/flow/fronts/default_curve.h"
 #include "filter/flow/fronts/front.h"
 #include "filter/flow/line_attributes.h"
+#include "filter/flow/noise_speed.h"
 #include "filter/flow/seeds.h"
 
 namespace sg {
@@ -22,7 +23,10 @@ void describe(Schema& s, StreamSurfaceParams& p) {
   s("max_time", p.max_time, "front=time: how long; default: the time in which the mean speed goes max_length.").unit("time").positive();
   s("max_angle", p.max_angle, "Largest turn of a front at a place before more are put in.").unit("deg").range(1, 180);
   s("tear", p.tear, "A gap wider than this many spacings that cannot be filled is left open.").range(1, 1e6);
-  s("min_speed", p.min_speed, "Where the flow is slower than this part of its largest speed, the surface ends.").range(0, 1);
+  s("min_speed", p.min_speed,
+    "Where the flow is slower than this part of its largest speed, the surface ends. The default, 1e-4, is 0.02 where most of a grid is "
+    "noise, as around the vessels of a scan.")
+      .range(0, 1);
   s("tolerance", p.tolerance, "Error of one step of integration, in sizes of the local cell.").positive();
   s("max_points", p.max_points, "Most points of the surface.").range(4, 1e9);
 }
@@ -33,7 +37,14 @@ std::string box_text(const Box3& b) {
   return fmt::format("x {:.6g} to {:.6g}, y {:.6g} to {:.6g}, z {:.6g} to {:.6g}", b.lo.x, b.hi.x, b.lo.y, b.hi.y, b.lo.z, b.hi.z);
 }
 
-constexpr int deepest = 20;  // halvings of a gap
+// Nobody follows noise unless min_speed is stated.
+double noise_of(const FlowParts& parts) {
+  double most = 0;
+  for (const FlowField& f : parts.fields()) most = std::max(most, noise_speed(*f.dataset(), f.dataset()->fields().require(parts.name())));
+  return most;
+}
+
+constexpr int deepest = 20;                  // halvings of a gap
 constexpr uint8_t open_end = 1, parted = 2;  // why a front is torn behind a member: there is no more of it, or neighbours went apart
 constexpr double narrowest = 3;              // spacings: between two tears narrower strips are rags
 
@@ -49,7 +60,7 @@ class Growth {
         levels_(levels),
         clock_(clock),
         context_(context),
-        min_speed_(p.min_speed * parts.largest_speed()) {}
+        min_speed_(std::max(p.min_speed * parts.largest_speed(), p.min_speed == StreamSurfaceParams().min_speed ? noise_of(parts) : 0)) {}
 
   std::vector<Vec3> points;
   std::vector<FrontPoint> places;  ///< of the points

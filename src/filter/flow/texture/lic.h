@@ -32,11 +32,11 @@ void describe(Schema& s, LicParams& p);
 /// field (Cabral, Leedom 1993); with method=fast along streamlines that share their sums (Stalling, Hege 1995), so that a pixel's
 /// value is the mean of those of places in it: the same statistics, not the same numbers. Any flat mesh gives a picture (see
 /// texture::make_frame for the grid), a solid one a volume of texture. The input's fields come along, interpolated, to be colours under the
-/// texture; a volume gets the field "speed", the colour of its strands. An image gives "lic" as many components as it has, in its own numbers (no contrast).
-/// Animation: frames of kernel=ripple with phase = 0, 1/n, 2/n, ... move along the flow, and 1 is 0 again.
-/// NaN where the flow has no value; where its speed is not above `still`: 0.5, the image as it is, 0 with sparse noise. Lines end at the
-/// border and where there is no flow; the mean is over what there is of them. Throws Error(usage) for data without vectors, other images
-/// and curved surfaces. O(pixels length/step); fast: O(pixels).
+/// texture; a volume gets the field "speed", the colour of its strands. An image gives "lic" as many components as it has, in its own
+/// numbers (no contrast). Animation: frames of kernel=ripple with phase = 0, 1/n, 2/n, ... move along the flow, and 1 is 0 again. NaN where
+/// the flow has no value; where its speed is not above `still`: 0.5, the image as it is, 0 with sparse noise. Lines end at the border and
+/// where there is no flow; the mean is over what there is of them. Throws Error(usage) for data without vectors, other images and curved
+/// surfaces. O(pixels length/step); fast: O(pixels).
 DatasetPtr lic(const DatasetPtr& input, const DatasetPtr& image, const LicParams& params, Context& context);
 /// The operation: one input, or two.
 Data lic_of(const std::vector<Data>& inputs, const LicParams& params, Context& context);

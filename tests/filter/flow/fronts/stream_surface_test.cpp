@@ -170,15 +170,16 @@ TEST_CASE("stream surface: without a seed curve it begins at a line across the f
   const Surface wide(stream_surface({flow_on_grid(9, [](Vec3) { return Vec3(1, 0.2, 0); })}, {}, context));
   CHECK(log.find("from=") != std::string::npos);
   const Box3 box = wide.data->bounds();
-  CHECK(box.size().z > 0.5);    // along z, which is across
-  CHECK(box.hi.x > 0.99);       // from the middle to the border
+  CHECK(box.size().z > 0.5);  // along z, which is across
+  CHECK(box.hi.x > 0.99);     // from the middle to the border
   CHECK(box.lo.x > -0.01);
   CHECK(wide.euler() == 1);
   // A jet beside the middle, still air elsewhere.
-  const Surface jet(stream_surface({flow_on_grid(33, [](Vec3 x) {
-                                     const double r = (x.y - 0.5) * (x.y - 0.5) + x.z * x.z;
-                                     return r < 0.04 ? Vec3(1 - r / 0.04, 0, 0) : Vec3();
-                                   })},
+  const Surface jet(stream_surface({flow_on_grid(33,
+                                                 [](Vec3 x) {
+                                                   const double r = (x.y - 0.5) * (x.y - 0.5) + x.z * x.z;
+                                                   return r < 0.04 ? Vec3(1 - r / 0.04, 0, 0) : Vec3();
+                                                 })},
                                    {}, context));
   CHECK(jet.data->bounds().lo.y > 0.2);
   CHECK(jet.data->bounds().size().z < 0.5);
