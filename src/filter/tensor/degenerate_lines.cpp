@@ -200,16 +200,16 @@ DatasetPtr as_mesh(const std::vector<Segment>& segments, const std::string& unit
   return make_dataset(mesh, std::move(f));
 }
 
-// Where eigenvalues are equal all over a surface, cells cut it into many lines that end after a few cells.
+// Where eigenvalues are equal all over a surface, cells cut it into many lines that end or close after a few cells.
 void tell_of_surfaces(const Dataset& lines, double diagonal, Context& ctx) {
   constexpr size_t many = 50;
   constexpr double little = 0.1;  // of the diagonal
-  const Array &length = lines.fields().require("length").array, &closed = lines.fields().require("closed").array;
+  const Array& length = lines.fields().require("length").array;
   size_t pieces = 0;
-  for (size_t l = 0; l < length.count(); ++l) pieces += closed.get(l) == 0 && length.get(l) < little * diagonal;
+  for (size_t l = 0; l < length.count(); ++l) pieces += length.get(l) < little * diagonal;
   if (pieces >= many && 2 * pieces >= length.count())
     ctx.warn(
-        fmt::format("degenerate_lines: {} of {} lines end after less than a tenth of the data: eigenvalues are equal all over surfaces (as "
+        fmt::format("degenerate_lines: {} of {} lines are shorter than a tenth of the data: eigenvalues are equal all over surfaces (as "
                     "in symmetric data), of which lines show only pieces",
                     pieces, length.count()));
 }
