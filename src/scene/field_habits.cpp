@@ -25,7 +25,7 @@ constexpr Known known[] = {
 };
 
 constexpr size_t most_samples = 400000;
-constexpr double inside = 0.995;
+constexpr double inside = 0.995, inside_tailed = 0.99;
 
 // Evenly spread finite values of all the fields.
 std::vector<double> samples_of(std::span<const FieldOf> fields, int component) {
@@ -86,13 +86,13 @@ ShownRange shown_range(std::span<const FieldOf> fields, int component, bool symm
     for (double& x : v) x = std::abs(x);
   }
   if (v.size() < 200) return s;
-  const double high = quantile(v, inside);
+  const double most = tailed ? inside_tailed : inside, high = quantile(v, most);
   if (symmetric) {
     const double end = rounded(high);
     if (end > 0 && reach > (tailed ? 2 : 4) * end) s = {{-end, end}, whole.lo<-end, whole.hi> end};
     return s;
   }
-  const double low = quantile(v, 1 - inside), width = high - low;
+  const double low = quantile(v, 1 - most), width = high - low;
   if (!(width > 0)) return s;
   if (whole.hi - high > width && rounded(high) > low) s.range.hi = rounded(high), s.cut_high = true;
   if (low - whole.lo > width && rounded(low) < s.range.hi) s.range.lo = rounded(low), s.cut_low = true;
@@ -104,9 +104,8 @@ void take_shown_range(const ShownRange& shown, const Range& whole, const std::st
   if (!shown.cut_low && !shown.cut_high) return;
   if (shown.cut_low && !s.below) s.below = s.map.at(0);
   if (shown.cut_high && !s.above) s.above = s.map.at(1);
-  context.info(fmt::format("'{}' reaches from {} to {}, but fewer than one value in 200 lies outside the colours; range={},{} has all",
-                           name, short_number(whole.lo, 3), short_number(whole.hi, 3), short_number(whole.lo, 4),
-                           short_number(whole.hi, 4)));
+  context.info(fmt::format("'{}' reaches from {} to {}, but few values lie outside the colours; range={},{} has all", name,
+                           short_number(whole.lo, 3), short_number(whole.hi, 3), short_number(whole.lo, 4), short_number(whole.hi, 4)));
 }
 
 }  // namespace sg
