@@ -89,13 +89,14 @@ ShownRange shown_range(std::span<const FieldOf> fields, int component, bool symm
   const double most = tailed ? inside_tailed : inside, high = quantile(v, most);
   if (symmetric) {
     const double end = rounded(high);
-    if (end > 0 && reach > (tailed ? 2 : 4) * end) s = {{-end, end}, whole.lo<-end, whole.hi> end};
+    if (end > 0 && reach > (tailed ? 1.5 : 4) * end) s = {{-end, end}, whole.lo<-end, whole.hi> end};
     return s;
   }
   const double low = quantile(v, 1 - most), width = high - low;
   if (!(width > 0)) return s;
-  if (whole.hi - high > width && rounded(high) > low) s.range.hi = rounded(high), s.cut_high = true;
-  if (low - whole.lo > width && rounded(low) < s.range.hi) s.range.lo = rounded(low), s.cut_low = true;
+  const double far = 0.5 * width;
+  if (whole.hi - high > far && rounded(high) > low) s.range.hi = rounded(high), s.cut_high = true;
+  if (low - whole.lo > far && rounded(low) < s.range.hi) s.range.lo = rounded(low), s.cut_low = true;
   return s;
 }
 
