@@ -16,12 +16,24 @@ struct VolumeLegend {
   std::string second_title;  ///< name of the second axis, for plane pictures
 };
 
+/// Glyphs whose size shows a value: one of them stands in the legend as long as it is in the middle of the picture.
+struct GlyphLegend {
+  double length = 0;  ///< of a glyph of value 1: world length or pixels
+  bool in_pixels = false;
+  bool points = true;  ///< an arrow; false: a disc as wide as that
+  double most = 0;     ///< the largest value that the glyphs show
+  std::string unit;
+  double pixels = 0;  ///< of a glyph of value 1, set by who knows the camera; 0: not drawn
+  friend bool operator==(const GlyphLegend&, const GlyphLegend&) = default;
+};
+
 /// A colour scale is a legend without opacity.
 struct Legend : ColorScale {
   Legend() = default;
   Legend(ColorScale scale) : ColorScale(std::move(scale)) {}
   Legend(ColorScale scale, VolumeLegend v) : ColorScale(std::move(scale)), volume(std::move(v)) {}
   std::optional<VolumeLegend> volume;
+  std::optional<GlyphLegend> glyph;
 };
 
 }  // namespace sg

@@ -8,6 +8,8 @@
 #include "filter/glyph/choose.h"
 #include "pipeline/picture_parts.h"
 #include "pipeline/transfer_file.h"
+#include "scene/field_habits.h"
+#include "scene/glyph_parts.h"
 
 namespace sg {
 
@@ -84,7 +86,7 @@ void check_shows(const PipelineFile& file) {
 
 bool same_legend(const Legend& a, const Legend& b) {
   return a.title == b.title && a.map.name == b.map.name && a.lo == b.lo && a.hi == b.hi && a.kind == b.kind && a.labels == b.labels &&
-         a.limits == b.limits;
+         a.limits == b.limits && (!a.glyph || !b.glyph || a.glyph->length == b.glyph->length);
 }
 
 bool has_nan(const Scene& scene) {
@@ -135,29 +137,39 @@ std::vector<std::vector<std::string>> words_of_parts(const std::vector<DatasetPt
   if (name == "band" && is_banded(*parts[by_size[0]])) name = "band low";  // bands of parts differ; their values can be compared
   const int component = int(parse_int(word_value(show.words, "component").value_or("-1")).value_or(-1));
   Range all;
-  bool same = true, any = false;
+  bool same = true;
+  std::vector<FieldOf> fields;
   for (const DatasetPtr& d : parts)
     if (const Field* f = d->fields().find(name); f && f->association != Association::whole) {
       const Range r = d->range(*f, f->components() > 1 ? component : 0);
-      same = same && (!any || r == all);
-      all.add(r), any = true;
+      same = same && (fields.empty() || r == all);
+      all.add(r), fields.push_back({d.get(), f});
     }
-  if (!any) return words;  // the show says what there is instead
+  if (fields.empty()) return words;  // the show says what there is instead
+  // What choose_scale() does for one mesh, decided once for all.
+  const std::string scale = word_value(show.words, "scale").value_or("linear");
+  const bool automatic = word_value(show.words, "map").value_or("auto") == "auto" && scale != "log";
+  const bool is_signed = two_sided(*fields[0].field, all);
+  const std::string map = is_signed ? "coolwarm" : "sight";
+  ShownRange shown{all};
+  if (automatic && scale == "linear") shown = shown_range(fields, component, is_signed);
+  else if (automatic && is_signed) shown.range.hi = std::max(-all.lo, all.hi), shown.range.lo = -shown.range.hi;
+  const auto triangle = [&](std::vector<std::string>& w, std::string_view word, double at) {  // in the legend
+    if (!word_value(show.words, word)) w.push_back(fmt::format("{}={}", word, color_text(find_colormap(map).at(at))));
+  };
   for (size_t i = 0; i < parts.size(); ++i) {
     const Field* f = parts[i]->fields().find(name);
     if (!by_vectors) {
       std::erase_if(words[i], [](const std::string& w) { return w.starts_with("field="); });
       words[i].push_back("field=" + (f ? name : std::string("none")));
     }
-    if (!f || same || !(all.lo < all.hi)) continue;
-    // What choose_scale() does for one mesh, decided once for all.
-    const bool automatic =
-        word_value(show.words, "map").value_or("auto") == "auto" && word_value(show.words, "scale").value_or("linear") != "log";
-    const bool is_signed = all.lo < 0 && all.hi > 0 && std::min(-all.lo, all.hi) > 0.05 * std::max(-all.lo, all.hi);
-    if (automatic) words[i].push_back(is_signed ? "map=coolwarm" : "map=sight");
+    const bool cut = shown.cut_low || shown.cut_high;
+    if (!f || (same && !cut) || !(all.lo < all.hi)) continue;
+    if (automatic) words[i].push_back("map=" + map);
     if (word_value(show.words, "range")) continue;
-    const Range r = automatic && is_signed ? Range{-std::max(-all.lo, all.hi), std::max(-all.lo, all.hi)} : all;
-    words[i].push_back(fmt::format("range={},{}", exact_number(r.lo), exact_number(r.hi)));
+    words[i].push_back(fmt::format("range={},{}", exact_number(shown.range.lo), exact_number(shown.range.hi)));
+    if (shown.cut_low) triangle(words[i], "below", 0);
+    if (shown.cut_high) triangle(words[i], "above", 1);
   }
   return words;
 }
@@ -171,7 +183,8 @@ Shown collect(const PipelineFile& file, const std::vector<Data>& results, const 
       fail_no_mesh(results[i], file_name_of(origin_of(file, show.of.empty() ? file.steps.back().name : show.of)));
     std::vector<DatasetPtr> parts;
     for_each_dataset(results[i], [&](const std::string&, const DatasetPtr& d) { parts.push_back(d); });
-    const auto words = words_of_parts(parts, show);
+    auto words = words_of_parts(parts, show);
+    if (show.kind == "glyphs" && parts.size() > 1) take_one_glyph_scale(parts, words);
     for (size_t k = 0; k < parts.size(); ++k) {
       const DatasetPtr& d = parts[k];
       s.any_points = s.any_points || d->point_count() > 0;
@@ -182,8 +195,9 @@ Shown collect(const PipelineFile& file, const std::vector<Data>& results, const 
       if (const auto path = show.kind == "volume" ? word_value(words[k], "save") : std::nullopt; path && !path->empty())
         save_transfer_file(path_beside(file.origin, *path), std::get<VolumeItem>(s.scene.items.back()));
       if (!legend || !stated.picture.legend) continue;
-      if (std::none_of(s.legends.begin(), s.legends.end(), [&](const Legend& have) { return same_legend(have, *legend); }))
-        s.legends.push_back(*legend);
+      const auto have = std::find_if(s.legends.begin(), s.legends.end(), [&](const Legend& l) { return same_legend(l, *legend); });
+      if (have == s.legends.end()) s.legends.push_back(*legend);
+      else if (legend->glyph && (!have->glyph || have->glyph->most < legend->glyph->most)) have->glyph = legend->glyph;
     }
   }
   return s;

@@ -76,6 +76,14 @@ Image draw_picture(const Scene& scene, const Camera& camera, const StatedPicture
   const Projection projection = make_projection(camera, options.width, options.height);
   Annotation with_texts = annotation;
   with_texts.texts = seen_texts(scene, projection, frame);
+  for (Legend& l : with_texts.legends)
+    if (l.glyph && annotation.box) {
+      const double depth = projection.to_eye(annotation.box->center()).z;
+      l.glyph->pixels = l.glyph->in_pixels    ? l.glyph->length
+                        : projection.parallel ? l.glyph->length * projection.scale
+                        : depth > 0           ? l.glyph->length * projection.scale / depth
+                                              : 0;
+    }
   if (options.width < s.width) {
     Frame whole(s.width, s.height);
     // The last column may hold data; take the background's own colour there.

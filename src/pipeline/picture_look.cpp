@@ -72,6 +72,7 @@ constexpr Maker makers[] = {
     {"stress_measures", "", "von Mises stress"},
     {"direction_colors", "", "direction"},
     {"traction", "", "normal traction"},
+    {"vortex_cores", "", "swirling strength"},
 };
 
 // The field that the last steps were made for, when `d` has it; "" = the data decides.

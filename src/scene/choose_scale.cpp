@@ -7,6 +7,7 @@
 #include "color/colormap_file.h"
 #include "color/parse_color.h"
 #include "data/lattice.h"
+#include "scene/field_habits.h"
 #include "scene/show.h"
 
 namespace sg {
@@ -176,6 +177,12 @@ bool looks_like_labels(const Dataset& data, const Field& field) {
   return share_of_equal_neighbours(field, nx, values[0]) > 0.7;
 }
 
+bool two_sided(const Field& field, const Range& r) {
+  const FieldHabit habit = habit_of(field);
+  if (habit.one_sided || !(r.lo < 0 && r.hi > 0)) return false;
+  return habit.two_sided || std::min(-r.lo, r.hi) > 0.05 * std::max(-r.lo, r.hi);
+}
+
 ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringParams& p, Context& context) {
   ColorScale s;
   s.title = field.name;
@@ -209,7 +216,7 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
     r = positive;
     context.info(fmt::format("values of '{}' at or below 0 have no place on a log scale; they are drawn as below it", field.name));
   }
-  const bool is_signed = r.lo < 0 && r.hi > 0 && std::min(-r.lo, r.hi) > 0.05 * std::max(-r.lo, r.hi);
+  const bool is_signed = two_sided(field, r);
   if (automatic) s.map = find_colormap(labels ? "labels" : is_signed && s.kind != ScaleKind::log ? "coolwarm" : "sight");
   else s.map = asked;
   if (s.map.kind == MapKind::unsafe)
@@ -220,10 +227,14 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
 
   if (!p.range.empty()) {
     s.lo = p.range[0], s.hi = p.range[1];
-  } else if (s.map.kind == MapKind::diverging && is_signed && !(file && file->hard_hinge)) {
-    s.hi = nice_symmetric(r), s.lo = -s.hi;
   } else {
     s.lo = r.lo, s.hi = r.hi;
+    const bool centred = s.map.kind == MapKind::diverging && is_signed && !(file && file->hard_hinge);
+    if (centred) s.hi = nice_symmetric(r), s.lo = -s.hi;
+    const FieldOf one{&data, &field};
+    if (s.kind == ScaleKind::linear && !labels && !file)
+      if (const ShownRange shown = shown_range({&one, 1}, p.component, centred); !shown.range.empty())
+        take_shown_range(shown, r, field.name, s, context);
   }
   if (s.lo == s.hi) {  // a constant field: any range around it will do
     const double d = s.lo == 0 ? 1 : std::abs(s.lo) * 0.01;

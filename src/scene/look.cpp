@@ -3,6 +3,7 @@
 
 #include "base/text.h"
 #include "data/lattice.h"
+#include "scene/field_habits.h"
 #include "scene/volume_look.h"
 
 namespace sg {
@@ -67,6 +68,9 @@ void look_at_grid(const Dataset& d, const Field& f, Look& look) {
   ColoringParams params;
   Context quiet;
   VolumeItem item;
+  if (habit_of(f).shows == FieldHabit::Shows::fibres)
+    if (const Field* speed = d.fields().find("speed", f.association); speed && speed->components() == 1)
+      look.shows[0].words.insert(look.shows[0].words.end(), {"color_by=speed", "tolerance=0.01"});  // one colour says less
   item.color = choose_scale(d, f, params, quiet);
   const std::string why = choose_volume_look(d, f, params, item);
   look.reason = fmt::format("scalar field '{}' on a 3D grid: volume; {}", f.name, why);
@@ -107,6 +111,7 @@ Look choose_look(const Dataset& d, const std::string& field, const std::string& 
   const Field* scalar = field.empty() ? d.fields().with_role(Role::scalars) : d.fields().find(field);
   if (!scalar || (field.empty() && scalar->components() != 1)) scalar = d.fields().active(1);
   if (!scalar) scalar = d.fields().active(0);
+  if (const Field* lic = d.fields().find("lic", Association::point); grid3 && field.empty() && lic && lic->components() == 1) scalar = lic;
   const bool colors = scalar && scalar->role == Role::colors && scalar->components() >= 3;
 
   if (grid3 && box_grid && scalar && !colors) {

@@ -200,6 +200,10 @@ std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const Surfa
 std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const LinesShow& p, Context& context) {
   LinesItem item;
   item.data = surface_of(input, context);
+  if (const auto& m = *item.data->as<SurfaceMesh>(); m.lines.size() == 0 && m.polygons.size() + m.strips.size() > 0)
+    context.warn(
+        "lines: these data have cells but no lines, nothing is drawn; -f streamlines, isolines, feature_edges or contour of a flat mesh "
+        "make lines, --show 'surface edges=true' draws the edges of cells");
   item.color_by = field_color(*input, p.coloring, context);
   if (!p.coloring.color.empty()) item.color = parse_color(p.coloring.color, "color");
   item.opacity = p.opacity;

@@ -82,6 +82,9 @@ const ShowKind& find_show(std::string_view name);
 /// symmetric when signed about zero, else sequential; the field 'band' of filled contours: one colour a band, with its limits).
 ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringParams& params, Context& context);
 
+/// Signed about zero, so that both signs get colours of their own: neither side is a mere twentieth of the other.
+bool two_sided(const Field& field, const Range& range);
+
 /// The field that colours a dataset when none is named: the bands of filled contours, its scalars when they vary, else its own colours,
 /// else the first field that varies, points before cells, scalars before vectors, numberings last. Null when there is none.
 const Field* automatic_field(const Dataset& data);

@@ -49,7 +49,7 @@ void describe(Schema& s, GlyphsShow& p) {
   s("pixels", p.pixels, "Sizes are pixels of the picture, the same at any distance; barbs always.");
 }
 
-std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const GlyphsShow& p, Context& context) {
+std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const GlyphsShow& p, Context& context) {
   const bool in_pixels = p.pixels || (p.glyphs.shape.shape == "barbs" && p.glyphs.factor == 0);
   ChosenGlyphs c = choose_glyphs(input, p.glyphs, in_pixels, context);
   context.info(c.note);
@@ -59,7 +59,7 @@ std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const Glyph
   item.material.lit = p.lit && !c.flat;
   item.color = c.flat ? Vec3f{0.13f, 0.14f, 0.18f} : item.color;
   if (!p.coloring.color.empty()) item.color = parse_color(p.coloring.color, "color");
-  std::optional<ColorScale> legend;
+  std::optional<Legend> legend;
   // Flat ones on a coloured surface are read by their shape: a second scale on the first would hide them.
   const ColorScale* beneath = nullptr;
   for (const Item& i : scene.items)
@@ -75,8 +75,11 @@ std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const Glyph
       const Field* drawn = c.data->fields().find(f->name, Association::point);
       color.scale = drawn ? choose_scale(*c.data, *drawn, p.coloring, context) : choose_scale(*input, *f, p.coloring, context);
       legend = color.scale;
-      if (c.of > 0 && p.coloring.range.empty())  // parts of a collection share a legend, not a scale
-        legend->title += fmt::format(" ({}: {}{} long)", short_number(c.of, 3), short_number(c.longest, 3), in_pixels ? " pixels" : "");
+      if (c.of > 0) {
+        const bool by_length = c.rule.size == GlyphRule::Size::length;
+        const Field* by = c.data->fields().find(by_length ? c.rule.vectors : c.rule.size_field);
+        legend->glyph = GlyphLegend{c.longest / c.of, in_pixels, by_length, c.of, by ? by->unit : "", 0};
+      }
     }
     item.color_by = std::move(color);
   }

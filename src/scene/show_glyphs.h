@@ -14,8 +14,8 @@ struct GlyphsShow {
 };
 void describe(Schema& s, GlyphsShow& p);
 
-/// Without a field or colour: the length of the vectors (barbs: one dark colour). What was chosen goes to context.info(). Throws
-/// Error(usage) for data without vectors and unknown names.
-std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const GlyphsShow& p, Context& context);
+/// Without a field or colour: the length of the vectors (barbs: one dark colour). The legend shows what size stands for what length. What
+/// was chosen goes to context.info(). Throws Error(usage) for data without vectors and unknown names.
+std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const GlyphsShow& p, Context& context);
 
 }  // namespace sg

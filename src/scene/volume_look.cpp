@@ -4,6 +4,7 @@
 #include "base/text.h"
 #include "data/field_ops.h"
 #include "data/lattice.h"
+#include "scene/field_habits.h"
 
 namespace sg {
 
@@ -59,6 +60,35 @@ double quantile(const std::vector<size_t>& h, double lo, double hi, double q) {
     if (sum >= q * double(all)) return lo + (double(b) + 1) / double(h.size()) * (hi - lo);
   }
   return hi;
+}
+
+// Fields of which it is known what matters in them: crests, troughs or strands. "" when it is not.
+std::string known_look(const Dataset& data, const Field& field, const Range& r, int component, VolumeItem& item) {
+  using Shows = FieldHabit::Shows;
+  const Shows shows = habit_of(field).shows;
+  if (shows == Shows::any) return "";
+  const auto h = histogram(field, component, r.lo, r.hi, 1024);
+  size_t all = 0;
+  for (const size_t n : h) all += n;
+  const double width = r.hi - r.lo;
+  if (shows == Shows::fibres && 10 * h.front() > 3 * all) {  // else made of white noise, which has no strands
+    item.opacity.points = {{r.lo, 0}, {r.lo + 0.2 * width, 0}, {r.lo + 0.5 * width, 0.95}, {r.hi, 0.99}};
+    if (const auto* grid = data.as<UniformGrid>(); grid && item.unit_distance == 0) {
+      const Vec3 s = grid->spacing;
+      item.unit_distance = 3 * std::max({s.x, s.y, s.z});  // as wide as a strand
+    }
+    return "strands along the flow";
+  }
+  const bool low = shows == Shows::low;
+  // From what most of the volume holds to the end that matters; zero and what lies beyond it is no crest.
+  const double end = low ? r.lo : r.hi, most = quantile(h, r.lo, r.hi, low ? 0.25 : 0.75);
+  double start = most;
+  if (r.lo < 0 && r.hi > 0 && two_sided(field, r)) start = low ? std::min(most, 0.0) : std::max(most, 0.0);
+  start += 0.06 * (end - start);
+  const double middle = start + 0.3 * (end - start);
+  if (low) item.opacity.points = {{end, 0.75}, {middle, 0.18}, {start, 0}, {r.hi, 0}};
+  else item.opacity.points = {{r.lo, 0}, {start, 0}, {middle, 0.18}, {end, 0.75}};
+  return fmt::format("{} values matter: those {} {} are shown", low ? "low" : "high", low ? "below" : "above", short_number(start, 3));
 }
 
 // Skin faintly, bone strongly; colours of flesh and ivory. Hounsfield units + offset.
@@ -124,6 +154,7 @@ std::string choose_volume_look(const Dataset& data, const Field& field, const Co
     for (int i = 0; i <= 16; ++i) item.opacity.points.push_back({item.color.value_at(i / 16.0), 0.25 * (i / 16.0) * (i / 16.0)});
     return "opacity rises with the position on the scale";
   }
+  if (const std::string why = known_look(data, field, r, params.component, item); !why.empty()) return why;
   if (item.color.map.kind == MapKind::diverging && r.lo < 0 && r.hi > 0) {
     const double m = std::max(-r.lo, r.hi);
     item.opacity.points = {{-m, 0.5}, {-0.5 * m, 0.12}, {-0.15 * m, 0}, {0.15 * m, 0}, {0.5 * m, 0.12}, {m, 0.5}};

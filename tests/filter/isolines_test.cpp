@@ -153,3 +153,16 @@ TEST_CASE("line_labels: spaced along lines, upright, in the straight parts") {
   CHECK(test::error_of([&] { line_labels(lines, {.normal = {0, 0, 0}}, ctx); }).find("no length") != std::string::npos);
   CHECK(test::error_of([&] { line_labels(test::shapes::box().dataset(), {}, ctx); }).find("field") != std::string::npos);
 }
+
+TEST_CASE("isolines: that fields of cells are not on lines is no news; joining lines that have some says so") {
+  Context ctx;
+  std::string log;
+  ctx.on_log = [&](LogLevel, std::string_view text) { log += text; };
+  DatasetParts parts = square(9, [](Vec3 p) { return p.x; })->parts();
+  parts.fields.add({"of cells", Association::cell, Array::from_vector(std::vector<float>(64, 1.0f)), "", Role::none});
+  const DatasetPtr lines = isolines(make_dataset(std::move(parts)), {.values = {0.1, 0.5}}, ctx);
+  CHECK(log.find("left out") == std::string::npos);
+  CHECK(lines->fields().find("contour value", Association::cell));
+  polylines(lines, {.fields = {"contour value"}}, ctx);
+  CHECK(log.find("left out") != std::string::npos);  // 'length' and 'closed' of the pieces
+}

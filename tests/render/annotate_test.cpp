@@ -404,3 +404,32 @@ TEST_CASE("legend: bands show their limits, each band in its own colour") {
     CHECK(found > 500);
   }
 }
+
+TEST_CASE("legend: a glyph of a round value stands above the bar, as long as it is in the picture, and never beyond the column") {
+  Overlay overlay(600, 500, false);
+  ColorScale scale;
+  scale.map = find_colormap("sight");
+  scale.lo = 0, scale.hi = 12, scale.title = "wind";
+  for (const double pixels : {0.3, 4.0, 25.0, 400.0}) {
+    Legend legend(scale);
+    legend.glyph = GlyphLegend{1, false, true, 12, "m/s", pixels};
+    const LegendLayout l = layout_legends(overlay, {legend}, {0, 0, 600, 500}, 15, false)[0];
+    const double value = l.glyph.width / pixels, power = std::pow(10, std::floor(std::log10(value) + 1e-9));
+    CHECK(value <= 12);
+    CHECK(l.glyph.width <= 5 * 15);
+    const double digit = value / power;
+    CHECK((digit == doctest::Approx(1) || digit == doctest::Approx(2) || digit == doctest::Approx(5)));
+    CHECK(l.glyph_text == typeset_number(fmt::format("{:.3g}", value)) + " m/s");
+    CHECK(l.glyph.bottom() < l.bar.y);
+    CHECK(l.glyph.right() < l.column.right());
+    Image image(600, 500, 3);
+    std::fill(image.pixels.begin(), image.pixels.end(), uint8_t(255));
+    draw_legend(image, overlay, legend, l);
+    overlay.put_on(image);
+    const uint8_t* p = image.at(int(l.glyph.x + 0.9 * l.glyph.width), int(l.glyph.y + 0.5 * l.glyph.height));
+    if (l.glyph.width > 20) CHECK(p[0] + p[1] + p[2] < 700);
+  }
+  Legend none(scale);
+  none.glyph = GlyphLegend{1, false, true, 12, "m/s", 0};
+  CHECK(layout_legends(overlay, {none}, {0, 0, 600, 500}, 15, false)[0].glyph.width == 0);
+}

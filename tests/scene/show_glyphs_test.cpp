@@ -38,7 +38,12 @@ TEST_CASE("show glyphs: flat arrows coloured by their length, whose legend tells
   REQUIRE(item.color_by);
   CHECK(item.color_by->field == "wind");
   REQUIRE(legend);
-  CHECK(legend->title.find("wind magnitude (19:") == 0);
+  CHECK(legend->title == "wind magnitude");
+  REQUIRE(legend->glyph);
+  CHECK(legend->glyph->most == doctest::Approx(19));
+  CHECK(legend->glyph->length == doctest::Approx(item.rule.scale));
+  CHECK(legend->glyph->points);
+  CHECK_FALSE(legend->glyph->in_pixels);
   Scene scene;
   scene.items.emplace_back(item);
   CHECK(scene_bounds(scene).hi.x > 39);  // the last arrow begins at the end of the data

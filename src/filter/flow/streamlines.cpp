@@ -6,6 +6,7 @@
 #include "filter/flow/geographic.h"
 #include "filter/flow/line_attributes.h"
 #include "filter/flow/line_mesh.h"
+#include "filter/flow/noise_speed.h"
 
 namespace sg {
 
@@ -51,6 +52,14 @@ Data streamlines(const std::vector<Data>& inputs, const StreamlinesParams& p, Co
   StopParams stop = p.stop;
   // Lines that circle would fill the picture.
   if (!stop.max_length && !stop.max_time) stop.max_length = 1.5 * parts.bounds().diagonal();
+  if (stop.min_speed == StopParams().min_speed)  // nobody said
+    for (const FlowField& f : parts.fields())
+      if (noise_speed(*f.dataset(), f.dataset()->fields().require(parts.name())) > 0) {
+        stop.min_speed = 0.02;
+        context.info(fmt::format("most of '{}' is noise: lines end where it is slower than 2 % of its largest speed; min_speed=0 shows all",
+                                 parts.name()));
+        break;
+      }
   const TraceOptions options = trace_options(p.integration, stop, largest);
   std::vector<DatasetPtr> meshes;
   for (const FlowField& f : parts.fields()) meshes.push_back(f.dataset());
@@ -65,7 +74,7 @@ Data streamlines(const std::vector<Data>& inputs, const StreamlinesParams& p, Co
     if (!cursor(x, v)) return false;
     if (!(much > 0)) much = parts.mean_speed();
     const double s = length(v) / much;
-    return chosen ? s > 0 : chance < s * s;
+    return chosen ? s > 0 : chance < s * s && length(v) > options.min_speed;
   };
   const std::vector<Vec3> at = make_seeds(p.seeds, meshes, seed_mesh_of(inputs, "streamlines"), flows, context);
   const TraceDirection direction = p.direction == "both"      ? TraceDirection::both

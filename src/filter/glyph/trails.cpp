@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
@@ -20,6 +21,46 @@ const Field& times_of(const Dataset& d, const TrailsParams& p) {
   if (f->components() != 1)
     fail_usage(fmt::format("field '{}' has {} components", f->name, f->components()), "trails", "a time is one number");
   return *f;
+}
+
+struct Span {
+  double first, last;
+};
+
+// From when to when each line runs.
+std::vector<Span> spans_of(const CellsView& lines, const View<double>& t) {
+  std::vector<Span> spans;
+  for (size_t c = 0; c < lines.count; ++c) {
+    Range r;
+    for (size_t k = 0; k < lines.size(c); ++k)
+      if (const double x = t[size_t(lines.point(c, k))]; std::isfinite(x)) r.add({x, x});
+    if (!r.empty()) spans.push_back({r.lo, r.hi});
+  }
+  return spans;
+}
+
+// The latest time at which half as many lines run as at the busiest: lines of a steady flow end at all times.
+double latest_busy_time(const std::vector<Span>& spans) {
+  std::vector<std::pair<double, int>> events;  // a line that ends at a time still runs at it
+  for (const Span& s : spans) events.emplace_back(s.first, -1), events.emplace_back(s.last, 1);
+  std::sort(events.begin(), events.end());
+  int most = 0, running = 0;
+  for (const auto& e : events) most = std::max(most, running -= e.second);
+  double latest = 0;
+  running = 0;
+  for (const auto& e : events) {
+    if (e.second > 0 && 2 * running >= most) latest = e.first;
+    running -= e.second;
+  }
+  return latest;
+}
+
+double usual_length(const std::vector<Span>& spans) {
+  std::vector<double> v;
+  for (const Span& s : spans) v.push_back(s.last - s.first);
+  if (v.empty()) return 0;
+  std::nth_element(v.begin(), v.begin() + ptrdiff_t(v.size() / 2), v.end());
+  return v[v.size() / 2];
 }
 
 struct Cut {
@@ -89,16 +130,17 @@ Array faded(const std::vector<double>& color, const std::vector<float>& ages) {
 
 }  // namespace
 
-DatasetPtr trails(const DatasetPtr& data, const TrailsParams& p, Context&) {
+DatasetPtr trails(const DatasetPtr& data, const TrailsParams& p, Context& context) {
   const auto* mesh = data->as<SurfaceMesh>();
   if (!mesh || mesh->lines.size() == 0)
     fail_usage(fmt::format("the mesh ({}) has no lines", data->kind()), "trails", "pathlines and streamlines have lines");
   if (p.color.size() != 3) fail_usage(fmt::format("{} numbers are no colour", p.color.size()), "trails: color", "give red,green,blue");
   const Field& field = times_of(*data, p);
-  const Range all = data->range(field, 0);
-  const double time = p.time.value_or(all.empty() ? 0 : all.hi);
-  const double length = p.length > 0 ? p.length : all.empty() || !(all.hi > all.lo) ? 1 : 0.1 * (all.hi - all.lo);
   const Array times = field.array.converted(ElementType::f64).made_packed();
+  const std::vector<Span> spans = spans_of(cells_view(mesh->lines), times.view<double>());
+  const double time = p.time ? *p.time : latest_busy_time(spans), usual = usual_length(spans);
+  const double length = p.length > 0 ? p.length : usual > 0 ? 0.1 * usual : 1;
+  if (!p.time) context.info(fmt::format("trails: time={:.5g}", time));
   Cut out = cut_lines(*mesh, times.view<double>(), time, length);
   FieldSet fields;
   carry_interpolated(fields, data->fields(), out.points);

@@ -176,6 +176,11 @@ DatasetPtr isolines(const DatasetPtr& in, const IsolinesParams& p, Context& ctx)
     lines.fields.add(
         {"contour value", Association::cell, Array::from_vector(std::vector<double>(mesh.cell_count(), c.values[0])), "", Role::none});
   }
+  // A line crosses many cells: nobody expects their fields on it, so polylines need not say that they are gone.
+  FieldSet kept;
+  for (const Field& f : lines.fields)
+    if (f.association != Association::cell || f.name == "contour value") kept.add(f);
+  lines.fields = std::move(kept);
   return polylines(make_dataset(std::move(lines)), {.fields = {"contour value"}}, ctx);
 }
 

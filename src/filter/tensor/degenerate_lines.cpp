@@ -200,6 +200,20 @@ DatasetPtr as_mesh(const std::vector<Segment>& segments, const std::string& unit
   return make_dataset(mesh, std::move(f));
 }
 
+// Where eigenvalues are equal all over a surface, cells cut it into many lines that end or close after a few cells.
+void tell_of_surfaces(const Dataset& lines, double diagonal, Context& ctx) {
+  constexpr size_t many = 50;
+  constexpr double little = 0.1;  // of the diagonal
+  const Array& length = lines.fields().require("length").array;
+  size_t pieces = 0;
+  for (size_t l = 0; l < length.count(); ++l) pieces += length.get(l) < little * diagonal;
+  if (pieces >= many && 2 * pieces >= length.count())
+    ctx.warn(
+        fmt::format("degenerate_lines: {} of {} lines are shorter than a tenth of the data: eigenvalues are equal all over surfaces (as "
+                    "in symmetric data), of which lines show only pieces",
+                    pieces, length.count()));
+}
+
 }  // namespace
 
 void describe(Schema& s, DegenerateLinesParams& p) {
@@ -250,7 +264,9 @@ DatasetPtr degenerate_lines(const DatasetPtr& input, const DegenerateLinesParams
   if (segments.empty()) return parts;
   PolylinesParams joined;
   joined.fields = {"type"};
-  return polylines(parts, joined, ctx);
+  const DatasetPtr lines = polylines(parts, joined, ctx);
+  tell_of_surfaces(*lines, in->bounds().diagonal(), ctx);
+  return lines;
 }
 
 }  // namespace sg

@@ -23,7 +23,8 @@ void describe(Schema& s, DegenerateLinesParams& p);
 ///
 /// A SurfaceMesh (f64) of poly-lines with the point fields "mode" (1 linear, -1 planar), "eigenvalue" (the double one), "single
 /// eigenvalue", "axis" (its eigenvector), and the cell fields "type" (labels: 0 linear, 1 planar), "closed", "length". Ends inside, where
-/// parts could not be joined, are counted in a note. Throws Error(usage) for meshes without solid cells and for 2D tensors.
+/// parts could not be joined, are counted in a note; a warning tells where whole surfaces are degenerate, which give many short pieces.
+/// Throws Error(usage) for meshes without solid cells and for 2D tensors.
 DatasetPtr degenerate_lines(const DatasetPtr& in, const DegenerateLinesParams& p, Context& ctx);
 
 }  // namespace sg

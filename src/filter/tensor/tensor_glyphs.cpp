@@ -104,6 +104,17 @@ int extents(const Box3& box, double& volume) {
   return dimension;
 }
 
+// A long and narrow box is small on the picture: no more glyphs along it than can be told apart.
+int64_t fitting(const DatasetPtr& in, const TensorGlyphsParams& p) {
+  if (p.count > 0) return p.count;
+  const Vec3 size = in->bounds().size();
+  const double step = std::max({size.x, size.y, size.z}) / 30;
+  double most = 1;
+  if (step > 0)
+    for (int a = 0; a < 3; ++a) most *= std::max(size[a] / step, 1.0);
+  return std::clamp<int64_t>(step > 0 ? int64_t(most) : 600, 40, 600);
+}
+
 // The usable place nearest to the middle of each cube; the cubes grow until there are few enough.
 std::vector<int64_t> in_cubes(const std::vector<Vec3>& at, const std::vector<uint8_t>& good, int64_t count, double& edge) {
   Box3 box;
@@ -159,7 +170,7 @@ Chosen choose(const DatasetPtr& in, const TensorField& t, const TensorGlyphsPara
     if (cells)
       for (size_t& n : dims) n = std::max<size_t>(n, 2) - 1;
     int64_t stride = 0;
-    c.ids = on_lattice(dims, good, p.stride, p.count, stride);
+    c.ids = on_lattice(dims, good, p.stride, fitting(in, p), stride);
     // The shortest distance between neighbours along the axes, at the middle of the grid.
     c.spacing = HUGE_VAL;
     const size_t middle = dims[0] / 2 + dims[0] * (dims[1] / 2 + dims[1] * (dims[2] / 2));
@@ -174,7 +185,7 @@ Chosen choose(const DatasetPtr& in, const TensorField& t, const TensorGlyphsPara
     if (p.stride > 1)
       for (size_t i = 0; i < kept.size(); ++i) kept[i] = kept[i] && i % size_t(p.stride) == 0;
     double edge = 0;
-    c.ids = in_cubes(at, kept, p.stride > 0 ? int64_t(at.size()) : p.count, edge);
+    c.ids = in_cubes(at, kept, p.stride > 0 ? int64_t(at.size()) : fitting(in, p), edge);
     Box3 box;
     std::vector<Vec3> chosen;
     for (int64_t i : c.ids) box.add(at[size_t(i)]), chosen.push_back(at[size_t(i)]);
@@ -206,14 +217,17 @@ std::vector<double> factors(const Chosen& c, TensorShape shape, const TensorGlyp
   std::sort(sorted.begin(), sorted.end());
   const double most = sorted.back(), median = sorted[sorted.size() / 2], half = p.size * c.spacing / 2;
   std::string scale = p.scale;
+  double longest = most;  // larger ones are drawn as if they were that large
   if (scale == "auto") {
-    scale = most > 5 * median ? "log" : "eigenvalues";
-    ctx.info(fmt::format("tensor_glyphs: scale={}; the largest eigenvalue is {:.3g} times the median", scale, most / median));
+    scale = most > (c.with_negative == 0 ? 5 : 2.5) * median ? "log" : "eigenvalues";
+    if (scale == "eigenvalues" && c.with_negative == 0) longest = std::min(most, 1.6 * median);
+    ctx.info(fmt::format("tensor_glyphs: scale={}; the largest eigenvalue is {:.3g} times the median{}", scale, most / median,
+                         longest < most ? "; those above 1.6 times it are drawn as that" : ""));
   }
   const double low = median > 0 ? median / 50 : most;
   for (size_t i = 0; i < m.size(); ++i) {
     if (!(m[i] > 0)) f[i] = 0;
-    else if (scale == "eigenvalues") f[i] = half / most;
+    else if (scale == "eigenvalues") f[i] = half / std::max(m[i], longest);
     else if (scale == "normalized") f[i] = half / m[i];
     else f[i] = half * std::log1p(m[i] / low) / std::log1p(most / low) / m[i];
   }
@@ -297,13 +311,13 @@ void describe(Schema& s, TensorGlyphsParams& p) {
   s("gamma", p.gamma, "Sharpness of the edges of superquadrics; 0: ellipsoids.").at_least(0);
   s("min_ratio", p.min_ratio, "Half axes below this share of the longest count as that, so that thin ones are seen; not for lobes.")
       .range(0, 1);
-  s("count", p.count, "About how many glyphs at most, when no stride is given.").range(1, 1e7);
+  s("count", p.count, "About how many glyphs at most, when no stride is given; 0: 600, in long and narrow data fewer.").range(0, 1e7);
   s("stride", p.stride, "A glyph at every so-many-th point along each axis; 0: chosen by count.").at_least(0);
   s("mask", p.mask, "Field beside the tensors that is above 0 where glyphs may be.");
   s("min_fa", p.min_fa, "No glyphs where the fractional anisotropy is below this.").range(0, 10);
   s("scale", p.scale,
     "Sizes by the eigenvalues, by their logarithm, or normalized (all alike large); auto: log where the largest is more than 5 times the "
-    "median.")
+    "median (with negative ones 2.5 times), else eigenvalues, of positive tensors up to 1.6 times the median.")
       .choices({"auto", "eigenvalues", "log", "normalized"});
   s("size", p.size, "Length of the longest glyph as a share of the distance between glyphs.").positive();
   s("factor", p.factor, "Half axis = absolute eigenvalue times this, in place of scale and size.").positive();

@@ -10,7 +10,7 @@ struct TensorGlyphsParams {
   std::string shape = "superquadric";
   double gamma = 3;
   double min_ratio = 0.1;
-  int64_t count = 600;
+  int64_t count = 0;
   int64_t stride = 0;
   FieldName mask;
   double min_fa = 0;

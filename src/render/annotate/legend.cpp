@@ -69,6 +69,27 @@ TextStyle sized(double font) {
   return style;
 }
 
+constexpr double longest_glyph = 5, glyph_gap = 0.6;
+
+/// The largest of 1, 2, 5, 10, ... whose glyph has room, no larger than what there is.
+double glyph_value(const GlyphLegend& g, double room) {
+  const double most = std::min(room / g.pixels, g.most), power = std::pow(10, std::floor(std::log10(most)));
+  for (const double digit : {5.0, 2.0})
+    if (digit * power <= most) return digit * power;
+  return power;
+}
+
+/// The glyph's row above the bar; the column is made wide enough for any, since its length is known only once the width is.
+double plan_glyph(const Overlay& o, const GlyphLegend& g, double font, LegendLayout& l) {
+  const double height = 1.5 * o.measure("0", sized(font)).height;
+  const double value = g.pixels > 0 && g.most > 0 ? glyph_value(g, longest_glyph * font) : 0, size = value * g.pixels;
+  if (size >= 3 && std::isfinite(size)) {
+    l.glyph = {0, 0, size, height};
+    l.glyph_text = typeset_number(short_number(value, 3)) + (g.unit.empty() ? "" : " " + g.unit);
+  }
+  return height + 0.5 * font;
+}
+
 /// One column with its right edge at area.right().
 LegendLayout layout_one(const Overlay& o, const Legend& s, const Rect& area, double font, bool nan) {
   LegendLayout l;
@@ -98,7 +119,8 @@ LegendLayout layout_one(const Overlay& o, const Legend& s, const Rect& area, dou
   }
   const double title_height = l.title.empty() || l.title_upwards ? 0 : l.title_size.height + 0.7 * font;
   const double top = std::round(area.y + 0.5 * (area.height - height));
-  double y = top + title_height, bottom = top + height - nan_height;
+  const double glyph_height = s.glyph ? plan_glyph(o, *s.glyph, font, l) : 0;
+  double y = top + title_height + glyph_height, bottom = top + height - nan_height;
 
   double labels = nan ? o.measure("NaN", style).width : 0;
   const bool bar = s.labels.empty() || !s.limits.empty();
@@ -130,8 +152,10 @@ LegendLayout layout_one(const Overlay& o, const Legend& s, const Rect& area, dou
   double width = before + l.bar.width + label_gap * font + l.label_width;
   if (l.title_upwards) width += 0.5 * font + l.title_size.height;
   else width = std::max(width, l.title_size.width);
+  if (s.glyph) width = std::max(width, (longest_glyph + glyph_gap + 3) * font);
   l.column = {area.right() - std::ceil(width), top, std::ceil(width), height};
   l.bar.x = std::round(l.column.x + before);
+  l.glyph.x = l.column.x, l.glyph.y = top + title_height;
   if (panel) l.panel = {std::round(l.column.x), l.bar.y, l.panel.width, l.bar.height};
   l.nan_y = l.bar.bottom() + (l.below ? triangle * font + 2 : 0) + 0.75 * line_height;
   return l;
@@ -170,6 +194,31 @@ void draw_bar(Image& image, Overlay& overlay, const ColorScale& s, const LegendL
     overlay.line({right, t.row + 0.5}, {right + 0.35 * f, t.row + 0.5}, std::max(1.0, 0.07 * f), 0.9);
     overlay.text(t.text, right + label_gap * f, t.row + 0.5 - half, style, true);
   }
+}
+
+// An arrow of the glyph's length, or a disc of its size, and what it stands for.
+void draw_glyph(Overlay& overlay, const ColorScale& s, const GlyphLegend& g, const LegendLayout& l) {
+  const double f = l.font, y = l.glyph.y + 0.5 * l.glyph.height, x = l.glyph.x, size = l.glyph.width;
+  const Vec4f c = s.color(size / g.pixels);
+  const Vec3f color{c.x, c.y, c.z};
+  if (g.points) {
+    const double tip = std::min(0.9 * f, 0.4 * size), half = 0.4 * tip, shaft = std::max(0.5, 0.12 * tip);
+    overlay.polygon({{x, y - shaft},
+                     {x + size - tip, y - shaft},
+                     {x + size - tip, y - half},
+                     {x + size, y},
+                     {x + size - tip, y + half},
+                     {x + size - tip, y + shaft},
+                     {x, y + shaft}},
+                    color, true);
+  } else {
+    std::vector<Vec2> rim;
+    const double r = 0.5 * std::min(size, l.glyph.height);
+    for (int k = 0; k < 32; ++k) rim.push_back({x + r + r * std::cos(k * 0.19634954), y + r * std::sin(k * 0.19634954)});
+    overlay.polygon(rim, color, true);
+  }
+  const TextStyle style = sized(f);
+  overlay.text("= " + l.glyph_text, x + size + glyph_gap * f, y - 0.5 * overlay.measure("0", style).height, style, true);
 }
 
 void draw_rows(Image& image, Overlay& overlay, const ColorScale& s, const LegendLayout& l) {
@@ -220,6 +269,7 @@ void draw_legend(Image& image, Overlay& overlay, const Legend& s, const LegendLa
                            l.title_style);
     else overlay.text(l.title, l.column.x, l.column.y, l.title_style, true);
   }
+  if (l.glyph.width > 0) draw_glyph(overlay, s, *s.glyph, l);
   if (l.panel.width > 0) draw_opacity(image, overlay, s, l);
   if (s.labels.empty() || !s.limits.empty()) draw_bar(image, overlay, s, l);
   else draw_rows(image, overlay, s, l);

@@ -31,6 +31,8 @@ struct LegendLayout {
   std::vector<std::string> rows;                       ///< categorical scales: names, the last may say how many more there are
   size_t swatches = 0;                                 ///< of the rows, those with a colour
   double row_height = 0, label_width = 0;
+  Rect glyph;  ///< above the bar: the glyph of `glyph_text`, as large as in the picture; width 0: none
+  std::string glyph_text;
   double nan_y = 0;  ///< top of the NaN swatch
   bool nan = false;
   double font = 15;

@@ -184,3 +184,24 @@ TEST_CASE("trails: the stretch before a time, cut exactly, with ages and heads")
   CHECK(error_of([&] { trails(two_lines(), {.field = {"tim"}}, context); }).find("'tim'") != std::string::npos);
   CHECK(error_of([&] { trails(scattered(5), {}, context); }).find("has no lines") != std::string::npos);
 }
+
+TEST_CASE("trails: without a time, lines of all lengths are shown at the latest time at which half of them run") {
+  SurfaceMesh m;
+  std::vector<double> xyz, time;
+  std::vector<int32_t> ids, offsets{0};
+  for (int l = 0; l < 10; ++l) {  // until 2, 4, ... 20, one that lasts 1000
+    const double last = l == 9 ? 1000 : 2 * (l + 1);
+    for (int k = 0; k <= 10; ++k)
+      xyz.insert(xyz.end(), {k * last / 10, double(l), 0}), time.push_back(k * last / 10), ids.push_back(int32_t(ids.size()));
+    offsets.push_back(int32_t(ids.size()));
+  }
+  m.points.xyz = Array::from_vector(std::move(xyz), 3);
+  m.lines = {Array::from_vector(std::move(ids)), Array::from_vector(std::move(offsets)), 0};
+  FieldSet f;
+  f.add({"time", Association::point, Array::from_vector(std::move(time)), "s", Role::none});
+  Context context;
+  const DatasetPtr t = trails(make_dataset(Mesh(std::move(m)), std::move(f)), {}, context);
+  CHECK(t->as<SurfaceMesh>()->vertices.size() == 5);  // those that last 12 and more, and the one that ends there
+  CHECK(t->range(t->fields().require("time")).hi == doctest::Approx(12));
+  CHECK(t->range(t->fields().require("time")).lo == doctest::Approx(12 - 0.1 * 12));  // of the line in the middle
+}

@@ -254,3 +254,22 @@ TEST_CASE("degenerate points and lines: the same bytes for 1 and 8 threads; the 
   CHECK(degenerate_points(same, {}, l.context)->point_count() == 0);
   CHECK(l.notes.find("4 cells are degenerate throughout") != std::string::npos);
 }
+
+TEST_CASE("degenerate_lines: eigenvalues that are equal all over a surface are told of, a plain line is not") {
+  Listener l;
+  // Along the radius 0.36 - z^2, around the axis r^2: equal on a sphere.
+  const DatasetPtr sphere = tensor_grid({33, 33, 33}, {-1, -1, -1}, {1, 1, 1}, [](Vec3 p) {
+    const double r = p.x * p.x + p.y * p.y, c = r > 0 ? p.x * p.x / r : 1, s = 1 - c, cs = r > 0 ? p.x * p.y / r : 0;
+    const double along = 0.36 - p.z * p.z;
+    return SymTensor{along * c + r * s, along * s + r * c, 5, (along - r) * cs, 0, 0};
+  });
+  const DatasetPtr found = degenerate_lines(sphere, {}, l.context);
+  CHECK(found->cell_count() > 100);
+  CHECK(l.warnings.find("all over surfaces") != std::string::npos);
+  Listener quiet;
+  const DatasetPtr axis = tensor_grid({17, 17, 17}, {-1, -1, -1}, {1, 1, 1}, [](Vec3 p) {
+    return SymTensor{3, p.x + 0.03 - 0.1 * p.z, -p.x - 0.03 + 0.1 * p.z, 0, p.y + 0.011, 0};
+  });
+  CHECK(degenerate_lines(axis, {}, quiet.context)->cell_count() > 0);
+  CHECK(quiet.warnings.empty());
+}

@@ -226,3 +226,33 @@ TEST_CASE("tensor_glyphs: the same bytes for 1 and 8 threads") {
     CHECK(equal_bytes(a->as<SurfaceMesh>()->points.xyz, b->as<SurfaceMesh>()->points.xyz));
   }
 }
+
+TEST_CASE("tensor_glyphs: a long and narrow box gets fewer and larger glyphs, and a few large tensors do not make the others tiny") {
+  Listener l;
+  TensorGlyphsParams p;
+  p.resolution = 4;
+  const size_t nv = glyph(oblique, of_shape("superquadric", 4))->point_count();
+  const DatasetPtr plate = tensor_grid({81, 17, 3}, {0, 0, 0}, {8, 1.6, 0.2}, [](Vec3) { return diagonal(3, 2, 1); });
+  const DatasetPtr few = tensor_glyphs(plate, p, l.context);
+  CHECK(few->point_count() / nv <= 180);
+  CHECK(few->point_count() / nv >= 40);
+  // One in eight is four times as large: drawn as large as 1.6 times the usual, which fills the distance.
+  const DatasetPtr mixed = tensor_grid({5, 5, 5}, {0, 0, 0}, {4, 4, 4}, [](Vec3 x) {
+    const bool large = x.x > 3.5 && x.y > 1.5;
+    return diagonal(large ? 4 : 1, 0.5, 0.5);
+  });
+  const DatasetPtr m = tensor_glyphs(mixed, p, l.context);
+  const auto width = [&](size_t g) {
+    Box3 b;
+    for (size_t i = 0; i < nv; ++i) b.add(m->as<SurfaceMesh>()->points.at(g * nv + i));
+    return b.size().x;
+  };
+  CHECK(width(0) == doctest::Approx(1 / 1.6).epsilon(1e-4));
+  CHECK(width(4 + 5 * 4) == doctest::Approx(1).epsilon(1e-4));
+  CHECK(l.notes.find("1.6 times") != std::string::npos);
+  p.scale = "eigenvalues";
+  const DatasetPtr asked = tensor_glyphs(mixed, p, l.context);
+  Box3 b;
+  for (size_t i = 0; i < nv; ++i) b.add(asked->as<SurfaceMesh>()->points.at(i));
+  CHECK(b.size().x == doctest::Approx(0.25).epsilon(1e-4));
+}

@@ -14,6 +14,7 @@ struct SeedCurveParams {
   std::optional<Vec3> center, normal;
   std::optional<double> radius;
   std::vector<double> points;
+  bool nothing() const { return !from && !to && !center && !normal && !radius && points.empty(); }
 };
 void describe(Schema& s, SeedCurveParams& p);
 

@@ -2,8 +2,10 @@
 #include "filter/flow/fronts/stream_surface.h"
 
 #include "base/parallel.h"
+#include "filter/flow/fronts/default_curve.h"
 #include "filter/flow/fronts/front.h"
 #include "filter/flow/line_attributes.h"
+#include "filter/flow/noise_speed.h"
 #include "filter/flow/seeds.h"
 
 namespace sg {
@@ -21,7 +23,10 @@ void describe(Schema& s, StreamSurfaceParams& p) {
   s("max_time", p.max_time, "front=time: how long; default: the time in which the mean speed goes max_length.").unit("time").positive();
   s("max_angle", p.max_angle, "Largest turn of a front at a place before more are put in.").unit("deg").range(1, 180);
   s("tear", p.tear, "A gap wider than this many spacings that cannot be filled is left open.").range(1, 1e6);
-  s("min_speed", p.min_speed, "Where the flow is slower than this part of its largest speed, the surface ends.").range(0, 1);
+  s("min_speed", p.min_speed,
+    "Where the flow is slower than this part of its largest speed, the surface ends. The default, 1e-4, is 0.02 where most of a grid is "
+    "noise, as around the vessels of a scan.")
+      .range(0, 1);
   s("tolerance", p.tolerance, "Error of one step of integration, in sizes of the local cell.").positive();
   s("max_points", p.max_points, "Most points of the surface.").range(4, 1e9);
 }
@@ -32,7 +37,16 @@ std::string box_text(const Box3& b) {
   return fmt::format("x {:.6g} to {:.6g}, y {:.6g} to {:.6g}, z {:.6g} to {:.6g}", b.lo.x, b.hi.x, b.lo.y, b.hi.y, b.lo.z, b.hi.z);
 }
 
-constexpr int deepest = 12;  // halvings of a gap
+// Nobody follows noise unless min_speed is stated.
+double noise_of(const FlowParts& parts) {
+  double most = 0;
+  for (const FlowField& f : parts.fields()) most = std::max(most, noise_speed(*f.dataset(), f.dataset()->fields().require(parts.name())));
+  return most;
+}
+
+constexpr int deepest = 20;                  // halvings of a gap
+constexpr uint8_t open_end = 1, parted = 2;  // why a front is torn behind a member: there is no more of it, or neighbours went apart
+constexpr double narrowest = 3;              // spacings: between two tears narrower strips are rags
 
 class Growth {
  public:
@@ -46,7 +60,7 @@ class Growth {
         levels_(levels),
         clock_(clock),
         context_(context),
-        min_speed_(p.min_speed * parts.largest_speed()) {}
+        min_speed_(std::max(p.min_speed * parts.largest_speed(), p.min_speed == StreamSurfaceParams().min_speed ? noise_of(parts) : 0)) {}
 
   std::vector<Vec3> points;
   std::vector<FrontPoint> places;  ///< of the points
@@ -73,11 +87,11 @@ class Growth {
         gap = true;
         continue;
       }
-      if (gap && !front.torn.empty()) front.torn.back() = 1;
+      if (gap && !front.torn.empty()) front.torn.back() = open_end;
       gap = false;
       front.members.push_back(path), front.torn.push_back(0);
     }
-    if (!front.members.empty() && (!curve_.closed || gap || paths_[all.front()].at.empty())) front.torn.back() = 1;
+    if (!front.members.empty() && (!curve_.closed || gap || paths_[all.front()].at.empty())) front.torn.back() = open_end;
     for (size_t i = 0; i < front.members.size(); ++i) number(front.members[i], 0, sign > 0 || first_numbers_.empty());
     for (size_t k = 0; k + 1 < levels_ && !front.members.empty(); ++k) {
       context_.check();
@@ -179,7 +193,7 @@ class Growth {
         const double m = between(f, i);
         const bool can = std::max(paths_[a].depth, paths_[b].depth) < deepest && m != paths_[a].s && m != paths_[b].s;
         if (can) wanted.push_back(m), behind.push_back(i);
-        else if (gap > p_.tear * spacing_) f.torn[i] = 1;
+        else if (gap > p_.tear * spacing_) f.torn[i] = parted;
       }
       if (wanted.empty()) return;
       const std::vector<size_t> added = add_paths(wanted, level, 0);
@@ -191,14 +205,14 @@ class Growth {
         path.depth = std::max(paths_[f.members[i]].depth, paths_[f.members[(i + 1) % n]].depth) + 1;
         // One that ends on its way shows where the flow parts.
         if (path.at.size() > level) more.members.push_back(added[k]), more.torn.push_back(0);
-        else more.torn.back() = 1;
+        else more.torn.back() = open_end;
         ++k;
       }
       f = std::move(more);
     }
     for (size_t i = 0; i < f.members.size(); ++i)
       if (!f.torn[i] && length(at(f.members[i], level).x - at(f.members[(i + 1) % f.members.size()], level).x) > p_.tear * spacing_)
-        f.torn[i] = 1;
+        f.torn[i] = parted;
   }
 
   /// Triangles between two fronts: `to` has the members of `from` and more.
@@ -246,13 +260,15 @@ class Growth {
       const Trajectory& path = paths_[f.members[i]];
       if (path.ended || path.at.size() <= level) {
         if (out.members.empty()) open = true;
-        else out.torn.back() = 1;
+        else out.torn.back() = open_end;
         continue;
       }
       out.members.push_back(f.members[i]), out.torn.push_back(f.torn[i]);
     }
     if (out.members.empty()) return out;
-    if (open) out.torn.back() = 1;
+    if (open) out.torn.back() = open_end;
+    drop_rags(out, level);
+    if (out.members.empty()) return out;
     Front kept;
     const size_t m = out.members.size();
     bool skipped = false;
@@ -269,6 +285,35 @@ class Growth {
       kept.members.push_back(out.members[i]), kept.torn.push_back(out.torn[i]);
     }
     return kept;
+  }
+
+  /// Takes out what is narrow and next to a gap where the flow parted: a surface that has torn twice in a short front is no surface.
+  void drop_rags(Front& f, size_t level) const {
+    const size_t n = f.members.size();
+    const auto tear = std::find_if(f.torn.begin(), f.torn.end(), [](uint8_t t) { return t != 0; });
+    if (tear == f.torn.end() || std::count(f.torn.begin(), f.torn.end(), parted) == 0) return;
+    const auto first = size_t(tear - f.torn.begin()) + 1;  // the pieces one after the other, once round
+    std::vector<uint8_t> drop(n, 0);
+    for (size_t k = 0; k < n;) {
+      const size_t begin = k;
+      double wide = 0;
+      for (;; ++k) {
+        const size_t i = (first + k) % n;
+        if (f.torn[i] || k + 1 == n) break;
+        wide += length(at(f.members[i], level).x - at(f.members[(i + 1) % n], level).x);
+      }
+      ++k;
+      const bool beside_gap = f.torn[(first + begin + n - 1) % n] == parted || f.torn[(first + k - 1) % n] == parted;
+      if (beside_gap && wide < narrowest * spacing_)
+        for (size_t m = begin; m < k; ++m) drop[(first + m) % n] = 1;
+    }
+    Front out;
+    for (size_t i = 0; i < n; ++i) {
+      if (!drop[i]) out.members.push_back(f.members[i]), out.torn.push_back(f.torn[i]);
+      else if (!out.members.empty()) out.torn.back() = parted;
+    }
+    if (!out.members.empty() && drop[0]) out.torn.back() = std::max(out.torn.back(), parted);
+    f = std::move(out);
   }
 
   const FlowParts& parts_;
@@ -289,8 +334,11 @@ class Growth {
 Data stream_surface(const std::vector<Data>& inputs, const StreamSurfaceParams& p, Context& context) {
   const FlowParts parts(inputs[0], p.field.name, "stream_surface", context);
   if (parts.dimension() != 3) fail_usage("on a surface streamlines make no surface", "stream_surface", "streamlines or even_streamlines");
-  const SeedCurve curve = seed_curve(p.curve, seed_mesh_of(inputs, "stream_surface"), "stream_surface");
-  const double diagonal = parts.bounds().diagonal(), spacing = p.spacing.value_or(diagonal / 100);
+  const DatasetPtr second = seed_mesh_of(inputs, "stream_surface");
+  const bool chosen = p.curve.nothing() && !second;
+  const SeedCurve curve = seed_curve(chosen ? across_the_flow(parts, context) : p.curve, second, "stream_surface");
+  const double diagonal = parts.bounds().diagonal();
+  const double spacing = p.spacing.value_or(std::min(diagonal / 100, chosen ? curve.whole() / 12 : HUGE_VAL));
   const double far = p.max_length.value_or(diagonal);
   // The mean speed on the curve tells how long `far` takes.
   PartsCursor flow(parts);

@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/texture/lic.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "filter/flow/flow_field.h"
+#include "filter/flow/noise_speed.h"
 #include "filter/flow/texture/contrast.h"
 #include "filter/flow/texture/convolution.h"
 #include "filter/flow/texture/frame.h"
@@ -15,15 +20,21 @@ using namespace texture;
 
 void describe(Schema& s, LicParams& p) {
   s("field", p.field, "Vector field along which is averaged; default: the active vectors.");
-  s("length", p.length, "How far the average reaches along the flow, each way.").unit("pixels").range(0, 4096);
+  s("length", p.length, "How far the average reaches along the flow, each way; default: 20, sparse dots in solid data 30.")
+      .unit("pixels")
+      .range(0, 4096);
   s("step", p.step, "Distance of the places that are averaged.").unit("pixels").range(0.05, 4);
   s("kernel", p.kernel, "Weights along the line: box, hanning (fading), ripple (waves that phase moves).")
       .choices({"box", "hanning", "ripple"});
   s("phase", p.phase, "Where the waves of kernel=ripple stand, in periods: frames of 0, 1/n, 2/n, ... move along the flow.");
   s("ripples", p.ripples, "Waves in the length of the kernel.").range(1, 100);
   s("method", p.method, "plain: a line for each pixel. fast: long lines that share their sums.").choices({"plain", "fast"});
-  s("noise", p.noise, "What is averaged: white noise, or sparse dots (the one to look into volumes).").choices({"white", "sparse"});
-  s("density", p.density, "Part of the noise's points that are dots when it is sparse; 0: 0.02 in flat data, 0.002 in solid ones.")
+  s("noise", p.noise,
+    "What is averaged: white noise, or sparse dots, which become strands that a volume can be looked into by; auto: white in flat data, "
+    "sparse in solid ones.")
+      .choices({"auto", "white", "sparse"});
+  s("density", p.density,
+    "Part of the noise's points that are dots when it is sparse; 0: 0.02 in flat data, in solid ones 0.0015, more where little flows.")
       .range(0, 1);
   s("grain", p.grain, "Size of the grains of the noise; 0: 1, sparse dots in solid data 2.").unit("pixels").range(0, 256);
   s("seed", p.seed, "Another number, another noise.");
@@ -31,7 +42,10 @@ void describe(Schema& s, LicParams& p) {
   s("contrast", p.contrast, "none: plain averages. stretch: a hundredth of the pixels black, a hundredth white. equalise: all greys alike.")
       .choices({"none", "stretch", "equalise"});
   s("passes", p.passes, "2: the texture is sharpened and averaged once more, for finer and clearer lines.").range(1, 4);
-  s("still", p.still, "Speed up to which there is no texture.").unit("@field").at_least(0);
+  s("still", p.still,
+    "Speed up to which there is no texture. Default: 0, where most of a grid is noise (scans of vessels) 2 % of the largest speed.")
+      .unit("@field")
+      .at_least(0);
   s("resolution", p.resolution, "Pixels along the longest side; 0: those of the grid, coarse ones refined to 1024 (flat) or 128 (solid).")
       .range(0, 100000);
 }
@@ -62,6 +76,29 @@ Plane<uint32_t> directions_of(const Frame& f, double still, const Context& conte
   return codes;
 }
 
+// Part of the pixels that have a direction: strands are to be as many in a vessel alone as in a full box.
+double flowing_share(const Plane<uint32_t>& codes) {
+  const auto still = size_t(std::count(codes.begin(), codes.end(), 0u));
+  return std::max(1e-3, double(codes.size() - still) / double(std::max<size_t>(codes.size(), 1)));
+}
+
+// The colour of strands.
+Field speed_of(const Frame& f) {
+  const Field& v = f.fields.require(f.velocity_name, Association::point);
+  float* speed = nullptr;
+  Field out{"speed", Association::point, Array::make<float>(f.size(), 1, &speed), v.unit, Role::none};
+  dispatch(v.array, [&](auto view) {
+    parallel_for(f.size(), 1 << 15, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) {
+        double e = 0;
+        for (int c = 0; c < view.components; ++c) e += double(view(i, c)) * double(view(i, c));
+        speed[i] = float(std::sqrt(e));
+      }
+    });
+  });
+  return out;
+}
+
 bool has_value(const Frame& f, size_t pixel) {
   float v[3] = {};
   velocity_of(f, pixel, pixel + 1, v);
@@ -81,9 +118,9 @@ Array image_of(const Frame& f, const DatasetPtr& image, const LicParams& p) {
 }
 
 // One component: convolved as often as asked for, into `out`.
-void average(const DirectionGrid& directions, const float* what, const LicParams& p, float* out, const Context& context) {
+void average(const DirectionGrid& directions, const float* what, const LicParams& p, double reach, float* out, const Context& context) {
   DirectionGrid grid = directions;
-  const Weights weights = kernel_weights(p.kernel, int(std::lround(p.length / p.step)), p.phase, p.ripples);
+  const Weights weights = kernel_weights(p.kernel, int(std::lround(reach / p.step)), p.phase, p.ripples);
   Plane<float> between;
   grid.noise = what;
   for (int pass = 0; pass < p.passes; ++pass) {
@@ -102,26 +139,28 @@ void average(const DirectionGrid& directions, const float* what, const LicParams
 DatasetPtr lic(const DatasetPtr& input, const DatasetPtr& image, const LicParams& p, Context& context) {
   if (!image && !p.image.empty()) fail_usage("image names a field of a second input, and there is none", "lic image");
   const Frame f = make_frame(input, p.field.name, p.resolution, "lic", context);
-  const Plane<uint32_t> codes = directions_of(f, p.still, context);
+  const double still = p.still.value_or(noise_speed(*input, flow_field_of(*input, p.field.name, "lic")));
+  if (!p.still && still > 0) context.info(fmt::format("lic: most of '{}' is noise: still={:.3g}", f.velocity_name, still));
+  const Plane<uint32_t> codes = directions_of(f, still, context);
   DirectionGrid grid;
   grid.dimension = f.dimension;
   std::copy_n(f.n, 3, grid.n);
   grid.codes = codes.data();
 
-  const bool sparse = p.noise == "sparse" && !image;
+  const bool solid = f.dimension == 3, sparse = !image && (p.noise == "sparse" || (p.noise == "auto" && solid));
+  const double reach = p.length.value_or(sparse && solid ? 30 : 20);
   const size_t n = f.size();
   Array what;
   Plane<float> noise;
   if (image) what = image_of(f, image, p);
   else {
-    const bool solid = f.dimension == 3;
     noise = grained_noise(f.n, uint64_t(p.seed),
                           p.grain > 0       ? p.grain
                           : sparse && solid ? 2
                                             : 1,
                           sparse,
                           p.density > 0 ? p.density
-                          : solid       ? 0.004
+                          : solid       ? std::min(0.0015 / flowing_share(codes), 0.02)
                                         : 0.02);
   }
   const int components = image ? what.components() : 1;
@@ -138,7 +177,7 @@ DatasetPtr lic(const DatasetPtr& input, const DatasetPtr& image, const LicParams
       for (size_t i = 0; i < n; ++i) one[i] = from[i * size_t(components) + size_t(k)];
       source = one.data(), target = averaged.data();
     }
-    average(grid, source, p, target, context);
+    average(grid, source, p, reach, target, context);
     if (components == 1 && !image) set_contrast({target, n}, p.contrast, sparse, context);
     // Where nothing flows: the image as it is, or the grey of no texture.
     without = parallel_reduce(
@@ -157,7 +196,9 @@ DatasetPtr lic(const DatasetPtr& input, const DatasetPtr& image, const LicParams
       for (size_t i = 0; i < n; ++i) out[i * size_t(components) + size_t(k)] = averaged[i];
   }
   if (without == n) context.warn(fmt::format("lic: '{}' does not flow anywhere, there is no texture", f.velocity_name));
-  return frame_dataset(f, {{"lic", Association::point, std::move(result), "", Role::none}});
+  std::vector<Field> made{{"lic", Association::point, std::move(result), "", Role::none}};
+  if (solid && !f.fields.find("speed")) made.push_back(speed_of(f));
+  return frame_dataset(f, std::move(made));
 }
 
 Data lic_of(const std::vector<Data>& inputs, const LicParams& p, Context& context) {

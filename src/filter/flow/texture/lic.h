@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // lic: line integral convolution, the texture of a flow.
 #pragma once
+#include <optional>
+
 #include "base/context.h"
 #include "base/schema.h"
 #include "data/dataset.h"
@@ -9,18 +11,19 @@ namespace sg {
 
 struct LicParams {
   FieldName field;
-  double length = 20, step = 1;
+  std::optional<double> length;
+  double step = 1;
   std::string kernel = "box";
   double phase = 0;
   int ripples = 2;
   std::string method = "plain";
-  std::string noise = "white";
+  std::string noise = "auto";
   double density = 0, grain = 0;
   int64_t seed = 1;
   FieldName image;
   std::string contrast = "stretch";
   int passes = 1;
-  double still = 0;
+  std::optional<double> still;
   int64_t resolution = 0;
 };
 void describe(Schema& s, LicParams& p);
@@ -29,11 +32,11 @@ void describe(Schema& s, LicParams& p);
 /// field (Cabral, Leedom 1993); with method=fast along streamlines that share their sums (Stalling, Hege 1995), so that a pixel's
 /// value is the mean of those of places in it: the same statistics, not the same numbers. Any flat mesh gives a picture (see
 /// texture::make_frame for the grid), a solid one a volume of texture. The input's fields come along, interpolated, to be colours under the
-/// texture. An image gives "lic" as many components as it has, in its own numbers (no contrast).
-/// Animation: frames of kernel=ripple with phase = 0, 1/n, 2/n, ... move along the flow, and 1 is 0 again.
-/// NaN where the flow has no value; where its speed is not above `still`: 0.5, the image as it is, 0 with sparse noise. Lines end at the
-/// border and where there is no flow; the mean is over what there is of them. Throws Error(usage) for data without vectors, other images
-/// and curved surfaces. O(pixels length/step); fast: O(pixels).
+/// texture; a volume gets the field "speed", the colour of its strands. An image gives "lic" as many components as it has, in its own
+/// numbers (no contrast). Animation: frames of kernel=ripple with phase = 0, 1/n, 2/n, ... move along the flow, and 1 is 0 again. NaN where
+/// the flow has no value; where its speed is not above `still`: 0.5, the image as it is, 0 with sparse noise. Lines end at the border and
+/// where there is no flow; the mean is over what there is of them. Throws Error(usage) for data without vectors, other images and curved
+/// surfaces. O(pixels length/step); fast: O(pixels).
 DatasetPtr lic(const DatasetPtr& input, const DatasetPtr& image, const LicParams& params, Context& context);
 /// The operation: one input, or two.
 Data lic_of(const std::vector<Data>& inputs, const LicParams& params, Context& context);

@@ -57,7 +57,11 @@ Array convolve_surface(const RefinedSurface& r, const Walk& walk, const SurfaceC
   std::vector<uint32_t> home(n, UINT32_MAX);
   for (size_t t = r.triangles.size(); t-- > 0;)
     for (const uint32_t q : r.triangles[t]) home[q] = uint32_t(t);
-  const auto noise = [&](uint32_t point) { return random_unit(uint64_t(p.seed), point); };
+  std::vector<double> noises(n);  // asked for often: each line passes many points
+  parallel_for(n, 1 << 15, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) noises[i] = random_unit(uint64_t(p.seed), i);
+  });
+  const auto noise = [&](uint32_t point) { return noises[point]; };
   const auto noise_at = [&](const typename Walk::Place& at) {
     const auto& t = r.triangles[at.triangle];
     return noise(t[0]) * at.b[0] + noise(t[1]) * at.b[1] + noise(t[2]) * at.b[2];

@@ -170,19 +170,29 @@ DatasetPtr ftle(const Series& given, const FtleParams& p, Context& context) {
     r.size = 64;
     grid = resample_grid(shape, r);
   }
-  return ftle_of(grid, duration, p.offset, [&](std::span<const Vec3> from, std::vector<Vec3>& to, std::vector<uint8_t>& known) {
-    std::vector<Particle> particles(from.size());
-    for (size_t i = 0; i < from.size(); ++i) particles[i].x = from[i], particles[i].t = start;
-    for (;; k = size_t(ptrdiff_t(k) + sign)) {
-      flow.open(k, context);
-      advance(flow, particles, k == last ? until : sign > 0 ? flow.end() : flow.begin(), sign, options, context);
-      context.check();
-      context.progress(std::min(1.0, std::abs((sign > 0 ? flow.end() : flow.begin()) - start) / std::abs(duration)), "ftle");
-      if (k == last) break;
-    }
-    to.resize(from.size()), known.resize(from.size());
-    for (size_t i = 0; i < from.size(); ++i) to[i] = particles[i].x, known[i] = particles[i].started && !particles[i].ended;
-  });
+  size_t gone = 0, all = 0;
+  const DatasetPtr out =
+      ftle_of(grid, duration, p.offset, [&](std::span<const Vec3> from, std::vector<Vec3>& to, std::vector<uint8_t>& known) {
+        std::vector<Particle> particles(from.size());
+        for (size_t i = 0; i < from.size(); ++i) particles[i].x = from[i], particles[i].t = start;
+        for (;; k = size_t(ptrdiff_t(k) + sign)) {
+          flow.open(k, context);
+          advance(flow, particles, k == last ? until : sign > 0 ? flow.end() : flow.begin(), sign, options, context);
+          context.check();
+          context.progress(std::min(1.0, std::abs((sign > 0 ? flow.end() : flow.begin()) - start) / std::abs(duration)), "ftle");
+          if (k == last) break;
+        }
+        to.resize(from.size()), known.resize(from.size());
+        all = from.size();
+        for (size_t i = 0; i < from.size(); ++i) {
+          to[i] = particles[i].x, known[i] = particles[i].started && !particles[i].ended;
+          gone += !known[i];
+        }
+      });
+  if (gone > 0)
+    context.info(fmt::format("ftle: {:.3g} % of the particles start outside the flow or leave it within {:.4g}: there are holes",
+                             100 * double(gone) / double(all), std::abs(duration)));
+  return out;
 }
 
 }  // namespace sg

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/fronts/stream_surface.h"
 
+#include <functional>
 #include <map>
 #include <set>
 
@@ -157,5 +158,55 @@ TEST_CASE("stream surface: the same bytes for any number of threads, and curves 
         }).find("does not lie") != std::string::npos);
   const DatasetPtr still = flow_on_grid(4, [](Vec3) { return Vec3(); });
   CHECK(test::error_of([&] { stream_surface({still}, p, context); }).find("nothing flows") != std::string::npos);
-  CHECK(test::error_of([&] { stream_surface({swirl}, {}, context); }).find("seed curve") != std::string::npos);
+  StreamSurfaceParams two = p;
+  two.curve.points = {0, 0, 0, 1, 0, 0};
+  CHECK(test::error_of([&] { stream_surface({swirl}, two, context); }).find("seed curve") != std::string::npos);
+}
+
+TEST_CASE("stream surface: without a seed curve it begins at a line across the flow, also where the middle stands still") {
+  Context context;
+  std::string log;
+  context.on_log = [&](LogLevel, std::string_view text) { log += text; };
+  const Surface wide(stream_surface({flow_on_grid(9, [](Vec3) { return Vec3(1, 0.2, 0); })}, {}, context));
+  CHECK(log.find("from=") != std::string::npos);
+  const Box3 box = wide.data->bounds();
+  CHECK(box.size().z > 0.5);  // along z, which is across
+  CHECK(box.hi.x > 0.99);     // from the middle to the border
+  CHECK(box.lo.x > -0.01);
+  CHECK(wide.euler() == 1);
+  // A jet beside the middle, still air elsewhere.
+  const Surface jet(stream_surface({flow_on_grid(33,
+                                                 [](Vec3 x) {
+                                                   const double r = (x.y - 0.5) * (x.y - 0.5) + x.z * x.z;
+                                                   return r < 0.04 ? Vec3(1 - r / 0.04, 0, 0) : Vec3();
+                                                 })},
+                                   {}, context));
+  CHECK(jet.data->bounds().lo.y > 0.2);
+  CHECK(jet.data->bounds().size().z < 0.5);
+  CHECK(jet.data->bounds().hi.x > 0.9);
+}
+
+TEST_CASE("stream surface: in a chaotic flow no strips narrower than three spacings are left between tears") {
+  Context context;
+  const DatasetPtr chaos = flow_on_grid(41, [](Vec3 x) {  // periods of the ABC flow
+    const Vec3 p = x * pi;
+    return Vec3(std::sin(p.z) * 1.7 + std::cos(p.y), std::sin(p.x) * 1.4 + std::cos(p.z) * 1.7, std::sin(p.y) + std::cos(p.x) * 1.4);
+  });
+  StreamSurfaceParams p = line({-0.6, -0.2, 0.1}, {0.6, 0.3, -0.1}, 0.05);
+  p.max_length = 5;
+  const Surface s(stream_surface({chaos}, p, context));
+  s.euler();
+  CHECK(s.longest_edge() < 4.5 * 0.05);
+  // Parts of the surface that hang together by edges: all are larger than a rag.
+  std::map<int64_t, int64_t> parent;
+  const std::function<int64_t(int64_t)> root = [&](int64_t i) {
+    const auto at = parent.find(i);
+    return at == parent.end() || at->second == i ? i : at->second = root(at->second);
+  };
+  for (const auto& t : s.triangles)
+    for (const int64_t i : t) parent.try_emplace(i, i), parent[root(i)] = root(t[0]);
+  std::map<int64_t, double> area;
+  for (const auto& t : s.triangles) area[root(t[0])] += length(cross(s.at(t[1]) - s.at(t[0]), s.at(t[2]) - s.at(t[0]))) / 2;
+  CHECK(area.size() < 10);
+  CHECK(s.area() > 1);
 }

@@ -283,7 +283,7 @@ TEST_CASE("lic: a solid grid gives a volume of texture that varies across the fl
   const DatasetPtr d = make_dataset(g, fields);
   for (const char* method : {"plain", "fast"}) {
     LicParams p;
-    p.resolution = 48, p.length = 8, p.contrast = "none", p.method = method;
+    p.resolution = 48, p.length = 8, p.contrast = "none", p.method = method, p.noise = "white";
     const std::vector<float> v = values_of(texture_of(d, p), "lic");
     double along = 0, across = 0, n = 0;
     for (size_t k = 0; k + 1 < 36; ++k)
@@ -330,4 +330,25 @@ TEST_CASE("lic: bad inputs are named") {
   c.on_log = [&](LogLevel l, std::string_view) { warned = warned || l == LogLevel::warning; };
   lic(flow_2d(32, 32, [](double, double, float*) {}), nullptr, p, c);
   CHECK(warned);
+}
+
+TEST_CASE("lic: solid data get sparse strands and their speed without being asked, flat data white noise") {
+  UniformGrid g;
+  g.dims = {40, 30, 30};
+  std::vector<float> u(3 * 40 * 30 * 30, 0.0f);
+  for (size_t i = 1; i < u.size(); i += 3) u[i] = 3, u[i + 1] = 4;
+  FieldSet fields;
+  fields.add({"v", Association::point, Array::from_vector(std::move(u), 3), "m/s", Role::vectors});
+  const DatasetPtr d = make_dataset(g, fields);
+  LicParams p;
+  p.resolution = 40;
+  const DatasetPtr solid = texture_of(d, p);
+  const std::vector<float> v = values_of(solid, "lic");
+  CHECK(std::count(v.begin(), v.end(), 0.0f) > ptrdiff_t(v.size() / 2));
+  CHECK(*std::max_element(v.begin(), v.end()) == 1);
+  const Field& speed = solid->fields().require("speed");
+  CHECK(speed.array.get(777) == doctest::Approx(5));
+  CHECK(speed.unit == "m/s");
+  const std::vector<float> flat = values_of(texture_of(along_x(64, 64), {}), "lic");
+  CHECK(std::count(flat.begin(), flat.end(), 0.0f) < ptrdiff_t(flat.size() / 10));
 }

@@ -193,3 +193,20 @@ TEST_CASE("ftle: steps as long as the tolerance lets them be give the values of 
   CHECK(worst < 1e-3);
   CHECK(sum / double(a.count()) < 2e-5);
 }
+
+TEST_CASE("ftle: how many particles leave is told, and none when all stay") {
+  std::string log;
+  Context context;
+  context.on_log = [&](LogLevel, std::string_view text) { log += text; };
+  FtleParams p;
+  p.duration = 0.5, p.size = 9;
+  const DatasetPtr wind =
+      ftle(steady(test::cube_flow(9, -1, 1, [](Vec3) { return Vec3(0.9, 0, 0); })), p, context);  // two of nine columns leave
+  CHECK(log.find("22.2 % of the particles") != std::string::npos);
+  CHECK(std::isnan(wind->fields().require("ftle").array.get(8)));
+  log.clear();
+  const DatasetPtr still =
+      ftle(steady(test::cube_flow(9, -1, 1, [](Vec3 x) { return Vec3(x.x * (1 - x.x * x.x), 0, 0) * 0.1; })), p, context);
+  CHECK(still->stats(still->fields().require("ftle")).nan == 0);
+  CHECK(log.find("particles") == std::string::npos);
+}

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+// Looks of the fields that flow operations make, and of fields with few extreme values.
+#include "scene/field_habits.h"
+
+#include <cmath>
+
+#include "scene/glyph_parts.h"
+#include "scene/look.h"
+#include "scene/show_glyphs.h"
+#include "scene/show_volume.h"
+#include "scene/volume_look.h"
+#include "support/test.h"
+
+using namespace sg;
+
+namespace {
+
+constexpr size_t n = 24;
+
+// A cube of n points a side.
+template <class F>
+DatasetPtr cube(const std::string& name, F&& f) {
+  UniformGrid g;
+  g.dims = {n, n, n};
+  std::vector<float> v;
+  for (size_t k = 0; k < n; ++k)
+    for (size_t j = 0; j < n; ++j)
+      for (size_t i = 0; i < n; ++i) v.push_back(float(f(double(i), double(j), double(k))));
+  FieldSet fields;
+  fields.add({name, Association::point, Array::from_vector(std::move(v)), "", Role::scalars});
+  return make_dataset(g, std::move(fields));
+}
+
+// Within +-1 but for one value in 500, which reaches far down.
+DatasetPtr spiked(const std::string& name) {
+  int at = 0;
+  return cube(name, [&](double i, double j, double k) { return ++at % 500 == 0 ? -100 : std::sin(0.7 * i) * std::cos(0.5 * j + 0.3 * k); });
+}
+
+ColorScale scale_of(const DatasetPtr& d, ColoringParams p = {}, std::string* log = nullptr) {
+  Context context;
+  context.on_log = [&](LogLevel, std::string_view text) {
+    if (log) *log += std::string(text) + "\n";
+  };
+  return choose_scale(*d, d->fields()[0], p, context);
+}
+
+OpacityCurve opacity_of(const DatasetPtr& d) {
+  Context context;
+  Scene scene;
+  find_show("volume").add(scene, d, {}, context);
+  return std::get<VolumeItem>(scene.items.back()).opacity;
+}
+
+std::string log_of_lines(const DatasetPtr& d) {
+  Context context;
+  std::string log;
+  context.on_log = [&](LogLevel level, std::string_view text) { log += (level == LogLevel::warning ? "!" : "") + std::string(text); };
+  Scene scene;
+  find_show("lines").add(scene, d, {}, context);
+  return log;
+}
+
+DatasetPtr wind(double x0, size_t nx, double speed) {
+  UniformGrid g;
+  g.dims = {nx, 20, 1}, g.origin = {x0, 0, 0};
+  std::vector<float> v;
+  for (size_t i = 0; i < nx * 20; ++i) v.insert(v.end(), {float(speed), 0, 0});
+  FieldSet f;
+  f.add({"wind", Association::point, Array::from_vector(std::move(v), 3), "m/s", Role::vectors});
+  return make_dataset(Mesh(g), std::move(f));
+}
+
+}  // namespace
+
+TEST_CASE("choose_scale: ftle gets a sequential map though some values are negative, other signed fields a diverging one") {
+  const auto f = [](double i, double, double) { return i / 10 - 0.5; };
+  CHECK(scale_of(cube("ftle", f)).map.kind == MapKind::sequential);
+  CHECK(scale_of(cube("ftle", f)).lo == doctest::Approx(-0.5));
+  CHECK(scale_of(cube("temperature", f)).map.kind == MapKind::diverging);
+  const auto lopsided = [](double i, double, double) { return i == 0 ? -100 : i / 24; };
+  CHECK(scale_of(cube("Q", lopsided)).map.kind == MapKind::diverging);
+  CHECK(scale_of(cube("temperature", lopsided)).map.kind == MapKind::sequential);
+}
+
+TEST_CASE("choose_scale: a few extreme values of a signed field are cut off, with triangles and a note; a stated range is kept") {
+  std::string log;
+  const ColorScale s = scale_of(spiked("Q"), {}, &log);
+  CHECK(s.hi == doctest::Approx(1).epsilon(0.02));
+  CHECK(s.lo == -s.hi);
+  CHECK(s.below.has_value());
+  CHECK(log.find("range=-100,") != std::string::npos);
+  ColoringParams stated;
+  stated.range = {-100, 100};
+  CHECK(scale_of(spiked("Q"), stated).lo == -100);
+  // Unknown fields of one sign keep their peaks: they may be what matters.
+  int at = 0;
+  const auto stress = cube("stress", [&](double i, double, double) { return ++at % 500 == 0 ? 100 : 0.1 * i; });
+  CHECK(scale_of(stress).hi == 100);
+  // So do signed ones whose ends are not far.
+  CHECK(scale_of(cube("t", [](double i, double j, double) { return std::sin(i) * j; })).above.has_value() == false);
+}
+
+TEST_CASE("volume: high values of ftle and Q are seen, low ones of lambda2; the other side of zero is clear") {
+  const auto wave = [](double i, double j, double k) { return std::sin(0.5 * i) * std::sin(0.4 * j) * std::cos(0.3 * k); };
+  const OpacityCurve q = opacity_of(cube("Q", wave)), l = opacity_of(cube("lambda2", wave));
+  CHECK(q.at(0.9) > 0.5);
+  CHECK(q.at(-0.9) == 0);
+  CHECK(q.at(0) == 0);
+  CHECK(l.at(-0.9) > 0.5);
+  CHECK(l.at(0.9) == 0);
+  const OpacityCurve ftle = opacity_of(cube("ftle", [](double i, double, double) { return 1 - i / 24; }));
+  CHECK(ftle.at(1) > 0.5);
+  CHECK(ftle.at(0.3) == 0);
+  const OpacityCurve other = opacity_of(cube("v", wave));
+  CHECK(other.at(0.9) == doctest::Approx(other.at(-0.9)));
+}
+
+TEST_CASE("volume: extreme values of Q do not make the rest invisible") {
+  int at = 0;
+  const OpacityCurve q = opacity_of(cube("Q", [&](double i, double, double) { return ++at % 500 == 0 ? 200 : std::sin(0.4 * i); }));
+  CHECK(q.at(0.9) > 0.3);
+}
+
+TEST_CASE("look: a solid texture of sparse noise is shown as opaque strands in the colours of the speed") {
+  DatasetParts parts = cube("other", [](double i, double, double) { return i; })->parts();
+  const auto strands = cube("lic", [](double i, double j, double) { return int(i) % 6 == 0 && int(j) % 6 == 0 ? 0.8 : 0.0; });
+  Field lic = strands->fields()[0], speed = lic;
+  lic.role = speed.role = Role::none, speed.name = "speed";
+  parts.fields.add(lic), parts.fields.add(speed);
+  const DatasetPtr d = make_dataset(std::move(parts));
+  const Look look = choose_look(*d, "", "");
+  REQUIRE(look.shows.size() == 1);
+  CHECK(look.shows[0].kind == "volume");
+  CHECK(look.shows[0].words == std::vector<std::string>{"field=lic", "color_by=speed", "tolerance=0.01"});
+  Context context;
+  Scene scene;
+  find_show("volume").add(scene, d, look.shows[0].words, context);
+  const auto& item = std::get<VolumeItem>(scene.items.back());
+  CHECK(item.field == "lic");
+  CHECK(item.opacity.at(0) == 0);
+  CHECK(item.opacity.at(0.5) > 0.9);
+  CHECK(item.unit_distance == doctest::Approx(3));
+  CHECK(choose_look(*d, "other", "").shows[0].words[0] == "field=other");
+}
+
+TEST_CASE("lines of data without lines draw nothing, and say what to do") {
+  const std::string log = log_of_lines(cube("v", [](double i, double, double) { return i; }));
+  CHECK(log.find("!lines:") == 0);
+  CHECK(log.find("streamlines") != std::string::npos);
+  SurfaceMesh m;
+  m.points.xyz = Array::from_vector(std::vector<float>{0, 0, 0, 1, 0, 0}, 3);
+  m.lines.connectivity = Array::from_vector(std::vector<int32_t>{0, 1}), m.lines.fixed = 2;
+  CHECK(log_of_lines(make_dataset(std::move(m))).empty());
+}
+
+TEST_CASE("glyphs of several parts: one length for one value, and shares of one number of glyphs") {
+  const std::vector<DatasetPtr> parts{wind(0, 60, 2), wind(60, 20, 6)};
+  std::vector<std::vector<std::string>> words(2);
+  take_one_glyph_scale(parts, words);
+  double scale[2];
+  size_t count[2];
+  for (size_t i = 0; i < 2; ++i) {
+    Context context;
+    Scene scene;
+    const auto legend = find_show("glyphs").add(scene, parts[i], words[i], context);
+    const auto& item = std::get<GlyphsItem>(scene.items.back());
+    scale[i] = item.rule.scale, count[i] = item.data->point_count();
+    REQUIRE(legend);
+    REQUIRE(legend->glyph);
+    CHECK(legend->glyph->length == doctest::Approx(item.rule.scale));
+    CHECK(legend->glyph->unit == "m/s");
+  }
+  CHECK(scale[0] == scale[1]);
+  CHECK(count[0] > 2 * count[1]);
+  CHECK(count[0] + count[1] < 1100);
+  std::vector<std::vector<std::string>> stated(2, {"factor=0.25", "count=50"});
+  take_one_glyph_scale(parts, stated);
+  CHECK(stated[0] == std::vector<std::string>{"factor=0.25", "count=50"});
+  std::vector<std::vector<std::string>> sized(2, {"size=3"});  // of the largest of all
+  take_one_glyph_scale(parts, sized);
+  CHECK(std::find(sized[0].begin(), sized[0].end(), "factor=0.5") != sized[0].end());
+}
