@@ -31,20 +31,30 @@ CellZeros::Result CellZeros::find(size_t cell, std::vector<CellZero>& out) {
   const auto ids = map_.reader().ids();
   const size_t n = ids.size();
   v_.resize(n), zero_.resize(n);
-  bool all = true, some = false, slow = true;
+  bool all = true, some = false;
+  double fastest = 0, slowest = HUGE_VAL;
   for (size_t k = 0; k < n; ++k) {
     const Vec3 v = flow_.at_point(size_t(ids[k]));
     if (!(std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z))) return Result::none;
     v_[k] = frame_ ? Vec3(dot(v, frame_->e1), dot(v, frame_->e2), 0) : v;
     zero_[k] = v_[k] == Vec3();
-    slow = slow && length(v) < min_speed_;
+    fastest = std::max(fastest, length(v)), slowest = std::min(slowest, length(v));
     all = all && zero_[k], some = some || zero_[k];
   }
-  if (slow) return Result::none;
+  if (fastest < min_speed_) return Result::none;
   if (all) {
     spread_.insert(spread_.end(), ids.begin(), ids.end());
     return Result::spread;
   }
+  const size_t before = out.size();
+  const Result result = find_open(some, out);
+  for (size_t i = before; i < out.size(); ++i) out[i].speed = slowest;
+  return result;
+}
+
+// In the open cell; `some`: of its points stand still.
+CellZeros::Result CellZeros::find_open(bool some, std::vector<CellZero>& out) {
+  const size_t n = v_.size();
   known_.clear();
   Result result = Result::isolated;
   if (some && zero_edges(result)) return result;

@@ -16,6 +16,7 @@ struct CellZero {
   Vec3 at;              ///< place
   Mat3 gradient;        ///< m[i][j] = dv_i/dx_j
   double size = 0;      ///< of the cell: diagonal of the box of its nodes
+  double speed = 0;     ///< smallest at the cell's points
   bool border = false;  ///< on the cell's border (to 1e-6), where other cells may find it too
   int64_t node = -1;    ///< the mesh point whose velocity is exactly zero, where the zero is one
 };
@@ -41,6 +42,7 @@ class CellZeros {
 
  private:
   BernsteinBasis& basis_of(const CellShape& shape);
+  Result find_open(bool some, std::vector<CellZero>& out);
   Result find_linear(std::vector<CellZero>& out);
   Result find_bilinear(std::vector<CellZero>& out);
   Result find_polynomial(const CellShape& shape, std::vector<CellZero>& out);
