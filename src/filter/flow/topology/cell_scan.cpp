@@ -2,10 +2,10 @@
 #include "filter/flow/topology/cell_scan.h"
 
 #include <algorithm>
-#include <functional>
 
 #include "base/huge_allocator.h"
 #include "base/parallel.h"
+#include "data/cell_reader.h"
 #include "data/cell_topology.h"
 #include "data/lattice.h"
 
@@ -63,17 +63,66 @@ void scan_block(const Block& b, const uint8_t* signs, std::vector<uint64_t>& out
   out.insert(out.end(), all.begin(), all.end());
 }
 
-std::vector<uint64_t> scan_lists(const CellsView& cells, size_t first, const uint8_t* signs, Context& context,
-                                 const std::function<bool(size_t)>& always) {
+// Mean value weights of polygons and polyhedra that are not convex may be negative.
+bool is_hollow(CellReader& cell, const std::vector<uint32_t>& ring) {
+  const auto at = cell.at();
+  auto turns = [&](std::span<const uint32_t> face, Vec3 inside) {
+    Vec3 area;
+    for (size_t k = 1; k + 1 < face.size(); ++k) area += cross(at[face[k]] - at[face[0]], at[face[k + 1]] - at[face[0]]);
+    const double noise = 1e-9 * dot(area, area);
+    for (size_t k = 0; k < face.size(); ++k) {
+      const Vec3 a = at[face[k]], b = at[face[(k + 1) % face.size()]], c = at[face[(k + 2) % face.size()]];
+      if (dot(cross(b - a, c - b), area) < -noise) return true;
+    }
+    if (cell.dimension() == 2) return false;
+    // All corners on the side of the middle.
+    const double side = dot(inside - at[face[0]], area), reach = 1e-9 * length(area) * std::sqrt(length(area));
+    return std::any_of(at.begin(), at.end(), [&](Vec3 p) { return dot(p - at[face[0]], area) * (side < 0 ? -1 : 1) < -reach; });
+  };
+  if (cell.dimension() == 2) return turns(ring, {});
+  Vec3 middle;
+  for (const Vec3 p : at) middle += p / double(at.size());
+  for (size_t f = 0, n = cell.face_count(); f < n; ++f) {
+    const auto face = cell.face(f);
+    if (face.size() >= 3 && turns(face, middle)) return true;
+  }
+  return false;
+}
+
+// Cells that may have a zero whatever the signs are; one per thread.
+class Unsure {
+ public:
+  explicit Unsure(const DatasetPtr& data) : reader_(data) {}
+  bool operator()(size_t cell, CellType type) {
+    if (is_high_order(type)) return true;
+    if (type != CellType::polygon && type != CellType::polyhedron) return false;
+    reader_.open(cell);
+    ring_.clear();
+    if (type == CellType::polygon) {
+      if (reader_.ids().size() <= 3) return false;
+      face_outline(type, reader_.ids().size(), ring_, reader_.orders());
+    }
+    return is_hollow(reader_, ring_);
+  }
+
+ private:
+  CellReader reader_;
+  std::vector<uint32_t> ring_;
+};
+
+template <class TypeOf>
+std::vector<uint64_t> scan_lists(const DatasetPtr& data, const CellsView& cells, size_t first, const uint8_t* signs, Context& context,
+                                 const TypeOf& type_of) {
   constexpr size_t grain = 16384;
   Found parts((cells.count + grain - 1) / grain);
   parallel_for(
       cells.count, grain,
       [&](size_t begin, size_t end) {
+        Unsure unsure(data);
         for (size_t c = begin; c < end; ++c) {
           uint8_t bits = 0xff;
           for (size_t i = cells.begin(c); i < cells.end(c); ++i) bits &= signs[cells.connectivity[i]];
-          if (!bits || (always && always(c))) parts[begin / grain].push_back(first + c);
+          if (!bits || unsure(first + c, type_of(c))) parts[begin / grain].push_back(first + c);
         }
       },
       &context);
@@ -109,11 +158,12 @@ std::vector<uint64_t> cells_that_may_vanish(const FlowField& flow, const PlaneFr
       }
     std::sort(out.begin(), out.end());
   } else if (const auto* u = d.as<UnstructuredMesh>()) {
-    out = scan_lists(cells_view(u->cells), 0, signs.data(), context, [&](size_t c) { return is_high_order(u->type(c)); });
+    out = scan_lists(flow.dataset(), cells_view(u->cells), 0, signs.data(), context, [&](size_t c) { return u->type(c); });
   } else if (const auto* s = d.as<SurfaceMesh>()) {
     size_t first = 0;
     for (const CellArray* list : {&s->vertices, &s->lines, &s->polygons, &s->strips}) {
-      const auto more = scan_lists(cells_view(*list), first, signs.data(), context, {});
+      const CellType type = list == &s->polygons ? CellType::polygon : CellType::empty;
+      const auto more = scan_lists(flow.dataset(), cells_view(*list), first, signs.data(), context, [&](size_t) { return type; });
       out.insert(out.end(), more.begin(), more.end());
       first += list->size();
     }

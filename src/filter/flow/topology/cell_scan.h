@@ -10,7 +10,8 @@
 namespace sg {
 
 /// Cells, ascending, none of whose components has one sign at all points. Right for weights between 0 and 1: cells of more nodes than
-/// corners are always among them. Grids: rows of sign bytes; others: their lists of points. O(points + cells), parallel.
+/// corners, and polygons and polyhedra that are not convex, are always among them. Grids: rows of sign bytes; others: their lists of
+/// points. O(points + cells), parallel.
 std::vector<uint64_t> cells_that_may_vanish(const FlowField& flow, const PlaneFrame* frame, Context& context);
 
 }  // namespace sg

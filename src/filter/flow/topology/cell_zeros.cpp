@@ -31,20 +31,30 @@ CellZeros::Result CellZeros::find(size_t cell, std::vector<CellZero>& out) {
   const auto ids = map_.reader().ids();
   const size_t n = ids.size();
   v_.resize(n), zero_.resize(n);
-  bool all = true, some = false, slow = true;
+  bool all = true, some = false;
+  double fastest = 0, slowest = HUGE_VAL;
   for (size_t k = 0; k < n; ++k) {
     const Vec3 v = flow_.at_point(size_t(ids[k]));
     if (!(std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z))) return Result::none;
     v_[k] = frame_ ? Vec3(dot(v, frame_->e1), dot(v, frame_->e2), 0) : v;
     zero_[k] = v_[k] == Vec3();
-    slow = slow && length(v) < min_speed_;
+    fastest = std::max(fastest, length(v)), slowest = std::min(slowest, length(v));
     all = all && zero_[k], some = some || zero_[k];
   }
-  if (slow) return Result::none;
+  if (fastest < min_speed_) return Result::none;
   if (all) {
     spread_.insert(spread_.end(), ids.begin(), ids.end());
     return Result::spread;
   }
+  const size_t before = out.size();
+  const Result result = find_open(some, out);
+  for (size_t i = before; i < out.size(); ++i) out[i].speed = slowest;
+  return result;
+}
+
+// In the open cell; `some`: of its points stand still.
+CellZeros::Result CellZeros::find_open(bool some, std::vector<CellZero>& out) {
+  const size_t n = v_.size();
   known_.clear();
   Result result = Result::isolated;
   if (some && zero_edges(result)) return result;
@@ -53,15 +63,14 @@ CellZeros::Result CellZeros::find(size_t cell, std::vector<CellZero>& out) {
   if (type == CellType::pixel || type == CellType::quad) return find_bilinear(out);
   if (type == CellType::triangle_strip) return find_strip(out);
   if (const CellShape* shape = CellShape::find(type, n, map_.reader().orders())) return find_polynomial(*shape, out);
-  find_by_newton(out);
-  return result;
+  return find_sampled(out);
 }
 
 // Edges whose ends both are zero: of a linear cell they are lines of zeros. True when no isolated zero is to be expected beside them.
 bool CellZeros::zero_edges(Result& result) {
   const CellType type = map_.reader().type();
   const LinearTopology* t = linear_topology(linear_type(type));
-  if (!t) return false;
+  if (!t) return zero_sides(result);
   const auto ids = map_.reader().ids();
   const CellShape* shape = CellShape::find(type, ids.size(), map_.reader().orders());
   for (const auto& e : t->edges) {
@@ -216,111 +225,11 @@ CellZeros::Result CellZeros::find_strip(std::vector<CellZero>& out) {
       for (int j = 0; j < 3; ++j) z.gradient.m[i][j] = vb[i] * gu[j] + vc[i] * gw[j];
     for (size_t j = k; j < k + 3; ++j)
       if (zero_[j] && length(at[j] - z.at) < 1e-7 * z.size) z.node = ids[j];
-    out.push_back(z);
+    // One on a side between two triangles is found by both.
+    if (std::none_of(out.begin() + ptrdiff_t(before), out.end(), [&](const CellZero& o) { return length(o.at - z.at) < 1e-7 * z.size; }))
+      out.push_back(z);
   }
   return out.size() > before ? Result::isolated : Result::none;
-}
-
-bool CellZeros::at_place(Vec3 x, Vec3& v) {
-  CellPlace place;
-  place.nearest = x;
-  weights_.resize(v_.size());
-  map_.weights(place, weights_);
-  v = {};
-  for (size_t k = 0; k < v_.size(); ++k) v += weights_[k] * v_[k];
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
-// Newton's method with differences; `gradient` that of the last step, in the frame's components or in space.
-bool CellZeros::newton_from(Vec3 x, Vec3& found, Mat3& gradient) {
-  const auto at = map_.reader().at();
-  Box3 box;
-  for (const Vec3 p : at) box.add(p);
-  const double size = box.diagonal(), h = 1e-5 * size;
-  const Vec3 axis[3] = {frame_ ? frame_->e1 : Vec3(1, 0, 0), frame_ ? frame_->e2 : Vec3(0, 1, 0), frame_ ? frame_->normal : Vec3(0, 0, 1)};
-  double largest = 0;
-  for (const Vec3 v : v_) largest = std::max(largest, length(v));
-  for (int round = 0; round < 30; ++round) {
-    Vec3 v, slope[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    if (!at_place(x, v)) return false;
-    for (int a = 0; a < (frame_ ? 2 : 3); ++a) {
-      Vec3 up, down;
-      if (!at_place(x + h * axis[a], up) || !at_place(x - h * axis[a], down)) return false;
-      slope[a] = (up - down) / (2 * h);
-    }
-    const Vec3 cd = cross(slope[1], slope[2]);
-    const double det = dot(slope[0], cd);
-    if (!(std::abs(det) > 1e-12 * length(slope[0]) * length(slope[1]) * length(slope[2]))) return false;
-    for (int i = 0; i < 3; ++i)
-      for (int j = 0; j < 3; ++j) gradient.m[i][j] = slope[j][i];
-    const Vec3 move(-dot(v, cd) / det, -dot(slope[0], cross(v, slope[2])) / det, -dot(slope[0], cross(slope[1], v)) / det);
-    const double far = length(move);
-    Vec3 step = move.x * axis[0] + move.y * axis[1] + (frame_ ? Vec3() : move.z * axis[2]);
-    if (far > 0.5 * size) step *= 0.5 * size / far;
-    x += step;
-    if (!(length(x - box.center()) < size)) return false;
-    if (far < 1e-12 * size) {
-      found = x;
-      Vec3 rest;
-      return at_place(x, rest) && length(rest) < 1e-9 * largest;
-    }
-  }
-  return false;
-}
-
-void CellZeros::find_by_newton(std::vector<CellZero>& out) {
-  const auto at = map_.reader().at();
-  const auto ids = map_.reader().ids();
-  Box3 box;
-  Vec3 middle;
-  for (const Vec3 p : at) box.add(p), middle += p / double(at.size());
-  std::vector<Vec3> starts{middle};
-  for (size_t k = 0; k < at.size(); ++k) starts.push_back(0.4 * middle + 0.6 * at[k]);
-  const size_t before = out.size();
-  auto keep = [&](CellZero z) {
-    for (size_t i = before; i < out.size(); ++i)
-      if (length(out[i].at - z.at) < 1e-7 * z.size) return;
-    out.push_back(z);
-  };
-  CellZero z;
-  z.size = box.diagonal();
-  for (const Vec3 start : starts) {
-    Mat3 g;
-    if (!newton_from(start, z.at, g)) continue;
-    CellPlace place;
-    if (!map_.locate(z.at, place, 1e-7)) continue;
-    z.border = place.outside > -on_border || frame_;
-    // Rows back from the frame: dv/dx = sum of axis_i g_ij axis_j.
-    z.gradient = g;
-    if (frame_) {
-      const Vec3 axis[2] = {frame_->e1, frame_->e2};
-      for (auto& row : z.gradient.m)
-        for (double& e : row) e = 0;
-      for (int i = 0; i < 2; ++i)
-        for (int j = 0; j < 2; ++j)
-          for (int p = 0; p < 3; ++p)
-            for (int q = 0; q < 3; ++q) z.gradient.m[p][q] += axis[i][p] * g.m[i][j] * axis[j][q];
-    }
-    z.node = -1;
-    for (size_t k = 0; k < at.size(); ++k)
-      if (zero_[k] && length(at[k] - z.at) < 1e-7 * z.size) z.node = ids[k];
-    keep(z);
-  }
-  // At a corner the weights are quotients of zeros, and Newton's method does not get there: the gradient of the cell's best fit.
-  for (size_t k = 0; k < at.size(); ++k) {
-    if (!zero_[k]) continue;
-    z.at = at[k], z.node = ids[k], z.border = true;
-    CellPlace place;
-    place.nearest = at[k];
-    slopes_.resize(v_.size());
-    map_.gradient_weights(place, slopes_);
-    for (int p = 0; p < 3; ++p)
-      for (int q = 0; q < 3; ++q) {
-        z.gradient.m[p][q] = 0;
-        for (size_t i = 0; i < ids.size(); ++i) z.gradient.m[p][q] += flow_.at_point(size_t(ids[i]))[p] * slopes_[i][q];
-      }
-    keep(z);
-  }
 }
 
 }  // namespace sg

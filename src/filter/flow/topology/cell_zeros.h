@@ -16,14 +16,15 @@ struct CellZero {
   Vec3 at;              ///< place
   Mat3 gradient;        ///< m[i][j] = dv_i/dx_j
   double size = 0;      ///< of the cell: diagonal of the box of its nodes
+  double speed = 0;     ///< smallest at the cell's points
   bool border = false;  ///< on the cell's border (to 1e-6), where other cells may find it too
   int64_t node = -1;    ///< the mesh point whose velocity is exactly zero, where the zero is one
 };
 
 /// Triangles, tetrahedra: solved; pixels and quads in a plane: a quadratic equation; the other cells with a reference map, curved and
 /// rational ones too: BernsteinZeros of the interpolant, exact for polynomials (pyramids are polynomials once their apex is a face).
-/// Strips: by triangles. Polygons and polyhedra: Newton's method from the middle and from points about it, which finds the zero of
-/// nearly linear fields and may miss one of several. Not thread-safe.
+/// Strips: by triangles. Polygons and polyhedra: SimplexZeros of the mean value interpolant, between the middle and the sides. Not
+/// thread-safe.
 class CellZeros {
  public:
   /// `frame`: the plane of a mesh of 2D cells; null: solids only, others have none. Cells slower than `min_speed` at all points: none.
@@ -41,14 +42,19 @@ class CellZeros {
 
  private:
   BernsteinBasis& basis_of(const CellShape& shape);
+  Result find_open(bool some, std::vector<CellZero>& out);
   Result find_linear(std::vector<CellZero>& out);
   Result find_bilinear(std::vector<CellZero>& out);
   Result find_polynomial(const CellShape& shape, std::vector<CellZero>& out);
   Result find_strip(std::vector<CellZero>& out);
-  void find_by_newton(std::vector<CellZero>& out);
+  Result find_sampled(std::vector<CellZero>& out);
+  void fan_of_cell(Vec3 middle, std::vector<Vec3>& out);
+  void add_sampled(Vec3 x, size_t before, std::vector<CellZero>& out);
+  void add_corners(double size, std::vector<CellZero>& out);
   bool newton_from(Vec3 x, Vec3& found, Mat3& gradient);
   bool at_place(Vec3 x, Vec3& v);
   bool zero_edges(Result& result);
+  bool zero_sides(Result& result);
   void add(Vec3 rst, double outside, std::vector<CellZero>& out);
 
   const FlowField& flow_;

@@ -15,12 +15,16 @@ struct OrbitOptions {
   double isolated = 0.02;    ///< see periodic_orbit()
 };
 
-/// Lines that neither leave the mesh nor end at a critical point spiral towards an orbit. They start beside sources (with the flow), sinks
-/// (against it) and centres (both), go along `separatrices`, and start at both sides of each orbit that was found. By Poincare and
-/// Bendixson every attracting (repelling) orbit is approached from within by one of these, unless the mesh has a hole there. The fixed
-/// point of the return map is then found to 1e-10 cells. In order of first discovery; the same for any number of threads.
-std::vector<Orbit> find_closed_orbits(const FlowField& flow, const CriticalPoints& critical, const std::vector<Separatrix>& separatrices,
-                                      const OrbitOptions& options, Context& context);
+/// Lines that neither leave the mesh nor end at a critical point spiral towards an orbit (Poincare, Bendixson). They start beside sources
+/// (with the flow), sinks (against it) and centres (both), in the four sectors of each saddle and on each stretch of the border where the
+/// flow enters, leaves or runs along (both ways), go along `separatrices`, and start at both sides of each orbit that was found: a line in
+/// every region between the separatrices, also about holes. The fixed point of the return map is then found to 1e-10 cells. In order of
+/// first discovery; the same for any number of threads. `in_families`: how many lines were closed among closed neighbours.
+std::vector<Orbit> find_closed_orbits(const FlowParts& flow, const CriticalPoints& critical, const std::vector<Separatrix>& separatrices,
+                                      const OrbitOptions& options, Context& context, size_t* in_families = nullptr);
+
+/// Ends lines that come to within 1/50 of a cell of an orbit and stay there, on it.
+void end_at_orbits(std::vector<Separatrix>& lines, const std::vector<Orbit>& orbits, Context& context);
 
 /// Closed poly-lines with the point field "speed" and cell fields "repelling" (0, 1), "period", "multiplier" and "length".
 DatasetPtr orbits_dataset(const std::vector<Orbit>& orbits);
@@ -33,6 +37,6 @@ struct ClosedOrbitsParams {
 };
 void describe(Schema& s, ClosedOrbitsParams& p);
 /// Throws Error(usage) for meshes that are not flat.
-DatasetPtr closed_orbits(const DatasetPtr& in, const ClosedOrbitsParams& p, Context& context);
+DatasetPtr closed_orbits(const Data& in, const ClosedOrbitsParams& p, Context& context);
 
 }  // namespace sg

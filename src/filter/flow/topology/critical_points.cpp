@@ -17,6 +17,7 @@ namespace {
 struct Found {
   CellZero zero;
   int64_t cell;
+  int32_t part;
 };
 
 struct Search {
@@ -25,14 +26,14 @@ struct Search {
   size_t spread = 0;
 };
 
-Search search_cells(const FlowField& flow, const PlaneFrame* frame, double min_speed, Context& context) {
+Search search_cells(const FlowField& flow, int32_t number, const PlaneFrame* frame, double min_speed, Context& context) {
   const std::vector<uint64_t> cells = cells_that_may_vanish(flow, frame, context);
   constexpr size_t grain = 64;
   std::vector<Search> parts((cells.size() + grain - 1) / grain);
   parallel_for(
       cells.size(), grain,
       [&](size_t begin, size_t end) {
-        CellZeros finder(flow, frame, min_speed * flow.largest_speed());
+        CellZeros finder(flow, frame, min_speed);
         Search& part = parts[begin / grain];
         std::vector<CellZero> found;
         for (size_t i = begin; i < end; ++i) {
@@ -42,7 +43,7 @@ Search search_cells(const FlowField& flow, const PlaneFrame* frame, double min_s
             return std::tuple(a.rst.z, a.rst.y, a.rst.x, a.at.x, a.at.y, a.at.z) <
                    std::tuple(b.rst.z, b.rst.y, b.rst.x, b.at.x, b.at.y, b.at.z);
           });
-          for (const CellZero& z : found) part.zeros.push_back({z, int64_t(cells[i])});
+          for (const CellZero& z : found) part.zeros.push_back({z, int64_t(cells[i]), number});
         }
         part.spread_points = std::move(finder.spread_points());
       },
@@ -62,11 +63,30 @@ Search search_cells(const FlowField& flow, const PlaneFrame* frame, double min_s
   return all;
 }
 
-// Zeros on the borders of cells are found by each of them: the first stands for all, with the mean of their gradients.
-std::vector<Found> merged(std::vector<Found> zeros) {
+// The same zero? Those on borders of cells are found by each of them. Those of several parts may be one anywhere: parts may lie over each
+// other. Interpolants of two levels or parts need not agree at their common border: there zeros of one index within a tenth of a cell are
+// one.
+bool are_one(const Found& f, const Found& g, bool several, bool flat) {
+  const CellZero &a = f.zero, &b = g.zero;
+  const double small = std::min(a.size, b.size), d = length(a.at - b.at);
+  if (f.cell == g.cell && f.part == g.part) return false;
+  const bool apart = several && (f.part != g.part || std::max(a.size, b.size) > 1.5 * small);
+  if (d <= 1e-5 * small) return apart || (a.border && b.border);
+  auto negative = [&](const Mat3& m) {
+    if (!flat) return determinant(m) < 0;
+    double product = 0;  // of the two eigenvalues beside the zero across the plane
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < i; ++j) product += m.m[i][i] * m.m[j][j] - m.m[i][j] * m.m[j][i];
+    return product < 0;
+  };
+  return apart && d <= 0.1 * small && negative(a.gradient) == negative(b.gradient);
+}
+
+// One for all that are the same, of the finest cell, with the mean of the gradients. `several`: parts or levels.
+std::vector<Found> merged(std::vector<Found> zeros, bool several, bool flat) {
   std::vector<size_t> order;
   for (size_t i = 0; i < zeros.size(); ++i)
-    if (zeros[i].zero.border) order.push_back(i);
+    if (zeros[i].zero.border || several) order.push_back(i);
   std::sort(order.begin(), order.end(),
             [&](size_t a, size_t b) { return std::tuple(zeros[a].zero.at.x, a) < std::tuple(zeros[b].zero.at.x, b); });
   std::vector<size_t> first(zeros.size());
@@ -76,21 +96,21 @@ std::vector<Found> merged(std::vector<Found> zeros) {
     return i;
   };
   for (size_t i = 0; i < order.size(); ++i) {
-    const CellZero& a = zeros[order[i]].zero;
+    const Found& f = zeros[order[i]];
     for (size_t j = i + 1; j < order.size(); ++j) {
-      const CellZero& b = zeros[order[j]].zero;
-      const double reach = 1e-5 * std::min(a.size, b.size);
-      if (b.at.x - a.at.x > 1e-5 * a.size) break;
-      // Two zeros of one cell are two.
-      if (zeros[order[i]].cell == zeros[order[j]].cell || length(a.at - b.at) > reach) continue;
+      const Found& g = zeros[order[j]];
+      if (g.zero.at.x - f.zero.at.x > (several ? 0.1 : 1e-5) * f.zero.size) break;
+      if (!are_one(f, g, several, flat)) continue;
       const size_t p = root(order[i]), q = root(order[j]);
       first[std::max(p, q)] = std::min(p, q);
     }
   }
   std::vector<Mat3> sum(zeros.size());
   std::vector<int> count(zeros.size(), 0);
+  std::vector<size_t> finest(zeros.size());
   for (size_t i = 0; i < zeros.size(); ++i) {
     const size_t r = root(i);
+    if (count[r] == 0 || zeros[i].zero.size < 0.999 * zeros[finest[r]].zero.size) finest[r] = i;
     for (int a = 0; a < 3; ++a)
       for (int b = 0; b < 3; ++b) sum[r].m[a][b] = (count[r] ? sum[r].m[a][b] : 0) + zeros[i].zero.gradient.m[a][b];
     ++count[r];
@@ -98,7 +118,7 @@ std::vector<Found> merged(std::vector<Found> zeros) {
   std::vector<Found> out;
   for (size_t i = 0; i < zeros.size(); ++i) {
     if (root(i) != i) continue;
-    Found f = zeros[i];
+    Found f = zeros[finest[i]];
     for (int a = 0; a < 3; ++a)
       for (int b = 0; b < 3; ++b) f.zero.gradient.m[a][b] = sum[i].m[a][b] / count[i];
     out.push_back(f);
@@ -107,7 +127,7 @@ std::vector<Found> merged(std::vector<Found> zeros) {
 }
 
 // Where the gradient does not tell the index: by a walk around the point.
-int index_about(FlowCursor& cursor, const PlaneFrame& frame, Vec3 at, double radius) {
+int index_about(PartsCursor& cursor, const PlaneFrame& frame, Vec3 at, double radius) {
   constexpr size_t n = 720;
   std::vector<Vec2> v;
   for (size_t i = 0; i < n; ++i) {
@@ -119,30 +139,51 @@ int index_about(FlowCursor& cursor, const PlaneFrame& frame, Vec3 at, double rad
   return winding_index(v).value_or(0);
 }
 
-}  // namespace
-
-CriticalPoints find_critical_points(const FlowField& flow, const CriticalOptions& options, Context& context) {
-  const double centre = options.centre;
-  CriticalPoints r;
-  r.dimension = flow.dimension();
-  if (r.dimension < 2)
-    fail_usage("the mesh has no cells of area or volume", "critical_points",
-               "a grid or mesh of 2D or solid cells; tri- or tetrahedra between points");
-  if (r.dimension == 2) {
-    r.plane = plane_of(*flow.dataset());
-    if (!r.plane) {
-      find_surface_zeros(flow, options, r, context);
-      return r;
+// Of slow points those that are crowded are noise: a flow that is sampled well enough has its few cells apart.
+void drop_noise(CriticalPoints& r, double slow) {
+  const auto& points = r.points;
+  std::vector<size_t> order(points.size());
+  for (size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::sort(order.begin(), order.end(), [&](size_t a, size_t b) { return std::pair(points[a].at.x, a) < std::pair(points[b].at.x, b); });
+  double largest = 0;
+  for (const CriticalPoint& c : points) largest = std::max(largest, c.size);
+  std::vector<uint8_t> crowded(points.size(), 0);
+  for (size_t i = 0; i < order.size(); ++i)
+    for (size_t j = i + 1; j < order.size(); ++j) {
+      const CriticalPoint &a = points[order[i]], &b = points[order[j]];
+      if (b.at.x - a.at.x > 3 * largest) break;
+      const double d = length(a.at - b.at);
+      if (d < 3 * a.size) crowded[order[i]] = 1;
+      if (d < 3 * b.size) crowded[order[j]] = 1;
     }
+  size_t kept = 0;
+  for (size_t i = 0; i < r.points.size(); ++i) {
+    if (crowded[i] && r.points[i].speed < slow) continue;
+    if (kept != i) {
+      r.points[kept] = r.points[i];
+      if (!r.normal.empty()) r.normal[kept] = r.normal[i];
+    }
+    ++kept;
   }
+  r.noise = r.points.size() - kept;
+  r.points.resize(kept);
+  if (!r.normal.empty()) r.normal.resize(kept);
+}
+
+void find_in_cells(const FlowParts& flow, const CriticalOptions& options, CriticalPoints& r, Context& context) {
   const PlaneFrame* frame = r.plane ? &*r.plane : nullptr;
-  Search s = search_cells(flow, frame, options.min_speed, context);
-  r.spread = s.spread;
-  std::optional<FlowCursor> cursor;
-  for (const Found& f : merged(std::move(s.zeros))) {
+  std::vector<Found> zeros;
+  for (size_t k = 0; k < flow.count(); ++k) {
+    Search s = search_cells(flow.fields()[k], int32_t(k), frame, options.min_speed * flow.largest_speed(), context);
+    r.spread += s.spread;
+    zeros.insert(zeros.end(), s.zeros.begin(), s.zeros.end());
+  }
+  std::optional<PartsCursor> cursor;
+  const bool several = flow.count() > 1 || flow.fields()[0].dataset()->as<AmrGrid>();
+  for (const Found& f : merged(std::move(zeros), several, frame)) {
     CriticalPoint c;
-    c.at = f.zero.at, c.gradient = f.zero.gradient, c.cell = f.cell, c.size = f.zero.size;
-    c.flow = frame ? linearise_in_plane(c.gradient, frame->e1, frame->e2, centre) : linearise(c.gradient, centre);
+    c.at = f.zero.at, c.gradient = f.zero.gradient, c.cell = f.cell, c.part = f.part, c.size = f.zero.size, c.speed = f.zero.speed;
+    c.flow = frame ? linearise_in_plane(c.gradient, frame->e1, frame->e2, options.centre) : linearise(c.gradient, options.centre);
     c.index = c.flow.index;
     if (frame && c.flow.type == CriticalType::degenerate) {
       if (!cursor) cursor.emplace(flow);
@@ -151,6 +192,24 @@ CriticalPoints find_critical_points(const FlowField& flow, const CriticalOptions
     r.points.push_back(c);
     if (frame) r.normal.push_back(frame->normal);
   }
+}
+
+}  // namespace
+
+CriticalPoints find_critical_points(const FlowParts& flow, const CriticalOptions& options, Context& context) {
+  CriticalPoints r;
+  r.dimension = flow.dimension();
+  if (r.dimension < 2)
+    fail_usage("the mesh has no cells of area or volume", "critical_points",
+               "a grid or mesh of 2D or solid cells; tri- or tetrahedra between points");
+  if (r.dimension == 2) {
+    std::vector<const Dataset*> parts;
+    for (const FlowField& f : flow.fields()) parts.push_back(f.dataset().get());
+    r.plane = plane_of(parts);
+  }
+  if (r.dimension == 2 && !r.plane) find_surface_zeros(flow, options, r, context);
+  else find_in_cells(flow, options, r, context);
+  if (options.noise > 0) drop_noise(r, options.noise * flow.largest_speed());
   return r;
 }
 
@@ -167,6 +226,10 @@ void describe(Schema& s, CriticalOptions& p) {
   s("min_speed", p.min_speed,
     "Cells that are slower than this part of the largest speed at all of their points are left out: noise has many zeros.")
       .range(0, 1);
+  s("noise", p.noise,
+    "Of the critical points in cells that have a point slower than this part of the largest speed, those are left out as noise that have "
+    "another critical point within three cells; single ones stay, however slow.")
+      .range(0, 1);
 }
 
 std::string summary(const CriticalPoints& found) {
@@ -181,6 +244,7 @@ std::string summary(const CriticalPoints& found) {
     sign = "; ";
   }
   if (!found.points.empty()) text += fmt::format("; indices sum to {}", sum);
+  if (found.noise > 0) text += fmt::format("; {} left out as noise", found.noise);
   if (found.spread > 0)
     text += fmt::format("; {} cell{} with lines or areas of zeros left out", found.spread, found.spread == 1 ? "" : "s");
   return text;
@@ -191,13 +255,13 @@ DatasetPtr critical_points_dataset(const CriticalPoints& found) {
   const size_t vectors = found.dimension == 3 ? 3 : 2;
   std::vector<double> xyz, re, im, gradient, normal;
   std::vector<std::vector<double>> vector(vectors);
-  std::vector<int32_t> type, index;
+  std::vector<int32_t> type, index, part;
   std::vector<int64_t> cell;
   auto push = [](std::vector<double>& to, Vec3 v) { to.insert(to.end(), {v.x, v.y, v.z}); };
   for (size_t i = 0; i < n; ++i) {
     const CriticalPoint& c = found.points[i];
     push(xyz, c.at);
-    type.push_back(int32_t(c.flow.type)), index.push_back(c.index), cell.push_back(c.cell);
+    type.push_back(int32_t(c.flow.type)), index.push_back(c.index), cell.push_back(c.cell), part.push_back(c.part);
     for (size_t k = 0; k < vectors; ++k) {
       re.push_back(c.flow.re[k]), im.push_back(c.flow.im[k]);
       push(vector[k], c.flow.vector[k]);
@@ -220,14 +284,16 @@ DatasetPtr critical_points_dataset(const CriticalPoints& found) {
   add("gradient", Array::from_vector(std::move(gradient), 9), Role::tensors);
   if (!found.normal.empty()) add("normal", Array::from_vector(std::move(normal), 3), Role::normals);
   parts.fields.add(id_field("cell", Association::point, std::move(cell)));
+  if (std::any_of(part.begin(), part.end(), [](int32_t k) { return k > 0; }))
+    add("part", Array::from_vector(std::move(part)), Role::labels);
   std::string names;
   for (int t = 0; t < critical_types; ++t) names += fmt::format("{}{}={}", t ? "\n" : "", t, critical_type_name(CriticalType(t)));
   parts.notes.emplace_back("labels of type", names);
   return make_dataset(std::move(parts));
 }
 
-DatasetPtr critical_points(const DatasetPtr& in, const CriticalPointsParams& p, Context& context) {
-  const FlowField flow(in, p.field.name, context);
+DatasetPtr critical_points(const Data& in, const CriticalPointsParams& p, Context& context) {
+  const FlowParts flow(in, p.field.name, "critical_points", context);
   const CriticalPoints found = find_critical_points(flow, p.options, context);
   context.info("critical_points: " + summary(found));
   return critical_points_dataset(found);

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/schema.h"
-#include "filter/flow/flow_field.h"
+#include "filter/flow/flow_parts.h"
 #include "filter/flow/topology/linearisation.h"
 #include "filter/flow/topology/plane_frame.h"
 
@@ -17,28 +17,35 @@ struct CriticalPoint {
   Linearisation flow;  ///< in 2D: within the surface
   int index = 0;       ///< Poincare index: 1 or -1; 0 where it is not known
   int64_t cell = -1;   ///< the smallest of the cells that hold it
+  int32_t part = 0;    ///< of a collection, among those that have the flow
   double size = 0;     ///< of that cell: diagonal of its box
+  double speed = 0;    ///< smallest at that cell's points
+  double moved = 0;    ///< curved surfaces: how far outside of its triangle the zero of the interpolant lies
 };
 
-/// In order of their cells. `plane` for flat meshes of 2D cells; `normal` of curved ones per point.
+/// In order of their parts and cells. `plane` for flat meshes of 2D cells; `normal` of curved ones per point.
 struct CriticalPoints {
   int dimension = 3;
   std::optional<PlaneFrame> plane;
   std::vector<CriticalPoint> points;
   std::vector<Vec3> normal;        ///< of the surface at each point; empty for solids
   size_t spread = 0;               ///< cells with lines or areas of zeros, which are not reported
+  size_t noise = 0;                ///< points left out as noise
   std::optional<int> faces_index;  ///< curved surfaces: sum of the indices of all triangles (the Euler number of a closed surface)
 };
 
 struct CriticalOptions {
   double centre = 1e-3;  ///< see linearise()
   double min_speed = 0;  ///< cells that are slower than this part of the largest speed at all their points are left out
+  double noise = 0;      ///< of points in cells with a point as slow, those are left out that have another one within three cells
 };
 /// All isolated zeros of the interpolated velocity. Solids: zeros in space. Flat 2D meshes: of the part in their plane. Curved surfaces:
-/// see surface_zeros.h. Zeros on faces, edges and points of several cells are one. The same for any number of threads.
-/// Throws Error(usage) for meshes of lines.
-CriticalPoints find_critical_points(const FlowField& flow, const CriticalOptions& options, Context& context);
-/// Declares both.
+/// see surface_zeros.h. Zeros on faces, edges and points of several cells are one, also of several patches and parts. The same for any
+/// number of threads. Throws Error(usage) for meshes of lines.
+CriticalPoints find_critical_points(const FlowParts& flow, const CriticalOptions& options, Context& context);
+inline CriticalPoints find_critical_points(const FlowField& flow, const CriticalOptions& options, Context& context) {
+  return find_critical_points(FlowParts(flow), options, context);
+}
 void describe(Schema& s, CriticalOptions& p);
 
 struct CriticalPointsParams {
@@ -47,8 +54,9 @@ struct CriticalPointsParams {
 };
 void describe(Schema& s, CriticalPointsParams& p);
 /// A point cloud: "type" (see CriticalType; the names are in the dataset's notes), "index", "eigenvalues real", "eigenvalues imaginary",
-/// "eigenvector 1" (to 2 in 2D, 3 in 3D), "gradient", "cell"; "normal" on surfaces.
-DatasetPtr critical_points(const DatasetPtr& in, const CriticalPointsParams& p, Context& context);
+/// "eigenvector 1" (to 2 in 2D, 3 in 3D), "gradient", "cell"; "normal" on surfaces; "part" where several parts of a
+/// collection have the flow, which then is one.
+DatasetPtr critical_points(const Data& in, const CriticalPointsParams& p, Context& context);
 DatasetPtr critical_points_dataset(const CriticalPoints& found);
 /// "7 critical points: 3 saddles, 4 centres; indices sum to 1".
 std::string summary(const CriticalPoints& found);

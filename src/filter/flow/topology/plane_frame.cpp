@@ -1,27 +1,38 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/topology/plane_frame.h"
 
+#include <algorithm>
+
 #include "data/point_positions.h"
 
 namespace sg {
 
 std::optional<PlaneFrame> plane_of(const Dataset& data) {
-  const Array positions = point_positions(data.mesh());
-  const size_t n = positions.count();
-  if (n == 0) return std::nullopt;
-  const auto* xyz = positions.view<double>().data;
-  struct At {
-    const double* xyz;
-    Vec3 operator[](size_t i) const { return {xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]}; }
-  } at{xyz};
+  const Dataset* const one[] = {&data};
+  return plane_of(one);
+}
+
+std::optional<PlaneFrame> plane_of(std::span<const Dataset* const> parts) {
+  std::vector<Array> positions;
+  for (const Dataset* d : parts)
+    if (d->point_count() > 0) positions.push_back(point_positions(d->mesh()));
+  if (positions.empty()) return std::nullopt;
+  auto each = [&](auto&& f) {
+    for (const Array& p : positions) {
+      const double* xyz = p.view<double>().data;
+      for (size_t i = 0; i < p.count(); ++i, xyz += 3) f(Vec3(xyz[0], xyz[1], xyz[2]));
+    }
+  };
   // A long triangle of points spans the plane.
-  const Vec3 a = at[0];
+  const double* first = positions[0].view<double>().data;
+  const Vec3 a(first[0], first[1], first[2]);
   auto farthest = [&](auto&& measure) {
-    size_t best = 0;
+    Vec3 best;
     double most = -1;
-    for (size_t i = 0; i < n; ++i)
-      if (const double m = measure(at[i]); m > most) most = m, best = i;
-    return at[best];
+    each([&](Vec3 p) {
+      if (const double m = measure(p); m > most) most = m, best = p;
+    });
+    return best;
   };
   const Vec3 b = farthest([&](Vec3 p) { return length(p - a); });
   const Vec3 c = farthest([&](Vec3 p) { return length(cross(p - a, b - a)); });
@@ -47,8 +58,9 @@ std::optional<PlaneFrame> plane_of(const Dataset& data) {
   const Vec3 x = std::abs(f.normal.x) < 0.99 ? Vec3(1, 0, 0) : Vec3(0, 1, 0);
   f.e1 = normalize(x - f.normal * dot(x, f.normal));
   f.e2 = cross(f.normal, f.e1);
-  for (size_t i = 0; i < n; ++i)
-    if (std::abs(dot(at[i] - a, f.normal)) > 1e-5 * size) return std::nullopt;
+  double off = 0;
+  each([&](Vec3 p) { off = std::max(off, std::abs(dot(p - a, f.normal))); });
+  if (off > 1e-5 * size) return std::nullopt;
   return f;
 }
 

@@ -2,6 +2,7 @@
 // The plane in which a mesh lies, if it does.
 #pragma once
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "data/dataset.h"
@@ -19,5 +20,7 @@ struct PlaneFrame {
 
 /// Nothing when a point is further than 1e-5 of the mesh's size from the plane. For points on one line: any plane through it.
 std::optional<PlaneFrame> plane_of(const Dataset& data);
+/// That of all of them together.
+std::optional<PlaneFrame> plane_of(std::span<const Dataset* const> parts);
 
 }  // namespace sg

@@ -21,6 +21,7 @@ struct Orbit {
   std::vector<Vec3> points;   ///< the first again at the end
   std::vector<double> speed;  ///< there
   double period = 0;
+  double cell = 0;        ///< size of the cells there
   double multiplier = 1;  ///< of a small distance from the orbit, in one turn with the flow: < 1 attracts, > 1 repels
 };
 
@@ -85,9 +86,10 @@ std::optional<double> next_return(Flow& flow, const Section& section, double s, 
 
 /// The periodic orbit near `start`, which a line followed with `sign` approaches: the secant method on the return map of the line across
 /// the flow there, then bisection where it leaves. Orbits whose neighbours come nearer (or go) by less than `isolated` a turn are those of
-/// a family about a centre: nothing. `normal` is that of the plane.
+/// a family about a centre: nothing, and `family` becomes true. `normal` is that of the plane.
 template <class Flow>
-std::optional<Orbit> periodic_orbit(Flow& flow, Vec3 start, Vec3 normal, double sign, const ReturnOptions& o, double isolated = 0.02) {
+std::optional<Orbit> periodic_orbit(Flow& flow, Vec3 start, Vec3 normal, double sign, const ReturnOptions& o, double isolated = 0.02,
+                                    bool* family = nullptr) {
   Vec3 v;
   if (!flow(start, 0, v) || !(length(v) > 0)) return std::nullopt;
   Section section{start, normalize(cross(normal, v)), normalize(v), 8 * o.cell};
@@ -125,8 +127,12 @@ std::optional<Orbit> periodic_orbit(Flow& flow, Vec3 start, Vec3 normal, double 
   const double slope = 1 + (*up - *down) / (2 * aside);
   if (!(slope > -0.01)) return std::nullopt;  // lines of the plane do not change sides
   const double multiplier = std::max(slope, 0.0);
-  if (std::abs(multiplier - 1) < isolated) return std::nullopt;
+  if (std::abs(multiplier - 1) < isolated) {
+    if (family) *family = true;
+    return std::nullopt;
+  }
   Orbit orbit;
+  orbit.cell = o.cell;
   if (!next_return(flow, section, b, sign, o, orbit.period, &orbit)) return std::nullopt;
   orbit.points.back() = orbit.points.front(), orbit.speed.back() = orbit.speed.front();
   orbit.multiplier = sign > 0 ? multiplier : multiplier > 0 ? 1 / multiplier : HUGE_VAL;

@@ -3,6 +3,10 @@
 
 #include <algorithm>
 
+#include "base/parallel.h"
+#include "filter/flow/packets/packet_lines.h"
+#include "filter/flow/topology/surface_zeros.h"
+
 namespace sg {
 
 namespace {
@@ -19,11 +23,9 @@ double distance_to_segment(Vec3 x, Vec3 a, Vec3 b) {
 class Limits {
  public:
   explicit Limits(const CriticalPoints& critical) : points_(critical.points) {
-    // The tracer follows the velocity in the triangles' planes, whose zeros are near those of find_surface_zeros() and not the same.
-    if (critical.dimension == 2 && !critical.plane) part_ = 6;
     for (size_t i = 0; i < points_.size(); ++i) {
       order_.push_back(i);
-      reach_ = std::max(reach_, part_ * near_limit * points_[i].size);
+      reach_ = std::max(reach_, near_limit * points_[i].size + 2 * points_[i].moved);
     }
     std::sort(order_.begin(), order_.end(),
               [&](size_t a, size_t b) { return std::pair(points_[a].at.x, a) < std::pair(points_[b].at.x, b); });
@@ -40,7 +42,8 @@ class Limits {
       const bool ends = sign > 0 ? is_attracting(c.flow.type) : is_repelling(c.flow.type);
       const double within = ends ? near_limit : is_saddle(c.flow.type) ? near_saddle : 0;
       const double d = distance_to_segment(c.at, a, b);
-      if (d < part_ * within * c.size && d < nearest) nearest = d, best = int64_t(*i);
+      // Where the interpolant's zero is beside its triangle, lines come to an edge nearby.
+      if (d < within * c.size + (within > 0 ? 2 * c.moved : 0) && d < nearest) nearest = d, best = int64_t(*i);
     }
     return best;
   }
@@ -48,16 +51,21 @@ class Limits {
  private:
   const std::vector<CriticalPoint>& points_;
   std::vector<size_t> order_;
-  double reach_ = 0, part_ = 1;
+  double reach_ = 0;
 };
 
-void follow(const TracedLines& traced, size_t line, const CriticalPoints& critical, const Limits& limits, double sign, Separatrix& s) {
+// Appends a traced line, `at(i, x, v)` its n points from the seed on, to its separatrix, up to a critical point that it comes to.
+template <class At>
+void follow(size_t n, At&& at, StopReason stop, const CriticalPoints& critical, const Limits& limits, double sign, Separatrix& s) {
   const int64_t from = s.origin == Separatrix::Origin::saddle ? s.from : -1;
-  const Vec3 start = s.points.empty() ? traced.points[traced.begin[line]] : s.points[0];
+  Vec3 x, v;
+  if (n == 0) return;
+  at(0, x, v);
+  const Vec3 start = s.points.empty() ? x : s.points[0];
   bool left = from < 0;
-  s.stop = traced.stop[line];
-  for (size_t i = traced.begin[line]; i < traced.begin[line + 1]; ++i) {
-    const Vec3 x = traced.points[i];
+  s.stop = stop;
+  for (size_t i = 0; i < n; ++i) {
+    at(i, x, v);
     left = left || length(x - start) > critical.points[size_t(from)].size;
     if (!s.points.empty()) {
       const int64_t to = limits.reached(s.points.back(), x, sign, from, left);
@@ -67,13 +75,38 @@ void follow(const TracedLines& traced, size_t line, const CriticalPoints& critic
         return;
       }
     }
-    s.points.push_back(x), s.speed.push_back(length(traced.velocity[i]));
+    s.points.push_back(x), s.speed.push_back(length(v));
   }
+}
+
+// By packets, where the mesh and the numbers are theirs.
+bool follow_packets(const FlowField& flow, const CriticalPoints& critical, const Limits& limits, std::span<const Vec3> at,
+                    std::span<const size_t> number, double sign, std::vector<LimitSeed>& seeds, const TraceOptions& options,
+                    Context& context) {
+  const auto lines = packets::trace(flow, at, sign > 0 ? TraceDirection::forward : TraceDirection::backward, options, context);
+  if (!lines) return false;
+  const auto& pieces = sign > 0 ? lines->forward : lines->backward;
+  parallel_for(
+      pieces.size(), 64,
+      [&](size_t begin, size_t end) {
+        for (size_t k = begin; k < end; ++k) {
+          const packets::Piece& piece = pieces[k];
+          follow(
+              piece.count,
+              [&](size_t i, Vec3& x, Vec3& v) {
+                const packets::Record& r = piece.first[i];
+                x = lines->origin + Vec3(r.x[0], r.x[1], r.x[2]), v = Vec3(r.v[0], r.v[1], r.v[2]);
+              },
+              piece.stop, critical, limits, sign, seeds[number[k]].line);
+        }
+      },
+      &context);
+  return true;
 }
 
 }  // namespace
 
-void trace_to_limits(const FlowField& flow, const CriticalPoints& critical, std::vector<LimitSeed>& seeds, const TraceOptions& options,
+void trace_to_limits(const FlowParts& flow, const CriticalPoints& critical, std::vector<LimitSeed>& seeds, const TraceOptions& options,
                      Context& context) {
   const Limits limits(critical);
   for (const double sign : {1.0, -1.0}) {
@@ -81,38 +114,34 @@ void trace_to_limits(const FlowField& flow, const CriticalPoints& critical, std:
     std::vector<size_t> number;
     for (size_t i = 0; i < seeds.size(); ++i)
       if (seeds[i].sign == sign) at.push_back(seeds[i].at), number.push_back(i);
-    // Backward lines are reported seed last by nobody: trace_lines() gives each line from its seed on, or turned round.
+    if (at.empty()) continue;
+    if (flow.count() == 1 && follow_packets(flow.fields()[0], critical, limits, at, number, sign, seeds, options, context)) continue;
     const TracedLines traced = trace_lines(flow, at, sign > 0 ? TraceDirection::forward : TraceDirection::backward, options, context);
-    for (size_t k = 0; k < traced.lines(); ++k) {
-      LimitSeed& seed = seeds[number[size_t(traced.seed[k])]];
-      if (sign > 0) {
-        follow(traced, k, critical, limits, sign, seed.line);
-        continue;
-      }
-      TracedLines turned;
-      const auto first = ptrdiff_t(traced.begin[k]), last = ptrdiff_t(traced.begin[k + 1]);
-      turned.points.assign(traced.points.begin() + first, traced.points.begin() + last);
-      turned.velocity.assign(traced.velocity.begin() + first, traced.velocity.begin() + last);
-      const bool seed_last = std::abs(traced.time[size_t(first)]) > std::abs(traced.time[size_t(last) - 1]);
-      if (seed_last) {
-        std::reverse(turned.points.begin(), turned.points.end());
-        std::reverse(turned.velocity.begin(), turned.velocity.end());
-      }
-      turned.begin.push_back(turned.points.size()), turned.stop.push_back(traced.stop[k]);
-      follow(turned, 0, critical, limits, sign, seed.line);
-    }
+    parallel_for(
+        traced.lines(), 64,
+        [&](size_t begin, size_t end) {
+          for (size_t k = begin; k < end; ++k) {
+            // Backward lines have their seed last.
+            const size_t first = traced.begin[k], last = traced.begin[k + 1] - 1;
+            const auto place = [&](size_t i, Vec3& x, Vec3& v) {
+              const size_t p = sign > 0 ? first + i : last - i;
+              x = traced.points[p], v = traced.velocity[p];
+            };
+            follow(last + 1 - first, place, traced.stop[k], critical, limits, sign, seeds[number[size_t(traced.seed[k])]].line);
+          }
+        },
+        &context);
   }
   std::erase_if(seeds, [](const LimitSeed& s) { return s.line.points.size() < 2; });
 }
 
-std::vector<Separatrix> find_separatrices(const FlowField& flow, const CriticalPoints& critical, const std::vector<SwitchPoint>& border,
+std::vector<Separatrix> find_separatrices(const FlowParts& flow, const CriticalPoints& critical, const std::vector<SwitchPoint>& border,
                                           const SeparatrixOptions& options, Context& context) {
-  // On curved surfaces the velocity that the tracer sees jumps at edges by what their bend leaves: no need to follow that in small steps,
-  // and its saddles are a part of a cell from ours.
+  // On curved surfaces the velocity jumps at edges by what their bend leaves: no need to follow that in small steps.
   const bool curved = critical.dimension == 2 && !critical.plane;
   TraceOptions trace = options.trace;
   if (curved) trace.tolerance = std::max(trace.tolerance, 1e-3);
-  const double offset = curved ? std::max(options.offset, 0.5) : options.offset;
+  const double offset = options.offset;
   std::vector<LimitSeed> seeds;
   auto seed = [&](Vec3 from_at, Vec3 at, double sign, Separatrix::Origin origin, size_t from) {
     LimitSeed s{at, sign, {}};
@@ -129,7 +158,7 @@ std::vector<Separatrix> find_separatrices(const FlowField& flow, const CriticalP
       const double sign = c.flow.re[k] > 0 ? 1 : -1;
       if (c.flow.count == 3 && (sign > 0 ? 3 - in : in) != 1) continue;  // one of two: they span a surface
       for (const double side : {1.0, -1.0})
-        seed(c.at, c.at + side * offset * c.size * c.flow.vector[k], sign, Separatrix::Origin::saddle, i);
+        seed(c.at, c.at + side * (offset * c.size + 2 * c.moved) * c.flow.vector[k], sign, Separatrix::Origin::saddle, i);
     }
   }
   for (size_t i = 0; i < border.size(); ++i) {
@@ -139,7 +168,8 @@ std::vector<Separatrix> find_separatrices(const FlowField& flow, const CriticalP
     if (touch || p.type == SwitchType::detachment) seed(p.at, at, 1, Separatrix::Origin::border, i);
     if (touch || p.type == SwitchType::attachment) seed(p.at, at, -1, Separatrix::Origin::border, i);
   }
-  trace_to_limits(flow, critical, seeds, trace, context);
+  if (curved) trace_to_limits(tangential_flow(flow, context), critical, seeds, trace, context);
+  else trace_to_limits(flow, critical, seeds, trace, context);
   std::vector<Separatrix> out;
   for (LimitSeed& s : seeds) out.push_back(std::move(s.line));
   return out;
@@ -172,7 +202,7 @@ std::vector<Separatrix> separatrix_circles(const CriticalPoints& critical, doubl
 DatasetPtr separatrices_dataset(const std::vector<Separatrix>& lines) {
   std::vector<double> xyz, speed;
   std::vector<int64_t> ids, offsets{0};
-  std::vector<int32_t> origin, from, to, unstable;
+  std::vector<int32_t> origin, from, to, orbit, unstable;
   for (const Separatrix& s : lines) {
     for (size_t i = 0; i < s.points.size(); ++i) {
       ids.push_back(int64_t(xyz.size() / 3));
@@ -180,7 +210,8 @@ DatasetPtr separatrices_dataset(const std::vector<Separatrix>& lines) {
       speed.push_back(s.speed[i]);
     }
     offsets.push_back(int64_t(ids.size()));
-    origin.push_back(int32_t(s.origin)), from.push_back(int32_t(s.from)), to.push_back(int32_t(s.to)), unstable.push_back(s.unstable);
+    origin.push_back(int32_t(s.origin)), from.push_back(int32_t(s.from)), to.push_back(int32_t(s.to)), orbit.push_back(int32_t(s.orbit)),
+        unstable.push_back(s.unstable);
   }
   SurfaceMesh mesh;
   mesh.points.xyz = Array::from_vector(std::move(xyz), 3);
@@ -192,6 +223,7 @@ DatasetPtr separatrices_dataset(const std::vector<Separatrix>& lines) {
   auto add = [&](const char* name, std::vector<int32_t> v) {
     parts.fields.add({name, Association::cell, Array::from_vector(std::move(v)), "", Role::labels});
   };
+  if (std::any_of(orbit.begin(), orbit.end(), [](int32_t k) { return k >= 0; })) add("orbit", std::move(orbit));
   add("unstable", std::move(unstable)), add("origin", std::move(origin)), add("from", std::move(from)), add("to", std::move(to));
   parts.notes.emplace_back("labels of unstable", "0=stable\n1=unstable");
   parts.notes.emplace_back("labels of origin", "0=saddle\n1=border\n2=circle");
@@ -207,8 +239,8 @@ void describe(Schema& s, SeparatricesParams& p) {
   s("tolerance", p.tolerance, "Error of one step, in sizes of the local cell.").positive();
 }
 
-DatasetPtr separatrices(const DatasetPtr& in, const SeparatricesParams& p, Context& context) {
-  const FlowField flow(in, p.field.name, context);
+DatasetPtr separatrices(const Data& in, const SeparatricesParams& p, Context& context) {
+  const FlowParts flow(in, p.field.name, "separatrices", context);
   const CriticalPoints critical = find_critical_points(flow, p.critical, context);
   std::vector<SwitchPoint> border;
   if (p.border && critical.plane) border = find_switch_points(flow, *critical.plane, context);

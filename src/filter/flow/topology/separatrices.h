@@ -10,7 +10,7 @@
 namespace sg {
 
 struct SeparatrixOptions {
-  double offset = 0.02;  ///< from a saddle to where tracing begins, in diagonals of its cell; on curved surfaces at least 1/2
+  double offset = 0.02;  ///< from a saddle to where tracing begins, in diagonals of its cell
   TraceOptions trace;
 };
 
@@ -22,6 +22,7 @@ struct Separatrix {
   Origin origin = Origin::saddle;
   int64_t from = -1;     ///< number of the critical point or of the switch point
   int64_t to = -1;       ///< number of the critical point where it ends; -1: elsewhere
+  int64_t orbit = -1;    ///< number of the periodic orbit where it ends
   bool unstable = true;  ///< the flow leaves the origin along it; else it comes by it
   StopReason stop = StopReason::speed;
 };
@@ -30,7 +31,7 @@ struct Separatrix {
 /// way, from detachment points one with the flow, from attachment points one against it. They end where they come within 1/10 of a cell
 /// of a point that attracts (those traced backwards: repels) or 1/20 of another saddle, at the border, and by the trace options.
 /// In order of saddles, then switch points; the same for any number of threads.
-std::vector<Separatrix> find_separatrices(const FlowField& flow, const CriticalPoints& critical, const std::vector<SwitchPoint>& border,
+std::vector<Separatrix> find_separatrices(const FlowParts& flow, const CriticalPoints& critical, const std::vector<SwitchPoint>& border,
                                           const SeparatrixOptions& options, Context& context);
 
 /// Seeds of the separating surfaces in space: about each saddle a circle in the plane of its two like directions, of radius `radius` in
@@ -43,21 +44,21 @@ struct LimitSeed {
   double sign;
   Separatrix line;  ///< with the points before the seed
 };
-void trace_to_limits(const FlowField& flow, const CriticalPoints& critical, std::vector<LimitSeed>& seeds, const TraceOptions& options,
+void trace_to_limits(const FlowParts& flow, const CriticalPoints& critical, std::vector<LimitSeed>& seeds, const TraceOptions& options,
                      Context& context);
 
-/// Poly-lines with the point field "speed" and cell fields "origin", "from", "to", "unstable".
+/// Poly-lines with the point field "speed" and cell fields "origin", "from", "to", "orbit" (where lines end at some), "unstable".
 DatasetPtr separatrices_dataset(const std::vector<Separatrix>& lines);
 
 struct SeparatricesParams {
   FieldName field;
-  CriticalOptions critical;
+  CriticalOptions critical{.noise = 0.02};
   double offset = 0.02;
   bool border = true;
   int64_t max_steps = 2000;
   double tolerance = 1e-5;
 };
 void describe(Schema& s, SeparatricesParams& p);
-DatasetPtr separatrices(const DatasetPtr& in, const SeparatricesParams& p, Context& context);
+DatasetPtr separatrices(const Data& in, const SeparatricesParams& p, Context& context);
 
 }  // namespace sg

@@ -23,13 +23,21 @@ struct SwitchPoint {
   SwitchType type;
   int64_t cell = -1;
   double size = 0;  ///< length of the edge
+  int32_t part = 0;
 };
 
 /// Places of the border's edges (curved ones by the chords between their nodes) where the velocity, linear along each, is along the
 /// border; corners where it goes in by one edge and out by the other. Edges along which the flow runs everywhere have none. On walls:
-/// where the shear (derivative of the velocity along the wall, away from it) changes sign. In the order of the edges' cells. Meshes are
-/// joined by point numbers; none for AMR grids, whose patches have borders inside.
-std::vector<SwitchPoint> find_switch_points(const FlowField& flow, const PlaneFrame& frame, Context& context);
+/// where the shear (derivative of the velocity along the wall, away from it) changes sign. In the order of the edges' cells. Edges that
+/// one cell has are no border where another part or patch lies behind them.
+std::vector<SwitchPoint> find_switch_points(const FlowParts& flow, const PlaneFrame& frame, Context& context);
+
+/// Places just inside the border, some on each stretch along which the flow enters (1), leaves (-1) or runs along it (both, as two).
+struct BorderSeed {
+  Vec3 at;
+  double sign;
+};
+std::vector<BorderSeed> border_seeds(const FlowParts& flow, const PlaneFrame& frame, Context& context);
 
 /// A point cloud with "type" (labels) and "cell".
 DatasetPtr switch_points_dataset(const std::vector<SwitchPoint>& points);

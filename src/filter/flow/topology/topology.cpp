@@ -15,8 +15,8 @@ void describe(Schema& s, TopologyParams& p) {
   s("circle", p.circle, "Solids: radius of the seed circles of separating surfaces, in diagonals of the saddle's cell.").positive();
 }
 
-CollectionPtr topology(const DatasetPtr& in, const TopologyParams& p, Context& context) {
-  const FlowField flow(in, p.field.name, context);
+CollectionPtr topology(const Data& in, const TopologyParams& p, Context& context) {
+  const FlowParts flow(in, p.field.name, "topology", context);
   const CriticalPoints critical = find_critical_points(flow, p.critical, context);
   auto out = std::make_shared<Collection>();
   out->parts.push_back({"critical points", critical_points_dataset(critical)});
@@ -30,17 +30,21 @@ CollectionPtr topology(const DatasetPtr& in, const TopologyParams& p, Context& c
     options.trace.tolerance = p.tolerance, options.trace.max_steps = p.max_steps, options.trace.min_speed = 1e-9 * flow.largest_speed();
     lines = find_separatrices(flow, critical, border, options, context);
   }
+  std::vector<Orbit> orbits;
+  size_t families = 0;
+  if (p.orbits && critical.plane) {
+    orbits = find_closed_orbits(flow, critical, lines, {}, context, &families);
+    end_at_orbits(lines, orbits, context);
+  }
   if (p.separatrices && !lines.empty()) {
     out->parts.push_back({"separatrices", separatrices_dataset(lines)});
     text += fmt::format("; {} separatrices", lines.size());
   }
-  if (p.orbits && critical.plane) {
-    const auto orbits = find_closed_orbits(flow, critical, lines, {}, context);
-    if (!orbits.empty()) {
-      out->parts.push_back({"closed orbits", orbits_dataset(orbits)});
-      text += fmt::format("; {} periodic orbit{}", orbits.size(), orbits.size() == 1 ? "" : "s");
-    }
+  if (!orbits.empty()) {
+    out->parts.push_back({"closed orbits", orbits_dataset(orbits)});
+    text += fmt::format("; {} periodic orbit{}", orbits.size(), orbits.size() == 1 ? "" : "s");
   }
+  if (families > 0) text += "; families of closed lines about centres";
   if (!border.empty()) {
     out->parts.push_back({"switch points", switch_points_dataset(border)});
     text += fmt::format("; {} switch point{} of the border", border.size(), border.size() == 1 ? "" : "s");

@@ -83,13 +83,13 @@ void describe(Schema& s, TopologySeedsParams& p) {
   s("radius", p.radius, "How far the patterns reach, as a part of the way to the nearest other critical point.").positive();
 }
 
-DatasetPtr topology_seeds(const DatasetPtr& in, const TopologySeedsParams& p, Context& context) {
-  const FlowField flow(in, p.field.name, context);
+DatasetPtr topology_seeds(const Data& in, const TopologySeedsParams& p, Context& context) {
+  const FlowParts flow(in, p.field.name, "topology_seeds", context);
   const CriticalPoints critical = find_critical_points(flow, p.critical, context);
-  const std::vector<double> reach = reaches(critical.points, p.radius, 0.1 * in->bounds().diagonal());
+  const std::vector<double> reach = reaches(critical.points, p.radius, 0.1 * flow.bounds().diagonal());
   std::vector<double> xyz;
   std::vector<int32_t> number, type;
-  FlowCursor cursor(flow);
+  PartsCursor cursor(flow);
   std::vector<Vec3> seeds;
   for (size_t i = 0; i < critical.points.size(); ++i) {
     const CriticalPoint& c = critical.points[i];

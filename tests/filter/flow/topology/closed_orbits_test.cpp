@@ -33,7 +33,7 @@ double amplitude(const Orbit& o) {
 
 std::vector<Orbit> orbits_of(const DatasetPtr& d) {
   Context context;
-  const FlowField flow(d, "", context);
+  const FlowParts flow(d, "", "test", context);
   const CriticalPoints critical = find_critical_points(flow, {}, context);
   return find_closed_orbits(flow, critical, find_separatrices(flow, critical, {}, {}, context), {}, context);
 }

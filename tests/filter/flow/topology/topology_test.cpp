@@ -20,7 +20,7 @@ struct Found {
 };
 Found all_of(const DatasetPtr& d) {
   Context context;
-  const FlowField flow(d, "", context);
+  const FlowParts flow(d, "", "test", context);
   Found f;
   f.critical = find_critical_points(flow, {.centre = 0.01}, context);
   if (f.critical.plane) f.border = find_switch_points(flow, *f.critical.plane, context);
