@@ -24,6 +24,13 @@ SolidCursor::Found SolidCursor::find(Vec3 x) {
     FaceExit exit;
     if (!look(x, quick, exit)) return Found::lost;
     if (exit.face == -1) return Found::here;
+    if (n == 12) {  // x is far from the last place: there is a nearer cell to begin at
+      const int32_t c = start.near(x);
+      if (c < 0) return Found::lost;
+      open(c);
+      before = -1, quick = true;
+      continue;
+    }
     const int64_t next = exit.face < 0 ? -1 : across(exit.face);
     if (next < 0) {
       if (!quick) return Found::lost;
