@@ -20,7 +20,7 @@ Vec3 random_vec(uint64_t k) {
 
 // Random short steps: the cursor, which walks, against a locator that is asked anew and takes the smallest cell.
 // `conforming`: cells agree where they meet; else the cell that the walk is in counts, if it holds the place.
-void compare(const DatasetPtr& mesh, size_t steps, double step, bool conforming = true) {
+void compare(const DatasetPtr& mesh, size_t steps, double step, bool conforming = true, double epsilon = 1e-12) {
   Context context;
   const FlowField field(mesh, "u", context);
   FlowCursor walk(field);
@@ -64,7 +64,7 @@ void compare(const DatasetPtr& mesh, size_t steps, double step, bool conforming 
   }
   CHECK(inside > steps / 3);
   CHECK(differ == 0);
-  CHECK(worst < 1e-12);
+  CHECK(worst < epsilon);
   if (conforming) CHECK(other_cell < inside / 100);  // on faces, either
 }
 
@@ -88,10 +88,10 @@ TEST_CASE("walk: short random steps give the answers of the locator in every kin
   }
 }
 
-// Open: one of the two meshes, whose cells do not conform, gave a value that differs by 0.06 from that of the cell that was named.
-TEST_CASE("walk: far from zero, and with hidden cells among mixed ones" * doctest::may_fail()) {
-  compare(with_velocity(block_cells("mixed", 5, 0.1).dataset({1e5, -2e5, 3e4}), [](Vec3 p) { return wavy(p - Vec3(1e5, -2e5, 3e4)); }),
-          3000, 0.06);
+TEST_CASE("walk: far from zero, and with hidden cells among mixed ones") {
+  // What doubles leave uncertain of places there is 1e-10 of a cell.
+  const DatasetPtr far = block_cells("mixed", 5, 0.1).dataset({1e5, -2e5, 3e4});
+  compare(with_velocity(far, [](Vec3 p) { return wavy(p - Vec3(1e5, -2e5, 3e4)); }), 3000, 0.06, false, 1e-8);
   DatasetParts parts = with_velocity(block_cells("mixed", 6, 0.15).dataset(), wavy)->parts();
   std::vector<uint8_t> ghost(cell_count(parts.mesh));
   for (size_t c = 0; c < ghost.size(); c += 9) ghost[c] = ghost_hidden_cell;
