@@ -24,7 +24,7 @@ struct CellNeighbors {
 /// Cells are neighbours when they share all corners of a face, whatever their order; repeated corners (collapsed cells) count once,
 /// and a face that has collapsed to a line, or an edge to a point, has no neighbour. Where three or more cells meet, each names the
 /// smallest other one. Unstructured and surface meshes (their polygons); the neighbours in a grid are arithmetic: Error(internal).
-/// O(faces), parallel, the same for any number of threads; 20 bytes a face at its peak. Throws Error(usage) above 2^31 cells.
+/// O(faces), parallel, the same for any number of threads; 24 bytes a face at its peak. Throws Error(usage) above 2^31 cells.
 CellNeighbors cell_neighbors(const Mesh& mesh, const Context* context = nullptr);
 
 }  // namespace sg

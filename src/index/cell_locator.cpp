@@ -65,10 +65,14 @@ void CellLocator::Index::open_amr(const AmrGrid& amr, Context& context) {
       Box3 b;
       b.add(v.origin), b.add(v.origin + Vec3(double(n[0]), double(n[1]), solid ? double(n[2]) : 0.0) * h);
       boxes.push_back(b);
-      patches.push_back({GridIndex(v), int(l), cell, n[0] * n[1] * n[2], point});
+      patches.push_back({GridIndex(v), int(l), cell, n[0] * n[1] * n[2], point, b, {}});
       cell += n[0] * n[1] * n[2], point += v.points();
     }
   patch_tree.emplace(boxes, context);
+  for (Patch& p : patches)
+    patch_tree->overlapping(p.box, [&](uint32_t q) {
+      if (patches[q].level >= p.level && &patches[q] != &p) p.rivals.push_back(q);
+    });
 }
 
 const CellTree& CellLocator::Index::tree() const {
@@ -87,7 +91,33 @@ LocatorCursor::LocatorCursor(const CellLocator& locator) : state_(std::make_uniq
 LocatorCursor::~LocatorCursor() = default;
 LocatorCursor::LocatorCursor(LocatorCursor&&) noexcept = default;
 
+// Whether nothing but the patch of the last answer can hold x: it is well inside, and in none that goes before.
+bool LocatorCursor::State::same_patch(Vec3 x) {
+  constexpr size_t few = 32;
+  const auto inside = [&](const Box3& b, double margin) {
+    const Vec3 size = b.size();
+    for (int a = 0; a < 3; ++a) {
+      const double m = margin * (index->slack + 1e-6 * size[a]);
+      if (!(x[a] >= b.lo[a] + m && x[a] <= b.hi[a] - m)) return false;
+    }
+    return true;
+  };
+  if (!patch || patch->rivals.size() > few || !inside(patch->box, 1)) return false;
+  for (const uint32_t q : patch->rivals)
+    if (inside(index->patches[q].box, -1)) return false;
+  return true;
+}
+
 int64_t LocatorCursor::State::find_amr(Vec3 x) {
+  if (same_patch(x)) {
+    CellPlace at;
+    const int64_t c = patch->grid.find(
+        x, index->slack, [&](size_t local) { return hidden(patch->cell_begin + local); }, at);
+    if (c >= 0) {
+      place = at;
+      return c + int64_t(patch->cell_begin);
+    }
+  }
   int level = -1;
   int64_t best = -1;
   index->patch_tree->cells_at(x, index->slack, [&](uint32_t p) {

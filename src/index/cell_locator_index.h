@@ -16,6 +16,8 @@ struct CellLocator::Index {
     GridIndex grid;
     int level;
     size_t cell_begin, cells, point_begin;
+    Box3 box;
+    std::vector<uint32_t> rivals;  // others of the same and finer levels that meet the box
   };
 
   DatasetPtr dataset;
@@ -51,6 +53,7 @@ struct LocatorCursor::State {
   const CellLocator::Index::Patch* patch = nullptr;  // of the cell found (AMR)
 
   explicit State(const CellLocator::Index& i) : index(&i), probe(i.map, i.simplices, i.slack) {}
+  bool same_patch(Vec3 x);
   bool hidden(size_t c) { return index->any_hidden && probe.map().reader().hidden(c); }
   int64_t find_amr(Vec3 x);
   int64_t find_tree(Vec3 x);

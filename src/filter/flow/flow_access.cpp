@@ -2,6 +2,7 @@
 #include "filter/flow/flow_access.h"
 
 #include "data/memo.h"
+#include "data/mesh_dimension.h"
 
 namespace sg {
 
@@ -41,32 +42,6 @@ std::optional<LatticeFlow> lattice_flow(const Dataset& d) {
 
 }  // namespace
 
-TetWalk make_tet_walk(const Dataset& mesh, const SimplexArrays& s, const Context& context) {
-  TetWalk w;
-  w.across = tet_neighbors(s.cells, mesh.point_count(), context);
-  w.box = mesh.bounds();
-  const size_t n = std::clamp<size_t>(size_t(std::cbrt(double(s.cells.count) / 16)), 1, 64);
-  w.bins = {n, n, n};
-  w.start.assign(n * n * n, -1);
-  // Every few cells one by its first corner; bins that stay empty take the one before.
-  const size_t stride = s.cells.count > 4096 ? 4 : 1;
-  for (size_t c = 0; c < s.cells.count; c += stride) {
-    const Vec3 p = s.point(s.id(c, 0));
-    size_t at[3];
-    for (int a = 0; a < 3; ++a) {
-      const double e = w.box.hi[a] - w.box.lo[a], f = e > 0 ? (p[a] - w.box.lo[a]) / e * double(n) : 0;
-      at[a] = size_t(std::min(std::max(f, 0.0), double(n - 1)));
-    }
-    w.start[at[0] + n * (at[1] + n * at[2])] = int32_t(c);
-  }
-  int32_t last = 0;
-  for (int32_t& c : w.start) {
-    if (c < 0) c = last;
-    last = c;
-  }
-  return w;
-}
-
 FlowAccess::FlowAccess(DatasetPtr mesh, std::shared_ptr<const CellLocator> index, const Context& context)
     : mesh_(index ? index->dataset() : std::move(mesh)), locator_(std::move(index)) {
   const Dataset& d = *mesh_;
@@ -76,36 +51,65 @@ FlowAccess::FlowAccess(DatasetPtr mesh, std::shared_ptr<const CellLocator> index
     kind = Kind::lattice;
     return;
   }
-  if (const auto* c = d.as<CurvilinearGrid>(); c && !any_hidden && c->dims[0] > 1 && c->dims[1] > 1 && c->dims[2] > 1) {
-    curvilinear = std::make_shared<const Lattice>(d.mesh());
-    kind = Kind::hexes;
+  if (d.cell_count() == 0 || d.cell_count() >= size_t(INT32_MAX)) return;
+  if (const auto* c = d.as<CurvilinearGrid>()) {
+    if (c->dims[0] > 1 && c->dims[1] > 1 && c->dims[2] > 1) open_curvilinear(context);
     return;
   }
-  const auto* u = d.as<UnstructuredMesh>();
-  if (!u || any_hidden || d.cell_count() == 0 || d.cell_count() >= size_t(INT32_MAX)) return;
+  if (!d.as<UnstructuredMesh>()) return;
   simplices = SimplexArrays(d);
-  const auto hexahedron = [](uint8_t t) { return t == uint8_t(CellType::hexahedron); };
-  if (simplices.types ? std::all_of(simplices.types, simplices.types + simplices.cells.count, hexahedron)
-                      : simplices.single == CellType::hexahedron) {
-    constexpr const char* key = "flow/hex_neighbors";
-    hex_neighbors = d.memo().find<CellNeighbors>(key);
-    if (!hex_neighbors) {
-      CellNeighbors made = cell_neighbors(d.mesh(), &context);
-      const size_t bytes = made.across.size() * 4;
-      hex_neighbors = d.memo().keep<CellNeighbors>(key, std::move(made), bytes);
-    }
-    if (hex_neighbors->fixed == 6) kind = Kind::hexes;
-    return;
+  if (simplices.all(CellType::tetra) && !any_hidden) open_tets(context);
+  else if (mesh_dimension(d) == 3) open_solids(context);
+}
+
+template <class Corner, class Takes>
+void FlowAccess::make_start(size_t cells, Corner&& corner, Takes&& takes) {
+  constexpr const char* key = "flow/walk_start";
+  start = mesh_->memo().find<WalkStart>(key);
+  if (start) return;
+  WalkStart made(mesh_->bounds(), cells, corner, takes);
+  const size_t bytes = made.bytes();
+  start = mesh_->memo().keep<WalkStart>(key, std::move(made), bytes);
+}
+
+void FlowAccess::open_curvilinear(const Context&) {
+  curvilinear = std::make_shared<const Lattice>(mesh_->mesh());
+  const LatticeView& v = curvilinear->view();
+  const auto n = v.cell_dims();
+  const CellReader reader(mesh_);
+  make_start(
+      mesh_->cell_count(), [&](size_t c) { return v.position(c % n[0], c / n[0] % n[1], c / n[0] / n[1]); },
+      [&](size_t c) { return !any_hidden || !reader.hidden(c); });
+  kind = Kind::solids;
+}
+
+void FlowAccess::open_tets(const Context& context) {
+  using Across = std::vector<int32_t, HugeAllocator<int32_t>>;
+  constexpr const char* key = "flow/tet_neighbors";
+  tets = mesh_->memo().find<Across>(key);
+  if (!tets) {
+    Across made = tet_neighbors(simplices.cells, mesh_->point_count(), context);
+    const size_t bytes = made.size() * 4;
+    tets = mesh_->memo().keep<Across>(key, std::move(made), bytes);
   }
-  if (!simplices.all(CellType::tetra)) return;
-  constexpr const char* key = "flow/tet_walk";
-  walk = d.memo().find<TetWalk>(key);
-  if (!walk) {
-    TetWalk made = make_tet_walk(d, simplices, context);
-    const size_t bytes = made.bytes();
-    walk = d.memo().keep<TetWalk>(key, std::move(made), bytes);
-  }
+  make_start(
+      simplices.cells.count, [&](size_t c) { return simplices.point(simplices.id(c, 0)); }, [](size_t) { return true; });
   kind = Kind::tets;
+}
+
+void FlowAccess::open_solids(const Context& context) {
+  constexpr const char* key = "flow/cell_neighbors";
+  neighbors = mesh_->memo().find<CellNeighbors>(key);
+  if (!neighbors) {
+    CellNeighbors made = cell_neighbors(mesh_->mesh(), &context);
+    const size_t bytes = made.across.size() * 4 + made.begin.size() * 8;
+    neighbors = mesh_->memo().keep<CellNeighbors>(key, std::move(made), bytes);
+  }
+  const CellReader reader(mesh_);
+  make_start(
+      simplices.cells.count, [&](size_t c) { return simplices.point(simplices.id(c, 0)); },
+      [&](size_t c) { return cell_type_info(cell_type(c)).dimension == 3 && (!any_hidden || !reader.hidden(c)); });
+  kind = Kind::solids;
 }
 
 const std::shared_ptr<const CellLocator>& FlowAccess::locator() const {

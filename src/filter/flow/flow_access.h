@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a FlowField finds velocities fast: by arithmetic in grids, by walking across faces in tetrahedra, else by the locator. Geometry
+// How a FlowField finds velocities fast: by arithmetic in grids, by walking across faces in solid cells, else by the locator. Geometry
 // only, so that the time steps of one mesh share it. Internal to filter/flow.
 #pragma once
 #include <memory>
@@ -10,6 +10,7 @@
 #include "data/cell_neighbors.h"
 #include "data/lattice.h"
 #include "filter/flow/tet_neighbors.h"
+#include "filter/flow/walk_start.h"
 #include "index/cell_locator.h"
 #include "index/cell_probe.h"
 
@@ -49,43 +50,33 @@ struct LatticePlace {
   double f[3] = {0, 0, 0};
 };
 
-/// Linear tetrahedra: neighbours, and where to begin to walk.
-struct TetWalk {
-  std::vector<int32_t, HugeAllocator<int32_t>> across;  ///< four a cell, opposite to its corners; -1 for none
-  Box3 box;
-  std::array<size_t, 3> bins{1, 1, 1};
-  std::vector<int32_t> start;  ///< a cell near each bin
-  size_t bytes() const { return across.size() * 4 + start.size() * 4; }
-  int32_t near(Vec3 x) const {
-    size_t at[3];
-    for (int a = 0; a < 3; ++a) {
-      const double s = box.hi[a] - box.lo[a], f = s > 0 ? (x[a] - box.lo[a]) / s * double(bins[size_t(a)]) : 0;
-      at[a] = size_t(std::min(std::max(f, 0.0), double(bins[size_t(a)] - 1)));
-    }
-    return start[at[0] + bins[0] * (at[1] + bins[1] * at[2])];
-  }
-};
-
-/// Of a mesh of tetrahedra without hidden cells; O(cells), parallel.
-TetWalk make_tet_walk(const Dataset& mesh, const SimplexArrays& simplices, const Context& context);
-
 class FlowAccess {
  public:
-  enum class Kind : uint8_t { lattice, tets, hexes, cells };
+  /// solids: any cells of volume that walks can cross, see SolidCursor; cells: by the locator alone.
+  enum class Kind : uint8_t { lattice, tets, solids, cells };
   /// `index`: a locator of the same mesh, of this or another dataset, or null: made when it is first needed.
   FlowAccess(DatasetPtr mesh, std::shared_ptr<const CellLocator> index, const Context& context);
 
   Kind kind = Kind::cells;
   LatticeFlow lattice;
   SimplexArrays simplices;
-  std::shared_ptr<const TetWalk> walk;
-  std::shared_ptr<const Lattice> curvilinear;          ///< hexes: of a grid,
-  std::shared_ptr<const CellNeighbors> hex_neighbors;  ///< or of a mesh
+  std::shared_ptr<const WalkStart> start;  ///< tets and solids
+  std::shared_ptr<const std::vector<int32_t, HugeAllocator<int32_t>>>
+      tets;                                        ///< four neighbours a cell, opposite to its corners; -1 for none
+  std::shared_ptr<const Lattice> curvilinear;      ///< solids: of a grid,
+  std::shared_ptr<const CellNeighbors> neighbors;  ///< or of a mesh
   bool any_hidden = false;
+  CellType cell_type(size_t cell) const { return simplices.types ? CellType(simplices.types[cell]) : simplices.single; }
   const std::shared_ptr<const CellLocator>& locator() const;
   const DatasetPtr& mesh() const { return mesh_; }
 
  private:
+  void open_curvilinear(const Context& context);
+  void open_tets(const Context& context);
+  void open_solids(const Context& context);
+  /// Made once for the mesh.
+  template <class Corner, class Takes>
+  void make_start(size_t cells, Corner&& corner, Takes&& takes);
   DatasetPtr mesh_;
   mutable std::once_flag once_;
   mutable std::shared_ptr<const CellLocator> locator_;

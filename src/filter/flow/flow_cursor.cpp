@@ -2,21 +2,21 @@
 #include <optional>
 
 #include "filter/flow/flow_field.h"
-#include "filter/flow/hex_cursor.h"
 #include "filter/flow/lattice_cursor.h"
+#include "filter/flow/solid_cursor.h"
 #include "filter/flow/surface_normal.h"
 #include "filter/flow/tet_cursor.h"
 
 namespace sg {
 
 struct FlowCursor::State {
-  enum class Source : uint8_t { none, lattice, tets, hexes, locator };
+  enum class Source : uint8_t { none, lattice, tets, solids, locator };
   const FlowField* field;
   const FlowAccess* access;
   Source source = Source::none;  // of the last answer
   std::optional<LatticeCursor> lattice;
   std::optional<TetCursor> tets;
-  std::optional<HexCursor> hexes;
+  std::optional<SolidCursor> solids;
   std::optional<LocatorCursor> locator;  // made when it is needed
   std::optional<CellReader> reader;      // with hidden cells
   int64_t cell = -1, sized = -1, framed = -1;
@@ -30,8 +30,8 @@ struct FlowCursor::State {
     const PointVectors v{f.f32(), f.f64(), f.components()};
     if (access->kind == FlowAccess::Kind::lattice) lattice.emplace(access->lattice, v);
     if (access->kind == FlowAccess::Kind::tets) tets.emplace(*access, v);
-    if (access->kind == FlowAccess::Kind::hexes) hexes.emplace(*access, v);
-    if (access->any_hidden) reader.emplace(access->mesh());
+    if (access->kind == FlowAccess::Kind::solids) solids.emplace(*access, v);
+    if (lattice && access->any_hidden) reader.emplace(access->mesh());
   }
   LocatorCursor& by_tree() {
     if (!locator) locator.emplace(*access->locator());
@@ -57,14 +57,16 @@ struct FlowCursor::State {
       cell = tets->cell();
       return true;
     }
-    if (hexes) {
-      source = Source::hexes;
-      if (hexes->find(x)) {
-        cell = hexes->cell();
+    if (solids) {
+      source = Source::solids;
+      const SolidCursor::Found found = solids->find(x);
+      if (found == SolidCursor::Found::outside) return false;
+      if (found == SolidCursor::Found::here) {
+        cell = solids->cell();
         return true;
       }
       cell = by_tree().find_any(x);
-      if (cell < 0 || hexes->set(cell, x)) return cell >= 0;
+      if (cell < 0 || solids->set(cell, x)) return cell >= 0;
     }
     source = Source::locator;
     return find_by_tree(x);
@@ -107,8 +109,8 @@ struct FlowCursor::State {
     }
     if (cell == sized) return;
     sized = cell;
-    if (source == Source::tets || source == Source::hexes) {
-      length = source == Source::tets ? tets->length() : hexes->length();
+    if (source == Source::tets || source == Source::solids) {
+      length = source == Source::tets ? tets->length() : solids->length();
       return;
     }
     const Vec3 size = open_map().reader().box().size();
@@ -119,13 +121,11 @@ struct FlowCursor::State {
       if (size[a] > 1e-6 * largest) product *= size[a], ++n;
     length = n == 3 ? std::cbrt(product) : n == 2 ? std::sqrt(product) : product;
   }
-  int make_corners() {
-    return lattice ? lattice->corners(corner, weight) : tets ? tets->corners(corner, weight) : hexes->corners(corner, weight);
-  }
+  int make_corners() { return lattice ? lattice->corners(corner, weight) : tets->corners(corner, weight); }
   Vec3 velocity() {
     if (source == Source::lattice) return lattice->velocity();
     if (source == Source::tets) return tets->velocity();
-    if (source == Source::hexes) return hexes->velocity();
+    if (source == Source::solids) return solids->velocity();
     const auto ids = locator->ids();
     const auto weights = locator->weights();
     Vec3 v;
@@ -157,8 +157,8 @@ bool FlowCursor::gradient(Vec3 x, Vec3& v, Mat3& j) {
     j = s.lattice->gradient();
     return true;
   }
-  if (s.source == State::Source::tets || s.source == State::Source::hexes) {
-    j = s.source == State::Source::tets ? s.tets->gradient() : s.hexes->gradient();
+  if (s.source == State::Source::tets || s.source == State::Source::solids) {
+    j = s.source == State::Source::tets ? s.tets->gradient() : s.solids->gradient();
     return true;
   }
   CellMap& map = s.open_map();
@@ -182,12 +182,14 @@ std::span<const int64_t> FlowCursor::ids() const {
   State& s = *state_;
   if (s.source == State::Source::locator) return s.locator->ids();
   if (s.source == State::Source::none) return {};
+  if (s.source == State::Source::solids) return s.solids->ids();
   return {s.corner, size_t(s.make_corners())};
 }
 std::span<const double> FlowCursor::weights() const {
   State& s = *state_;
   if (s.source == State::Source::locator) return s.locator->weights();
   if (s.source == State::Source::none) return {};
+  if (s.source == State::Source::solids) return s.solids->weights();
   return {s.weight, size_t(s.make_corners())};
 }
 const FlowField& FlowCursor::field() const { return *state_->field; }

@@ -81,8 +81,17 @@ PartsCursor::PartsCursor(const FlowParts& parts) {
 
 bool PartsCursor::operator()(Vec3 x, Vec3& v) {
   if (cursors_[last_](x, v)) return true;
+  // Solid parts hold nothing beyond their box; surfaces answer from beside them, too.
+  const auto may_hold = [&](const FlowCursor& c) {
+    if (!flat_) return true;
+    const Box3& b = c.field().dataset()->bounds();
+    const double slack = 1e-6 * b.diagonal();
+    for (int a = 0; a < 3; ++a)
+      if (!(x[a] >= b.lo[a] - slack && x[a] <= b.hi[a] + slack)) return false;
+    return true;
+  };
   for (size_t i = 0; i < cursors_.size(); ++i)
-    if (i != last_ && cursors_[i](x, v)) {
+    if (i != last_ && may_hold(cursors_[i]) && cursors_[i](x, v)) {
       last_ = i;
       return true;
     }

@@ -15,14 +15,14 @@ struct OpenTet {
 
 class TetCursor {
  public:
-  TetCursor(const FlowAccess& access, PointVectors vectors) : s_(&access.simplices), w_(access.walk.get()), v_(vectors) {}
+  TetCursor(const FlowAccess& access, PointVectors vectors)
+      : s_(&access.simplices), start_(access.start.get()), across_(access.tets->data()), v_(vectors) {}
 
   enum class Found : uint8_t { here, outside, lost };
   /// Walks to x. Outside: x is outside of the mesh's box. Lost: the walk came to the border, or into a flat cell: a tree has to tell.
   Found find(Vec3 x) {
-    for (int a = 0; a < 3; ++a)
-      if (!(x[a] >= w_->box.lo[a] - slack(a) && x[a] <= w_->box.hi[a] + slack(a))) return Found::outside;
-    if (cell_ < 0) open(w_->near(x));
+    if (!start_->may_hold(x)) return Found::outside;
+    if (cell_ < 0) open(start_->near(x));
     for (int n = 0; n < 4096; ++n) {
       const Vec3 d = x - t_.a;
       r_ = {dot(t_.rows[0], d), dot(t_.rows[1], d), dot(t_.rows[2], d)};
@@ -32,7 +32,7 @@ class TetCursor {
         if (r[k] < r[worst]) worst = k;
       if (r[worst] >= -t_.tolerance) return Found::here;
       if (!(r[worst] < 0)) return Found::lost;  // not a number
-      const int32_t next = w_->across[size_t(cell_) * 4 + size_t(worst)];
+      const int32_t next = across_[size_t(cell_) * 4 + size_t(worst)];
       if (next < 0) return Found::lost;
       open(next);
     }
@@ -63,7 +63,6 @@ class TetCursor {
   }
 
  private:
-  double slack(int a) const { return 1e-9 * (w_->box.hi[a] - w_->box.lo[a]); }
   void open(int32_t cell) {
     cell_ = cell;
     int64_t id[4];
@@ -83,7 +82,8 @@ class TetCursor {
     t_.box = (hi.x - lo.x) * (hi.y - lo.y) * (hi.z - lo.z);
   }
   const SimplexArrays* s_;
-  const TetWalk* w_;
+  const WalkStart* start_;
+  const int32_t* across_;
   PointVectors v_;
   int32_t cell_ = -1;
   OpenTet t_;

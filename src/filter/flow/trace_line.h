@@ -36,6 +36,41 @@ inline Vec3 crossing(Vec3 x0, Vec3 x1, Vec3 m0, Vec3 m1, Vec3 at, Vec3 normal, d
   return place(f);
 }
 
+/// Whether a scheme's steps, measured in length or cells, are steps in length: of dx/ds = v / |v|, the same curves as those of dx/dt = v. Then
+/// all steps are as long as they should be, and none is longer near places where the flow stands still. Adaptive steps watch their error
+/// instead, and implicit ones keep the areas that time keeps.
+inline bool by_length(const TraceOptions& o) {
+  return o.unit != TraceOptions::Unit::time && o.scheme != Scheme::dormand_prince && o.scheme != Scheme::implicit_midpoint;
+}
+
+/// The flow of dx/ds = v / |v| for one step of length l (signed) from t, where the speed is `speed`; takes down what time it needs.
+template <class Flow>
+struct AlongFlow {
+  Flow& flow;
+  Scheme scheme;
+  double t, l, speed;
+  double slowness[3] = {0, 0, 0};
+  int stages = 0;
+  bool operator()(Vec3 x, double, Vec3& v) {
+    // Stages are half a step further, but for the last of Runge and Kutta's and that of Heun's.
+    const double part = scheme == Scheme::heun || stages == 2 ? 1 : 0.5, slow = stages > 0 ? slowness[stages - 1] : 1 / speed;
+    if (!flow(x, t + part * l * slow, v)) return false;
+    const double s = length(v);
+    slowness[stages++] = s > 0 ? 1 / s : 1 / speed;
+    v = s > 0 ? v / s : Vec3();
+    return true;
+  }
+  double time() const {
+    const double first = 1 / speed;
+    switch (scheme) {
+      case Scheme::euler: return l * first;
+      case Scheme::midpoint: return l * slowness[0];
+      case Scheme::heun: return l / 2 * (first + slowness[0]);
+      default: return l / 6 * (first + 2 * slowness[0] + 2 * slowness[1] + slowness[2]);
+    }
+  }
+};
+
 }  // namespace detail
 
 /// Appends the points after the seed to `out`; the seed itself is there already as its last point, with velocity `v`. `sign` 1 or -1.
@@ -58,7 +93,8 @@ StopReason trace_line(Flow& flow, double t0, double sign, const TraceOptions& o,
     if (!(left > 1e-9 * h)) return o.max_time - std::abs(t - t0) <= 1e-9 * h ? StopReason::time : StopReason::length;
     h = std::min(h, left);
     Vec3 next, next_v;
-    bool done = false, at_border = false;
+    bool done = false, at_border = false, in_length = detail::by_length(o);
+    double took = 0;  // time
     double error = 0, step_error = 0;
     for (int halving = 0; halving <= 10 && !done; ++halving) {
       if (o.scheme == Scheme::dormand_prince) {
@@ -74,6 +110,16 @@ StopReason trace_line(Flow& flow, double t0, double sign, const TraceOptions& o,
             continue;
           }
         }
+      } else if (in_length) {
+        const double l = sign * h * speed;
+        detail::AlongFlow<Flow> along{flow, o.scheme, t, l, speed};
+        done = fixed_step(o.scheme, along, x, t, l, v / speed, next) && flow(next, t + along.time(), next_v);
+        took = std::abs(along.time());
+        if (done && !(std::abs(t - t0) + took <= o.max_time)) {  // the last one ends in time
+          in_length = done = false, --halving;
+          h = std::min(h, o.max_time - std::abs(t - t0));
+          continue;
+        }
       } else {
         done = fixed_step(o.scheme, flow, x, t, sign * h, v, next) && flow(next, t + sign * h, next_v);
       }
@@ -82,7 +128,8 @@ StopReason trace_line(Flow& flow, double t0, double sign, const TraceOptions& o,
     if (!done) return StopReason::outside;
     const Vec3 snapped = flow.snap(next);
     arc += length(snapped - x);
-    t += sign * h;
+    if (!in_length) took = h;
+    t += sign * took;
     // Back where it began: the step passes the plane through the seed across the flow, as close to the seed as the integration is exact.
     // What misses it by more is a spiral.
     drift += step_error;
@@ -92,12 +139,13 @@ StopReason trace_line(Flow& flow, double t0, double sign, const TraceOptions& o,
       away = away || length(snapped - start) > first_cell || dot(next_v, start_v) < 0;  // orbits may be smaller than large cells
       if (away && before < 0 && after >= 0 && length(snapped - start) < 2 * length(snapped - x)) {
         double f = 0;
-        const Vec3 back = detail::crossing(x, snapped, (sign * h) * v, (sign * h) * next_v, start, across, f);
+        const double next_speed = length(next_v), h0 = sign * h, h1 = in_length && next_speed > 0 ? sign * h * speed / next_speed : h0;
+        const Vec3 back = detail::crossing(x, snapped, h0 * v, h1 * next_v, start, across, f);
         const double miss =
             o.scheme == Scheme::dormand_prince ? std::clamp(drift, 1e-4 * first_cell, 1e-2 * first_cell) : 1e-3 * first_cell;
         if (length(back - start) < miss) {
           out.points.push_back(start), out.velocity.push_back(start_v);
-          out.time.push_back(t - sign * h * (1 - f)), out.arc.push_back(arc - (1 - f) * length(snapped - x));
+          out.time.push_back(t - sign * took * (1 - f)), out.arc.push_back(arc - (1 - f) * length(snapped - x));
           return StopReason::closed;
         }
       }

@@ -125,8 +125,8 @@ TEST_CASE("packets: the lines of the plain tracer to 1e-5, in grids and tetrahed
         CAPTURE(kind);
         CAPTURE(int(s));
         CAPTURE(int(d));
-        // Adaptive steps see the kinks between cells at different places: each path is that exact alone.
-        compare(f32_mesh(kind), options_of(s), d, s == Scheme::dormand_prince ? 1e-4 : 1e-5);
+        // Adaptive steps enlarge differences of the last digit at each kink between cells: 3.3e-5 at most.
+        compare(f32_mesh(kind), options_of(s), d, s == Scheme::dormand_prince ? 5e-5 : 1e-5);
       }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Packets in f32 grids. Which cell and how far in it is worked out for all lanes at once; the eight corners of a lane are loaded as four
-// rows of two points and reduced along y, z and x in vectors of four.
+// Packets in f32 grids, worked out in numbers T. Which cell and how far in it is worked out for all lanes at once; the eight corners of a
+// lane are loaded as four rows of two points and reduced along y, z and x in vectors of four.
 #include "filter/flow/packets/packets.h"
 
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
@@ -15,58 +15,67 @@ HWY_BEFORE_NAMESPACE();
 namespace sg::packets::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
+template <class T>
 class GridMesh {
  public:
-  explicit GridMesh(const GridInput& g) : g_(g) {}
+  using Real = T;
+  using DR = hn::CappedTag<T, N>;
+  using DI = hn::RebindToSigned<DR>;
+  using Int = hn::TFromD<DI>;
+  using Lanes3 = T[3][N];
+  explicit GridMesh(const GridInput& g) : g_(g) {
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b) to_grid_[a][b] = T(g.to_grid[a][b]), to_world_[a][b] = T(g.to_world[a][b]);
+  }
 
   void start(size_t l, const GridItem& item) {
-    for (int a = 0; a < 3; ++a) i_[a][l] = item.cell[a], f_[a][l] = item.f[a];
+    for (int a = 0; a < 3; ++a) i_[a][l] = Int(item.cell[a]), f_[a][l] = T(item.f[a]);
   }
-  bool velocity(size_t l, float* v) {
-    HWY_ALIGN float out[4];
+  bool velocity(size_t l, T* v) {
+    HWY_ALIGN T out[4];
     interpolate(base(i_, l), f_[0][l], f_[1][l], f_[2][l], out);
     for (int a = 0; a < 3; ++a) v[a] = out[a];
     return std::isfinite(v[0] + v[1] + v[2]);
   }
-  HWY_INLINE void look(const Lanes3& move, size_t active, Lanes3& v, int32_t* ok) {
-    const DF d;
+  HWY_INLINE void look(const Lanes3& move, size_t active, Lanes3& v, Int* ok) {
+    const DR d;
     const DI di;
     for (size_t l = 0; l < N; l += hn::Lanes(d)) {
       auto good = hn::Eq(hn::Zero(di), hn::Zero(di));
       auto at = hn::Zero(di);
       for (int a = 0; a < 3; ++a) {
-        auto q = hn::Mul(hn::Set(d, g_.to_grid[a][0]), hn::Load(d, &move[0][l]));
-        q = hn::Add(q, hn::Mul(hn::Set(d, g_.to_grid[a][1]), hn::Load(d, &move[1][l])));
-        q = hn::Add(q, hn::Mul(hn::Set(d, g_.to_grid[a][2]), hn::Load(d, &move[2][l])));
+        auto q = hn::Mul(hn::Set(d, to_grid_[a][0]), hn::Load(d, &move[0][l]));
+        q = hn::Add(q, hn::Mul(hn::Set(d, to_grid_[a][1]), hn::Load(d, &move[1][l])));
+        q = hn::Add(q, hn::Mul(hn::Set(d, to_grid_[a][2]), hn::Load(d, &move[2][l])));
         q = hn::Add(q, hn::Load(d, &f_[a][l]));
-        const auto sane = hn::Lt(hn::Abs(q), hn::Set(d, 1e9f));  // no NaN either
+        const auto sane = hn::Lt(hn::Abs(q), hn::Set(d, T(1e9)));  // no NaN either
         q = hn::IfThenElseZero(sane, q);
         const auto whole = hn::Floor(q);
         auto part = hn::Sub(q, whole);
         auto i = hn::Add(hn::Load(di, &i_[a][l]), hn::ConvertTo(di, whole));
         // The last plane of points belongs to the last cell.
-        const auto cells = hn::Set(di, g_.cells[a]), last = hn::Set(di, g_.cells[a] - 1);
+        const auto cells = hn::Set(di, Int(g_.cells[a])), last = hn::Set(di, Int(g_.cells[a] - 1));
         const auto end = hn::And(hn::Eq(i, cells), hn::RebindMask(di, hn::Eq(part, hn::Zero(d))));
         i = hn::IfThenElse(end, last, i);
-        part = hn::IfThenElse(hn::RebindMask(d, end), hn::Set(d, 1.0f), part);
+        part = hn::IfThenElse(hn::RebindMask(d, end), hn::Set(d, T(1)), part);
         good = hn::And(good, hn::And(hn::RebindMask(di, sane), hn::And(hn::Gt(i, hn::Set(di, -1)), hn::Lt(i, cells))));
         i = hn::Min(hn::Max(i, hn::Zero(di)), last);
         hn::Store(i, di, &to_i_[a][l]);
         hn::Store(part, d, &to_f_[a][l]);
-        at = hn::Add(at, hn::Mul(i, hn::Set(di, g_.stride[a])));
+        at = hn::Add(at, hn::Mul(i, hn::Set(di, Int(g_.stride[a]))));
       }
       hn::Store(at, di, &base_[l]);
       hn::Store(hn::IfThenElseZero(good, hn::Set(di, -1)), di, ok + l);
     }
-    HWY_ALIGN float out[N][4];
+    HWY_ALIGN T out[N][4];
     for (size_t l = 0; l < active; ++l) interpolate(g_.v + base_[l], to_f_[0][l], to_f_[1][l], to_f_[2][l], out[l]);
-    for (size_t l = active; l < N; ++l) std::fill_n(out[l], 4, 0.0f);
+    for (size_t l = active; l < N; ++l) std::fill_n(out[l], 4, T(0));
     for (size_t l = 0; l < N; l += hn::Lanes(d)) {
-      hn::Vec<DF> x, y, z, rest;
+      hn::Vec<DR> x, y, z, rest;
       hn::LoadInterleaved4(d, out[l], x, y, z, rest);
       hn::Store(x, d, &v[0][l]), hn::Store(y, d, &v[1][l]), hn::Store(z, d, &v[2][l]);
       const auto sum = hn::Add(hn::Add(x, y), z);
-      const auto finite = hn::Lt(hn::Abs(sum), hn::Set(d, 3e38f));
+      const auto finite = hn::Lt(hn::Abs(sum), hn::Set(d, T(3e38)));
       hn::Store(hn::And(hn::Load(di, ok + l), hn::IfThenElseZero(hn::RebindMask(di, finite), hn::Set(di, -1))), di, ok + l);
     }
   }
@@ -76,15 +85,15 @@ class GridMesh {
   void copy(size_t to, size_t from) {
     for (int a = 0; a < 3; ++a) i_[a][to] = i_[a][from], f_[a][to] = f_[a][from];
   }
-  void x(size_t l, float* out) const {
-    const float q[3] = {float(i_[0][l]) + f_[0][l], float(i_[1][l]) + f_[1][l], float(i_[2][l]) + f_[2][l]};
-    for (int a = 0; a < 3; ++a) out[a] = g_.to_world[a][0] * q[0] + g_.to_world[a][1] * q[1] + g_.to_world[a][2] * q[2];
+  void x(size_t l, T* out) const {
+    const T q[3] = {T(i_[0][l]) + f_[0][l], T(i_[1][l]) + f_[1][l], T(i_[2][l]) + f_[2][l]};
+    for (int a = 0; a < 3; ++a) out[a] = to_world_[a][0] * q[0] + to_world_[a][1] * q[1] + to_world_[a][2] * q[2];
   }
-  float cell(size_t) const { return g_.length; }
+  T cell(size_t) const { return T(g_.length); }
 
  private:
   using D4 = hn::CappedTag<float, 4>;
-  const float* base(const int32_t (&i)[3][N], size_t l) const {
+  const float* base(const Int (&i)[3][N], size_t l) const {
     return g_.v + i[0][l] * g_.stride[0] + i[1][l] * g_.stride[1] + i[2][l] * g_.stride[2];
   }
   // Two neighbours along x are six numbers in a row: x0 y0 z0 x1 and z0 x1 y1 z1, so that nothing behind the last point is read.
@@ -127,15 +136,47 @@ class GridMesh {
   }
 #endif
 
+  // In f64.
+#if HWY_TARGET == HWY_AVX3
+  HWY_INLINE void interpolate(const float* p, double fx, double fy, double fz, double* HWY_RESTRICT out) const {
+    const hn::CappedTag<double, 8> d;
+    const hn::CappedTag<double, 4> half;
+    const hn::Rebind<float, decltype(d)> df;
+    alignas(64) static constexpr int64_t second[8] = {3, 4, 5, 5, 3, 4, 5, 5};
+    const ptrdiff_t dy = g_.stride[1], dz = g_.stride[2];
+    const auto six = hn::FirstN(df, 6);
+    const auto load = [&](const float* q) HWY_ATTR { return hn::PromoteTo(d, hn::MaskedLoad(six, df, q)); };
+    const auto y = hn::Set(d, fy);
+    const auto low = blend(load(p), load(p + dy), y), high = blend(load(p + dz), load(p + dz + dy), y);
+    const auto row = blend(low, high, hn::Set(d, fz));
+    const auto next = hn::TableLookupLanes(row, hn::SetTableIndices(d, second));
+    hn::Store(blend(hn::LowerHalf(half, row), hn::LowerHalf(half, next), hn::Set(half, fx)), half, out);
+  }
+#else
+  void interpolate(const float* p, double fx, double fy, double fz, double* HWY_RESTRICT out) const {
+    const auto mix = [](double a, double b, double t) { return a + t * (b - a); };
+    const ptrdiff_t dy = g_.stride[1], dz = g_.stride[2];
+    const auto plane = [&](const float* q) {
+      return mix(mix(double(q[0]), double(q[dy]), fy), mix(double(q[dz]), double(q[dz + dy]), fy), fz);
+    };
+    for (int c = 0; c < 3; ++c) out[c] = mix(plane(p + c), plane(p + 3 + c), fx);
+    out[3] = 0;
+  }
+#endif
+
   const GridInput g_;
-  HWY_ALIGN int32_t i_[3][N] = {}, to_i_[3][N] = {}, base_[N] = {};
+  T to_grid_[3][3], to_world_[3][3];
+  HWY_ALIGN Int i_[3][N] = {}, to_i_[3][N] = {}, base_[N] = {};
   HWY_ALIGN Lanes3 f_ = {}, to_f_ = {};
 };
 
 void grid(const GridInput& input, const TraceOptions& options, float sign, std::span<const GridItem> items, Lines& out) {
-  GridMesh mesh(input);
-  Tracer<GridMesh> tracer(mesh, options, sign, out);
-  tracer.run(items);
+  const auto run = [&](auto mesh) {
+    Tracer<decltype(mesh)> tracer(mesh, options, sign, out);
+    tracer.run(items);
+  };
+  if (in_f64(options)) run(GridMesh<double>(input));
+  else run(GridMesh<float>(input));
 }
 
 }  // namespace sg::packets::HWY_NAMESPACE

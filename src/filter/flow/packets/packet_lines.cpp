@@ -78,7 +78,7 @@ void trace_directions(std::vector<Item> items, std::vector<uint32_t> seed, size_
 }
 
 bool knows(const TraceOptions& o) {
-  return o.scheme == Scheme::rk4 || o.scheme == Scheme::midpoint || (o.scheme == Scheme::dormand_prince && o.tolerance >= 1e-6);
+  return o.scheme == Scheme::rk4 || o.scheme == Scheme::midpoint || (o.scheme == Scheme::dormand_prince && o.tolerance >= 1e-12);
 }
 
 std::optional<SeedLines> trace_in_grid(const FlowField& field, std::span<const Vec3> seeds, TraceDirection direction, const TraceOptions& o,
@@ -87,10 +87,10 @@ std::optional<SeedLines> trace_in_grid(const FlowField& field, std::span<const V
   if (l.separable || l.flat_axis >= 0 || 3 * (l.cells[0] + 1) * (l.cells[1] + 1) * (l.cells[2] + 1) >= size_t(INT32_MAX))
     return std::nullopt;
   GridInput g;
-  g.v = field.f32(), g.length = float(l.length);
+  g.v = field.f32(), g.length = l.length;
   for (int a = 0; a < 3; ++a) {
     g.cells[a] = int32_t(l.cells[size_t(a)]), g.stride[a] = int32_t(3 * l.stride[size_t(a)]);
-    for (int b = 0; b < 3; ++b) g.to_grid[a][b] = float(l.rows[a][b]), g.to_world[a][b] = float(l.step[b][a]);
+    for (int b = 0; b < 3; ++b) g.to_grid[a][b] = l.rows[a][b], g.to_world[a][b] = l.step[b][a];
   }
   SeedLines out;
   out.origin = l.origin;
@@ -103,7 +103,7 @@ std::optional<SeedLines> trace_in_grid(const FlowField& field, std::span<const V
       const double q = dot(l.rows[a], seeds[i] - l.origin), n = double(l.cells[size_t(a)]);
       in = in && q >= -1e-9 && q <= n + 1e-9;
       const double c = std::clamp(std::floor(q), 0.0, n - 1);
-      item.cell[a] = int32_t(c), item.f[a] = float(std::clamp(q - c, 0.0, 1.0));
+      item.cell[a] = int32_t(c), item.f[a] = std::clamp(q - c, 0.0, 1.0);
     }
     if (in) items.push_back(item), seed.push_back(i);
   }
@@ -119,7 +119,7 @@ std::optional<SeedLines> trace_in_tets(const FlowField& field, std::span<const V
   const SimplexArrays& s = access.simplices;
   if (!s.f32) return std::nullopt;
   TetInput t;
-  t.points = s.f32, t.v = field.f32(), t.across = access.walk->across.data();
+  t.points = s.f32, t.v = field.f32(), t.across = access.tets->data();
   t.wide_ids = s.cells.connectivity.wide;
   const size_t first = s.cells.begin(0);
   if (t.wide_ids) t.ids = static_cast<const int64_t*>(s.cells.connectivity.data) + first;
@@ -129,7 +129,7 @@ std::optional<SeedLines> trace_in_tets(const FlowField& field, std::span<const V
 
   // Where the seeds are: walks from one to the next, a chunk at a time.
   const PointVectors vectors{field.f32(), nullptr, 3};
-  const Box3 box = access.walk->box;
+  const Box3 box = access.start->box;
   const auto in_box = [&](Vec3 x) {
     for (int a = 0; a < 3; ++a)
       if (!(x[a] >= box.lo[a] && x[a] <= box.hi[a])) return false;
@@ -143,7 +143,7 @@ std::optional<SeedLines> trace_in_tets(const FlowField& field, std::span<const V
         std::optional<LocatorCursor> tree;
         for (size_t i = begin; i < end; ++i) {
           const Vec3 x = seeds[order[i]], rel = x - s.origin;
-          for (int a = 0; a < 3; ++a) all[i].x[a] = float(rel[a]), all[i].rest[a] = float(rel[a] - double(float(rel[a])));
+          for (int a = 0; a < 3; ++a) all[i].x[a] = rel[a];
           TetCursor cursor(access, vectors);  // from the bin of the seed, whatever was asked before
           const TetCursor::Found found = cursor.find(x);
           all[i].cell = found == TetCursor::Found::here ? int32_t(cursor.cell()) : -1;

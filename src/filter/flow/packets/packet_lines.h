@@ -20,7 +20,7 @@ struct SeedLines {
 };
 
 /// Nothing when packets do not know how: only for uniform grids of solid cells and for tetrahedra, f32 fields of 3 components, no hidden
-/// cells, and midpoint, rk4 or dormand_prince with a tolerance of 1e-6 and more.
+/// cells, and midpoint, rk4 or dormand_prince with a tolerance of 1e-12 and more.
 std::optional<SeedLines> trace(const FlowField& field, std::span<const Vec3> seeds, TraceDirection direction, const TraceOptions& options,
                                Context& context);
 

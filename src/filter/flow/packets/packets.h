@@ -3,8 +3,9 @@
 // A particle that ends makes room for the next seed. Each line is worked out by itself, in the order of operations that is written down in
 // packet_tracer-inl.h: it is the same for any packet, number of threads and vector length. Internal to filter/flow.
 //
-// Places are kept as a cell and a place in it (grids) or as a pair of floats (tetrahedra), velocities and steps in f32: lines agree with
-// trace_line() to 1e-5 of the mesh's size, as far as the flow does not pull neighbours apart.
+// Places are kept as a cell and a place in it (grids) or as a pair of numbers (tetrahedra). Fixed steps are worked out in f32: lines agree
+// with trace_line() to 1e-6 of the mesh's size, as far as the flow does not pull neighbours apart. Adaptive steps are worked out in f64:
+// the rounding of f32 is a good part of the errors that they watch, and other steps make other lines at the kinks between cells.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -50,12 +51,12 @@ struct GridInput {
   const float* v = nullptr;
   int32_t cells[3];
   int32_t stride[3];  ///< floats from one point to the next along each axis
-  float to_grid[3][3], to_world[3][3];
-  float length;  ///< of a cell
+  double to_grid[3][3], to_world[3][3];
+  double length;  ///< of a cell
 };
 struct GridItem {
   int32_t cell[3];
-  float f[3];  ///< in [0, 1]
+  double f[3];  ///< in [0, 1]
 };
 void trace_grid(const GridInput& input, const TraceOptions& options, float sign, std::span<const GridItem> items, Lines& out);
 
@@ -70,7 +71,7 @@ struct TetInput {
   std::function<int64_t(Vec3)> locate;
 };
 struct TetItem {
-  float x[3], rest[3];  ///< place as the sum of two floats
+  double x[3];
   int32_t cell;
 };
 /// `input.locate` is called by one thread for each call of this.

@@ -15,16 +15,22 @@ HWY_BEFORE_NAMESPACE();
 namespace sg::packets::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
+template <class T>
 class TetMesh {
  public:
+  using Real = T;
+  using DR = hn::CappedTag<T, N>;
+  using DI = hn::RebindToSigned<DR>;
+  using Int = hn::TFromD<DI>;
+  using Lanes3 = T[3][N];
   explicit TetMesh(const TetInput& t) : t_(t) {}
 
   void start(size_t l, const TetItem& item) {
-    for (int a = 0; a < 3; ++a) x_[a][l] = item.x[a], rest_[a][l] = item.rest[a];
+    for (int a = 0; a < 3; ++a) x_[a][l] = T(item.x[a]), rest_[a][l] = T(item.x[a] - double(x_[a][l]));
     open(l, item.cell);
   }
-  bool velocity(size_t l, float* v) {
-    float r[3];
+  bool velocity(size_t l, T* v) {
+    T r[3];
     for (int k = 0; k < 3; ++k) {
       r[k] = 0;
       for (int a = 0; a < 3; ++a) r[k] += rows_[3 * k + a][l] * ((x_[a][l] - a_[a][l]) + rest_[a][l]);
@@ -35,10 +41,10 @@ class TetMesh {
     }
     return std::isfinite(v[0] + v[1] + v[2]);
   }
-  HWY_INLINE void look(const Lanes3& move, size_t active, Lanes3& v, int32_t* ok) {
-    const DF d;
+  HWY_INLINE void look(const Lanes3& move, size_t active, Lanes3& v, Int* ok) {
+    const DR d;
     const DI di;
-    // The place as a pair of floats: what the first cannot hold is in the second (Knuth's sum).
+    // The place as a pair of numbers: what the first cannot hold is in the second (Knuth's sum).
     for (int a = 0; a < 3; ++a)
       for (size_t l = 0; l < N; l += hn::Lanes(d)) {
         const auto x = hn::Load(d, &x_[a][l]), s = hn::Add(hn::Load(d, &rest_[a][l]), hn::Load(d, &move[a][l]));
@@ -48,12 +54,12 @@ class TetMesh {
       }
     for (size_t l = 0; l < N; ++l) ok[l] = l < active ? -1 : 0;
     for (int round = 0; round < 256; ++round) {
-      const auto edge = hn::Set(d, round < 64 ? -2e-6f : -1e-3f);
+      const auto edge = hn::Set(d, round < 64 ? edge_ : T(-1e-3));
       for (size_t l = 0; l < N; l += hn::Lanes(d)) {
-        hn::Vec<DF> p[3];
+        hn::Vec<DR> p[3];
         for (int a = 0; a < 3; ++a)
           p[a] = hn::Add(hn::Sub(hn::Load(d, &to_x_[a][l]), hn::Load(d, &a_[a][l])), hn::Load(d, &to_rest_[a][l]));
-        auto left = hn::Set(d, 1.0f), least = left;
+        auto left = hn::Set(d, T(1)), least = left;
         for (int k = 0; k < 3; ++k) {
           auto r = hn::Mul(hn::Load(d, &rows_[3 * k][l]), p[0]);
           r = hn::Add(r, hn::Mul(hn::Load(d, &rows_[3 * k + 1][l]), p[1]));
@@ -82,7 +88,7 @@ class TetMesh {
         hn::Store(u, d, &v[a][l]);
         sum = hn::Add(sum, u);
       }
-      const auto finite = hn::Lt(hn::Abs(sum), hn::Set(d, 3e38f));
+      const auto finite = hn::Lt(hn::Abs(sum), hn::Set(d, T(3e38)));
       hn::Store(hn::And(hn::Load(di, ok + l), hn::IfThenElseZero(hn::RebindMask(di, finite), hn::Set(di, -1))), di, ok + l);
     }
   }
@@ -94,14 +100,14 @@ class TetMesh {
     for (int k = 0; k < 9; ++k) rows_[k][to] = rows_[k][from], slopes_[k][to] = slopes_[k][from];
     cell_[to] = cell_[from], box_[to] = box_[from];
   }
-  void x(size_t l, float* out) const {
+  void x(size_t l, T* out) const {
     for (int a = 0; a < 3; ++a) out[a] = x_[a][l];
   }
-  float cell(size_t l) const { return std::cbrt(box_[l]); }
+  T cell(size_t l) const { return std::cbrt(box_[l]); }
 
  private:
   // One face further, all lanes' memory asked for before the first waits for it.
-  HWY_INLINE void walk(const size_t* list, size_t n, int32_t* ok) {
+  HWY_INLINE void walk(const size_t* list, size_t n, Int* ok) {
     int32_t next[N];
     for (size_t i = 0; i < n; ++i) {
       const size_t l = list[i];
@@ -155,28 +161,33 @@ class TetMesh {
       for (int a = 0; a < 3; ++a) row[k][a] = f[(a + 1) % 3] * g[(a + 2) % 3] - f[(a + 2) % 3] * g[(a + 1) % 3];
     }
     const double scale = 1 / (e[0][0] * row[0][0] + e[0][1] * row[0][1] + e[0][2] * row[0][2]);
-    float box = 1;
+    T box = 1;
     for (int a = 0; a < 3; ++a) {
       a_[a][l] = p[0][a], v0_[a][l] = u[0][a];
-      for (int k = 0; k < 3; ++k) rows_[3 * k + a][l] = float(row[k][a] * scale), slopes_[3 * k + a][l] = u[k + 1][a] - u[0][a];
-      box *= std::max(std::max(p[0][a], p[1][a]), std::max(p[2][a], p[3][a])) -
-             std::min(std::min(p[0][a], p[1][a]), std::min(p[2][a], p[3][a]));
+      for (int k = 0; k < 3; ++k) rows_[3 * k + a][l] = T(row[k][a] * scale), slopes_[3 * k + a][l] = T(u[k + 1][a]) - T(u[0][a]);
+      box *= T(std::max(std::max(p[0][a], p[1][a]), std::max(p[2][a], p[3][a]))) -
+             T(std::min(std::min(p[0][a], p[1][a]), std::min(p[2][a], p[3][a])));
     }
     box_[l] = box;
   }
 
   const TetInput& t_;
   HWY_ALIGN Lanes3 x_ = {}, rest_ = {}, to_x_ = {}, to_rest_ = {}, a_ = {}, v0_ = {};
-  HWY_ALIGN float rows_[9][N] = {}, slopes_[9][N] = {}, r_[4][N] = {};
-  HWY_ALIGN int32_t walks_[N] = {};
+  // How far outside is inside still: what rounding amounts to.
+  static constexpr T edge_ = sizeof(T) == 4 ? T(-2e-6) : T(-1e-9);
+  HWY_ALIGN T rows_[9][N] = {}, slopes_[9][N] = {}, r_[4][N] = {};
+  HWY_ALIGN Int walks_[N] = {};
   int32_t cell_[N] = {};
-  float box_[N] = {};
+  T box_[N] = {};
 };
 
 void tets(const TetInput& input, const TraceOptions& options, float sign, std::span<const TetItem> items, Lines& out) {
-  TetMesh mesh(input);
-  Tracer<TetMesh> tracer(mesh, options, sign, out);
-  tracer.run(items);
+  const auto run = [&](auto mesh) {
+    Tracer<decltype(mesh)> tracer(mesh, options, sign, out);
+    tracer.run(items);
+  };
+  if (in_f64(options)) run(TetMesh<double>(input));
+  else run(TetMesh<float>(input));
 }
 
 }  // namespace sg::packets::HWY_NAMESPACE
