@@ -149,7 +149,8 @@ InverseResult invert_solid(const CellGeometry& g, Vec3 x, double tolerance) {
   Box3 box;
   for (Vec3 p : g.at) box.add(p);
   const Vec3 size = box.size();
-  if (!(size.x > 0 && size.y > 0 && size.z > 0)) return r;  // no volume, or no place: the Jacobian is singular all over
+  const double volume = size.x * size.y * size.z;
+  if (!(volume > 0 && volume < HUGE_VAL)) return r;  // none, or beyond what doubles multiply: the Jacobian is singular all over
   const bool hull = in_hull_of_nodes(g);
   // Linear cells stay in the box of their nodes; curved ones may bulge a little.
   const Vec3 margin = size * (hull ? tolerance : 0.5);
