@@ -148,9 +148,12 @@ InverseResult invert_solid(const CellGeometry& g, Vec3 x, double tolerance) {
   r.rst = g.shape->center();
   Box3 box;
   for (Vec3 p : g.at) box.add(p);
+  const Vec3 size = box.size();
+  const double volume = size.x * size.y * size.z;
+  if (!(volume > 0 && volume < HUGE_VAL)) return r;  // none, or beyond what doubles multiply: the Jacobian is singular all over
   const bool hull = in_hull_of_nodes(g);
   // Linear cells stay in the box of their nodes; curved ones may bulge a little.
-  const Vec3 margin = box.size() * (hull ? tolerance : 0.5);
+  const Vec3 margin = size * (hull ? tolerance : 0.5);
   bool possible = true;
   for (int a = 0; a < 3; ++a) possible = possible && x[a] >= box.lo[a] - margin[a] && x[a] <= box.hi[a] + margin[a];
   if (!possible) {

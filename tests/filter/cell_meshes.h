@@ -35,6 +35,75 @@ struct CellsOf {
   }
 };
 
+/// The cells, with a value f at each point.
+inline DatasetPtr dataset_of(CellsOf m, std::vector<double> values) {
+  UnstructuredMesh mesh;
+  mesh.points.xyz = Array::from_vector(std::move(m.xyz), 3);
+  mesh.cells.connectivity = Array::from_vector(std::move(m.ids));
+  mesh.cells.offsets = Array::from_vector(std::move(m.offsets));
+  mesh.types = Array::from_vector(std::move(m.types));
+  if (!m.faces.empty()) {
+    std::vector<int64_t> face_ids, face_offsets{0};
+    for (const auto& face : m.faces) {
+      face_ids.insert(face_ids.end(), face.begin(), face.end());
+      face_offsets.push_back(int64_t(face_ids.size()));
+    }
+    mesh.faces.connectivity = Array::from_vector(std::move(face_ids));
+    mesh.faces.offsets = Array::from_vector(std::move(face_offsets));
+    mesh.polyhedron_faces = Array::from_vector(std::move(m.of_cell));
+  }
+  FieldSet fields;
+  fields.add({"f", Association::point, Array::from_vector(std::move(values)), "", Role::scalars});
+  return make_dataset(std::move(mesh), std::move(fields));
+}
+
+/// n steps of equal length from -1 to 1.
+inline std::vector<double> even_axis(size_t n) {
+  std::vector<double> axis;
+  for (size_t i = 0; i <= n; ++i) axis.push_back(-1 + 2.0 * double(i) / double(n));
+  return axis;
+}
+
+/// The points of a lattice with the same coordinates along all axes.
+inline std::vector<Vec3> lattice_places(const std::vector<double>& axis) {
+  std::vector<Vec3> at;
+  for (const double z : axis)
+    for (const double y : axis)
+      for (const double x : axis) at.emplace_back(x, y, z);
+  return at;
+}
+
+/// A lattice of the axis' coordinates along x, y and z. kind 0: uniform, for an axis of equal steps; 1: rectilinear; 2: curvilinear, its
+/// points moved by `move`.
+template <class Move>
+Mesh lattice_mesh(int kind, const std::vector<double>& axis, Move&& move) {
+  const size_t n = axis.size();
+  if (kind == 0) {
+    UniformGrid g;
+    g.dims = {n, n, n};
+    g.origin = Vec3(1, 1, 1) * axis.front();
+    g.spacing = Vec3(1, 1, 1) * ((axis.back() - axis.front()) / double(n - 1));
+    return g;
+  }
+  if (kind == 1) {
+    RectilinearGrid g;
+    g.x = g.y = g.z = Array::from_vector(axis);
+    return g;
+  }
+  CurvilinearGrid g;
+  g.dims = {n, n, n};
+  std::vector<double> xyz;
+  for (const Vec3 p : lattice_places(axis)) {
+    const Vec3 q = move(p);
+    xyz.insert(xyz.end(), {q.x, q.y, q.z});
+  }
+  g.points.xyz = Array::from_vector(std::move(xyz), 3);
+  return g;
+}
+inline Mesh lattice_mesh(int kind, const std::vector<double>& axis) {
+  return lattice_mesh(kind, axis, [](Vec3 p) { return p; });
+}
+
 /// [-r,r]^3 in n^3 blocks, each cut as `kind` says: hexahedron, voxel, tetra, wedge, pyramid, or mixed (all in turn but tetra).
 /// `bend` moves the points of the blocks smoothly; hexahedra then have warped faces.
 template <class F>
@@ -75,24 +144,7 @@ DatasetPtr solid_mesh(const std::string& kind, int n, double r, F&& f, double be
       }
   std::vector<double> v;
   for (size_t p = 0; p < m.xyz.size() / 3; ++p) v.push_back(f(Vec3(m.xyz[3 * p], m.xyz[3 * p + 1], m.xyz[3 * p + 2])));
-  UnstructuredMesh mesh;
-  mesh.points.xyz = Array::from_vector(std::move(m.xyz), 3);
-  mesh.cells.connectivity = Array::from_vector(std::move(m.ids));
-  mesh.cells.offsets = Array::from_vector(std::move(m.offsets));
-  mesh.types = Array::from_vector(std::move(m.types));
-  if (!m.faces.empty()) {
-    std::vector<int64_t> face_ids, face_offsets{0};
-    for (const auto& face : m.faces) {
-      face_ids.insert(face_ids.end(), face.begin(), face.end());
-      face_offsets.push_back(int64_t(face_ids.size()));
-    }
-    mesh.faces.connectivity = Array::from_vector(std::move(face_ids));
-    mesh.faces.offsets = Array::from_vector(std::move(face_offsets));
-    mesh.polyhedron_faces = Array::from_vector(std::move(m.of_cell));
-  }
-  FieldSet fields;
-  fields.add({"f", Association::point, Array::from_vector(std::move(v)), "", Role::scalars});
-  return make_dataset(std::move(mesh), std::move(fields));
+  return dataset_of(std::move(m), std::move(v));
 }
 
 inline const std::vector<std::string>& solid_kinds() {

@@ -43,12 +43,10 @@ std::pair<DatasetPtr, DatasetPtr> halves(const DatasetPtr& d, ClipParams p) {
 
 double noise(Vec3 p) { return std::sin(17 * p.x + 3) * std::cos(23 * p.y) + std::sin(29 * p.z * p.x + 11 * p.y); }
 
-const char* const kinds[] = {"tetra", "hexahedron", "voxel", "wedge", "pyramid", "polyhedron", "mixed"};
-
 }  // namespace
 
 TEST_CASE("clip: inside and outside add up to the whole for every kind of cell") {
-  for (const std::string kind : kinds)
+  for (const std::string& kind : solid_kinds())
     for (const auto& f : {+[](Vec3 p) { return p.x + 0.7 * p.y - 0.3 * p.z - 0.05; }, +[](Vec3 p) { return p.x + p.y; },
                           +[](Vec3 p) { return 0.7 - dot(p, p); }, +[](Vec3 p) { return noise(p); }, +[](Vec3 p) { return p.z; }}) {
       CAPTURE(kind);
@@ -68,38 +66,15 @@ namespace {
 // A lattice of [-1,1]^3 with the field f.
 template <class F>
 DatasetPtr box_lattice(int kind, size_t n, F&& f) {
-  std::vector<double> v, xyz, axis;
-  for (size_t i = 0; i <= n; ++i) axis.push_back(-1 + 2.0 * double(i) / double(n));
-  for (size_t k = 0; k <= n; ++k)
-    for (size_t j = 0; j <= n; ++j)
-      for (size_t i = 0; i <= n; ++i) {
-        v.push_back(f(Vec3(axis[i], axis[j], axis[k])));
-        xyz.insert(xyz.end(), {axis[i], axis[j], axis[k]});
-      }
+  const std::vector<double> axis = even_axis(n);
+  std::vector<double> v, xyz, c(n * n * n);
+  for (const Vec3 p : lattice_places(axis)) v.push_back(f(p)), xyz.insert(xyz.end(), {p.x, p.y, p.z});
+  for (size_t i = 0; i < c.size(); ++i) c[i] = double(i);
   FieldSet fields;
   fields.add(meshes::make_field("f", Association::point, v));
   fields.add(meshes::make_field("p", Association::point, xyz, 3));
-  std::vector<double> c(n * n * n);
-  for (size_t i = 0; i < c.size(); ++i) c[i] = double(i);
   fields.add(meshes::make_field("c", Association::cell, c));
-  Mesh mesh;
-  if (kind == 0) {
-    UniformGrid g;
-    g.dims = {n + 1, n + 1, n + 1};
-    g.origin = {-1, -1, -1};
-    g.spacing = Vec3(2, 2, 2) / double(n);
-    mesh = g;
-  } else if (kind == 1) {
-    RectilinearGrid g;
-    g.x = g.y = g.z = Array::from_vector(axis);
-    mesh = g;
-  } else {
-    CurvilinearGrid g;
-    g.dims = {n + 1, n + 1, n + 1};
-    g.points.xyz = Array::from_vector(xyz, 3);
-    mesh = g;
-  }
-  return make_dataset(std::move(mesh), std::move(fields));
+  return make_dataset(lattice_mesh(kind, axis), std::move(fields));
 }
 
 // Faces of a solid that no other cell shares must lie on the box or where f is the value.
@@ -178,7 +153,7 @@ TEST_CASE("clip: a sphere's volume converges with order 2 on every mesh, its poi
   CHECK(std::log2(error[0] / error[1]) > 1.8);
   CHECK(std::log2(error[0] / error[1]) < 2.2);
   p.keep = "both";
-  for (const std::string kind : kinds) {
+  for (const std::string& kind : solid_kinds()) {
     const DatasetPtr mesh = solid_mesh(kind, 5, 1.0, [](Vec3 x) { return x.x; });
     const auto [in, out] = halves(mesh, p);
     CHECK(std::abs(measure(in) + measure(out) - 8) < 8e-12);
@@ -191,7 +166,7 @@ TEST_CASE("clip: a sphere's volume converges with order 2 on every mesh, its poi
 
 TEST_CASE("isovolume: three parts between values add up to the whole") {
   Context ctx;
-  for (const std::string kind : kinds)
+  for (const std::string& kind : solid_kinds())
     for (const auto& f : {+[](Vec3 p) { return p.x + 0.7 * p.y - 0.3 * p.z; }, +[](Vec3 p) { return noise(p); }}) {
       CAPTURE(kind);
       const DatasetPtr mesh = solid_mesh(kind, 4, 1.0, f);

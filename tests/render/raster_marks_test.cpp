@@ -7,18 +7,6 @@ using namespace sg::test;
 
 namespace {
 
-LinesItem line(std::vector<float> xyz, double width, FieldSet fields = {}) {
-  SurfaceMesh m;
-  std::vector<int32_t> ids;
-  for (size_t i = 0; i < xyz.size() / 3; ++i) ids.push_back(int32_t(i));
-  const int n = int(ids.size());
-  m.points.xyz = Array::from_vector(std::move(xyz), 3);
-  m.lines = {Array::from_vector(std::move(ids)), Array::from_vector<int32_t>({0, n}), 0};
-  LinesItem l;
-  l.data = make_dataset(m, std::move(fields)), l.width = width, l.color = {1, 1, 1};
-  return l;
-}
-
 /// Sum of the alpha of everything in the picture, in pixels.
 double ink(const Picture& p) {
   double sum = 0;

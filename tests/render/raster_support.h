@@ -110,6 +110,19 @@ inline SurfaceItem item(DatasetPtr data, Vec3f color = {0.8f, 0.8f, 0.8f}, bool 
   return s;
 }
 
+/// A white polyline.
+inline LinesItem line(std::vector<float> xyz, double width, FieldSet fields = {}) {
+  SurfaceMesh m;
+  std::vector<int32_t> ids;
+  for (size_t i = 0; i < xyz.size() / 3; ++i) ids.push_back(int32_t(i));
+  const int n = int(ids.size());
+  m.points.xyz = Array::from_vector(std::move(xyz), 3);
+  m.lines = {Array::from_vector(std::move(ids)), Array::from_vector<int32_t>({0, n}), 0};
+  LinesItem l;
+  l.data = make_dataset(m, std::move(fields)), l.width = width, l.color = {1, 1, 1};
+  return l;
+}
+
 /// A scale from black to white over [lo, hi] in linear light: the colour tells the value.
 inline FieldColor grey_by(const std::string& field, double lo, double hi) {
   FieldColor c;

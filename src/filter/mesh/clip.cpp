@@ -5,6 +5,7 @@
 #include "base/text.h"
 #include "data/field_ops.h"
 #include "data/lattice.h"
+#include "filter/mesh/clip_box.h"
 #include "filter/mesh/clip_impl.h"
 #include "filter/mesh/extract.h"
 #include "filter/mesh/surface_builder.h"
@@ -95,20 +96,22 @@ DatasetPtr clip_cloud(const Job& job) {
   return extract_cells(job.in, kept, "clip");
 }
 
-DatasetPtr clip_mesh(const Job& job, bool surface, std::string_view who) {
-  if (job.in->point_count() > size_t(INT32_MAX))
-    fail_usage("the mesh has more than 2^31 points", std::string(who), "take a part of it first");
-  DatasetPtr out;
-  if (job.in->as<PointCloud>()) out = clip_cloud(job);
-  else if (job.in->as<UnstructuredMesh>()) out = finish(job, clip_lists(job));
-  else if (!job.keep.between) out = finish(job, clip_lattice(job));
-  else {
-    Job lists = job;
-    lists.in = to_unstructured(job.in);
-    out = finish(lists, clip_lists(lists));
-  }
+DatasetPtr clip_mesh(const Job& job) {
+  if (job.in->as<PointCloud>()) return clip_cloud(job);
+  if (job.in->as<UnstructuredMesh>()) return finish(job, clip_lists(job));
+  if (!job.keep.between) return finish(job, clip_lattice(job));
+  Job lists = job;
+  lists.in = to_unstructured(job.in);
+  return finish(lists, clip_lists(lists));
+}
+
+// `part`: what the input becomes.
+template <class Part>
+DatasetPtr result(const DatasetPtr& in, bool surface, std::string_view who, Context& ctx, Part&& part) {
+  if (in->point_count() > size_t(INT32_MAX)) fail_usage("the mesh has more than 2^31 points", std::string(who), "take a part of it first");
+  DatasetPtr out = part();
   if (surface) out = as_surface(out);
-  if (out->cell_count() == 0 && out->point_count() == 0) job.context.info(fmt::format("{}: nothing is left", who));
+  if (out->cell_count() == 0 && out->point_count() == 0) ctx.info(fmt::format("{}: nothing is left", who));
   return out;
 }
 
@@ -134,17 +137,31 @@ Array numbers_of(const Dataset& in, const FieldName& name, int component, std::s
       who, [&] { return scalar_of(*f, component, wide && f->array.type() != ElementType::f32 ? ElementType::f64 : ElementType::f32); });
 }
 
-Data both_sides(const Job& job, const std::string& keep, bool surface) {
-  auto side = [&](bool outside) {
-    Job j = job;
-    j.keep.outside = outside;
-    return clip_mesh(j, surface, "clip");
-  };
+// `part(outside)`: one side.
+template <class Part>
+Data both_sides(const DatasetPtr& in, const std::string& keep, bool surface, Context& ctx, Part&& part) {
+  auto side = [&](bool outside) { return result(in, surface, "clip", ctx, [&] { return part(outside); }); };
   if (keep != "both") return side(keep == "outside");
   auto r = std::make_shared<Collection>();
   r->parts.push_back({"inside", side(false)});
   r->parts.push_back({"outside", side(true)});
   return CollectionPtr(r);
+}
+
+Data both_sides(Job job, const std::string& keep, bool surface) {
+  return both_sides(job.in, keep, surface, job.context, [&](bool outside) {
+    job.keep.outside = outside;
+    return clip_mesh(job);
+  });
+}
+
+Job job_of(const DatasetPtr& mesh, const ImplicitFunction& f, Context& ctx) {
+  Job job{mesh, values_at_points(f, mesh, ctx), {}, {}, ctx};
+  job.keep.sign = -1;
+  job.keep.flat = f.plane;
+  if (!f.plane && f.evaluate)
+    job.refine = [&f](std::span<const Vec3> from, std::span<const Vec3> to, std::span<double> t) { find_zeros(f, from, to, t); };
+  return job;
 }
 
 }  // namespace
@@ -164,12 +181,15 @@ Data clip(const DatasetPtr& in, const DatasetPtr& surface, const ClipParams& p, 
     return both_sides(job, p.keep, flat);
   }
   const ImplicitFunction f = implicit_function(p, mesh, surface, "clip", ctx);
-  Job job{mesh, values_at_points(f, mesh, ctx), {}, {}, ctx};
-  job.keep.sign = -1;
-  job.keep.flat = f.plane;
-  if (!f.plane && f.evaluate)
-    job.refine = [&f](std::span<const Vec3> from, std::span<const Vec3> to, std::span<double> t) { find_zeros(f, from, to, t); };
-  return both_sides(job, p.keep, flat);
+  if (p.box.empty() || mesh->as<PointCloud>()) return both_sides(job_of(mesh, f, ctx), p.keep, flat);
+  const Box3 box{{p.box[0], p.box[2], p.box[4]}, {p.box[1], p.box[3], p.box[5]}};
+  return both_sides(mesh, p.keep, flat, ctx, [&](bool outside) {
+    return clipping::clip_box(mesh, box, outside, [&](const DatasetPtr& in, const ImplicitFunction& plane, bool behind) {
+      Job job = job_of(in, plane, ctx);
+      job.keep.outside = behind;
+      return clip_mesh(job);
+    });
+  });
 }
 
 DatasetPtr isovolume(const DatasetPtr& in, const IsovolumeParams& p, Context& ctx) {
@@ -185,7 +205,7 @@ DatasetPtr isovolume(const DatasetPtr& in, const IsovolumeParams& p, Context& ct
   if (!range.empty() && lo <= range.lo) job.keep.level = hi, job.keep.sign = -1;  // one limit is enough
   else if (!range.empty() && hi >= range.hi) job.keep.level = lo;
   else job.keep.level = lo, job.keep.upper = hi, job.keep.between = true;
-  return clip_mesh(job, in->as<SurfaceMesh>() != nullptr, "isovolume");
+  return result(mesh, in->as<SurfaceMesh>() != nullptr, "isovolume", ctx, [&] { return clip_mesh(job); });
 }
 
 }  // namespace sg

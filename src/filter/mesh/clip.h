@@ -27,10 +27,12 @@ inline void describe(Schema& s, ClipParams& p) {
 /// hexahedra (triangles, quads, polygons, lines), polyhedra and prisms polyhedra, that share points and faces with their neighbours'. Both
 /// sides share the cut, so that their volumes add up to the whole to rounding for cells with flat faces. The function is linear
 /// along edges; where a shape is curved, cut points are moved along their edges onto it. A face of four corners of alternating
-/// signs is divided by the asymptotic decider, as contour does. Curved cells are made linear first (see tessellate). AMR: leaves.
-/// A SurfaceMesh stays one, a PointCloud stays one, all others become an UnstructuredMesh. Fields are carried, 'original_cell' added. Ghost
-/// cells, and cells with a NaN value, are left out. `surface`: a closed surface or a solid mesh to clip with.
-/// Throws Error(usage) for a shape together with a field, cell fields, and what implicit_function() refuses. O(cells), parallel.
+/// signs is divided by the asymptotic decider, as contour does. A box is cut plane by plane, exactly: its faces, edges and corners are
+/// sharp wherever they lie; outside of it, the parts behind the planes follow each other, and where an edge of the box runs through cells a
+/// face may meet two. Curved cells are made linear first (see tessellate). AMR: leaves. A SurfaceMesh stays one, a PointCloud stays one,
+/// all others become an UnstructuredMesh. Fields are carried, 'original_cell' added. Ghost cells, and cells with a NaN value, are left out.
+/// `surface`: a closed surface or a solid mesh to clip with. Throws Error(usage) for a shape together with a field, cell fields, and what
+/// implicit_function() refuses. O(cells), parallel.
 Data clip(const DatasetPtr& in, const DatasetPtr& surface, const ClipParams& p, Context& ctx);
 inline Data clip(const DatasetPtr& in, const ClipParams& p, Context& ctx) { return clip(in, nullptr, p, ctx); }
 

@@ -62,23 +62,9 @@ ImplicitFunction plane_of(const ImplicitParams& p, const Dataset& in, std::strin
     if (p.position) origin[a] = *p.position;
   }
   normal = unit(normal, who, "normal");
-  double reach = 0;
-  for (int a = 0; a < 3; ++a) {
+  for (int a = 0; a < 3; ++a)
     if (!std::isfinite(origin[a])) fail_usage("the plane's place is not finite", std::string(who));
-    if (!bounds.empty())
-      reach = std::max({reach, std::abs(bounds.lo[a] - origin[a]), std::abs(bounds.hi[a] - origin[a]), std::abs(origin[a])});
-  }
-  // Below this, distances are rounding: the point lies in the plane.
-  const double snap = 4 * std::numeric_limits<double>::epsilon() * reach;
-  ImplicitFunction r = by_point("a plane", [=](Vec3 x) {
-    const double d = dot(normal, x - origin);
-    return std::abs(d) <= snap ? 0.0 : d;
-  });
-  r.plane = true;
-  r.origin = origin;
-  r.normal = normal;
-  r.snap = snap;
-  return r;
+  return plane_function(origin, normal, bounds);
 }
 
 ImplicitFunction expression(const std::string& text, const DatasetPtr& in, Context& ctx) {
@@ -143,6 +129,23 @@ ImplicitFunction distance_from(const DatasetPtr& mesh, std::string_view who, Con
 }
 
 }  // namespace
+
+ImplicitFunction plane_function(Vec3 origin, Vec3 normal, const Box3& bounds) {
+  double reach = 0;
+  for (int a = 0; a < 3 && !bounds.empty(); ++a)
+    reach = std::max({reach, std::abs(bounds.lo[a] - origin[a]), std::abs(bounds.hi[a] - origin[a]), std::abs(origin[a])});
+  // Below this, distances are rounding: the point lies in the plane.
+  const double snap = 4 * std::numeric_limits<double>::epsilon() * reach;
+  ImplicitFunction r = by_point("a plane", [=](Vec3 x) {
+    const double d = dot(normal, x - origin);
+    return std::abs(d) <= snap ? 0.0 : d;
+  });
+  r.plane = true;
+  r.origin = origin;
+  r.normal = normal;
+  r.snap = snap;
+  return r;
+}
 
 Vec3 ImplicitFunction::gradient(Vec3 p, double step) const {
   if (plane) return normal;

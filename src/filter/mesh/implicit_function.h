@@ -60,6 +60,9 @@ struct ImplicitFunction {
 ImplicitFunction implicit_function(const ImplicitParams& p, const DatasetPtr& in, const DatasetPtr& surface, std::string_view who,
                                    Context& ctx);
 
+/// The plane through a point, across a unit normal, for a mesh with these bounds.
+ImplicitFunction plane_function(Vec3 origin, Vec3 normal, const Box3& bounds);
+
 /// Its values at the points of a mesh (not AMR): f64. Parallel.
 Array values_at_points(const ImplicitFunction& f, const DatasetPtr& in, Context& ctx);
 

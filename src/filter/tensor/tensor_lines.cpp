@@ -172,18 +172,19 @@ std::vector<Vec3> even_places(const Box3& box, int64_t count) {
   if (box.empty() || count < 1) return r;
   const Vec3 size = box.size();
   const double largest = std::max({size.x, size.y, size.z});
+  if (!(largest > 0 && largest < HUGE_VAL)) return {box.center()};
+  const Vec3 part{size.x / largest, size.y / largest, size.z / largest};  // whose product is a number, however small or large the box
   double volume = 1;
   int dimension = 0;
   for (int a = 0; a < 3; ++a)
-    if (size[a] > 1e-9 * largest) volume *= size[a], ++dimension;
-  if (dimension == 0) return {box.center()};
+    if (part[a] > 1e-9) volume *= part[a], ++dimension;
   // The finest even lattice with no more than a tenth above `count` places.
   double d = std::pow(volume / double(count), 1.0 / dimension);
   size_t n[3];
   for (;; d *= 1.02) {
     double total = 1;
     for (int a = 0; a < 3; ++a) {
-      const double along = size[a] > 1e-9 * largest ? std::max(1.0, std::round(size[a] / d)) : 1;
+      const double along = part[a] > 1e-9 ? std::max(1.0, std::round(part[a] / d)) : 1;
       n[a] = size_t(along), total *= along;
     }
     if (total <= 1.1 * double(count)) break;

@@ -4,13 +4,14 @@
 #include <fmt/core.h>
 
 #include <cstring>
-#include <mutex>
 
 #include "base/error.h"
 #include "base/parallel.h"
 #include "render/raster/bins.h"
 #include "render/raster/discs.h"
+#include "render/raster/fragments.h"
 #include "render/raster/glyphs.h"
+#include "render/raster/key_plane.h"
 #include "render/raster/marks.h"
 #include "render/raster/shade.h"
 #include "render/texture/textures.h"
@@ -23,45 +24,6 @@ namespace {
 constexpr uint32_t no_primitive = 0xFFFFFFFFu, no_item = no_primitive;
 constexpr size_t triangle_chunk = 1 << 14, glyph_chunk = 1 << 10;
 constexpr int small_triangle = 16;  ///< pixels; below this size a triangle is drawn at once
-
-/// The visibility buffer. One is kept between frames: fresh pages cost more than drawing a million triangles.
-class KeyPlane {
- public:
-  explicit KeyPlane(size_t pixels) {
-    {
-      std::lock_guard lock(mutex());
-      std::swap(buffer_, spare());
-    }
-    if (buffer_.size < pixels * sizeof(uint64_t)) {
-      std::byte* p = nullptr;
-      buffer_ = Buffer::allocate(pixels * sizeof(uint64_t), &p);
-    }
-  }
-  ~KeyPlane() {
-    if (buffer_.size > size_t(128) << 20) return;
-    std::lock_guard lock(mutex());
-    if (spare().size < buffer_.size) std::swap(buffer_, spare());
-  }
-  KeyPlane(const KeyPlane&) = delete;
-  KeyPlane& operator=(const KeyPlane&) = delete;
-  uint64_t* data() { return const_cast<uint64_t*>(reinterpret_cast<const uint64_t*>(buffer_.data)); }
-
- private:
-  static std::mutex& mutex() {
-    static std::mutex m;
-    return m;
-  }
-  static Buffer& spare() {
-    static Buffer b;
-    return b;
-  }
-  Buffer buffer_;
-};
-
-struct TilePixelFragment {
-  uint32_t pixel;  ///< in the tile
-  Fragment fragment;
-};
 
 class Drawing {
  public:
@@ -87,7 +49,7 @@ class Drawing {
     fragments_.resize(grid_.count());
     parallel_for(
         grid_.count(), 1, [&](size_t tile, size_t) { draw_tile(tile); }, &context_);
-    return collect();
+    return collect(fragments_, grid_, frame_);
   }
 
   /// The textures of what is seen, after draw_small().
@@ -215,7 +177,7 @@ class Drawing {
     mark_bins_.each(tile, [&](uint32_t i) { marks.draw(marks_[i], covers); });
     for (Cover& c : covers)
       if (scene_.items[c.item].kind != PreparedItem::Kind::surface) color_mark(scene_.items[c.item], lights_, projection_, c);
-    resolve(tile, box, covers);
+    fragments_[tile] = resolve(scene_, box, covers, frame_);
   }
 
   struct Seen {
@@ -314,12 +276,8 @@ class Drawing {
     std::stable_sort(seen.begin(), seen.end(), [](const Seen& a, const Seen& b) { return a.item < b.item; });
     shade_runs(
         seen.size(), box, [&](size_t i) { return seen[i]; },
-        [&](size_t i) { return key_depth(keys_.data()[pixel_of(box, seen[i].pixel)]); },
+        [&](size_t i) { return key_depth(keys_.data()[pixel_in_frame(box, seen[i].pixel, frame_.width)]); },
         [&](const PreparedItem& it, const ShadeBatch& b, size_t) { store_opaque(it, b, box); });
-  }
-
-  size_t pixel_of(const PixelBox& box, uint32_t in_tile) const {
-    return (size_t(box.y0) + in_tile / tile_size) * size_t(frame_.width) + size_t(box.x0) + in_tile % tile_size;
   }
 
   void cover_translucent(size_t tile, const PixelBox& box, std::vector<Cover>& covers) {
@@ -353,56 +311,6 @@ class Drawing {
             for (size_t k = 0; k < 3; ++k) c.rgb[k] = b.rgba[k][i] * b.light[i] + b.gloss[i];
           }
         });
-  }
-
-  /// Sorts what covers each pixel; the first that hides all behind it becomes the opaque pixel, those before it fragments.
-  void resolve(size_t tile, const PixelBox& box, std::vector<Cover>& covers) {
-    std::sort(covers.begin(), covers.end(), [](const Cover& a, const Cover& b) {
-      if (a.pixel != b.pixel) return a.pixel < b.pixel;
-      if (a.order != b.order) return a.order < b.order;
-      return a.primitive < b.primitive;
-    });
-    std::vector<TilePixelFragment>& out = fragments_[tile];
-    uint32_t done = 0xFFFFFFFFu;
-    for (const Cover& c : covers) {
-      if (c.pixel == done || !(c.alpha > 0)) continue;
-      const uint32_t id = scene_.items[c.item].id;
-      if (c.alpha >= 1) {
-        const size_t p = pixel_of(box, c.pixel);
-        for (size_t k = 0; k < 3; ++k) frame_.rgba[4 * p + k] = c.rgb[k];
-        frame_.rgba[4 * p + 3] = 1, frame_.depth[p] = c.depth, frame_.ids[p] = id;
-        done = c.pixel;
-      } else {
-        out.push_back({c.pixel, {c.order, {c.rgb[0] * c.alpha, c.rgb[1] * c.alpha, c.rgb[2] * c.alpha, c.alpha}, id}});
-      }
-    }
-  }
-
-  FragmentLists collect() {
-    FragmentLists lists;
-    size_t total = 0;
-    for (const auto& t : fragments_) total += t.size();
-    if (total == 0) return lists;
-    if (total >= UINT32_MAX)
-      fail_usage(fmt::format("{} translucent fragments are more than a picture holds", total), "render",
-                 "make the picture smaller or the surfaces opaque");
-    lists.start.assign(frame_.pixels() + 1, 0);
-    lists.fragments.resize(total);
-    parallel_for(grid_.count(), 8, [&](size_t begin, size_t end) {
-      for (size_t t = begin; t < end; ++t)
-        for (const TilePixelFragment& f : fragments_[t]) ++lists.start[pixel_of(grid_.box(t), f.pixel) + 1];
-    });
-    for (size_t p = 0; p < frame_.pixels(); ++p) lists.start[p + 1] += lists.start[p];
-    parallel_for(grid_.count(), 8, [&](size_t begin, size_t end) {
-      for (size_t t = begin; t < end; ++t) {
-        size_t nth = 0;
-        for (size_t i = 0; i < fragments_[t].size(); ++i) {
-          nth = i && fragments_[t][i].pixel == fragments_[t][i - 1].pixel ? nth + 1 : 0;
-          lists.fragments[lists.start[pixel_of(grid_.box(t), fragments_[t][i].pixel)] + nth] = fragments_[t][i].fragment;
-        }
-      }
-    });
-    return lists;
   }
 
   const PreparedScene& scene_;

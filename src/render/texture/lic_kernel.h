@@ -20,10 +20,4 @@ struct LicWeights {
 /// textures. `grain`: steps across a grain of noise, whose correlation over d steps is taken as max(0, 1 - d / grain). O(steps^2 * grain).
 LicWeights lic_weights(const SurfaceTexture& texture, double grain);
 
-/// Brightness 0 to 1 of a value of variance 1: about its share of the normal distribution for contrast 1.
-inline float lic_brightness(float value, float contrast) {
-  const float s = 0.8f * contrast * value;  // s / sqrt(1 + s^2) follows 2 Phi(value) - 1 within 0.02
-  return 0.5f + 0.5f * s / __builtin_sqrtf(1 + s * s);
-}
-
 }  // namespace sg::raster

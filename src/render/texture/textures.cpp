@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "filter/flow/texture/brightness.h"
 #include "render/raster/prepared.h"
 #include "render/raster/shade.h"
 
@@ -48,7 +49,7 @@ void apply_texture(const RenderTextures& textures, const PreparedItem& item, uin
       if (best == 0) continue;
     }
     if ((p.word[best] & ~0xFFu) == 0) continue;  // no direction: the plain colour
-    float factor = light_factor(lic_brightness(p.value[best], contrast), strength);
+    float factor = light_factor(normal_brightness(contrast * p.value[best]), strength);
     const float brightest = std::max({batch.rgba[0][k], batch.rgba[1][k], batch.rgba[2][k]}) * batch.light[k];
     if (factor > 1 && brightest * factor > 1) factor = std::max(1.0f, 1 / brightest);  // keeps the hue
     batch.light[k] *= factor;

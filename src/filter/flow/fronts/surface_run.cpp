@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/fronts/surface_run.h"
 
+#include "base/error.h"
+
 namespace sg {
 
 namespace {
@@ -28,6 +30,7 @@ UnsteadyParams run_params(const UnsteadySurfaceParams& p, const std::vector<Vec3
 }
 
 double first_diagonal(const Series& series) {
+  if (series.times.empty()) fail_usage("the series has no time step", "surfaces");
   Box3 box;
   for_each_dataset(series.load(0), [&](const std::string&, const DatasetPtr& d) { box.add(d->bounds()); });
   return box.diagonal();

@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
+#include "filter/flow/texture/brightness.h"
 
 namespace sg {
 
@@ -36,12 +37,6 @@ class Kernel {
   int steps_, reach_;
   std::vector<double> weight_, correlation_;
 };
-
-/// About the share of the normal distribution below a value of z deviations.
-double brightness(double z) {
-  const double s = 0.8 * z;
-  return 0.5 + 0.5 * s / std::sqrt(1 + s * s);
-}
 
 }  // namespace
 
@@ -88,7 +83,7 @@ Array convolve_surface(const RefinedSurface& r, const Walk& walk, const SurfaceC
           if (!any) continue;
           const double mean = sum / weights;
           const bool full = reached[0] == p.steps && reached[1] == p.steps;
-          lic[i] = float(p.stretch ? brightness((mean - 0.5) / (full ? whole : kernel.deviation(reached[0], reached[1]))) : mean);
+          lic[i] = float(p.stretch ? normal_brightness((mean - 0.5) / (full ? whole : kernel.deviation(reached[0], reached[1]))) : mean);
         }
       },
       &context);

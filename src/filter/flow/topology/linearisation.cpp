@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "filter/flow/vortex/eigen_general.h"
+#include "filter/flow/eigen_general.h"
 
 namespace sg {
 

@@ -2,8 +2,8 @@
 #include "filter/flow/vortex/core_lines.h"
 
 #include "base/parallel.h"
+#include "filter/flow/eigen_general.h"
 #include "filter/flow/flow_parts.h"
-#include "filter/flow/vortex/eigen_general.h"
 #include "filter/flow/vortex/keep_large.h"
 #include "filter/flow/vortex/measures.h"
 #include "filter/flow/vortex/parallel_vectors.h"

@@ -3,8 +3,8 @@
 
 #include "base/parallel.h"
 #include "filter/field/gradient.h"
+#include "filter/flow/eigen_general.h"
 #include "filter/flow/flow_field.h"
-#include "filter/flow/vortex/eigen_general.h"
 #include "filter/tensor/sym_tensor.h"
 
 namespace sg {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filter/flow/vortex/eigen_general.h"
+#include "filter/flow/eigen_general.h"
 
 #include <algorithm>
 
