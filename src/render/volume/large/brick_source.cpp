@@ -11,7 +11,7 @@ namespace sg::volume {
 BrickedSource::BrickedSource(BrickedPtr volume, DatasetPtr data, const Projection& projection, size_t memory, double coarser)
     : volume_(std::move(volume)), data_(std::move(data)), projection_(projection), pixels_(coarser) {
   // A part for what walkers hold beside the cache.
-  cache_limit_ = memory / 8 * 7;
+  cache_limit_ = memory / 4 * 3, most_bytes_ = 4 * uint64_t(memory / 8 * 7);
   const double brick = double(67 * 67 * 67 * std::min<size_t>(4, element_size(volume_->type)));
   pins_ = size_t(std::clamp(double(memory / 8) / brick / std::max(1, thread_count()), 4.0, 64.0));
   caches_ = brick_caches(*data_);
@@ -38,7 +38,7 @@ BrickedSource::BrickedSource(BrickedPtr volume, DatasetPtr data, const Projectio
 
 const BrickTree& BrickedSource::tree() const {
   std::call_once(planned_, [&] {
-    tree_ = std::make_unique<BrickTree>(*volume_, projection_, pixels_, 4 * uint64_t(cache_limit_), invisible);
+    tree_ = std::make_unique<BrickTree>(*volume_, projection_, pixels_, most_bytes_, invisible);
     foresee();
   });
   return *tree_;
@@ -56,7 +56,8 @@ std::shared_ptr<const BrickData> BrickedSource::brick(size_t level, const std::a
 }
 
 void BrickedSource::expect_lattices() const {
-  caches_->bricks.set_limit(cache_limit_ / 4), caches_->lattices.set_limit(cache_limit_ / 4 * 3);
+  // Few rays are single ones then. What is left is for chunks, which several lattices share.
+  caches_->bricks.set_limit(cache_limit_ / 16), caches_->lattices.set_limit(cache_limit_ / 16 * 13);
 }
 
 std::shared_ptr<const BrickLattice> BrickedSource::lattice(const BrickNode& node) const {

@@ -44,6 +44,7 @@ class BrickedSource final : public RaySource {
   Projection projection_;
   double pixels_;
   size_t cache_limit_ = 0, pins_ = 4;
+  uint64_t most_bytes_ = 0;  // of the bricks of a picture
   std::shared_ptr<BrickCaches> caches_;
   BrickPlaces places_;
   mutable std::once_flag planned_;
