@@ -302,6 +302,7 @@ class Walker final : public RayField {
 
 std::unique_ptr<RayField> BrickedSource::walker() const {
   tree();
+  if (!in_lattices_) caches_->lattices.set_limit(0), caches_->bricks.set_limit(cache_limit_);
   return std::make_unique<Walker>(*this);
 }
 

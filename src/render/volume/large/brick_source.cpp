@@ -15,7 +15,6 @@ BrickedSource::BrickedSource(BrickedPtr volume, DatasetPtr data, const Projectio
   const double brick = double(67 * 67 * 67 * std::min<size_t>(4, element_size(volume_->type)));
   pins_ = size_t(std::clamp(double(memory / 8) / brick / std::max(1, thread_count()), 4.0, 64.0));
   caches_ = brick_caches(*data_);
-  caches_->bricks.set_limit(cache_limit_), caches_->lattices.set_limit(0);
   const BrickedVolume::Level& fine = volume_->levels[0];
   for (int a = 0; a < 3; ++a) {
     places_.lo[a] = first_place(fine.dims[size_t(a)]), places_.hi[a] = last_place(fine.dims[size_t(a)]);
@@ -56,6 +55,7 @@ std::shared_ptr<const BrickData> BrickedSource::brick(size_t level, const std::a
 }
 
 void BrickedSource::expect_lattices() const {
+  in_lattices_ = true;
   // Few rays are single ones then. What is left is for chunks, which several lattices share.
   caches_->bricks.set_limit(cache_limit_ / 16), caches_->lattices.set_limit(cache_limit_ / 16 * 13);
 }

@@ -47,6 +47,7 @@ class BrickedSource final : public RaySource {
   uint64_t most_bytes_ = 0;  // of the bricks of a picture
   std::shared_ptr<BrickCaches> caches_;
   BrickPlaces places_;
+  mutable bool in_lattices_ = false;
   mutable std::once_flag planned_;
   mutable std::unique_ptr<BrickTree> tree_;
 };
