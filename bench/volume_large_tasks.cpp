@@ -49,10 +49,10 @@ std::vector<ProcessTask> volume_large_tasks(const std::string& folder, const std
   };
   return {{"volume_large_first", text, "sightglass --progressive, fog", command("volume", {"--progressive"}), png, true},
           {"volume_large_first", text, "sightglass --progressive, surfaces",
-           command("volume opacity=-120:0,-6:0,-4:0.6,-2:0,120:0", {"--progressive"}), png, true},
+           command("volume opacity=@-6:0,@-4:0.6,@-2:0", {"--progressive"}), png, true},
           {"volume_large_within", text, "sightglass --within 2s, fog", command("volume", {"--within", "2s"}), png},
           {"volume_large_final", text, "sightglass, fog", command("volume", {}), png},
-          {"volume_large_final", text, "sightglass, surfaces", command("volume opacity=-120:0,-6:0,-4:0.6,-2:0,120:0", {}), png}};
+          {"volume_large_final", text, "sightglass, surfaces", command("volume opacity=@-6:0,@-4:0.6,@-2:0", {}), png}};
 }
 
 }  // namespace sg::bench
