@@ -25,6 +25,7 @@ struct ProcessTask {
   std::string task, size, peer;
   std::vector<std::string> command;
   std::string output;  ///< file it must write, or ""
+  bool first = false;  ///< the time until that file is there, not until the process ends
 };
 
 std::vector<Task> tasks(const std::string& data_folder);
@@ -46,6 +47,9 @@ void add_glyph_tasks(std::vector<Task>& tasks);
 void add_ftle_tasks(std::vector<Task>& tasks);
 void add_lic_tasks(std::vector<Task>& tasks);
 void add_lic2d_tasks(std::vector<Task>& tasks);
+/// Pictures of a volume of size^3 f32 that stays on disk: with --only volume_large alone, for it takes 11 GB there at 1625^3.
+void make_large_volume(const std::string& data_folder, const std::string& program, int size);
+std::vector<ProcessTask> volume_large_tasks(const std::string& data_folder, const std::string& program, int size);
 std::vector<ProcessTask> process_tasks(const std::string& data_folder, const std::string& program);
 
 /// Writes the input files that are missing in the folder (formulas as in the peers' scripts).

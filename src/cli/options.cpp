@@ -14,7 +14,7 @@ namespace sg {
 namespace {
 
 struct RawText {
-  std::string dims, type, spacing, endian = "little", memory;
+  std::string dims, type, spacing, endian = "little", memory, within;
   std::string time, region, stride, fields, piece;  // of any file: which part of it
   size_t header = 0;
   int components = 1;
@@ -56,7 +56,7 @@ void add_pipeline(CLI::App& a, Options& o) {
   a.add_flag("--explain", o.explain, "Print the plan and what it will cost, run nothing");
 }
 
-void add_picture(CLI::App& a, Options& o) {
+void add_picture(CLI::App& a, Options& o, RawText& raw) {
   a.add_option("--show", o.shows, "How to show it: 'surface|volume|lines|points|labels|outline key=value ...'; may be repeated")
       ->allow_extra_args(false);
   a.add_option("--field", o.field, "Field to colour by");
@@ -72,6 +72,11 @@ void add_picture(CLI::App& a, Options& o) {
       "With {n} in the output, or a film: the times to draw, like 0:10:101 (first:last:count), 0,0.5,1 or 0:114 (the steps of the file in "
       "between); default: all of the file. A parameter written as {t} takes the time");
   a.add_option("--fps", o.fps, "Films: pictures per second")->check(CLI::Range(0.1, 1000.0));
+  a.add_flag("--progressive", o.progressive,
+             "Volumes that memory does not hold: write a coarse picture at once, and finer ones in its place until it is the final one");
+  a.add_option(
+      "--within", raw.within,
+      "Volumes that memory does not hold: the best picture that is ready after this time, like 2s or 500ms, with its level and error");
   a.add_option("-o,--output", o.output,
                "Picture to write: .png .jpg .webp; {n} in its name numbers the pictures of a time series; .webm, .mp4: a film of them");
 }
@@ -150,6 +155,15 @@ void finish_raw(const RawText& raw, Options& o) {
   o.read.raw_big_endian = raw.endian == "big";
   o.read.raw_header = raw.header;
   o.read.raw_components = raw.components;
+  if (!raw.within.empty()) {
+    std::string_view number = raw.within;
+    const double unit = number.ends_with("ms") ? 1e-3 : 1;
+    number.remove_suffix(number.ends_with("ms") ? 2 : number.ends_with('s') ? 1 : 0);
+    const auto time = parse_double(number);
+    if (!time || !(*time > 0) || !std::isfinite(*time))
+      fail_usage(fmt::format("'{}' is no time", raw.within), "--within", "like 2s or 500ms");
+    o.within = *time * unit;
+  }
   if (!raw.memory.empty()) {
     const auto bytes = parse_bytes(raw.memory);
     if (!bytes || *bytes == 0) fail_usage(fmt::format("'{}' is not an amount of memory", raw.memory), "--memory", "like 512M or 2G");
@@ -212,7 +226,7 @@ Options parse_options(int argc, char** argv) {
   if (first == "render") {
     a.description("Makes a picture of the data. Without options it looks at the data and chooses.");
     a.add_option("input", o.inputs, "Files to read");
-    add_reading(a, o, raw), add_pipeline(a, o), add_picture(a, o);
+    add_reading(a, o, raw), add_pipeline(a, o), add_picture(a, o, raw);
   } else if (first == "info") {
     a.description("Says what is in a file: mesh, sizes, cell types, bounds, fields with their ranges.");
     a.add_option("input", o.inputs, "Files to read");

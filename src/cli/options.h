@@ -15,7 +15,9 @@ struct Options {
   std::vector<std::string> shows;    ///< each one --show
   std::string source;                ///< --source: a source operation instead of a file
   std::string output;
-  std::string times;  ///< render: --times of a series, "" = those of the file
+  bool progressive = false;  ///< render: coarse pictures first
+  double within = 0;         ///< render: seconds, 0 = no limit
+  std::string times;         ///< render: --times of a series, "" = those of the file
   std::string camera, size, title, background, field, map, scale;
   std::vector<std::string> picture;  ///< key=value for the picture, from the flags above and --picture
   ReadOptions read;

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <cstring>
 
@@ -68,18 +69,52 @@ void check_memory(const PipelineGraph& built, const Options& o) {
                "--memory", "--explain shows which; allow more, or read a smaller part");
 }
 
-int render_to(PipelineFile& file, const std::string& output, const PictureOptions& options, const Options& o, Context& context) {
+// When the program began, about: before main().
+const auto program_start = std::chrono::steady_clock::now();
+
+std::string describe(const PictureDraft& d) {
+  std::string text = fmt::format("{}, a voxel covers at most {:.3g} pixel{}", d.made_of, d.voxel_pixels, d.voxel_pixels == 1 ? "" : "s");
+  if (d.compared)
+    text +=
+        fmt::format("; half as many voxels along each axis change it by {:.2g} of full scale on average, {:.2g} at most", d.mean, d.most);
+  return text;
+}
+
+// Writes each picture as soon as it is there. What is said about one goes on when the next begins.
+void set_drafts(PictureOptions& options, const PipelineFile& file, const std::string& output, const Options& o) {
+  if (!o.progressive && !(o.within > 0)) return;
+  options.on_draft = [&file, output, quiet = o.quiet](const Picture& picture, const PictureDraft& draft) {
+    Image image = picture.image;
+    attach_recipe(image, file, output);
+    write_image(output, image);
+    if (quiet) return;
+    const std::chrono::duration<double> since = std::chrono::steady_clock::now() - program_start;
+    std::printf("%s: after %.2f s: %s\n", output.c_str(), since.count(), describe(draft).c_str());
+    std::fflush(stdout);
+  };
+  if (o.within > 0) {
+    const double drawing = o.within - std::min(0.15, 0.1 * o.within);  // the rest is for writing
+    options.until = program_start + std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(drawing));
+  }
+}
+
+int render_to(PipelineFile& file, const std::string& output, PictureOptions options, const Options& o, Context& context) {
   if (o.explain) {
     print_explanation(file);
     return 0;
   }
   check_output(output);
   if (o.memory > 0) check_memory(build_graph(file), o);
+  set_drafts(options, file, output, o);
   Picture picture = make_picture(file, options, context);
   attach_recipe(picture.image, file, output);
   write_image(output, picture.image);
   if (!o.quiet) {
     std::string line = output;
+    if (!picture.drafts.empty()) {
+      const std::chrono::duration<double> since = std::chrono::steady_clock::now() - program_start;
+      picture.notes.insert(picture.notes.begin(), fmt::format("after {:.2f} s: {}", since.count(), describe(picture.drafts.back())));
+    }
     for (size_t i = 0; i < picture.notes.size(); ++i) line += (i ? "; " : ": ") + picture.notes[i];
     std::printf("%s\n", line.c_str());
   }
@@ -94,6 +129,9 @@ int run_render(const Options& o, Context& context) {
   if (!o.field.empty()) options.coloring.push_back("field=" + o.field);
   if (!o.map.empty()) options.coloring.push_back("map=" + o.map);
   if (!o.scale.empty()) options.coloring.push_back("scale=" + o.scale);
+  if (is_numbered(o.output) && (o.progressive || o.within > 0))
+    fail_usage("the pictures of a series are final at once", o.progressive ? "--progressive" : "--within",
+               "leave it out, or make one picture");
   if (is_numbered(o.output)) return render_series(o, options, context);
   if (!o.times.empty())
     fail_usage("several times need several pictures", "--times", "number them: -o out_{n}.png, or make a film: -o film.webm");

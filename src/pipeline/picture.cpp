@@ -264,7 +264,7 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
   all.add(box);
   fit_planes(camera, all);
   if (stated.picture.axes && !shown.outlined && !box.empty()) scene.items.emplace_back(back_edges(box, camera));
-  picture.image = draw_picture(scene, camera, stated, annotation, context);
+  draw_drafts(scene, camera, stated, annotation, options, picture, context);
   return picture;
 }
 

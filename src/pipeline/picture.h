@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // From a pipeline description to an annotated picture with its recipe inside.
 #pragma once
+#include <chrono>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,14 +33,29 @@ void parse_size(const std::string& text, int& width, int& height);
 /// The words a pipeline file may use under `show` and `picture`.
 PipelineVocabulary picture_vocabulary();
 
+struct Picture;
+
+/// One of several pictures of a volume that memory does not hold.
+struct PictureDraft {
+  std::string made_of;      ///< "level 3 of 7 (204x204x204)": what is in memory; or "bricks"
+  double voxel_pixels = 1;  ///< a voxel covers so many pixels at most (where the memory allowed is enough for that)
+  bool compared = false;
+  double most = 0, mean = 0;  ///< of full scale: change from the picture with voxels of about twice that size, an estimate of the error
+};
+
 struct PictureOptions {
-  std::shared_ptr<Cache> cache;       ///< shared between pictures; null = one of its own
+  std::shared_ptr<Cache> cache;  ///< shared between pictures; null = one of its own
+  /// For volumes that memory does not hold: gets a picture at once, then finer ones; the final one is returned alone. Not called for
+  /// others.
+  std::function<void(const Picture&, const PictureDraft&)> on_draft;
+  std::optional<std::chrono::steady_clock::time_point> until;  ///< with on_draft: then the finest picture so far is returned
   std::vector<std::string> coloring;  ///< words added to every way to show that colours by a field ("field=T", "map=ember")
 };
 
 struct Picture {
   Image image;
-  std::vector<std::string> notes;  ///< what was chosen and why, one line each
+  std::vector<std::string> notes;    ///< what was chosen and why, one line each
+  std::vector<PictureDraft> drafts;  ///< with on_draft: of each that was made, this one last
 };
 
 /// Evaluates the steps, shows what is asked for (or what the data suggests when nothing is), renders and annotates.

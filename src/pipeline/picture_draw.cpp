@@ -68,10 +68,11 @@ int width_beside_legends(const Annotation& annotation, const StatedPicture& s) {
   return legends * 2 > s.width ? s.width : s.width - legends;  // too narrow a picture: legends go over it
 }
 
-Image draw_picture(const Scene& scene, const Camera& camera, const StatedPicture& s, const Annotation& annotation, Context& context) {
+Image draw_picture(const Scene& scene, const Camera& camera, const StatedPicture& s, const Annotation& annotation, double coarser,
+                   Context& context) {
   RenderOptions options;
   options.width = width_beside_legends(annotation, s), options.height = s.height, options.samples = s.picture.samples;
-  options.adaptive = s.picture.adaptive;
+  options.adaptive = s.picture.adaptive, options.coarser = coarser;
   Frame frame = render(scene, camera, options, context);
   const Projection projection = make_projection(camera, options.width, options.height);
   Annotation with_texts = annotation;

@@ -43,6 +43,11 @@ LinesItem back_edges(const Box3& box, const Camera& camera);
 /// Width of the picture itself, beside its legends.
 int width_beside_legends(const Annotation& annotation, const StatedPicture& stated);
 /// Renders to the left of the legends, goes on with the background to the right, and annotates.
-Image draw_picture(const Scene& scene, const Camera& camera, const StatedPicture& stated, const Annotation& annotation, Context& context);
+/// `coarser` as in RenderOptions.
+Image draw_picture(const Scene& scene, const Camera& camera, const StatedPicture& stated, const Annotation& annotation, double coarser,
+                   Context& context);
+/// Fills in picture.image and picture.drafts, through options.on_draft where that is set.
+void draw_drafts(const Scene& scene, const Camera& camera, const StatedPicture& stated, const Annotation& annotation,
+                 const PictureOptions& options, Picture& picture, Context& context);
 
 }  // namespace sg

@@ -90,7 +90,7 @@ Frame render(const Scene& scene, const Camera& camera, const RenderOptions& opti
   auto draw = [&](const Projection& projection, int samples, const std::vector<uint8_t>* wanted, Frame& into) {
     const FragmentLists fragments = rasterize_prepared(*prepared, projection, samples, into, context, textures.get());
     context.check();
-    composite_volumes(scene, projection, fragments, into, context, wanted);
+    composite_volumes(scene, projection, fragments, into, context, wanted, options.coarser);
   };
   const bool adaptive = options.adaptive > 0 && n > 1;
   if (n == 1) {

@@ -13,6 +13,9 @@ struct RenderOptions {
   /// Above 0: all the samples are taken only where neighbouring pixels of one sample differ by more than this share of full scale in a
   /// channel (as displayed), or show different items; in squares of 16/samples pixels.
   double adaptive = 0;
+  /// Volumes that memory does not hold: a voxel may cover so many pixels (data/bricked.h). 0: they are drawn from the level in memory
+  /// alone.
+  double coarser = 1;
 };
 
 /// Surfaces, lines, points and volumes in one picture: opaque ones by depth, translucent ones and volumes in depth order,

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Volumes that are written slab by slab, and pictures of a series.
+#include <unistd.h>
+
 #include "base/file.h"
 #include "cli/program.h"
 #include "support/test.h"
@@ -65,4 +67,78 @@ TEST_CASE("render: a series that cannot be is told") {
   CHECK(has(sightglass({"render", "-s", "tangle size=9", "--times", "0,1", "-o", out}).err, "has no time"));
   CHECK(has(sightglass({"render", "-s", "drift size=9", "--times", "0,1", "-o", test::temp_folder() + "x.png"}).err, "{n}"));
   CHECK(has(sightglass({"render", "-s", "drift size=9", "--times", "1:0", "-o", out}).err, "no range of times"));
+}
+
+namespace {
+
+// A volume that does not fit into 64 MB, made once.
+const std::string& large_volume() {
+  static const std::string path = [] {
+    const std::string out = test::temp_folder() + "large.ome.zarr";
+    const auto r = sightglass({"convert", "-s", "tangle size=220", "-o", out, "--memory", "60M"});  // 43 MB of numbers
+    REQUIRE(r.status == 0);
+    return out;
+  }();
+  return path;
+}
+
+std::vector<std::string> picture_of(const std::string& input, const std::string& output, std::vector<std::string> more = {}) {
+  std::vector<std::string> args = {"render", input, "--memory", "64M", "--show", "volume", "--size", "300x200", "-o", output};
+  args.insert(args.end(), more.begin(), more.end());
+  return args;
+}
+
+}  // namespace
+
+TEST_CASE("render --progressive: a picture of the level in memory first, in the end the very picture") {
+  const std::string plain = test::temp_folder() + "plain.png", out = test::temp_folder() + "progressive.png";
+  REQUIRE(sightglass(picture_of(large_volume(), plain)).status == 0);
+  const auto r = sightglass(picture_of(large_volume(), out, {"--progressive"}));
+  INFO(r.err);
+  INFO(r.out);
+  REQUIRE(r.status == 0);
+  CHECK(has(r.out, "level 2 of 3 (55x55x55)"));
+  CHECK(has(r.out, "bricks, a voxel covers at most 1 pixel; half as many voxels"));
+  CHECK(MappedFile(out).text() == MappedFile(plain).text());
+  // What fits into memory is drawn at once.
+  const auto small = sightglass({"render", "-s", "tangle size=20", "--progressive", "--size", "160x120", "-o", out});
+  CHECK(small.status == 0);
+  CHECK(!has(small.out, "level"));
+}
+
+TEST_CASE("render --within: a picture after that time, which says what it is made of") {
+  const std::string out = test::temp_folder() + "within.png";
+  const auto r = sightglass(picture_of(large_volume(), out, {"--within", "1ms"}));
+  INFO(r.err);
+  REQUIRE(r.status == 0);
+  CHECK(has(r.out, "level 2 of 3"));
+  CHECK(!has(r.out, "bricks, "));
+  CHECK(file_exists(out));
+  const auto long_enough = sightglass(picture_of(large_volume(), out, {"--within", "500s"}));
+  CHECK(has(long_enough.out, "at most 1 pixel"));
+  CHECK(has(sightglass(picture_of(large_volume(), out, {"--within", "soon"})).err, "like 2s"));
+  CHECK(has(sightglass(picture_of(large_volume(), out, {"--within", "-1s"})).err, "is no time"));
+  const std::string series = test::temp_folder() + "series_within_{n}.png";
+  CHECK(has(sightglass({"render", "-s", "drift size=9", "--times", "0,1", "-o", series, "--within", "2s"}).err, "--within"));
+}
+
+TEST_CASE("render: damaged chunks of a large volume are told with their file, missing ones are the fill value") {
+  const std::string bad = test::temp_folder() + "bad.ome.zarr", out = test::temp_folder() + "bad.png";
+  REQUIRE(sightglass({"convert", "-s", "tangle size=220", "-o", bad, "--memory", "60M"}).status == 0);
+  // The picture of 300 x 200 pixels is drawn from level 1 or coarser.
+  std::string chunk;
+  for (const char* name : {"/1/0/0/0", "/1/0.0.0"})
+    if (file_exists(bad + name)) chunk = bad + name;
+  REQUIRE(!chunk.empty());
+  const std::string bytes(MappedFile(chunk).text());
+  for (const std::string& damaged : {bytes.substr(0, bytes.size() / 2), std::string(), std::string(bytes.size(), '\x7f')}) {
+    write_file(chunk, damaged);
+    for (const std::vector<std::string>& more : {std::vector<std::string>{}, {"--progressive"}}) {
+      const auto r = sightglass(picture_of(bad, out, more));
+      CHECK(r.status == 3);
+      CHECK(has(r.err, chunk));
+    }
+  }
+  ::unlink(chunk.c_str());
+  CHECK(sightglass(picture_of(bad, out)).status == 0);
 }

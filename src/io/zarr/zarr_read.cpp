@@ -118,7 +118,7 @@ Data read_zarr(const std::string& path, const ReadOptions& options, Context& con
   }
   const DatasetPtr dataset = make_dataset(std::move(parts));
   if (coarse && planned.size() == 1 && !image->vector) {
-    const size_t cache = size_t(std::min<uint64_t>(allowed / 8, uint64_t(256) << 20));
+    const size_t cache = size_t(std::min<uint64_t>(allowed / 4, uint64_t(256) << 20));
     attach_bricked(*dataset, zarr::bricked(image, step, planned[0].channels[0], cache));
   }
   return dataset;

@@ -19,8 +19,8 @@ bool needs_level(RayFunction f) {
 }
 
 std::unique_ptr<RaySource> source_of(const VolumeItem& item, std::shared_ptr<const Volume> lattice, const Projection& projection,
-                                     Context& context, Range& reach) {
-  if (auto bricked = bricked_source(item, projection, context.memory_limit / 2, context)) {
+                                     double coarser, Context& context, Range& reach) {
+  if (auto bricked = lattice ? nullptr : bricked_source(item, projection, context.memory_limit / 2, context, coarser)) {
     if (wants_reconstruction(item.sampling))
       fail_usage("volumes that memory does not hold are read with the linear kernel and central gradients only", "volume",
                  "leave kernel and gradient as they are, or allow more --memory");
@@ -98,7 +98,7 @@ CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<con
   CastVolume v;
   v.item = &item, v.id = id;
   Range reach;  // of a kernel that goes beyond the data
-  v.source = source_of(item, std::move(lattice), projection, context, reach);
+  v.source = source_of(item, std::move(lattice), projection, std::max(1.0, knobs.coarser), context, reach);
   RaySource& source = *v.source;
   const double base = double(source.base);
   const Range range = item.data->range(field_of(item), item.component);

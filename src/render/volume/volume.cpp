@@ -11,6 +11,7 @@
 #include "render/volume/cells/cell_source.h"
 #include "render/volume/cells/tet_rays.h"
 #include "render/volume/classic/layers.h"
+#include "render/volume/large/brick_packets.h"
 #include "render/volume/lattice/packets.h"
 #include "render/volume/lattice/reconstructed_ray.h"
 #include "render/volume/light/effects.h"
@@ -95,15 +96,23 @@ class Alone {
     const VolumeItem& item = *v.item;
     if (!item.clip.empty() || v.detail || v.effects) return;
     const bool composite = item.mode == RayFunction::composite, by_tolerance = composite && !(v.step > 0);
-    if (picture.lattices[0]) {
-      if (wants_reconstruction(item.sampling)) return;
-      plan_.emplace(PacketPlan{
-          *picture.lattices[0], picture.projection, picture.knobs, {}, v.material, v.medium.get(), v.budget, float(v.source->edge)});
+    const bool post = composite && item.sampling.classify == "post" && !item.sampling.jitter;
+    const auto plan_for = [&](const Volume& volume) {
+      plan_.emplace(PacketPlan{volume, picture.projection, picture.knobs, {}, v.material, v.medium.get(), v.budget, float(v.source->edge)});
       if (picture.shaded)
         for (const Picture::Lamp& l : picture.lamps) plan_->lamps.push_back({l.direction, l.intensity});
-      const bool in_steps = composite ? item.sampling.classify == "post" && !item.sampling.jitter : item.mode == RayFunction::maximum;
+    };
+    if (picture.lattices[0]) {
+      if (wants_reconstruction(item.sampling)) return;
+      plan_for(*picture.lattices[0]);
+      const bool in_steps = post || item.mode == RayFunction::maximum;
       if (by_tolerance && in_tolerant_packets(*plan_)) packets_ = cast_tile;
       else if (!by_tolerance && in_steps && in_packets(*plan_)) packets_ = march_tile;
+    } else if (const auto* bricks = dynamic_cast<const BrickedSource*>(v.source.get())) {
+      stage_ = brick_stage(*bricks, item, v.id, v.unit, v.per_scale);
+      plan_for(stage_);
+      if ((by_tolerance || post) && picture.knobs.bricks_in_packets && BrickPackets::fits(*bricks, item, *plan_, !by_tolerance))
+        bricks_.emplace(*bricks, stage_, *plan_, !by_tolerance, context);
     } else if (by_tolerance && !bricked_of(*item.data) && TetRays::fits(cell_volume_of(*v.source))) {
       tets_.emplace(cell_volume_of(*v.source), picture.projection, *v.medium, context, v.budget.stop_below);
       std::vector<TetLight::Lamp> lamps;
@@ -113,11 +122,20 @@ class Alone {
   }
 
   /// Draws a tile; false when it has to go by single rays.
-  bool in_blocks() const { return packets_; }  ///< may `draw` take more than a tile at once?
+  bool in_blocks() const { return packets_ || bricks_; }  ///< may `draw` take more than a tile at once?
   bool draw(int x0, int y0, int x1, int y1) const {
     if (packets_) packets_(*plan_, x0, y0, x1, y1, picture_.frame);
+    else if (bricks_) bricks_->draw(x0, y0, x1, y1, picture_.frame);
     else if (tets_) draw_tets(x0, y0, x1, y1);
-    return packets_ || tets_;
+    return packets_ || bricks_ || tets_;
+  }
+  /// Depth at which the ray of a pixel leaves the box of the volume, but for rounding; -infinity where it misses. For `in_blocks`.
+  float leaves(int x, int y) const {
+    const Projection& p = picture_.projection;
+    const Projection::Ray ray = p.ray(x + 0.5, y + 0.5);
+    const Course c = course(plan_->volume, ray.origin, ray.direction, -HUGE_VAL, HUGE_VAL);
+    if (!(c.leave > c.enter)) return -HUGE_VALF;
+    return float((dot(ray.origin - p.eye, p.forward) + c.leave * dot(ray.direction, p.forward)) * (1 - 2e-6));
   }
 
  private:
@@ -146,6 +164,8 @@ class Alone {
   const Picture& picture_;
   std::optional<PacketPlan> plan_;
   void (*packets_)(const PacketPlan&, int, int, int, int, Frame&) = nullptr;
+  Volume stage_;  // of bricks
+  std::optional<BrickPackets> bricks_;
   std::optional<TetRays> tets_;
 };
 static_assert(tile == TetRays::tile);
@@ -159,6 +179,48 @@ void add_effects(const Scene& scene, Picture& picture, const Context& context) {
     v.effects = light_effects(*v.item, *v.source, *v.medium, lamps, picture.projection, drawn, &context);
     picture.shaded = picture.shaded || v.effects;
     if (v.item->light.depth_cue > 0) picture.fading = &scene;
+  }
+}
+
+// Samples of a coarse level are means: the outermost lie inside the box of the volume, or beyond it when they are means of few.
+void reach_ends(const BrickedVolume& bricks, Volume& v) {
+  if (!(v.hi.x > v.lo.x) || !v.affine) return;
+  const BrickedVolume::Level& fine = bricks.levels[0];
+  Vec3 last;
+  for (int a = 0; a < 3; ++a) last[a] = double(fine.dims[size_t(a)] - 1) * fine.spacing[a];
+  const Vec3 lo = v.q(fine.origin), hi = v.q(fine.origin + bricks.direction * last);
+  for (int a = 0; a < 3; ++a)
+    if (fine.dims[size_t(a)] > 1) v.lo[a] = lo[a], v.hi[a] = hi[a];
+}
+
+// Packets where no pixel has fragments inside the volume: those behind it come first. The other pixels go by single rays.
+void draw_among(const Picture& picture, const Alone& alone, int x0, int y0, int x1, int y1, Scratch& scratch) {
+  struct Pixel {
+    int x, y;
+    float depth;
+  };
+  std::vector<Pixel> single;
+  Frame& frame = picture.frame;
+  for (int y = y0; y < y1; ++y)
+    for (int x = x0; x < x1; ++x) {
+      const size_t p = size_t(y) * size_t(frame.width) + size_t(x);
+      const size_t first = picture.fragments.start[p], last = picture.fragments.start[p + 1];
+      if (first == last) continue;
+      if (alone.leaves(x, y) > picture.fragments.fragments[first].depth) {  // the nearest is the first
+        single.push_back({x, y, frame.depth[p]});
+        frame.depth[p] = -HUGE_VALF;
+        continue;
+      }
+      Gathered sum;
+      for (size_t i = first; i < last; ++i) sum.behind(picture.fragments.fragments[i].rgba);
+      float* out = &frame.rgba[4 * p];
+      sum.behind(out);
+      out[0] = sum.r, out[1] = sum.g, out[2] = sum.b, out[3] = 1 - sum.transmittance;
+    }
+  alone.draw(x0, y0, x1, y1);
+  for (const Pixel& s : single) {
+    frame.depth[size_t(s.y) * size_t(frame.width) + size_t(s.x)] = s.depth;
+    pixel(picture, s.x, s.y, scratch);
   }
 }
 
@@ -201,9 +263,11 @@ void composite_volumes(const Scene& scene, const Projection& projection, const F
       check(*item);
       std::shared_ptr<const Volume> lattice;
       const BrickedPtr bricks = bricked_of(*item->data);
-      const bool in_bricks = bricks && (item->field.empty() || item->field == bricks->field);
+      const bool of_bricks = bricks && (item->field.empty() || item->field == bricks->field), in_bricks = of_bricks && knobs.coarser > 0;
       if (!in_bricks && (item->data->as<UniformGrid>() || item->data->as<RectilinearGrid>())) {
-        lattice = std::make_shared<const Volume>(prepare(*item, uint32_t(i + 1), knobs));
+        Volume prepared = prepare(*item, uint32_t(i + 1), knobs);
+        if (of_bricks) reach_ends(*bricks, prepared);
+        lattice = std::make_shared<const Volume>(std::move(prepared));
         if (!(lattice->hi.x > lattice->lo.x)) continue;  // a grid without extent
       }
       picture.lattices.push_back(lattice);
@@ -235,10 +299,10 @@ void composite_volumes(const Scene& scene, const Projection& projection, const F
           const int tx1 = std::min(tx0 + block, across), ty1 = std::min(ty0 + block, down);
           if (!knobs.wanted && alone.in_blocks()) {
             const int x1 = std::min(tx1 * tile, frame.width), y1 = std::min(ty1 * tile, frame.height);
-            if (!any_fragments(fragments, frame, tx0 * tile, ty0 * tile, x1, y1)) {
-              alone.draw(tx0 * tile, ty0 * tile, x1, y1);
-              continue;
-            }
+            if (any_fragments(fragments, frame, tx0 * tile, ty0 * tile, x1, y1))
+              draw_among(picture, alone, tx0 * tile, ty0 * tile, x1, y1, scratch);
+            else alone.draw(tx0 * tile, ty0 * tile, x1, y1);
+            continue;
           }
           for (int ty = ty0; ty < ty1; ++ty)
             for (int tx = tx0; tx < tx1; ++tx)
@@ -253,9 +317,9 @@ void composite_volumes(const Scene& scene, const Projection& projection, const F
 namespace sg {
 
 void composite_volumes(const Scene& scene, const Projection& projection, const FragmentLists& fragments, Frame& frame, Context& context,
-                       const std::vector<uint8_t>* wanted) {
+                       const std::vector<uint8_t>* wanted, double coarser) {
   volume::Knobs knobs;
-  knobs.wanted = wanted;
+  knobs.wanted = wanted, knobs.coarser = coarser;
   volume::composite_volumes(scene, projection, fragments, frame, context, knobs);
 }
 

@@ -2,140 +2,13 @@
 // Walkers through the bricks.
 #include <cmath>
 
-#include "base/error.h"
-#include "base/parallel.h"
-#include "render/volume/large/brick_store.h"
-#include "render/volume/large/bricked_source.h"
+#include "render/volume/large/brick_source.h"
 
 namespace sg::volume {
 
 namespace {
 
 using Data = std::shared_ptr<const BrickData>;
-
-struct Prepared {
-  const BrickedVolume* volume = nullptr;
-  Mat3 to_fine;                    // world -> fine coordinates, after taking the origin off
-  Mat3 to_world;                   // gradients: value per sample of level 0 -> per world length
-  Vec3 lo, hi;                     // the grid in fine coordinates
-  std::vector<Vec3> scale, shift;  // per level: sample index from fine coordinates
-};
-
-class BrickedSource final : public RaySource {
- public:
-  BrickedSource(BrickedPtr volume, DatasetPtr data, const Projection& projection, size_t memory, double coarser)
-      : volume_(std::move(volume)), data_(std::move(data)), projection_(projection), pixels_(coarser) {
-    // A part for what walkers hold beside the cache.
-    cache_limit_ = memory / 8 * 7;
-    const double brick = double(67 * 67 * 67 * std::min<size_t>(4, element_size(volume_->type)));
-    pins_ = size_t(std::clamp(double(memory / 8) / brick / std::max(1, thread_count()), 4.0, 64.0));
-    cache_ = brick_cache(*data_, cache_limit_);
-    const BrickedVolume::Level& fine = volume_->levels[0];
-    prepared_.volume = volume_.get();
-    for (int a = 0; a < 3; ++a) {
-      prepared_.lo[a] = first_place(fine.dims[size_t(a)]), prepared_.hi[a] = last_place(fine.dims[size_t(a)]);
-      for (int c = 0; c < 3; ++c) {
-        prepared_.to_fine.m[a][c] = volume_->direction.m[c][a] / fine.spacing[a];
-        prepared_.to_world.m[c][a] = volume_->direction.m[c][a] / fine.spacing[a];
-      }
-    }
-    for (size_t l = 0; l < volume_->levels.size(); ++l) {
-      Vec3 scale, shift;
-      level_places(*volume_, l, scale, shift);
-      prepared_.scale.push_back(scale), prepared_.shift.push_back(shift);
-    }
-    for (int c = 0; c < 8; ++c) {
-      const Vec3 u{c & 1 ? prepared_.hi.x : prepared_.lo.x, c & 2 ? prepared_.hi.y : prepared_.lo.y,
-                   c & 4 ? prepared_.hi.z : prepared_.lo.z};
-      bounds.add(fine.origin + volume_->direction * (fine.spacing * u));
-    }
-    edge = finest_edge();
-  }
-
-  std::unique_ptr<RayField> walker() const override;
-  const BrickTree& tree() const {
-    std::call_once(planned_, [&] {
-      tree_ = std::make_unique<BrickTree>(*volume_, projection_, pixels_, 4 * uint64_t(cache_limit_), invisible);
-      foresee();
-    });
-    return *tree_;
-  }
-  const BrickedVolume& volume() const { return *volume_; }
-  const Prepared& prepared() const { return prepared_; }
-  size_t pins() const { return pins_; }
-
-  Data brick(size_t level, const std::array<uint32_t, 3>& at) const {
-    return cache_->get(brick_key(level, at), [&] {
-      BrickNode n;
-      n.level = uint8_t(level), n.at = at;
-      Vec3 lo, hi;
-      tree_->box(n, lo, hi);
-      Data b = load_brick(*volume_, level, lo, hi);
-      return std::pair(b, b->bytes());
-    });
-  }
-
- private:
-  // The system may read what rays will need, the nearest first, while the first rays are cast.
-  void foresee() const {
-    if (!volume_->expect) return;
-    std::vector<std::pair<double, size_t>> order;
-    for (size_t i = 0; i < tree_->size(); ++i) {
-      const BrickNode& n = tree_->node(int(i));
-      if (!n.seen || n.children >= 0) continue;
-      Vec3 lo, hi;
-      tree_->box(n, lo, hi);
-      const BrickedVolume::Level& fine = volume_->levels[0];
-      order.emplace_back(projection_.to_eye(fine.origin + volume_->direction * (fine.spacing * (0.5 * (lo + hi)))).z, i);
-    }
-    std::sort(order.begin(), order.end());
-    size_t bytes = 0;
-    for (size_t i = 0; i < order.size() && bytes < cache_limit_; ++i) {
-      const BrickNode& n = tree_->node(int(order[i].second));
-      Vec3 lo, hi;
-      tree_->box(n, lo, hi);
-      std::array<size_t, 3> from{}, count{};
-      size_t size = element_size(volume_->type);
-      for (size_t a = 0; a < 3; ++a) {
-        const double scale = prepared_.scale[n.level][int(a)], shift = prepared_.shift[n.level][int(a)];
-        const double last = double(volume_->levels[n.level].dims[a]) - 1;
-        from[a] = size_t(std::clamp(std::ceil(lo[int(a)] * scale + shift), 0.0, last));
-        count[a] = size_t(std::clamp(std::ceil(hi[int(a)] * scale + shift) - 1, double(from[a]), last)) - from[a] + 1;
-        size *= count[a];
-      }
-      volume_->expect(n.level, from, count);
-      bytes += size;
-    }
-  }
-
-  // Of the level that the nearest place of the box is drawn from.
-  double finest_edge() const {
-    double nearest = HUGE_VAL;
-    for (int c = 0; c < 8; ++c)
-      nearest = std::min(
-          nearest,
-          projection_.to_eye(Vec3{c & 1 ? bounds.hi.x : bounds.lo.x, c & 2 ? bounds.hi.y : bounds.lo.y, c & 4 ? bounds.hi.z : bounds.lo.z})
-              .z);
-    const double pixel =
-        pixels_ * (projection_.parallel ? 1 / projection_.scale : std::max(nearest, projection_.near_plane) / projection_.scale);
-    double best = 0;
-    for (const auto& l : volume_->levels) {
-      const double e = std::min({l.spacing.x, l.spacing.y, l.spacing.z});
-      if (best == 0 || std::max({l.spacing.x, l.spacing.y, l.spacing.z}) <= pixel) best = e;
-    }
-    return best;
-  }
-
-  BrickedPtr volume_;
-  DatasetPtr data_;
-  Projection projection_;
-  double pixels_;
-  size_t cache_limit_ = 0, pins_ = 4;
-  std::shared_ptr<BrickCache> cache_;
-  Prepared prepared_;
-  mutable std::once_flag planned_;
-  mutable std::unique_ptr<BrickTree> tree_;
-};
 
 // The cells of one level along a ray.
 struct Cells {
@@ -144,7 +17,7 @@ struct Cells {
   double cell[3];     // the one that the ray is in
   double next[3];     // t at which it leaves it along each axis
 
-  void begin(const Prepared& p, size_t level, Vec3 start, Vec3 along) {
+  void begin(const BrickPlaces& p, size_t level, Vec3 start, Vec3 along) {
     for (int i = 0; i < 3; ++i) a[i] = start[i] * p.scale[level][i] + p.shift[level][i], b[i] = along[i] * p.scale[level][i];
   }
   void locate(double t) {
@@ -230,7 +103,7 @@ struct Cells {
 
 class Walker final : public RayField {
  public:
-  explicit Walker(const BrickedSource& source) : source_(source), tree_(source.tree()), p_(source.prepared()), pins_(source.pins()) {}
+  explicit Walker(const BrickedSource& source) : source_(source), tree_(source.tree()), p_(source.places()), pins_(source.pins()) {}
 
   void start(Vec3 origin, Vec3 direction, double from, double to) override {
     const auto& fine = source_.volume().levels[0];
@@ -268,10 +141,10 @@ class Walker final : public RayField {
     const Vec3 u = start_ + along_ * t;
     Vec3 lo, hi;
     tree_.box(n, lo, hi);
-    const double w = n.blend ? weight(n, lo, hi, u) : 0;
+    const double w = n.blend ? coarser_share(n, lo, hi, u) : 0;
     Vec3 g{0, 0, 0};
     if (w < 1) g += slope(n.level, *pinned(n.level, n.at), u) * (1 - w);
-    if (w > 0) g += slope(n.level + 1u, *pinned(n.level + 1u, parent(n)), u) * w;
+    if (w > 0) g += slope(n.level + 1u, *pinned(n.level + 1u, tree_.parent(n)), u) * w;
     return Vec3f(p_.to_world * g);
   }
 
@@ -297,7 +170,7 @@ class Walker final : public RayField {
     cells_[0].begin(p_, n.level, start_, along_);
     cells_[0].locate(t_);
     if (blends_) {
-      cells_[1].data = pinned(n.level + 1u, parent(n));
+      cells_[1].data = pinned(n.level + 1u, tree_.parent(n));
       cells_[1].begin(p_, n.level + 1u, start_, along_);
       cells_[1].locate(t_);
     }
@@ -353,28 +226,11 @@ class Walker final : public RayField {
     float v[4];
     for (int i = 0; i < 4; ++i) {
       const double t = from + (to - from) * i / 3;
-      const auto w = float(weight(tree_.node(leaf_), lo_, hi_, start_ + along_ * t));
+      const auto w = float(coarser_share(tree_.node(leaf_), lo_, hi_, start_ + along_ * t));
       v[i] = (1 - w) * s.value(t) + w * coarse.value(t);
     }
     bernstein_from_thirds(v, s.b);
     return true;
-  }
-
-  // Share of the coarser level at a place in a leaf: trilinear between its corners.
-  static double weight(const BrickNode& n, Vec3 lo, Vec3 hi, Vec3 u) {
-    double f[3];
-    for (int a = 0; a < 3; ++a) f[a] = std::clamp((u[a] - lo[a]) / std::max(hi[a] - lo[a], 1e-300), 0.0, 1.0);
-    double w = 0;
-    for (int c = 0; c < 8; ++c)
-      if (n.blend >> c & 1) w += (c & 1 ? f[0] : 1 - f[0]) * (c & 2 ? f[1] : 1 - f[1]) * (c & 4 ? f[2] : 1 - f[2]);
-    return w;
-  }
-
-  std::array<uint32_t, 3> parent(const BrickNode& n) const {
-    const auto &c = source_.volume().levels[n.level + 1u].coarseness, &f = source_.volume().levels[n.level].coarseness;
-    std::array<uint32_t, 3> at{};
-    for (size_t a = 0; a < 3; ++a) at[a] = uint32_t(n.at[a] / (c[a] / f[a]));
-    return at;
   }
 
   static double sample(const BrickData& d, Vec3 v) {
@@ -433,7 +289,7 @@ class Walker final : public RayField {
   };
   const BrickedSource& source_;
   const BrickTree& tree_;
-  const Prepared& p_;
+  const BrickPlaces& p_;
   std::vector<Pin> pins_;
   Vec3 start_, along_, lo_, hi_;
   double t_ = 0, end_ = 0, entry_ = 0, leaf_end_ = 0, cube_end_ = 0, hair_ = 0;
@@ -442,32 +298,12 @@ class Walker final : public RayField {
   Cells cells_[2];
 };
 
-std::unique_ptr<RayField> BrickedSource::walker() const {
-  tree();
-  return std::make_unique<Walker>(*this);
-}
-
 }  // namespace
 
-std::unique_ptr<RaySource> bricked_source(const VolumeItem& item, const Projection& projection, size_t memory, Context&, double coarser) {
-  if (!item.data) return nullptr;
-  BrickedPtr volume = bricked_of(*item.data);
-  if (!volume || (!item.field.empty() && item.field != volume->field) || item.association != Association::point) return nullptr;
-  if (!(coarser >= 1) || !std::isfinite(coarser)) fail_usage(fmt::format("voxels of {} pixels", coarser), "volume", "give 1 or more");
-  if (memory == 0) memory = size_t(1) << 30;
-  return std::make_unique<BrickedSource>(std::move(volume), item.data, projection, memory, coarser);
-}
-
-BrickedUse bricked_use(const RaySource& source) {
-  const auto* s = dynamic_cast<const BrickedSource*>(&source);
-  if (!s) fail_internal("not the source of a bricked volume");
-  const BrickTree& tree = s->tree();
-  BrickedUse use;
-  use.bricks.resize(s->volume().levels.size());
-  for (size_t i = 0; i < tree.size(); ++i)
-    if (const BrickNode& n = tree.node(int(i)); n.children < 0 && n.seen) ++use.bricks[n.level];
-  use.voxel_pixels = tree.pixels(), use.bytes = tree.bytes();
-  return use;
+std::unique_ptr<RayField> BrickedSource::walker() const {
+  tree();
+  if (!in_lattices_) caches_->lattices.set_limit(0), caches_->bricks.set_limit(cache_limit_);
+  return std::make_unique<Walker>(*this);
 }
 
 }  // namespace sg::volume

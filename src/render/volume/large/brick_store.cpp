@@ -88,40 +88,56 @@ void level_places(const BrickedVolume& volume, size_t level, Vec3& scale, Vec3& 
   }
 }
 
-std::shared_ptr<const BrickData> load_brick(const BrickedVolume& volume, size_t level, Vec3 lo, Vec3 hi) {
-  auto b = std::make_shared<BrickData>();
+SampleBox samples_around(const BrickedVolume& volume, size_t level, Vec3 lo, Vec3 hi) {
+  SampleBox box;
   Vec3 scale, shift;
   level_places(volume, level, scale, shift);
-  std::array<size_t, 3> from{}, count{};
   for (size_t a = 0; a < 3; ++a) {
     const double last = double(volume.levels[level].dims[a]) - 1;
     const double first = std::clamp(std::floor(lo[int(a)] * scale[int(a)] + shift[int(a)]) - 1, 0.0, last);
     const double end = std::clamp(std::floor(hi[int(a)] * scale[int(a)] + shift[int(a)]) + 2, first, last);
-    from[a] = size_t(first), count[a] = size_t(end - first) + 1;
-    b->n[a] = int(count[a]), b->first[a] = first, b->most[a] = last;
+    box.from[a] = size_t(first), box.count[a] = size_t(end - first) + 1;
+  }
+  return box;
+}
+
+Array read_samples(const BrickedVolume& volume, size_t level, const SampleBox& box) {
+  std::byte* out = nullptr;
+  Array values = Array::make_raw(volume.type, box.count[0] * box.count[1] * box.count[2], 1, &out);
+  volume.read(level, box.from, box.count, out);
+  switch (volume.type) {
+    case ElementType::u8:
+    case ElementType::i8:
+    case ElementType::u16:
+    case ElementType::i16:
+    case ElementType::f32: return values;
+    default: return narrowed(values);
+  }
+}
+
+std::shared_ptr<const BrickData> load_brick(const BrickedVolume& volume, size_t level, Vec3 lo, Vec3 hi) {
+  auto b = std::make_shared<BrickData>();
+  const SampleBox box = samples_around(volume, level, lo, hi);
+  for (size_t a = 0; a < 3; ++a) {
+    b->n[a] = int(box.count[a]), b->first[a] = double(box.from[a]), b->most[a] = double(volume.levels[level].dims[a]) - 1;
     b->cubes[a] = std::max(1, (b->n[a] - 1 + BrickData::small - 1) / BrickData::small);
   }
-  std::byte* out = nullptr;
-  b->values = Array::make_raw(volume.type, count[0] * count[1] * count[2], 1, &out);
-  volume.read(level, from, count, out);
+  b->values = read_samples(volume, level, box);
   b->cube.resize(size_t(b->cubes[0]) * size_t(b->cubes[1]) * size_t(b->cubes[2]));
-  switch (volume.type) {
+  switch (b->values.type()) {
     case ElementType::u8: finish<uint8_t>(*b); break;
     case ElementType::i8: finish<int8_t>(*b); break;
     case ElementType::u16: finish<uint16_t>(*b); break;
     case ElementType::i16: finish<int16_t>(*b); break;
-    case ElementType::f32: finish<float>(*b); break;
-    default: b->values = narrowed(b->values), finish<float>(*b);
+    default: finish<float>(*b);
   }
   return b;
 }
 
-std::shared_ptr<BrickCache> brick_cache(const Dataset& dataset, size_t limit) {
+std::shared_ptr<BrickCaches> brick_caches(const Dataset& dataset) {
   constexpr char key[] = "bricks of a bricked volume";
-  auto kept = dataset.memo().find<std::shared_ptr<BrickCache>>(key);
-  if (!kept) kept = dataset.memo().keep(key, std::make_shared<BrickCache>(limit), 0);
-  (*kept)->set_limit(limit);
-  return *kept;
+  if (auto kept = dataset.memo().find<std::shared_ptr<BrickCaches>>(key)) return *kept;
+  return *dataset.memo().keep(key, std::make_shared<BrickCaches>(), 0);
 }
 
 }  // namespace sg::volume

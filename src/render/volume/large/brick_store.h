@@ -6,6 +6,7 @@
 
 #include "data/bricked.h"
 #include "data/byte_cache.h"
+#include "render/volume/large/brick_lattice.h"
 #include "render/volume/large/brick_tree.h"
 
 namespace sg::volume {
@@ -32,8 +33,6 @@ struct BrickData {
   size_t bytes() const { return values.bytes() + cube.size() * sizeof(Cube); }
 };
 
-using BrickCache = ByteCache<BrickData>;
-
 /// Which brick, as one number.
 inline uint64_t brick_key(size_t level, const std::array<uint32_t, 3>& at) {
   return uint64_t(level) << 57 | uint64_t(at[2]) << 38 | uint64_t(at[1]) << 19 | at[0];
@@ -42,10 +41,22 @@ inline uint64_t brick_key(size_t level, const std::array<uint32_t, 3>& at) {
 /// Sample index v = u * scale + shift of a level, from fine coordinates u.
 void level_places(const BrickedVolume& volume, size_t level, Vec3& scale, Vec3& shift);
 
+/// Samples of a level around a box in fine coordinates, one more on each side than interpolation needs.
+struct SampleBox {
+  std::array<size_t, 3> from{}, count{};
+};
+SampleBox samples_around(const BrickedVolume& volume, size_t level, Vec3 lo, Vec3 hi);
+/// Reads them, in the type of the volume (64-bit and 32-bit whole numbers and f64 as f32). Starts no parallel loop.
+Array read_samples(const BrickedVolume& volume, size_t level, const SampleBox& box);
+
 /// Reads the brick that covers the box lo..hi (fine coordinates) at a level. Starts no parallel loop.
 std::shared_ptr<const BrickData> load_brick(const BrickedVolume& volume, size_t level, Vec3 lo, Vec3 hi);
 
-/// The cache that lives with the dataset.
-std::shared_ptr<BrickCache> brick_cache(const Dataset& dataset, size_t limit);
+/// What stays with the dataset for the next picture.
+struct BrickCaches {
+  ByteCache<BrickData> bricks{0};
+  ByteCache<BrickLattice> lattices{0};
+};
+std::shared_ptr<BrickCaches> brick_caches(const Dataset& dataset);
 
 }  // namespace sg::volume

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/volume/large/brick_tree.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace sg::volume {
@@ -232,6 +233,73 @@ void BrickTree::blend() {
         if (beside.seen && beside.level > n.level) n.blend |= uint8_t(1 << c);
       }
   }
+}
+
+std::array<uint32_t, 3> BrickTree::parent(const BrickNode& n) const {
+  const auto &c = volume_.levels[n.level + 1u].coarseness, &f = volume_.levels[n.level].coarseness;
+  std::array<uint32_t, 3> at{};
+  for (size_t a = 0; a < 3; ++a) at[a] = uint32_t(n.at[a] / (c[a] / f[a]));
+  return at;
+}
+
+namespace {
+
+// Places 0 .. n-1 of boxes of one width along an axis, so that a ray meets them in this order whichever way it goes from the eye. A
+// ray never meets boxes on both sides of the eye.
+std::vector<uint32_t> along_axis(uint32_t first, uint32_t n, double width, double eye, double along, bool parallel) {
+  std::vector<uint32_t> order(n);
+  for (uint32_t i = 0; i < n; ++i) order[i] = first + i;
+  if (parallel) {
+    if (along < 0) std::reverse(order.begin(), order.end());
+    return order;
+  }
+  const auto apart = [&](uint32_t i) { return std::max({0.0, i * width - eye, eye - (i + 1) * width}); };
+  std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return apart(a) < apart(b); });
+  return order;
+}
+
+}  // namespace
+
+void BrickTree::visit(int at, Vec3 eye, Vec3 along, std::vector<int>& leaves) const {
+  const BrickNode& n = nodes_[size_t(at)];
+  if (!n.exists || !n.seen) return;
+  if (n.children < 0) return leaves.push_back(at);
+  const auto &c = volume_.levels[n.level].coarseness, &f = volume_.levels[n.level - 1u].coarseness;
+  std::vector<uint32_t> order[3];
+  uint32_t r[3];
+  for (size_t a = 0; a < 3; ++a) {
+    r[a] = uint32_t(c[a] / f[a]);
+    order[a] = along_axis(n.at[a] * r[a], r[a], double(edge * f[a]), eye[int(a)], along[int(a)], projection_.parallel);
+  }
+  for (const uint32_t k : order[2])
+    for (const uint32_t j : order[1])
+      for (const uint32_t i : order[0])
+        visit(n.children + int(i - n.at[0] * r[0] + r[0] * (j - n.at[1] * r[1] + r[1] * (k - n.at[2] * r[2]))), eye, along, leaves);
+}
+
+std::vector<int> BrickTree::front_to_back() const {
+  const BrickedVolume::Level& fine = volume_.levels[0];
+  const Vec3 moved = transpose(volume_.direction) * (projection_.eye - fine.origin),
+             way = transpose(volume_.direction) * projection_.forward;
+  Vec3 eye, along;
+  for (int a = 0; a < 3; ++a) eye[a] = moved[a] / fine.spacing[a], along[a] = way[a] / fine.spacing[a];
+  const auto& c = volume_.levels.back().coarseness;
+  std::vector<uint32_t> order[3];
+  for (size_t a = 0; a < 3; ++a) order[a] = along_axis(0, roots_[a], double(edge * c[a]), eye[int(a)], along[int(a)], projection_.parallel);
+  std::vector<int> leaves;
+  for (const uint32_t k : order[2])
+    for (const uint32_t j : order[1])
+      for (const uint32_t i : order[0]) visit(int(i + roots_[0] * (j + roots_[1] * k)), eye, along, leaves);
+  return leaves;
+}
+
+double coarser_share(const BrickNode& n, Vec3 lo, Vec3 hi, Vec3 u) {
+  double f[3];
+  for (int a = 0; a < 3; ++a) f[a] = std::clamp((u[a] - lo[a]) / std::max(hi[a] - lo[a], 1e-300), 0.0, 1.0);
+  double w = 0;
+  for (int c = 0; c < 8; ++c)
+    if (n.blend >> c & 1) w += (c & 1 ? f[0] : 1 - f[0]) * (c & 2 ? f[1] : 1 - f[1]) * (c & 4 ? f[2] : 1 - f[2]);
+  return w;
 }
 
 }  // namespace sg::volume

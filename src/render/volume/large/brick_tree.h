@@ -40,10 +40,15 @@ class BrickTree {
   size_t size() const { return nodes_.size(); }
   /// Where it lies in fine coordinates, cut off at the outermost samples.
   void box(const BrickNode& node, Vec3& lo, Vec3& hi) const;
+  /// The brick of the next coarser level that it lies in.
+  std::array<uint32_t, 3> parent(const BrickNode& node) const;
+  /// Leaves that are seen, in an order in which none hides one before it.
+  std::vector<int> front_to_back() const;
   double pixels() const { return pixels_; }
   uint64_t bytes() const { return bytes_; }
 
  private:
+  void visit(int at, Vec3 eye, Vec3 along, std::vector<int>& leaves) const;
   void describe(BrickNode& node) const;
   bool in_view(const BrickNode& node, double& nearest) const;
   bool grow(double pixels, uint64_t most_bytes);
@@ -63,6 +68,9 @@ class BrickTree {
   double pixels_ = 1;
   uint64_t bytes_ = 0;
 };
+
+/// Share of the next coarser level at a place (fine coordinates) in a leaf with the box lo..hi: trilinear between its corners.
+double coarser_share(const BrickNode& node, Vec3 lo, Vec3 hi, Vec3 u);
 
 /// Ends of the grid along an axis in fine coordinates: a single layer is one cell thick.
 inline double first_place(size_t n) { return n == 1 ? -0.5 : 0; }

@@ -23,6 +23,8 @@ struct Knobs {
   bool skip_empty = true;                        ///< pass over empty bricks
   float stop_below = 1.0f / 512;                 ///< a ray ends when less than this share of the light passes
   bool simd = true;                              ///< false: the scalar reference
+  bool bricks_in_packets = true;                 ///< false: single rays through volumes that memory does not hold
+  double coarser = 1;                            ///< RenderOptions::coarser
   const std::vector<uint8_t>* wanted = nullptr;  ///< per tile of 16 x 16 pixels, see composite_volumes; null = all
 };
 void composite_volumes(const Scene& scene, const Projection& projection, const FragmentLists& fragments, Frame& frame, Context& context,

@@ -15,6 +15,7 @@ struct RayPacket {
   alignas(64) float steps[most_lanes];                           ///< whole ones; 0 for a ray that misses
   alignas(64) float rest[most_lanes];                            ///< world length of the last step
   alignas(64) float length[most_lanes];                          ///< inside the box; <= 0 for a ray that misses
+  alignas(64) float before[most_lanes];                          ///< share of the light that passes what was drawn before
   alignas(64) float direction[3][most_lanes];                    ///< world, unit
   alignas(64) double enter[most_lanes];                          ///< world length from the ray's origin
   alignas(64) double leave[most_lanes];

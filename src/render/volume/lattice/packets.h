@@ -26,6 +26,10 @@ struct PacketPlan {
   const Medium* medium = nullptr;
   Budget budget;
   float edge = 1;
+  /// One lattice of several, drawn from front to back: what is in the frame lies before it, and rays go on with the light that is left (1 -
+  /// alpha). The depth where half of it is gone goes here, for each pixel of the frame (infinite: not yet), instead of into the frame.
+  float* half = nullptr;
+  Vec3 whole_lo, whole_hi;  ///< of all of them, in the q space of this one: steps are counted from where rays enter this box
 };
 
 /// May this volume be drawn by `march_tile`: affine, linear between samples, a linear transfer table, no hidden cells, offsets

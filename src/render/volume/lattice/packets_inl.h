@@ -208,6 +208,8 @@ HWY_INLINE bool set_up(const PacketPlan& plan, int x, int y, int x1, int y1, con
     r.inside[n] = i < x1 && j < y1;
     r.pixel[n] = r.inside[n] ? size_t(j) * size_t(frame.width) + size_t(i) : 0;
     depth[n] = r.inside[n] ? std::min(p.far_plane, double(frame.depth[r.pixel[n]])) : -HUGE_VAL;
+    r.before[n] = plan.half && r.inside[n] ? 1 - frame.rgba[4 * r.pixel[n] + 3] : 1;
+    if (r.before[n] < plan.budget.stop_below) depth[n] = -HUGE_VAL;
   }
   const Mat3& m = v.to_q;
   const V zero = hn::Zero(d);
@@ -230,7 +232,7 @@ HWY_INLINE bool set_up(const PacketPlan& plan, int x, int y, int x1, int y1, con
     V leave = hn::Div(hn::Sub(hn::Load(d, depth + n), first_depth), per_length);
     const V3<DD> away{hn::Sub(origin.x, hn::Set(d, v.origin.x)), hn::Sub(origin.y, hn::Set(d, v.origin.y)),
                       hn::Sub(origin.z, hn::Set(d, v.origin.z))};
-    V start[3], along[3];
+    V start[3], along[3], first_enter = enter, last_leave = leave;  // of all lattices
     for (int a = 0; a < 3; ++a) {
       const V3<DD> line = set3(d, Vec3{m.m[a][0], m.m[a][1], m.m[a][2]});
       start[a] = dot3(d, line, away), along[a] = dot3(d, line, direction);
@@ -241,16 +243,33 @@ HWY_INLINE bool set_up(const PacketPlan& plan, int x, int y, int x1, int y1, con
       enter = hn::IfThenElse(still, enter, hn::Max(enter, hn::Min(t0, t1)));
       leave = hn::IfThenElse(still, leave, hn::Min(leave, hn::Max(t0, t1)));
       leave = hn::IfThenElse(hn::And(still, outside), hn::Set(d, -HUGE_VAL), leave);
+      if (!plan.half) continue;
+      const V w0 = hn::Div(hn::Sub(hn::Set(d, plan.whole_lo[a]), start[a]), along[a]),
+              w1 = hn::Div(hn::Sub(hn::Set(d, plan.whole_hi[a]), start[a]), along[a]);
+      first_enter = hn::IfThenElse(still, first_enter, hn::Max(first_enter, hn::Min(w0, w1)));
+      last_leave = hn::IfThenElse(still, last_leave, hn::Min(last_leave, hn::Max(w0, w1)));
     }
     const auto hit = hn::Gt(leave, enter);
     any = any || !hn::AllFalse(d, hit);
     // A ray that misses has no steps; its places are of no account but finite.
     const V length = hn::IfThenElseZero(hit, hn::Sub(leave, enter)), step = hn::Set(d, v.step);
-    const V steps = hn::Floor(hn::Div(length, step));
-    const V rest = hn::Max(zero, hn::Sub(length, hn::Mul(steps, step)));
+    V steps = hn::Floor(hn::Div(length, step));
+    V rest = hn::Max(zero, hn::Sub(length, hn::Mul(steps, step)));
     const V half = hn::Set(d, 0.5);
     enter = hn::IfThenElseZero(hit, enter), leave = hn::IfThenElseZero(hit, leave);
-    const V t_first = hn::Add(enter, hn::Mul(half, step)), t_last = hn::Sub(leave, hn::Mul(half, rest));
+    V t_first = hn::Add(enter, hn::Mul(half, step)), t_last = hn::Sub(leave, hn::Mul(half, rest));
+    if (plan.half) {
+      // Steps of the whole whose middles lie in this part.
+      first_enter = hn::IfThenElseZero(hit, first_enter), last_leave = hn::IfThenElseZero(hit, last_leave);
+      const V all = hn::Sub(last_leave, first_enter), count = hn::Floor(hn::Div(all, step));
+      const auto number = [&](V t) HWY_ATTR { return hn::Min(count, hn::Ceil(hn::Sub(hn::Div(hn::Sub(t, first_enter), step), half))); };
+      const V begin = number(enter);
+      steps = hn::IfThenElseZero(hit, hn::Max(zero, hn::Sub(number(leave), begin)));
+      t_first = hn::Add(first_enter, hn::Mul(hn::Add(begin, half), step));
+      rest = hn::Max(zero, hn::Sub(all, hn::Mul(count, step)));
+      t_last = hn::Sub(last_leave, hn::Mul(half, rest));
+      rest = hn::IfThenElseZero(hn::And(hit, hn::And(hn::Ge(t_last, enter), hn::Lt(t_last, leave))), rest);
+    }
     for (int a = 0; a < 3; ++a) {
       store_narrow(d, hn::Add(start[a], hn::Mul(along[a], t_first)), r.first[a] + n);
       store_narrow(d, hn::Mul(along[a], step), r.by[a] + n);

@@ -191,7 +191,7 @@ class March {
       hn::Store(first, d, rays.first[a]);
     }
     for (int a = 0; a < 3; ++a) hn::Store(hn::Div(hn::Set(d, 1.0f), hn::Load(d, rays.by[a])), d, per_by_[a]);
-    hn::Store(hn::Set(d, 1.0f), d, result.transmittance), hn::Store(hn::Set(d, -1.0f), d, seen_half_);
+    hn::Store(hn::Load(d, rays.before), d, result.transmittance), hn::Store(hn::Set(d, -1.0f), d, seen_half_);
     hn::Store(hn::Zero(d), d, result.r), hn::Store(hn::Zero(d), d, result.g), hn::Store(hn::Zero(d), d, result.b);
     if constexpr (shaded) queue_.start(plan, rays), Due<D>().store(due_);
     now_ = 0;
@@ -433,6 +433,12 @@ void put(const PacketPlan& plan, const RayPacket& rays, const PacketResult& resu
     if (!rays.inside[n] || !(rays.length[n] > 0)) continue;
     const size_t p = rays.pixel[n];
     float* out = &frame.rgba[4 * p];
+    if (plan.half) {
+      out[0] += result.r[n], out[1] += result.g[n], out[2] += result.b[n], out[3] = 1 - result.transmittance[n];
+      if (result.surface[n] >= 0 && rays.before[n] >= 0.5f && plan.half[p] == HUGE_VALF)
+        plan.half[p] = float(rays.first_depth[n] + result.surface[n] * rays.per_length[n]);
+      continue;
+    }
     Gathered sum{result.r[n], result.g[n], result.b[n], result.transmittance[n]};
     sum.behind(out);
     out[0] = sum.r, out[1] = sum.g, out[2] = sum.b, out[3] = 1 - sum.transmittance;

@@ -188,7 +188,7 @@ class TolerantPacket {
       still_[a] = hn::Eq(along_[a], hn::Zero(d)), up_[a] = hn::Gt(along_[a], hn::Zero(d));
       per_along_[a] = hn::IfThenElseZero(hn::Not(still_[a]), hn::Div(hn::Set(d, 1.0f), along_[a]));
     }
-    end_ = hn::Load(d, rays.length);
+    end_ = hn::Load(d, rays.length), sum_.pass = hn::Load(d, rays.before);
     at_ = hn::Zero(IntTag<D>());
     line_ = medium_.line(at_);
   }
