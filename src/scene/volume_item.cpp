@@ -31,7 +31,7 @@ void describe(Schema& s, VolumeSampling& p) {
   s("gradient", p.gradient, "How gradients are taken: differences, or the kernel's own derivative.")
       .choices({"central", "sobel", "intermediate", "analytic"});
   s("antialias", p.antialias,
-    "Of uniform grids seen from afar: none, or mip, the means of cells where those are smaller than a pixel (slower).")
+    "Of uniform grids seen from afar: none, or mip, the means of values where cells are smaller than a pixel (slower, before the colours).")
       .choices({"none", "mip"});
 }
 

@@ -31,8 +31,7 @@ double rms(const std::vector<double>& a, const std::vector<double>& b) {
 }  // namespace
 
 TEST_CASE("volume antialias: a far checkerboard in perspective is nearer to many rays a pixel with means of cells") {
-  VolumeItem v = item(grid(cube(97, -1, 1), checker), grey(0, 1), {{{0, 0.02}, {1, 0.3}}});
-  v.unit_distance = 0.3;
+  VolumeItem v = item(grid(cube(97, -1, 1), checker), grey(0, 1), constant_opacity(0.8));
   for (const Vec3 eye : {Vec3{0.03, 0.02, 9}, Vec3{3, 2, 8}}) {
     const Projection p = perspective_view(20, 20, 80, eye, {0, 0, 0}), fine = perspective_view(160, 160, 640, eye, {0, 0, 0});
     const std::vector<double> truth = reduced(draw(scene_of({v}), fine), 8);

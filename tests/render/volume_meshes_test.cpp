@@ -16,7 +16,7 @@ const Vec3 slope{1, 0.8, -0.6};
 double field(Vec3 p) { return 4 + dot(slope, p); }
 constexpr double level = 4.3, lo = 1.6, hi = 6.4;
 
-struct Mesh {
+struct Carried {
   std::string name;
   std::vector<DatasetPtr> parts;
   double error = 1.0 / 512;  ///< that it may have, of full scale
@@ -64,9 +64,9 @@ DatasetPtr refined() {
   return make_dataset(std::move(parts));
 }
 
-const std::vector<Mesh>& meshes() {
-  static const std::vector<Mesh> all = [] {
-    std::vector<Mesh> m;
+const std::vector<Carried>& meshes() {
+  static const std::vector<Carried> all = [] {
+    std::vector<Carried> m;
     m.push_back({"uniform", {lattice(cube(5, -1, 1))}});
     m.push_back({"rectilinear", {rectilinear()}});
     m.push_back({"curvilinear", {curvilinear()}});
@@ -171,6 +171,7 @@ std::vector<Case> cases() {
     return Vec4{sum, sum, sum, 1 - pass};
   };
 
+  const VolumeItem levels = iso;  // adding to the list moves them
   VolumeItem fog = item(nullptr, grey(lo, hi), {{{2, 0}, {3, 0.2}, {3.1, 0}, {4.6, 0}, {4.7, 0.7}, {5, 0.4}, {6, 0.6}}});
   fog.unit_distance = 0.5;
   all.push_back({"composite", fog, [=](double f0, double g, double l) { return composited(fog, f0, g, l); }});
@@ -184,7 +185,7 @@ std::vector<Case> cases() {
   VolumeItem mida = fog;
   mida.mode = RayFunction::maximum_difference, mida.opacity.points = {{2, 0}, {6, 0.6}};
   all.push_back({"maximum difference", mida, nullptr, 1.0 / 128});  // in steps of a quarter of an edge
-  VolumeItem surfaces = iso;
+  VolumeItem surfaces = levels;
   surfaces.shaded = true;
   all.push_back({"isosurface, lit", surfaces, nullptr});
   VolumeItem hit = all[4].item;
@@ -196,7 +197,7 @@ std::vector<Case> cases() {
   return all;
 }
 
-Frame draw_mesh(const Case& c, const Mesh& mesh, const Projection& p) {
+Frame draw_mesh(const Case& c, const Carried& mesh, const Projection& p) {
   Scene scene;
   for (const DatasetPtr& d : mesh.parts) {
     VolumeItem part = c.item;
@@ -213,7 +214,7 @@ TEST_CASE("volume meshes: every ray function of a linear field is its analytic p
   for (const Case& c : cases()) {
     CAPTURE(c.name);
     const Frame uniform = draw_mesh(c, meshes()[0], p);
-    for (const Mesh& mesh : meshes()) {
+    for (const Carried& mesh : meshes()) {
       CAPTURE(mesh.name);
       const Frame frame = draw_mesh(c, mesh, p);
       double most = 0, seen = 0;

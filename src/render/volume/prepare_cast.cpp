@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/volume/prepare_cast.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
 
 #include "base/error.h"

@@ -14,6 +14,9 @@ namespace sg::volume {
 /// whose voxels cover at most a pixel, going over from level to level without a jump, as volumes on disk are drawn (brick_tree.h). The
 /// pyramid is kept with the dataset: 4/7 byte per sample, and bricks of what is drawn up to a third of the volume.
 ///
+/// Values are averaged, then classified: right where colour times opacity is nearly straight over the values that meet in a pixel; where a
+/// thin range of values is shown alone, means may lie outside of it, and many rays a pixel (--samples) are the better way.
+///
 /// Null where it would draw the same as the lattice: all voxels at least a pixel wide, labels, one layer. Throws Error(usage) for what it
 /// cannot do: meshes other than uniform grids, cell fields, blanked cells, other kernels, second fields.
 std::unique_ptr<RaySource> mip_source(const VolumeItem& item, const Volume* lattice, const Projection& projection, Context& context);
