@@ -124,6 +124,11 @@ CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<con
   plan.unit = item.unit_distance > 0 ? item.unit_distance : 0.01 * diagonal;
   plan.lo = range.empty() ? item.color.lo : range.lo, plan.hi = range.empty() ? item.color.hi : range.hi, plan.base = source.base;
   if (!reach.empty()) plan.lo = std::min(plan.lo, reach.lo + base), plan.hi = std::max(plan.hi, reach.hi + base);
+  if (item.group) {
+    // Values of the other parts: beyond the colours and the opacity's points nothing changes any more.
+    plan.lo = std::min({plan.lo, item.color.lo, item.color.hi, item.opacity.points.front().x});
+    plan.hi = std::max({plan.hi, item.color.lo, item.color.hi, item.opacity.points.back().x});
+  }
   if (item.mode == RayFunction::sum || item.mode == RayFunction::distance || item.mode == RayFunction::accumulate) {
     // These have values of their own, which need not be those of the field.
     const double span = std::abs(item.color.hi - item.color.lo);
