@@ -147,8 +147,9 @@ void add_volume_methods_tasks(std::vector<Task>& tasks) {
           tasks.push_back(method(look, n, name, draw, steps, first));
         };
         const bool sum = look.mode == RayFunction::sum, composite = look.mode == RayFunction::composite;
-        if (!sum) add("ray(within 1/512)", within_tolerance);
-        if (!sum) add("ray(half-voxel steps)", rays);
+        if (composite) add("ray(within 1/512)", within_tolerance);
+        if (composite) add("ray(half-voxel steps)", rays);
+        else add("ray(exact)", rays);
         add("slices(view)", sliced(SliceOptions::Stack::view));
         add("slices(axis)", sliced(SliceOptions::Stack::axis));
         // Sheets of a voxel.
@@ -163,6 +164,8 @@ void add_volume_methods_tasks(std::vector<Task>& tasks) {
         } else {
           add("fourier", [](const LayerInput& in) { return volume::fourier(in); });
         }
+        // Five tetrahedra a voxel: those of 256^3 would take gigabytes.
+        if (composite && n <= 128) add("cells", [](const LayerInput& in) { return volume::project_cells(in); });
       }
 }
 

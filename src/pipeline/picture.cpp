@@ -10,6 +10,7 @@
 #include "pipeline/transfer_file.h"
 #include "scene/field_habits.h"
 #include "scene/glyph_parts.h"
+#include "scene/volume_parts.h"
 
 namespace sg {
 
@@ -185,6 +186,10 @@ Shown collect(const PipelineFile& file, const std::vector<Data>& results, const 
     for_each_dataset(results[i], [&](const std::string&, const DatasetPtr& d) { parts.push_back(d); });
     auto words = words_of_parts(parts, show);
     if (show.kind == "glyphs" && parts.size() > 1) take_one_glyph_scale(parts, words);
+    const size_t first = s.scene.items.size();
+    const bool joined = show.kind == "volume" && parts.size() > 1;  // one look for all parts, that of the largest
+    size_t largest = 0, most = 0;
+    std::optional<Legend> legend_of_all;
     for (size_t k = 0; k < parts.size(); ++k) {
       const DatasetPtr& d = parts[k];
       s.any_points = s.any_points || d->point_count() > 0;
@@ -194,10 +199,19 @@ Shown collect(const PipelineFile& file, const std::vector<Data>& results, const 
       const auto legend = find_show(show.kind).add(s.scene, d, words[k], context);
       if (const auto path = show.kind == "volume" ? word_value(words[k], "save") : std::nullopt; path && !path->empty())
         save_transfer_file(path_beside(file.origin, *path), std::get<VolumeItem>(s.scene.items.back()));
-      if (!legend || !stated.picture.legend) continue;
+      if (joined && (s.scene.items.size() == first + 1 || d->point_count() > most))
+        largest = s.scene.items.size() - 1, most = d->point_count(), legend_of_all = legend;
+      if (!legend || !stated.picture.legend || joined) continue;
       const auto have = std::find_if(s.legends.begin(), s.legends.end(), [&](const Legend& l) { return same_legend(l, *legend); });
       if (have == s.legends.end()) s.legends.push_back(*legend);
       else if (legend->glyph && (!have->glyph || have->glyph->most < legend->glyph->most)) have->glyph = legend->glyph;
+    }
+    if (!joined || s.scene.items.size() == first) continue;
+    const VolumeItem model = std::get<VolumeItem>(s.scene.items[largest]);
+    join_volumes(std::span(s.scene.items).subspan(first), model, uint32_t(i + 1));
+    if (legend_of_all && stated.picture.legend) {
+      if (!legend_of_all->volume) static_cast<ColorScale&>(*legend_of_all) = std::get<VolumeItem>(s.scene.items[largest]).color;
+      s.legends.push_back(*legend_of_all);
     }
   }
   return s;

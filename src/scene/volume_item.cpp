@@ -22,13 +22,17 @@ void describe(Schema& s, VolumeSampling& p) {
   tolerance.positive().hi = 1;
   s("step", p.step, "Length of fixed steps along the rays instead of a tolerance; 0 is by the tolerance.").unit("world length").at_least(0);
   s("classify", p.classify,
-    "With step: colours of the interpolated value (post), interpolated colours (pre), or the integral over the step.")
-      .choices({"post", "pre", "integrated"});
+    "With step: colours of the interpolated value (post), interpolated colours (pre), the integral over the step (integrated), or that "
+    "integral from a table by the values at both ends and the length (table).")
+      .choices({"post", "pre", "integrated", "table"});
   s("jitter", p.jitter, "With step: the first sample lies anywhere in the first step, so that rings become noise.");
   s("kernel", p.kernel, "What the field is between its samples.")
       .choices({"linear", "nearest", "catmull_rom", "bspline", "gaussian", "sinc"});
   s("gradient", p.gradient, "How gradients are taken: differences, or the kernel's own derivative.")
       .choices({"central", "sobel", "intermediate", "analytic"});
+  s("antialias", p.antialias,
+    "Of uniform grids seen from afar: none, or mip, the means of values where cells are smaller than a pixel (slower, before the colours).")
+      .choices({"none", "mip"});
 }
 
 void describe(Schema& s, VolumeLight& p) {
@@ -41,6 +45,7 @@ void describe(Schema& s, VolumeLight& p) {
   s("depth_cue", p.depth_cue, "How far the far end fades into the background; 0 none, 1 wholly.").range(0, 1);
   s("style", p.style, "Illustrative pictures: dark silhouettes, warm-to-cool tones, or hatching.")
       .choices({"none", "silhouette", "tone", "hatch"});
+  s("ink", p.ink, "Opacity per unit length that silhouettes and strokes of hatching add of their own.").range(0, 1);
 }
 
 }  // namespace sg

@@ -38,10 +38,11 @@ const std::vector<std::string>& ray_function_names();
 struct VolumeSampling {
   double tolerance = 1.0 / 512;      ///< of full scale: largest error of a pixel that the integral may have
   double step = 0;                   ///< world length of fixed steps; 0 = by the tolerance
-  std::string classify = "post";     ///< with steps: pre, post or integrated
+  std::string classify = "post";     ///< with steps: pre, post, integrated or table
   bool jitter = false;               ///< with steps: the first sample anywhere in the first step
   std::string kernel = "linear";     ///< nearest, linear, catmull_rom, mitchell, bspline, bspline_smooth, gaussian, sinc
   std::string gradient = "central";  ///< central, sobel, intermediate, analytic
+  std::string antialias = "none";    ///< none, or mip: means of cells where those are smaller than a pixel (uniform grids)
 };
 void describe(Schema& s, VolumeSampling& p);
 
@@ -52,6 +53,7 @@ struct VolumeLight {
   double occlusion = 0;        ///< 0 none, 1 full: share of the ambient light that near matter takes away
   double depth_cue = 0;        ///< 0 none, 1: the far end of the volume fades into the background
   std::string style = "none";  ///< none, silhouette, tone or hatch
+  double ink = 0;              ///< opacity per unit length that silhouettes and strokes have of their own, where nothing else is drawn too
 };
 void describe(Schema& s, VolumeLight& p);
 
@@ -79,6 +81,7 @@ struct VolumeItem {
   VolumeSampling sampling;
   VolumeLight light;
   std::vector<ClipPlane> clip;
+  uint32_t group = 0;  ///< items of the same one (not 0) are parts of one volume: a ray's maximum, first hit, ... is that of all of them
 };
 
 }  // namespace sg

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/volume/prepare_cast.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
 
 #include "base/error.h"
 #include "render/volume/cells/cell_source.h"
 #include "render/volume/large/bricked_source.h"
+#include "render/volume/large/mip_source.h"
 #include "render/volume/lattice/lattice_ray.h"
 #include "render/volume/lattice/reconstructed_ray.h"
 #include "render/volume/light/effects.h"
@@ -33,6 +36,8 @@ std::unique_ptr<RaySource> source_of(const VolumeItem& item, std::shared_ptr<con
     fail_usage(fmt::format("kernel '{}' joins the samples of uniform and rectilinear grids; this is a {} mesh", sampling.kernel,
                            item.data->kind()),
                "volume", "leave kernel=linear, or resample to a grid first");
+  if (sampling.antialias == "mip")
+    if (auto means = mip_source(item, lattice.get(), projection, context)) return means;
   if (!lattice) return cell_source(item, context);
   if (wants_reconstruction(sampling) && !lattice->nearest) {
     if (item.detail.second == SecondAxis::field)
@@ -76,6 +81,15 @@ void check(const VolumeItem& item) {
                "give a length above 0, or 0 for 1/100 of the diagonal");
   if (needs_level(item.mode) && item.levels.empty())
     fail_usage("this ray function needs a value to look for", "volume", "name one with levels=");
+  const auto& points = item.opacity.points;
+  if (points.empty()) fail_usage("the opacity has no points", "volume", "give at least one: {value, opacity}");
+  for (size_t i = 0; i < points.size(); ++i) {
+    if (!(points[i].y >= 0 && points[i].y <= 1))
+      fail_usage(fmt::format("the opacity {} at {} is not between 0 and 1", points[i].y, points[i].x), "volume");
+    if (points[i].x != points[i].x || (i > 0 && points[i].x < points[i - 1].x))
+      fail_usage(fmt::format("the opacity's points do not ascend: {} comes after {}", points[i].x, points[i > 0 ? i - 1 : 0].x), "volume",
+                 "sort them by value");
+  }
   for (double l : item.levels)
     if (!std::isfinite(l)) fail_usage(fmt::format("the level {} is no number", l), "volume");
   check_light(item);
@@ -98,8 +112,10 @@ CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<con
   CastVolume v;
   v.item = &item, v.id = id;
   Range reach;  // of a kernel that goes beyond the data
+  const bool on_lattice = lattice != nullptr;
   v.source = source_of(item, std::move(lattice), projection, std::max(1.0, knobs.coarser), context, reach);
   RaySource& source = *v.source;
+  v.averaged = on_lattice && is_mip_source(source);
   const double base = double(source.base);
   const Range range = item.data->range(field_of(item), item.component);
 
@@ -108,6 +124,11 @@ CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<con
   plan.unit = item.unit_distance > 0 ? item.unit_distance : 0.01 * diagonal;
   plan.lo = range.empty() ? item.color.lo : range.lo, plan.hi = range.empty() ? item.color.hi : range.hi, plan.base = source.base;
   if (!reach.empty()) plan.lo = std::min(plan.lo, reach.lo + base), plan.hi = std::max(plan.hi, reach.hi + base);
+  if (item.group) {
+    // Values of the other parts: beyond the colours and the opacity's points nothing changes any more.
+    plan.lo = std::min({plan.lo, item.color.lo, item.color.hi, item.opacity.points.front().x});
+    plan.hi = std::max({plan.hi, item.color.lo, item.color.hi, item.opacity.points.back().x});
+  }
   if (item.mode == RayFunction::sum || item.mode == RayFunction::distance || item.mode == RayFunction::accumulate) {
     // These have values of their own, which need not be those of the field.
     const double span = std::abs(item.color.hi - item.color.lo);
@@ -115,15 +136,20 @@ CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<con
   }
   plan.accuracy = 0.25 * item.sampling.tolerance, plan.faint = 0.5 / diagonal, plan.most_tau = 1000 / source.edge;
   v.medium = std::make_unique<Medium>(item.color, item.opacity, plan);
-  if (!item.detail.plain()) {
+  if (!item.detail.plain() || item.light.ink > 0) {
     v.transfer = std::make_unique<TransferFunction>(item.color, item.opacity, item.detail, base);
     v.detail = std::make_unique<Detail>(Detail{*v.transfer, item.detail.second, plan.unit, float(plan.most_tau)});
+    if (item.light.ink > 0 && item.mode == RayFunction::composite)
+      v.detail->ink = std::min(float(minus_log_one_minus(item.light.ink) / plan.unit), float(plan.most_tau));
   }
   v.budget = {item.sampling.tolerance, diagonal, knobs.stop_below > 0 ? float(0.2 * item.sampling.tolerance) : 0};
   v.step = item.sampling.step, v.unit = plan.unit;
   if (v.step > 0 && diagonal / v.step > 1e7)
     fail_usage(fmt::format("a step of {} takes {:.0f} samples through a volume of size {}", v.step, diagonal / v.step, diagonal), "volume",
                "give a longer step");
+  if (v.step > 0 && item.sampling.classify == "table" && item.mode == RayFunction::composite && !v.detail)
+    v.table = std::make_unique<Preintegrated>(*v.medium, Preintegrated::Plan{float(plan.lo - base), float(plan.hi - base), float(v.step)},
+                                              &context);
   v.per_scale = range.lo < range.hi ? float(1 / (0.002 * (range.hi - range.lo))) : 1;
   v.levels = std::make_unique<std::vector<double>>();
   for (double l : item.levels) v.levels->push_back(l - base);
@@ -131,6 +157,7 @@ CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<con
   v.material = {float(light.ambient), float(light.diffuse), float(light.specular), float(light.power), item.shaded};
   switch (item.mode) {
     case RayFunction::composite:
+      if (v.detail && v.detail->ink > 0) break;  // strokes are seen where nothing else is
       if (v.detail) source.invisible = {clear_transfer, v.transfer.get()};
       else source.invisible = {clear_medium, v.medium.get()};
       break;

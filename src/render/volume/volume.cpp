@@ -37,7 +37,10 @@ struct Picture {
     float intensity;
   };
   std::vector<Lamp> lamps;
-  const Scene* fading = nullptr;  // with depth_cue: the scene into whose background it fades
+  std::vector<LampShadows> shadows;  // of each lamp, when a volume asks for them
+  const Scene* scene = nullptr;      // with shadows: whose surfaces they fall on
+  float darkest = 0;                 // largest share of the volumes' shadows
+  const Scene* fading = nullptr;     // with depth_cue: the scene into whose background it fades
 };
 
 /// What a tile's rays reuse.
@@ -53,6 +56,23 @@ void light(const Picture& picture, int y, Vec3 origin, Vec3 direction, LitRay& l
   lit.lights.clear();
   for (const Picture::Lamp& l : picture.lamps)
     lit.lights.push_back({Vec3f(l.direction), Vec3f(normalize(l.direction - direction)), l.intensity});
+}
+
+/// What of the lamps' light arrives at a surface behind or in volumes; 1 for what is not lit.
+float light_on_surface(const Picture& picture, size_t pixel, Vec3 place) {
+  const uint32_t id = picture.frame.ids[pixel];
+  if (id == 0 || id > picture.scene->items.size()) return 1;
+  const Item& item = picture.scene->items[id - 1];
+  const Material* material = nullptr;
+  if (const auto* s = std::get_if<SurfaceItem>(&item)) material = &s->material;
+  else if (const auto* g = std::get_if<GlyphsItem>(&item)) material = &g->material;
+  if (!material || !material->lit) return 1;
+  float all = 0, arrives = 0;
+  for (size_t i = 0; i < picture.lamps.size(); ++i) {
+    all += picture.lamps[i].intensity;
+    arrives += picture.lamps[i].intensity * (1 - picture.darkest + picture.darkest * picture.shadows[i].through_volumes(place));
+  }
+  return all > 0 ? material->ambient + (1 - material->ambient) * arrives / all : 1;
 }
 
 void pixel(const Picture& picture, int x, int y, Scratch& s) {
@@ -77,9 +97,13 @@ void pixel(const Picture& picture, int x, int y, Scratch& s) {
   // The same place in the step for a pixel of the whole picture, whatever band it is drawn in.
   cast.jitter = random_unit(uint64_t(x), uint64_t(std::llround(2 * y - projection.height - 2 * projection.shift_y)));
 
+  float* out = &picture.frame.rgba[4 * p];
+  if (picture.scene && opaque < HUGE_VAL) {
+    const float light = light_on_surface(picture, p, ray.origin + ray.direction * ((opaque - first_depth) / per_length));
+    for (int k = 0; k < 3; ++k) out[k] *= light;
+  }
   RayState state;
   s.caster.cast(cast, s.fragments, state);
-  float* out = &picture.frame.rgba[4 * p];
   state.sum.behind(out);
   out[0] = state.sum.r, out[1] = state.sum.g, out[2] = state.sum.b, out[3] = 1 - state.sum.transmittance;
   // A volume that hides what is behind it can be picked.
@@ -94,7 +118,7 @@ class Alone {
     if (picture.volumes.size() != 1) return;
     const CastVolume& v = picture.volumes[0];
     const VolumeItem& item = *v.item;
-    if (!item.clip.empty() || v.detail || v.effects) return;
+    if (!item.clip.empty() || v.detail || v.effects || v.averaged) return;
     const bool composite = item.mode == RayFunction::composite, by_tolerance = composite && !(v.step > 0);
     const bool post = composite && item.sampling.classify == "post" && !item.sampling.jitter;
     const auto plan_for = [&](const Volume& volume) {
@@ -170,13 +194,31 @@ class Alone {
 };
 static_assert(tile == TetRays::tile);
 
-void add_effects(const Scene& scene, Picture& picture, const Context& context) {
+/// Where a volume asks for shadows, all composited volumes cast them, on each other and on surfaces; surfaces on volumes.
+void shadow_lamps(const Scene& scene, Picture& picture, const Box3& drawn, Context& context) {
+  const CastVolume* deepest = nullptr;
+  for (const CastVolume& v : picture.volumes)
+    if (!deepest || v.item->light.shadows > deepest->item->light.shadows) deepest = &v;
+  if (!deepest || !(deepest->item->light.shadows > 0)) return;
+  std::vector<Vec3> directions;
+  for (const Picture::Lamp& l : picture.lamps) directions.push_back(l.direction);
+  picture.shadows.resize(directions.size()), picture.scene = &scene;
+  picture.darkest = float(deepest->item->light.shadows);
+  for (const CastVolume& v : picture.volumes) {
+    if (v.item->mode != RayFunction::composite && v.item->mode != RayFunction::maximum_difference) continue;
+    const auto maps = light_maps(*v.item, *v.source, v.extinction(), directions, &context);
+    for (size_t i = 0; i < maps.size(); ++i) picture.shadows[i].volumes.push_back(maps[i]);
+  }
+  for (size_t i = 0; i < directions.size(); ++i)
+    picture.shadows[i].surfaces = surface_shadow(*deepest->item->data, scene, drawn, directions[i], directions.size(), context);
+}
+
+void add_effects(const Scene& scene, Picture& picture, Context& context) {
   Box3 drawn;
   for (const CastVolume& v : picture.volumes) drawn.add(v.source->bounds.lo), drawn.add(v.source->bounds.hi);
-  std::vector<Vec3> lamps;
-  for (const Picture::Lamp& l : picture.lamps) lamps.push_back(l.direction);
+  shadow_lamps(scene, picture, drawn, context);
   for (CastVolume& v : picture.volumes) {
-    v.effects = light_effects(*v.item, *v.source, *v.medium, lamps, picture.projection, drawn, &context);
+    v.effects = light_effects(*v.item, *v.source, v.extinction(), picture.shadows, picture.projection, drawn, &context);
     picture.shaded = picture.shaded || v.effects;
     if (v.item->light.depth_cue > 0) picture.fading = &scene;
   }
@@ -256,7 +298,7 @@ void composite_volumes(const Scene& scene, const Projection& projection, const F
         fmt::format("a frame of {} x {} for a projection of {} x {}", frame.width, frame.height, projection.width, projection.height));
   check_fragments(fragments, frame);
   draw_layers(scene, projection, frame, context);
-  Picture picture{projection, fragments, frame, knobs, {}, {}, false, {}};
+  Picture picture{projection, fragments, frame, knobs, {}, {}, false, {}, {}, nullptr, 0, nullptr};
   for (size_t i = 0; i < scene.items.size(); ++i)
     if (const auto* item = std::get_if<VolumeItem>(&scene.items[i]); item && item->method == VolumeMethod::ray) {
       context.check();

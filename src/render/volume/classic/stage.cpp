@@ -47,6 +47,8 @@ void check(const LayerInput& input, const Limits& limits) {
   if (!limits.clip && !item.clip.empty()) refuse(limits, "clipped volumes");
   if (!item.detail.plain()) refuse(limits, "transfer functions of two dimensions");
   if (item.sampling.kernel != "linear") refuse(limits, fmt::format("with kernel={}", item.sampling.kernel));
+  if (item.sampling.classify == "table") refuse(limits, "with classify=table");
+  if (item.sampling.antialias != "none") refuse(limits, "means of cells (antialias)");
   if (item.light.shadows > 0) refuse(limits, "shadows");
   if (item.light.occlusion > 0) refuse(limits, "ambient occlusion");
   if (item.light.style != "none" && !item.light.style.empty()) refuse(limits, fmt::format("in style={}", item.light.style));

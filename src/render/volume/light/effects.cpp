@@ -37,13 +37,29 @@ void check_light(const VolumeItem& item) {
   if ((l.shadows > 0 || l.occlusion > 0) && item.mode != RayFunction::composite && item.mode != RayFunction::maximum_difference)
     fail_usage("shadows and occlusion are those of emission and absorption; this ray function has none", "volume",
                "use mode=composite, or leave out shadows= and occlusion=");
-  if ((l.shadows > 0 || l.occlusion > 0) && !item.detail.plain())
-    fail_usage("shadows and occlusion need an opacity by the value alone", "volume",
-               "leave out the second axis of the transfer function, or shadows= and occlusion=");
+  if (!(l.ink >= 0 && l.ink < 1)) fail_usage(fmt::format("ink {} is no opacity", l.ink), "volume", "give a number from 0 to below 1");
+  if (l.ink > 0 && l.style != "silhouette" && l.style != "hatch")
+    fail_usage("ink is that of silhouettes and strokes", "volume", "add style=silhouette or style=hatch, or leave out ink=");
 }
 
-std::shared_ptr<const LightEffects> light_effects(const VolumeItem& item, const RaySource& source, const Medium& medium,
-                                                  std::span<const Vec3> lamps, const Projection& projection, const Box3& drawn,
+std::vector<std::shared_ptr<const LightMap>> light_maps(const VolumeItem& item, const RaySource& source, const Extinction& extinction,
+                                                        std::span<const Vec3> lamps, const Context* context) {
+  const std::string key = extinction_key(item, extinction);
+  const auto kept = item.data->memo().keep("volume light maps", Recent<LightMap>(), 0);
+  LightMap::Plan plan;
+  if (extinction.detail) plan.most_samples = size_t(1) << 22;
+  std::vector<std::shared_ptr<const LightMap>> maps;
+  for (const Vec3& lamp : lamps) {
+    std::string with_light = key;
+    append_numbers(with_light, {lamp.x, lamp.y, lamp.z});
+    maps.push_back(kept->get(with_light, std::max<size_t>(2, lamps.size()),
+                             [&] { return LightMap(source, extinction, item.clip, lamp, plan, context); }));
+  }
+  return maps;
+}
+
+std::shared_ptr<const LightEffects> light_effects(const VolumeItem& item, const RaySource& source, const Extinction& extinction,
+                                                  const std::vector<LampShadows>& lamps, const Projection& projection, const Box3& drawn,
                                                   const Context* context) {
   if (!has_effects(item)) return nullptr;
   LightEffects e;
@@ -51,20 +67,10 @@ std::shared_ptr<const LightEffects> light_effects(const VolumeItem& item, const 
   e.shadows = float(l.shadows), e.occlusion = float(l.occlusion), e.depth_cue = float(l.depth_cue);
   const auto& names = style_names();
   e.style = LightStyle(std::find(names.begin(), names.end(), l.style) - names.begin());
-  Memo& memo = item.data->memo();
-  const std::string key = l.shadows > 0 || l.occlusion > 0 ? extinction_key(item, medium) : "";
-  if (l.shadows > 0) {
-    const auto kept = memo.keep("volume light maps", Recent<LightMap>(), 0);
-    for (const Vec3& lamp : lamps) {
-      std::string with_light = key;
-      append_numbers(with_light, {lamp.x, lamp.y, lamp.z});
-      e.maps.push_back(
-          kept->get(with_light, std::max<size_t>(2, lamps.size()), [&] { return LightMap(source, medium, item.clip, lamp, {}, context); }));
-    }
-  }
+  if (l.shadows > 0) e.lamps = lamps;
   if (l.occlusion > 0)
-    e.around = memo.keep("volume occlusion", Recent<Occlusion>(), 0)->get(key, 2, [&] {
-      return Occlusion(source, medium, item.clip, {}, context);
+    e.around = item.data->memo().keep("volume occlusion", Recent<Occlusion>(), 0)->get(extinction_key(item, extinction), 2, [&] {
+      return Occlusion(source, extinction, item.clip, {}, context);
     });
   e.eye = projection.eye, e.forward = projection.forward;
   double near_end = HUGE_VAL, far_end = -HUGE_VAL;

@@ -28,7 +28,7 @@ void axes_for(Vec3 along, Vec3 axis[3]) {
 
 }  // namespace
 
-LightMap::LightMap(const RaySource& source, const Medium& medium, const std::vector<ClipPlane>& clip, Vec3 towards, const Plan& plan,
+LightMap::LightMap(const RaySource& source, Extinction extinction, const std::vector<ClipPlane>& clip, Vec3 towards, const Plan& plan,
                    const Context* context) {
   axes_for(-normalize(towards), axis_);
   Vec3 extent;
@@ -56,7 +56,7 @@ LightMap::LightMap(const RaySource& source, const Medium& medium, const std::vec
     per_length_[a] = double(n_[a] - 1) / extent[a];
   }
   values_.resize(n_[0] * n_[1] * n_[2]);
-  const DepthIntegral integral(medium);
+  const DepthIntegral integral(extinction);
   parallel_for(
       n_[0] * n_[1], 128,
       [&](size_t begin, size_t end) {
@@ -78,7 +78,9 @@ float LightMap::at(Vec3 place) const {
   size_t cell[3];
   float f[3];
   for (int a = 0; a < 3; ++a) {
-    const double x = std::clamp((dot(axis_[a], place) - first_[a]) * per_length_[a], 0.0, double(n_[a] - 1));
+    const double at = (dot(axis_[a], place) - first_[a]) * per_length_[a];
+    if (a < 2 && !(at > -0.5 && at < double(n_[a]) - 0.5)) return 1;  // beside the volume
+    const double x = std::clamp(at, 0.0, double(n_[a] - 1));
     cell[a] = std::min(size_t(x), n_[a] - 2), f[a] = float(x - double(cell[a]));
   }
   const auto mix = [](float a, float b, float t) { return a + t * (b - a); };

@@ -24,10 +24,10 @@ class LightMap {
     size_t most_samples = size_t(1) << 24;  ///< 2 bytes each; the spacing grows until they are enough
   };
   /// `towards` is the direction to the lamp. Clipped parts cast no shadow.
-  LightMap(const RaySource& source, const Medium& medium, const std::vector<ClipPlane>& clip, Vec3 towards, const Plan& plan,
+  LightMap(const RaySource& source, Extinction extinction, const std::vector<ClipPlane>& clip, Vec3 towards, const Plan& plan,
            const Context* context = nullptr);
 
-  /// Share of the light that arrives at a place of the world, 0..1.
+  /// Share of the light that arrives at a place of the world, 0..1; behind the volume what it lets through, beside it all.
   float at(Vec3 place) const;
 
   double spacing() const { return spacing_; }

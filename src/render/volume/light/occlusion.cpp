@@ -111,7 +111,7 @@ Level opacities(const Frame3& f, int axis, const RaySource& source, const DepthI
 
 }  // namespace
 
-Occlusion::Occlusion(const RaySource& source, const Medium& medium, const std::vector<ClipPlane>& clip, const Plan& plan,
+Occlusion::Occlusion(const RaySource& source, Extinction extinction, const std::vector<ClipPlane>& clip, const Plan& plan,
                      const Context* context) {
   const Vec3 extent = source.bounds.hi - source.bounds.lo;
   radius_ = plan.radius > 0 ? plan.radius : length(extent) / 12;
@@ -124,7 +124,7 @@ Occlusion::Occlusion(const RaySource& source, const Medium& medium, const std::v
     frame.lo[a] = 0.5 * (source.bounds.lo[a] + source.bounds.hi[a] - double(n_[a]) * cell_);
     first_[a] = frame.lo[a] + 0.5 * cell_;
   }
-  const DepthIntegral integral(medium);
+  const DepthIntegral integral(extinction);
   hidden_.resize(n_[0] * n_[1] * n_[2]);
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<Level> pyramid;

@@ -23,7 +23,7 @@ class Occlusion {
   struct Plan {
     double radius = 0;  ///< world length; 0 = 1/12 of the diagonal
   };
-  Occlusion(const RaySource& source, const Medium& medium, const std::vector<ClipPlane>& clip, const Plan& plan,
+  Occlusion(const RaySource& source, Extinction extinction, const std::vector<ClipPlane>& clip, const Plan& plan,
             const Context* context = nullptr);
 
   /// Share hidden from a place: the mean of the six directions, or as far as there is a surface (0..1) that of the side to which `normal`

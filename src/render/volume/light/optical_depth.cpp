@@ -21,9 +21,9 @@ double primitive(const Medium::Line& l, double v) {
 
 }  // namespace
 
-DepthIntegral::DepthIntegral(const Medium& medium) : medium_(medium) {
+DepthIntegral::DepthIntegral(Extinction extinction) : medium_(extinction.medium), detail_(extinction.detail) {
   double sum = 0;
-  for (const Medium::Line& l : medium.lines()) {
+  for (const Medium::Line& l : medium_.lines()) {
     before_.push_back(sum);
     if (std::isfinite(l.lo) && std::isfinite(l.hi)) sum += primitive(l, double(l.hi)) - primitive(l, double(l.lo));
   }
@@ -62,6 +62,8 @@ double DepthIntegral::over(const Stretch& s) const {
   return sum * length / n;
 }
 
+double DepthIntegral::over(const Stretch& s, RayField& walker) const { return detail_ ? optical_depth(*detail_, s, walker) : over(s); }
+
 void DepthRay::clip(const std::vector<ClipPlane>& planes) {
   for (const ClipPlane& p : planes) {
     const double d = dot(p.normal, direction), rest = p.offset - dot(p.normal, origin);
@@ -84,12 +86,12 @@ void depths_along(const DepthRay& ray, RayField& walker, const DepthIntegral& in
         for (; i < depth.size() && double(i) * spacing <= s.from; ++i) depth[i] = float(sum);
         for (; i < depth.size() && double(i) * spacing < s.to; ++i) {
           const double t = double(i) * spacing;
-          sum += integral.over(part_of(s, s.from, t));
+          sum += integral.over(part_of(s, s.from, t), walker);
           depth[i] = float(sum);
           s = part_of(s, t, s.to);
         }
         if (i >= depth.size()) return;
-        sum += integral.over(s);
+        sum += integral.over(s, walker);
       }
   }
   const float rest = sum < double(most) ? float(sum) : HUGE_VALF;
@@ -100,13 +102,19 @@ void append_numbers(std::string& key, std::initializer_list<double> numbers) {
   for (double n : numbers) key.append(reinterpret_cast<const char*>(&n), sizeof n);
 }
 
-std::string extinction_key(const VolumeItem& item, const Medium& medium) {
+std::string extinction_key(const VolumeItem& item, const Extinction& extinction) {
   std::string key = item.field + '|' + item.sampling.kernel + '|';
   append_numbers(key, {double(int(item.association)), double(item.component), double(item.color.labels.empty())});
   for (const ClipPlane& p : item.clip) append_numbers(key, {p.normal.x, p.normal.y, p.normal.z, p.offset});
   key += '|';
-  for (const Medium::Line& l : medium.lines())
-    for (float f : {l.lo, l.hi, l.origin, l.at, l.slope, l.curve}) key.append(reinterpret_cast<const char*>(&f), sizeof f);
+  for (const Medium::Line& l : extinction.medium.lines())
+    for (float f : {l.lo, l.hi, l.origin, l.at, l.slope, l.curve, l.twist}) key.append(reinterpret_cast<const char*>(&f), sizeof f);
+  if (!extinction.detail) return key;
+  const TransferDetail& d = item.detail;
+  key += d.second_field + '|' + item.sampling.gradient + '|';
+  append_numbers(key, {double(int(d.second)), extinction.detail->unit});
+  for (const auto& p : d.second_factor.points) append_numbers(key, {p.x, p.y});
+  for (const TransferWidget& w : d.widgets) append_numbers(key, {double(int(w.shape)), w.lo, w.hi, w.second_lo, w.second_hi, w.opacity});
   return key;
 }
 

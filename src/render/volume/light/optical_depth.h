@@ -12,19 +12,31 @@
 
 namespace sg::volume {
 
+struct Detail;
+
+/// What takes light away: by the value alone, or with a second axis by the detail (which then stands for all of it).
+struct Extinction {
+  const Medium& medium;
+  const Detail* detail = nullptr;
+  Extinction(const Medium& m, const Detail* d = nullptr) : medium(m), detail(d) {}
+};
+
 /// The integral of tau over the length of stretches, by the antiderivative of tau over the value: a piece on which the value goes
 /// straight takes constant time, however many knots or thin spikes of the medium it passes.
 class DepthIntegral {
  public:
-  explicit DepthIntegral(const Medium& medium);
+  explicit DepthIntegral(Extinction extinction);
   /// Optical depth, to 1e-4 (absolute) or better per stretch.
   double over(const Stretch& stretch) const;
+  /// The same of the detail where there is one.
+  double over(const Stretch& stretch, RayField& walker) const;
   /// Mean of tau while the value goes straight from a to b.
   double mean(float a, float b) const;
 
  private:
   double antiderivative(float v) const;
   const Medium& medium_;
+  const Detail* detail_;
   std::vector<double> before_;  // per line: the integral up to its reference
 };
 
@@ -69,7 +81,7 @@ class Recent {
 };
 
 /// Everything of an item and its medium on which extinction in space depends, as bytes.
-std::string extinction_key(const VolumeItem& item, const Medium& medium);
+std::string extinction_key(const VolumeItem& item, const Extinction& extinction);
 /// The bytes of numbers, behind a key.
 void append_numbers(std::string& key, std::initializer_list<double> numbers);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "render/volume/light/effects.h"
+#include "render/volume/optics/joined_field.h"
 #include "render/volume/optics/transfer.h"
 
 namespace sg::volume {
@@ -30,9 +31,10 @@ struct Caster::Active {
   Stretch ahead[32];
   size_t next = 0, count = 0;
 
-  explicit Active(const CastVolume& v)
-      : volume(&v), walker(v.source->walker()), look{*v.medium,     v.budget, v.id, nullptr, v.per_scale, float(v.source->edge),
-                                                     v.detail.get()} {}
+  Active(const CastVolume& v, std::unique_ptr<RayField> field)
+      : volume(&v),
+        walker(std::move(field)),
+        look{*v.medium, v.budget, v.id, nullptr, v.per_scale, float(v.source->edge), v.detail.get()} {}
 
   /// Is there a stretch to draw? Reads on when all that were read ahead are drawn.
   bool peek() {
@@ -67,7 +69,9 @@ struct Caster::Active {
     steps.open = false;
     if (!(steps.covered > 0)) return;
     const Lit* lit = look.lit ? &steps.lit : nullptr;
-    if (volume->item->sampling.classify == "integrated")
+    if (volume->table)
+      composite_segment(look, steps.from, steps.covered, volume->table->at(steps.first, steps.last, float(steps.covered)), lit, state);
+    else if (volume->item->sampling.classify == "integrated")
       composite_straight(look, steps.from, steps.from + steps.covered, steps.first, steps.last, lit, state);
     else if (volume->item->sampling.classify == "pre") composite_optics(look, steps.from, steps.covered, steps.optics, lit, state);
     else composite_sample(look, steps.from, steps.covered, steps.value, lit, state);
@@ -105,7 +109,7 @@ struct Caster::Active {
         steps.value = s.value(at);
         const bool before = volume->item->sampling.classify == "pre";
         if (before && (steps.sampled || middle >= end)) steps.optics = classified_before(s, at, steps.value);
-        if (look.lit && (steps.sampled || middle >= end) && (before || !look.medium.clear(steps.value, steps.value)))
+        if (look.lit && (steps.sampled || middle >= end) && (before || volume->table || !look.medium.clear(steps.value, steps.value)))
           steps.lit = light_on(look, *walker, s, at);
       }
       if (!(end > t)) break;
@@ -115,8 +119,21 @@ struct Caster::Active {
 };
 
 Caster::Caster(const std::vector<CastVolume>& volumes) {
-  for (const CastVolume& v : volumes)
-    (v.item->mode == RayFunction::composite ? composite_ : others_).push_back(std::make_shared<Active>(v));
+  std::vector<char> taken(volumes.size(), 0);
+  for (size_t i = 0; i < volumes.size(); ++i) {
+    const CastVolume& v = volumes[i];
+    if (taken[i]) continue;
+    if (v.item->mode == RayFunction::composite) {
+      composite_.push_back(std::make_shared<Active>(v, v.source->walker()));
+      continue;
+    }
+    // Parts of a collection have one maximum, one first hit, one mean.
+    std::vector<const RaySource*> parts{v.source.get()};
+    for (size_t k = i + 1; v.item->group && k < volumes.size(); ++k)
+      if (volumes[k].item->group == v.item->group && volumes[k].item->mode == v.item->mode)
+        parts.push_back(volumes[k].source.get()), taken[k] = 1;
+    others_.push_back(std::make_shared<Active>(v, parts.size() > 1 ? std::make_unique<JoinedField>(parts) : v.source->walker()));
+  }
 }
 
 void Caster::put(float t, Vec3f color, float alpha, uint32_t id) {
@@ -173,7 +190,7 @@ void Caster::collect(Active& active, const CastRay& ray) {
         put_value(f.t - f.first - double(base), f.t);
         break;
       }
-      Stretch there{f.t, f.t + 1e-6, {}, 0};
+      Stretch there{f.t, f.t + 1e-6, {}, f.cell};
       put_surface(float(f.value), f.t, walker.gradient(there, f.t), 1);
       break;
     }

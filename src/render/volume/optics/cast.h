@@ -6,8 +6,10 @@
 #include <vector>
 
 #include "render/fragments.h"
+#include "render/volume/light/optical_depth.h"
 #include "render/volume/optics/functions.h"
 #include "render/volume/optics/integrate.h"
+#include "render/volume/optics/preintegrated.h"
 #include "scene/scene.h"
 
 namespace sg::volume {
@@ -20,6 +22,7 @@ struct CastVolume {
   std::unique_ptr<Medium> medium;
   std::unique_ptr<TransferFunction> transfer;  ///< with a detail that is not plain, else null
   std::unique_ptr<Detail> detail;
+  std::unique_ptr<Preintegrated> table;  ///< with steps and classify=table, else null
   Budget budget;
   double step = 0;  ///< world length; 0 = by the tolerance
   double unit = 1;  ///< world length to which opacity refers
@@ -27,6 +30,10 @@ struct CastVolume {
   std::unique_ptr<std::vector<double>> levels;  ///< stored values
   Material material;
   std::shared_ptr<const LightEffects> effects;  ///< null = none
+  bool averaged = false;                        ///< the source is that of means of cells (antialias), not the lattice's own
+
+  /// What takes light away.
+  Extinction extinction() const { return {*medium, item->detail.plain() ? nullptr : detail.get()}; }
 };
 
 /// What a ray of a picture knows before it meets anything.

@@ -94,7 +94,7 @@ Found extreme(RayField& ray, Better better) {
       f[inner + 1] = 1;
       for (int k = 0; k < inner + 2; ++k) {
         const double v = bernstein(p.b, f[k]);
-        if (v == v && (!best.found || better(v, best.value))) best = {v, p.from + f[k] * (p.to - p.from), true, 0};
+        if (v == v && (!best.found || better(v, best.value))) best = {v, p.from + f[k] * (p.to - p.from), true, 0, p.cell};
       }
     }
   return best;
@@ -129,9 +129,9 @@ Found first_at_least(RayField& ray, double level) {
     for (size_t i = 0; i < n; ++i) {
       first = std::min(first, s[i].from);
       if (!(double(s[i].highest()) >= level)) continue;
-      if (double(s[i].b[0]) >= level) return {double(s[i].b[0]), s[i].from, true, first};
+      if (double(s[i].b[0]) >= level) return {double(s[i].b[0]), s[i].from, true, first, s[i].cell};
       double f[3];
-      if (crossings(s[i].b, float(level), f) > 0) return {level, s[i].from + f[0] * (s[i].to - s[i].from), true, first};
+      if (crossings(s[i].b, float(level), f) > 0) return {level, s[i].from + f[0] * (s[i].to - s[i].from), true, first, s[i].cell};
     }
   return {};
 }

@@ -14,6 +14,7 @@ struct Found {
   double value = 0, t = 0;
   bool found = false;
   double first = 0;
+  uint64_t cell = 0;  ///< Stretch::cell there
 };
 
 /// Places f in [0,1], ascending, at which the cubic with Bernstein coefficients b passes `level`; a cubic that lies in the level

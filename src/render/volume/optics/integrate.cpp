@@ -41,6 +41,43 @@ Lit light_on(const Look& look, RayField& walker, const Stretch& s, double t) {
   return light_at(*look.lit, t, gradient, look.edge, look.per_scale);
 }
 
+float tau_at(const Detail& detail, const Stretch& s, double t, RayField& walker, TransferFunction::Sample& sample) {
+  float second = 0;
+  SecondDerivatives h;
+  switch (detail.axis) {
+    case SecondAxis::none: break;
+    case SecondAxis::gradient: second = length(walker.gradient(s, t)); break;
+    case SecondAxis::field: second = walker.second(s, t); break;
+    case SecondAxis::second_derivative: second = walker.bend(s, t, h) ? second_derivative_along(walker.gradient(s, t), h) : NAN; break;
+    case SecondAxis::curvature: second = walker.bend(s, t, h) ? mean_curvature(walker.gradient(s, t), h) : NAN; break;
+  }
+  sample = detail.transfer.at(s.value(t), second);
+  if (!(sample.opacity > 0)) return 0;
+  if (!(sample.opacity < 1)) return detail.most_tau;
+  return std::min(float(minus_log_one_minus(double(sample.opacity)) / detail.unit), detail.most_tau);
+}
+
+namespace {
+
+double depth_between(const Detail& detail, const Stretch& s, RayField& walker, double from, double to, float a, float b, int cuts) {
+  TransferFunction::Sample o;
+  const double middle = 0.5 * (from + to), length = to - from;
+  const float m = tau_at(detail, s, middle, walker, o);
+  const double simpson = length / 6 * double(a + 4 * m + b), rough = length / 4 * double(a + 2 * m + b);
+  if (cuts >= 6 || (cuts > 0 && std::abs(simpson - rough) <= 1e-3 * std::max(1.0, simpson))) return simpson;
+  return depth_between(detail, s, walker, from, middle, a, m, cuts + 1) + depth_between(detail, s, walker, middle, to, m, b, cuts + 1);
+}
+
+}  // namespace
+
+double optical_depth(const Detail& detail, const Stretch& s, RayField& walker) {
+  const float lo = s.lowest(), hi = s.highest();
+  if (!(lo <= hi) || detail.transfer.clear(lo, hi)) return 0;
+  TransferFunction::Sample o;
+  const float a = tau_at(detail, s, s.from, walker, o), b = tau_at(detail, s, s.to, walker, o);
+  return depth_between(detail, s, walker, s.from, s.to, a, b, 0);
+}
+
 namespace {
 
 constexpr int most_cuts = 6;   // halvings of a stretch for its light
@@ -203,33 +240,20 @@ struct Place {
 };
 
 Place place_at(const Look& look, const Stretch& s, double t, RayField& walker) {
+  TransferFunction::Sample o;
   const Detail& detail = *look.detail;
-  const float value = s.value(t);
-  Vec3f gradient;
-  bool asked = false;
-  const auto slope = [&] {
-    if (!asked) gradient = walker.gradient(s, t), asked = true;
-    return gradient;
-  };
-  float second = 0;
-  SecondDerivatives h;
-  switch (detail.axis) {
-    case SecondAxis::none: break;
-    case SecondAxis::gradient: second = length(slope()); break;
-    case SecondAxis::field: second = walker.second(s, t); break;
-    case SecondAxis::second_derivative: second = walker.bend(s, t, h) ? second_derivative_along(slope(), h) : NAN; break;
-    case SecondAxis::curvature: second = walker.bend(s, t, h) ? mean_curvature(slope(), h) : NAN; break;
-  }
-  const TransferFunction::Sample o = detail.transfer.at(value, second);
-  if (!(o.opacity > 0)) return {};
-  const float tau =
-      o.opacity < 1 ? std::min(float(minus_log_one_minus(double(o.opacity)) / detail.unit), detail.most_tau) : detail.most_tau;
-  Vec3f c{o.r, o.g, o.b};
-  if (look.lit) {
+  float tau = tau_at(detail, s, t, walker, o);
+  Vec3f glow = Vec3f{o.r, o.g, o.b} * tau;
+  if (look.lit && (tau > 0 || detail.ink > 0)) {
     const Lit l = light_on(look, walker, s, t);
-    c = l.color(c);
+    tau *= l.opacity, glow = l.color({o.r, o.g, o.b}) * tau;
+    // Ink is black, in the distance as the background.
+    const float ink = detail.ink * l.ink;
+    tau += ink;
+    if (look.lit->effects && ink > 0)
+      glow += look.lit->background * (ink * look.lit->effects->fade(look.lit->origin + look.lit->along * t));
   }
-  return {tau, c * tau};
+  return {tau, glow};
 }
 
 void composite_detailed(const Look& look, const Stretch& s, double from, double to, const Place& a, const Place& b, RayField& walker,
@@ -263,7 +287,7 @@ void composite_detailed(const Look& look, const Stretch& s, double from, double 
 void composite(const Look& look, const Stretch& s, RayField& walker, RayState& state) {
   const float lo = s.lowest(), hi = s.highest();
   if (look.detail) {
-    if (!(lo <= hi) || look.detail->transfer.clear(lo, hi)) return;
+    if (!(lo <= hi) || (!(look.detail->ink > 0) && look.detail->transfer.clear(lo, hi))) return;
     return composite_detailed(look, s, s.from, s.to, place_at(look, s, s.from, walker), place_at(look, s, s.to, walker), walker, 0, state);
   }
   if (!(lo <= hi) || look.medium.clear(lo, hi)) return;
@@ -293,6 +317,17 @@ void composite_optics(const Look& look, double from, double length, const Optics
   if (state.surface < 0 && state.sum.transmittance < 0.5f) state.surface = from + 0.5 * length, state.surface_id = look.id;
 }
 
+void composite_segment(const Look& look, double from, double length, const Preintegrated::Segment& segment, const Lit* lit,
+                       RayState& state) {
+  if (!(segment.depth > 0)) return;
+  const Lit l = lit ? *lit : Lit{};
+  const float plain = 1 - exp_minus(segment.depth), alpha = l.opacity == 1 ? plain : 1 - exp_minus(segment.depth * l.opacity);
+  if (!(plain > 0)) return;
+  const Vec3f c = l.color(segment.color * (1 / plain)) * alpha;
+  state.sum.behind(c.x, c.y, c.z, alpha);
+  if (state.surface < 0 && state.sum.transmittance < 0.5f) state.surface = from + 0.5 * length, state.surface_id = look.id;
+}
+
 void composite_joint(const std::vector<Joint>& joint, RayState& state, int cuts) {
   const double from = joint[0].stretch.from, to = joint[0].stretch.to;
   double depth = 0, densest = 0;
@@ -306,7 +341,7 @@ void composite_joint(const std::vector<Joint>& joint, RayState& state, int cuts)
     stop = std::max(stop, j.look->budget.stop_below), tolerance = std::min(tolerance, float(j.look->budget.tolerance));
     const float lo = s.lowest(), hi = s.highest();
     if (j.look->detail) {
-      if (!(lo <= hi) || j.look->detail->transfer.clear(lo, hi)) continue;
+      if (!(lo <= hi) || (!(j.look->detail->ink > 0) && j.look->detail->transfer.clear(lo, hi))) continue;
       simple = simple && cuts >= 3;
       const Place p = place_at(*j.look, s, 0.5 * (from + to), *j.walker);
       const double d = (to - from) * double(p.tau);

@@ -10,6 +10,7 @@
 #include "color/transfer_function.h"
 #include "render/volume/optics/light_model.h"
 #include "render/volume/optics/medium.h"
+#include "render/volume/optics/preintegrated.h"
 #include "render/volume/optics/ray_state.h"
 #include "render/volume/optics/stretch.h"
 
@@ -31,7 +32,14 @@ struct Detail {
   SecondAxis axis;
   double unit;     ///< world length to which opacity refers
   float most_tau;  ///< stands for that of opacity 1
+  float ink = 0;   ///< extinction that silhouettes and strokes have of their own (Lit::ink of it)
 };
+
+/// Extinction at t of a stretch; what it depends on is asked of the walker. `sample` gets the straight colour and the opacity.
+float tau_at(const Detail& detail, const Stretch& stretch, double t, RayField& walker, TransferFunction::Sample& sample);
+/// Optical depth of a stretch, by Simpson's rule on parts that are halved until it agrees with the trapezoid rule to 1e-3 (absolute, or of
+/// the depth of the part), 6 times at most: an estimate, no bound.
+double optical_depth(const Detail& detail, const Stretch& stretch, RayField& walker);
 
 /// What a volume is made of and how it is lit.
 struct Look {
@@ -57,6 +65,9 @@ void composite_straight(const Look& look, double from, double to, float a, float
 void composite_sample(const Look& look, double from, double length, float value, const Lit* lit, RayState& state);
 /// Optics that stand for a length.
 void composite_optics(const Look& look, double from, double length, const Optics& optics, const Lit* lit, RayState& state);
+/// What a table says of a piece.
+void composite_segment(const Look& look, double from, double length, const Preintegrated::Segment& segment, const Lit* lit,
+                       RayState& state);
 /// Several media at once on stretches with common ends; cuts them until order does not matter within the budget.
 struct Joint {
   const Look* look;

@@ -88,7 +88,7 @@ Lit light_at(const LitRay& lit, double t, Vec3f gradient, float edge, float per_
     case LightStyle::none: break;
     case LightStyle::silhouette: {
       const float off = 1 - facing, rim = surface * off * off * off;
-      out.diffuse *= 1 - rim, out.specular *= 1 - rim, out.opacity = 1 + 6 * rim;
+      out.diffuse *= 1 - rim, out.specular *= 1 - rim, out.opacity = 1 + 6 * rim, out.ink = rim;
       break;
     }
     case LightStyle::tone: {
@@ -99,7 +99,8 @@ Lit light_at(const LitRay& lit, double t, Vec3f gradient, float edge, float per_
     }
     case LightStyle::hatch: {
       // Paper between the strokes, whatever the light.
-      const float paper = 1 - 0.9f * hatch(e, place, normal, light);
+      const float strokes = hatch(e, place, normal, light), paper = 1 - 0.9f * strokes;
+      out.ink = surface * strokes;
       out.diffuse += surface * (paper - out.diffuse), out.specular *= 1 - surface;
       break;
     }

@@ -12,17 +12,19 @@ struct Lit {
   float diffuse = 1, specular = 0;
   Vec3f tint{0, 0, 0};
   float opacity = 1;
+  float ink = 0;  ///< share of Detail::ink that is there besides
 
   Vec3f color(Vec3f c) const { return Vec3f{c.x * diffuse + specular, c.y * diffuse + specular, c.z * diffuse + specular} + tint; }
 };
 inline float difference(const Lit& a, const Lit& b) {
   const auto off = [](float x, float y) { return std::abs(x - y); };
   return off(a.diffuse, b.diffuse) + off(a.specular, b.specular) +
-         std::max({off(a.tint.x, b.tint.x), off(a.tint.y, b.tint.y), off(a.tint.z, b.tint.z), off(a.opacity, b.opacity)});
+         std::max(
+             {off(a.tint.x, b.tint.x), off(a.tint.y, b.tint.y), off(a.tint.z, b.tint.z), off(a.opacity, b.opacity), off(a.ink, b.ink)});
 }
 inline Lit lerp(const Lit& a, const Lit& b, float f) {
   return {a.diffuse + f * (b.diffuse - a.diffuse), a.specular + f * (b.specular - a.specular), a.tint + (b.tint - a.tint) * f,
-          a.opacity + f * (b.opacity - a.opacity)};
+          a.opacity + f * (b.opacity - a.opacity), a.ink + f * (b.ink - a.ink)};
 }
 
 /// Blinn-Phong on both sides of the gradient (world, value per length); where the field changes by less than a surface does over the
@@ -38,6 +40,7 @@ Lit light_at(const LitRay& lit, Vec3f gradient, float edge, float per_scale);
 ///                     0.75 colour + (0.18, 0.12, 0), at w = 1, by s                     (after Gooch et al. 1998)
 ///   hatch             L = ambient o + diffuse sum I (n.l) a(l): three families of planes in space, a distance d apart, leave strokes on
 ///                     surfaces; family k begins where L < 0.75, 0.45, 0.2 and its strokes grow as it gets darker (own; see hatch())
+/// ink: r, and for hatching s times the ink of the strokes: with VolumeLight::ink they have an extinction of their own, black;
 /// and at last depth_cue: colour (1 - f) + f background, f = depth_cue (depth - near)/(far - near) of the volumes' box.
 Lit light_at(const LitRay& lit, double t, Vec3f gradient, float edge, float per_scale);
 
