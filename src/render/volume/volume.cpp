@@ -102,7 +102,11 @@ class Alone {
       if (picture.shaded)
         for (const Picture::Lamp& l : picture.lamps) plan_->lamps.push_back({l.direction, l.intensity});
       const bool in_steps = composite ? item.sampling.classify == "post" && !item.sampling.jitter : item.mode == RayFunction::maximum;
-      if (by_tolerance && in_tolerant_packets(*plan_)) packets_ = cast_tile;
+      if (by_tolerance && in_tolerant_packets(*plan_)) {
+        packets_ = cast_tile;
+        sums_.emplace(*v.medium), bends_ = bends_of(item, *picture.lattices[0]);
+        plan_->sums = &*sums_, plan_->bends = bends_.get();
+      }
       else if (!by_tolerance && in_steps && in_packets(*plan_)) packets_ = march_tile;
     } else if (by_tolerance && !bricked_of(*item.data) && TetRays::fits(cell_volume_of(*v.source))) {
       tets_.emplace(cell_volume_of(*v.source), picture.projection, *v.medium, context, v.budget.stop_below);
@@ -145,6 +149,8 @@ class Alone {
 
   const Picture& picture_;
   std::optional<PacketPlan> plan_;
+  std::optional<MediumSums> sums_;
+  std::shared_ptr<const Bends> bends_;
   void (*packets_)(const PacketPlan&, int, int, int, int, Frame&) = nullptr;
   std::optional<TetRays> tets_;
 };

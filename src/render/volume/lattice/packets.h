@@ -3,8 +3,10 @@
 #pragma once
 #include <vector>
 
+#include "render/volume/lattice/bends.h"
 #include "render/volume/lattice/lattice_volume.h"
 #include "render/volume/optics/integrate.h"
+#include "render/volume/optics/medium_sums.h"
 #include "scene/camera.h"
 
 namespace sg::volume {
@@ -26,6 +28,8 @@ struct PacketPlan {
   const Medium* medium = nullptr;
   Budget budget;
   float edge = 1;
+  const MediumSums* sums = nullptr;  ///< of the medium
+  const Bends* bends = nullptr;      ///< of the volume
 };
 
 /// May this volume be drawn by `march_tile`: affine, linear between samples, a linear transfer table, no hidden cells, offsets
