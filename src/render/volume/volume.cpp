@@ -130,8 +130,11 @@ class Alone {
       if (wants_reconstruction(item.sampling)) return;
       plan_for(*picture.lattices[0]);
       const bool in_steps = post || item.mode == RayFunction::maximum;
-      if (by_tolerance && in_tolerant_packets(*plan_)) packets_ = cast_tile;
-      else if (!by_tolerance && in_steps && in_packets(*plan_)) packets_ = march_tile;
+      if (by_tolerance && in_tolerant_packets(*plan_)) {
+        packets_ = cast_tile;
+        sums_.emplace(*v.medium), bends_ = bends_of(item, *picture.lattices[0]);
+        plan_->sums = &*sums_, plan_->bends = bends_.get();
+      } else if (!by_tolerance && in_steps && in_packets(*plan_)) packets_ = march_tile;
     } else if (const auto* bricks = dynamic_cast<const BrickedSource*>(v.source.get())) {
       stage_ = brick_stage(*bricks, item, v.id, v.unit, v.per_scale);
       plan_for(stage_);
@@ -187,6 +190,8 @@ class Alone {
 
   const Picture& picture_;
   std::optional<PacketPlan> plan_;
+  std::optional<MediumSums> sums_;
+  std::shared_ptr<const Bends> bends_;
   void (*packets_)(const PacketPlan&, int, int, int, int, Frame&) = nullptr;
   Volume stage_;  // of bricks
   std::optional<BrickPackets> bricks_;

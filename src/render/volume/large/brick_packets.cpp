@@ -130,7 +130,8 @@ void BrickPackets::draw(int x0, int y0, int x1, int y1, Frame& frame) const {
   Projection p = plan_.projection;
   p.width -= 2 * x0, p.shift_y -= y0;
   Volume volume = stage_;
-  PacketPlan plan{volume, p, plan_.knobs, plan_.lamps, plan_.material, plan_.medium, plan_.budget, plan_.edge, half.data(), {}, {}};
+  PacketPlan plan{volume, p, plan_.knobs, plan_.lamps, plan_.material, plan_.medium, plan_.budget, plan_.edge};
+  plan.half = half.data();
   std::shared_ptr<const BrickLattice> lattice;
   for (const Leaf& leaf : leaves_) {
     if (!meets(leaf, x0, y0, x1, y1)) continue;

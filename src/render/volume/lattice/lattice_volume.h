@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "index/minmax_bricks.h"
+#include "render/volume/lattice/bends.h"
 #include "render/volume/lattice/empty_space.h"
 #include "render/volume/lattice/kernels.h"
 #include "render/volume/optics/ray_state.h"
@@ -85,6 +86,9 @@ struct Volume {
 /// Reads the item, checks it, converts and indexes its field. Throws Error(usage) for what cannot be shown as a volume.
 /// Nothing to draw (a grid without extent) gives an empty box.
 Volume prepare(const VolumeItem& item, uint32_t id, const Knobs& knobs);
+
+/// How far its field bends; found once for all pictures of the field.
+std::shared_ptr<const Bends> bends_of(const VolumeItem& item, const Volume& volume);
 
 /// One ray in the q space of a volume: q = start + t * along, t the world length from the ray's origin.
 struct Course {

@@ -3,8 +3,10 @@
 #pragma once
 #include <vector>
 
+#include "render/volume/lattice/bends.h"
 #include "render/volume/lattice/lattice_volume.h"
 #include "render/volume/optics/integrate.h"
+#include "render/volume/optics/medium_sums.h"
 #include "scene/camera.h"
 
 namespace sg::volume {
@@ -26,6 +28,8 @@ struct PacketPlan {
   const Medium* medium = nullptr;
   Budget budget;
   float edge = 1;
+  const MediumSums* sums = nullptr;  ///< of the medium; null: cells are crossed one by one
+  const Bends* bends = nullptr;      ///< of the volume
   /// One lattice of several, drawn from front to back: what is in the frame lies before it, and rays go on with the light that is left (1 -
   /// alpha). The depth where half of it is gone goes here, for each pixel of the frame (infinite: not yet), instead of into the frame.
   float* half = nullptr;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The integral within a tolerance along packets of rays: optics/integrate.cpp for a uniform grid, one ray per vector lane. Lanes go from
-// cell to cell, each at its own pace; in a cell the field along the ray is a cubic, cut at the knots of the medium.
+// The integral within a tolerance along packets of rays: optics/integrate.cpp for a uniform grid, one ray per vector lane. Every lane has
+// its own place: it leaps over what draws nothing, strides where the field is as good as straight, and crosses the other cells one by one.
 #include "render/volume/lattice/packet_rays.h"
 
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
@@ -9,169 +9,21 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "render/volume/lattice/packet_light_inl.h"
-#include "render/volume/lattice/packets_inl.h"
+#include "render/volume/lattice/packet_cells_inl.h"
+#include "render/volume/lattice/packet_shading_inl.h"
+#include "render/volume/lattice/packet_strides_inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {
 
-/// exp_minus of optics/integrate.cpp.
-template <class D>
-HWY_INLINE hn::Vec<D> exp_minus_of(D d, hn::Vec<D> x) {
-  const IntTag<D> di;
-  const auto deep = hn::Ge(x, hn::Set(d, 87.0f));
-  x = hn::Min(x, hn::Set(d, 87.0f));
-  const auto k = to_int(d, hn::Add(hn::Mul(x, hn::Set(d, 1.44269504f)), hn::Set(d, 0.5f)));
-  const auto kf = hn::ConvertTo(d, k);
-  const auto r = hn::Neg(hn::Sub(hn::Sub(x, hn::Mul(kf, hn::Set(d, 0.693145752f))), hn::Mul(kf, hn::Set(d, 1.42860677e-6f))));
-  auto sum = hn::Set(d, 1.0f / 5040);
-  for (const float c : {1.0f / 720, 1.0f / 120, 1.0f / 24, 1.0f / 6, 0.5f, 1.0f, 1.0f}) sum = hn::Add(hn::Mul(sum, r), hn::Set(d, c));
-  const auto power = hn::BitCast(d, hn::ShiftLeft<23>(hn::Sub(hn::Set(di, 127), k)));
-  return hn::IfThenElseZero(hn::Not(deep), hn::Mul(sum, power));
-}
-
-/// The medium, ready for gathers.
-template <class D>
-struct MediumLanes {
-  using F = hn::Vec<D>;
-  using I = Int<D>;
-  const Medium& medium;
-  const Medium::Columns& columns;
-
-  struct Line {
-    F lo, hi, origin, at, slope, curve, twist;
-    HWY_INLINE F tau(F v) const {
-      const F x = hn::Sub(v, origin);
-      return hn::Max(hn::Zero(D()), hn::Add(at, hn::Mul(x, hn::Add(slope, hn::Mul(x, hn::Add(curve, hn::Mul(x, twist)))))));
-    }
-    HWY_INLINE F slope_at(F v) const {
-      const F x = hn::Sub(v, origin);
-      return hn::Abs(hn::Add(slope, hn::Mul(x, hn::Add(hn::Add(curve, curve), hn::Mul(x, hn::Mul(hn::Set(D(), 3.0f), twist))))));
-    }
-    HWY_INLINE hn::Mask<D> dark() const {
-      const F zero = hn::Zero(D());
-      return hn::And(hn::And(hn::Eq(at, zero), hn::Eq(slope, zero)), hn::And(hn::Eq(curve, zero), hn::Eq(twist, zero)));
-    }
-  };
-  /// As many lines as there are lanes fit a vector: then no gather is needed.
-  bool few;
-  F few_columns[6];
-  HWY_INLINE explicit MediumLanes(const Medium& m) : medium(m), columns(m.columns()), few(m.lines().size() <= size_t(lanes_of<D>)) {
-    const D d;
-    const std::vector<float>* all[6] = {&columns.origin, &columns.hi, &columns.at, &columns.slope, &columns.curve, &columns.twist};
-    for (int c = 0; c < 6; ++c) {
-      alignas(64) float column[most_lanes] = {};
-      if (few) std::copy(all[c]->begin(), all[c]->end(), column);
-      few_columns[c] = hn::Load(d, column);
-    }
-  }
-  HWY_INLINE Line line(I i) const {
-    const D d;
-    Line l;
-    if (few) {
-      const auto which = hn::IndicesFromVec(d, i);
-      l.origin = hn::TableLookupLanes(few_columns[0], which), l.hi = hn::TableLookupLanes(few_columns[1], which);
-      l.at = hn::TableLookupLanes(few_columns[2], which), l.slope = hn::TableLookupLanes(few_columns[3], which);
-      l.curve = hn::TableLookupLanes(few_columns[4], which), l.twist = hn::TableLookupLanes(few_columns[5], which);
-    } else {
-      l.origin = hn::GatherIndex(d, columns.origin.data(), i), l.hi = hn::GatherIndex(d, columns.hi.data(), i);
-      l.at = hn::GatherIndex(d, columns.at.data(), i), l.slope = hn::GatherIndex(d, columns.slope.data(), i);
-      l.curve = hn::GatherIndex(d, columns.curve.data(), i), l.twist = hn::GatherIndex(d, columns.twist.data(), i);
-    }
-    l.lo = hn::IfThenElse(hn::RebindMask(d, hn::Eq(i, hn::Zero(IntTag<D>()))), hn::Set(d, -HUGE_VALF), l.origin);
-    return l;
-  }
-  HWY_INLINE I line_of(F v) const {
-    const D d;
-    const IntTag<D> di;
-    v = hn::Min(v, hn::Set(d, 3e38f));  // the last line ends at infinity
-    F at = hn::Mul(hn::Sub(v, hn::Set(d, medium.slice_lo())), hn::Set(d, medium.per_slice()));
-    at = hn::IfThenElseZero(hn::Ge(at, hn::Zero(d)), hn::Min(at, hn::Set(d, float(Medium::slices))));
-    I i = hn::And(gather_words(d, medium.first_lines(), hn::ShiftLeft<1>(to_int(d, at))), hn::Set(di, 0xFFFF));
-    for (;;) {
-      const auto beyond =
-          hn::Le(few ? hn::TableLookupLanes(few_columns[1], hn::IndicesFromVec(d, i)) : hn::GatherIndex(d, columns.hi.data(), i), v);
-      if (hn::AllFalse(d, beyond)) return i;
-      i = hn::Sub(i, hn::VecFromMask(di, hn::RebindMask(di, beyond)));
-    }
-  }
-  /// The largest of a column over the lines a .. b, from the table of powers of two.
-  HWY_INLINE F most(const std::vector<float>& table, I a, I b) const {
-    const D d;
-    const IntTag<D> di;
-    const I count = hn::Add(hn::Sub(b, a), hn::Set(di, 1));
-    const I k = hn::Sub(hn::ShiftRight<23>(hn::BitCast(di, hn::ConvertTo(d, count))), hn::Set(di, 127));
-    const I row = hn::Mul(k, hn::Set(di, int(columns.hi.size())));
-    const I width = to_int(d, hn::BitCast(d, hn::ShiftLeft<23>(hn::Add(k, hn::Set(di, 127)))));
-    return hn::Max(hn::GatherIndex(d, table.data(), hn::Add(row, a)),
-                   hn::GatherIndex(d, table.data(), hn::Add(row, hn::Sub(hn::Add(b, hn::Set(di, 1)), width))));
-  }
-  struct Color {
-    F r, g, b;
-  };
-  HWY_INLINE Color color(F v) const {
-    const D d;
-    const IntTag<D> di;
-    F at = hn::Add(hn::Mul(hn::Sub(v, hn::Set(d, medium.first_node())), hn::Set(d, medium.per_node())), hn::Set(d, 0.5f));
-    at = hn::IfThenElseZero(hn::Ge(at, hn::Zero(d)), hn::Min(at, hn::Set(d, float(Medium::nodes))));
-    const I byte = hn::ShiftLeft<3>(to_int(d, at));
-    const I rg = gather_words(d, medium.colors(), byte), b = gather_words(d, medium.colors(), hn::Add(byte, hn::Set(di, 4)));
-    const F per = hn::Set(d, 1.0f / 65535);
-    const I low = hn::Set(di, 0xFFFF);
-    const hn::RebindToUnsigned<IntTag<D>> du;
-    const I g = hn::BitCast(di, hn::ShiftRight<16>(hn::BitCast(du, rg)));
-    return {hn::Mul(hn::ConvertTo(d, hn::And(rg, low)), per), hn::Mul(hn::ConvertTo(d, g), per),
-            hn::Mul(hn::ConvertTo(d, hn::And(b, low)), per)};
-  }
-};
-
-/// a + b s + c s^2 + e s^3.
-template <class D>
-struct Cubic {
-  hn::Vec<D> a, b, c, e, last;  // last: at s = 1
-  HWY_INLINE hn::Vec<D> at(hn::Vec<D> s) const { return hn::Add(a, hn::Mul(s, hn::Add(b, hn::Mul(s, hn::Add(c, hn::Mul(s, e)))))); }
-};
-
-/// The trilinear field of a cell along the way from + s * way, corners by rows.
-template <class D>
-HWY_INLINE Cubic<D> along_way(D d, const Pair<D>& p00, const Pair<D>& p01, const Pair<D>& p10, const Pair<D>& p11, const hn::Vec<D> from[3],
-                              const hn::Vec<D> way[3]) {
-  using F = hn::Vec<D>;
-  struct Linear {
-    F a, b;
-  };
-  struct Square {
-    F a, b, c;
-  };
-  const auto x = [&](const Pair<D>& p) HWY_ATTR {
-    const F rise = hn::Sub(p.b, p.a);
-    return Linear{hn::Add(p.a, hn::Mul(from[0], rise)), hn::Mul(way[0], rise)};
-  };
-  const auto y = [&](const Linear& p, const Linear& q) HWY_ATTR {
-    const F rise = hn::Sub(q.a, p.a), bend = hn::Sub(q.b, p.b);
-    return Square{hn::Add(p.a, hn::Mul(from[1], rise)), hn::Add(hn::Add(p.b, hn::Mul(from[1], bend)), hn::Mul(way[1], rise)),
-                  hn::Mul(way[1], bend)};
-  };
-  const Square p = y(x(p00), x(p01)), q = y(x(p10), x(p11));
-  const F da = hn::Sub(q.a, p.a), db = hn::Sub(q.b, p.b), dc = hn::Sub(q.c, p.c);
-  Cubic<D> f;
-  f.a = hn::Add(p.a, hn::Mul(from[2], da));
-  f.b = hn::Add(hn::Add(p.b, hn::Mul(from[2], db)), hn::Mul(way[2], da));
-  f.c = hn::Add(hn::Add(p.c, hn::Mul(from[2], dc)), hn::Mul(way[2], db));
-  f.e = hn::Mul(way[2], dc);
-  f.last = hn::Add(hn::Add(f.a, f.b), hn::Add(f.c, f.e));
-  return f;
-}
-
-/// What is gathered so far, and where half of the light was gone.
-template <class D>
-struct Gathering {
-  hn::Vec<D> r, g, b, pass, half_at;
-  HWY_INLINE Gathering() {
-    const D d;
-    r = g = b = hn::Zero(d), pass = hn::Set(d, 1.0f), half_at = hn::Set(d, -1.0f);
-  }
-};
+/// Strides in cell lengths: none is longer than half a brick (two go at once, and Bends look a brick around); where they would have to
+/// be shorter than the second, cells are crossed instead.
+constexpr float longest_stride = 2, shortest_stride = 1.0f / 8;
+/// Shares of the tolerance: to start with, over the whole length, and over all light that is taken. The rest is for the end of the ray,
+/// the tables, and the cells that are crossed.
+constexpr float share_at_first = 0.15f, share_of_length = 0.15f, share_of_light = 0.4f;
+/// Of what is left so much may go for one stride.
+constexpr float share_at_once = 1.0f / 8;
 
 template <class D, class T, bool shaded>
 class TolerantPacket {
@@ -180,268 +32,242 @@ class TolerantPacket {
   using M = hn::Mask<D>;
 
  public:
-  HWY_INLINE TolerantPacket(const PacketPlan& plan, const RayPacket& rays)
-      : plan_(plan), v_(plan.volume), source_(v_.voxels), medium_(*plan.medium), light_(plan, rays) {
+  HWY_INLINE TolerantPacket(const PacketPlan& plan, RayPacket& rays)
+      : plan_(plan), v_(plan.volume), cells_(plan, rays), sums_{plan.sums}, rays_(rays) {
     const D d;
+    F square = hn::Zero(d);
     for (int a = 0; a < 3; ++a) {
-      start_[a] = hn::Load(d, rays.entry[a]), along_[a] = hn::Load(d, rays.along[a]);
-      still_[a] = hn::Eq(along_[a], hn::Zero(d)), up_[a] = hn::Gt(along_[a], hn::Zero(d));
-      per_along_[a] = hn::IfThenElseZero(hn::Not(still_[a]), hn::Div(hn::Set(d, 1.0f), along_[a]));
+      still_[a] = hn::Eq(cells_.along[a], hn::Zero(d)), up_[a] = hn::Gt(cells_.along[a], hn::Zero(d));
+      per_along_[a] = hn::IfThenElseZero(hn::Not(still_[a]), hn::Div(hn::Set(d, 1.0f), cells_.along[a]));
+      square = hn::Add(square, hn::Mul(cells_.along[a], cells_.along[a]));
     }
-    end_ = hn::Load(d, rays.length), sum_.pass = hn::Load(d, rays.before);
-    at_ = hn::Zero(IntTag<D>());
-    line_ = medium_.line(at_);
+    per_speed_ = hn::Div(hn::Set(d, 1.0f), hn::Max(hn::Sqrt(square), hn::Set(d, 1e-30f)));
+    end_ = hn::Load(d, rays.length), cells_.sum.pass = hn::Load(d, rays.before);
+    reserve_ = hn::Set(d, share_at_first * float(plan.budget.tolerance));
+    stride_ = hn::Set(d, 1.0f);
+    if (plan.bends) here_ = sums_.at(hn::Zero(d));
+    if constexpr (shaded) {
+      queue_.start(plan, rays);
+      for (int a = 0; a < 3; ++a)
+        for (int n = 0; n < lanes_of<D>; ++n) rays_.first[a][n] = rays_.entry[a][n], rays_.by[a][n] = rays_.along[a][n];
+    }
   }
 
-  HWY_INLINE void run(PacketResult& result, const RayPacket& rays) {
+  HWY_INLINE void run(PacketResult& result) {
     const D d;
     const IntTag<D> di;
     const I one = hn::Set(di, 1), zero = hn::Zero(di);
     const F stop = hn::Set(d, plan_.budget.stop_below);
+    const Source<D, T>& source = cells_.source;
     const auto& bricks = v_.fine().dims;
+    const I row = hn::Set(di, int(bricks[0])), layer = hn::Set(di, int(bricks[0] * bricks[1]));
     const bool skip = plan_.knobs.skip_empty && v_.any_empty;
-    I cell[3];
-    F t = hn::Zero(d);
+    hn::Store(hn::Zero(d), d, result.r), hn::Store(hn::Zero(d), d, result.g), hn::Store(hn::Zero(d), d, result.b);
+    result_ = &result;
     // Cells -1 and n-1 are the halves beyond the outermost samples.
-    for (int a = 0; a < 3; ++a)
-      cell[a] = hn::Min(hn::Max(to_int(d, hn::Floor(start_[a])), hn::Set(di, -1)), hn::Add(source_.last_cell[a], one));
+    F t = hn::Zero(d);
+    I cell[3];
+    for (int a = 0; a < 3; ++a) cell[a] = cell_at(a, t);
+    M known = hn::MaskFromVec(hn::Zero(d));  // the lanes for which here_ is the place t
     for (;;) {
-      const M on = hn::And(hn::Lt(t, end_), hn::Ge(sum_.pass, stop));
+      const M on = hn::And(hn::Lt(t, end_), hn::Ge(cells_.sum.pass, stop));
       if (hn::AllFalse(d, on)) break;
       I inside[3], brick[3];
       for (int a = 0; a < 3; ++a) {
-        inside[a] = hn::Min(hn::Max(cell[a], zero), source_.last_cell[a]);
+        inside[a] = hn::Min(hn::Max(cell[a], zero), source.last_cell[a]);
         brick[a] = hn::ShiftRight<FineBricks::shift>(inside[a]);
       }
+      const I id = hn::Add(brick[0], hn::Add(hn::Mul(brick[1], row), hn::Mul(brick[2], layer)));
       I free = zero;
-      if (skip) {
-        const I id = hn::Add(
-            brick[0], hn::Add(hn::Mul(brick[1], hn::Set(di, int(bricks[0]))), hn::Mul(brick[2], hn::Set(di, int(bricks[0] * bricks[1])))));
-        free = hn::And(gather_words(d, v_.distance.data(), id), hn::Set(di, 255));
+      if (skip) free = hn::And(gather_words(d, v_.distance.data(), id), hn::Set(di, 255));
+      const I codes = plan_.bends ? gather_words(d, plan_.bends->codes.data(), hn::Add(id, id)) : hn::Set(di, int(Bends::unbounded));
+      const I code = hn::And(codes, hn::Set(di, 255));
+      const M leaping = hn::And(on, hn::RebindMask(d, hn::Gt(free, zero)));
+      const M cellwise =
+          hn::Or(hn::Lt(stride_, hn::Set(d, shortest_stride)), hn::RebindMask(d, hn::Eq(code, hn::Set(di, int(Bends::unbounded)))));
+      const M crossing = hn::And(hn::AndNot(leaping, on), cellwise);
+      const M walking = hn::Or(leaping, crossing), striding = hn::AndNot(walking, on);
+      if (!hn::AllFalse(d, striding)) {
+        const M fresh = hn::AndNot(known, striding);
+        if (!hn::AllFalse(d, fresh)) renew(t, fresh), known = hn::Or(known, fresh);
+        const F to = stride_on(t, code, hn::ShiftRight<8>(codes), striding);
+        // A lane that was refused stays in its cell, which rounding may tell otherwise.
+        const M moved = hn::And(striding, hn::Gt(to, t));
+        t = hn::IfThenElse(moved, to, t);
+        for (int a = 0; a < 3; ++a) cell[a] = hn::IfThenElse(hn::RebindMask(di, moved), cell_at(a, t), cell[a]);
       }
-      const auto leaps = hn::Gt(free, zero);
-      const M leaping = hn::And(on, hn::RebindMask(d, leaps));
-      // The side through which each lane leaves its cell, or the cube of bricks nearer than what is drawn.
-      F leave = end_, at[3];
-      I side[3];
-      for (int a = 0; a < 3; ++a) {
-        const auto up = hn::RebindMask(di, up_[a]);
-        const I reach = hn::ShiftLeft<FineBricks::shift>(hn::Add(brick[a], hn::IfThenElse(up, free, hn::Sub(one, free))));
-        side[a] = hn::IfThenElse(leaps, reach, hn::Add(cell[a], hn::IfThenElse(up, one, zero)));
-        F there = hn::Mul(hn::Sub(hn::ConvertTo(d, side[a]), start_[a]), per_along_[a]);
-        // Beyond the outermost bricks there is nothing else.
-        const auto open = hn::And(leaps, hn::Or(hn::Lt(side[a], one), hn::Gt(side[a], source_.last_cell[a])));
-        there = hn::IfThenElse(hn::Or(still_[a], hn::RebindMask(d, open)), hn::Set(d, HUGE_VALF), hn::Max(there, t));
-        at[a] = there, leave = hn::Min(leave, there);
+      if (!hn::AllFalse(d, walking)) {
+        walk(brick, free, inside, leaping, crossing, cell, t);
+        known = hn::AndNot(walking, known);
+        stride_ = hn::IfThenElse(crossing, hn::Max(stride_, hn::Set(d, 2 * shortest_stride)), stride_);
       }
-      const M look = hn::And(hn::AndNot(leaping, on), hn::Gt(leave, t));
-      if (!hn::AllFalse(d, look)) cross(inside, t, leave, look);
-      for (int a = 0; a < 3; ++a) {
-        const auto up = hn::RebindMask(di, up_[a]);
-        const auto through = hn::RebindMask(di, hn::Le(at[a], leave));
-        const I beyond = hn::Sub(side[a], hn::IfThenElse(up, zero, one));
-        I next = cell[a];
-        if (!hn::AllFalse(d, leaping)) {
-          // Inside the cube along the other axes, and never back.
-          const I here = to_int(d, hn::Floor(hn::Add(start_[a], hn::Mul(along_[a], leave))));
-          const I forth = hn::IfThenElse(up, hn::Max(cell[a], hn::Min(here, hn::Sub(beyond, one))),
-                                         hn::Min(cell[a], hn::Max(here, hn::Add(beyond, one))));
-          const auto open = hn::Ge(at[a], hn::Set(d, HUGE_VALF));
-          const I free_way = hn::Min(hn::Max(here, hn::Set(di, -1)), hn::Add(source_.last_cell[a], one));
-          const I leapt = hn::IfThenElse(hn::RebindMask(di, open), hn::IfThenElse(hn::RebindMask(di, still_[a]), cell[a], free_way), forth);
-          next = hn::IfThenElse(leaps, leapt, next);
-        }
-        cell[a] = hn::IfThenElse(through, beyond, next);
-      }
-      t = leave;
     }
-    store(result, rays);
+    store();
   }
 
  private:
-  /// One cell per lane: its cubic, and what the medium makes of it.
-  HWY_INLINE void cross(const I inside[3], F t, F leave, M look) {
-    const D d;
-    const F zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-    const I corner = source_.offset(inside[0], inside[1], inside[2]);
-    F from[3], way[3];
-    for (int a = 0; a < 3; ++a) {
-      const F base = hn::Sub(start_[a], hn::ConvertTo(d, inside[a]));
-      from[a] = hn::Max(zero, hn::Min(hn::Add(base, hn::Mul(along_[a], t)), one));
-      way[a] = hn::Sub(hn::Max(zero, hn::Min(hn::Add(base, hn::Mul(along_[a], leave)), one)), from[a]);
-    }
-    const I above = hn::Add(corner, source_.layer);
-    const Pair<D> p00 = source_.pair(corner), p01 = source_.pair(hn::Add(corner, source_.row));
-    const Pair<D> p10 = source_.pair(above), p11 = source_.pair(hn::Add(above, source_.row));
-    // No place in the cell lies outside the range of its corners.
-    const F least = hn::Min(hn::Min(hn::Min(p00.a, p00.b), hn::Min(p01.a, p01.b)), hn::Min(hn::Min(p10.a, p10.b), hn::Min(p11.a, p11.b)));
-    const F largest = hn::Max(hn::Max(hn::Max(p00.a, p00.b), hn::Max(p01.a, p01.b)), hn::Max(hn::Max(p10.a, p10.b), hn::Max(p11.a, p11.b)));
-    const M clear_line = line_.dark();
-    if (hn::AllFalse(d, hn::AndNot(hn::And(clear_line, hn::And(hn::Ge(least, line_.lo), hn::Le(largest, line_.hi))), look))) return;
-    const Cubic<D> f = along_way(d, p00, p01, p10, p11, from, way);
-    // The hull of the cubic's Bernstein coefficients.
-    const F third = hn::Set(d, 1.0f / 3), b1 = hn::Add(f.a, hn::Mul(f.b, third)), b2 = hn::Add(b1, hn::Mul(hn::Add(f.b, f.c), third));
-    const F lo = hn::Min(hn::Min(f.a, b1), hn::Min(b2, f.last)), hi = hn::Max(hn::Max(f.a, b1), hn::Max(b2, f.last));
-    look = hn::And(look, hn::Eq(f.last, f.last));  // no hole
-    const M strange = hn::AndNot(hn::And(hn::Ge(f.a, line_.lo), hn::Le(f.a, line_.hi)), look);
-    if (!hn::AllFalse(d, strange)) at_ = medium_.line_of(f.a), line_ = medium_.line(at_);
-    const M same = hn::And(hn::Ge(lo, line_.lo), hn::Le(hi, line_.hi));
-    const M dark = hn::And(same, line_.dark());
-    look = hn::AndNot(dark, look);
-    if (hn::AllFalse(d, look)) return;
-    const Pair<D> rows[4] = {p00, p01, p10, p11};
-    integrate(f, lo, hi, same, corner, inside, rows, from, way, t, hn::Sub(leave, t), look);
-  }
-
-  HWY_INLINE void integrate(const Cubic<D>& f, F lo, F hi, M same, I corner, const I inside[3], const Pair<D> rows[4], const F from[3],
-                            const F way[3], F t, F length, M look) {
+  HWY_INLINE I cell_at(int a, F t) const {
     const D d;
     const IntTag<D> di;
-    const F zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
-    const Medium& m = medium_.medium;
-    const typename MediumLanes<D>::Line& line = line_;
+    const F u = hn::Add(cells_.start[a], hn::Mul(cells_.along[a], t));
+    return hn::Min(hn::Max(to_int(d, hn::Floor(u)), hn::Set(di, -1)), hn::Add(cells_.source.last_cell[a], hn::Set(di, 1)));
+  }
+
+  HWY_INLINE F value_at(F t) const {
+    const auto u = [&](int a) HWY_ATTR { return hn::Add(cells_.start[a], hn::Mul(cells_.along[a], t)); };
+    const Source<D, T>& s = cells_.source;
+    return s.value(s.place(0, u(0)), s.place(1, u(1)), s.place(2, u(2)));
+  }
+
+  HWY_INLINE void renew(F t, M which) { take(sums_.at(value_at(t)), which); }
+  HWY_INLINE void take(const typename SumLanes<D>::Place& p, M which) {
+    const D d;
+    const IntTag<D> di;
+    here_.value = hn::IfThenElse(which, p.value, here_.value), here_.tau = hn::IfThenElse(which, p.tau, here_.tau);
+    here_.slope = hn::IfThenElse(which, p.slope, here_.slope);
+    here_.beyond = hn::IfThenElse(which, p.beyond, here_.beyond);
+    const auto whole = hn::RebindMask(di, which);
+    here_.node = hn::IfThenElse(whole, p.node, here_.node), here_.sum = hn::IfThenElse(whole, p.sum, here_.sum);
+  }
+
+  /// Two strides from t on, as far as their errors are allowed. Returns how far they came.
+  HWY_INLINE F stride_on(F t, I bend_code, I turn_code, M striding) {
+    const D d;
+    const IntTag<D> di;
+    const F half = hn::Set(d, 0.5f);
+    const auto decoded = [&](I code, int least) HWY_ATTR {
+      return hn::BitCast(d, hn::Add(hn::ShiftLeft<21>(hn::And(code, hn::Set(di, 255))), hn::Set(di, (127 + least) << 23)));
+    };
+    const F bend = hn::Mul(decoded(bend_code, Bends::least_bend), hn::Set(d, plan_.bends->range));
+    const F world = hn::Min(hn::Mul(stride_, per_speed_), hn::Mul(half, hn::Sub(end_, t)));
+    const F cells = hn::Div(world, per_speed_);
+    const M ends = hn::Le(hn::Sub(end_, t), hn::Mul(hn::Set(d, 2.0f), hn::Mul(stride_, per_speed_)));
+    const F t1 = hn::Add(t, world), t2 = hn::IfThenElse(ends, end_, hn::Add(t1, world));
+    const auto p1 = sums_.at(value_at(t1)), p2 = sums_.at(value_at(t2));
     const float tolerance = float(plan_.budget.tolerance);
-    // Of the cubic: a + b/2 + c/3 + e/4.
-    const F mean = hn::Add(hn::Add(f.a, hn::Mul(half, f.b)), hn::Add(hn::Mul(hn::Set(d, 1.0f / 3), f.c), hn::Mul(hn::Set(d, 0.25f), f.e)));
-    F tau_mean = line.tau(mean), most = hn::Max(hn::Max(line.tau(lo), line.tau(hi)), tau_mean);
-    F slope = hn::Max(line.slope_at(lo), line.slope_at(hi));
-    if (!hn::AllFalse(d, hn::AndNot(same, look))) {
-      const I first = medium_.line_of(lo), last = medium_.line_of(hi);
-      most = hn::IfThenElse(same, most, medium_.most(medium_.columns.most_tau, first, last));
-      slope = hn::IfThenElse(same, slope, medium_.most(medium_.columns.most_slope, first, last));
-      tau_mean = hn::IfThenElse(same, tau_mean, medium_.line(medium_.line_of(mean)).tau(mean));
-      look = hn::And(look, hn::Gt(most, zero));
-      if (hn::AllFalse(d, look)) return;
-    }
-    // The errors of optics/integrate.cpp, Pieces::whole.
-    const F pass = sum_.pass, taken = hn::Min(one, hn::Mul(length, most)), range = hn::Sub(hi, lo);
-    const F widths = hn::Mul(range, hn::Set(d, 1 / m.color_width())), change = hn::Min(one, hn::Mul(range, hn::Set(d, m.color_slope())));
-    const F beyond = hn::Max(hn::Sub(hi, hn::Max(f.a, f.last)), hn::Sub(hn::Min(f.a, f.last), lo));
-    const F deep = hn::Mul(hn::Mul(hn::Mul(length, length), hn::Mul(most, slope)), hn::Mul(range, hn::Set(d, 0.05f)));
-    F error = hn::Mul(hn::Mul(taken, hn::Set(d, 0.25f * tolerance)), hn::Mul(widths, widths));
-    error = hn::Add(error, hn::Mul(change, hn::Min(one, deep)));
-    error = hn::Add(error, hn::IfThenElseZero(hn::Not(same), hn::Mul(beyond, hn::Mul(length, slope))));
-    error = hn::Mul(error, pass);
-    const F share = hn::Mul(pass, hn::Min(one, hn::Mul(length, tau_mean)));
-    const F allowed = hn::Mul(hn::Set(d, tolerance),
-                              hn::Add(hn::Mul(length, hn::Set(d, float(0.3 / plan_.budget.length))), hn::Mul(share, hn::Set(d, 0.4f))));
+    const Medium& colors = *plan_.medium;
+    // The second difference over both.
+    const F arch = hn::Add(hn::Sub(here_.value, p1.value), hn::Sub(p2.value, p1.value));
+    const Stride<D> a = stride(sums_, colors, tolerance, here_, p1, world, cells, bend, arch);
+    const Stride<D> b = stride(sums_, colors, tolerance, p1, p2, world, cells, bend, arch);
+    F turned = hn::Zero(d);
     if constexpr (shaded) {
-      light_.cell(source_, corner, inside, rows);
-      error = hn::Max(error, light_.error(from, way, hn::Mul(pass, taken)));
+      const F angle = hn::Mul(decoded(turn_code, Bends::least_turn), cells);
+      const Material& m = plan_.material;
+      turned = hn::Min(hn::Set(d, 0.25f), hn::Mul(hn::Set(d, (m.diffuse + m.specular * m.power) / 24), hn::Mul(angle, angle)));
     }
-    F count = one, per_count = one, end = one, target = f.last;
-    if (!hn::AllFalse(d, hn::And(look, hn::Gt(error, allowed)))) {
-      count = hn::Max(one, hn::Min(hn::Ceil(hn::Sqrt(hn::Div(error, hn::Max(allowed, hn::Set(d, 1e-30f))))), hn::Set(d, 64.0f)));
-      per_count = hn::Div(one, count), end = per_count;
-      target = hn::IfThenElse(hn::Eq(count, one), f.last, f.at(per_count));
-    }
-    const F stop = hn::Set(d, plan_.budget.stop_below);
-    most_hidden_ = hn::Mul(range, hn::Set(d, m.color_slope() / (0.2f * tolerance)));
-
-    // Pieces, cut where the value meets the knots.
-    F k = zero, v = f.a, s = zero;
-    typename MediumLanes<D>::Line& l = line_;
-    for (;;) {
-      const M up = hn::Ge(target, v);
-      const M ends = hn::Or(hn::And(up, hn::Le(target, l.hi)), hn::AndNot(up, hn::Ge(target, l.lo)));
-      F to = end, next = target;
-      const M cut = hn::AndNot(ends, look);
-      if (!hn::AllFalse(d, cut)) {
-        const F knot = hn::IfThenElse(up, l.hi, l.lo);
-        const F rise = hn::Sub(target, v);
-        const F run = hn::Div(hn::Sub(end, s), hn::IfThenElse(hn::Eq(rise, zero), one, rise));
-        F meet = hn::Add(s, hn::Mul(hn::Sub(knot, v), run));
-        for (int i = 0; i < 2; ++i) meet = hn::Max(s, hn::Min(hn::Sub(meet, hn::Mul(hn::Sub(f.at(meet), knot), run)), end));
-        to = hn::IfThenElse(cut, meet, to), next = hn::IfThenElse(cut, knot, next);
-      }
-      const F middle = f.at(hn::Mul(half, hn::Add(s, to))), part = hn::Mul(length, hn::Sub(to, s));
-      const F t0 = l.tau(v), tm = hn::Mul(hn::Set(d, 4.0f), l.tau(middle)), t1 = l.tau(next), all = hn::Add(hn::Add(t0, tm), t1);
-      const F per_all = hn::Div(one, hn::Max(all, hn::Set(d, 1e-37f)));
-      const F by_emission = hn::Mul(hn::Add(hn::Add(hn::Mul(t0, v), hn::Mul(tm, middle)), hn::Mul(t1, next)), per_all);
-      const F weight = hn::Mul(hn::Add(hn::Mul(half, tm), t1), per_all);
-      segment(look, hn::Add(t, hn::Mul(length, s)), part, hn::Mul(part, hn::Mul(all, hn::Set(d, 1.0f / 6))), v, next, by_emission, weight,
-              t, length, from, way);
-      // On to the next line, or to the next piece.
-      k = hn::IfThenElse(ends, hn::Add(k, one), k);
-      look = hn::And(look, hn::And(hn::Lt(k, count), hn::Ge(sum_.pass, stop)));
-      if (hn::AllFalse(d, look)) return;
-      v = next, s = to;
-      if (!hn::AllFalse(d, cut)) {
-        at_ = hn::IfThenElse(hn::RebindMask(di, cut), hn::Add(at_, hn::IfThenElse(hn::RebindMask(di, up), hn::Set(di, 1), hn::Set(di, -1))),
-                             at_);
-        l = medium_.line(at_);
-      }
-      const F after = hn::Add(k, one), there = hn::Mul(after, per_count);
-      const M final_piece = hn::Ge(after, count);
-      end = hn::IfThenElse(ends, hn::IfThenElse(final_piece, one, there), end);
-      target = hn::IfThenElse(ends, hn::IfThenElse(final_piece, f.last, f.at(there)), target);
-    }
+    F ratio = hn::Zero(d);
+    const F kept = stride_;
+    M good = finish(a, here_, p1, t, world, cells, bend, turned, striding, ratio);
+    const M first = good;
+    good = finish(b, p1, p2, t1, world, cells, bend, turned, first, ratio);
+    take(p1, hn::AndNot(good, first)), take(p2, good);
+    const F factor = hn::Mul(hn::Set(d, 0.9f), hn::Sqrt(ratio));
+    const F longer = hn::Max(hn::Set(d, 0.5f), hn::Min(factor, hn::Set(d, 2.0f)));
+    const F shorter = hn::Max(hn::Set(d, 0.1f), hn::Min(factor, hn::Set(d, 0.7f)));
+    F next = hn::Min(hn::Mul(kept, hn::IfThenElse(good, longer, shorter)), hn::Set(d, longest_stride));
+    stride_ = hn::IfThenElse(striding, next, kept);
+    return hn::IfThenElse(good, t2, hn::IfThenElse(first, t1, t));
   }
 
-  /// Pieces::segment of optics/integrate.cpp.
-  HWY_INLINE void segment(M look, F here, F part, F depth, F a, F b, F middle, F weight, F t, F length, const F from[3], const F way[3]) {
+  /// Adds the stride for those lanes of `which` in which it is good enough. Sets their ratio of what is allowed to the error.
+  HWY_INLINE M finish(const Stride<D>& s, const typename SumLanes<D>::Place& from, const typename SumLanes<D>::Place& to, F t, F world,
+                      F cells, F bend, F turned, M which, F& ratio) {
     const D d;
-    const F zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
-    const M drawn = hn::And(look, hn::Gt(depth, zero));
-    if (hn::AllFalse(d, drawn)) return;
-    depth = hn::IfThenElseZero(drawn, depth);
-    const F pass = exp_minus_of(d, depth);
-    const F thin = hn::Mul(depth, hn::Sub(one, hn::Mul(depth, hn::Sub(half, hn::Mul(depth, hn::Set(d, 1.0f / 6))))));
-    const F alpha = hn::IfThenElse(hn::Lt(depth, hn::Set(d, 0.02f)), thin, hn::Sub(one, pass));
-    auto color = medium_.color(middle);
-    F r = hn::Mul(color.r, alpha), g = hn::Mul(color.g, alpha), bl = hn::Mul(color.b, alpha);
-    const M deep = hn::And(hn::And(drawn, hn::Gt(depth, hn::Set(d, 0.1f))),
-                           hn::Gt(hn::Mul(hn::Min(depth, hn::Set(d, 6.0f)), most_hidden_), hn::Set(d, 12.0f)));
-    if (!hn::AllFalse(d, deep)) {
-      F hidden = hn::Add(hn::Sub(hn::Mul(half, alpha), hn::Div(alpha, hn::Max(depth, hn::Set(d, 0.05f)))), pass);
-      const F series =
-          hn::Mul(hn::Mul(depth, depth),
-                  hn::Sub(hn::Set(d, 1.0f / 12), hn::Mul(depth, hn::Sub(hn::Set(d, 1.0f / 24), hn::Mul(depth, hn::Set(d, 1.0f / 80))))));
-      hidden = hn::IfThenElseZero(deep, hn::IfThenElse(hn::Lt(depth, hn::Set(d, 0.2f)), series, hidden));
-      const auto front = medium_.color(a), back = medium_.color(b);
-      r = hn::Sub(r, hn::Mul(hn::Sub(back.r, front.r), hidden)), g = hn::Sub(g, hn::Mul(hn::Sub(back.g, front.g), hidden));
-      bl = hn::Sub(bl, hn::Mul(hn::Sub(back.b, front.b), hidden));
-      weight = hn::Sub(weight, hn::IfThenElseZero(deep, hn::Div(hidden, hn::Max(alpha, hn::Set(d, 0.05f)))));
-    }
+    const F one = hn::Set(d, 1.0f), tolerance = hn::Set(d, float(plan_.budget.tolerance));
+    const F pass = cells_.sum.pass, taken = hn::Mul(pass, hn::Min(one, s.depth));
+    F error = hn::Mul(pass, s.error);
+    const F own = hn::Mul(tolerance, hn::Add(hn::Mul(taken, hn::Set(d, share_of_light)),
+                                             hn::Mul(world, hn::Set(d, float(share_of_length / plan_.budget.length)))));
+    const F allowed = hn::Add(own, hn::Mul(reserve_, hn::Set(d, share_at_once)));
+    const F change = hn::Abs(hn::Sub(to.value, from.value));
     if constexpr (shaded) {
-      const F s = hn::Div(hn::Sub(hn::Add(here, hn::Mul(part, weight)), t), hn::Max(length, hn::Set(d, 1e-30f)));
-      const auto lit = light_.at(from, way, s);
-      const F flash = hn::Mul(lit.specular, alpha);
-      r = hn::Add(hn::Mul(r, lit.diffuse), flash), g = hn::Add(hn::Mul(g, lit.diffuse), flash),
-      bl = hn::Add(hn::Mul(bl, lit.diffuse), flash);
+      // Where the value may turn, surfaces begin to show their other side.
+      const M turns = hn::Le(change, hn::Mul(bend, hn::Mul(cells, cells)));
+      error = hn::Add(error, hn::Mul(taken, hn::IfThenElse(turns, hn::Set(d, 0.25f), turned)));
     }
-    const F before = hn::IfThenElseZero(drawn, sum_.pass);
-    sum_.r = hn::Add(sum_.r, hn::Mul(before, r)), sum_.g = hn::Add(sum_.g, hn::Mul(before, g)),
-    sum_.b = hn::Add(sum_.b, hn::Mul(before, bl));
-    const F after = hn::Mul(sum_.pass, pass);
-    const M halved = hn::And(drawn, hn::And(hn::Lt(after, half), hn::Lt(sum_.half_at, zero)));
-    if (!hn::AllFalse(d, halved)) {
-      const F share = hn::Min(one, hn::Div(hn::Sub(sum_.pass, half), hn::Max(hn::Sub(sum_.pass, after), hn::Set(d, 1e-30f))));
-      sum_.half_at = hn::IfThenElse(halved, hn::Add(here, hn::Mul(part, share)), sum_.half_at);
-    }
-    sum_.pass = hn::IfThenElse(drawn, after, sum_.pass);
+    const M good = hn::And(which, hn::Le(error, allowed));
+    const F r = hn::Div(allowed, hn::Max(error, hn::Set(d, 1e-30f)));
+    ratio = hn::IfThenElse(which, hn::IfThenElseZero(hn::Eq(error, error), r), ratio);
+    reserve_ = hn::IfThenElse(good, hn::Sub(hn::Add(reserve_, own), error), reserve_);
+    if (hn::AllFalse(d, hn::And(good, hn::Gt(s.depth, hn::Zero(d))))) return good;
+    cells_.may_hide(change);
+    cells_.segment(good, t, world, s.depth, from.value, to.value, s.middle, s.weight,
+                   [&](M drawn, F at, F share, F before, F& r, F& g, F& b) HWY_ATTR {
+                     if constexpr (shaded)
+                       queue_.push(plan_, rays_, *result_, drawn, at, hn::Mul(before, r), hn::Mul(before, g), hn::Mul(before, b),
+                                   hn::Mul(before, share));
+                     return !shaded;
+                   });
+    return good;
   }
 
-  HWY_INLINE void store(PacketResult& result, const RayPacket& rays) const {
+  /// Takes lanes out of their cell (crossing it), or out of the cube of bricks nearer than what is drawn (leaping).
+  HWY_INLINE void walk(const I brick[3], I free, const I inside[3], M leaping, M crossing, I cell[3], F& t) {
     const D d;
+    const IntTag<D> di;
+    const I one = hn::Set(di, 1), zero = hn::Zero(di);
+    const auto leaps = hn::RebindMask(di, leaping);
+    const I* last_cell = cells_.source.last_cell;
+    F leave = end_, at[3];
+    I side[3];
+    for (int a = 0; a < 3; ++a) {
+      const auto up = hn::RebindMask(di, up_[a]);
+      const I reach = hn::ShiftLeft<FineBricks::shift>(hn::Add(brick[a], hn::IfThenElse(up, free, hn::Sub(one, free))));
+      side[a] = hn::IfThenElse(leaps, reach, hn::Add(cell[a], hn::IfThenElse(up, one, zero)));
+      F there = hn::Mul(hn::Sub(hn::ConvertTo(d, side[a]), cells_.start[a]), per_along_[a]);
+      // Beyond the outermost bricks there is nothing else.
+      const auto open = hn::And(leaps, hn::Or(hn::Lt(side[a], one), hn::Gt(side[a], last_cell[a])));
+      there = hn::IfThenElse(hn::Or(still_[a], hn::RebindMask(d, open)), hn::Set(d, HUGE_VALF), hn::Max(there, t));
+      at[a] = there, leave = hn::Min(leave, there);
+    }
+    const M look = hn::And(crossing, hn::Gt(leave, t));
+    if (!hn::AllFalse(d, look)) cells_.cross(inside, t, leave, look);
+    const auto moving = hn::RebindMask(di, hn::Or(leaping, crossing));
+    for (int a = 0; a < 3; ++a) {
+      const auto up = hn::RebindMask(di, up_[a]);
+      const auto through = hn::RebindMask(di, hn::Le(at[a], leave));
+      const I beyond = hn::Sub(side[a], hn::IfThenElse(up, zero, one));
+      I next = cell[a];
+      if (!hn::AllFalse(d, leaping)) {
+        // Inside the cube along the other axes, and never back.
+        const I here = to_int(d, hn::Floor(hn::Add(cells_.start[a], hn::Mul(cells_.along[a], leave))));
+        const I forth = hn::IfThenElse(up, hn::Max(cell[a], hn::Min(here, hn::Sub(beyond, one))),
+                                       hn::Min(cell[a], hn::Max(here, hn::Add(beyond, one))));
+        const auto open = hn::Ge(at[a], hn::Set(d, HUGE_VALF));
+        const I free_way = hn::Min(hn::Max(here, hn::Set(di, -1)), hn::Add(last_cell[a], one));
+        const I leapt = hn::IfThenElse(hn::RebindMask(di, open), hn::IfThenElse(hn::RebindMask(di, still_[a]), cell[a], free_way), forth);
+        next = hn::IfThenElse(leaps, leapt, next);
+      }
+      cell[a] = hn::IfThenElse(moving, hn::IfThenElse(through, beyond, next), cell[a]);
+    }
+    t = hn::IfThenElse(hn::Or(leaping, crossing), leave, t);
+  }
+
+  HWY_INLINE void store() {
+    const D d;
+    PacketResult& result = *result_;
+    if constexpr (shaded) queue_.finish(plan_, rays_, result);
+    const Gathering<D>& sum = cells_.sum;
     alignas(64) float half_at[most_lanes];
-    hn::Store(sum_.r, d, result.r), hn::Store(sum_.g, d, result.g), hn::Store(sum_.b, d, result.b);
-    hn::Store(sum_.pass, d, result.transmittance), hn::Store(sum_.half_at, d, half_at);
-    for (size_t n = 0; n < hn::Lanes(d); ++n) result.surface[n] = half_at[n] >= 0 ? rays.enter[n] + double(half_at[n]) : -1;
+    hn::Store(hn::Add(sum.r, hn::Load(d, result.r)), d, result.r), hn::Store(hn::Add(sum.g, hn::Load(d, result.g)), d, result.g);
+    hn::Store(hn::Add(sum.b, hn::Load(d, result.b)), d, result.b);
+    hn::Store(sum.pass, d, result.transmittance), hn::Store(sum.half_at, d, half_at);
+    for (size_t n = 0; n < hn::Lanes(d); ++n) result.surface[n] = half_at[n] >= 0 ? rays_.enter[n] + double(half_at[n]) : -1;
   }
 
   const PacketPlan& plan_;
   const Volume& v_;
-  const Source<D, T> source_;
-  const MediumLanes<D> medium_;
-  CellLight<D, T> light_;
-  F start_[3], along_[3], per_along_[3], end_;
+  PacketCells<D, T, shaded> cells_;
+  const SumLanes<D> sums_;
+  RayPacket& rays_;  // of a lit volume, `first` and `by` are the entry and a world length: the queue's samples are world lengths
+  PacketResult* result_ = nullptr;
+  F per_along_[3], per_speed_, end_;
   M still_[3], up_[3];
-  Gathering<D> sum_;
-  // The line of the medium on which each lane's value was last: most often it is there still.
-  I at_;
-  typename MediumLanes<D>::Line line_;
-  F most_hidden_;  // what the front of a cell can hide of its change of colour, in a fifth of the tolerance
+  F stride_, reserve_;
+  typename SumLanes<D>::Place here_;
+  struct None {};
+  std::conditional_t<shaded, ShadeQueue<D, T, true>, None> queue_;
 };
 
 template <class D, class T, bool shaded>
@@ -453,7 +279,7 @@ HWY_NOINLINE void cast_all(const PacketPlan& plan, int x0, int y0, int x1, int y
     for (int x = x0; x < x1; x += width) {
       if (!set_up<D>(plan, x, y, x1, y1, frame, rays)) continue;
       TolerantPacket<D, T, shaded> packet(plan, rays);
-      packet.run(result, rays);
+      packet.run(result);
       put(plan, rays, result, lanes, frame);
     }
 }

@@ -169,10 +169,13 @@ LatticeSamples take_samples(const VolumeItem& item, const Field& field, std::arr
   return v;
 }
 
+std::string key_of(const VolumeItem& item, const Field& field, const char* what) {
+  return fmt::format("volume {}: {} {} {} {}", what, int(field.association), item.component, wants_small_differences(item), field.name);
+}
+
 /// Taken once for all pictures of the field.
 std::shared_ptr<const LatticeSamples> kept_samples(const VolumeItem& item, const Field& field, std::array<size_t, 3> dims) {
-  const std::string key =
-      fmt::format("volume lattice: {} {} {} {}", int(field.association), item.component, wants_small_differences(item), field.name);
+  const std::string key = key_of(item, field, "lattice");
   Memo& memo = item.data->memo();
   if (auto kept = memo.find<LatticeSamples>(key)) return kept;
   LatticeSamples s = take_samples(item, field, dims);
@@ -222,6 +225,15 @@ double Volume::cell_length(int a, double q) const {
   const std::vector<double>& c = coordinates[a];
   const size_t i = std::min(size_t(u(a, q)), c.size() - 2);
   return c[i + 1] - c[i];
+}
+
+std::shared_ptr<const Bends> bends_of(const VolumeItem& item, const Volume& v) {
+  const std::string key = key_of(item, field_of(item), "bends");
+  Memo& memo = item.data->memo();
+  if (auto kept = memo.find<Bends>(key)) return kept;
+  Bends b = find_bends(v.voxels.array, v.voxels.dims, float(v.samples->hi - v.samples->lo), v.dual);
+  const size_t bytes = b.codes.size() * sizeof(Bends::Codes);
+  return memo.keep(key, std::move(b), bytes);
 }
 
 Volume prepare(const VolumeItem& item, uint32_t id, const Knobs& knobs) {

@@ -54,6 +54,14 @@ class Medium {
     return i;
   }
   float tau(float v) const { return lines_[size_t(line_of(v))](v); }
+  /// d tau/d v.
+  float line_slope(float v) const {
+    const Line& l = lines_[size_t(line_of(v))];
+    const float d = v - l.origin;
+    return l.slope + d * (2 * l.curve + d * 3 * l.twist);
+  }
+  float top() const { return top_; }      ///< largest value in the data
+  float faint() const { return faint_; }  ///< a tau that makes no difference
   Vec3f color(float v) const {
     const uint16_t* c = &colors_[4 * size_t(node(v))];
     return {float(c[0]) * (1.0f / 65535), float(c[1]) * (1.0f / 65535), float(c[2]) * (1.0f / 65535)};

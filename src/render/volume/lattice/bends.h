@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// How far a lattice's field bends: bounds from second differences, per fine brick, for steps longer than cells.
+#pragma once
+#include <array>
+#include <bit>
+#include <cstdint>
+
+#include "base/huge_allocator.h"
+#include "data/array.h"
+
+namespace sg::volume {
+
+/// Two bounds per fine brick (FineBricks: 4^3 cells), good for the brick and all bricks around it:
+///
+/// bend: along any line the slope of the trilinear field changes by at most `bend` per cell length. That is a sum of jumps at the faces
+///   of cells (second differences) and of what the field bends inside (mixed differences): with |H| the matrix of their largest absolute
+///   values, d^T |H| d <= its largest row sum, for every direction d. Over a length s the field leaves its chord by s^2 bend / 8 on average
+///   at most, s^2 bend / 4 anywhere.
+/// turn: the gradient turns by at most so many radians per cell length.
+///
+/// Kept in eight bits, rounded up: quarters of octaves.
+struct Bends {
+  static constexpr int least_bend = -50, least_turn = -40;  ///< exponents of two of code 0; bends in parts of `range`
+  static constexpr uint8_t unbounded = 255;                 ///< beside values that are none
+  struct Codes {
+    uint8_t bend, turn;
+  };
+  Plane<Codes> codes;  ///< per fine brick, and two more: any of them can be read as a word
+  float range = 1;     ///< of the values
+
+  static uint8_t coded(float v, int least) {
+    if (!(v < 1e30f)) return unbounded;
+    const int32_t base = (127 + least) << 23, up = std::bit_cast<int32_t>(v) + (1 << 21) - 1;
+    return up <= base ? 0 : uint8_t(std::min((up - base) >> 21, 254));
+  }
+  static float decoded(uint8_t code, int least) { return std::bit_cast<float>((int32_t(code) << 21) + ((127 + least) << 23)); }
+};
+
+/// Of packed samples of a type that floats hold exactly, with `range` their largest less their smallest value. `framed`: beyond the
+/// outermost samples the field goes on with their values, so that it bends there too.
+Bends find_bends(const Array& values, std::array<size_t, 3> dims, float range, bool framed);
+
+}  // namespace sg::volume

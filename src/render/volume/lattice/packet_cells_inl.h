@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cells that the lanes of a packet cross, integrated within a tolerance: in a cell the field along the ray is a cubic, cut at the knots of
+// the medium.
+#if defined(SG_PACKET_CELLS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SG_PACKET_CELLS_INL_H
+#undef SG_PACKET_CELLS_INL_H
+#else
+#define SG_PACKET_CELLS_INL_H
+#endif
+
+#include "render/volume/lattice/packet_light_inl.h"
+#include "render/volume/lattice/packet_medium_inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sg::volume::HWY_NAMESPACE {
+
+/// a + b s + c s^2 + e s^3.
+template <class D>
+struct Cubic {
+  hn::Vec<D> a, b, c, e, last;  // last: at s = 1
+  HWY_INLINE hn::Vec<D> at(hn::Vec<D> s) const { return hn::Add(a, hn::Mul(s, hn::Add(b, hn::Mul(s, hn::Add(c, hn::Mul(s, e)))))); }
+};
+
+/// The trilinear field of a cell along the way from + s * way, corners by rows.
+template <class D>
+HWY_INLINE Cubic<D> along_way(D d, const Pair<D>& p00, const Pair<D>& p01, const Pair<D>& p10, const Pair<D>& p11, const hn::Vec<D> from[3],
+                              const hn::Vec<D> way[3]) {
+  using F = hn::Vec<D>;
+  struct Linear {
+    F a, b;
+  };
+  struct Square {
+    F a, b, c;
+  };
+  const auto x = [&](const Pair<D>& p) HWY_ATTR {
+    const F rise = hn::Sub(p.b, p.a);
+    return Linear{hn::Add(p.a, hn::Mul(from[0], rise)), hn::Mul(way[0], rise)};
+  };
+  const auto y = [&](const Linear& p, const Linear& q) HWY_ATTR {
+    const F rise = hn::Sub(q.a, p.a), bend = hn::Sub(q.b, p.b);
+    return Square{hn::Add(p.a, hn::Mul(from[1], rise)), hn::Add(hn::Add(p.b, hn::Mul(from[1], bend)), hn::Mul(way[1], rise)),
+                  hn::Mul(way[1], bend)};
+  };
+  const Square p = y(x(p00), x(p01)), q = y(x(p10), x(p11));
+  const F da = hn::Sub(q.a, p.a), db = hn::Sub(q.b, p.b), dc = hn::Sub(q.c, p.c);
+  Cubic<D> f;
+  f.a = hn::Add(p.a, hn::Mul(from[2], da));
+  f.b = hn::Add(hn::Add(p.b, hn::Mul(from[2], db)), hn::Mul(way[2], da));
+  f.c = hn::Add(hn::Add(p.c, hn::Mul(from[2], dc)), hn::Mul(way[2], db));
+  f.e = hn::Mul(way[2], dc);
+  f.last = hn::Add(hn::Add(f.a, f.b), hn::Add(f.c, f.e));
+  return f;
+}
+
+/// What is gathered so far, and where half of the light was gone.
+template <class D>
+struct Gathering {
+  hn::Vec<D> r, g, b, pass, half_at;
+  HWY_INLINE Gathering() {
+    const D d;
+    r = g = b = hn::Zero(d), pass = hn::Set(d, 1.0f), half_at = hn::Set(d, -1.0f);
+  }
+};
+
+template <class D, class T, bool shaded>
+class PacketCells {
+  using F = hn::Vec<D>;
+  using I = Int<D>;
+  using M = hn::Mask<D>;
+
+ public:
+  const PacketPlan& plan;
+  const Source<D, T> source;
+  const MediumLanes<D> medium;
+  F start[3], along[3];  ///< in u: where the rays enter, and one world length
+  Gathering<D> sum;
+
+  HWY_INLINE PacketCells(const PacketPlan& p, const RayPacket& rays) : plan(p), source(p.volume.voxels), medium(*p.medium), light(p, rays) {
+    const D d;
+    for (int a = 0; a < 3; ++a) start[a] = hn::Load(d, rays.entry[a]), along[a] = hn::Load(d, rays.along[a]);
+    at_ = hn::Zero(IntTag<D>());
+    line_ = medium.line(at_);
+  }
+
+  /// What a change of the value by `range` may have of itself hidden by its front, in a fifth of the tolerance.
+  HWY_INLINE void may_hide(F range) {
+    most_hidden_ = hn::Mul(range, hn::Set(D(), medium.medium.color_slope() / (0.2f * float(plan.budget.tolerance))));
+  }
+
+  /// One cell per lane: its cubic, and what the medium makes of it.
+  HWY_INLINE void cross(const I inside[3], F t, F leave, M look) {
+    const D d;
+    const F zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+    const I corner = source.offset(inside[0], inside[1], inside[2]);
+    F from[3], way[3];
+    for (int a = 0; a < 3; ++a) {
+      const F base = hn::Sub(start[a], hn::ConvertTo(d, inside[a]));
+      from[a] = hn::Max(zero, hn::Min(hn::Add(base, hn::Mul(along[a], t)), one));
+      way[a] = hn::Sub(hn::Max(zero, hn::Min(hn::Add(base, hn::Mul(along[a], leave)), one)), from[a]);
+    }
+    const I above = hn::Add(corner, source.layer);
+    const Pair<D> p00 = source.pair(corner), p01 = source.pair(hn::Add(corner, source.row));
+    const Pair<D> p10 = source.pair(above), p11 = source.pair(hn::Add(above, source.row));
+    // No place in the cell lies outside the range of its corners.
+    const F least = hn::Min(hn::Min(hn::Min(p00.a, p00.b), hn::Min(p01.a, p01.b)), hn::Min(hn::Min(p10.a, p10.b), hn::Min(p11.a, p11.b)));
+    const F largest = hn::Max(hn::Max(hn::Max(p00.a, p00.b), hn::Max(p01.a, p01.b)), hn::Max(hn::Max(p10.a, p10.b), hn::Max(p11.a, p11.b)));
+    const M clear_line = line_.dark();
+    if (hn::AllFalse(d, hn::AndNot(hn::And(clear_line, hn::And(hn::Ge(least, line_.lo), hn::Le(largest, line_.hi))), look))) return;
+    const Cubic<D> f = along_way(d, p00, p01, p10, p11, from, way);
+    // The hull of the cubic's Bernstein coefficients.
+    const F third = hn::Set(d, 1.0f / 3), b1 = hn::Add(f.a, hn::Mul(f.b, third)), b2 = hn::Add(b1, hn::Mul(hn::Add(f.b, f.c), third));
+    const F lo = hn::Min(hn::Min(f.a, b1), hn::Min(b2, f.last)), hi = hn::Max(hn::Max(f.a, b1), hn::Max(b2, f.last));
+    look = hn::And(look, hn::Eq(f.last, f.last));  // no hole
+    const M strange = hn::AndNot(hn::And(hn::Ge(f.a, line_.lo), hn::Le(f.a, line_.hi)), look);
+    if (!hn::AllFalse(d, strange)) at_ = medium.line_of(f.a), line_ = medium.line(at_);
+    const M same = hn::And(hn::Ge(lo, line_.lo), hn::Le(hi, line_.hi));
+    const M dark = hn::And(same, line_.dark());
+    look = hn::AndNot(dark, look);
+    if (hn::AllFalse(d, look)) return;
+    const Pair<D> rows[4] = {p00, p01, p10, p11};
+    integrate(f, lo, hi, same, corner, inside, rows, from, way, t, hn::Sub(leave, t), look);
+  }
+
+  HWY_INLINE void integrate(const Cubic<D>& f, F lo, F hi, M same, I corner, const I inside[3], const Pair<D> rows[4], const F from[3],
+                            const F way[3], F t, F length, M look) {
+    const D d;
+    const IntTag<D> di;
+    const F zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
+    const Medium& m = medium.medium;
+    const typename MediumLanes<D>::Line& line = line_;
+    const float tolerance = float(plan.budget.tolerance);
+    // Of the cubic: a + b/2 + c/3 + e/4.
+    const F mean = hn::Add(hn::Add(f.a, hn::Mul(half, f.b)), hn::Add(hn::Mul(hn::Set(d, 1.0f / 3), f.c), hn::Mul(hn::Set(d, 0.25f), f.e)));
+    F tau_mean = line.tau(mean), most = hn::Max(hn::Max(line.tau(lo), line.tau(hi)), tau_mean);
+    F slope = hn::Max(line.slope_at(lo), line.slope_at(hi));
+    if (!hn::AllFalse(d, hn::AndNot(same, look))) {
+      const I first = medium.line_of(lo), last = medium.line_of(hi);
+      most = hn::IfThenElse(same, most, medium.most(medium.columns.most_tau, first, last));
+      slope = hn::IfThenElse(same, slope, medium.most(medium.columns.most_slope, first, last));
+      tau_mean = hn::IfThenElse(same, tau_mean, medium.line(medium.line_of(mean)).tau(mean));
+      look = hn::And(look, hn::Gt(most, zero));
+      if (hn::AllFalse(d, look)) return;
+    }
+    // The errors of optics/integrate.cpp, Pieces::whole.
+    const F pass = sum.pass, taken = hn::Min(one, hn::Mul(length, most)), range = hn::Sub(hi, lo);
+    const F widths = hn::Mul(range, hn::Set(d, 1 / m.color_width())), change = hn::Min(one, hn::Mul(range, hn::Set(d, m.color_slope())));
+    const F beyond = hn::Max(hn::Sub(hi, hn::Max(f.a, f.last)), hn::Sub(hn::Min(f.a, f.last), lo));
+    const F deep = hn::Mul(hn::Mul(hn::Mul(length, length), hn::Mul(most, slope)), hn::Mul(range, hn::Set(d, 0.05f)));
+    F error = hn::Mul(hn::Mul(taken, hn::Set(d, 0.25f * tolerance)), hn::Mul(widths, widths));
+    error = hn::Add(error, hn::Mul(change, hn::Min(one, deep)));
+    error = hn::Add(error, hn::IfThenElseZero(hn::Not(same), hn::Mul(beyond, hn::Mul(length, slope))));
+    error = hn::Mul(error, pass);
+    const F share = hn::Mul(pass, hn::Min(one, hn::Mul(length, tau_mean)));
+    const F allowed = hn::Mul(hn::Set(d, tolerance),
+                              hn::Add(hn::Mul(length, hn::Set(d, float(0.3 / plan.budget.length))), hn::Mul(share, hn::Set(d, 0.4f))));
+    if constexpr (shaded) {
+      light.cell(source, corner, inside, rows);
+      error = hn::Max(error, light.error(from, way, hn::Mul(pass, taken)));
+    }
+    F count = one, per_count = one, end = one, target = f.last;
+    if (!hn::AllFalse(d, hn::And(look, hn::Gt(error, allowed)))) {
+      count = hn::Max(one, hn::Min(hn::Ceil(hn::Sqrt(hn::Div(error, hn::Max(allowed, hn::Set(d, 1e-30f))))), hn::Set(d, 64.0f)));
+      per_count = hn::Div(one, count), end = per_count;
+      target = hn::IfThenElse(hn::Eq(count, one), f.last, f.at(per_count));
+    }
+    const F stop = hn::Set(d, plan.budget.stop_below);
+    may_hide(range);
+
+    // Pieces, cut where the value meets the knots.
+    F k = zero, v = f.a, s = zero;
+    typename MediumLanes<D>::Line& l = line_;
+    for (;;) {
+      const M up = hn::Ge(target, v);
+      const M ends = hn::Or(hn::And(up, hn::Le(target, l.hi)), hn::AndNot(up, hn::Ge(target, l.lo)));
+      F to = end, next = target;
+      const M cut = hn::AndNot(ends, look);
+      if (!hn::AllFalse(d, cut)) {
+        const F knot = hn::IfThenElse(up, l.hi, l.lo);
+        const F rise = hn::Sub(target, v);
+        const F run = hn::Div(hn::Sub(end, s), hn::IfThenElse(hn::Eq(rise, zero), one, rise));
+        F meet = hn::Add(s, hn::Mul(hn::Sub(knot, v), run));
+        for (int i = 0; i < 2; ++i) meet = hn::Max(s, hn::Min(hn::Sub(meet, hn::Mul(hn::Sub(f.at(meet), knot), run)), end));
+        to = hn::IfThenElse(cut, meet, to), next = hn::IfThenElse(cut, knot, next);
+      }
+      const F middle = f.at(hn::Mul(half, hn::Add(s, to))), part = hn::Mul(length, hn::Sub(to, s));
+      const F t0 = l.tau(v), tm = hn::Mul(hn::Set(d, 4.0f), l.tau(middle)), t1 = l.tau(next), all = hn::Add(hn::Add(t0, tm), t1);
+      const F per_all = hn::Div(one, hn::Max(all, hn::Set(d, 1e-37f)));
+      const F by_emission = hn::Mul(hn::Add(hn::Add(hn::Mul(t0, v), hn::Mul(tm, middle)), hn::Mul(t1, next)), per_all);
+      const F weight = hn::Mul(hn::Add(hn::Mul(half, tm), t1), per_all);
+      segment(look, hn::Add(t, hn::Mul(length, s)), part, hn::Mul(part, hn::Mul(all, hn::Set(d, 1.0f / 6))), v, next, by_emission, weight,
+              [&](M, F here, F share, F, F& red, F& green, F& blue) HWY_ATTR {
+                if constexpr (shaded) {
+                  const auto on = light.at(from, way, hn::Div(hn::Sub(here, t), hn::Max(length, hn::Set(D(), 1e-30f))));
+                  const F flash = hn::Mul(on.specular, share);
+                  for (F* c : {&red, &green, &blue}) *c = hn::Add(hn::Mul(*c, on.diffuse), flash);
+                }
+                return true;
+              });
+      // On to the next line, or to the next piece.
+      k = hn::IfThenElse(ends, hn::Add(k, one), k);
+      look = hn::And(look, hn::And(hn::Lt(k, count), hn::Ge(sum.pass, stop)));
+      if (hn::AllFalse(d, look)) return;
+      v = next, s = to;
+      if (!hn::AllFalse(d, cut)) {
+        at_ = hn::IfThenElse(hn::RebindMask(di, cut), hn::Add(at_, hn::IfThenElse(hn::RebindMask(di, up), hn::Set(di, 1), hn::Set(di, -1))),
+                             at_);
+        l = medium.line(at_);
+      }
+      const F after = hn::Add(k, one), there = hn::Mul(after, per_count);
+      const M final_piece = hn::Ge(after, count);
+      end = hn::IfThenElse(ends, hn::IfThenElse(final_piece, one, there), end);
+      target = hn::IfThenElse(ends, hn::IfThenElse(final_piece, f.last, f.at(there)), target);
+    }
+  }
+
+  /// Pieces::segment of optics/integrate.cpp. `lit(drawn, at, share, r, g, b)` lights the colours and the share of what is mirrored, at
+  /// world length `at`, and says whether they are to be added here.
+  template <class Lit>
+  HWY_INLINE void segment(M look, F here, F part, F depth, F a, F b, F middle, F weight, const Lit& lit) {
+    const D d;
+    const F zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
+    const M drawn = hn::And(look, hn::Gt(depth, zero));
+    if (hn::AllFalse(d, drawn)) return;
+    depth = hn::IfThenElseZero(drawn, depth);
+    const F pass = exp_minus_of(d, depth);
+    const F thin = hn::Mul(depth, hn::Sub(one, hn::Mul(depth, hn::Sub(half, hn::Mul(depth, hn::Set(d, 1.0f / 6))))));
+    const F alpha = hn::IfThenElse(hn::Lt(depth, hn::Set(d, 0.02f)), thin, hn::Sub(one, pass));
+    auto color = medium.color(middle);
+    F r = hn::Mul(color.r, alpha), g = hn::Mul(color.g, alpha), bl = hn::Mul(color.b, alpha);
+    const M deep = hn::And(hn::And(drawn, hn::Gt(depth, hn::Set(d, 0.1f))),
+                           hn::Gt(hn::Mul(hn::Min(depth, hn::Set(d, 6.0f)), most_hidden_), hn::Set(d, 12.0f)));
+    if (!hn::AllFalse(d, deep)) {
+      F hidden = hn::Add(hn::Sub(hn::Mul(half, alpha), hn::Div(alpha, hn::Max(depth, hn::Set(d, 0.05f)))), pass);
+      const F series =
+          hn::Mul(hn::Mul(depth, depth),
+                  hn::Sub(hn::Set(d, 1.0f / 12), hn::Mul(depth, hn::Sub(hn::Set(d, 1.0f / 24), hn::Mul(depth, hn::Set(d, 1.0f / 80))))));
+      hidden = hn::IfThenElseZero(deep, hn::IfThenElse(hn::Lt(depth, hn::Set(d, 0.2f)), series, hidden));
+      const auto front = medium.color(a), back = medium.color(b);
+      r = hn::Sub(r, hn::Mul(hn::Sub(back.r, front.r), hidden)), g = hn::Sub(g, hn::Mul(hn::Sub(back.g, front.g), hidden));
+      bl = hn::Sub(bl, hn::Mul(hn::Sub(back.b, front.b), hidden));
+      weight = hn::Sub(weight, hn::IfThenElseZero(deep, hn::Div(hidden, hn::Max(alpha, hn::Set(d, 0.05f)))));
+    }
+    const F before = hn::IfThenElseZero(drawn, sum.pass);
+    if (lit(drawn, hn::Add(here, hn::Mul(part, weight)), alpha, before, r, g, bl)) {
+      sum.r = hn::Add(sum.r, hn::Mul(before, r)), sum.g = hn::Add(sum.g, hn::Mul(before, g)), sum.b = hn::Add(sum.b, hn::Mul(before, bl));
+    }
+    const F after = hn::Mul(sum.pass, pass);
+    const M halved = hn::And(drawn, hn::And(hn::Lt(after, half), hn::Lt(sum.half_at, zero)));
+    if (!hn::AllFalse(d, halved)) {
+      const F share = hn::Min(one, hn::Div(hn::Sub(sum.pass, half), hn::Max(hn::Sub(sum.pass, after), hn::Set(d, 1e-30f))));
+      sum.half_at = hn::IfThenElse(halved, hn::Add(here, hn::Mul(part, share)), sum.half_at);
+    }
+    sum.pass = hn::IfThenElse(drawn, after, sum.pass);
+  }
+
+ private:
+  CellLight<D, T> light;
+  // The line of the medium on which each lane's value was last: most often it is there still.
+  I at_;
+  typename MediumLanes<D>::Line line_;
+  F most_hidden_;
+};
+
+}  // namespace sg::volume::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

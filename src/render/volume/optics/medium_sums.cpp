@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/volume/optics/medium_sums.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sg::volume {
+
+namespace {
+
+/// Lines narrower than so many nodes are spikes: steps must not pass over them unseen.
+constexpr double narrow = 6;
+
+/// The slope of what a node does not tell.
+constexpr float untold = 1e30f;
+
+/// The integral of a line's cubic from its origin on.
+double integral(const Medium::Line& l, double x) {
+  return x * (double(l.at) + x * (double(l.slope) / 2 + x * (double(l.curve) / 3 + x * double(l.twist) / 4)));
+}
+
+double slope_at(const Medium::Line& l, double x) { return double(l.slope) + x * (2 * double(l.curve) + x * 3 * double(l.twist)); }
+
+}  // namespace
+
+MediumSums::MediumSums(const Medium& medium) {
+  const std::vector<Medium::Line>& lines = medium.lines();
+  lo_ = lines.front().origin;
+  const float hi = medium.top();
+  width_ = hi > lo_ ? (hi - lo_) / float(nodes) : 1;
+  per_width_ = 1 / width_;
+  const double w = double(width_);
+  const auto node_of = [&](double v) { return size_t(std::clamp((v - double(lo_)) / w, 0.0, double(nodes - 1))); };
+
+  // P at the borders of the nodes.
+  std::vector<double> sum(size_t(nodes) + 1, 0.0);
+  double before = 0;
+  size_t node = 0;
+  for (size_t i = 0; i < lines.size(); ++i) {
+    const Medium::Line& l = lines[i];
+    const bool last = i + 1 == lines.size();
+    const double from = double(l.origin), to = last ? double(hi) : double(l.hi);
+    for (; node <= size_t(nodes); ++node) {
+      const double v = double(lo_) + double(node) * w;
+      if (v > to && !last) break;
+      sum[node] = before + integral(l, std::max(v - from, 0.0));
+    }
+    before += integral(l, std::max(to - from, 0.0));
+  }
+  const double most = std::max(sum.back(), 1e-30);
+  per_sum_ = float(most * 0x1p-30);
+
+  nodes_.resize(size_t(nodes) + 1);
+  for (size_t i = 0; i < size_t(nodes); ++i) {
+    const float at = lo_ + float(i) * width_;
+    const double tau = double(medium.tau(at)), share = (sum[i + 1] - sum[i]) / w;
+    Node& n = nodes_[i];
+    n.sum = uint32_t(uint64_t(std::llround(sum[i] / double(per_sum_))));
+    n.tau = float(tau), n.slope = float(2 * (share - tau) / w);
+    n.steep = std::max(std::abs(medium.line_slope(at)), std::abs(n.slope));
+  }
+  nodes_.back() = nodes_[size_t(nodes) - 1];
+
+  // Where a straight line does not do for a node: jumps, and spikes with their surroundings.
+  for (size_t i = 0; i < lines.size(); ++i) {
+    const Medium::Line& l = lines[i];
+    const double to = i + 1 == lines.size() ? double(hi) : double(l.hi), length = to - double(l.origin);
+    const double end = double(l.at) + length * (double(l.slope) + length * (double(l.curve) + length * double(l.twist)));
+    const bool spike = !l.dark() && length < narrow * w && lines.size() > 1;
+    if (spike)
+      for (size_t k = node_of(double(l.origin) - w); k <= node_of(to + w); ++k) nodes_[k].steep = untold;
+    for (size_t k = node_of(double(l.origin)); k <= node_of(to); ++k)
+      for (double f : {0.0, 1.0}) {
+        const double x = std::clamp(double(lo_) + (double(k) + f) * w - double(l.origin), 0.0, std::max(length, 0.0));
+        nodes_[k].steep = std::max(nodes_[k].steep, float(std::abs(slope_at(l, x))));
+      }
+    if (i + 1 < lines.size()) {
+      const double next = double(lines[i + 1].at), jump = std::abs(std::max(next, 0.0) - std::max(end, 0.0));
+      if (jump > 1e-4 * std::max(std::abs(next), std::abs(end)) && jump > double(medium.faint()))
+        for (size_t k = node_of(to - w); k <= node_of(to + w); ++k) nodes_[k].steep = untold;
+    }
+  }
+
+  // Each level: two neighbours of the one below, and the next two.
+  steepest_.assign(size_t(first_of(levels)) + 1, 0.0f);
+  std::vector<float> level(size_t(nodes) + 1, 0.0f);
+  for (size_t i = 0; i < size_t(nodes); ++i) level[i] = nodes_[i].steep;
+  for (int l = 0; l < levels; ++l) {
+    const size_t n = size_t(nodes >> l);
+    for (size_t i = 0; i < n; ++i) steepest_[size_t(first_of(l)) + i] = std::max(level[i], i + 1 < n ? level[i + 1] : 0.0f);
+    for (size_t i = 0; i < n / 2; ++i) level[i] = std::max(level[2 * i], level[2 * i + 1]);
+  }
+}
+
+}  // namespace sg::volume
