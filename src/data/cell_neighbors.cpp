@@ -41,7 +41,19 @@ class FaceSource {
   }
 
   size_t count() const { return count_; }
-  size_t points() const { return points_; }
+  /// Of the mesh; or as many as the ids tell, when only topology was given.
+  size_t points() const {
+    if (points_ > 0) return points_;
+    const IndexView& ids = cells_.connectivity;
+    return parallel_reduce(
+        cells_.count > 0 ? cells_.end(cells_.count - 1) : 0, size_t(1) << 18, size_t(0),
+        [&](size_t begin, size_t end) {
+          size_t n = 0;
+          for (size_t i = begin; i < end; ++i) n = std::max(n, size_t(ids[i]) + 1);
+          return n;
+        },
+        [](size_t a, size_t b) { return std::max(a, b); });
+  }
   bool beyond_32_bits() const { return points_ >= UINT32_MAX; }
   /// Cells with faces are first() to end().
   size_t first() const { return first_; }

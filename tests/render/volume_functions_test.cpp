@@ -212,7 +212,7 @@ TEST_CASE("volume: skipping and early ends are not seen within the tolerance") {
   volume::Knobs no_skip, no_end;
   no_skip.skip_empty = false, no_end.stop_below = 0;
   const Frame a = draw(scene_of({v}), view);
-  CHECK(largest_difference(a, draw(scene_of({v}), view, no_skip)) < 2e-5f);
+  CHECK(largest_difference(a, draw(scene_of({v}), view, no_skip)) < 1.0f / 512);  // strides begin elsewhere
   CHECK(largest_difference(a, draw(scene_of({v}), view, no_end)) < 0.3f / 512);
   CHECK_FALSE(same_bytes(a, draw(scene_of({v}), view, no_end)));
 }

@@ -73,7 +73,10 @@ void check_closed_forms(const Case& c) {
     return p;
   };
   const Lines paths{pathlines(series, {}, with(seeded_at<PathlinesParams>(list)), context)};
-  const Lines streaks{streaklines(series, {}, with(seeded_at<StreaklinesParams>(list)), context)};
+  StreaklinesParams released = with(seeded_at<StreaklinesParams>(list));
+  const Lines refined{streaklines(series, {}, released, context)};
+  released.refine = false;
+  const Lines streaks{streaklines(series, {}, released, context)};
   TimelinesParams tp = with(TimelinesParams());
   tp.seeds.from = seeds[0], tp.seeds.to = seeds[1], tp.seeds.count = 5, tp.every = 0.5;
   const Lines times{timelines(series, {}, tp, context)};
@@ -81,7 +84,7 @@ void check_closed_forms(const Case& c) {
   sp.direction = "forward", sp.integration.tolerance = 1e-7, sp.stop.max_time = 1.2;
   const Lines streams{std::get<DatasetPtr>(streamlines({series.load(15)}, sp, context))};
 
-  double worst[4] = {0, 0, 0, 0};
+  double worst[5] = {0, 0, 0, 0, 0};
   REQUIRE(paths.mesh().lines.size() == 2);
   REQUIRE(streaks.mesh().lines.size() == 2);
   REQUIRE(streams.mesh().lines.size() == 2);
@@ -95,6 +98,9 @@ void check_closed_forms(const Case& c) {
   each(streaks, [&](size_t k, size_t i) {
     worst[1] = std::max(worst[1], length(streaks.x(i) - carried(seeds[k], end_time - streaks.value("age", i), end_time)));
   });
+  each(refined, [&](size_t k, size_t i) {
+    worst[4] = std::max(worst[4], length(refined.x(i) - carried(seeds[k], end_time - refined.value("age", i), end_time)));
+  });
   each(times, [&](size_t, size_t i) {
     const Vec3 from = seeds[0] + times.value("position", i) * (seeds[1] - seeds[0]);
     worst[2] = std::max(worst[2], length(times.x(i) - carried(from, 0, times.value("time", i))));
@@ -106,9 +112,11 @@ void check_closed_forms(const Case& c) {
   });
   CHECK(paths.value("time", paths.points() - 1) == doctest::Approx(end_time));
   CHECK(streaks.points() == 32);
+  CHECK(refined.points() > 32);
   CHECK(worst[0] < 5e-4);  // cubic in time, steps of 1/10
   CHECK(worst[1] < 5e-4);
   CHECK(worst[2] < 5e-4);
+  CHECK(worst[4] < 1e-3);  // and cubic in the time of release between those
   CHECK(worst[3] < 1e-6);
   // They are four lines, not one.
   const Vec3 path_end = carried(seeds[0], 0, end_time), streak_middle = carried(seeds[0], end_time / 2, end_time);

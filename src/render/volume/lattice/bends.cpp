@@ -118,6 +118,15 @@ Bends find_bends(const Array& values, std::array<size_t, 3> dims, float range, b
       for (size_t row = begin; row < end; ++row) find_row(view.data, dims, framed, row % n[1], row / n[1], &found[row * n[0]], n[0]);
     });
   });
+  Bends r;
+  r.range = range > 0 ? range : 1;
+  r.codes.resize(found.size() + 2);
+  parallel_for(found.size(), 16384, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const float bend = found[i].bend(), slope = std::sqrt(found[i].least_square) - bend;
+      r.codes[i].turn = Bends::coded(slope > 0 ? bend / slope : bend > 0 ? 1e3f : 0, Bends::least_turn);
+    }
+  });
   // Joined with the bricks around, one axis after the other.
   std::vector<Found> joined(found.size());
   const size_t step[3] = {1, n[0], n[0] * n[1]};
@@ -132,15 +141,8 @@ Bends find_bends(const Array& values, std::array<size_t, 3> dims, float range, b
     });
     found.swap(joined);
   }
-  Bends r;
-  r.range = range > 0 ? range : 1;
-  r.codes.resize(found.size() + 2);
   parallel_for(found.size(), 16384, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const float bend = found[i].bend(), slope = std::sqrt(found[i].least_square) - bend;
-      const float turn = slope > 0 ? bend / slope : bend > 0 ? 1e3f : 0;
-      r.codes[i] = {Bends::coded(bend / r.range, Bends::least_bend), Bends::coded(turn, Bends::least_turn)};
-    }
+    for (size_t i = begin; i < end; ++i) r.codes[i].bend = Bends::coded(found[i].bend() / r.range, Bends::least_bend);
   });
   r.codes[found.size()] = r.codes[found.size() + 1] = {Bends::unbounded, Bends::unbounded};
   return r;

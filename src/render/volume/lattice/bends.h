@@ -10,13 +10,14 @@
 
 namespace sg::volume {
 
-/// Two bounds per fine brick (FineBricks: 4^3 cells), good for the brick and all bricks around it:
+/// Two bounds per fine brick (FineBricks: 4^3 cells):
 ///
-/// bend: along any line the slope of the trilinear field changes by at most `bend` per cell length. That is a sum of jumps at the faces
+/// bend: in the brick and all bricks around it, along any line the slope of the trilinear field changes by at most `bend` per cell length.
+/// That is a sum of jumps at the faces
 ///   of cells (second differences) and of what the field bends inside (mixed differences): with |H| the matrix of their largest absolute
 ///   values, d^T |H| d <= its largest row sum, for every direction d. Over a length s the field leaves its chord by s^2 bend / 8 on average
 ///   at most, s^2 bend / 4 anywhere.
-/// turn: the gradient turns by at most so many radians per cell length.
+/// turn: in the brick the gradient turns by at most so many radians per cell length.
 ///
 /// Kept in eight bits, rounded up: quarters of octaves.
 struct Bends {

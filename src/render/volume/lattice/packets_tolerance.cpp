@@ -18,7 +18,7 @@ namespace sg::volume::HWY_NAMESPACE {
 
 /// Strides in cell lengths: none is longer than half a brick (two go at once, and Bends look a brick around); where they would have to
 /// be shorter than the second, cells are crossed instead.
-constexpr float longest_stride = 2, shortest_stride = 1.0f / 8;
+constexpr float longest_stride = 2, shortest_stride = 1.0f / 8, shortest_lit_stride = 1.0f / 256;
 /// Shares of the tolerance: to start with, over the whole length, and over all light that is taken. The rest is for the end of the ray,
 /// the tables, and the cells that are crossed.
 constexpr float share_at_first = 0.15f, share_of_length = 0.15f, share_of_light = 0.4f;
@@ -44,7 +44,7 @@ class TolerantPacket {
     per_speed_ = hn::Div(hn::Set(d, 1.0f), hn::Max(hn::Sqrt(square), hn::Set(d, 1e-30f)));
     end_ = hn::Load(d, rays.length), cells_.sum.pass = hn::Load(d, rays.before);
     reserve_ = hn::Set(d, share_at_first * float(plan.budget.tolerance));
-    stride_ = hn::Set(d, 1.0f);
+    stride_ = hn::Set(d, 1.0f), rise_ = hn::Zero(d), rough_ = hn::MaskFromVec(hn::Zero(d));
     if (plan.bends) here_ = sums_.at(hn::Zero(d));
     if constexpr (shaded) {
       queue_.start(plan, rays);
@@ -134,7 +134,7 @@ class TolerantPacket {
   HWY_INLINE F stride_on(F t, I bend_code, I turn_code, M striding) {
     const D d;
     const IntTag<D> di;
-    const F half = hn::Set(d, 0.5f);
+    const F zero = hn::Zero(d), half = hn::Set(d, 0.5f);
     const auto decoded = [&](I code, int least) HWY_ATTR {
       return hn::BitCast(d, hn::Add(hn::ShiftLeft<21>(hn::And(code, hn::Set(di, 255))), hn::Set(di, (127 + least) << 23)));
     };
@@ -147,32 +147,41 @@ class TolerantPacket {
     const float tolerance = float(plan_.budget.tolerance);
     const Medium& colors = *plan_.medium;
     // The second difference over both.
-    const F arch = hn::Add(hn::Sub(here_.value, p1.value), hn::Sub(p2.value, p1.value));
+    const F rise_a = hn::Sub(p1.value, here_.value), rise_b = hn::Sub(p2.value, p1.value), arch = hn::Sub(rise_b, rise_a);
     const Stride<D> a = stride(sums_, colors, tolerance, here_, p1, world, cells, bend, arch);
     const Stride<D> b = stride(sums_, colors, tolerance, p1, p2, world, cells, bend, arch);
-    F turned = hn::Zero(d);
+    // What the light on its middle gets wrong of the light on a stride. Where the value turns, surfaces begin to show their other side.
+    F unlike_a = zero, unlike_b = zero;
     if constexpr (shaded) {
       const F angle = hn::Mul(decoded(turn_code, Bends::least_turn), cells);
       const Material& m = plan_.material;
-      turned = hn::Min(hn::Set(d, 0.25f), hn::Mul(hn::Set(d, (m.diffuse + m.specular * m.power) / 24), hn::Mul(angle, angle)));
+      const F bent = hn::Min(hn::Set(d, 0.25f), hn::Mul(hn::Set(d, (m.diffuse + m.specular * m.power) / 24), hn::Mul(angle, angle)));
+      const M between = hn::Lt(hn::Mul(rise_a, rise_b), zero), before = hn::Lt(hn::Mul(rise_, rise_a), zero);
+      const M seen = hn::Gt(cells, hn::Set(d, 1.01f * shortest_lit_stride));
+      unlike_a = hn::IfThenElseZero(seen, hn::IfThenElse(hn::Or(between, before), hn::Set(d, 0.25f), bent));
+      unlike_b = hn::IfThenElseZero(seen, hn::IfThenElse(between, hn::Set(d, 0.25f), bent));
     }
-    F ratio = hn::Zero(d);
-    const F kept = stride_;
-    M good = finish(a, here_, p1, t, world, cells, bend, turned, striding, ratio);
-    const M first = good;
-    good = finish(b, p1, p2, t1, world, cells, bend, turned, first, ratio);
+    F ratio = zero;
+    M rough = hn::MaskFromVec(zero);
+    const M first = finish(a, here_, p1, t, world, unlike_a, striding, ratio, rough);
+    const M good = finish(b, p1, p2, t1, world, unlike_b, first, ratio, rough);
+    rise_ = hn::IfThenElse(good, rise_b, hn::IfThenElse(first, rise_a, rise_));
     take(p1, hn::AndNot(good, first)), take(p2, good);
     const F factor = hn::Mul(hn::Set(d, 0.9f), hn::Sqrt(ratio));
-    const F longer = hn::Max(hn::Set(d, 0.5f), hn::Min(factor, hn::Set(d, 2.0f)));
+    const F longer = hn::Max(hn::Set(d, 0.5f), hn::Min(factor, hn::Set(d, 3.0f)));
     const F shorter = hn::Max(hn::Set(d, 0.1f), hn::Min(factor, hn::Set(d, 0.7f)));
-    F next = hn::Min(hn::Mul(kept, hn::IfThenElse(good, longer, shorter)), hn::Set(d, longest_stride));
-    stride_ = hn::IfThenElse(striding, next, kept);
+    F next = hn::Min(hn::Mul(stride_, hn::IfThenElse(good, longer, shorter)), hn::Set(d, longest_stride));
+    // Light alone makes no stride so short that cells are crossed.
+    next = hn::IfThenElse(rough, next, hn::Max(next, hn::Set(d, shaded ? shortest_lit_stride : shortest_stride)));
+    stride_ = hn::IfThenElse(striding, next, stride_);
+    rough_ = hn::Or(hn::And(striding, rough), hn::AndNot(striding, rough_));
     return hn::IfThenElse(good, t2, hn::IfThenElse(first, t1, t));
   }
 
-  /// Adds the stride for those lanes of `which` in which it is good enough. Sets their ratio of what is allowed to the error.
+  /// Adds the stride for those lanes of `which` in which it is good enough. Sets their ratio of what is allowed to the error, and whether
+  /// it is refused for its optical depth.
   HWY_INLINE M finish(const Stride<D>& s, const typename SumLanes<D>::Place& from, const typename SumLanes<D>::Place& to, F t, F world,
-                      F cells, F bend, F turned, M which, F& ratio) {
+                      F unlike, M which, F& ratio, M& rough) {
     const D d;
     const F one = hn::Set(d, 1.0f), tolerance = hn::Set(d, float(plan_.budget.tolerance));
     const F pass = cells_.sum.pass, taken = hn::Mul(pass, hn::Min(one, s.depth));
@@ -180,18 +189,14 @@ class TolerantPacket {
     const F own = hn::Mul(tolerance, hn::Add(hn::Mul(taken, hn::Set(d, share_of_light)),
                                              hn::Mul(world, hn::Set(d, float(share_of_length / plan_.budget.length)))));
     const F allowed = hn::Add(own, hn::Mul(reserve_, hn::Set(d, share_at_once)));
-    const F change = hn::Abs(hn::Sub(to.value, from.value));
-    if constexpr (shaded) {
-      // Where the value may turn, surfaces begin to show their other side.
-      const M turns = hn::Le(change, hn::Mul(bend, hn::Mul(cells, cells)));
-      error = hn::Add(error, hn::Mul(taken, hn::IfThenElse(turns, hn::Set(d, 0.25f), turned)));
-    }
+    rough = hn::Or(rough, hn::AndNot(hn::Le(error, allowed), which));
+    if constexpr (shaded) error = hn::Add(error, hn::Mul(taken, unlike));
     const M good = hn::And(which, hn::Le(error, allowed));
     const F r = hn::Div(allowed, hn::Max(error, hn::Set(d, 1e-30f)));
     ratio = hn::IfThenElse(which, hn::IfThenElseZero(hn::Eq(error, error), r), ratio);
     reserve_ = hn::IfThenElse(good, hn::Sub(hn::Add(reserve_, own), error), reserve_);
     if (hn::AllFalse(d, hn::And(good, hn::Gt(s.depth, hn::Zero(d))))) return good;
-    cells_.may_hide(change);
+    cells_.may_hide(hn::Abs(hn::Sub(to.value, from.value)));
     cells_.segment(good, t, world, s.depth, from.value, to.value, s.middle, s.weight,
                    [&](M drawn, F at, F share, F before, F& r, F& g, F& b) HWY_ATTR {
                      if constexpr (shaded)
@@ -264,7 +269,8 @@ class TolerantPacket {
   PacketResult* result_ = nullptr;
   F per_along_[3], per_speed_, end_;
   M still_[3], up_[3];
-  F stride_, reserve_;
+  F stride_, reserve_, rise_;
+  M rough_;  // lanes whose last stride was refused for its optical depth
   typename SumLanes<D>::Place here_;
   struct None {};
   std::conditional_t<shaded, ShadeQueue<D, T, true>, None> queue_;

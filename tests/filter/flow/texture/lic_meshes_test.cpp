@@ -151,7 +151,7 @@ TEST_CASE("lic meshes: volumes of texture have the statistics in every kind of s
     const auto* u = mesh->as<UniformGrid>();
     const Vec3 along = u ? u->direction.column(1) : Vec3(0, 1, 0);
     LicParams p;
-    p.resolution = int64_t(n), p.length = 4, p.contrast = "none";
+    p.resolution = int64_t(n), p.length = 4, p.contrast = "none", p.noise = "white";
     return lic(flow::with_velocity(mesh, [&](Vec3) { return along; }), nullptr, p, context);
   };
   const std::vector<float> wanted = values_of(texture(solid_meshes()[0], 14), "lic");
