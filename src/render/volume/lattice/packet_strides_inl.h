@@ -73,7 +73,7 @@ struct SumLanes {
   }
 };
 
-constexpr float share_off = 0.04f;
+constexpr float share_off = 0.025f;
 
 /// What a stride would bring, and get wrong.
 template <class D>

@@ -19,11 +19,15 @@ namespace sg::volume::HWY_NAMESPACE {
 /// Strides in cell lengths: none is longer than half a brick (two go at once, and Bends look a brick around); where they would have to
 /// be shorter than the second, cells are crossed instead.
 constexpr float longest_stride = 2, shortest_stride = 1.0f / 8, shortest_lit_stride = 1.0f / 256;
+/// So far ahead samples are asked for.
+constexpr float cells_asked_ahead = 12;
 /// Shares of the tolerance: to start with, over the whole length, and over all light that is taken. The rest is for the end of the ray,
 /// the tables, and the cells that are crossed.
-constexpr float share_at_first = 0.15f, share_of_length = 0.15f, share_of_light = 0.4f;
+constexpr float share_at_first = 0.1f, share_of_length = 0.1f, share_of_light = 0.35f;
+/// And for what strides of a lit volume get wrong of its shade.
+constexpr float share_of_shade = 0.2f, shade_at_first = 0.05f;
 /// Of what is left so much may go for one stride.
-constexpr float share_at_once = 1.0f / 8;
+constexpr float share_at_once = 1.0f / 6;
 
 template <class D, class T, bool shaded>
 class TolerantPacket {
@@ -44,6 +48,7 @@ class TolerantPacket {
     per_speed_ = hn::Div(hn::Set(d, 1.0f), hn::Max(hn::Sqrt(square), hn::Set(d, 1e-30f)));
     end_ = hn::Load(d, rays.length), cells_.sum.pass = hn::Load(d, rays.before);
     reserve_ = hn::Set(d, share_at_first * float(plan.budget.tolerance));
+    shade_reserve_ = hn::Set(d, shade_at_first * float(plan.budget.tolerance));
     stride_ = hn::Set(d, 1.0f), rise_ = hn::Zero(d), rough_ = hn::MaskFromVec(hn::Zero(d));
     if (plan.bends) here_ = sums_.at(hn::Zero(d));
     if constexpr (shaded) {
@@ -119,6 +124,18 @@ class TolerantPacket {
     return s.value(s.place(0, u(0)), s.place(1, u(1)), s.place(2, u(2)));
   }
 
+  /// The samples there will be wanted.
+  HWY_INLINE void ask_for(F t) const {
+    if constexpr (lanes_of<D> >= 8) {
+      const Source<D, T>& s = cells_.source;
+      alignas(64) int32_t corner[most_lanes];
+      I at[3];
+      for (int a = 0; a < 3; ++a) at[a] = hn::Min(hn::Max(cell_at(a, t), hn::Zero(IntTag<D>())), s.last_cell[a]);
+      hn::Store(s.offset(at[0], at[1], at[2]), IntTag<D>(), corner);
+      for (int n = 0; n < lanes_of<D>; ++n) __builtin_prefetch(s.data + corner[n], 0, 2);
+    }
+  }
+
   HWY_INLINE void renew(F t, M which) { take(sums_.at(value_at(t)), which); }
   HWY_INLINE void take(const typename SumLanes<D>::Place& p, M which) {
     const D d;
@@ -143,6 +160,7 @@ class TolerantPacket {
     const F cells = hn::Div(world, per_speed_);
     const M ends = hn::Le(hn::Sub(end_, t), hn::Mul(hn::Set(d, 2.0f), hn::Mul(stride_, per_speed_)));
     const F t1 = hn::Add(t, world), t2 = hn::IfThenElse(ends, end_, hn::Add(t1, world));
+    ask_for(hn::Min(hn::Add(t1, hn::Mul(per_speed_, hn::Set(d, cells_asked_ahead))), end_));
     const auto p1 = sums_.at(value_at(t1)), p2 = sums_.at(value_at(t2));
     const float tolerance = float(plan_.budget.tolerance);
     const Medium& colors = *plan_.medium;
@@ -167,14 +185,17 @@ class TolerantPacket {
     const M good = finish(b, p1, p2, t1, world, unlike_b, first, ratio, rough);
     rise_ = hn::IfThenElse(good, rise_b, hn::IfThenElse(first, rise_a, rise_));
     take(p1, hn::AndNot(good, first)), take(p2, good);
-    const F factor = hn::Mul(hn::Set(d, 0.9f), hn::Sqrt(ratio));
+    const F factor = hn::Mul(hn::Set(d, 0.75f), hn::Sqrt(ratio));
     const F longer = hn::Max(hn::Set(d, 0.5f), hn::Min(factor, hn::Set(d, 3.0f)));
     const F shorter = hn::Max(hn::Set(d, 0.1f), hn::Min(factor, hn::Set(d, 0.7f)));
     F next = hn::Min(hn::Mul(stride_, hn::IfThenElse(good, longer, shorter)), hn::Set(d, longest_stride));
-    // Light alone makes no stride so short that cells are crossed.
-    next = hn::IfThenElse(rough, next, hn::Max(next, hn::Set(d, shaded ? shortest_lit_stride : shortest_stride)));
+    // Cells are crossed where strides of about the shortest were refused; not for the light alone.
+    const M too_rough = hn::And(rough, hn::Lt(stride_, hn::Set(d, 2 * shortest_stride)));
+    const F least =
+        shaded ? hn::IfThenElse(rough, hn::Set(d, shortest_stride), hn::Set(d, shortest_lit_stride)) : hn::Set(d, shortest_stride);
+    next = hn::IfThenElse(too_rough, next, hn::Max(next, least));
     stride_ = hn::IfThenElse(striding, next, stride_);
-    rough_ = hn::Or(hn::And(striding, rough), hn::AndNot(striding, rough_));
+    rough_ = hn::Or(hn::And(striding, too_rough), hn::AndNot(striding, rough_));
     return hn::IfThenElse(good, t2, hn::IfThenElse(first, t1, t));
   }
 
@@ -189,10 +210,16 @@ class TolerantPacket {
     const F own = hn::Mul(tolerance, hn::Add(hn::Mul(taken, hn::Set(d, share_of_light)),
                                              hn::Mul(world, hn::Set(d, float(share_of_length / plan_.budget.length)))));
     const F allowed = hn::Add(own, hn::Mul(reserve_, hn::Set(d, share_at_once)));
-    rough = hn::Or(rough, hn::AndNot(hn::Le(error, allowed), which));
-    if constexpr (shaded) error = hn::Add(error, hn::Mul(taken, unlike));
-    const M good = hn::And(which, hn::Le(error, allowed));
-    const F r = hn::Div(allowed, hn::Max(error, hn::Set(d, 1e-30f)));
+    M good = hn::And(which, hn::Le(error, allowed));
+    rough = hn::Or(rough, hn::AndNot(good, which));
+    F r = hn::Div(allowed, hn::Max(error, hn::Set(d, 1e-30f)));
+    if constexpr (shaded) {
+      const F shade = hn::Mul(taken, unlike), own_shade = hn::Mul(taken, hn::Set(d, share_of_shade * float(plan_.budget.tolerance)));
+      const F allowed_shade = hn::Add(own_shade, hn::Mul(shade_reserve_, hn::Set(d, share_at_once)));
+      good = hn::And(good, hn::Le(shade, allowed_shade));
+      r = hn::Min(r, hn::Div(allowed_shade, hn::Max(shade, hn::Set(d, 1e-30f))));
+      shade_reserve_ = hn::IfThenElse(good, hn::Sub(hn::Add(shade_reserve_, own_shade), shade), shade_reserve_);
+    }
     ratio = hn::IfThenElse(which, hn::IfThenElseZero(hn::Eq(error, error), r), ratio);
     reserve_ = hn::IfThenElse(good, hn::Sub(hn::Add(reserve_, own), error), reserve_);
     if (hn::AllFalse(d, hn::And(good, hn::Gt(s.depth, hn::Zero(d))))) return good;
@@ -269,7 +296,7 @@ class TolerantPacket {
   PacketResult* result_ = nullptr;
   F per_along_[3], per_speed_, end_;
   M still_[3], up_[3];
-  F stride_, reserve_, rise_;
+  F stride_, reserve_, shade_reserve_, rise_;
   M rough_;  // lanes whose last stride was refused for its optical depth
   typename SumLanes<D>::Place here_;
   struct None {};
