@@ -12,14 +12,12 @@ namespace sg::volume {
 
 namespace {
 
-/// Largest absolute second differences of a brick: xx, yy, zz, xy, xz, yz; and the smallest square of a gradient.
+/// Largest absolute second differences of a brick: xx, yy, zz, xy, xz, yz.
 struct Found {
   float most[6] = {0, 0, 0, 0, 0, 0};
-  float least_square = HUGE_VALF;
 
   void join(const Found& o) {
     for (int i = 0; i < 6; ++i) most[i] = std::max(most[i], o.most[i]);
-    least_square = std::min(least_square, o.least_square);
   }
   float bend() const { return std::max({most[0] + most[3] + most[4], most[1] + most[3] + most[5], most[2] + most[4] + most[5]}); }
 };
@@ -55,15 +53,14 @@ class Rows {
 float larger(float a, float b) { return b <= a ? a : b == b ? b : HUGE_VALF; }
 
 struct Looked {
-  float xx, yy, zz, xy, xz, yz, square;
+  float xx, yy, zz, xy, xz, yz;
 };
 
 }  // namespace
 
 // Row by row: the differences of each sample first (straight loops), then the largest per brick.
 template <class T>
-static void look(const T* data, std::array<size_t, 3> dims, bool framed, size_t j, size_t k, Rows<T>& rows, std::vector<Looked>& out) {
-  (void)data;
+static void look(std::array<size_t, 3> dims, bool framed, size_t j, size_t k, Rows<T>& rows, std::vector<Looked>& out) {
   rows.at(j, k);
   const size_t n = dims[0];
   const float* const(*r)[3] = rows.row;
@@ -79,8 +76,6 @@ static void look(const T* data, std::array<size_t, 3> dims, bool framed, size_t 
     l.xy = std::abs((r[1][2][after] - r[1][2][i]) - (m[after] - m[i]));
     l.xz = std::abs((r[2][1][after] - r[2][1][i]) - (m[after] - m[i]));
     l.yz = std::abs((r[2][2][i] - r[2][1][i]) - (r[1][2][i] - m[i]));
-    const float x = m[after] - m[before], y = r[1][2][i] - r[1][0][i], z = r[2][1][i] - r[0][1][i];
-    l.square = 0.25f * (x * x + y * y + z * z);
     out[i] = l;
   };
   one(0, 0, std::min<size_t>(1, n - 1), framed);
@@ -95,14 +90,13 @@ static void find_row(const T* data, std::array<size_t, 3> dims, bool framed, siz
   std::vector<Looked> looked(dims[0]);
   for (size_t k = bz * edge; k <= std::min((bz + 1) * edge, dims[2] - 1); ++k)
     for (size_t j = by * edge; j <= std::min((by + 1) * edge, dims[1] - 1); ++j) {
-      look(data, dims, framed, j, k, rows, looked);
+      look(dims, framed, j, k, rows, looked);
       for (size_t b = 0; b < bricks; ++b) {
         Found f = to[b];
         for (size_t i = b * edge; i <= std::min((b + 1) * edge, dims[0] - 1); ++i) {
           const Looked& l = looked[i];
           f.most[0] = larger(f.most[0], l.xx), f.most[1] = larger(f.most[1], l.yy), f.most[2] = larger(f.most[2], l.zz);
           f.most[3] = larger(f.most[3], l.xy), f.most[4] = larger(f.most[4], l.xz), f.most[5] = larger(f.most[5], l.yz);
-          f.least_square = std::min(f.least_square, l.square);
         }
         to[b] = f;
       }
@@ -120,13 +114,7 @@ Bends find_bends(const Array& values, std::array<size_t, 3> dims, float range, b
   });
   Bends r;
   r.range = range > 0 ? range : 1;
-  r.codes.resize(found.size() + 2);
-  parallel_for(found.size(), 16384, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const float bend = found[i].bend(), slope = std::sqrt(found[i].least_square) - bend;
-      r.codes[i].turn = Bends::coded(slope > 0 ? bend / slope : bend > 0 ? 1e3f : 0, Bends::least_turn);
-    }
-  });
+  r.codes.resize(found.size() + 3, Bends::unbounded);
   // Joined with the bricks around, one axis after the other.
   std::vector<Found> joined(found.size());
   const size_t step[3] = {1, n[0], n[0] * n[1]};
@@ -142,9 +130,8 @@ Bends find_bends(const Array& values, std::array<size_t, 3> dims, float range, b
     found.swap(joined);
   }
   parallel_for(found.size(), 16384, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) r.codes[i].bend = Bends::coded(found[i].bend() / r.range, Bends::least_bend);
+    for (size_t i = begin; i < end; ++i) r.codes[i] = Bends::coded(found[i].bend() / r.range);
   });
-  r.codes[found.size()] = r.codes[found.size() + 1] = {Bends::unbounded, Bends::unbounded};
   return r;
 }
 

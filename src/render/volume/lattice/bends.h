@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How far a lattice's field bends: bounds from second differences, per fine brick, for steps longer than cells.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -10,31 +11,24 @@
 
 namespace sg::volume {
 
-/// Two bounds per fine brick (FineBricks: 4^3 cells):
+/// Per fine brick (FineBricks: 4^3 cells) a bound that is good for it and all bricks around it: along any line the slope of the trilinear
+/// field changes by at most `bend` per cell length. That is a sum of jumps at the faces of cells (second differences) and of what the
+/// field bends inside (mixed differences): with |H| the matrix of their largest absolute values, d^T |H| d <= its largest row sum, for
+/// every direction d. Over a length s the field leaves its chord by s^2 bend / 8 on average at most, s^2 bend / 4 anywhere.
 ///
-/// bend: in the brick and all bricks around it, along any line the slope of the trilinear field changes by at most `bend` per cell length.
-/// That is a sum of jumps at the faces
-///   of cells (second differences) and of what the field bends inside (mixed differences): with |H| the matrix of their largest absolute
-///   values, d^T |H| d <= its largest row sum, for every direction d. Over a length s the field leaves its chord by s^2 bend / 8 on average
-///   at most, s^2 bend / 4 anywhere.
-/// turn: in the brick the gradient turns by at most so many radians per cell length.
-///
-/// Kept in eight bits, rounded up: quarters of octaves.
+/// Kept in eight bits, rounded up: quarters of octaves, in parts of `range`.
 struct Bends {
-  static constexpr int least_bend = -50, least_turn = -40;  ///< exponents of two of code 0; bends in parts of `range`
-  static constexpr uint8_t unbounded = 255;                 ///< beside values that are none
-  struct Codes {
-    uint8_t bend, turn;
-  };
-  Plane<Codes> codes;  ///< per fine brick, and two more: any of them can be read as a word
-  float range = 1;     ///< of the values
+  static constexpr int least = -50;          ///< exponent of two of code 0
+  static constexpr uint8_t unbounded = 255;  ///< beside values that are none
+  Plane<uint8_t> codes;                      ///< per fine brick, and three more: any of them can be read as a word
+  float range = 1;                           ///< of the values
 
-  static uint8_t coded(float v, int least) {
+  static uint8_t coded(float v) {
     if (!(v < 1e30f)) return unbounded;
     const int32_t base = (127 + least) << 23, up = std::bit_cast<int32_t>(v) + (1 << 21) - 1;
     return up <= base ? 0 : uint8_t(std::min((up - base) >> 21, 254));
   }
-  static float decoded(uint8_t code, int least) { return std::bit_cast<float>((int32_t(code) << 21) + ((127 + least) << 23)); }
+  static float decoded(uint8_t code) { return std::bit_cast<float>((int32_t(code) << 21) + ((127 + least) << 23)); }
 };
 
 /// Of packed samples of a type that floats hold exactly, with `range` their largest less their smallest value. `framed`: beyond the

@@ -188,13 +188,12 @@ class PacketCells {
       const F by_emission = hn::Mul(hn::Add(hn::Add(hn::Mul(t0, v), hn::Mul(tm, middle)), hn::Mul(t1, next)), per_all);
       const F weight = hn::Mul(hn::Add(hn::Mul(half, tm), t1), per_all);
       segment(look, hn::Add(t, hn::Mul(length, s)), part, hn::Mul(part, hn::Mul(all, hn::Set(d, 1.0f / 6))), v, next, by_emission, weight,
-              [&](M, F here, F share, F, F& red, F& green, F& blue) HWY_ATTR {
+              [&](F at, F share, F& red, F& green, F& blue) HWY_ATTR {
                 if constexpr (shaded) {
-                  const auto on = light.at(from, way, hn::Div(hn::Sub(here, t), hn::Max(length, hn::Set(D(), 1e-30f))));
+                  const auto on = light.at(from, way, hn::Div(hn::Sub(at, t), hn::Max(length, hn::Set(D(), 1e-30f))));
                   const F flash = hn::Mul(on.specular, share);
                   for (F* c : {&red, &green, &blue}) *c = hn::Add(hn::Mul(*c, on.diffuse), flash);
                 }
-                return true;
               });
       // On to the next line, or to the next piece.
       k = hn::IfThenElse(ends, hn::Add(k, one), k);
@@ -213,8 +212,8 @@ class PacketCells {
     }
   }
 
-  /// Pieces::segment of optics/integrate.cpp. `lit(drawn, at, share, r, g, b)` lights the colours and the share of what is mirrored, at
-  /// world length `at`, and says whether they are to be added here.
+  /// Pieces::segment of optics/integrate.cpp. `lit(at, share, r, g, b)` lights the colours and the share of what is mirrored, at world
+  /// length `at`.
   template <class Lit>
   HWY_INLINE void segment(M look, F here, F part, F depth, F a, F b, F middle, F weight, const Lit& lit) {
     const D d;
@@ -241,9 +240,8 @@ class PacketCells {
       weight = hn::Sub(weight, hn::IfThenElseZero(deep, hn::Div(hidden, hn::Max(alpha, hn::Set(d, 0.05f)))));
     }
     const F before = hn::IfThenElseZero(drawn, sum.pass);
-    if (lit(drawn, hn::Add(here, hn::Mul(part, weight)), alpha, before, r, g, bl)) {
-      sum.r = hn::Add(sum.r, hn::Mul(before, r)), sum.g = hn::Add(sum.g, hn::Mul(before, g)), sum.b = hn::Add(sum.b, hn::Mul(before, bl));
-    }
+    lit(hn::Add(here, hn::Mul(part, weight)), alpha, r, g, bl);
+    sum.r = hn::Add(sum.r, hn::Mul(before, r)), sum.g = hn::Add(sum.g, hn::Mul(before, g)), sum.b = hn::Add(sum.b, hn::Mul(before, bl));
     const F after = hn::Mul(sum.pass, pass);
     const M halved = hn::And(drawn, hn::And(hn::Lt(after, half), hn::Lt(sum.half_at, zero)));
     if (!hn::AllFalse(d, halved)) {

@@ -115,8 +115,7 @@ struct SlopeFinder {
   }
 };
 
-/// `by_length`: surfaces begin with a change of the value over `plan.edge`, a world length; else over a cell along each axis.
-template <class D, class T, bool by_length = false>
+template <class D, class T>
 class ShadeQueue {
   using F = hn::Vec<D>;
   static constexpr size_t lanes_ = lanes_of<D>;
@@ -179,8 +178,7 @@ class ShadeQueue {
     const F x = turned(g, m[0]), y = turned(g, m[1]), z = turned(g, m[2]);
     const F square = hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
     const auto bent = hn::And(hn::Gt(square, zero), hn::Lt(square, hn::Set(d, 1e30f)));
-    const F over_edge = by_length ? hn::Mul(hn::Sqrt(square), hn::Set(d, plan.edge)) : g.per_cell;
-    const F surface = hn::Min(hn::Mul(over_edge, hn::Set(d, plan.volume.shade_plan.per_scale)), one);
+    const F surface = hn::Min(hn::Mul(g.per_cell, hn::Set(d, plan.volume.shade_plan.per_scale)), one);
     const auto away =
         hn::Gt(dot(x, y, z, of_lanes(rays.direction[0], lane), of_lanes(rays.direction[1], lane), of_lanes(rays.direction[2], lane)), zero);
     const F side = hn::Div(hn::IfThenElse(away, hn::Set(d, -1.0f), one), hn::Sqrt(square));
@@ -193,10 +191,8 @@ class ShadeQueue {
       diffuse = hn::Add(diffuse, hn::IfThenElseZero(lit, hn::Mul(intensity, c)));
       F h =
           hn::Max(hn::Mul(side, dot(x, y, z, of_lanes(half_[l][0], lane), of_lanes(half_[l][1], lane), of_lanes(half_[l][2], lane))), zero);
-      F power = one;
-      for (int n = int(material.power); n > 0; n >>= 1, h = hn::Mul(h, h))
-        if (n & 1) power = hn::Mul(power, h);
-      specular = hn::Add(specular, hn::IfThenElseZero(lit, hn::Mul(intensity, power)));
+      for (int i = 0; i < 5; ++i) h = hn::Mul(h, h);
+      specular = hn::Add(specular, hn::IfThenElseZero(lit, hn::Mul(intensity, h)));
     }
     const F factor = hn::Sub(hn::Add(hn::Set(d, material.ambient), hn::Mul(hn::Set(d, material.diffuse), diffuse)), one);
     const F shade = hn::IfThenElse(bent, hn::Add(one, hn::Mul(surface, factor)), one);

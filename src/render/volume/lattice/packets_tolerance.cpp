@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The integral within a tolerance along packets of rays: optics/integrate.cpp for a uniform grid, one ray per vector lane. Every lane has
-// its own place: it leaps over what draws nothing, strides where the field is as good as straight, and crosses the other cells one by one.
+// its own place: it leaps over what draws nothing, strides where the field is as good as straight, and crosses the other cells one by one
+// (all of them where there is light: its changes have no bound of that kind yet).
 #include "render/volume/lattice/packet_rays.h"
 
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
@@ -10,7 +11,6 @@
 #include <hwy/highway.h>
 
 #include "render/volume/lattice/packet_cells_inl.h"
-#include "render/volume/lattice/packet_shading_inl.h"
 #include "render/volume/lattice/packet_strides_inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -18,14 +18,12 @@ namespace sg::volume::HWY_NAMESPACE {
 
 /// Strides in cell lengths: none is longer than half a brick (two go at once, and Bends look a brick around); where they would have to
 /// be shorter than the second, cells are crossed instead.
-constexpr float longest_stride = 2, shortest_stride = 1.0f / 8, shortest_lit_stride = 1.0f / 256;
+constexpr float longest_stride = 2, shortest_stride = 1.0f / 8;
 /// So far ahead samples are asked for.
 constexpr float cells_asked_ahead = 12;
 /// Shares of the tolerance: to start with, over the whole length, and over all light that is taken. The rest is for the end of the ray,
 /// the tables, and the cells that are crossed.
 constexpr float share_at_first = 0.1f, share_of_length = 0.1f, share_of_light = 0.35f;
-/// And for what strides of a lit volume get wrong of its shade.
-constexpr float share_of_shade = 0.2f, shade_at_first = 0.05f;
 /// Of what is left so much may go for one stride.
 constexpr float share_at_once = 1.0f / 6;
 
@@ -36,7 +34,7 @@ class TolerantPacket {
   using M = hn::Mask<D>;
 
  public:
-  HWY_INLINE TolerantPacket(const PacketPlan& plan, RayPacket& rays)
+  HWY_INLINE TolerantPacket(const PacketPlan& plan, const RayPacket& rays)
       : plan_(plan), v_(plan.volume), cells_(plan, rays), sums_{plan.sums}, rays_(rays) {
     const D d;
     F square = hn::Zero(d);
@@ -48,14 +46,8 @@ class TolerantPacket {
     per_speed_ = hn::Div(hn::Set(d, 1.0f), hn::Max(hn::Sqrt(square), hn::Set(d, 1e-30f)));
     end_ = hn::Load(d, rays.length), cells_.sum.pass = hn::Load(d, rays.before);
     reserve_ = hn::Set(d, share_at_first * float(plan.budget.tolerance));
-    shade_reserve_ = hn::Set(d, shade_at_first * float(plan.budget.tolerance));
-    stride_ = hn::Set(d, 1.0f), rise_ = hn::Zero(d), rough_ = hn::MaskFromVec(hn::Zero(d));
+    stride_ = hn::Set(d, 1.0f);
     if (plan.bends) here_ = sums_.at(hn::Zero(d));
-    if constexpr (shaded) {
-      queue_.start(plan, rays);
-      for (int a = 0; a < 3; ++a)
-        for (int n = 0; n < lanes_of<D>; ++n) rays_.first[a][n] = rays_.entry[a][n], rays_.by[a][n] = rays_.along[a][n];
-    }
   }
 
   HWY_INLINE void run(PacketResult& result) {
@@ -67,8 +59,6 @@ class TolerantPacket {
     const auto& bricks = v_.fine().dims;
     const I row = hn::Set(di, int(bricks[0])), layer = hn::Set(di, int(bricks[0] * bricks[1]));
     const bool skip = plan_.knobs.skip_empty && v_.any_empty;
-    hn::Store(hn::Zero(d), d, result.r), hn::Store(hn::Zero(d), d, result.g), hn::Store(hn::Zero(d), d, result.b);
-    result_ = &result;
     // Cells -1 and n-1 are the halves beyond the outermost samples.
     F t = hn::Zero(d);
     I cell[3];
@@ -85,7 +75,7 @@ class TolerantPacket {
       const I id = hn::Add(brick[0], hn::Add(hn::Mul(brick[1], row), hn::Mul(brick[2], layer)));
       I free = zero;
       if (skip) free = hn::And(gather_words(d, v_.distance.data(), id), hn::Set(di, 255));
-      const I codes = plan_.bends ? gather_words(d, plan_.bends->codes.data(), hn::Add(id, id)) : hn::Set(di, int(Bends::unbounded));
+      const I codes = plan_.bends ? gather_words(d, plan_.bends->codes.data(), id) : hn::Set(di, int(Bends::unbounded));
       const I code = hn::And(codes, hn::Set(di, 255));
       const M leaping = hn::And(on, hn::RebindMask(d, hn::Gt(free, zero)));
       const M cellwise =
@@ -95,7 +85,7 @@ class TolerantPacket {
       if (!hn::AllFalse(d, striding)) {
         const M fresh = hn::AndNot(known, striding);
         if (!hn::AllFalse(d, fresh)) renew(t, fresh), known = hn::Or(known, fresh);
-        const F to = stride_on(t, code, hn::ShiftRight<8>(codes), striding);
+        const F to = stride_on(t, code, striding);
         // A lane that was refused stays in its cell, which rounding may tell otherwise.
         const M moved = hn::And(striding, hn::Gt(to, t));
         t = hn::IfThenElse(moved, to, t);
@@ -107,7 +97,7 @@ class TolerantPacket {
         stride_ = hn::IfThenElse(crossing, hn::Max(stride_, hn::Set(d, 2 * shortest_stride)), stride_);
       }
     }
-    store();
+    store(result);
   }
 
  private:
@@ -148,14 +138,12 @@ class TolerantPacket {
   }
 
   /// Two strides from t on, as far as their errors are allowed. Returns how far they came.
-  HWY_INLINE F stride_on(F t, I bend_code, I turn_code, M striding) {
+  HWY_INLINE F stride_on(F t, I code, M striding) {
     const D d;
     const IntTag<D> di;
-    const F zero = hn::Zero(d), half = hn::Set(d, 0.5f);
-    const auto decoded = [&](I code, int least) HWY_ATTR {
-      return hn::BitCast(d, hn::Add(hn::ShiftLeft<21>(hn::And(code, hn::Set(di, 255))), hn::Set(di, (127 + least) << 23)));
-    };
-    const F bend = hn::Mul(decoded(bend_code, Bends::least_bend), hn::Set(d, plan_.bends->range));
+    const F half = hn::Set(d, 0.5f);
+    const F bend =
+        hn::Mul(hn::BitCast(d, hn::Add(hn::ShiftLeft<21>(code), hn::Set(di, (127 + Bends::least) << 23))), hn::Set(d, plan_.bends->range));
     const F world = hn::Min(hn::Mul(stride_, per_speed_), hn::Mul(half, hn::Sub(end_, t)));
     const F cells = hn::Div(world, per_speed_);
     const M ends = hn::Le(hn::Sub(end_, t), hn::Mul(hn::Set(d, 2.0f), hn::Mul(stride_, per_speed_)));
@@ -165,72 +153,39 @@ class TolerantPacket {
     const float tolerance = float(plan_.budget.tolerance);
     const Medium& colors = *plan_.medium;
     // The second difference over both.
-    const F rise_a = hn::Sub(p1.value, here_.value), rise_b = hn::Sub(p2.value, p1.value), arch = hn::Sub(rise_b, rise_a);
+    const F arch = hn::Add(hn::Sub(here_.value, p1.value), hn::Sub(p2.value, p1.value));
     const Stride<D> a = stride(sums_, colors, tolerance, here_, p1, world, cells, bend, arch);
     const Stride<D> b = stride(sums_, colors, tolerance, p1, p2, world, cells, bend, arch);
-    // What the light on its middle gets wrong of the light on a stride. Where the value turns, surfaces begin to show their other side.
-    F unlike_a = zero, unlike_b = zero;
-    if constexpr (shaded) {
-      const F angle = hn::Mul(decoded(turn_code, Bends::least_turn), cells);
-      const Material& m = plan_.material;
-      const F bent = hn::Min(hn::Set(d, 0.25f), hn::Mul(hn::Set(d, (m.diffuse + m.specular * m.power) / 24), hn::Mul(angle, angle)));
-      const M between = hn::Lt(hn::Mul(rise_a, rise_b), zero), before = hn::Lt(hn::Mul(rise_, rise_a), zero);
-      const M seen = hn::Gt(cells, hn::Set(d, 1.01f * shortest_lit_stride));
-      unlike_a = hn::IfThenElseZero(seen, hn::IfThenElse(hn::Or(between, before), hn::Set(d, 0.25f), bent));
-      unlike_b = hn::IfThenElseZero(seen, hn::IfThenElse(between, hn::Set(d, 0.25f), bent));
-    }
-    F ratio = zero;
-    M rough = hn::MaskFromVec(zero);
-    const M first = finish(a, here_, p1, t, world, unlike_a, striding, ratio, rough);
-    const M good = finish(b, p1, p2, t1, world, unlike_b, first, ratio, rough);
-    rise_ = hn::IfThenElse(good, rise_b, hn::IfThenElse(first, rise_a, rise_));
+    F ratio = hn::Zero(d);
+    const M first = finish(a, here_, p1, t, world, striding, ratio);
+    const M good = finish(b, p1, p2, t1, world, first, ratio);
     take(p1, hn::AndNot(good, first)), take(p2, good);
     const F factor = hn::Mul(hn::Set(d, 0.75f), hn::Sqrt(ratio));
     const F longer = hn::Max(hn::Set(d, 0.5f), hn::Min(factor, hn::Set(d, 3.0f)));
     const F shorter = hn::Max(hn::Set(d, 0.1f), hn::Min(factor, hn::Set(d, 0.7f)));
     F next = hn::Min(hn::Mul(stride_, hn::IfThenElse(good, longer, shorter)), hn::Set(d, longest_stride));
-    // Cells are crossed where strides of about the shortest were refused; not for the light alone.
-    const M too_rough = hn::And(rough, hn::Lt(stride_, hn::Set(d, 2 * shortest_stride)));
-    const F least =
-        shaded ? hn::IfThenElse(rough, hn::Set(d, shortest_stride), hn::Set(d, shortest_lit_stride)) : hn::Set(d, shortest_stride);
-    next = hn::IfThenElse(too_rough, next, hn::Max(next, least));
+    // Cells are crossed where strides of about the shortest were refused.
+    next = hn::IfThenElse(hn::Lt(stride_, hn::Set(d, 2 * shortest_stride)), next, hn::Max(next, hn::Set(d, shortest_stride)));
     stride_ = hn::IfThenElse(striding, next, stride_);
-    rough_ = hn::Or(hn::And(striding, too_rough), hn::AndNot(striding, rough_));
     return hn::IfThenElse(good, t2, hn::IfThenElse(first, t1, t));
   }
 
-  /// Adds the stride for those lanes of `which` in which it is good enough. Sets their ratio of what is allowed to the error, and whether
-  /// it is refused for its optical depth.
+  /// Adds the stride for those lanes of `which` in which it is good enough. Sets their ratio of what is allowed to the error.
   HWY_INLINE M finish(const Stride<D>& s, const typename SumLanes<D>::Place& from, const typename SumLanes<D>::Place& to, F t, F world,
-                      F unlike, M which, F& ratio, M& rough) {
+                      M which, F& ratio) {
     const D d;
     const F one = hn::Set(d, 1.0f), tolerance = hn::Set(d, float(plan_.budget.tolerance));
-    const F pass = cells_.sum.pass, taken = hn::Mul(pass, hn::Min(one, s.depth));
-    F error = hn::Mul(pass, s.error);
+    const F pass = cells_.sum.pass, taken = hn::Mul(pass, hn::Min(one, s.depth)), error = hn::Mul(pass, s.error);
     const F own = hn::Mul(tolerance, hn::Add(hn::Mul(taken, hn::Set(d, share_of_light)),
                                              hn::Mul(world, hn::Set(d, float(share_of_length / plan_.budget.length)))));
     const F allowed = hn::Add(own, hn::Mul(reserve_, hn::Set(d, share_at_once)));
-    M good = hn::And(which, hn::Le(error, allowed));
-    rough = hn::Or(rough, hn::AndNot(good, which));
-    F r = hn::Div(allowed, hn::Max(error, hn::Set(d, 1e-30f)));
-    if constexpr (shaded) {
-      const F shade = hn::Mul(taken, unlike), own_shade = hn::Mul(taken, hn::Set(d, share_of_shade * float(plan_.budget.tolerance)));
-      const F allowed_shade = hn::Add(own_shade, hn::Mul(shade_reserve_, hn::Set(d, share_at_once)));
-      good = hn::And(good, hn::Le(shade, allowed_shade));
-      r = hn::Min(r, hn::Div(allowed_shade, hn::Max(shade, hn::Set(d, 1e-30f))));
-      shade_reserve_ = hn::IfThenElse(good, hn::Sub(hn::Add(shade_reserve_, own_shade), shade), shade_reserve_);
-    }
+    const M good = hn::And(which, hn::Le(error, allowed));
+    const F r = hn::Div(allowed, hn::Max(error, hn::Set(d, 1e-30f)));
     ratio = hn::IfThenElse(which, hn::IfThenElseZero(hn::Eq(error, error), r), ratio);
     reserve_ = hn::IfThenElse(good, hn::Sub(hn::Add(reserve_, own), error), reserve_);
     if (hn::AllFalse(d, hn::And(good, hn::Gt(s.depth, hn::Zero(d))))) return good;
     cells_.may_hide(hn::Abs(hn::Sub(to.value, from.value)));
-    cells_.segment(good, t, world, s.depth, from.value, to.value, s.middle, s.weight,
-                   [&](M drawn, F at, F share, F before, F& r, F& g, F& b) HWY_ATTR {
-                     if constexpr (shaded)
-                       queue_.push(plan_, rays_, *result_, drawn, at, hn::Mul(before, r), hn::Mul(before, g), hn::Mul(before, b),
-                                   hn::Mul(before, share));
-                     return !shaded;
-                   });
+    cells_.segment(good, t, world, s.depth, from.value, to.value, s.middle, s.weight, [](F, F, F&, F&, F&) {});
     return good;
   }
 
@@ -276,14 +231,11 @@ class TolerantPacket {
     t = hn::IfThenElse(hn::Or(leaping, crossing), leave, t);
   }
 
-  HWY_INLINE void store() {
+  HWY_INLINE void store(PacketResult& result) const {
     const D d;
-    PacketResult& result = *result_;
-    if constexpr (shaded) queue_.finish(plan_, rays_, result);
     const Gathering<D>& sum = cells_.sum;
     alignas(64) float half_at[most_lanes];
-    hn::Store(hn::Add(sum.r, hn::Load(d, result.r)), d, result.r), hn::Store(hn::Add(sum.g, hn::Load(d, result.g)), d, result.g);
-    hn::Store(hn::Add(sum.b, hn::Load(d, result.b)), d, result.b);
+    hn::Store(sum.r, d, result.r), hn::Store(sum.g, d, result.g), hn::Store(sum.b, d, result.b);
     hn::Store(sum.pass, d, result.transmittance), hn::Store(sum.half_at, d, half_at);
     for (size_t n = 0; n < hn::Lanes(d); ++n) result.surface[n] = half_at[n] >= 0 ? rays_.enter[n] + double(half_at[n]) : -1;
   }
@@ -292,15 +244,11 @@ class TolerantPacket {
   const Volume& v_;
   PacketCells<D, T, shaded> cells_;
   const SumLanes<D> sums_;
-  RayPacket& rays_;  // of a lit volume, `first` and `by` are the entry and a world length: the queue's samples are world lengths
-  PacketResult* result_ = nullptr;
+  const RayPacket& rays_;
   F per_along_[3], per_speed_, end_;
   M still_[3], up_[3];
-  F stride_, reserve_, shade_reserve_, rise_;
-  M rough_;  // lanes whose last stride was refused for its optical depth
+  F stride_, reserve_;
   typename SumLanes<D>::Place here_;
-  struct None {};
-  std::conditional_t<shaded, ShadeQueue<D, T, true>, None> queue_;
 };
 
 template <class D, class T, bool shaded>

@@ -232,7 +232,7 @@ std::shared_ptr<const Bends> bends_of(const VolumeItem& item, const Volume& v) {
   Memo& memo = item.data->memo();
   if (auto kept = memo.find<Bends>(key)) return kept;
   Bends b = find_bends(v.voxels.array, v.voxels.dims, float(v.samples->hi - v.samples->lo), v.dual);
-  const size_t bytes = b.codes.size() * sizeof(Bends::Codes);
+  const size_t bytes = b.codes.size();
   return memo.keep(key, std::move(b), bytes);
 }
 
