@@ -3,8 +3,8 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
-#include "filter/flow/flow_support.h"
 #include "filter/flow/eigen_general.h"
+#include "filter/flow/flow_support.h"
 #include "support/test.h"
 
 using namespace sg;
