@@ -32,13 +32,13 @@ CellZeros::Result CellZeros::find(size_t cell, std::vector<CellZero>& out) {
   const size_t n = ids.size();
   v_.resize(n), zero_.resize(n);
   bool all = true, some = false;
-  double fastest = 0, slowest = HUGE_VAL;
+  double fastest = 0;
   for (size_t k = 0; k < n; ++k) {
     const Vec3 v = flow_.at_point(size_t(ids[k]));
     if (!(std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z))) return Result::none;
     v_[k] = frame_ ? Vec3(dot(v, frame_->e1), dot(v, frame_->e2), 0) : v;
     zero_[k] = v_[k] == Vec3();
-    fastest = std::max(fastest, length(v)), slowest = std::min(slowest, length(v));
+    fastest = std::max(fastest, length(v));
     all = all && zero_[k], some = some || zero_[k];
   }
   if (fastest < min_speed_) return Result::none;
@@ -48,7 +48,7 @@ CellZeros::Result CellZeros::find(size_t cell, std::vector<CellZero>& out) {
   }
   const size_t before = out.size();
   const Result result = find_open(some, out);
-  for (size_t i = before; i < out.size(); ++i) out[i].speed = slowest;
+  for (size_t i = before; i < out.size(); ++i) out[i].speed = fastest;
   return result;
 }
 

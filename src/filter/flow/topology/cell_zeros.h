@@ -16,7 +16,7 @@ struct CellZero {
   Vec3 at;              ///< place
   Mat3 gradient;        ///< m[i][j] = dv_i/dx_j
   double size = 0;      ///< of the cell: diagonal of the box of its nodes
-  double speed = 0;     ///< smallest at the cell's points
+  double speed = 0;     ///< largest at the cell's points
   bool border = false;  ///< on the cell's border (to 1e-6), where other cells may find it too
   int64_t node = -1;    ///< the mesh point whose velocity is exactly zero, where the zero is one
 };

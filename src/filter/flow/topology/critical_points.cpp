@@ -227,7 +227,8 @@ void describe(Schema& s, CriticalOptions& p) {
     "Cells that are slower than this part of the largest speed at all of their points are left out: noise has many zeros.")
       .range(0, 1);
   s("noise", p.noise,
-    "Of the critical points in cells that have a point slower than this part of the largest speed, those are left out as noise that have "
+    "Of the critical points in cells that are slower than this part of the largest speed at all of their points, those are left out as "
+    "noise that have "
     "another critical point within three cells; single ones stay, however slow.")
       .range(0, 1);
 }

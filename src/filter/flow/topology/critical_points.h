@@ -19,7 +19,7 @@ struct CriticalPoint {
   int64_t cell = -1;   ///< the smallest of the cells that hold it
   int32_t part = 0;    ///< of a collection, among those that have the flow
   double size = 0;     ///< of that cell: diagonal of its box
-  double speed = 0;    ///< smallest at that cell's points
+  double speed = 0;    ///< largest at that cell's points
   double moved = 0;    ///< curved surfaces: how far outside of its triangle the zero of the interpolant lies
 };
 
@@ -37,7 +37,8 @@ struct CriticalPoints {
 struct CriticalOptions {
   double centre = 1e-3;  ///< see linearise()
   double min_speed = 0;  ///< cells that are slower than this part of the largest speed at all their points are left out
-  double noise = 0;      ///< of points in cells with a point as slow, those are left out that have another one within three cells
+  double noise =
+      0;  ///< of points in cells that are as slow at all their points, those are left out that have another one within three cells
 };
 /// All isolated zeros of the interpolated velocity. Solids: zeros in space. Flat 2D meshes: of the part in their plane. Curved surfaces:
 /// see surface_zeros.h. Zeros on faces, edges and points of several cells are one, also of several patches and parts. The same for any

@@ -222,10 +222,10 @@ void find_surface_zeros(const FlowParts& flow, const CriticalOptions& options, C
     *out.faces_index += part.sum;
     for (const auto& [i, index] : part.found) {
       const Triangle& t = triangles[i];
-      double fastest = 0, slowest = HUGE_VAL;
+      double fastest = 0;
       for (const int64_t id : t.id) {
         const double speed = length(surface.given(id));
-        fastest = std::max(fastest, speed), slowest = std::min(slowest, speed);
+        fastest = std::max(fastest, speed);
       }
       if (fastest < options.min_speed * flow.largest_speed()) continue;
       Vec3 normal;
@@ -235,7 +235,7 @@ void find_surface_zeros(const FlowParts& flow, const CriticalOptions& options, C
           c.at = t.at[k], c.moved = 0;
           mean_gradient(surface, t.id[k], centre, c, normal);
         }
-      c.index = index, c.speed = slowest;
+      c.index = index, c.speed = fastest;
       if (c.flow.index != index) c.flow.type = CriticalType::degenerate;
       out.points.push_back(c), out.normal.push_back(normal);
     }
