@@ -166,6 +166,7 @@ void drop_noise(CriticalPoints& r, double slow) {
     ++kept;
   }
   r.noise = r.points.size() - kept;
+  if (r.noise > 0) r.slow = slow;
   r.points.resize(kept);
   if (!r.normal.empty()) r.normal.resize(kept);
 }

@@ -31,6 +31,7 @@ struct CriticalPoints {
   std::vector<Vec3> normal;        ///< of the surface at each point; empty for solids
   size_t spread = 0;               ///< cells with lines or areas of zeros, which are not reported
   size_t noise = 0;                ///< points left out as noise
+  double slow = 0;                 ///< the speed below which they were, if any: lines that stay below it wander in noise
   std::optional<int> faces_index;  ///< curved surfaces: sum of the indices of all triangles (the Euler number of a closed surface)
 };
 

@@ -54,6 +54,9 @@ class Limits {
   double reach_ = 0;
 };
 
+/// So many slow points on end of a line are noise; a step is about a cell.
+constexpr size_t most_slow = 20;
+
 // Appends a traced line, `at(i, x, v)` its n points from the seed on, to its separatrix, up to a critical point that it comes to.
 template <class At>
 void follow(size_t n, At&& at, StopReason stop, const CriticalPoints& critical, const Limits& limits, double sign, Separatrix& s) {
@@ -63,6 +66,7 @@ void follow(size_t n, At&& at, StopReason stop, const CriticalPoints& critical, 
   at(0, x, v);
   const Vec3 start = s.points.empty() ? x : s.points[0];
   bool left = from < 0;
+  size_t slow = 0;
   s.stop = stop;
   for (size_t i = 0; i < n; ++i) {
     at(i, x, v);
@@ -76,6 +80,11 @@ void follow(size_t n, At&& at, StopReason stop, const CriticalPoints& critical, 
       }
     }
     s.points.push_back(x), s.speed.push_back(length(v));
+    slow = length(v) < critical.slow ? slow + 1 : 0;
+    if (slow <= most_slow) continue;
+    s.points.resize(s.points.size() - slow), s.speed.resize(s.points.size());
+    s.stop = StopReason::speed;
+    return;
   }
 }
 
