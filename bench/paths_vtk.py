@@ -3,15 +3,16 @@
 """Whose rounding is it? Streamlines of ours and of VTK's stream tracer against the same Runge-Kutta steps in extended precision (64 bits of
 mantissa), through exactly the same interpolant: trilinear on a 128^3 grid, linear on a million tetrahedra.
 
-  python3 bench/paths_vtk.py --data FOLDER --program build/sightglass [--seeds 1000] [--scratch /tmp/paths]
+  python3 bench/paths_vtk.py --data FOLDER --program build/sightglass [--seeds 1000] [--scratch FOLDER]
 
 FOLDER holds abc_128.npy, tets_pts_1M.npy and tets_con_1M.npy of the peers' scripts. Two equations have the same curves: dx/dt = v with steps
-of h / |v| (ours), and dx/ds = v / |v| with steps of h (VTK's, which divides the velocity by its length). Their Runge-Kutta steps differ by
-the error of the method; each program is measured against its own equation, and the two exact paths against each other.
+of h / |v|, and dx/ds = v / |v| with steps of h, which both programs solve for steps in length. Their Runge-Kutta steps differ by the error
+of the method: each program is measured against both, and the two exact paths against each other.
 """
 import argparse
 import os
 import subprocess
+import tempfile
 
 import numpy as np
 
@@ -285,10 +286,10 @@ def row(name, worst):
 
 def main():
     a = argparse.ArgumentParser()
-    a.add_argument("--data", default="/tmp/peers")
+    a.add_argument("--data", required=True)
     a.add_argument("--program", default="build/sightglass")
     a.add_argument("--seeds", type=int, default=1000)
-    a.add_argument("--scratch", default="/tmp/paths")
+    a.add_argument("--scratch", default=os.path.join(tempfile.gettempdir(), "sightglass-paths"))
     o = a.parse_args()
     os.makedirs(o.scratch, exist_ok=True)
     start = seeds(o.seeds)

@@ -51,7 +51,7 @@ DatasetPtr welded(const DatasetPtr& in) {
   std::stable_sort(order.begin(), order.end(), [&](int64_t a, int64_t b) { return keys[size_t(a)] < keys[size_t(b)]; });
   for (size_t i = 0; i < n; ++i) {
     const bool same = i > 0 && keys[size_t(order[i])] == keys[size_t(order[i - 1])];
-    number[size_t(order[i])] = same ? number[size_t(order[i - 1])] : order[i];  // the first of them, for now
+    number[size_t(order[i])] = same ? number[size_t(order[i - 1])] : order[i];  // of equal points the first, numbered below
   }
   for (size_t i = 0; i < n; ++i) {
     if (number[i] == int64_t(i)) number[i] = int64_t(kept.size()), kept.push_back(int64_t(i));

@@ -10,6 +10,7 @@
 #include "data/memo.h"
 #include "render/volume/large/bricked_source.h"
 #include "render/volume/lattice/reconstructed_ray.h"
+#include "render/volume/lattice/samples.h"
 #include "render/volume/light/optical_depth.h"
 
 namespace sg::volume {
@@ -45,19 +46,6 @@ std::vector<float> halved(const Dims& n, const Dims& half, const From& from, con
       },
       &context);
   return out;
-}
-
-/// Calls f with the samples as a typed pointer.
-template <class F>
-void with_samples(const Array& a, F&& f) {
-  switch (a.type()) {
-    case ElementType::u8: return f(reinterpret_cast<const uint8_t*>(a.raw()));
-    case ElementType::i8: return f(reinterpret_cast<const int8_t*>(a.raw()));
-    case ElementType::u16: return f(reinterpret_cast<const uint16_t*>(a.raw()));
-    case ElementType::i16: return f(reinterpret_cast<const int16_t*>(a.raw()));
-    case ElementType::f32: return f(reinterpret_cast<const float*>(a.raw()));
-    default: fail_internal("a volume's samples were not narrowed");
-  }
 }
 
 Pyramid make_pyramid(const Array& samples, const Dims& dims, const Context& context) {

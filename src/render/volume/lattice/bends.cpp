@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "render/volume/lattice/empty_space.h"
+#include "render/volume/lattice/samples.h"
 
 namespace sg::volume {
 
@@ -107,9 +108,9 @@ Bends find_bends(const Array& values, std::array<size_t, 3> dims, float range, b
   std::array<size_t, 3> n;
   for (size_t a = 0; a < 3; ++a) n[a] = (std::max<size_t>(dims[a], 2) - 2) / FineBricks::edge + 1;
   std::vector<Found> found(n[0] * n[1] * n[2]);
-  dispatch(values, [&](auto view) {
+  with_samples(values, [&](const auto* data) {
     parallel_for(n[1] * n[2], 8, [&](size_t begin, size_t end) {
-      for (size_t row = begin; row < end; ++row) find_row(view.data, dims, framed, row % n[1], row / n[1], &found[row * n[0]], n[0]);
+      for (size_t row = begin; row < end; ++row) find_row(data, dims, framed, row % n[1], row / n[1], &found[row * n[0]], n[0]);
     });
   });
   Bends r;

@@ -53,7 +53,7 @@ class TolerantPacket {
   HWY_INLINE void run(PacketResult& result) {
     const D d;
     const IntTag<D> di;
-    const I one = hn::Set(di, 1), zero = hn::Zero(di);
+    const I zero = hn::Zero(di);
     const F stop = hn::Set(d, plan_.budget.stop_below);
     const Source<D, T>& source = cells_.source;
     const auto& bricks = v_.fine().dims;
@@ -82,15 +82,16 @@ class TolerantPacket {
           hn::Or(hn::Lt(stride_, hn::Set(d, shortest_stride)), hn::RebindMask(d, hn::Eq(code, hn::Set(di, int(Bends::unbounded)))));
       const M crossing = hn::And(hn::AndNot(leaping, on), cellwise);
       const M walking = hn::Or(leaping, crossing), striding = hn::AndNot(walking, on);
-      if (!hn::AllFalse(d, striding)) {
-        const M fresh = hn::AndNot(known, striding);
-        if (!hn::AllFalse(d, fresh)) renew(t, fresh), known = hn::Or(known, fresh);
-        const F to = stride_on(t, code, striding);
-        // A lane that was refused stays in its cell, which rounding may tell otherwise.
-        const M moved = hn::And(striding, hn::Gt(to, t));
-        t = hn::IfThenElse(moved, to, t);
-        for (int a = 0; a < 3; ++a) cell[a] = hn::IfThenElse(hn::RebindMask(di, moved), cell_at(a, t), cell[a]);
-      }
+      if constexpr (!shaded)
+        if (!hn::AllFalse(d, striding)) {
+          const M fresh = hn::AndNot(known, striding);
+          if (!hn::AllFalse(d, fresh)) renew(t, fresh), known = hn::Or(known, fresh);
+          const F to = stride_on(t, code, striding);
+          // A lane that was refused stays in its cell, which rounding may tell otherwise.
+          const M moved = hn::And(striding, hn::Gt(to, t));
+          t = hn::IfThenElse(moved, to, t);
+          for (int a = 0; a < 3; ++a) cell[a] = hn::IfThenElse(hn::RebindMask(di, moved), cell_at(a, t), cell[a]);
+        }
       if (!hn::AllFalse(d, walking)) {
         walk(brick, free, inside, leaping, crossing, cell, t);
         known = hn::AndNot(walking, known);
@@ -128,7 +129,6 @@ class TolerantPacket {
 
   HWY_INLINE void renew(F t, M which) { take(sums_.at(value_at(t)), which); }
   HWY_INLINE void take(const typename SumLanes<D>::Place& p, M which) {
-    const D d;
     const IntTag<D> di;
     here_.value = hn::IfThenElse(which, p.value, here_.value), here_.tau = hn::IfThenElse(which, p.tau, here_.tau);
     here_.slope = hn::IfThenElse(which, p.slope, here_.slope);

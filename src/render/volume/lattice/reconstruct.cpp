@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "render/volume/lattice/samples.h"
 
 namespace sg::volume {
 
@@ -84,18 +85,6 @@ void read_block_of(const T* samples, const std::array<size_t, 3>& dims, const lo
   for (long k = from[2]; k < to[2]; ++k)
     for (int i = 0; i < n; ++i) reflect(block + i + n * n * (k - first[2]), n, n, first[1], long(dims[1]));
   for (int i = 0; i < n * n; ++i) reflect(block + i, n, n * n, first[2], long(dims[2]));
-}
-
-template <class F>
-decltype(auto) with_samples(const Array& a, F&& f) {
-  switch (a.type()) {
-    case ElementType::u8: return f(reinterpret_cast<const uint8_t*>(a.raw()));
-    case ElementType::i8: return f(reinterpret_cast<const int8_t*>(a.raw()));
-    case ElementType::u16: return f(reinterpret_cast<const uint16_t*>(a.raw()));
-    case ElementType::i16: return f(reinterpret_cast<const int16_t*>(a.raw()));
-    case ElementType::f32: return f(reinterpret_cast<const float*>(a.raw()));
-    default: fail_internal("a volume's samples were not narrowed");
-  }
 }
 
 /// Ranges of samples, those outside the lattice included, that have a share in a brick.
