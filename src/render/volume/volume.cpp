@@ -132,10 +132,8 @@ class Alone {
       const bool in_steps = post || item.mode == RayFunction::maximum;
       if (by_tolerance && in_tolerant_packets(*plan_)) {
         packets_ = cast_tile;
-        if (!item.shaded) {
-          sums_.emplace(*v.medium), bends_ = bends_of(item, *picture.lattices[0]);
-          plan_->sums = &*sums_, plan_->bends = bends_.get();
-        }
+        sums_.emplace(*v.medium), bends_ = bends_of(item, *picture.lattices[0]);
+        plan_->sums = &*sums_, plan_->bends = bends_.get();
       } else if (!by_tolerance && in_steps && in_packets(*plan_)) packets_ = march_tile;
     } else if (const auto* bricks = dynamic_cast<const BrickedSource*>(v.source.get())) {
       stage_ = brick_stage(*bricks, item, v.id, v.unit, v.per_scale);

@@ -17,9 +17,6 @@ namespace {
 struct Found {
   float most[6] = {0, 0, 0, 0, 0, 0};
 
-  void join(const Found& o) {
-    for (int i = 0; i < 6; ++i) most[i] = std::max(most[i], o.most[i]);
-  }
   float bend() const { return std::max({most[0] + most[3] + most[4], most[1] + most[3] + most[5], most[2] + most[4] + most[5]}); }
 };
 
@@ -107,32 +104,35 @@ static void find_row(const T* data, std::array<size_t, 3> dims, bool framed, siz
 Bends find_bends(const Array& values, std::array<size_t, 3> dims, float range, bool framed) {
   std::array<size_t, 3> n;
   for (size_t a = 0; a < 3; ++a) n[a] = (std::max<size_t>(dims[a], 2) - 2) / FineBricks::edge + 1;
-  std::vector<Found> found(n[0] * n[1] * n[2]);
+  Bends r;
+  r.range = range > 0 && range < 1e30f ? range : 1;
+  const size_t bricks = n[0] * n[1] * n[2];
+  std::vector<uint8_t> own(bricks);
   with_samples(values, [&](const auto* data) {
     parallel_for(n[1] * n[2], 8, [&](size_t begin, size_t end) {
-      for (size_t row = begin; row < end; ++row) find_row(data, dims, framed, row % n[1], row / n[1], &found[row * n[0]], n[0]);
-    });
-  });
-  Bends r;
-  r.range = range > 0 ? range : 1;
-  r.codes.resize(found.size() + 3, Bends::unbounded);
-  // Joined with the bricks around, one axis after the other.
-  std::vector<Found> joined(found.size());
-  const size_t step[3] = {1, n[0], n[0] * n[1]};
-  for (size_t a = 0; a < 3; ++a) {
-    parallel_for(found.size(), 16384, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i) {
-        const size_t at = i / step[a] % n[a];
-        joined[i] = found[i];
-        if (at > 0) joined[i].join(found[i - step[a]]);
-        if (at + 1 < n[a]) joined[i].join(found[i + step[a]]);
+      std::vector<Found> found(n[0]);
+      for (size_t row = begin; row < end; ++row) {
+        std::fill(found.begin(), found.end(), Found());
+        find_row(data, dims, framed, row % n[1], row / n[1], found.data(), n[0]);
+        for (size_t i = 0; i < n[0]; ++i) own[row * n[0] + i] = Bends::coded(found[i].bend() / r.range);
       }
     });
-    found.swap(joined);
-  }
-  parallel_for(found.size(), 16384, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) r.codes[i] = Bends::coded(found[i].bend() / r.range);
   });
+  // The largest of the bricks around, one axis after the other.
+  r.codes.resize(bricks + 3, Bends::unbounded);
+  const size_t step[3] = {1, n[0], n[0] * n[1]};
+  uint8_t* from = own.data();
+  uint8_t* to = r.codes.data();
+  for (size_t a = 0; a < 3; ++a, std::swap(from, to))
+    parallel_for(bricks, 16384, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) {
+        const size_t at = i / step[a] % n[a];
+        uint8_t most = from[i];
+        if (at > 0) most = std::max(most, from[i - step[a]]);
+        if (at + 1 < n[a]) most = std::max(most, from[i + step[a]]);
+        to[i] = most;
+      }
+    });
   return r;
 }
 

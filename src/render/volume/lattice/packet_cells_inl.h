@@ -72,10 +72,12 @@ class PacketCells {
   const PacketPlan& plan;
   const Source<D, T> source;
   const MediumLanes<D> medium;
+  const Lighting<D> lighting;
   F start[3], along[3];  ///< in u: where the rays enter, and one world length
   Gathering<D> sum;
 
-  HWY_INLINE PacketCells(const PacketPlan& p, const RayPacket& rays) : plan(p), source(p.volume.voxels), medium(*p.medium), light(p, rays) {
+  HWY_INLINE PacketCells(const PacketPlan& p, const RayPacket& rays)
+      : plan(p), source(p.volume.voxels), medium(*p.medium), lighting(p, rays), light(p, lighting) {
     const D d;
     for (int a = 0; a < 3; ++a) start[a] = hn::Load(d, rays.entry[a]), along[a] = hn::Load(d, rays.along[a]);
     at_ = hn::Zero(IntTag<D>());
@@ -226,8 +228,8 @@ class PacketCells {
     const F alpha = hn::IfThenElse(hn::Lt(depth, hn::Set(d, 0.02f)), thin, hn::Sub(one, pass));
     auto color = medium.color(middle);
     F r = hn::Mul(color.r, alpha), g = hn::Mul(color.g, alpha), bl = hn::Mul(color.b, alpha);
-    const M deep = hn::And(hn::And(drawn, hn::Gt(depth, hn::Set(d, 0.1f))),
-                           hn::Gt(hn::Mul(hn::Min(depth, hn::Set(d, 6.0f)), most_hidden_), hn::Set(d, 12.0f)));
+    M deep = hn::And(drawn, hn::Gt(depth, hn::Set(d, 0.1f)));
+    if constexpr (!shaded) deep = hn::And(deep, hn::Gt(hn::Mul(hn::Min(depth, hn::Set(d, 6.0f)), most_hidden_), hn::Set(d, 12.0f)));
     if (!hn::AllFalse(d, deep)) {
       F hidden = hn::Add(hn::Sub(hn::Mul(half, alpha), hn::Div(alpha, hn::Max(depth, hn::Set(d, 0.05f)))), pass);
       const F series =

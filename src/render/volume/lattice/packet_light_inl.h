@@ -18,26 +18,96 @@ struct LitLanes {
   hn::Vec<D> diffuse, specular;
 };
 
+/// The lamps of a picture and the rays that they are seen along.
+template <class D>
+class Lighting {
+  using F = hn::Vec<D>;
+  using I = Int<D>;
+
+ public:
+  HWY_INLINE Lighting(const PacketPlan& plan, const RayPacket& rays) : plan_(plan) {
+    const D d;
+    for (int a = 0; a < 3; ++a) ray[a] = hn::Load(d, rays.direction[a]);
+    if (!plan.volume.shaded) return;
+    for (size_t l = 0; l < plan.lamps.size(); ++l) {
+      // Half way between the light and the viewer.
+      const Vec3 to = plan.lamps[l].direction;
+      const F x = hn::Sub(hn::Set(d, float(to.x)), ray[0]), y = hn::Sub(hn::Set(d, float(to.y)), ray[1]),
+              z = hn::Sub(hn::Set(d, float(to.z)), ray[2]);
+      const F length = hn::Sqrt(hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z)));
+      const F per = hn::IfThenElseZero(hn::Gt(length, hn::Zero(d)), hn::Div(hn::Set(d, 1.0f), length));
+      half_[l][0] = hn::Mul(x, per), half_[l][1] = hn::Mul(y, per), half_[l][2] = hn::Mul(z, per);
+    }
+  }
+
+  static HWY_INLINE F dot(const F a[3], const F b[3]) {
+    return hn::Add(hn::Add(hn::Mul(a[0], b[0]), hn::Mul(a[1], b[1])), hn::Mul(a[2], b[2]));
+  }
+
+  /// A gradient of the field per world length, from one per cell.
+  HWY_INLINE void to_world(const F g[3], F out[3]) const {
+    const D d;
+    const auto& m = plan_.volume.shade_plan.to_world;
+    for (int a = 0; a < 3; ++a)
+      out[a] = hn::Add(hn::Add(hn::Mul(hn::Set(d, m[a][0]), g[0]), hn::Mul(hn::Set(d, m[a][1]), g[1])), hn::Mul(hn::Set(d, m[a][2]), g[2]));
+  }
+
+  /// The same with the rays in another order.
+  HWY_INLINE Lighting permuted(Int<D> order) const {
+    const D d;
+    const auto to = hn::IndicesFromVec(d, order);
+    Lighting l = *this;
+    for (int a = 0; a < 3; ++a) l.ray[a] = hn::TableLookupLanes(ray[a], to);
+    for (size_t n = 0; n < plan_.lamps.size(); ++n)
+      for (int a = 0; a < 3; ++a) l.half_[n][a] = hn::TableLookupLanes(half_[n][a], to);
+    return l;
+  }
+
+  /// Light where the field has the world gradient g, of the given length. `sides`, if any, tells on which side of its kinks it is: a bit
+  /// each for the face that is seen, for whether there is as much of a surface as can be, and for every lamp that reaches it.
+  HWY_INLINE LitLanes<D> on(const F g[3], F square, F length, I* sides = nullptr) const {
+    const D d;
+    const IntTag<D> di;
+    const F zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+    const auto bent = hn::And(hn::Gt(square, zero), hn::Lt(square, hn::Set(d, 1e30f)));
+    const F much = hn::Mul(length, hn::Set(d, plan_.edge * plan_.volume.shade_plan.per_scale)), surface = hn::Min(one, much);
+    const auto away = hn::Gt(dot(g, ray), zero);
+    const F side = hn::Div(hn::IfThenElse(away, hn::Set(d, -1.0f), one), hn::Max(length, hn::Set(d, 1e-30f)));
+    const auto bit = [&](auto mask, int n) HWY_ATTR { return hn::IfThenElseZero(hn::RebindMask(di, mask), hn::Set(di, 1 << n)); };
+    if (sides) *sides = hn::Or(bit(away, 0), bit(hn::Lt(much, one), 1));
+    F diffuse = zero, specular = zero;
+    const Material& m = plan_.material;
+    for (size_t l = 0; l < plan_.lamps.size(); ++l) {
+      const Vec3f to(plan_.lamps[l].direction);
+      const F lamp[3] = {hn::Set(d, to.x), hn::Set(d, to.y), hn::Set(d, to.z)};
+      const F c = hn::Mul(side, dot(g, lamp)), intensity = hn::Set(d, plan_.lamps[l].intensity);
+      const auto lit = hn::Gt(c, zero);
+      if (sides) *sides = hn::Or(*sides, bit(lit, 2 + int(l)));
+      diffuse = hn::Add(diffuse, hn::IfThenElseZero(lit, hn::Mul(intensity, c)));
+      F h = hn::Max(hn::Mul(side, dot(g, half_[l])), zero), power = one;
+      for (int n = int(m.power); n > 0; n >>= 1, h = hn::Mul(h, h))
+        if (n & 1) power = hn::Mul(power, h);
+      specular = hn::Add(specular, hn::IfThenElseZero(lit, hn::Mul(intensity, power)));
+    }
+    const F factor = hn::Sub(hn::Add(hn::Set(d, m.ambient), hn::Mul(hn::Set(d, m.diffuse), diffuse)), one);
+    return {hn::IfThenElse(bent, hn::Add(one, hn::Mul(surface, factor)), one),
+            hn::IfThenElseZero(bent, hn::Mul(surface, hn::Mul(hn::Set(d, m.specular), specular)))};
+  }
+
+  F ray[3];  ///< directions
+
+ private:
+  const PacketPlan& plan_;
+  F half_[PacketPlan::most_lamps][3];
+};
+
 template <class D, class T>
 class CellLight {
   using F = hn::Vec<D>;
   using I = Int<D>;
 
  public:
-  HWY_INLINE CellLight(const PacketPlan& plan, const RayPacket& rays) : plan_(plan) {
-    const D d;
-    for (int a = 0; a < 3; ++a) ray_[a] = hn::Load(d, rays.direction[a]);
-    if (!plan.volume.shaded) return;
-    for (size_t l = 0; l < plan.lamps.size(); ++l) {
-      // Half way between the light and the viewer.
-      const Vec3 to = plan.lamps[l].direction;
-      const F x = hn::Sub(hn::Set(d, float(to.x)), ray_[0]), y = hn::Sub(hn::Set(d, float(to.y)), ray_[1]),
-              z = hn::Sub(hn::Set(d, float(to.z)), ray_[2]);
-      const F length = hn::Sqrt(hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z)));
-      const F per = hn::IfThenElseZero(hn::Gt(length, hn::Zero(d)), hn::Div(hn::Set(d, 1.0f), length));
-      half_[l][0] = hn::Mul(x, per), half_[l][1] = hn::Mul(y, per), half_[l][2] = hn::Mul(z, per);
-    }
-  }
+  HWY_INLINE CellLight(const PacketPlan& plan, const Lighting<D>& lighting) : plan_(plan), lighting_(lighting) {}
 
   /// Differences over the samples before and after each corner, of the cell whose lowest corner lies at `corner`; `corners` by rows.
   HWY_INLINE void cell(const Source<D, T>& s, I corner, const I at[3], const Pair<D> corners[4]) {
@@ -80,51 +150,26 @@ class CellLight {
     const F zero = hn::Zero(d), one = hn::Set(d, 1.0f);
     F g0[3], g1[3];
     gradient(from, way, zero, g0), gradient(from, way, one, g1);
-    const F s0 = dot(g0, g0), s1 = dot(g1, g1);
+    const F s0 = Lighting<D>::dot(g0, g0), s1 = Lighting<D>::dot(g1, g1);
     const F both = hn::Sqrt(hn::Mul(s0, s1));
-    const F c = hn::Div(dot(g0, g1), hn::Max(both, hn::Set(d, 1e-30f)));
+    const F c = hn::Div(Lighting<D>::dot(g0, g1), hn::Max(both, hn::Set(d, 1e-30f)));
     // For an angle a the light bends by about (diffuse + specular power) a^2 / 24, with a^2 = 2 (1 - cos a).
     const Material& m = plan_.material;
     F bend = hn::Mul(hn::Sub(one, c), hn::Set(d, (m.diffuse + m.specular * m.power) / 12));
     // Where the surface turns away its other side is lit: a jump.
-    const F facing = hn::Mul(dot(g0, ray_), dot(g1, ray_));
+    const F facing = hn::Mul(Lighting<D>::dot(g0, lighting_.ray), Lighting<D>::dot(g1, lighting_.ray));
     bend = hn::Add(bend, hn::IfThenElseZero(hn::Lt(facing, zero), hn::Set(d, 0.25f)));
     return hn::Mul(weight, hn::IfThenElseZero(hn::Gt(both, zero), bend));
   }
 
   HWY_INLINE LitLanes<D> at(const F from[3], const F way[3], F s) const {
-    const D d;
-    const F zero = hn::Zero(d), one = hn::Set(d, 1.0f);
     F g[3];
     gradient(from, way, s, g);
-    const F square = dot(g, g);
-    const auto bent = hn::And(hn::Gt(square, zero), hn::Lt(square, hn::Set(d, 1e30f)));
-    const F length = hn::Sqrt(square);
-    const F surface = hn::Min(one, hn::Mul(length, hn::Set(d, plan_.edge * plan_.volume.shade_plan.per_scale)));
-    const F side = hn::Div(hn::IfThenElse(hn::Gt(dot(g, ray_), zero), hn::Set(d, -1.0f), one), hn::Max(length, hn::Set(d, 1e-30f)));
-    F diffuse = zero, specular = zero;
-    const Material& m = plan_.material;
-    for (size_t l = 0; l < plan_.lamps.size(); ++l) {
-      const Vec3f to(plan_.lamps[l].direction);
-      const F lamp[3] = {hn::Set(d, to.x), hn::Set(d, to.y), hn::Set(d, to.z)};
-      const F c = hn::Mul(side, dot(g, lamp)), intensity = hn::Set(d, plan_.lamps[l].intensity);
-      const auto lit = hn::Gt(c, zero);
-      diffuse = hn::Add(diffuse, hn::IfThenElseZero(lit, hn::Mul(intensity, c)));
-      F h = hn::Max(hn::Mul(side, dot(g, half_[l])), zero), power = one;
-      for (int n = int(m.power); n > 0; n >>= 1, h = hn::Mul(h, h))
-        if (n & 1) power = hn::Mul(power, h);
-      specular = hn::Add(specular, hn::IfThenElseZero(lit, hn::Mul(intensity, power)));
-    }
-    const F factor = hn::Sub(hn::Add(hn::Set(d, m.ambient), hn::Mul(hn::Set(d, m.diffuse), diffuse)), one);
-    return {hn::IfThenElse(bent, hn::Add(one, hn::Mul(surface, factor)), one),
-            hn::IfThenElseZero(bent, hn::Mul(surface, hn::Mul(hn::Set(d, m.specular), specular)))};
+    const F square = Lighting<D>::dot(g, g);
+    return lighting_.on(g, square, hn::Sqrt(square));
   }
 
  private:
-  static HWY_INLINE F dot(const F a[3], const F b[3]) {
-    return hn::Add(hn::Add(hn::Mul(a[0], b[0]), hn::Mul(a[1], b[1])), hn::Mul(a[2], b[2]));
-  }
-
   /// World gradient at the share s of the way.
   HWY_INLINE void gradient(const F from[3], const F way[3], F s, F out[3]) const {
     const D d;
@@ -139,13 +184,12 @@ class CellLight {
       const F apart = hn::Add(hn::IfThenElse(first_[a], f[a], one), hn::IfThenElse(last_[a], hn::Sub(one, f[a]), one));
       g[a] = hn::Div(sum, apart);
     }
-    const auto& m = plan_.volume.shade_plan.to_world;
-    for (int a = 0; a < 3; ++a)
-      out[a] = hn::Add(hn::Add(hn::Mul(hn::Set(d, m[a][0]), g[0]), hn::Mul(hn::Set(d, m[a][1]), g[1])), hn::Mul(hn::Set(d, m[a][2]), g[2]));
+    lighting_.to_world(g, out);
   }
 
   const PacketPlan& plan_;
-  F ray_[3], half_[PacketPlan::most_lamps][3], slope_[3][8];
+  const Lighting<D>& lighting_;
+  F slope_[3][8];
   hn::Mask<D> first_[3], last_[3];
 };
 

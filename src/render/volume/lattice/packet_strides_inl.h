@@ -55,13 +55,11 @@ struct SumLanes {
     const auto near = hn::Lt(hn::Abs(change), hn::Set(d, 2 * sums->width()));
     return hn::IfThenElse(near, even, hn::Max(hn::Zero(d), hn::Div(all, hn::IfThenElse(near, hn::Set(d, 1.0f), change))));
   }
-  /// The largest |slope| of tau between two places, `air` to both sides.
-  HWY_INLINE F steepest(const Place& a, const Place& b, F air) const {
+  /// The largest |slope| of tau between two places, so many nodes to both sides.
+  HWY_INLINE F steepest(const Place& a, const Place& b, I pad) const {
     const D d;
     const IntTag<D> di;
     const hn::RebindToUnsigned<IntTag<D>> du;
-    const I pad =
-        hn::Add(to_int(d, hn::Min(hn::Mul(air, hn::Set(d, sums->per_width())), hn::Set(d, float(MediumSums::nodes)))), hn::Set(di, 1));
     const I lower = hn::Max(hn::Zero(di), hn::Sub(hn::Min(a.node, b.node), pad));
     const I upper = hn::Min(hn::Set(di, MediumSums::nodes - 1), hn::Add(hn::Max(a.node, b.node), pad));
     // 2^level > upper - lower.
@@ -71,49 +69,93 @@ struct SumLanes {
     const auto first = hn::Sub(all, hn::Shr(all, level));
     return hn::GatherIndex(d, sums->steepest(), hn::BitCast(di, hn::Add(first, hn::Shr(hn::BitCast(du, lower), level))));
   }
+  /// As many as the values change by, and one.
+  HWY_INLINE I nodes_over(F change) const {
+    const D d;
+    return hn::Add(to_int(d, hn::Min(hn::Mul(change, hn::Set(d, sums->per_width())), hn::Set(d, float(MediumSums::nodes)))),
+                   hn::Set(IntTag<D>(), 1));
+  }
 };
 
-constexpr float share_off = 0.025f;
+/// Of what a stride's value may be off, the share that counts (docs/decisions/0007-strides.md).
+constexpr float share_off = 0.02f;
 
-/// What a stride would bring, and get wrong.
+/// What two strides of the same length, one after the other, would bring and get wrong. Places are told from the middle between them on,
+/// in strides.
 template <class D>
-struct Stride {
-  hn::Vec<D> depth;   ///< optical
-  hn::Vec<D> error;   ///< of the optical depth, and of the share of the light that gets a wrong colour
-  hn::Vec<D> middle;  ///< mean value by emission,
-  hn::Vec<D> weight;  ///< which lies so far on
+struct Strides {
+  hn::Vec<D> depth;             ///< optical
+  hn::Vec<D> error;             ///< of the optical depth, and of the share of the light that gets a wrong colour
+  hn::Vec<D> ahead;             ///< what more (or less) there would be to get wrong if it went on like the second
+  hn::Vec<D> value;             ///< the mean by emission,
+  hn::Vec<D> middle, variance;  ///< and where it lies
+  hn::Vec<D> change;            ///< largest less smallest value
 };
 
-/// From a to b, `world` long; the slope of the value changes by at most `bend` per cell length, of which the stride has `cells`.
+/// From p0 by p1 to p2, each stride `world` long; the slope of the value changes by at most `bend` per cell length, of which a stride has
+/// `cells`.
 template <class D>
-HWY_INLINE Stride<D> stride(const SumLanes<D>& medium, const Medium& colors, float tolerance, const typename SumLanes<D>::Place& a,
-                            const typename SumLanes<D>::Place& b, hn::Vec<D> world, hn::Vec<D> cells, hn::Vec<D> bend, hn::Vec<D> arch) {
+HWY_INLINE Strides<D> strides(const SumLanes<D>& medium, const Medium& colors, float tolerance, const typename SumLanes<D>::Place& p0,
+                              const typename SumLanes<D>::Place& p1, const typename SumLanes<D>::Place& p2, hn::Vec<D> world,
+                              hn::Vec<D> cells, hn::Vec<D> bend) {
   using F = hn::Vec<D>;
   const D d;
-  const F one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
-  const F both = hn::Add(a.tau, b.tau), even = hn::Mul(half, both), mean = medium.mean(a, b, even);
+  const F zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f), third = hn::Set(d, 1.0f / 3);
+  const F rise_a = hn::Sub(p1.value, p0.value), rise_b = hn::Sub(p2.value, p1.value);
+  const F arch = hn::Sub(rise_b, rise_a);  // the second difference
+  const F both_a = hn::Add(p0.tau, p1.tau), both_b = hn::Add(p1.tau, p2.tau);
+  const F even_a = hn::Mul(half, both_a), even_b = hn::Mul(half, both_b);
+  const F mean_a = medium.mean(p0, p1, even_a), mean_b = medium.mean(p1, p2, even_b);
+  const F lo = hn::Min(p0.value, hn::Min(p1.value, p2.value)), hi = hn::Max(p0.value, hn::Max(p1.value, p2.value)),
+          change = hn::Sub(hi, lo);
   const F off = hn::Mul(bend, hn::Mul(cells, cells));  // a fourth of it at most, an eighth in the mean
-  const F steepest = medium.steepest(a, b, hn::Mul(hn::Set(d, 0.25f), off));
-  const F rise = hn::Sub(b.value, a.value), change = hn::Abs(rise);
-  Stride<D> s;
+  const auto pad = medium.nodes_over(hn::Mul(hn::Set(d, 0.25f), off));
+  const F steep_a = medium.steepest(p0, p1, pad), steep_b = medium.steepest(p1, p2, pad);
   // A parabola lies `arch` / 12 below its chord in the mean.
-  const F sagging = hn::Mul(hn::Mul(hn::Set(d, 1.0f / 24), arch), hn::Add(a.slope, b.slope));
-  s.depth = hn::Mul(world, hn::Max(hn::Zero(d), hn::Sub(mean, sagging)));
+  const F sagging = hn::Mul(hn::Set(d, 1.0f / 24), arch);
+  const F depth_a = hn::Max(zero, hn::Sub(mean_a, hn::Mul(sagging, hn::Add(p0.slope, p1.slope))));
+  const F depth_b = hn::Max(zero, hn::Sub(mean_b, hn::Mul(sagging, hn::Add(p1.slope, p2.slope))));
+  const F sum = hn::Add(depth_a, depth_b), twice = hn::Add(world, world);
+  Strides<D> s;
+  s.change = change;
+  s.depth = hn::Mul(world, sum);
+
+  // Where a stride's tau goes straight its middle lies between a third and two thirds of it.
+  const auto weight = [&](F both, F end) HWY_ATTR {
+    const auto thin = hn::Lt(both, hn::Set(d, 1e-30f));
+    return hn::IfThenElse(thin, half, hn::Mul(third, hn::Add(one, hn::Div(end, hn::IfThenElse(thin, one, both)))));
+  };
+  const F w_a = weight(both_a, p1.tau), w_b = weight(both_b, p2.tau);
+  const auto none = hn::Lt(sum, hn::Set(d, 1e-30f));
+  const F share_b = hn::IfThenElse(none, half, hn::Div(depth_b, hn::IfThenElse(none, one, sum))), share_a = hn::Sub(one, share_b);
+  const F from_a = hn::Sub(w_a, one);
+  s.middle = hn::Add(hn::Mul(share_a, from_a), hn::Mul(share_b, w_b));
+  s.value = hn::Sub(hn::Add(p1.value, hn::Add(hn::Mul(hn::Mul(share_a, from_a), rise_a), hn::Mul(hn::Mul(share_b, w_b), rise_b))),
+                    hn::Mul(hn::Set(d, 1.0f / 12), arch));
+  const auto spread = [&](F w) HWY_ATTR { return hn::Sub(hn::Sub(w, hn::Set(d, 1.0f / 6)), hn::Mul(w, w)); };
+  const F apart = hn::Sub(w_b, from_a);
+  s.variance = hn::Add(hn::Add(hn::Mul(share_a, spread(w_a)), hn::Mul(share_b, spread(w_b))),
+                       hn::Mul(hn::Mul(share_a, share_b), hn::Mul(apart, apart)));
+
   // Colours bend on a width; where tau is no straight line between the ends its middle lies elsewhere; in a deep stride the front shows
   // more of its own colour than a constant tau would have it (optics/integrate.cpp, Pieces::whole).
+  const F taken = hn::Min(one, s.depth);
   const F recolored = hn::Min(one, hn::Mul(change, hn::Set(d, colors.color_slope())));
   const F widths = hn::Mul(change, hn::Set(d, 1 / colors.color_width()));
   const F deep =
-      hn::Mul(hn::Mul(hn::Mul(world, world), hn::Mul(hn::Max(hn::Max(a.tau, b.tau), mean), steepest)), hn::Mul(change, hn::Set(d, 0.05f)));
-  F e = hn::Mul(hn::Mul(world, steepest), hn::Mul(off, hn::Set(d, share_off)));
-  e = hn::Add(e, hn::Mul(hn::Mul(hn::Min(one, s.depth), hn::Set(d, 0.25f * tolerance)), hn::Mul(widths, widths)));
-  e = hn::Add(e, hn::Mul(recolored, hn::Add(hn::Min(one, deep), hn::Mul(hn::Mul(half, world), hn::Abs(hn::Sub(mean, even))))));
-  e = hn::Add(e, hn::Mul(hn::Min(one, s.depth), hn::Mul(off, hn::Set(d, share_off * colors.color_slope()))));
-  s.error = e;
-  const auto thin = hn::Lt(both, hn::Set(d, 1e-30f));
-  const F per = hn::Div(hn::Set(d, 1.0f / 3), hn::IfThenElse(thin, one, both));
-  s.weight = hn::IfThenElse(thin, half, hn::Mul(hn::Add(both, b.tau), per));
-  s.middle = hn::Sub(hn::Add(a.value, hn::Mul(rise, s.weight)), hn::Mul(hn::Set(d, 1.0f / 12), arch));
+      hn::Mul(hn::Mul(hn::Mul(twice, twice), hn::Mul(hn::Max(hn::Max(p0.tau, p2.tau), hn::Mul(half, sum)), hn::Max(steep_a, steep_b))),
+              hn::Mul(change, hn::Set(d, 0.05f)));
+  const F uneven = hn::Mul(hn::Mul(hn::Set(d, 0.5f), world), hn::Add(hn::Abs(hn::Sub(mean_a, even_a)), hn::Abs(hn::Sub(mean_b, even_b))));
+  const F per_steep = hn::Mul(world, hn::Mul(off, hn::Set(d, share_off)));
+  F e = hn::Mul(per_steep, hn::Add(steep_a, steep_b));
+  s.ahead = hn::Mul(per_steep, hn::Sub(steep_b, steep_a));
+  e = hn::Add(e, hn::Mul(hn::Mul(taken, hn::Set(d, 0.25f * tolerance)), hn::Mul(widths, widths)));
+  e = hn::Add(e, hn::Mul(recolored, hn::Add(hn::Min(one, deep), uneven)));
+  // A deep pair shows the ends of a parabola of colours more than its middle: for weights exp(-depth x / 2) the mean of x^2 is
+  // 1/3 + depth^2 / 90.
+  const F ends = hn::Mul(hn::Min(hn::Mul(s.depth, s.depth), hn::Set(d, 16.0f)), hn::Set(d, 1.0f / 90));
+  e = hn::Add(e, hn::Mul(taken, hn::Mul(hn::Mul(hn::Abs(arch), hn::Set(d, 0.5f * colors.color_slope())), ends)));
+  s.error = hn::Add(e, hn::Mul(taken, hn::Mul(off, hn::Set(d, share_off * colors.color_slope()))));
   return s;
 }
 

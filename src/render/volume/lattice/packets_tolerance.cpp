@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The integral within a tolerance along packets of rays: optics/integrate.cpp for a uniform grid, one ray per vector lane. Every lane has
-// its own place: it leaps over what draws nothing, strides where the field is as good as straight, and crosses the other cells one by one
-// (all of them where there is light: its changes have no bound of that kind yet).
+// its own place: it leaps over what draws nothing, strides where the field is as good as straight, and crosses the other cells one by one.
 #include "render/volume/lattice/packet_rays.h"
+
+#include <bit>
 
 #define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
@@ -11,6 +12,7 @@
 #include <hwy/highway.h>
 
 #include "render/volume/lattice/packet_cells_inl.h"
+#include "render/volume/lattice/packet_lit_strides_inl.h"
 #include "render/volume/lattice/packet_strides_inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -23,9 +25,9 @@ constexpr float longest_stride = 2, shortest_stride = 1.0f / 8;
 constexpr float cells_asked_ahead = 12;
 /// Shares of the tolerance: to start with, over the whole length, and over all light that is taken. The rest is for the end of the ray,
 /// the tables, and the cells that are crossed.
-constexpr float share_at_first = 0.1f, share_of_length = 0.1f, share_of_light = 0.35f;
+constexpr float share_at_first = 0.2f, share_of_length = 0.2f, share_of_light = 0.5f;
 /// Of what is left so much may go for one stride.
-constexpr float share_at_once = 1.0f / 6;
+constexpr float share_at_once = 1.0f / 3;
 
 template <class D, class T, bool shaded>
 class TolerantPacket {
@@ -48,6 +50,10 @@ class TolerantPacket {
     reserve_ = hn::Set(d, share_at_first * float(plan.budget.tolerance));
     stride_ = hn::Set(d, 1.0f);
     if (plan.bends) here_ = sums_.at(hn::Zero(d));
+    lit_ = hn::MaskFromVec(hn::Zero(d));
+    for (F* v : {&here_lit_.light.diffuse, &here_lit_.light.specular, here_lit_.normal, here_lit_.normal + 1, here_lit_.normal + 2})
+      *v = hn::Zero(d);
+    here_lit_.sides = hn::Zero(IntTag<D>());
   }
 
   HWY_INLINE void run(PacketResult& result) {
@@ -82,19 +88,18 @@ class TolerantPacket {
           hn::Or(hn::Lt(stride_, hn::Set(d, shortest_stride)), hn::RebindMask(d, hn::Eq(code, hn::Set(di, int(Bends::unbounded)))));
       const M crossing = hn::And(hn::AndNot(leaping, on), cellwise);
       const M walking = hn::Or(leaping, crossing), striding = hn::AndNot(walking, on);
-      if constexpr (!shaded)
-        if (!hn::AllFalse(d, striding)) {
-          const M fresh = hn::AndNot(known, striding);
-          if (!hn::AllFalse(d, fresh)) renew(t, fresh), known = hn::Or(known, fresh);
-          const F to = stride_on(t, code, striding);
-          // A lane that was refused stays in its cell, which rounding may tell otherwise.
-          const M moved = hn::And(striding, hn::Gt(to, t));
-          t = hn::IfThenElse(moved, to, t);
-          for (int a = 0; a < 3; ++a) cell[a] = hn::IfThenElse(hn::RebindMask(di, moved), cell_at(a, t), cell[a]);
-        }
+      if (!hn::AllFalse(d, striding)) {
+        const M fresh = hn::AndNot(known, striding);
+        if (!hn::AllFalse(d, fresh)) renew(t, fresh), known = hn::Or(known, fresh);
+        const F to = stride_on(t, code, striding);
+        // A lane that was refused stays in its cell, which rounding may tell otherwise.
+        const M moved = hn::And(striding, hn::Gt(to, t));
+        t = hn::IfThenElse(moved, to, t);
+        for (int a = 0; a < 3; ++a) cell[a] = hn::IfThenElse(hn::RebindMask(di, moved), cell_at(a, t), cell[a]);
+      }
       if (!hn::AllFalse(d, walking)) {
         walk(brick, free, inside, leaping, crossing, cell, t);
-        known = hn::AndNot(walking, known);
+        known = hn::AndNot(walking, known), lit_ = hn::AndNot(walking, lit_);
         stride_ = hn::IfThenElse(crossing, hn::Max(stride_, hn::Set(d, 2 * shortest_stride)), stride_);
       }
     }
@@ -148,18 +153,49 @@ class TolerantPacket {
     const F cells = hn::Div(world, per_speed_);
     const M ends = hn::Le(hn::Sub(end_, t), hn::Mul(hn::Set(d, 2.0f), hn::Mul(stride_, per_speed_)));
     const F t1 = hn::Add(t, world), t2 = hn::IfThenElse(ends, end_, hn::Add(t1, world));
-    ask_for(hn::Min(hn::Add(t1, hn::Mul(per_speed_, hn::Set(d, cells_asked_ahead))), end_));
     const auto p1 = sums_.at(value_at(t1)), p2 = sums_.at(value_at(t2));
-    const float tolerance = float(plan_.budget.tolerance);
-    const Medium& colors = *plan_.medium;
-    // The second difference over both.
-    const F arch = hn::Add(hn::Sub(here_.value, p1.value), hn::Sub(p2.value, p1.value));
-    const Stride<D> a = stride(sums_, colors, tolerance, here_, p1, world, cells, bend, arch);
-    const Stride<D> b = stride(sums_, colors, tolerance, p1, p2, world, cells, bend, arch);
-    F ratio = hn::Zero(d);
-    const M first = finish(a, here_, p1, t, world, striding, ratio);
-    const M good = finish(b, p1, p2, t1, world, first, ratio);
-    take(p1, hn::AndNot(good, first)), take(p2, good);
+    const Strides<D> s = strides(sums_, *plan_.medium, float(plan_.budget.tolerance), here_, p1, p2, world, cells, bend);
+    const F zero = hn::Zero(d), one = hn::Set(d, 1.0f), tolerance = hn::Set(d, float(plan_.budget.tolerance));
+    const F pass = cells_.sum.pass, taken = hn::Mul(pass, hn::Min(one, s.depth));
+    const M seen = hn::And(striding, hn::Gt(s.depth, zero));
+    const bool any_seen = !hn::AllFalse(d, seen);
+    F error = hn::Mul(pass, s.error);
+    const F own = hn::Mul(tolerance, hn::Add(hn::Mul(taken, hn::Set(d, share_of_light)),
+                                             hn::Mul(world, hn::Set(d, float(2 * share_of_length / plan_.budget.length)))));
+    const F allowed = hn::Add(own, hn::Mul(reserve_, hn::Set(d, share_at_once)));
+    LitPlace<D> lit2;
+    StrideLight<D> light;
+    if constexpr (shaded)
+      if (any_seen) {
+        lit2 = light_ends(t, t2, seen);
+        light = StrideLight<D>::straight(plan_.material, here_lit_, lit2);
+        // The middle only where the ends do not do.
+        const M rough = hn::And(seen, hn::And(hn::Le(error, allowed), hn::Gt(hn::Add(error, hn::Mul(taken, light.error)), allowed)));
+        if (!hn::AllFalse(d, rough))
+          light.take(StrideLight<D>::curved(plan_.material, here_lit_, lit_at(cells_.lighting, t1), lit2), rough);
+        error = hn::Add(error, hn::IfThenElseZero(seen, hn::Mul(taken, light.error)));
+      }
+    const M good = hn::And(striding, hn::Le(error, allowed));
+    reserve_ = hn::IfThenElse(good, hn::Sub(hn::Add(reserve_, own), error), reserve_);
+    if (any_seen) {
+      const M drawn = hn::And(seen, good);
+      cells_.may_hide(s.change);
+      cells_.segment(drawn, t, hn::Add(world, world), s.depth, here_.value, p2.value, s.value, hn::Mul(half, hn::Add(one, s.middle)),
+                     [&](F at, F share, F& red, F& green, F& blue) HWY_ATTR {
+                       if constexpr (shaded) {
+                         const F x = hn::Div(hn::Sub(at, t1), hn::Max(world, hn::Set(d, 1e-30f)));
+                         const F factor = light.diffuse.mean(x, s.variance), flash = hn::Mul(light.specular.mean(x, s.variance), share);
+                         for (F* c : {&red, &green, &blue}) *c = hn::Add(hn::Mul(*c, factor), flash);
+                       }
+                     });
+      if constexpr (shaded) here_lit_.take(lit2, drawn);
+    }
+    if constexpr (shaded) lit_ = hn::Or(hn::AndNot(good, lit_), hn::And(seen, good));
+    take(p2, good);
+    ask_for(hn::Min(hn::Add(t1, hn::Mul(per_speed_, hn::Set(d, cells_asked_ahead))), end_));
+    const F next_error = hn::IfThenElse(good, hn::Add(error, hn::Mul(pass, s.ahead)), error);
+    F ratio = hn::Div(allowed, hn::Max(next_error, hn::Set(d, 1e-30f)));
+    ratio = hn::IfThenElseZero(hn::Eq(error, error), ratio);
     const F factor = hn::Mul(hn::Set(d, 0.75f), hn::Sqrt(ratio));
     const F longer = hn::Max(hn::Set(d, 0.5f), hn::Min(factor, hn::Set(d, 3.0f)));
     const F shorter = hn::Max(hn::Set(d, 0.1f), hn::Min(factor, hn::Set(d, 0.7f)));
@@ -167,26 +203,45 @@ class TolerantPacket {
     // Cells are crossed where strides of about the shortest were refused.
     next = hn::IfThenElse(hn::Lt(stride_, hn::Set(d, 2 * shortest_stride)), next, hn::Max(next, hn::Set(d, shortest_stride)));
     stride_ = hn::IfThenElse(striding, next, stride_);
-    return hn::IfThenElse(good, t2, hn::IfThenElse(first, t1, t));
+    return hn::IfThenElse(good, t2, t);
   }
 
-  /// Adds the stride for those lanes of `which` in which it is good enough. Sets their ratio of what is allowed to the error.
-  HWY_INLINE M finish(const Stride<D>& s, const typename SumLanes<D>::Place& from, const typename SumLanes<D>::Place& to, F t, F world,
-                      M which, F& ratio) {
+  HWY_INLINE LitPlace<D> lit_at(const Lighting<D>& lighting, F t) const {
+    F u[3];
+    for (int a = 0; a < 3; ++a) u[a] = hn::Add(cells_.start[a], hn::Mul(cells_.along[a], t));
+    return LitPlace<D>::at(lighting, cells_.source, u);
+  }
+
+  /// The light at t2, and at t for those lanes of `seen` that do not know it. Lanes that are not seen help: they look for others.
+  HWY_INLINE LitPlace<D> light_ends(F t, F t2, M seen) {
     const D d;
-    const F one = hn::Set(d, 1.0f), tolerance = hn::Set(d, float(plan_.budget.tolerance));
-    const F pass = cells_.sum.pass, taken = hn::Mul(pass, hn::Min(one, s.depth)), error = hn::Mul(pass, s.error);
-    const F own = hn::Mul(tolerance, hn::Add(hn::Mul(taken, hn::Set(d, share_of_light)),
-                                             hn::Mul(world, hn::Set(d, float(share_of_length / plan_.budget.length)))));
-    const F allowed = hn::Add(own, hn::Mul(reserve_, hn::Set(d, share_at_once)));
-    const M good = hn::And(which, hn::Le(error, allowed));
-    const F r = hn::Div(allowed, hn::Max(error, hn::Set(d, 1e-30f)));
-    ratio = hn::IfThenElse(which, hn::IfThenElseZero(hn::Eq(error, error), r), ratio);
-    reserve_ = hn::IfThenElse(good, hn::Sub(hn::Add(reserve_, own), error), reserve_);
-    if (hn::AllFalse(d, hn::And(good, hn::Gt(s.depth, hn::Zero(d))))) return good;
-    cells_.may_hide(hn::Abs(hn::Sub(to.value, from.value)));
-    cells_.segment(good, t, world, s.depth, from.value, to.value, s.middle, s.weight, [](F, F, F&, F&, F&) {});
-    return good;
+    const IntTag<D> di;
+    const M dark = hn::AndNot(lit_, seen);
+    lit_ = hn::Or(lit_, seen);
+    if (hn::AllFalse(d, dark)) return lit_at(cells_.lighting, t2);
+    if (hn::CountTrue(d, dark) + hn::CountTrue(d, seen) > hn::Lanes(d)) {
+      here_lit_.take(lit_at(cells_.lighting, t), dark);
+      return lit_at(cells_.lighting, t2);
+    }
+    alignas(64) int32_t from[most_lanes], to[most_lanes];
+    uint8_t bits[2][8] = {};
+    hn::StoreMaskBits(d, dark, bits[0]), hn::StoreMaskBits(d, seen, bits[1]);
+    uint32_t asking = uint32_t(bits[0][0]) | uint32_t(bits[0][1]) << 8, busy = uint32_t(bits[1][0]) | uint32_t(bits[1][1]) << 8;
+    hn::Store(hn::Iota(di, 0), di, from), hn::Store(hn::Iota(di, 0), di, to);
+    for (uint32_t free = ~busy; asking; asking &= asking - 1, free &= free - 1) {
+      const int who = std::countr_zero(asking), helper = std::countr_zero(free);
+      from[helper] = who, to[who] = helper;
+    }
+    const I order = hn::Load(di, from);
+    const auto indices = hn::IndicesFromVec(d, order);
+    F u[3];
+    for (int a = 0; a < 3; ++a) {
+      const F first = hn::TableLookupLanes(hn::Add(cells_.start[a], hn::Mul(cells_.along[a], t)), indices);
+      u[a] = hn::IfThenElse(seen, hn::Add(cells_.start[a], hn::Mul(cells_.along[a], t2)), first);
+    }
+    const LitPlace<D> found = LitPlace<D>::at(cells_.lighting.permuted(order), cells_.source, u);
+    here_lit_.take(found.permuted(hn::Load(di, to)), dark);
+    return found;
   }
 
   /// Takes lanes out of their cell (crossing it), or out of the cube of bricks nearer than what is drawn (leaping).
@@ -249,6 +304,8 @@ class TolerantPacket {
   M still_[3], up_[3];
   F stride_, reserve_;
   typename SumLanes<D>::Place here_;
+  LitPlace<D> here_lit_;
+  M lit_;  // the lanes for which it is the place where they are
 };
 
 template <class D, class T, bool shaded>

@@ -157,23 +157,29 @@ void Medium::make_colors(const ColorScale& scale, const Plan& plan) {
     c[size_t(i)] = linear_color(scale, value);
     for (size_t k = 0; k < 3; ++k) colors_[4 * size_t(i) + k] = uint16_t(std::clamp(c[size_t(i)][int(k)], 0.0, 1.0) * 65535 + 0.5);
   }
-  // The widest change over which a straight line does, jumps (which are knots) left aside.
+  // The widest change over which a straight line does, between jumps (which are knots).
   double steepest = 0;
-  const auto jump = [&](size_t i) { return difference(c[i], c[i + 1]) > 0.02; };
-  for (size_t i = 0; i < size_t(nodes); ++i)
-    if (!jump(i)) steepest = std::max(steepest, difference(c[i], c[i + 1]));
+  std::vector<size_t> stretches = {0};  // of the stretches without a jump: first and last node
+  for (size_t i = 0; i < size_t(nodes); ++i) {
+    const double change = difference(c[i], c[i + 1]);
+    if (change > 0.02) stretches.push_back(i), stretches.push_back(i + 1);
+    else steepest = std::max(steepest, change);
+  }
+  stretches.push_back(size_t(nodes));
   const auto straight = [&](size_t from, size_t to) {
     for (size_t q = 1; q < 8; ++q) {
-      const double f = double(q) / 8;
-      const double bend = difference(c[from] + (c[to] - c[from]) * f, c[from + (to - from) * q / 8]);
-      if (bend > 2 * plan.accuracy && bend < 0.2) return false;
+      const size_t at = from + (to - from) * q / 8;
+      const double f = double(at - from) / double(std::max<size_t>(to - from, 1));
+      if (difference(c[from] + (c[to] - c[from]) * f, c[at]) > 2 * plan.accuracy) return false;
     }
     return true;
   };
   size_t width = size_t(nodes);
   for (; width > 8; width /= 2) {
     bool all = true;
-    for (size_t i = 0; i + width <= size_t(nodes) && all; i += width / 2) all = straight(i, i + width);
+    for (size_t e = 0; e < stretches.size() && all; e += 2)
+      for (size_t i = stretches[e]; i < stretches[e + 1] && all; i += std::max<size_t>(width / 2, 1))
+        all = straight(i, std::min(i + width, stretches[e + 1]));
     if (all) break;
   }
   color_width_ = per > 0 ? float(double(width) * per) : 1e30f, color_slope_ = float(steepest * double(per_node_));
