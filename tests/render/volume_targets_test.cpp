@@ -98,7 +98,10 @@ TEST_CASE("volume targets: rays through tetrahedra are the same with every width
       VolumeItem v =
           item(with_field(test::cube(CellType::tetra, 5, bent), [](Vec3 p) { return waves(p * 2.0 - Vec3(1, 1, 1)); }), grey(0, 120), {});
       v.opacity.points = {{60, 0}, {70, 0.4}, {75, 0}, {85, 0}, {95, 0.9}}, v.unit_distance = 0.05, v.shaded = shaded;
-      return draw(scene_of({v}), perspective_view(45, 37, 80, {1.5, 1.1, 3}, {0.5, 0.5, 0.5}));
+      const Frame frame = draw(scene_of({v}), perspective_view(45, 37, 80, {1.5, 1.1, 3}, {0.5, 0.5, 0.5}));
+      // Where half of the light is gone there is a depth.
+      for (size_t i = 0; i < frame.depth.size(); ++i) CHECK((frame.depth[i] < HUGE_VALF) == (frame.rgba[4 * i + 3] > 0.5f));
+      return frame;
     });
 }
 
