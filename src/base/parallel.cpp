@@ -14,6 +14,7 @@
 #include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/task_arena.h>
 #endif
 
 namespace sg {
@@ -72,11 +73,15 @@ void detail::run_chunks(size_t chunks, ChunkFn fn, void* body, const Context* co
     }
     return;
   }
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, chunks, 1), [&](const tbb::blocked_range<size_t>& r) {
-    for (size_t i = r.begin(); i != r.end(); ++i) {
-      if (context) context->check();
-      fn(body, i);
-    }
+  // Isolated: who waits for the last chunks of an inner loop must not begin a chunk of an outer one, which may ask for the lock (or the
+  // call_once) that the inner loop runs under.
+  tbb::this_task_arena::isolate([&] {
+    tbb::parallel_for(tbb::blocked_range<size_t>(0, chunks, 1), [&](const tbb::blocked_range<size_t>& r) {
+      for (size_t i = r.begin(); i != r.end(); ++i) {
+        if (context) context->check();
+        fn(body, i);
+      }
+    });
   });
 }
 

@@ -192,8 +192,9 @@ std::optional<ColorScale> add(Scene& scene, const DatasetPtr& input, const Surfa
     points.size = 8;
     scene.items.emplace_back(std::move(points));
   }
-  apply_texture(item, texture_field(*input, p.texture, item.color_by));
-  if (mesh.polygons.size() + mesh.strips.size() > 0) scene.items.emplace_back(std::move(item));
+  const bool any_surface = mesh.polygons.size() + mesh.strips.size() > 0;
+  apply_texture(item, texture_field(*input, p.texture, item.color_by));  // gives the item other data: `mesh` may be gone
+  if (any_surface) scene.items.emplace_back(std::move(item));
   return legend;
 }
 

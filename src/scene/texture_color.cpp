@@ -58,7 +58,7 @@ void apply_texture(SurfaceItem& item, const std::string& texture) {
         const float dim = std::min(1.0f, 0.22f + 1.5f * g), bright = std::max(0.0f, g - 0.52f) * 0.85f;
         for (int k = 0; k < 3; ++k) c[k] = c[k] * dim * (1 - bright) + bright;
       }
-      for (int k = 0; k < 4; ++k) out[4 * i + size_t(k)] = uint8_t(std::clamp(c[k], 0.0f, 1.0f) * 255 + 0.5f);
+      for (int k = 0; k < 4; ++k) out[4 * i + size_t(k)] = uint8_t(c[k] > 0 ? std::min(c[k], 1.0f) * 255 + 0.5f : 0.0f);
     }
   });
   DatasetParts parts = d->parts();

@@ -2,6 +2,8 @@
 #include "base/parallel.h"
 
 #include <atomic>
+#include <chrono>
+#include <cstring>
 
 #include "base/context.h"
 #include "base/random.h"
@@ -32,6 +34,26 @@ TEST_CASE("parallel_for: every index once, chunk borders from n and grain alone"
       }
     }
   }
+}
+
+TEST_CASE(
+    "parallel_for: who waits for an inner loop begins nothing else meanwhile: locks and call_once around it cannot lock themselves out") {
+  const Threads use(8);  // on fewer than three cores no thread waits while two others work
+  std::atomic<int> within_itself{0}, done{0};
+  parallel_for(64, 1, [&](size_t i, size_t) {
+    thread_local int depth = 0;
+    within_itself += depth > 0;
+    ++depth;
+    parallel_for(32, 1, [&](size_t k, size_t) {
+      const auto until = std::chrono::steady_clock::now() + std::chrono::microseconds(random_bits(1, 32 * i + k) % 200);
+      while (std::chrono::steady_clock::now() < until) {
+      }
+      ++done;
+    });
+    --depth;
+  });
+  CHECK(done == 64 * 32);
+  CHECK(within_itself == 0);
 }
 
 TEST_CASE("parallel_for: a grain of 0 or beyond all bounds is one that works") {

@@ -96,6 +96,18 @@ TEST_CASE("brick packets: the same as single rays where levels meet, of numbers 
   CHECK(largest_difference(packets, single) < 2.0f / 255);
 }
 
+TEST_CASE("brick packets: a brick that begins right before the eye is drawn, wherever its corners lie in the picture") {
+  const MadeVolume m = make_volume({150, 101, 77}, 3, bumpy);
+  for (const double face : {64.0, 32.0}) {
+    Projection p = perspective_view(64, 64, 60, {70, 50, face + 1e-8}, {70, 50, 0});
+    p.near_plane = 1e-9;  // the corners of the bricks below lie 1e11 pixels away
+    const VolumeItem v = look_of(m.dataset, false);
+    const Frame packets = draw(scene_of({v}), p), single = draw(scene_of({v}), p, single_rays());
+    CHECK(*std::max_element(single.rgba.begin(), single.rgba.end()) > 0.2f);
+    CHECK(largest_difference(packets, single) < 2.0f / 255);
+  }
+}
+
 TEST_CASE("brick packets: a ray in a face between bricks meets its samples once") {
   // Homogeneous: how much passes is known.
   const MadeVolume m = make_volume({129, 129, 129}, 2, [](double, double, double) { return 1.0; });

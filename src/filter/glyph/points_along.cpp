@@ -9,6 +9,9 @@
 
 namespace sg {
 
+/// Places that 32-bit numbers of points still name.
+static constexpr double most_places = 1u << 31;
+
 DatasetPtr points_along_lines(const DatasetPtr& data, const GlyphPointsParams& p) {
   const auto* mesh = data->as<SurfaceMesh>();
   if (!mesh || mesh->lines.size() == 0)
@@ -28,7 +31,11 @@ DatasetPtr points_along_lines(const DatasetPtr& data, const GlyphPointsParams& p
     sum.assign(1, 0);
     for (size_t k = 1; k < n; ++k) sum.push_back(sum.back() + length(point(k) - point(k - 1)));
     if (!(sum.back() > 0) || !std::isfinite(sum.back())) continue;
-    const auto steps = size_t(sum.back() / spacing);
+    const double pieces = sum.back() / spacing;
+    if (!(double(places.size()) + pieces < most_places))
+      fail_usage(fmt::format("a spacing of {:.4g} makes more than {:.0f} places on the lines", spacing, most_places), "glyph_points",
+                 "take a larger spacing");
+    const auto steps = size_t(pieces);
     const double first = 0.5 * (sum.back() - double(steps) * spacing);
     size_t k = 1;
     for (size_t i = 0; i <= steps; ++i) {

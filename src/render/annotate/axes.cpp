@@ -43,7 +43,7 @@ std::vector<PlacedTick> tick_places(const Overlay& o, const BoxAxis& a, const Pr
   const double pixels = length_of({to.x - from.x, to.y - from.y});
   const double lo = a.from[a.axis], hi = a.to[a.axis];
   std::vector<PlacedTick> places;
-  for (int wanted = std::clamp(int(pixels / (3.5 * font)), 2, 7); wanted >= 1; --wanted) {
+  for (int wanted = int(std::max(2.0, std::min(7.0, pixels / (3.5 * font)))); wanted >= 1; --wanted) {
     places.clear();
     bool apart = true;
     for (const TickLabel& t : nice_ticks(lo, hi, wanted)) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Discs to visibility keys, one small disc per vector lane. No fused multiply-add: every target gives the same bits.
 #include <cmath>
+#include <cstring>
 
 #include "render/raster/discs.h"
 

@@ -69,7 +69,11 @@ class Growth {
 
   /// Seeds along the curve, evenly.
   void begin() {
-    const auto n = size_t(std::ceil(curve_.whole() / spacing_ - 1e-9)) + size_t(!curve_.closed);
+    const double pieces = std::ceil(curve_.whole() / spacing_ - 1e-9);
+    if (!(pieces < double(p_.max_points)))
+      fail_usage(fmt::format("{:.3g} lines begin on the seed curve, more than max_points = {}", pieces, p_.max_points), "stream_surface",
+                 "a larger spacing");
+    const auto n = size_t(pieces) + size_t(!curve_.closed);
     std::vector<double> at;
     for (size_t i = 0; i < std::max<size_t>(n, curve_.closed ? 3 : 2); ++i)
       at.push_back(double(i) / double(std::max<size_t>(n, curve_.closed ? 3 : 2) - size_t(!curve_.closed)));

@@ -47,7 +47,7 @@ class Places {
     friend bool operator==(const Cube&, const Cube&) = default;
   };
   struct Hash {
-    size_t operator()(const Cube& c) const { return size_t(c.i * 73856093 ^ c.j * 19349663 ^ c.k * 83492791); }
+    size_t operator()(const Cube& c) const { return size_t(c.i) * 73856093 ^ size_t(c.j) * 19349663 ^ size_t(c.k) * 83492791; }
   };
   Cube key(Vec3 x, int i, int j, int k) const {
     return {int64_t(std::floor(x.x / edge_)) + i, int64_t(std::floor(x.y / edge_)) + j, int64_t(std::floor(x.z / edge_)) + k};

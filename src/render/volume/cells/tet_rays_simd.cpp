@@ -350,7 +350,7 @@ HWY_ATTR void walk_lanes(const TetTables& tables, TetPacket& p, size_t lane) {
         before = here;
       }
       gather(medium, g0, g1, hn::Mul(hn::Sub(to, from), length), slice0, slice1, slice, lit, light ? &shine : nullptr, sum);
-      const M now = hn::And(hn::And(lit, hn::Lt(sum.pass, hn::Set(d, 0.5f))), hn::Ne(half, half));
+      const M now = hn::And(hn::And(lit, hn::Lt(sum.pass, hn::Set(d, 0.5f))), hn::IsNaN(half));
       half = hn::IfThenElse(now, to, half);
     }
     known_before = lit;

@@ -135,8 +135,10 @@ void BrickPackets::draw(int x0, int y0, int x1, int y1, Frame& frame) const {
   std::shared_ptr<const BrickLattice> lattice;
   for (const Leaf& leaf : leaves_) {
     if (!meets(leaf, x0, y0, x1, y1)) continue;
-    const int left = std::max(0, int(std::floor(leaf.x0)) - x0), right = std::min(x1 - x0, int(std::ceil(leaf.x1)) - x0);
-    const int top = std::max(0, int(std::floor(leaf.y0)) - y0), bottom = std::min(y1 - y0, int(std::ceil(leaf.y1)) - y0);
+    // Corners near the eye may lie anywhere: first cut to the tile, then made whole numbers.
+    const auto within = [](float v, int from, int to) { return int(std::clamp(v, float(from), float(to))) - from; };
+    const int left = within(std::floor(leaf.x0), x0, x1), right = within(std::ceil(leaf.x1), x0, x1);
+    const int top = within(std::floor(leaf.y0), y0, y1), bottom = within(std::ceil(leaf.y1), y0, y1);
     bool light = false;
     for (int y = top; y < bottom && !light; ++y)
       for (int x = left; x < right && !light; ++x) light = 1 - part.rgba[4 * (size_t(y) * width + size_t(x)) + 3] >= plan.budget.stop_below;

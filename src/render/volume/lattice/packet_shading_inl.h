@@ -99,7 +99,7 @@ struct SlopeFinder {
     for (int a = 0; a < 3; ++a) {
       auto change = hn::Sub(hi[a], lo[a]);
       auto slope = hn::Mul(change, half);
-      if (!inner || !hn::AllFalse(d, hn::Ne(change, change))) {
+      if (!inner || !hn::AllFalse(d, hn::IsNaN(change))) {
         const auto middle = source.value(at[0], at[1], at[2]);
         const auto lo_good = hn::Eq(lo[a], lo[a]), hi_good = hn::Eq(hi[a], hi[a]);
         auto apart = hn::Add(hn::IfThenElse(first[a], at[a].fraction, one), hn::IfThenElse(last[a], hn::Sub(one, at[a].fraction), one));

@@ -51,7 +51,7 @@ double DepthIntegral::over(const Stretch& s) const {
   // The cubic leaves a chord of 1/n of it by at most 3/4 of its largest second difference / n^2.
   const float bend = std::max(std::abs(s.b[0] - 2 * s.b[1] + s.b[2]), std::abs(s.b[1] - 2 * s.b[2] + s.b[3]));
   const double error = length * double(medium_.most_slope(lo, hi)) * 0.75 * double(bend);
-  const int n = std::clamp(int(std::ceil(std::sqrt(std::min(error, 1.0) * 1e4))), 1, 16);
+  const int n = std::clamp(int(std::ceil(std::sqrt(std::min(1.0, error) * 1e4))), 1, 16);
   double sum = 0;
   float v = s.b[0];
   for (int k = 1; k <= n; ++k) {

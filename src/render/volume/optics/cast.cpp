@@ -222,7 +222,7 @@ void Caster::maximum_difference(Active& active) {
   while (active.peek()) {
     const Stretch s = active.front();
     ++active.next;
-    const int n = std::clamp(int(std::ceil((s.to - s.from) / step)), 1, 64);
+    const int n = int(std::clamp(std::ceil((s.to - s.from) / step), 1.0, 64.0));
     const double h = (s.to - s.from) / n;
     for (int k = 0; k < n; ++k) {
       const double t = s.from + (k + 0.5) * h;

@@ -212,7 +212,7 @@ std::vector<Medium::Straight> Medium::straight() const {
     const float tau = std::max({l.at, l(hi), faint_}),
                 bend = 0.25f * std::max(std::abs(l.curve), std::abs(l.curve + 3 * l.twist * width)) * width * width;
     const float parts = std::max(std::sqrt(bend / (2 * accuracy_ * tau)), std::abs(axis(hi) - axis(lo)) / color_width_);
-    const int n = l.dark() ? 1 : std::clamp(int(std::ceil(parts)), 1, 1024);
+    const int n = l.dark() ? 1 : std::max(int(std::ceil(std::min(1024.0f, parts))), 1);
     for (int i = 0; i < n; ++i) {
       const float a = lo + width * (float(i) / float(n)), b = i + 1 == n ? hi : lo + width * (float(i + 1) / float(n));
       const float w = b - a;

@@ -105,7 +105,7 @@ void Preintegrated::integrate(const std::vector<Medium::Straight>& lines, size_t
     for (const Part& p : parts) {
       const double depth = length * p.share * 0.5 * (p.tau0 + p.tau1);
       if (!(depth > 0) || pass < 1e-12) continue;
-      const int cuts = std::clamp(int(std::ceil(depth)), 1, 64);
+      const int cuts = int(std::clamp(std::ceil(depth), 1.0, 64.0));
       for (int c = 0; c < cuts; ++c) {
         const double f0 = double(c) / cuts, f1 = double(c + 1) / cuts;
         const double t0 = p.tau0 + (p.tau1 - p.tau0) * f0, t1 = p.tau0 + (p.tau1 - p.tau0) * f1, l = length * p.share / cuts;
