@@ -11,7 +11,9 @@ namespace sg::contouring {
 
 namespace {
 
-constexpr size_t most_simplices = size_t(1) << 22;
+// Noise bends wherever it is divided: no more than what a smooth field needs, many times over.
+constexpr size_t most_simplices = size_t(1) << 22, always_simplices = size_t(1) << 16, most_per_simplex = 1 << 12;
+constexpr size_t around_edge = 5;                                                 // simplices, each of which becomes two
 constexpr uint8_t ends[6][2] = {{0, 1}, {0, 2}, {1, 2}, {0, 3}, {1, 3}, {2, 3}};  // the first three: those of a triangle
 int edge_count(const Simplex& s) { return s.corners == 3 ? 3 : 6; }
 
@@ -79,11 +81,13 @@ CurvedSimplices::CurvedSimplices(const DatasetPtr& dataset, View<double> values,
     if (c % 1024 == 0) context.check();
     if (!reader.hidden(c)) start(c, field);
   }
+  const size_t most = std::clamp(simplices_.size() * most_per_simplex, always_simplices, most_simplices);
   for (int round = 0; round < 40; ++round) {
     context.check();
     find_middles();
-    if (!mark(round)) break;
-    if (simplices_.size() > most_simplices) {
+    const size_t marked = mark(round);
+    if (marked == 0) break;
+    if (simplices_.size() + around_edge * marked > most) {
       context.info("contour: curved cells are not divided further, since there are too many parts; choose a larger tolerance");
       break;
     }
@@ -200,8 +204,8 @@ void CurvedSimplices::find_middles() {
   for (size_t i = 0; i < wanted.size(); ++i) middles_[wanted[i].key].at = found[i];
 }
 
-// Drops what the surface cannot reach and numbers the middles of edges that must be halved. False: none.
-bool CurvedSimplices::mark(int round) {
+// Drops what the surface cannot reach and numbers the middles of edges that must be halved. How many those are.
+size_t CurvedSimplices::mark(int round) {
   size_t kept = 0;
   std::vector<uint64_t> marked;
   for (size_t i = 0; i < simplices_.size(); ++i) {
@@ -244,7 +248,7 @@ bool CurvedSimplices::mark(int round) {
     points_.push_back(m.at);
   }
   if (points_.size() > size_t(UINT32_MAX) / 2) fail_usage("the surface has too many points", "contour", "choose a larger tolerance");
-  return !marked.empty();
+  return marked.size();
 }
 
 void CurvedSimplices::halve() {
