@@ -78,10 +78,11 @@ void stays_calm(const Operation& o, const std::string& what, const std::function
 std::vector<std::string> words_for(const Operation& o, const std::string& word) {
   std::vector<std::string> r;
   const ParamSet params = o.make_params();
-  for (const char* name : {"size", "resolution"}) {
+  for (const char* name : {"size", "resolution", "density"}) {
     const ParamDecl* d = params.schema.find(name);
-    const bool whole = d && (std::get_if<int*>(&d->ref) || std::get_if<int64_t*>(&d->ref));
-    if (whole && !word.starts_with(d->name + "=")) r.push_back(d->name + "=8");
+    const bool surface_texture = d && d->name == "density" && !params.schema.find("resolution");
+    const bool takes = d && (std::get_if<int*>(&d->ref) || std::get_if<int64_t*>(&d->ref) || surface_texture);
+    if (takes && !word.starts_with(d->name + "=")) r.push_back(d->name + "=8");
   }
   if (!word.empty()) r.push_back(word);
   return r;
