@@ -84,6 +84,7 @@ std::vector<std::string> words_for(const Operation& o, const std::string& word) 
     const bool takes = d && (std::get_if<int*>(&d->ref) || std::get_if<int64_t*>(&d->ref) || surface_texture);
     if (takes && !word.starts_with(d->name + "=")) r.push_back(d->name + "=8");
   }
+  if (o.name.ends_with("_surface") && params.schema.find("spacing") && !word.starts_with("spacing=")) r.push_back("spacing=0.1");
   if (!word.empty()) r.push_back(word);
   return r;
 }

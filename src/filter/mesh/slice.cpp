@@ -355,11 +355,12 @@ DatasetPtr straight_near(const DatasetPtr& in, const SlicePlane& plane, Context&
 DatasetPtr slice_one(const DatasetPtr& in, const DatasetPtr& surface, const ImplicitParams& p, Context& ctx) {
   const bool curved = has_curved_cells(*in);
   if (curved) ctx.info("slice: curved cells are made linear first");
-  if (surface || !p.function.empty() || !p.sphere.empty() || !p.cylinder.empty() || !p.box.empty() || !p.quadric.empty())
+  if (surface || !p.function.empty() || !p.sphere.empty() || !p.cylinder.empty() || !p.quadric.empty())
     return slice_shape(curved ? tessellate(in, {}, ctx) : in, p, surface, ctx);
   const ImplicitFunction f = implicit_function(p, in, nullptr, "slice", ctx);
-  const SlicePlane plane{f.origin, f.normal, f.snap, 1};
-  return slice_with(curved ? straight_near(in, plane, ctx) : in, plane, ctx);
+  const auto along = [&](const SlicePlane& plane) { return slice_with(curved ? straight_near(in, plane, ctx) : in, plane, ctx); };
+  if (p.box.empty()) return along({f.origin, f.normal, f.snap, 1});
+  return slice_box(in, {Vec3(p.box[0], p.box[2], p.box[4]), Vec3(p.box[1], p.box[3], p.box[5])}, along, ctx);
 }
 
 // The planes that the parameters ask for, one after the other.

@@ -11,8 +11,9 @@ namespace sg::contouring {
 
 namespace {
 
-// Noise bends wherever it is divided: no more than what a smooth field needs, many times over.
-constexpr size_t most_simplices = size_t(1) << 22, always_simplices = size_t(1) << 16, most_per_simplex = 1 << 12;
+// Noise bends wherever it is divided. Smooth surfaces that fill the mesh need some 16 / tolerance simplices, the tolerance in parts of the
+// mesh's size: several times that is enough.
+constexpr double most_by_tolerance = 128, most_per_simplex = 256, always_simplices = 1 << 16, most_simplices = 1 << 22;
 constexpr size_t around_edge = 5;                                                 // simplices, each of which becomes two
 constexpr uint8_t ends[6][2] = {{0, 1}, {0, 2}, {1, 2}, {0, 3}, {1, 3}, {2, 3}};  // the first three: those of a triangle
 int edge_count(const Simplex& s) { return s.corners == 3 ? 3 : 6; }
@@ -81,7 +82,8 @@ CurvedSimplices::CurvedSimplices(const DatasetPtr& dataset, View<double> values,
     if (c % 1024 == 0) context.check();
     if (!reader.hidden(c)) start(c, field);
   }
-  const size_t most = std::clamp(simplices_.size() * most_per_simplex, always_simplices, most_simplices);
+  const double needed = most_by_tolerance * dataset->bounds().diagonal() / tolerance + most_per_simplex * double(simplices_.size());
+  const auto most = size_t(needed < most_simplices ? std::max(needed, always_simplices) : most_simplices);
   for (int round = 0; round < 40; ++round) {
     context.check();
     find_middles();

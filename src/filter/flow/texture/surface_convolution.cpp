@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/error.h"
 #include "base/parallel.h"
 #include "base/random.h"
 #include "filter/flow/texture/brightness.h"
@@ -12,6 +13,7 @@ namespace sg {
 
 namespace {
 
+constexpr double most_edges_a_step = 32;
 constexpr double pi = 3.14159265358979323846;
 
 /// Weights of the samples, and the standard deviation of their mean when a line has `back` and `forward` of them.
@@ -44,6 +46,10 @@ template <class Walk>
 Array convolve_surface(const RefinedSurface& r, const Walk& walk, const SurfaceConvolution& p, std::span<const float> reach,
                        const Context& context) {
   const double step = p.step > 0 ? p.step : 0.5 * r.edge_length;
+  if (step > most_edges_a_step * r.edge_length)
+    fail_usage(fmt::format("step={:.4g} is {:.3g} edges of the split triangles long", step, step / r.edge_length), "step",
+               fmt::format("at most {:.4g}, {:g} edges: lines see nothing of what lies between", most_edges_a_step * r.edge_length,
+                           most_edges_a_step));
   const Kernel kernel(p.steps, p.kernel == "hann", r.edge_length / std::max(step, 1e-300));
   const double whole = kernel.whole();
 

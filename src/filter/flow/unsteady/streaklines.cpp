@@ -115,7 +115,12 @@ DatasetPtr streaklines(const Series& series, const std::vector<Data>& others, co
   UnsteadyRun run(series, others, p, "streaklines", false, context);
   StreakFront front = release(run, p.every, "streaklines");
   StreakFront::Refinement finer;
-  finer.spacing = p.spacing.value_or(0.01 * length(run.flow.steps()[0].dataset()->bounds().size()));
+  const double diagonal = length(run.flow.steps()[0].dataset()->bounds().size());
+  finer.spacing = p.spacing.value_or(0.01 * diagonal);
+  if (p.refine && diagonal > finer.spacing * double(p.most_points))
+    fail_usage(fmt::format("with spacing={:.4g} a line through the mesh, {:.4g} long, would have more than most_points={} particles",
+                           finer.spacing, diagonal, p.most_points),
+               "streaklines", "a larger spacing");
   finer.angle = p.angle * M_PI / 180, finer.shortest = finer.spacing / 16;  // a fold is not followed below this
   finer.most = std::max(size_t(p.most_points), front.size());
   run.each_interval([&](double until) { front.advance(run.flow, until, run.options, p.refine ? &finer : nullptr, context); });
