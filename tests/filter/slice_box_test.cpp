@@ -75,6 +75,23 @@ TEST_CASE("slice: a box inside any mesh cuts its own surface, with sharp edges, 
   }
 }
 
+TEST_CASE("slice: planes through grids whose axes run backwards face along their normals") {
+  for (const Vec3 normal : {Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(0, 0, 1), Vec3(1, 2, -0.5)}) {
+    Context context;
+    SliceParams p;
+    p.normal = normal, p.origin = Vec3(0.1, 0.07, -0.13);
+    const SurfaceMesh m = *slice(flow::mesh_of("rectilinear", 4, 1), p, context)->as<SurfaceMesh>();
+    const CellsView v = cells_view(m.polygons);
+    REQUIRE(v.count > 0);
+    for (size_t c = 0; c < v.count; ++c) {
+      const auto at = [&](size_t k) { return m.points.at(size_t(v.point(c, k))); };
+      Vec3 n;
+      for (size_t k = 1; k + 1 < v.size(c); ++k) n += cross(at(k) - at(0), at(k + 1) - at(0));
+      REQUIRE(dot(n, normal) > 0);
+    }
+  }
+}
+
 TEST_CASE("slice: a box whose faces are faces of cells, one within a cell, one that is half outside, one that misses") {
   for (const char* name : {"uniform", "hexahedron", "tetra", "amr"}) {
     CAPTURE(name);

@@ -14,6 +14,7 @@ enum class Values { none, plain, nan, zero, huge, flat, smooth };  ///< plain: n
 struct Input {
   std::string name;
   Data data;
+  bool slow = false;  ///< not for the usual run
 };
 
 /// The mesh with a scalar "s", a vector "v", tensors "t" (6) and "m" (9) and "labels", on points and on cells.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every operation of this build with what nobody means to give it: it answers or throws sg::Error, soon, without asking for gigabytes.
-// SG_HOSTILE_ALL=1: also the words that the usual run leaves out, and series of every mesh. SG_HOSTILE_ONLY=OPERATION: that one alone, all
+// SG_HOSTILE_ALL=1: also curved solids of many nodes, and series of every mesh. SG_HOSTILE_ONLY=OPERATION: that one alone, all
 // of its cases, each told before it runs and with its time.
 #include "pipeline/hostile_inputs.h"
 
@@ -46,14 +46,15 @@ class MemoryFence {
 
 const char* only() { return std::getenv("SG_HOSTILE_ONLY"); }
 bool all_asked() { return only() || std::getenv("SG_HOSTILE_ALL"); }
+bool tells() { return only() || std::getenv("SG_HOSTILE_TELL"); }
 bool wanted(const Operation& o) { return !only() || o.name == only(); }
 
 size_t refused, answered;
 
 // Runs it; what it does besides answering or throwing sg::Error is a failed check.
 void stays_calm(const Operation& o, const std::string& what, const std::function<Data(Context&)>& run) {
-  if (only()) fmt::print(stderr, "{}", what);  // tells where it fell
-  const std::clock_t start = std::clock();     // of the processor: other programs may be at work
+  if (tells()) fmt::print(stderr, "{}: {}", o.name, what);  // where it fell
+  const std::clock_t start = std::clock();                  // of the processor: other programs may be at work
   std::string failure;
   try {
     Context context;
@@ -61,15 +62,15 @@ void stays_calm(const Operation& o, const std::string& what, const std::function
     ++answered;
   } catch (const Error& e) {
     ++refused;
-    if (only()) fmt::print(stderr, " [{}]", e.what());
+    if (tells()) fmt::print(stderr, " [{}]", e.what());
     if (std::string_view(e.what()).empty() || e.kind() == ErrorKind::internal) failure = fmt::format("an internal error: {}", e.what());
   } catch (const std::exception& e) {
     failure = fmt::format("{}: {}", typeid(e).name(), e.what());
   }
   const double took = double(std::clock() - start) / CLOCKS_PER_SEC;
-  if (only()) fmt::print(stderr, ": {:.2f} s\n", took);
+  if (tells()) fmt::print(stderr, ": {:.2f} s\n", took);
 #ifndef SG_SHADOW_MEMORY
-  if (took > 2) failure += fmt::format(" took {:.1f} s", took);
+  if (took > 5) failure += fmt::format(" took {:.1f} s", took);
 #endif
   if (!failure.empty()) FAIL_CHECK(fmt::format("{}: {}: {}", o.name, what, failure));
 }
@@ -124,7 +125,7 @@ TEST_CASE("operations: none crashes, hangs or asks for gigabytes on meshes that 
     if (o.kind == OperationKind::source || !wanted(o)) continue;
     for (const hostile::Input& in : hostile::inputs())
       for (const bool most : {false, true}) {
-        if (most && o.max_inputs == o.min_inputs) continue;
+        if ((most && o.max_inputs == o.min_inputs) || (in.slow && !all_asked())) continue;
         stays_calm(o, in.name, [&](Context& c) { return run_operation(o, enough(o, in.data, most), words_for(o, {}), c); });
       }
   }

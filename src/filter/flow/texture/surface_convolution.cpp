@@ -19,7 +19,8 @@ constexpr double pi = 3.14159265358979323846;
 /// Weights of the samples, and the standard deviation of their mean when a line has `back` and `forward` of them.
 class Kernel {
  public:
-  Kernel(int steps, bool hann, double steps_per_grain) : steps_(steps), reach_(int(std::ceil(steps_per_grain)) - 1) {
+  Kernel(int steps, bool hann, double steps_per_grain)
+      : steps_(steps), reach_(int(std::min(std::ceil(steps_per_grain), 2.0 * steps + 1)) - 1) {  // no line is longer
     for (int k = 0; k <= steps; ++k) weight_.push_back(hann ? 0.5 + 0.5 * std::cos(pi * k / (steps + 1)) : 1.0);
     for (int d = 0; d <= reach_; ++d) correlation_.push_back(1 - d / std::max(steps_per_grain, 1.0));
   }
