@@ -197,3 +197,17 @@ TEST_CASE("contour: curved cells give the same bytes for any number of threads, 
        Surface(curved_contour(with_function(meshes::solid_box(CellType::quadratic_hexahedron, 4), holes, straight), 0.1, 1e-3)).points)
     CHECK(std::isfinite(p.x + p.y + p.z));
 }
+
+TEST_CASE("contour: noise on curved cells is divided no further than smooth fields need, and a note tells") {
+  const auto noise = [](Vec3 p) { return std::sin(1e5 * (p.x + 2.3 * p.y * p.y + 3.7 * p.z)); };
+  const auto d = with_function(meshes::solid_box(CellType::quadratic_tetra, 3, 2), noise, [](Vec3 p) { return p; });
+  Context ctx;
+  std::string said;
+  ctx.on_log = [&](LogLevel, std::string_view s) { said += s; };
+  ContourParams p;
+  p.field.name = "f", p.values = {0.1}, p.tolerance = 1e-4;
+  const DatasetPtr c = contour(d, p, ctx);
+  CHECK(said.find("not divided further") != std::string::npos);
+  CHECK(c->cell_count() > 1000);
+  CHECK(c->cell_count() < 2'000'000);
+}

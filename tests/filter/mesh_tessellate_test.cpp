@@ -140,3 +140,31 @@ TEST_CASE("tessellate: linear cells and polyhedra pass through, other meshes com
   CHECK(tessellate(bent, {1e-6, 1}, ctx)->cell_count() == 4);
   CHECK(said.find("times the tolerance") != std::string::npos);
 }
+
+TEST_CASE("tessellate: noise is divided as often as there is room for, and a note tells") {
+  for (const auto& [type, nodes] : {std::pair{CellType::quadratic_tetra, size_t(10)}, {CellType::lagrange_hexahedron, size_t(64)}}) {
+    CAPTURE(int(type));
+    DatasetParts parts = one_cell(type, nodes, [](Vec3 p) { return p; })->parts();
+    // Many cells of their own, and fields of noise, NaN and numbers near the largest.
+    UnstructuredMesh& m = std::get<UnstructuredMesh>(parts.mesh);
+    const size_t cells = 200;
+    std::vector<int32_t> ids;
+    for (size_t c = 0; c < cells; ++c)
+      for (size_t k = 0; k < nodes; ++k) ids.push_back(int32_t(k));
+    m.cells = {Array::from_vector(ids), {}, int(nodes)};
+    std::vector<double> noise(nodes * 9), huge(nodes), none(nodes, NAN);
+    for (size_t i = 0; i < noise.size(); ++i) noise[i] = std::sin(1e4 * double(i * i));
+    for (size_t i = 0; i < nodes; ++i) huge[i] = i % 2 ? 1.7e308 : -1.7e308;
+    parts.fields = {};
+    parts.fields.add({"m", Association::point, Array::from_vector(noise, 9), "", Role::none});
+    parts.fields.add({"huge", Association::point, Array::from_vector(huge), "", Role::none});
+    parts.fields.add({"none", Association::point, Array::from_vector(none), "", Role::none});
+    Context ctx;
+    std::string said;
+    ctx.on_log = [&](LogLevel, std::string_view s) { said += s; };
+    const DatasetPtr t = tessellate(make_dataset(std::move(parts)), {1e-6, 7}, ctx);
+    CHECK(said.find("as many as there is room for") != std::string::npos);
+    CHECK(t->cell_count() * nodes <= size_t(1) << 23);
+    CHECK(t->cell_count() * nodes * 8 > size_t(1) << 23);
+  }
+}

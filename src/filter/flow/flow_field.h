@@ -25,7 +25,7 @@ class FlowField {
  public:
   /// `field` empty: the active vector field (role vectors, else the first of 3, else of 2 components). `index`: a locator of the same mesh
   /// that is to be used again (next time step); null makes one. Throws Error(usage) when there is no such field or it has other than 2 or 3
-  /// components, or when the mesh has no cells.
+  /// components, or when the mesh has no cells. Velocities that are infinite, or too large to be squared, count as none, with a note.
   FlowField(DatasetPtr dataset, const std::string& field, Context& context, std::shared_ptr<const CellLocator> index = {});
 
   const DatasetPtr& dataset() const { return dataset_; }
@@ -34,6 +34,10 @@ class FlowField {
   const std::shared_ptr<const CellLocator>& locator() const;
   int dimension() const { return dimension_; }  ///< 3 with solid cells, else 2 (or 1): the mesh is a surface, flat or curved
   double largest_speed() const { return largest_speed_; }
+  /// Median of the speeds that are not 0, of some thousand points; 0 where there are none.
+  double usual_speed() const;
+  /// A cell's size along an axis, as if all were alike; positive.
+  double usual_cell() const;
   /// Velocity at a point of the mesh; NaN where it has no value.
   Vec3 at_point(size_t id) const {
     if (f32_) {
@@ -49,6 +53,7 @@ class FlowField {
   const FlowAccess& access() const { return *access_; }
 
  private:
+  void measure_speeds(Context& context);
   DatasetPtr dataset_;
   Field field_;
   Array packed_;

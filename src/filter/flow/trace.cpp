@@ -51,6 +51,20 @@ TraceOptions trace_options(const IntegrationParams& p, const StopParams& stop, d
   return o;
 }
 
+void check_way(const FlowField& flow, double duration, double most, const TraceOptions& o, std::string_view who) {
+  const double cell = flow.usual_cell(), cells = flow.usual_speed() * std::abs(duration) / cell;
+  if (std::isfinite(duration) && cells > most)
+    fail_usage(fmt::format("in a time of {:.4g} this flow passes through {:.3g} cells, too many to follow", std::abs(duration), cells),
+               std::string(who), "do the units of its time, velocity and mesh belong together?");
+  const double step = o.scheme == Scheme::dormand_prince ? o.max_step : o.step, reach = step * double(o.max_steps);
+  constexpr double nowhere = 1e-6;
+  constexpr std::string_view units[] = {"cells", "length", "time"};
+  const double goal = o.unit == TraceOptions::Unit::cells ? 1 : o.unit == TraceOptions::Unit::length ? cell : std::abs(duration);
+  if (std::isfinite(goal) && reach < nowhere * goal)
+    fail_usage(fmt::format("{} steps of {:.4g} (step_unit={}) go nowhere", o.max_steps, step, units[size_t(o.unit)]),
+               fmt::format("{} step", who), fmt::format("larger ones: {:.4g} would be a cell in as many", goal / double(o.max_steps)));
+}
+
 namespace {
 
 void begin_line(TracedLines& out, Vec3 x, Vec3 v) {

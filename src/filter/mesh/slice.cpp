@@ -330,11 +330,37 @@ bool has_curved_cells(const Dataset& in) {
   return false;
 }
 
+// The curved cells that a plane may cut, and all others, made linear: what lies away from it costs nothing.
+DatasetPtr straight_near(const DatasetPtr& in, const SlicePlane& plane, Context& ctx) {
+  const std::vector<uint8_t> states = cell_states(*in);
+  std::vector<int64_t> cells;
+  CellReader reader(in);
+  for (size_t c = 0; c < in->cell_count(); ++c) {
+    if (c % 1024 == 0) ctx.check();
+    if (!states.empty() && states[c] != cell_visible) continue;
+    reader.open(c);
+    const Box3 box = reader.box();
+    const Vec3 half = 0.5 * box.size();
+    const double reach = std::abs(plane.normal.x) * half.x + std::abs(plane.normal.y) * half.y + std::abs(plane.normal.z) * half.z;
+    if (!(std::abs(dot(plane.normal, box.center() - plane.origin)) > reach * (1 + 1e-9) + plane.snap)) cells.push_back(int64_t(c));
+  }
+  if (cells.size() == in->cell_count()) return tessellate(in, {}, ctx);
+  DatasetParts part = extract_cells(in, cells, "slice")->parts();
+  if (!part.fields.find("original_cell", Association::cell))
+    part.fields.add(id_field("original_cell", Association::cell, std::move(cells)));
+  part.cell_ghost = {};
+  return tessellate(make_dataset(std::move(part)), {}, ctx);
+}
+
 DatasetPtr slice_one(const DatasetPtr& in, const DatasetPtr& surface, const ImplicitParams& p, Context& ctx) {
-  if (surface || !p.function.empty() || !p.sphere.empty() || !p.cylinder.empty() || !p.box.empty() || !p.quadric.empty())
-    return slice_shape(in, p, surface, ctx);
+  const bool curved = has_curved_cells(*in);
+  if (curved) ctx.info("slice: curved cells are made linear first");
+  if (surface || !p.function.empty() || !p.sphere.empty() || !p.cylinder.empty() || !p.quadric.empty())
+    return slice_shape(curved ? tessellate(in, {}, ctx) : in, p, surface, ctx);
   const ImplicitFunction f = implicit_function(p, in, nullptr, "slice", ctx);
-  return slice_with(in, {f.origin, f.normal, f.snap, 1}, ctx);
+  const auto along = [&](const SlicePlane& plane) { return slice_with(curved ? straight_near(in, plane, ctx) : in, plane, ctx); };
+  if (p.box.empty()) return along({f.origin, f.normal, f.snap, 1});
+  return slice_box(in, {Vec3(p.box[0], p.box[2], p.box[4]), Vec3(p.box[1], p.box[3], p.box[5])}, along, ctx);
 }
 
 // The planes that the parameters ask for, one after the other.
@@ -367,19 +393,14 @@ DatasetPtr slice(const DatasetPtr& in, const DatasetPtr& surface, const SlicePar
   if (in->as<PointCloud>())
     fail_usage("a surface cuts no cells of a point cloud", "slice", "keep points by value with threshold, or show the points as they are");
   if (in->point_count() >= UINT32_MAX) fail_usage("the mesh has more than 2^32 points", "slice", "take a part of it first");
-  DatasetPtr mesh = in;
-  if (has_curved_cells(*in)) {
-    ctx.info("slice: curved cells are made linear first");
-    mesh = tessellate(in, {}, ctx);
-  }
-  const std::vector<ImplicitParams> planes = planes_of(*mesh, p);
+  const std::vector<ImplicitParams> planes = planes_of(*in, p);
   DatasetPtr out;
   if (planes.empty()) {
-    out = slice_one(mesh, surface, p, ctx);
+    out = slice_one(in, surface, p, ctx);
   } else {
     std::vector<Data> parts;
     for (size_t i = 0; i < planes.size(); ++i) {
-      DatasetParts part = slice_one(mesh, surface, planes[i], ctx)->parts();
+      DatasetParts part = slice_one(in, surface, planes[i], ctx)->parts();
       const size_t n = cell_count(part.mesh);
       part.fields.add({"plane", Association::cell, Array::from_vector(std::vector<int32_t>(n, int32_t(i))), {}, Role::labels});
       parts.emplace_back(make_dataset(std::move(part)));
@@ -389,7 +410,7 @@ DatasetPtr slice(const DatasetPtr& in, const DatasetPtr& surface, const SlicePar
     out = append(parts, join, ctx);
   }
   if (out->cell_count() == 0) {
-    const Box3 b = mesh->bounds();
+    const Box3 b = in->bounds();
     ctx.info(fmt::format("slice: the surface cuts no cell; the mesh reaches over x {} .. {}, y {} .. {}, z {} .. {}", short_number(b.lo.x),
                          short_number(b.hi.x), short_number(b.lo.y), short_number(b.hi.y), short_number(b.lo.z), short_number(b.hi.z)));
   };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the parts of slice() share.
 #pragma once
+#include <functional>
+
 #include "base/context.h"
 #include "base/parallel.h"
 #include "filter/mesh/plane_cutter.h"
@@ -48,6 +50,10 @@ std::vector<double> distances(size_t n, SlicePlane& plane, const At& at) {
 
 /// The cut of a plane through a uniform or rectilinear grid without hidden cells; null where it takes the general way.
 DatasetPtr slice_rows(const Dataset& in, const SlicePlane& plane, Context& ctx);
+
+using PlaneSlice = std::function<DatasetPtr(const SlicePlane&)>;
+/// The surface of a box, exactly: what `slice_plane` gives for each of its planes, trimmed to the face.
+DatasetPtr slice_box(const DatasetPtr& in, const Box3& box, const PlaneSlice& slice_plane, Context& ctx);
 
 /// Cuts a lattice of dimension 3.
 Cut cut_lattice(const Mesh& mesh, const std::vector<uint8_t>& states, SlicePlane plane, Context& ctx);

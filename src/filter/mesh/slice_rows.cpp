@@ -25,6 +25,8 @@ class RowSlice {
       rise_[a] = std::abs(rise) <= plane_.snap ? 0 : rise;
     }
     front_first_ = rise_[0] < 0;
+    const Vec3 o = v_.position(0, 0, 0), x = v_.position(1, 0, 0) - o, y = v_.position(0, 1, 0) - o, z = v_.position(0, 0, 1) - o;
+    mirrored_ = dot(normalize(x), cross(normalize(y), normalize(z))) < 0;
   }
 
   // The first point of each row on its second side. False when this way cannot do it: points in an oblique plane, a plane that only
@@ -213,7 +215,9 @@ class RowSlice {
         each_loop(table, row % ny, row / ny, [&](size_t cell, const auto& loop, const uint32_t* vertex) {
           cells[n] = int64_t(cell);
           offsets[n++] = int32_t(at);
+          const size_t begins = at;
           for (const uint8_t code : loop) connectivity[at++] = int32_t(vertex[code - clipping::first_cut]);
+          if (mirrored_) std::reverse(connectivity + begins, connectivity + at);
         });
     });
     return r;
@@ -223,7 +227,7 @@ class RowSlice {
   LatticeView v_;
   SlicePlane plane_;
   double rise_[3];
-  bool front_first_ = false;
+  bool front_first_ = false, mirrored_ = false;  // mirrored: the table's loops turn the other way
   Plane<uint32_t> turn_, first_;
   size_t vertices_ = 0;
 };

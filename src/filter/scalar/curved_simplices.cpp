@@ -11,7 +11,10 @@ namespace sg::contouring {
 
 namespace {
 
-constexpr size_t most_simplices = size_t(1) << 22;
+// Noise bends wherever it is divided. Smooth surfaces that fill the mesh need some 16 / tolerance simplices, the tolerance in parts of the
+// mesh's size: several times that is enough.
+constexpr double most_by_tolerance = 128, most_per_simplex = 256, always_simplices = 1 << 16, most_simplices = 1 << 22;
+constexpr size_t around_edge = 5;                                                 // simplices, each of which becomes two
 constexpr uint8_t ends[6][2] = {{0, 1}, {0, 2}, {1, 2}, {0, 3}, {1, 3}, {2, 3}};  // the first three: those of a triangle
 int edge_count(const Simplex& s) { return s.corners == 3 ? 3 : 6; }
 
@@ -79,11 +82,14 @@ CurvedSimplices::CurvedSimplices(const DatasetPtr& dataset, View<double> values,
     if (c % 1024 == 0) context.check();
     if (!reader.hidden(c)) start(c, field);
   }
+  const double needed = most_by_tolerance * dataset->bounds().diagonal() / tolerance + most_per_simplex * double(simplices_.size());
+  const auto most = size_t(needed < most_simplices ? std::max(needed, always_simplices) : most_simplices);
   for (int round = 0; round < 40; ++round) {
     context.check();
     find_middles();
-    if (!mark(round)) break;
-    if (simplices_.size() > most_simplices) {
+    const size_t marked = mark(round);
+    if (marked == 0) break;
+    if (simplices_.size() + around_edge * marked > most) {
       context.info("contour: curved cells are not divided further, since there are too many parts; choose a larger tolerance");
       break;
     }
@@ -200,8 +206,8 @@ void CurvedSimplices::find_middles() {
   for (size_t i = 0; i < wanted.size(); ++i) middles_[wanted[i].key].at = found[i];
 }
 
-// Drops what the surface cannot reach and numbers the middles of edges that must be halved. False: none.
-bool CurvedSimplices::mark(int round) {
+// Drops what the surface cannot reach and numbers the middles of edges that must be halved. How many those are.
+size_t CurvedSimplices::mark(int round) {
   size_t kept = 0;
   std::vector<uint64_t> marked;
   for (size_t i = 0; i < simplices_.size(); ++i) {
@@ -244,7 +250,7 @@ bool CurvedSimplices::mark(int round) {
     points_.push_back(m.at);
   }
   if (points_.size() > size_t(UINT32_MAX) / 2) fail_usage("the surface has too many points", "contour", "choose a larger tolerance");
-  return !marked.empty();
+  return marked.size();
 }
 
 void CurvedSimplices::halve() {

@@ -67,7 +67,7 @@ class CurvedSimplices {
   void add_simplex(Simplex s);
   uint32_t point_of(int64_t id, Vec3 rst, CellField& field);
   void find_middles();
-  bool mark(int round);
+  size_t mark(int round);
   void halve();
   void split(const Simplex& s, std::vector<Simplex>& out) const;
 

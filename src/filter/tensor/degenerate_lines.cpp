@@ -228,7 +228,10 @@ DatasetPtr degenerate_lines(const DatasetPtr& input, const DegenerateLinesParams
   if (const int dimension = dimension_of_cells(input); dimension != 3)
     fail_usage(fmt::format("a mesh ({}) with cells of dimension {} has no degenerate lines", input->kind(), dimension), "degenerate_lines",
                dimension == 2 ? "degenerate_points finds those of flat meshes and surfaces" : "a mesh of solid cells");
-  const DatasetPtr in = tessellate(input, {}, ctx);
+  // Curved cells in parts, as many as can be looked through in a moment, and three halvings at least.
+  TessellateParams straight;
+  while (straight.max_level > 3 && double(input->cell_count()) * std::pow(8.0, straight.max_level) > 250'000) --straight.max_level;
+  const DatasetPtr in = tessellate(input, straight, ctx);
   TensorField t = read_point_tensors(in, p.tensors, "degenerate_lines", ctx);
   if (t.dimension != 3)
     fail_usage(fmt::format("'{}' holds 2D tensors on a mesh of solid cells", t.field.name), "degenerate_lines",

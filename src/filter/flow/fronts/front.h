@@ -64,6 +64,10 @@ void advance(Flow& flow, Trajectory& path, FrontClock clock, double step, double
     }
     const Vec3 to = flow.snap(s.x1);
     const double moved = length(to - p.x);
+    if (clock == FrontClock::length && !(moved > 0)) {  // less than coordinates of this size can tell
+      path.ended = true;
+      break;
+    }
     p.x = to, v = s.k7, p.time += sign * dt, p.arc += sign * moved;
     left -= clock == FrontClock::length ? moved : dt;
     h = detail::next_step(dt, error);

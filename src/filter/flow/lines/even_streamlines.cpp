@@ -174,9 +174,10 @@ class Filler {
 Data even_streamlines(const Data& in, const EvenStreamlinesParams& p, Context& context) {
   const FlowParts parts(in, p.field.name, "even_streamlines", context);
   const Box3 box = parts.bounds();
+  if (!(box.diagonal() > 0) || !std::isfinite(box.diagonal())) fail_usage("the mesh has no finite extent", "even_streamlines");
   const double spacing = p.spacing.value_or(box.diagonal() / (parts.dimension() == 2 ? 50 : 20));
   const double expected = parts.dimension() == 2 ? std::pow(box.diagonal() / spacing, 1.0) : std::pow(box.diagonal() / spacing, 2.0);
-  if (expected > 10 * double(p.max_lines))
+  if (!(expected <= 10 * double(p.max_lines)))
     fail_usage(fmt::format("a spacing of {:.4g} asks for far more than {} lines", spacing, p.max_lines), "even_streamlines",
                fmt::format("the mesh's diagonal is {:.6g}", box.diagonal()));
   StopParams stop;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/error.h"
 #include "base/parallel.h"
 #include "base/random.h"
 #include "filter/flow/texture/brightness.h"
@@ -12,12 +13,14 @@ namespace sg {
 
 namespace {
 
+constexpr double most_edges_a_step = 32;
 constexpr double pi = 3.14159265358979323846;
 
 /// Weights of the samples, and the standard deviation of their mean when a line has `back` and `forward` of them.
 class Kernel {
  public:
-  Kernel(int steps, bool hann, double steps_per_grain) : steps_(steps), reach_(int(std::ceil(steps_per_grain)) - 1) {
+  Kernel(int steps, bool hann, double steps_per_grain)
+      : steps_(steps), reach_(int(std::min(std::ceil(steps_per_grain), 2.0 * steps + 1)) - 1) {  // no line is longer
     for (int k = 0; k <= steps; ++k) weight_.push_back(hann ? 0.5 + 0.5 * std::cos(pi * k / (steps + 1)) : 1.0);
     for (int d = 0; d <= reach_; ++d) correlation_.push_back(1 - d / std::max(steps_per_grain, 1.0));
   }
@@ -44,6 +47,10 @@ template <class Walk>
 Array convolve_surface(const RefinedSurface& r, const Walk& walk, const SurfaceConvolution& p, std::span<const float> reach,
                        const Context& context) {
   const double step = p.step > 0 ? p.step : 0.5 * r.edge_length;
+  if (step > most_edges_a_step * r.edge_length)
+    fail_usage(fmt::format("step={:.4g} is {:.3g} edges of the split triangles long", step, step / r.edge_length), "step",
+               fmt::format("at most {:.4g}, {:g} edges: lines see nothing of what lies between", most_edges_a_step * r.edge_length,
+                           most_edges_a_step));
   const Kernel kernel(p.steps, p.kernel == "hann", r.edge_length / std::max(step, 1e-300));
   const double whole = kernel.whole();
 

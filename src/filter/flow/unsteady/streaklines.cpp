@@ -9,6 +9,7 @@ namespace sg {
 namespace {
 
 constexpr size_t most_releases = 10'000'000;
+constexpr double most_on_a_line = 1e6;
 
 // Times of release, ascending, the first at the start.
 std::vector<double> release_times(const UnsteadyRun& run, std::optional<double> every, const char* who) {
@@ -115,7 +116,12 @@ DatasetPtr streaklines(const Series& series, const std::vector<Data>& others, co
   UnsteadyRun run(series, others, p, "streaklines", false, context);
   StreakFront front = release(run, p.every, "streaklines");
   StreakFront::Refinement finer;
-  finer.spacing = p.spacing.value_or(0.01 * length(run.flow.steps()[0].dataset()->bounds().size()));
+  const double diagonal = length(run.flow.steps()[0].dataset()->bounds().size());
+  finer.spacing = p.spacing.value_or(0.01 * diagonal);
+  if (p.refine && diagonal > finer.spacing * most_on_a_line)
+    fail_usage(fmt::format("with spacing={:.4g} a line through the mesh, {:.4g} long, would have more than {:g} particles", finer.spacing,
+                           diagonal, most_on_a_line),
+               "streaklines", "a larger spacing");
   finer.angle = p.angle * M_PI / 180, finer.shortest = finer.spacing / 16;  // a fold is not followed below this
   finer.most = std::max(size_t(p.most_points), front.size());
   run.each_interval([&](double until) { front.advance(run.flow, until, run.options, p.refine ? &finer : nullptr, context); });

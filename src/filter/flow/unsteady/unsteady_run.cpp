@@ -29,6 +29,8 @@ void describe(Schema& s, UnsteadyParams& p, const std::string& start, const std:
 
 namespace {
 
+constexpr double most_cells_passed = 1e9;
+
 double checked_time(const UnsteadyFlow& flow, std::optional<double> t, double otherwise, const char* name, const std::string& who) {
   if (!t) return otherwise;
   if (!std::isfinite(*t) || !flow.covers(*t))
@@ -60,6 +62,7 @@ UnsteadyRun::UnsteadyRun(const Series& series, const std::vector<Data>& others, 
   options = trace_options(integration, stop, 0);
   carries = std::find(p.attributes.begin(), p.attributes.end(), "fields") != p.attributes.end();
   flow.open(flow.interval_of(start, sign), context);
+  check_way(flow.steps()[flow.base()], time - start, most_cells_passed, options, who_);
   if (!geographic_) warn_of_degrees(*flow.steps()[flow.base()].dataset(), velocity(), who_, context);
   UnsteadyCursor cursor(flow);
   const double largest = flow.largest_speed();

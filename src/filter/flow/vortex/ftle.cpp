@@ -28,6 +28,9 @@ void describe(Schema& s, FtleParams& p) {
 
 namespace {
 
+constexpr int64_t most_steps = 1'000'000;  // of a particle: what needs more is not known
+constexpr double most_cells_passed = 1e5;
+
 // Difference of the map along an axis from what is known on both sides of x.
 bool difference(const Vec3* less, const Vec3& here, bool here_known, const Vec3* more, double step, Vec3& out) {
   if (less && more) out = (*more - *less) / (2 * step);
@@ -157,11 +160,12 @@ DatasetPtr ftle(const Series& given, const FtleParams& p, Context& context) {
   const size_t last = flow.interval_of(until, -sign);
   flow.open(k, context);
   StopParams stop;
-  stop.max_steps = 1000000000, stop.closed = false;
+  stop.max_steps = most_steps, stop.closed = false;
   // Nobody sees the ways themselves: the tolerance alone says how long steps may be.
   IntegrationParams integration = p.integration;
   if (!integration.max_step) integration.max_step = 8 * integration.step;
   const TraceOptions options = trace_options(integration, stop, flow.largest_speed());
+  check_way(flow.steps()[flow.base()], duration, most_cells_passed, options, "ftle");
   ResampleParams r;
   r.dims = p.dims, r.size = p.size == 0 ? 256 : std::max<int64_t>(p.size, 2), r.bounds = p.bounds;
   const Dataset& shape = *flow.steps()[flow.base()].dataset();
