@@ -21,10 +21,12 @@ class Middle {
       for (const FlowField& f : parts.fields()) meshes.push_back(f.dataset());
       const std::vector<Vec3> places = random_places(
           meshes, 40, 1, [&](Vec3 x) { return speed(x) >= much; }, context);
-      double nearest = HUGE_VAL;
+      double longest = -1, nearest = HUGE_VAL;
       const Vec3 center = at;
-      for (const Vec3& x : places)
-        if (const Vec3 d = x - center; dot(d, d) < nearest) nearest = dot(d, d), at = x;
+      for (const Vec3& x : places) {
+        const double l = way(x), d = length(x - center);
+        if (l > longest || (l == longest && d < nearest)) longest = l, nearest = d, at = x;
+      }
     }
     Vec3 v;
     if (!flow_(at, v) || !(length(v) > 0)) fail_usage("nothing flows in the middle of the mesh", std::string(who), "a place to begin");
@@ -46,6 +48,15 @@ class Middle {
   double speed(Vec3 x) {
     Vec3 v;
     return flow_(x, v) ? length(v) : 0.0;
+  }
+  // How far the flow goes from there before it all but stands still, up to the diagonal.
+  double way(Vec3 x) {
+    constexpr int steps = 200;
+    const double h = box_.diagonal() / steps;
+    int k = 0;
+    for (Vec3 v, w; k < steps && flow_(x, v) && length(v) > least_ && flow_(x + normalize(v) * (h / 2), w) && length(w) > least_; ++k)
+      x += normalize(w) * h;
+    return h * k;
   }
   PartsCursor flow_;
   Box3 box_;

@@ -7,9 +7,10 @@
 
 namespace sg {
 
-/// A straight line across the flow: through the middle of the mesh, or where that stands still the place nearest to it of some where much
-/// flows; along the axis of the mesh that is most across the flow there, up to an eighth of the mesh's diagonal to both sides, as far as
-/// there is flow (above 2 % of the largest speed). Says on the log which it is. Throws Error(usage) naming `who` when nothing flows.
+/// A straight line across the flow: through the middle of the mesh, or where that stands still the place of some where much flows from
+/// which it goes farthest; along the axis of the mesh that is most across the flow there, up to an eighth of the mesh's diagonal to both
+/// sides, as far as there is flow (above 2 % of the largest speed). Says on the log which it is. Throws Error(usage) naming `who` when
+/// nothing flows.
 SeedCurveParams across_the_flow(const FlowParts& parts, std::string_view who, Context& context);
 
 /// A rectangle in the same place and as far: across the flow, or in the plane of a flat mesh.
