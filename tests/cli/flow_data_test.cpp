@@ -20,6 +20,15 @@ TEST_CASE("topology: the steady wake of a cylinder has two centres, one saddle a
   CHECK(r.err.find("4 switch points of the border") != std::string::npos);  // front, back, and where the flow leaves on both sides
 }
 
+TEST_CASE("topology: eddies without divergence are centres, as many as saddles, without periodic orbits" * doctest::skip(no_data())) {
+  const std::string f = std::filesystem::absolute(data_file("vectors/eddy_uv/eddy_uv.nek5000")).string();
+  const Ran r = sightglass({"info", f, "-f", "topology separatrices=false"});
+  INFO(r.err);
+  REQUIRE(r.status == 0);
+  CHECK(r.err.find("56 critical points: 28 saddle; 28 centre; indices sum to 0") != std::string::npos);  // periodic in both directions
+  CHECK(r.err.find("periodic orbit") == std::string::npos);
+}
+
 TEST_CASE("ftle: ocean currents in metres a second over degrees" * doctest::skip(no_data())) {
   const std::string f = folder_of(
       std::filesystem::absolute(data_file("vectors/globcurrent-2002-01/20020101000000-GLOBCURRENT-L4-CUReul_hs-ALT_SUM-v02.0-fv01.0.nc"))

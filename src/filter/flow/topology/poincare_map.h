@@ -86,15 +86,19 @@ std::optional<double> next_return(Flow& flow, const Section& section, double s, 
   return std::nullopt;
 }
 
-/// The integral over one turn of the flow's divergence, that of discs of a cell and a half about the orbit (their flux over their area):
-/// the logarithm of the multiplier, but for the errors of interpolation. In a cell, the divergence of sampled flows is wrong to first order
-/// in its size, with changing signs; across some cells it is not.
+/// The integral over one turn of the flow's divergence, that of discs about the orbit with a radius of `cells` (their flux over their
+/// area): the logarithm of the multiplier, but for the errors of interpolation. In a cell, the divergence of sampled flows is wrong to
+/// first order in its size, with changing signs; across some cells it is not.
 template <class Flow>
-double mean_growth(Flow& flow, const Orbit& orbit, Vec3 normal) {
+double mean_growth(Flow& flow, const Orbit& orbit, Vec3 normal, double cells) {
   double sum = 0, before = 0;
   for (size_t i = 0; i < orbit.points.size(); ++i) {
-    double here = 0;  // beside walls, where discs do not fit, nothing is known
-    for (const double radius : {1.5 * orbit.cell, 0.75 * orbit.cell})
+    double here = 0, cell = orbit.cell;  // beside walls, where discs do not fit, nothing is known
+    if constexpr (requires { flow.cell_length(); }) {
+      Vec3 v;
+      if (flow(orbit.points[i], 0, v)) cell = std::max(cell, flow.cell_length());
+    }
+    for (const double radius : {cells * cell, 0.5 * cells * cell})
       if (const auto d = mean_divergence(flow, orbit.points[i], normal, radius)) {
         here = *d;
         break;
@@ -162,8 +166,7 @@ std::optional<Orbit> periodic_orbit(Flow& flow, Vec3 start, Vec3 normal, double 
   orbit.points.back() = orbit.points.front(), orbit.speed.back() = orbit.speed.front();
   orbit.multiplier = sign > 0 ? multiplier : multiplier > 0 ? 1 / multiplier : HUGE_VAL;
   if (const double growth = std::log(orbit.multiplier); std::abs(growth) < 1) {
-    const double mean = mean_growth(flow, orbit, normal);
-    orbit.resolved = mean * growth > 0 && std::abs(mean) > 0.5 * std::abs(growth);
+    for (const double cells : {1.5, 3.0}) orbit.resolved = orbit.resolved && mean_growth(flow, orbit, normal, cells) / growth > 0.5;
   }
   return orbit;
 }
