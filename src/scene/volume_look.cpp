@@ -170,7 +170,7 @@ std::string choose_volume_look(const Dataset& data, const Field& field, const Co
   if (const std::string why = known_look(data, field, r, params.component, item); !why.empty()) return why;
   if (item.color.map.kind == MapKind::diverging && r.lo < 0 && r.hi > 0) {
     const double m = std::max(-r.lo, r.hi);
-    item.opacity.points = {{-m, 0.5}, {-0.5 * m, 0.12}, {-0.15 * m, 0}, {0.15 * m, 0}, {0.5 * m, 0.12}, {m, 0.5}};
+    item.opacity.points = {{-m, 0.8}, {-0.5 * m, 0.25}, {-0.2 * m, 0}, {0.2 * m, 0}, {0.5 * m, 0.25}, {m, 0.8}};
     return "signed: opaque away from zero on both sides";
   }
   // What most samples have about is taken for the background; opacity follows the quantiles away from it.
