@@ -23,7 +23,14 @@ int run_demo(const Options& o, Context& context);
 
 /// Does the name of the output number its pictures ("out_{n}.png")?
 bool is_numbered(const std::string& output);
-/// One picture per time step, all with the looks and colours of one; the next step is loaded while one is drawn.
-int render_series(const Options& o, const PictureOptions& options, Context& context);
+/// Which pictures of a series, and where they go.
+struct SeriesRequest {
+  std::string output;  ///< numbered, or a film
+  std::string times;   ///< as --times says; "" = those of the file
+  double fps = 25;
+};
+/// One picture per time step, all with the looks and colours of one; the next step is loaded while one is drawn. Of `o` the limits and
+/// --quiet are read.
+int render_series(PipelineFile plain, const SeriesRequest& request, const PictureOptions& options, const Options& o, Context& context);
 
 }  // namespace sg

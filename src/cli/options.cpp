@@ -56,6 +56,16 @@ void add_pipeline(CLI::App& a, Options& o) {
   a.add_flag("--explain", o.explain, "Print the plan and what it will cost, run nothing");
 }
 
+void add_series(CLI::App& a, Options& o) {
+  a.add_option(
+      "--times", o.times,
+      "With {n} in the output, or a film: the times to draw, like 0:10:101 (first:last:count), 0,0.5,1 or 0:114 (the steps of the file in "
+      "between); default: all of the file. A parameter written as {t} takes the time");
+  a.add_option("--fps", o.fps, "Films: pictures per second")->check(CLI::Range(0.1, 1000.0))->each([&o](const std::string&) {
+    o.fps_stated = true;
+  });
+}
+
 void add_picture(CLI::App& a, Options& o, RawText& raw) {
   a.add_option("--show", o.shows, "How to show it: 'surface|volume|lines|points|labels|outline key=value ...'; may be repeated")
       ->allow_extra_args(false);
@@ -67,11 +77,7 @@ void add_picture(CLI::App& a, Options& o, RawText& raw) {
   a.add_option("--title", o.title, "Text above the picture");
   a.add_option("--background", o.background, "Colour, or 'transparent'");
   a.add_option("--picture", o.picture, "Further key=value of the picture (see: sightglass ops picture)")->allow_extra_args(false);
-  a.add_option(
-      "--times", o.times,
-      "With {n} in the output, or a film: the times to draw, like 0:10:101 (first:last:count), 0,0.5,1 or 0:114 (the steps of the file in "
-      "between); default: all of the file. A parameter written as {t} takes the time");
-  a.add_option("--fps", o.fps, "Films: pictures per second")->check(CLI::Range(0.1, 1000.0));
+  add_series(a, o);
   a.add_flag("--progressive", o.progressive,
              "Volumes that memory does not hold: write a coarse picture at once, and finer ones in its place until it is the final one");
   a.add_option(
@@ -250,8 +256,10 @@ Options parse_options(int argc, char** argv) {
   } else if (first == "run") {
     a.description("Runs a pipeline file.");
     a.add_option("input", o.inputs, "Pipeline file (YAML)")->required();
-    a.add_option("-o,--output", o.output, "Write the picture here instead");
+    a.add_option("-o,--output", o.output,
+                 "Write the picture here instead; {n} in its name numbers the pictures of a time series; .webm, .mp4: a film of them");
     a.add_option("--size", o.size, "Pixels, like 1920x1080");
+    add_series(a, o);
     a.add_flag("--explain", o.explain, "Print the plan and what it will cost, run nothing");
   } else if (first == "open") {
     a.description("Makes a picture again from the recipe inside it.");

@@ -22,7 +22,8 @@ struct Options {
   std::vector<std::string> picture;  ///< key=value for the picture, from the flags above and --picture
   ReadOptions read;
   WriteOptions write;
-  double fps = 25;    ///< of films
+  double fps = 25;  ///< of films
+  bool fps_stated = false;
   std::string sheet;  ///< demo: contact sheet
   int threads = 0;
   size_t memory = 0;

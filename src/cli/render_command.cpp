@@ -132,12 +132,30 @@ int run_render(const Options& o, Context& context) {
   if (is_numbered(o.output) && (o.progressive || o.within > 0))
     fail_usage("the pictures of a series are final at once", o.progressive ? "--progressive" : "--within",
                "leave it out, or make one picture");
-  if (is_numbered(o.output)) return render_series(o, options, context);
+  if (is_numbered(o.output)) return render_series(std::move(file), {o.output, o.times, o.fps}, options, o, context);
   if (!o.times.empty())
     fail_usage("several times need several pictures", "--times", "number them: -o out_{n}.png, or make a film: -o film.webm");
   const std::string output = !o.output.empty() ? o.output : (o.inputs.empty() ? file.steps[0].operation : stem_of(o.inputs[0])) + ".png";
   return render_to(file, output, options, o, context);
 }
+
+namespace {
+
+// What a pipeline file says of the pictures of a series is taken out of it: each of them is one of its own.
+SeriesRequest series_in(PipelineFile& file, const std::string& output, const Options& o) {
+  SeriesRequest r{output, o.times, o.fps};
+  if (const auto stated = word_value(file.picture, "times"); stated && r.times.empty()) r.times = *stated;
+  if (const auto stated = word_value(file.picture, "fps"); stated && !o.fps_stated) {
+    const auto fps = parse_double(*stated);
+    if (!fps || !(*fps >= 0.1) || *fps > 1000) fail_usage(fmt::format("'{}' is no number from 0.1 to 1000", *stated), "fps");
+    r.fps = *fps;
+  }
+  std::erase_if(file.picture,
+                [](const std::string& w) { return w.starts_with("output=") || w.starts_with("times=") || w.starts_with("fps="); });
+  return r;
+}
+
+}  // namespace
 
 int run_pipeline_file(const Options& o, Context& context) {
   for (const std::string& path : o.inputs) {
@@ -148,6 +166,13 @@ int run_pipeline_file(const Options& o, Context& context) {
       const auto stated = word_value(file.picture, "output");
       output = stated ? path_beside(path, *stated) : folder_of(path) + stem_of(path) + ".png";
     }
+    const SeriesRequest series = series_in(file, output, o);
+    if (is_numbered(output) && !o.explain) {
+      render_series(std::move(file), series, {}, o, context);
+      continue;
+    }
+    if (!o.times.empty())
+      fail_usage("several times need several pictures", "--times", "number them: -o out_{n}.png, or make a film: -o film.webm");
     render_to(file, output, {}, o, context);
   }
   return 0;

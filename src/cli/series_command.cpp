@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// render of a time series: one numbered picture per step, the next step read or computed while one is drawn.
+// render and run of a time series: one numbered picture per step, the next step read or computed while one is drawn.
 #include <cstdio>
 #include <exception>
 #include <mutex>
@@ -14,9 +14,11 @@
 #include "data/memory_budget.h"
 #include "filter/glyph/choose.h"
 #include "image/codec.h"
+#include "io/file_series.h"
 #include "io/movie.h"
 #include "pipeline/picture.h"
 #include "pipeline/picture_parts.h"
+#include "pipeline/read_params.h"
 #include "pipeline/series_input.h"
 
 namespace sg {
@@ -78,6 +80,8 @@ PipelineFile at_time(PipelineFile file, double time, std::optional<size_t> step,
     if (s.operation == "trails" && !step && !word_value(s.words, "time")) s.words.push_back("time=" + exact_number(time)), of_trails = true;
   if (of_trails) return file;
   const std::vector<char> inside = inside_series(file);
+  bool moves = false;
+  std::string source;
   for (size_t i = 0; i < file.steps.size(); ++i) {
     PipelineFile::Step& s = file.steps[i];
     if (inside[i]) continue;
@@ -85,16 +89,17 @@ PipelineFile at_time(PipelineFile file, double time, std::optional<size_t> step,
     if (s.operation == "read") {
       if (still.count(s.name)) continue;
       s.words.push_back(step ? fmt::format("step={}", *step) : "time=" + exact_number(time));
-    } else if (op && op->run_series && !word_value(s.words, "time") && op->make_params().schema.find("time")) {
+      moves = true;
+    } else if (op && (op->run_series || op->kind == OperationKind::source)) {
+      if (op->kind == OperationKind::source) source = s.operation;
+      if (word_value(s.words, "time") || !op->make_params().schema.find("time")) continue;
       s.words.push_back("time=" + exact_number(time));
-    } else if (s.from.empty()) {
-      if (!op || op->kind != OperationKind::source) continue;
-      const ParamSet p = op->make_params();
-      if (p.schema.find("time")) s.words.push_back("time=" + exact_number(time));
-      else
-        fail_usage(fmt::format("the source '{}' has no time", s.operation), "--times", "a series needs a source with a parameter 'time'");
+      moves = true;
     }
   }
+  if (!moves && !source.empty())
+    fail_usage(fmt::format("the source '{}' has no time, or states one", source), "--times",
+               "a series needs a source with a parameter 'time'");
   return file;
 }
 
@@ -161,24 +166,52 @@ void fix_ranges(PipelineFile& first, const std::vector<PipelineFile>& some, Cont
   }
 }
 
+// What reads files: the series, whose steps are drawn, and what reads the same at all times.
+struct Reads {
+  std::string path, first;  // of the series ("" = none has steps); of the first of all
+  std::vector<double> times;
+  std::set<std::string> still;
+};
+
+Reads reads_of(const PipelineFile& file, Context& context) {
+  Reads r;
+  for (const PipelineFile::Step& s : file.steps) {
+    if (s.operation != "read") continue;
+    ReadParams params;
+    Schema schema = schema_of(params);
+    set_params(schema, s.words, "read");
+    const std::string path = series_beside(file.origin, params.path);
+    std::vector<double> times = file_times(path, read_options(params), context);
+    if (r.first.empty()) r.first = path;
+    const bool further = s.name.starts_with("with") && file.origin.empty();  // of -f 'probe with=FILE'
+    if (times.empty() || params.time || params.step >= 0) r.still.insert(s.name);
+    else if (r.path.empty() && !further) r.path = path, r.times = std::move(times);
+  }
+  return r;
+}
+
 // "0:114" = those of the file in between; for sources 0, 1, ... 114.
-std::vector<double> times_to_draw(const Options& o, bool& by_step, std::vector<size_t>& numbers, Context& context) {
-  const auto ends = split(o.times, ':');
+std::vector<double> times_to_draw(const std::string& asked, const PipelineFile& file, const Reads& reads, bool& by_step,
+                                  std::vector<size_t>& numbers) {
+  const auto ends = split(asked, ':');
   const bool range = ends.size() == 2;
-  if (!o.times.empty() && !range) return parse_times(o.times, "--times");
+  if (!asked.empty() && !range) return parse_times(asked, "--times");
   const auto first = range ? parse_double(ends[0]) : -HUGE_VAL, last = range ? parse_double(ends[1]) : HUGE_VAL;
   if (!first || !last || !(*first <= *last))
-    fail_usage(fmt::format("'{}' is no range of times", o.times), "--times", "FIRST:LAST, FIRST:LAST:COUNT, or a list");
+    fail_usage(fmt::format("'{}' is no range of times", asked), "--times", "FIRST:LAST, FIRST:LAST:COUNT, or a list");
   std::vector<double> times;
-  if (o.inputs.size() == 1) {
-    const std::vector<double> all = file_times(o.inputs[0], o.read, context);
+  const bool computed = std::any_of(file.steps.begin(), file.steps.end(), [](const PipelineFile::Step& s) {
+    const Operation* op = operation_of(s);
+    return op && op->kind == OperationKind::source;
+  });
+  if (reads.path.empty() && !computed) fail_usage("has no time steps", reads.first, "a picture without {n} in its name shows it");
+  if (const std::vector<double>& all = reads.times; !reads.path.empty()) {
     by_step = true;
-    if (all.empty()) fail_usage("has no time steps", o.inputs[0], "a picture without {n} in its name shows it");
     for (size_t k = 0; k < all.size(); ++k)
       if (all[k] >= *first && all[k] <= *last) times.push_back(all[k]), numbers.push_back(k);
     if (times.empty())
       fail_usage(
-          fmt::format("no time step of '{}' lies there: it has {} to {}", o.inputs[0], exact_number(all.front()), exact_number(all.back())),
+          fmt::format("no time step of '{}' lies there: it has {} to {}", reads.path, exact_number(all.front()), exact_number(all.back())),
           "--times", "FIRST:LAST in the times of the file");
   } else if (range && *last - *first < 1e6) {
     for (int k = 0; *first + k <= *last; ++k) times.push_back(*first + k);
@@ -188,25 +221,15 @@ std::vector<double> times_to_draw(const Options& o, bool& by_step, std::vector<s
   return times;
 }
 
-// Further inputs that stand still.
-std::set<std::string> reads_without_time(const PipelineFile& file, Context& context) {
-  std::set<std::string> still;
-  for (size_t i = 0; i < file.steps.size(); ++i)
-    if (file.steps[i].operation == "read" && file.steps[i].name.starts_with("with"))
-      if (const auto path = word_value(file.steps[i].words, "path"); path && file_times(*path, {}, context).empty())
-        still.insert(file.steps[i].name);
-  return still;
-}
-
 // Where the pictures go: numbered files, or frames of one film.
 class Sink {
  public:
-  Sink(const Options& o, size_t count) : output_(o.output), count_(count) {
+  Sink(const std::string& output, double fps, size_t count) : output_(output), count_(count) {
     if (!is_movie(output_)) {
       AtomicFile probe(numbered(output_, 0, count));
       return;
     }
-    settings_.fps = o.fps;
+    settings_.fps = fps;
     movie_ = std::make_unique<MovieWriter>(output_, settings_);
   }
   void add(Image image, const PipelineFile& file, size_t n) {
@@ -245,7 +268,7 @@ PipelineFile with_looks(const PipelineFile& plain, PipelineFile first, const Pic
 
 bool is_numbered(const std::string& output) { return output.find(mark) != std::string::npos || is_movie(output); }
 
-int render_series(const Options& o, const PictureOptions& options, Context& outer) {
+int render_series(PipelineFile plain, const SeriesRequest& request, const PictureOptions& options, const Options& o, Context& outer) {
   // One picture after the other says the same; two are under way at a time.
   std::mutex mutex;
   std::set<std::string> told;
@@ -254,15 +277,14 @@ int render_series(const Options& o, const PictureOptions& options, Context& oute
     const std::lock_guard lock(mutex);
     if (told.emplace(text).second) outer.log(level, text);
   };
-  const PipelineFile plain = pipeline_of(o);
   bool by_step = false;
   std::vector<size_t> numbers;
-  const std::vector<double> times = times_to_draw(o, by_step, numbers, context);
-  const std::set<std::string> still = reads_without_time(plain, context);
+  const Reads reads = reads_of(plain, context);
+  const std::vector<double> times = times_to_draw(request.times, plain, reads, by_step, numbers);
   const auto step = [&](const PipelineFile& file, size_t n) {
-    return at_time(file, times[n], by_step ? std::optional<size_t>(numbers[n]) : std::nullopt, still);
+    return at_time(file, times[n], by_step ? std::optional<size_t>(numbers[n]) : std::nullopt, reads.still);
   };
-  Sink sink(o, times.size());
+  Sink sink(request.output, request.fps, times.size());
 
   // The first picture chooses the looks of all.
   const auto cache = std::make_shared<Cache>(0);

@@ -30,6 +30,13 @@ double value_of(std::string_view text, const ColorScale& axis) {
   return axis.value_at(t);
 }
 
+// Values written as positions would leave the curve empty without a word.
+void check_position(std::string_view where, double t, const std::string& word) {
+  if (!where.starts_with('@') && !(t >= 0 && t <= 1))
+    fail_usage(fmt::format("position {} is not between 0 and 1, the ends of the range", where), word,
+               fmt::format("a value is written with @: @{}", where));
+}
+
 // The two halves of "place:what"; a colour may hold no colon.
 std::pair<std::string_view, std::string_view> halves(std::string_view part) {
   const size_t colon = part.find(':');
@@ -63,6 +70,7 @@ OpacityCurve parse_opacity(const std::string& text, const ColorScale& axis, cons
     if (!t || !y) fail_usage(fmt::format("'{}' is not a point of an opacity curve", part), word, opacity_form);
     if (!std::isfinite(*t)) fail_usage(fmt::format("'{}' has no place on a log scale", where), word, "values there are above 0");
     if (!(*y >= 0 && *y <= 1)) fail_usage(fmt::format("opacity {} is not between 0 and 1", how_much), word, opacity_form);
+    check_position(where, *t, word);
     check_ascends(last, *t, part, axis, word);
     same = *t == last ? same + 1 : 0;
     if (same == 2) fail_usage(fmt::format("'{}' is the third point at one place", part), word, "two points at one place make a step");
@@ -110,6 +118,7 @@ void parse_color_stops(const std::string& text, ColorScale& scale, bool keep_ran
     const auto t = place(where, scale);
     if (!t || what.empty()) fail_usage(fmt::format("'{}' is not a colour at a place", part), "colors", stops_form);
     if (!std::isfinite(*t)) fail_usage(fmt::format("'{}' has no place on a log scale", where), "colors", "values there are above 0");
+    check_position(where, *t, "colors");
     if (!nodes.empty()) check_ascends(nodes.back().position, *t, part, scale, "colors");
     if (nodes.size() > 1 && *t == nodes[nodes.size() - 2].position)
       fail_usage(fmt::format("'{}' is the third colour at one place", part), "colors", "two colours at one place make a step");

@@ -40,7 +40,7 @@ PipelineVocabulary picture_vocabulary() {
   PipelineVocabulary v;
   v.show.clear();
   for (const ShowKind& k : show_kinds()) v.show.emplace_back(k.name);
-  v.picture = {"camera", "output"};
+  v.picture = {"camera", "output", "times", "fps"};
   PictureParams p;
   const Schema schema = schema_of(p);
   for (const ParamDecl& d : schema.decls()) v.picture.push_back(d.name);
@@ -48,10 +48,11 @@ PipelineVocabulary picture_vocabulary() {
 }
 
 StatedPicture stated_in(const PipelineFile& file) {
+  constexpr std::string_view elsewhere[] = {"camera.", "camera=", "output=", "times=", "fps="};
   StatedPicture s;
   std::vector<std::string> words;
   for (const std::string& w : file.picture)
-    if (!w.starts_with("camera.") && !w.starts_with("output=") && !w.starts_with("camera=")) words.push_back(w);
+    if (std::none_of(std::begin(elsewhere), std::end(elsewhere), [&](std::string_view e) { return w.starts_with(e); })) words.push_back(w);
   Schema schema = schema_of(s.picture);
   set_params(schema, words, "picture");
   Schema camera = schema_of(s.camera);

@@ -8,6 +8,7 @@
 //   show:
 //     - {surface: {color: "0.9,0.85,0.8"}, of: bone}    # `of` is the last step unless stated
 //   picture: {size: 1280x720, camera: {direction: [1, 0.5, 0.3]}, output: out.png}
+// The picture of a series: output: out_{n}.png or film.webm, times: "0:10:101" (default: all of the file), fps: 25.
 #pragma once
 #include <string>
 #include <string_view>

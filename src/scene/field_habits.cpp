@@ -70,26 +70,33 @@ FieldHabit habit_of(const Field& field) {
 ShownRange shown_range(std::span<const FieldOf> fields, int component, bool symmetric) {
   ShownRange s;
   bool may_cut = !fields.empty(), tailed = false;
+  auto shows = FieldHabit::Shows::any;
   for (const FieldOf& f : fields) {
     s.range.add(f.data->range(*f.field, f.field->components() > 1 ? component : 0));
     may_cut = may_cut && is_float(f.field->array.type());
     tailed = tailed || habit_of(*f.field).tailed;
+    if (symmetric) shows = habit_of(*f.field).shows;
   }
   if (s.range.empty()) return s;
   const Range whole = s.range;
-  const double reach = std::max(-whole.lo, whole.hi);
-  if (symmetric) s.range = {-reach, reach};
+  // Of fields with one side that matters, that side says how far: shear may be a thousand times as strong as vortices are.
+  if (!(whole.lo < 0 && whole.hi > 0)) shows = Shows::any;
+  const double reach = shows == Shows::high ? whole.hi : shows == Shows::low ? -whole.lo : std::max(-whole.lo, whole.hi);
+  if (symmetric) s = {{-reach, reach}, whole.lo<-reach, whole.hi> reach};
   if (!may_cut || !(tailed || symmetric)) return s;
   std::vector<double> v = samples_of(fields, component);
   if (symmetric) {
-    std::erase(v, 0.0);  // what is nowhere but in a few places has no tails
+    std::erase_if(v, [&](double x) {  // what is nowhere but in a few places has no tails
+      return x == 0 || (shows == Shows::high && x < 0) || (shows == Shows::low && x > 0);
+    });
     for (double& x : v) x = std::abs(x);
   }
   if (v.size() < 200) return s;
   const double most = tailed ? inside_tailed : inside, high = quantile(v, most);
   if (symmetric) {
     const double end = rounded(high);
-    if (end > 0 && reach > (tailed ? 1.5 : 4) * end) s = {{-end, end}, whole.lo<-end, whole.hi> end};
+    if (end > 0 && reach > (tailed ? 1.5 : 4) * end) s.range = {-end, end};
+    s.cut_low = whole.lo<s.range.lo, s.cut_high = whole.hi> s.range.hi;
     return s;
   }
   const double low = quantile(v, 1 - most), width = high - low;

@@ -3,6 +3,7 @@
 
 #include "base/text.h"
 #include "data/lattice.h"
+#include "data/mesh_dimension.h"
 #include "scene/field_habits.h"
 #include "scene/volume_look.h"
 
@@ -136,6 +137,14 @@ Look choose_look(const Dataset& d, const std::string& field, const std::string& 
     look.reason = fmt::format("lines and vertices, {}", field_reason(d, field));
     return look;
   }
+  // Crests and cores lie inside, of whatever cells; the outer surface shows none of them.
+  using Shows = FieldHabit::Shows;
+  if (scalar && !colors && mesh_dimension(d) == 3)
+    if (const Shows shows = habit_of(*scalar).shows; shows == Shows::high || shows == Shows::low) {
+      look.shows.push_back({"volume", {"field=" + scalar->name}, true});
+      look.reason = fmt::format("'{}' in a solid mesh: volume", scalar->name);
+      return look;
+    }
   std::vector<std::string> words;
   const bool simulation = !d.as<SurfaceMesh>() && !is_lattice(d.mesh());
   const bool bare_map = look.parallel && d.fields().empty() && d.as<SurfaceMesh>();  // nothing but its edges tells its parts apart

@@ -62,6 +62,19 @@ double quantile(const std::vector<size_t>& h, double lo, double hi, double q) {
   return hi;
 }
 
+// The fullest bin of the stretch of a twentieth of the range that holds most samples: a spike of one value (saturation, letters burnt in)
+// is less than the spread of a background.
+size_t fullest(const std::vector<size_t>& h) {
+  const size_t n = h.size(), width = std::max<size_t>(1, n / 20);
+  size_t sum = 0, most = 0, begin = 0;
+  for (size_t b = 0; b < n; ++b) {
+    sum += h[b];
+    if (b >= width) sum -= h[b - width];
+    if (sum > most) most = sum, begin = b + 1 >= width ? b + 1 - width : 0;
+  }
+  return size_t(std::max_element(h.begin() + ptrdiff_t(begin), h.begin() + ptrdiff_t(std::min(n, begin + width))) - h.begin());
+}
+
 // Fields of which it is known what matters in them: crests, troughs or strands. "" when it is not.
 std::string known_look(const Dataset& data, const Field& field, const Range& r, int component, VolumeItem& item) {
   using Shows = FieldHabit::Shows;
@@ -122,7 +135,7 @@ void ct_look(const Range& r, double offset, bool choose_colors, VolumeItem& item
 Range foreground(const Field& field, int component, double lo, double hi) {
   auto h = histogram(field, component, lo, hi, 1024);
   const double width = hi - lo;
-  const size_t peak = size_t(std::max_element(h.begin(), h.end()) - h.begin());
+  const size_t peak = fullest(h);
   Range r{lo, hi};
   if (peak < h.size() / 2) {
     const size_t end = std::min(h.size() - 1, peak + 1 + h.size() / 50);
@@ -157,12 +170,12 @@ std::string choose_volume_look(const Dataset& data, const Field& field, const Co
   if (const std::string why = known_look(data, field, r, params.component, item); !why.empty()) return why;
   if (item.color.map.kind == MapKind::diverging && r.lo < 0 && r.hi > 0) {
     const double m = std::max(-r.lo, r.hi);
-    item.opacity.points = {{-m, 0.5}, {-0.5 * m, 0.12}, {-0.15 * m, 0}, {0.15 * m, 0}, {0.5 * m, 0.12}, {m, 0.5}};
+    item.opacity.points = {{-m, 0.8}, {-0.5 * m, 0.25}, {-0.2 * m, 0}, {0.2 * m, 0}, {0.5 * m, 0.25}, {m, 0.8}};
     return "signed: opaque away from zero on both sides";
   }
-  // The most frequent value is taken for the background; opacity follows the quantiles away from it.
+  // What most samples have about is taken for the background; opacity follows the quantiles away from it.
   const auto h = histogram(field, params.component, r.lo, r.hi);
-  const size_t peak = size_t(std::max_element(h.begin(), h.end()) - h.begin());
+  const size_t peak = fullest(h);
   if (peak > h.size() / 2) {  // bright background: see the low values
     const double q50 = quantile(h, r.lo, r.hi, 0.5), q10 = quantile(h, r.lo, r.hi, 0.1);
     item.opacity.points = {{r.lo, 0.5}, {std::min(q10, 0.5 * (r.lo + q50)), 0.10}, {q50, 0}, {r.hi, 0}};

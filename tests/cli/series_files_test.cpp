@@ -112,6 +112,50 @@ TEST_CASE("film: a series becomes a .webm") {
         std::string::npos);
 }
 
+TEST_CASE("run: a pipeline file makes numbered pictures and films, of a file's steps or a source's times") {
+  const std::string f = files() + "film/";
+  std::filesystem::create_directory(f);
+  const std::string head = "sightglass: 1\nsteps:\n  in: {read: \"../flow_{n}.vti\"}\n  v: {magnitude: {}}\n";
+  write_file(f + "numbered.yaml", head + "picture: {size: 80x60, output: \"flow_{n}.png\", times: \"2:4\"}\n");
+  const Ran r = sightglass({"run", "film/numbered.yaml"}, files());
+  INFO(r.err);
+  REQUIRE(r.status == 0);
+  CHECK(r.out.find("3 pictures, times 2 to 4") != std::string::npos);
+  const Image second = read_png(f + "flow_001.png");
+  CHECK(second.width == 80);
+  // One of them, made again alone.
+  const Ran again = sightglass({"open", "flow_001.png"}, f);
+  INFO(again.err);
+  CHECK(again.status == 0);
+  CHECK(read_png(f + "flow_001-again.png").pixels == second.pixels);
+  CHECK(sightglass({"open", "--recipe", "flow_001.png"}, f).out.find("times") == std::string::npos);
+  // The same as the command line makes.
+  const Ran command =
+      sightglass({"render", "../flow_{n}.vti", "-f", "magnitude", "--times", "2:4", "--size", "80x60", "-o", "c_{n}.png"}, f);
+  INFO(command.err);
+  REQUIRE(command.status == 0);
+  CHECK(read_png(f + "c_001.png").pixels == second.pixels);
+  // A film of a source; what states its time stands still.
+  write_file(f + "film.yaml",
+             "sightglass: 1\nsteps:\n  a: {double_gyre: {dims: [21, 11, 1]}}\n  b: {double_gyre: {dims: [21, 11, 1], time: 3}}\n"
+             "show: [{surface: {}, of: a}, {outline: {}, of: b}]\npicture: {size: 80x60, output: film.webm, times: \"0:2:3\", fps: 4}\n");
+  const Ran film = sightglass({"run", "film.yaml"}, f);
+  INFO(film.err);
+  REQUIRE(film.status == 0);
+  CHECK(film.out.find("film.webm: 3 pictures, times 0 to 2") != std::string::npos);
+  CHECK(MappedFile(f + "film.webm").text().substr(0, 4) == "\x1A\x45\xDF\xA3");
+  CHECK(sightglass({"run", "film.yaml", "-o", "still.png"}, f).status == 0);  // one picture of the same file
+  CHECK(sightglass({"run", "film.yaml", "-o", "s_{n}.png", "--times", "0,1"}, f).out.find("2 pictures") != std::string::npos);
+  // What cannot be.
+  CHECK(sightglass({"run", "film.yaml", "-o", "still.png", "--times", "0,1"}, f).err.find("several times need") != std::string::npos);
+  write_file(f + "no.yaml", "sightglass: 1\nsteps:\n  b: {double_gyre: {time: 3}}\npicture: {times: \"0:2:3\", output: no.webm, fps: x}\n");
+  CHECK(sightglass({"run", "no.yaml"}, f).err.find("'x' is no number") != std::string::npos);
+  CHECK(sightglass({"run", "no.yaml", "--fps", "3"}, f).err.find("states one") != std::string::npos);
+  write_file(f + "one.yaml", "sightglass: 1\nsteps:\n  in: {read: ../flow_3.vti}\n");
+  const Ran one = sightglass({"run", "one.yaml", "-o", "o_{n}.png"}, f);
+  CHECK(one.err.find("flow_3.vti: has no time steps") != std::string::npos);
+}
+
 TEST_CASE("series: real currents over degrees, day by day" * doctest::skip(no_data())) {
   // The program runs in a folder of its own.
   const std::string f = folder_of(

@@ -134,7 +134,7 @@ TEST_CASE("opacity curve: linear between points, constant beyond, steps, largest
   CHECK(c.most(160, 140) == 0.8);
   CHECK(c.at(nan_value) == 0);
   CHECK(parse_opacity("0.3", 0, 1).at(17) == 0.3);
-  CHECK(parse_opacity("300:1,400:0", 0, 1).at(350) == 0.5);
+  CHECK(parse_opacity("@300:1,@400:0", 0, 1).at(350) == 0.5);
 }
 
 TEST_CASE("opacity curve: mistakes are named") {

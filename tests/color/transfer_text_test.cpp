@@ -50,6 +50,8 @@ TEST_CASE("opacity: curves that cannot be are refused with what would be right")
   CHECK(says(test::error_of([&] { parse_opacity("0:0,1:1.01", a); }), "1.01 is not between 0 and 1"));
   CHECK(says(test::error_of([&] { parse_opacity("0:-0.1", a); }), "not between 0 and 1"));
   CHECK(says(test::error_of([&] { parse_opacity("0:nan", a); }), "not between 0 and 1"));
+  CHECK(says(test::error_of([&] { parse_opacity("0:0,200:0.5", a); }), "a value is written with @: @200"));
+  CHECK(says(test::error_of([&] { parse_opacity("-1:0,1:0.5", a); }), "position -1 is not between 0 and 1"));
   CHECK(says(test::error_of([&] { parse_opacity("@inf:1", a); }), "'@inf:1' is not a point"));
   CHECK(says(test::error_of([&] { parse_opacity("@:1", a); }), "is not a point"));
   CHECK(says(test::error_of([&] { parse_opacity("@-1:0,1:1", axis(1, 10, ScaleKind::log)); }), "log scale"));

@@ -122,6 +122,35 @@ TEST_CASE("volume: extreme values of Q do not make the rest invisible") {
   CHECK(q.at(0.9) > 0.3);
 }
 
+TEST_CASE("volume: the side of Q that matters says how far its colours go, and any solid mesh shows it inside") {
+  // Strong shear in a fifth of the cube, weak vortices elsewhere.
+  const auto flow = [](double i, double j, double) { return i < 5 ? -1000 : std::sin(0.7 * i) * std::cos(0.5 * j); };
+  std::string log;
+  const ColorScale s = scale_of(cube("Q", flow), {}, &log);
+  CHECK(s.hi == doctest::Approx(1).epsilon(0.02));
+  CHECK(s.lo == -s.hi);
+  CHECK(s.below.has_value());
+  CHECK_FALSE(s.above.has_value());
+  CHECK(log.find("range=-1000,") != std::string::npos);
+  CHECK(opacity_of(cube("Q", flow)).at(0.9) > 0.5);
+  CHECK(scale_of(cube("lambda2", [&](double i, double j, double k) { return -flow(i, j, k); })).hi == doctest::Approx(1).epsilon(0.02));
+  const auto bent = [](const std::string& name) {
+    CurvilinearGrid g;
+    g.dims = {3, 3, 3};
+    std::vector<float> xyz, v;
+    for (int i = 0; i < 27; ++i) {
+      xyz.insert(xyz.end(), {float(i % 3), float(i / 3 % 3), float(i / 9) + 0.1f * float(i % 3)});
+      v.push_back(float(i));
+    }
+    g.points.xyz = Array::from_vector(std::move(xyz), 3);
+    FieldSet f;
+    f.add({name, Association::point, Array::from_vector(std::move(v)), "", Role::scalars});
+    return make_dataset(Mesh(g), std::move(f));
+  };
+  CHECK(choose_look(*bent("Q"), "", "").shows[0].kind == "volume");
+  CHECK(choose_look(*bent("temperature"), "", "").shows[0].kind == "surface");
+}
+
 TEST_CASE("look: a solid texture of sparse noise is shown as opaque strands in the colours of the speed") {
   DatasetParts parts = cube("other", [](double i, double, double) { return i; })->parts();
   const auto strands = cube("lic", [](double i, double j, double) { return int(i) % 6 == 0 && int(j) % 6 == 0 ? 0.8 : 0.0; });

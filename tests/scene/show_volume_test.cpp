@@ -337,6 +337,23 @@ TEST_CASE("volume: automatic looks say in one line what was chosen and why") {
   CHECK(says(none.notes, "no borders"));
 }
 
+TEST_CASE("volume: a spike of one value, like letters burnt in, is not the background") {
+  // A wide dark background, a bright ball in it, and a tenth of all samples at the largest value.
+  const auto head = [](double spike) {
+    return test::cube_of(41, "f", [spike](Vec3 x) {
+      if (x.x > 1 - 2 * spike) return 255.0;
+      const double wave = std::sin(37 * x.x) + std::sin(53 * x.y) + std::sin(71 * x.z);
+      return length(x) < 0.7 ? 120 + 20 * wave : 12 + 3 * wave;
+    });
+  };
+  const Made letters = show(head(0.1), {"transfer=histogram"});
+  CHECK(says(letters.notes, "background below is left out"));
+  CHECK(letters.item.opacity.at(15) == 0);
+  CHECK(letters.item.opacity.at(200) > 0.05);
+  const Made bright = show(head(0.8), {"transfer=histogram"});
+  CHECK(says(bright.notes, "the background is bright"));
+}
+
 TEST_CASE("volume show: a constant field is drawn evenly, not left out") {
   UniformGrid g;
   g.dims = {3, 3, 3};

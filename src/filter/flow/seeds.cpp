@@ -25,7 +25,10 @@ void describe(Schema& s, SeedParams& p) {
   s("radius", p.radius, "Radius of sphere or ball; default: a tenth of the mesh's diagonal.").unit("length").positive();
   s("size", p.size, "Edges of the plane (two) or box (three); default: those of the mesh.").unit("length").at_least(0);
   s("counts", p.counts, "Seeds along the edges of plane (two) or box (three); default: as many as count, evenly.").range(1, 1e6);
-  s("count", p.count, "How many seeds (a mesh gives all its points); 0: 200, on a line 40, at random on surfaces 60.").range(0, 1e9);
+  s("count", p.count,
+    "How many seeds (a mesh gives all its points); 0: 200, on a line 40, at random on surfaces 60 (random streamlines: fewer where they "
+    "would crowd).")
+      .range(0, 1e9);
   s("random_seed", p.random_seed, "Other numbers, other random places.");
 }
 

@@ -37,6 +37,23 @@ std::string no_line_hint(const FlowParts& parts, std::span<const Vec3> seeds) {
                      b.hi.z);
 }
 
+// How many of these lines can still be told apart, lines of a default picture drawn on the box that they fill: those that cover a good half
+// of its shadow in space, two fifths of it when flat.
+size_t most_apart(const Dataset& lines, const Box3& box) {
+  const Vec3 e = box.size();
+  const bool flat = std::min({e.x, e.y, e.z}) < 1e-6 * box.diagonal();
+  const double shadow = (e.x * e.y + e.y * e.z + e.z * e.x) * (flat ? 0.4 : 0.3), width = box.diagonal() / 400;
+  const auto& all = lines.as<SurfaceMesh>()->lines;
+  const View<float> arc = lines.fields().require("length").array.view<float>();
+  double sum = 0;
+  size_t n = 0;
+  while (n < all.size() && sum * width < shadow) {
+    const auto first = size_t(all.offsets.get(n)), last = size_t(all.offsets.get(n + 1)) - 1;
+    sum += double(arc[last]) - double(arc[first]), ++n;
+  }
+  return std::max<size_t>(n, 10);
+}
+
 Data converted(const Data& data, std::string field) {
   flow_meshes(data, field, "streamlines");
   return geographic_flow(data, field, 1, "streamlines");
@@ -76,16 +93,25 @@ Data streamlines(const std::vector<Data>& inputs, const StreamlinesParams& p, Co
     const double s = length(v) / much;
     return chosen ? s > 0 : chance < s * s && length(v) > options.min_speed;
   };
-  const std::vector<Vec3> at = make_seeds(p.seeds, meshes, seed_mesh_of(inputs, "streamlines"), flows, context);
+  std::vector<Vec3> at = make_seeds(p.seeds, meshes, seed_mesh_of(inputs, "streamlines"), flows, context);
   const TraceDirection direction = p.direction == "both"      ? TraceDirection::both
                                    : p.direction == "forward" ? TraceDirection::forward
                                                               : TraceDirection::backward;
   const std::string& unit = parts.fields().front().field().unit;
-  DatasetPtr lines;
-  if (parts.count() == 1)
-    if (const auto by_packets = packets::trace(parts.fields().front(), at, direction, options, context))
-      lines = lines_dataset(*by_packets, parts.name(), unit);
-  if (!lines) lines = lines_dataset(trace_lines(parts, at, direction, options, context), parts.name(), unit);
+  const auto trace = [&](std::span<const Vec3> from) {
+    if (parts.count() == 1)
+      if (const auto by_packets = packets::trace(parts.fields().front(), from, direction, options, context))
+        return lines_dataset(*by_packets, parts.name(), unit);
+    return lines_dataset(trace_lines(parts, from, direction, options, context), parts.name(), unit);
+  };
+  DatasetPtr lines = trace(at);
+  if (p.seeds.count == 0 && seed_kind(p.seeds, inputs.size() > 1) == "random")
+    if (const size_t most = most_apart(*lines, parts.bounds()); most < lines->cell_count()) {
+      const int64_t last = lines->fields().require("seed", Association::cell).array.view<int64_t>()[most - 1];
+      context.info(fmt::format("streamlines: {} of {}, as many as can be told apart; count= makes more", most, lines->cell_count()));
+      at.resize(size_t(last) + 1);
+      lines = trace(at);
+    }
   const size_t count = lines->cell_count();
   if (count == 0) fail_usage(fmt::format("none of {} seeds lies in the flow", at.size()), "streamlines", no_line_hint(parts, at));
   if (count < at.size()) context.info(fmt::format("streamlines: {} of {} seeds lie outside the flow", at.size() - count, at.size()));

@@ -213,6 +213,8 @@ DatasetPtr degenerate_points(const DatasetPtr& in, const DegeneratePointsParams&
   std::vector<Found> found;
   for (const auto& c : chunks) found.insert(found.end(), c.begin(), c.end());
   drop_doubles(found, 1e-9 * in->bounds().diagonal());
+  const auto wedges = std::count_if(found.begin(), found.end(), [](const Found& f) { return f.delta > 0; });
+  ctx.info(fmt::format("degenerate_points: {} trisectors, {} wedges", found.size() - size_t(wedges), wedges));
 
   PointCloud cloud;
   std::vector<double> xyz, index, delta, eigenvalue, along[3];

@@ -4,6 +4,7 @@
 #include "filter/flow/streamlines.h"
 #include "filter/flow/unsteady/pathlines.h"
 #include "filter/flow/unsteady_lines.h"
+#include "filter/flow/vortex/ftle.h"
 #include "support/test.h"
 
 using namespace sg;
@@ -66,6 +67,55 @@ TEST_CASE("geographic: lines at 45 degrees of the compass keep their heading") {
     CHECK(lines.value("speed", i) == doctest::Approx(std::sqrt(2.0)).epsilon(1e-4));
   }
   CHECK(lines.points() > 10);
+}
+
+TEST_CASE("geographic: ftle measures metres, so the globe's own turning has none and a jet has that of its shear") {
+  // East along parallels by f(latitude) m/s, for ten days.
+  const auto days_of = [](auto&& f) {
+    Series s;
+    for (int i = 0; i <= 10; ++i) s.times.push_back(i);
+    s.load = [f](size_t) -> Data {
+      DatasetParts parts = sea({})->parts();
+      std::vector<double> v;
+      for (int j = 0; j <= 40; ++j)
+        for (int i = 0; i <= 40; ++i) v.insert(v.end(), {f(20.0 + j), 0, 0});
+      parts.fields.add({"current", Association::point, Array::from_vector(v, 3), "m s-1", Role::vectors});
+      return make_dataset(parts);
+    };
+    return s;
+  };
+  Context context;
+  FtleParams p;
+  p.geographic = true, p.dims = {21, 21, 1}, p.bounds = {5, 20, 30, 50, 0, 0}, p.duration = 5;
+  const auto values = [&](const Series& s) {
+    const DatasetPtr d = ftle(s, p, context);
+    std::vector<double> out;
+    for (size_t j = 1; j < 20; ++j) out.push_back(d->fields().require("ftle").array.get(21 * j + 10, 0));
+    return out;
+  };
+  // As a rigid body: all speeds in proportion to the cosine.
+  for (const double v : values(days_of([](double lat) { return 2 * std::cos(lat * M_PI / 180); }))) CHECK(std::abs(v) < 2e-4);
+  // A linear shear of k / s: the largest stretch in time T is (g + sqrt(g^2 + 4)) / 2, g = k T; to first order also on the sphere, where
+  // the parallels' own turning adds tan(latitude) speed / R.
+  const double shear = 0.1 / metres;  // 0.1 m/s a degree
+  const auto jet = values(days_of([](double lat) { return 0.1 * (lat - 40); }));
+  for (size_t j = 1; j < 20; ++j) {
+    const double lat = 30 + double(j), turn = 0.1 * std::tan(lat * M_PI / 180) * (lat - 40) / 6371000;
+    const double g = (shear + turn) * 5 * 86400, truth = std::log((std::abs(g) + std::sqrt(g * g + 4)) / 2) / 5;
+    CHECK(jet[j - 1] == doctest::Approx(truth).epsilon(0.02));
+  }
+  // One step, a steady current: a duration is found, in days.
+  std::string log;
+  context.on_log = [&](LogLevel, std::string_view t) { log += t; };
+  p.duration = {};
+  Series one = days_of([](double) { return 1.0; });
+  one.times.resize(1);
+  ftle(one, p, context);
+  CHECK(log.find("ftle: duration=") != std::string::npos);
+  CHECK(log.find("geographic=true") == std::string::npos);
+  p.geographic = false;
+  ftle(one, p, context);
+  CHECK(log.find("geographic=true converts it") != std::string::npos);
 }
 
 TEST_CASE("geographic: metres over degrees are warned of, other units and axes are not") {

@@ -55,6 +55,22 @@ TEST_CASE("streaklines: particles that come between are where their release time
   CHECK(told.find("most_points") != std::string::npos);
 }
 
+TEST_CASE("streaklines: no gaps where releases of one moment have parted") {
+  // In the double gyre neighbours part by up to e in a unit of time: what was released within 1e-13 lies far apart after 40.
+  Context context;
+  auto p = seeded_at<StreaklinesParams>({0.9, 0.5, 0, 1.02, 0.3, 0});
+  p.spacing = 0.05;
+  const Lines lines{streaklines(gyre_series(32, even_times(0, 40, 161)), {}, p, context)};
+  CHECK(lines.mesh().lines.size() == 2);
+  bool one_moment = false;
+  for (size_t l = 0; l < lines.mesh().lines.size(); ++l)
+    for (auto i = size_t(lines.mesh().lines.offsets.get(l)); i + 1 < size_t(lines.mesh().lines.offsets.get(l + 1)); ++i) {
+      CHECK(length(lines.x(i + 1) - lines.x(i)) < 0.0501);
+      one_moment = one_moment || lines.value("age", i + 1) - lines.value("age", i) < 1e-13;
+    }
+  CHECK(one_moment);
+}
+
 TEST_CASE("streaklines: refined lines have the same bytes for any number of threads") {
   Context context;
   const Series series = gyre_series(32, even_times(0, 8, 17));

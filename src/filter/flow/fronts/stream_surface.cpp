@@ -340,7 +340,7 @@ Data stream_surface(const std::vector<Data>& inputs, const StreamSurfaceParams& 
   if (parts.dimension() != 3) fail_usage("on a surface streamlines make no surface", "stream_surface", "streamlines or even_streamlines");
   const DatasetPtr second = seed_mesh_of(inputs, "stream_surface");
   const bool chosen = p.curve.nothing() && !second;
-  const SeedCurve curve = seed_curve(chosen ? across_the_flow(parts, context) : p.curve, second, "stream_surface");
+  const SeedCurve curve = seed_curve(chosen ? across_the_flow(parts, "stream_surface", context) : p.curve, second, "stream_surface");
   const double diagonal = parts.bounds().diagonal();
   const double spacing = p.spacing.value_or(std::min(diagonal / 100, chosen ? curve.whole() / 12 : HUGE_VAL));
   const double far = p.max_length.value_or(diagonal);

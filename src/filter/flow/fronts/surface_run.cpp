@@ -2,6 +2,7 @@
 #include "filter/flow/fronts/surface_run.h"
 
 #include "base/error.h"
+#include "filter/flow/fronts/default_curve.h"
 
 namespace sg {
 
@@ -65,8 +66,10 @@ DatasetPtr surface_dataset(Collected c, const Field& velocity, double start, dou
 
 CurveRun::CurveRun(const Series& series, const std::vector<Data>& others, const UnsteadySurfaceParams& p, const SeedCurveParams& c,
                    const char* who, Context& context)
-    : curve(seed_curve(c, seed_lines(others, who), who)),
-      spacing(p.spacing.value_or(first_diagonal(series) / 100)),
+    : curve(seed_curve(
+          others.empty() && c.nothing() ? across_the_flow(flow_at(series, p.start, p.field.name, who, context), who, context) : c,
+          seed_lines(others, who), who)),
+      spacing(p.spacing.value_or(std::min(first_diagonal(series) / 100, c.nothing() ? curve.whole() / 12 : HUGE_VAL))),
       parameters(even_parameters(curve, spacing)),
       run(series, {}, run_params(p, places()), who, false, context) {}
 

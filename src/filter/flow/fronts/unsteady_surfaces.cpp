@@ -2,6 +2,7 @@
 #include "filter/flow/fronts/unsteady_surfaces.h"
 
 #include "base/text.h"
+#include "filter/flow/fronts/default_curve.h"
 #include "filter/flow/fronts/sheet.h"
 #include "filter/flow/fronts/surface_run.h"
 #include "filter/flow/unsteady/advance_one.h"
@@ -46,11 +47,16 @@ void given_surface(const Data& data, std::vector<Vec3>& at, std::vector<std::arr
 }
 
 // The rectangle of the parameters.
-void rectangle(const TimeSurfaceParams& p, double spacing, std::vector<Vec3>& at, std::vector<std::array<uint32_t, 3>>& triangles) {
+void rectangle(TimeSurfaceParams p, const Series& series, double spacing, std::vector<Vec3>& at,
+               std::vector<std::array<uint32_t, 3>>& triangles, Context& context) {
+  if (!p.center && !p.normal && p.size.empty()) {
+    const SeedRectangle r =
+        rectangle_across_the_flow(flow_at(series, p.start, p.field.name, "time_surface", context), "time_surface", context);
+    p.center = r.center, p.normal = r.normal, p.size = {r.size[0], r.size[1]};
+  }
   if (!p.center || p.size.size() != 2)
     fail_usage("needs a surface to begin with", "time_surface", "a second input, or center=x,y,z normal=x,y,z size=a,b");
-  const Vec3 n = normalize(p.normal.value_or(Vec3(0, 0, 1))), u = normalize(cross(std::abs(n.y) < 0.9 ? Vec3(0, 1, 0) : Vec3(0, 0, 1), n));
-  const Vec3 w = cross(n, u);
+  const auto [u, w] = rectangle_sides(normalize(p.normal.value_or(Vec3(0, 0, 1))));
   const size_t nu = size_t(std::max(1.0, std::ceil(p.size[0] / spacing))), nw = size_t(std::max(1.0, std::ceil(p.size[1] / spacing)));
   for (size_t j = 0; j <= nw; ++j)
     for (size_t i = 0; i <= nu; ++i)
@@ -74,7 +80,7 @@ void describe(Schema& s, StreakSurfaceParams& p) {
 }
 void describe(Schema& s, TimeSurfaceParams& p) {
   describe_shared(s, p);
-  s("center", p.center, "Centre of a rectangle that begins.").unit("length");
+  s("center", p.center, "Centre of a rectangle that begins; default: in the middle, across the flow.").unit("length");
   s("normal", p.normal, "Its normal; default: z.");
   s("size", p.size, "Its two edges.").unit("length").at_least(0);
 }
@@ -119,7 +125,7 @@ DatasetPtr time_surface(const Series& series, const std::vector<Data>& others, c
   const double spacing = p.spacing.value_or(first_diagonal(series) / 100);
   std::vector<Vec3> at;
   std::vector<std::array<uint32_t, 3>> triangles;
-  if (others.empty()) rectangle(p, spacing, at, triangles);
+  if (others.empty()) rectangle(p, series, spacing, at, triangles, context);
   else given_surface(others[0], at, triangles, context);
   UnsteadyRun run(series, {}, run_params(p, at), "time_surface", false, context);
   Sheet sheet;

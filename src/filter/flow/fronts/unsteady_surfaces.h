@@ -36,7 +36,8 @@ void describe(Schema& s, TimeSurfaceParams& p);
 // All three give a SurfaceMesh of triangles with point fields "speed" (active), "time", "seed parameter" (0..1 along the curve), "texture
 // coordinates" and the velocity. Edges longer than `spacing` get a particle in their middle (so a surface departs from the true one by the
 // square of the spacing), and gaps wider than tear * spacing that cannot be filled stay open. They hold the steps of one interval of the
-// series at a time. Errors as in UnsteadyRun and seed_curve.
+// series at a time. Without a curve or a surface they begin across the flow at the start (default_curve.h). Errors as in UnsteadyRun and
+// seed_curve.
 
 /// The curve released at the start and followed to `time`: the pathlines of all its places. Also "age" (= time - start).
 DatasetPtr path_surface(const Series& series, const std::vector<Data>& others, const PathSurfaceParams& p, Context& context);

@@ -9,7 +9,7 @@
 namespace sg {
 
 void describe(Schema& s, TubesParams& p) {
-  s("radius", p.radius, "Radius of the tubes; default: a 300th of the mesh's diagonal.").unit("length").positive();
+  s("radius", p.radius, "Radius of the tubes; default: a 300th of the lines' diagonal, less where they crowd.").unit("length").positive();
   s("radius_field", p.radius_field, "Point field that widens the tubes, from the radius to ratio times it.");
   s("ratio", p.ratio, "Largest radius over smallest, with a radius_field.").range(1, 1e6);
   s("sides", p.sides, "Points around.").range(3, 1000);
@@ -17,7 +17,7 @@ void describe(Schema& s, TubesParams& p) {
 }
 
 void describe(Schema& s, RibbonsParams& p) {
-  s("width", p.width, "Width of the ribbons; default: a 75th of the mesh's diagonal.").unit("length").positive();
+  s("width", p.width, "Width of the ribbons; default: a 75th of the lines' diagonal, less where they crowd.").unit("length").positive();
   s("width_field", p.width_field, "Point field that widens the ribbons, from the width to ratio times it.");
   s("ratio", p.ratio, "Largest width over smallest, with a width_field.").range(1, 1e6);
   s("rotation", p.rotation, "Point field of angles by which they turn about their line; default: 'rotation', where there is one.")
@@ -93,8 +93,21 @@ struct Sizes {
   }
 };
 
-Sizes sizes_of(const Dataset& d, const std::optional<double>& asked, double share, const FieldName& name, double ratio) {
-  Sizes s{asked.value_or(d.bounds().diagonal() * share), ratio, {}, {}};
+// The share of the diagonal, but no more than lets bodies `across` times as wide as the result cover the shadow of the lines' box once:
+// single ones can still be told apart. Not less than a fifth of the share.
+double width_for(const Dataset& d, double share, double across) {
+  const Vec3 e = d.bounds().size();
+  const double shadow = (e.x * e.y + e.y * e.z + e.z * e.x) * (std::min({e.x, e.y, e.z}) > 1e-6 * d.bounds().diagonal() ? 0.5 : 1.0);
+  double all = 0;
+  const SurfaceMesh& mesh = *d.as<SurfaceMesh>();
+  for (const LinePath& path : line_paths(d))
+    for (size_t i = 1; i < path.points.size(); ++i) all += length(mesh.points.at(path.points[i]) - mesh.points.at(path.points[i - 1]));
+  const double most = d.bounds().diagonal() * share;
+  return all > 0 && shadow > 0 ? std::clamp(shadow / (across * all), 0.2 * most, most) : most;
+}
+
+Sizes sizes_of(const Dataset& d, const std::optional<double>& asked, double share, double across, const FieldName& name, double ratio) {
+  Sizes s{asked ? *asked : width_for(d, share, across), ratio, {}, {}};
   if (name.empty()) return s;
   const Field& f = d.fields().require(name.name);
   if (f.association != Association::point) fail_usage(fmt::format("field '{}' is not on points", f.name), "lines", "cell_to_point");
@@ -132,7 +145,7 @@ DatasetPtr bodies(const DatasetPtr& lines, Context& context, Make&& make) {
 DatasetPtr tubes(const DatasetPtr& in, const TubesParams& p, Context& context) {
   const DatasetPtr lines = lines_of(in, "tubes", context);
   const SurfaceMesh& mesh = *lines->as<SurfaceMesh>();
-  const Sizes sizes = sizes_of(*lines, p.radius, 1.0 / 300, p.radius_field, p.ratio);
+  const Sizes sizes = sizes_of(*lines, p.radius, 1.0 / 300, 2, p.radius_field, p.ratio);
   const int n = p.sides;
   std::vector<Vec2> circle;
   for (int k = 0; k < n; ++k) {
@@ -175,7 +188,7 @@ DatasetPtr tubes(const DatasetPtr& in, const TubesParams& p, Context& context) {
 DatasetPtr ribbons(const DatasetPtr& in, const RibbonsParams& p, Context& context) {
   const DatasetPtr lines = lines_of(in, "ribbons", context);
   const SurfaceMesh& mesh = *lines->as<SurfaceMesh>();
-  const Sizes sizes = sizes_of(*lines, p.width, 1.0 / 75, p.width_field, p.ratio);
+  const Sizes sizes = sizes_of(*lines, p.width, 1.0 / 75, 0.7, p.width_field, p.ratio);
   Array angles;
   const Field* turning =
       p.rotation.empty() ? lines->fields().find("rotation", Association::point) : &lines->fields().require(p.rotation.name);

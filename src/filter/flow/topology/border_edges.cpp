@@ -89,4 +89,26 @@ std::vector<BorderEdge> border_edges(const FlowParts& flow, const PlaneFrame& fr
   return out;
 }
 
+DatasetPtr border_dataset(const FlowParts& flow, const std::vector<BorderEdge>& edges) {
+  std::vector<double> xyz, speed;
+  std::vector<int64_t> ids;
+  for (const BorderEdge& e : edges) {
+    const Array& v = flow.fields()[size_t(e.part)].field().array;
+    for (const auto& [at, point] : {std::pair(e.at_a, e.a), std::pair(e.at_b, e.b)}) {
+      double sum = 0;
+      for (int c = 0; c < v.components(); ++c) sum += v.get(size_t(point), c) * v.get(size_t(point), c);
+      ids.push_back(int64_t(ids.size()));
+      xyz.insert(xyz.end(), {at.x, at.y, at.z}), speed.push_back(std::sqrt(sum));
+    }
+  }
+  SurfaceMesh mesh;
+  mesh.points.xyz = Array::from_vector(std::move(xyz), 3);
+  mesh.lines.fixed = 2;
+  mesh.lines.connectivity = Array::from_vector(std::move(ids));
+  DatasetParts parts;
+  parts.mesh = std::move(mesh);
+  parts.fields.add({"speed", Association::point, Array::from_vector(std::move(speed)), "", Role::scalars});
+  return make_dataset(std::move(parts));
+}
+
 }  // namespace sg

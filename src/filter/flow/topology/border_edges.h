@@ -20,4 +20,7 @@ struct BorderEdge {
 /// by the chords between their nodes.
 std::vector<BorderEdge> border_edges(const FlowParts& flow, const PlaneFrame& frame, Context& context);
 
+/// They as lines with the point field "speed".
+DatasetPtr border_dataset(const FlowParts& flow, const std::vector<BorderEdge>& edges);
+
 }  // namespace sg

@@ -129,6 +129,7 @@ class Finder {
       first = orbits_.size();
       follow(std::move(beside));
     }
+    families_ += size_t(std::erase_if(orbits_, [](const Orbit& o) { return !o.resolved; }));
     return std::move(orbits_);
   }
   size_t families() const { return families_; }

@@ -18,7 +18,8 @@ struct OrbitOptions {
 /// Lines that neither leave the mesh nor end at a critical point spiral towards an orbit (Poincare, Bendixson). They start beside sources
 /// (with the flow), sinks (against it) and centres (both), in the four sectors of each saddle and on each stretch of the border where the
 /// flow enters, leaves or runs along (both ways), go along `separatrices`, and start at both sides of each orbit that was found: a line in
-/// every region between the separatrices, also about holes. The fixed point of the return map is then found to 1e-10 cells. In order of
+/// every region between the separatrices, also about holes. Orbits that only errors of interpolation part from their neighbours
+/// (Orbit::resolved) belong to families. The fixed point of the return map is then found to 1e-10 cells. In order of
 /// first discovery; the same for any number of threads. `in_families`: how many lines were closed among closed neighbours.
 std::vector<Orbit> find_closed_orbits(const FlowParts& flow, const CriticalPoints& critical, const std::vector<Separatrix>& separatrices,
                                       const OrbitOptions& options, Context& context, size_t* in_families = nullptr);

@@ -4,8 +4,10 @@
 #include <algorithm>
 
 #include "base/parallel.h"
+#include "filter/flow/noise_speed.h"
 #include "filter/flow/topology/cell_scan.h"
 #include "filter/flow/topology/cell_zeros.h"
+#include "filter/flow/topology/mean_divergence.h"
 #include "filter/flow/topology/surface_zeros.h"
 #include "filter/flow/topology/winding.h"
 #include "filter/mesh/surface_builder.h"
@@ -171,6 +173,17 @@ void drop_noise(CriticalPoints& r, double slow) {
   if (!r.normal.empty()) r.normal.resize(kept);
 }
 
+// Spirals whose slow growth is an error of interpolation: the mean divergence about them is not half as large, or has the other sign.
+bool centre_but_for_errors(PartsCursor& flow, const CriticalPoint& c, Vec3 normal) {
+  using enum CriticalType;
+  if (c.flow.type != attracting_focus && c.flow.type != repelling_focus) return false;
+  const double growth = c.flow.re[0];
+  if (std::abs(growth) > 0.1 * std::abs(c.flow.im[0])) return false;
+  for (const double radius : {1.5 * c.size, 0.75 * c.size})
+    if (const auto d = mean_divergence(flow, c.at, normal, radius)) return !(0.5 * *d * growth > 0.5 * growth * growth);
+  return false;
+}
+
 void find_in_cells(const FlowParts& flow, const CriticalOptions& options, CriticalPoints& r, Context& context) {
   const PlaneFrame* frame = r.plane ? &*r.plane : nullptr;
   std::vector<Found> zeros;
@@ -189,6 +202,10 @@ void find_in_cells(const FlowParts& flow, const CriticalOptions& options, Critic
     if (frame && c.flow.type == CriticalType::degenerate) {
       if (!cursor) cursor.emplace(flow);
       c.index = index_about(*cursor, *frame, c.at, 0.02 * c.size);
+    }
+    if (frame && options.centre > 0) {
+      if (!cursor) cursor.emplace(flow);
+      if (centre_but_for_errors(*cursor, c, frame->normal)) c.flow.type = CriticalType::centre;
     }
     r.points.push_back(c);
     if (frame) r.normal.push_back(frame->normal);
@@ -222,7 +239,9 @@ void describe(Schema& s, CriticalPointsParams& p) {
 void describe(Schema& s, CriticalOptions& p) {
   s("centre", p.centre,
     "A spiral whose growth rate (real part) is at most this part of its turning rate (imaginary part) counts as a centre: sampled flows "
-    "without divergence have centres only to rounding.")
+    "without divergence have centres only to rounding. In flat meshes so does a slow spiral whose growth is not borne out by the flux "
+    "about "
+    "it; 0: neither.")
       .at_least(0);
   s("min_speed", p.min_speed,
     "Cells that are slower than this part of the largest speed at all of their points are left out: noise has many zeros.")
@@ -230,7 +249,7 @@ void describe(Schema& s, CriticalOptions& p) {
   s("noise", p.noise,
     "Of the critical points in cells that are slower than this part of the largest speed at all of their points, those are left out as "
     "noise that have "
-    "another critical point within three cells; single ones stay, however slow.")
+    "another critical point within three cells; single ones stay, however slow. In scans that are mostly noise 0 stands for 0.02.")
       .range(0, 1);
 }
 
@@ -296,7 +315,18 @@ DatasetPtr critical_points_dataset(const CriticalPoints& found) {
 
 DatasetPtr critical_points(const Data& in, const CriticalPointsParams& p, Context& context) {
   const FlowParts flow(in, p.field.name, "critical_points", context);
-  const CriticalPoints found = find_critical_points(flow, p.options, context);
+  CriticalOptions options = p.options;
+  if (options.noise == 0)  // nobody said
+    for (const FlowField& f : flow.fields())
+      if (noise_speed(*f.dataset(), f.field()) > 0) {
+        options.noise = 0.02;
+        context.info(
+            fmt::format("most of '{}' is noise: of the critical points in cells slower than 2 % of its largest speed only single ones "
+                        "are kept; noise=1e-9 keeps all",
+                        flow.name()));
+        break;
+      }
+  const CriticalPoints found = find_critical_points(flow, options, context);
   context.info("critical_points: " + summary(found));
   return critical_points_dataset(found);
 }

@@ -42,8 +42,9 @@ struct CriticalOptions {
       0;  ///< of points in cells that are as slow at all their points, those are left out that have another one within three cells
 };
 /// All isolated zeros of the interpolated velocity. Solids: zeros in space. Flat 2D meshes: of the part in their plane. Curved surfaces:
-/// see surface_zeros.h. Zeros on faces, edges and points of several cells are one, also of several patches and parts. The same for any
-/// number of threads. Throws Error(usage) for meshes of lines.
+/// see surface_zeros.h. The interpolant decides the class, but for foci of flat meshes that grow by less than a tenth of their turning:
+/// when the mean divergence over some cells does not bear that out by half, they are centres. Zeros on faces, edges and points of several
+/// cells are one, also of several patches and parts. The same for any number of threads. Throws Error(usage) for meshes of lines.
 CriticalPoints find_critical_points(const FlowParts& flow, const CriticalOptions& options, Context& context);
 inline CriticalPoints find_critical_points(const FlowField& flow, const CriticalOptions& options, Context& context) {
   return find_critical_points(FlowParts(flow), options, context);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "filter/flow/integrator.h"
+#include "filter/flow/topology/mean_divergence.h"
 #include "filter/flow/trace_line.h"
 
 namespace sg {
@@ -23,6 +24,7 @@ struct Orbit {
   double period = 0;
   double cell = 0;        ///< size of the cells there
   double multiplier = 1;  ///< of a small distance from the orbit, in one turn with the flow: < 1 attracts, > 1 repels
+  bool resolved = true;   ///< the multiplier is more than the error of interpolation, see mean_growth()
 };
 
 struct ReturnOptions {
@@ -84,9 +86,36 @@ std::optional<double> next_return(Flow& flow, const Section& section, double s, 
   return std::nullopt;
 }
 
+/// The integral over one turn of the flow's divergence, that of discs about the orbit with a radius of `cells` (their flux over their
+/// area): the logarithm of the multiplier, but for the errors of interpolation. In a cell, the divergence of sampled flows is wrong to
+/// first order in its size, with changing signs; across some cells it is not.
+template <class Flow>
+double mean_growth(Flow& flow, const Orbit& orbit, Vec3 normal, double cells) {
+  double sum = 0, before = 0;
+  for (size_t i = 0; i < orbit.points.size(); ++i) {
+    double here = 0, cell = orbit.cell;  // beside walls, where discs do not fit, nothing is known
+    if constexpr (requires { flow.cell_length(); }) {
+      Vec3 v;
+      if (flow(orbit.points[i], 0, v)) cell = std::max(cell, flow.cell_length());
+    }
+    for (const double radius : {cells * cell, 0.5 * cells * cell})
+      if (const auto d = mean_divergence(flow, orbit.points[i], normal, radius)) {
+        here = *d;
+        break;
+      }
+    if (i > 0) {
+      const double speed = 0.5 * (orbit.speed[i - 1] + orbit.speed[i]);
+      if (speed > 0) sum += 0.5 * (before + here) * length(orbit.points[i] - orbit.points[i - 1]) / speed;
+    }
+    before = here;
+  }
+  return sum;
+}
+
 /// The periodic orbit near `start`, which a line followed with `sign` approaches: the secant method on the return map of the line across
 /// the flow there, then bisection where it leaves. Orbits whose neighbours come nearer (or go) by less than `isolated` a turn are those of
-/// a family about a centre: nothing, and `family` becomes true. `normal` is that of the plane.
+/// a family about a centre: nothing, and `family` becomes true. Where the mean growth says nothing of the kind (half as much, or the
+/// other way), the orbit is one by the error of interpolation only: not resolved. `normal` is that of the plane.
 template <class Flow>
 std::optional<Orbit> periodic_orbit(Flow& flow, Vec3 start, Vec3 normal, double sign, const ReturnOptions& o, double isolated = 0.02,
                                     bool* family = nullptr) {
@@ -136,6 +165,9 @@ std::optional<Orbit> periodic_orbit(Flow& flow, Vec3 start, Vec3 normal, double 
   if (!next_return(flow, section, b, sign, o, orbit.period, &orbit)) return std::nullopt;
   orbit.points.back() = orbit.points.front(), orbit.speed.back() = orbit.speed.front();
   orbit.multiplier = sign > 0 ? multiplier : multiplier > 0 ? 1 / multiplier : HUGE_VAL;
+  if (const double growth = std::log(orbit.multiplier); std::abs(growth) < 1) {
+    for (const double cells : {1.5, 3.0}) orbit.resolved = orbit.resolved && mean_growth(flow, orbit, normal, cells) / growth > 0.5;
+  }
   return orbit;
 }
 

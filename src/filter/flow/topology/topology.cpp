@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/topology/topology.h"
 
+#include "filter/flow/topology/border_edges.h"
+
 namespace sg {
 
 void describe(Schema& s, TopologyParams& p) {
@@ -48,6 +50,10 @@ CollectionPtr topology(const Data& in, const TopologyParams& p, Context& context
   if (!border.empty()) {
     out->parts.push_back({"switch points", switch_points_dataset(border)});
     text += fmt::format("; {} switch point{} of the border", border.size(), border.size() == 1 ? "" : "s");
+  }
+  if (p.border && critical.plane) {  // where all of it lies
+    const auto edges = border_edges(flow, *critical.plane, context);
+    if (!edges.empty()) out->parts.push_back({"border", border_dataset(flow, edges)});
   }
   if (critical.dimension == 3) {
     const auto circles = separatrix_circles(critical, p.circle, 32);

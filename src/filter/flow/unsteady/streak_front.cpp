@@ -70,7 +70,8 @@ std::vector<StreakFront::Insertion> StreakFront::wanted(size_t slot, double begi
     if (!joined(i)) continue;
     const double gap = length(all_[i + 1].x - all_[i].x), a = born_[i], b = born_[i + 1];
     if (!(gap > r.spacing || (gap > r.shortest && (bends(i) || bends(i + 1))))) continue;
-    if (!(b - a > 1e-13 * std::max(std::abs(a), std::abs(b)))) continue;
+    const bool apart = b - a > 1e-13 * std::max(std::abs(a), std::abs(b));
+    if (!apart && b > begin) continue;
     Insertion n;
     n.after = i, n.particle.steps = all_[i].steps, n.particle.x = seed_[slot];
     // The seed's own place is where the line is at the beginning of the interval.
@@ -78,15 +79,18 @@ std::vector<StreakFront::Insertion> StreakFront::wanted(size_t slot, double begi
       n.born = n.particle.t = a < begin ? begin : (a + b) / 2;
     } else {
       n.born = (a + b) / 2, n.particle.t = begin;
-      std::vector<Node> nodes;
-      if (joined(i - 1)) nodes.push_back({born_[i - 1], before_[i - 1].x});
-      nodes.push_back({a, before_[i].x}), nodes.push_back({b, before_[i + 1].x});
-      if (joined(i + 1) && born_[i + 2] <= begin) nodes.push_back({born_[i + 2], before_[i + 2].x});
-      else if (b < begin) nodes.push_back({begin, seed_[slot]});
-      n.particle.x = place_at(nodes, n.born);
-      // Where nodes lie too far apart for a cubic, it may leave the line, and the mesh.
-      const Vec3 middle = (before_[i].x + before_[i + 1].x) / 2;
-      if (!(length(n.particle.x - middle) <= 0.5 * length(before_[i + 1].x - before_[i].x))) n.particle.x = middle;
+      const Vec3 middle = n.particle.x = (before_[i].x + before_[i + 1].x) / 2;
+      // Older ones of one moment, as far as numbers tell, are two places all the same: the middle of the chord lies between them.
+      if (apart) {
+        std::vector<Node> nodes;
+        if (joined(i - 1)) nodes.push_back({born_[i - 1], before_[i - 1].x});
+        nodes.push_back({a, before_[i].x}), nodes.push_back({b, before_[i + 1].x});
+        if (joined(i + 1) && born_[i + 2] <= begin) nodes.push_back({born_[i + 2], before_[i + 2].x});
+        else if (b < begin) nodes.push_back({begin, seed_[slot]});
+        const Vec3 x = place_at(nodes, n.born);
+        // Where nodes lie too far apart for a cubic, it may leave the line, and the mesh.
+        if (length(x - middle) <= 0.5 * length(before_[i + 1].x - before_[i].x)) n.particle.x = x;
+      }
     }
     out.push_back(n);
   }

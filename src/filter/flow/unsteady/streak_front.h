@@ -19,7 +19,8 @@ class StreakFront {
   };
   /// Through the open interval (or to `until` in it). With `refinement`, particles come between neighbours that have parted: one released
   /// in this interval starts at the seed; an older one is put between its neighbours where these were at the beginning of the interval, by
-  /// the cubic in release time through four of them, and goes through the interval itself.
+  /// the cubic in release time through four of them (in the middle of two that numbers cannot tell apart by their time), and goes through
+  /// the interval itself.
   void advance(const UnsteadyFlow& flow, double until, const TraceOptions& options, const Refinement* refinement, Context& context);
   /// Those released before `t` are gone.
   void bury(double t);

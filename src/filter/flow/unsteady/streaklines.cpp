@@ -36,8 +36,8 @@ StreakFront release(const UnsteadyRun& run, std::optional<double> every, const c
   return {run.seeds, times};
 }
 
-// Lines of one seed after the other, the newest particle first. Gaps that refinement could not
-// fill (wider than `torn`: releases of one moment, as far as numbers tell them apart) are no lines, and what it left alone is left out.
+// Lines of one seed after the other, the newest particle first. Gaps that refinement could not fill (wider than `torn`: what stretches by
+// thousands in one interval) are no lines, and what it left alone is left out.
 LinePoints streaks(const StreakFront& r, std::vector<double>& age, double time, double torn) {
   constexpr size_t grain = 64;
   const size_t seeds = r.seeds();

@@ -3,6 +3,7 @@
 
 #include "base/parallel.h"
 #include "filter/flow/flow_parts.h"
+#include "filter/flow/geographic.h"
 #include "filter/flow/unsteady/particles.h"
 #include "filter/probe/resample.h"
 #include "filter/tensor/sym_tensor.h"
@@ -23,6 +24,8 @@ void describe(Schema& s, FtleParams& p) {
   s("bounds", p.bounds, "Box of the seeds as xmin,xmax,ymin,ymax,zmin,zmax; default: that of the mesh.").unit("length");
   s("offset", p.offset, "Derivatives from four (3D: six) places this far beside each seed; default: from the neighbouring seeds.")
       .unit("length");
+  s("geographic", p.geographic,
+    "x and y are degrees and the velocity is in m/s: it is converted, to the file's unit of time, and neighbours part by metres.");
   describe(s, p.integration);
 }
 
@@ -67,16 +70,25 @@ void check_duration(double duration) {
   if (!(std::abs(duration) > 0) || !std::isfinite(duration)) fail_usage("carries nothing", "duration", "a time, positive or negative");
 }
 
+// Over a globe: what a step of one in longitude (degrees), latitude and height is in degrees of latitude.
+Vec3 globe_scale(double latitude) {
+  const double c = std::cos(latitude * M_PI / 180);
+  return {c > 1e-6 ? c : NAN, 1, 180 / (M_PI * 6371000)};
+}
+
 // The mean speed goes a tenth of the diagonal.
-double steady_duration(const Data& data, const std::string& name, Context& context) {
-  const FlowParts flow(data, name, "ftle", context);
+double steady_duration(const Data& data, const FtleParams& p, Context& context) {
+  std::string name = p.field.name;
+  double seconds = 1;
+  for (const DatasetPtr& d : flow_meshes(data, name, "ftle")) seconds = seconds_of_time(*d);
+  const FlowParts flow(p.geographic ? geographic_flow(data, name, seconds, "ftle") : data, name, "ftle", context);
   const double speed = flow.mean_speed();
   return speed > 0 ? 0.1 * flow.bounds().diagonal() / speed : 1;
 }
 
 }  // namespace
 
-DatasetPtr ftle_of(const UniformGrid& grid, double duration, std::optional<double> offset, const FlowMap& map) {
+DatasetPtr ftle_of(const UniformGrid& grid, double duration, std::optional<double> offset, const FlowMap& map, bool geographic) {
   check_duration(duration);
   if (offset && !(*offset > 0)) fail_usage("is no distance", "offset", "a small positive length");
   const std::array<size_t, 3> n = grid.dims;
@@ -117,12 +129,18 @@ DatasetPtr ftle_of(const UniformGrid& grid, double duration, std::optional<doubl
         all = all && difference(has_less ? &to[less] : nullptr, to[here], known[here], has_more ? &to[more] : nullptr,
                                 offset ? *offset : grid.spacing[int(a)], f[a]);
       }
+      Vec3 unit(1, 1, 1);
+      if (geographic) {
+        const Vec3 there = globe_scale(to[here].y);
+        unit = globe_scale(from[here].y);
+        for (int a = 0; a < 3; ++a) f[a] = f[a] * there / unit[a];
+      }
       const Stretch s = all ? stretch_of(f, counts, dimension, duration) : Stretch();
       value[i] = float(s.ftle);
       for (size_t k = 0; k < dims; ++k) values[dims * i + k] = float(s.values[k]);
       for (int k = 0; k < 3; ++k) {
         went[3 * i + size_t(k)] = known[here] ? float(to[here][k]) : NAN;
-        largest[3 * i + size_t(k)] = float(s.largest[k]), smallest[3 * i + size_t(k)] = float(s.smallest[k]);
+        largest[3 * i + size_t(k)] = float(s.largest[k] / unit[k]), smallest[3 * i + size_t(k)] = float(s.smallest[k] / unit[k]);
       }
     }
   });
@@ -140,7 +158,7 @@ DatasetPtr ftle(const Series& given, const FtleParams& p, Context& context) {
   const bool steady = given.times.size() == 1;
   const Data only = steady ? given.load(0) : Data();
   const double whole = steady ? 0 : given.times.back() - p.start.value_or(given.times.front());
-  const double duration = p.duration ? *p.duration : steady ? steady_duration(only, p.field.name, context) : whole;
+  const double duration = p.duration ? *p.duration : steady ? steady_duration(only, p, context) : whole;
   check_duration(duration);
   if (!p.duration) context.info(fmt::format("ftle: duration={:.4g}", duration));
   const int sign = duration < 0 ? -1 : 1;
@@ -155,10 +173,12 @@ DatasetPtr ftle(const Series& given, const FtleParams& p, Context& context) {
                            given.times.front(), given.times.back()),
                "ftle", "another start or duration");
   }
-  UnsteadyFlow flow(series, p.field.name, p.interpolation == "cubic" ? TimeInterpolation::cubic : TimeInterpolation::linear, context);
+  UnsteadyFlow flow(series, p.field.name, p.interpolation == "cubic" ? TimeInterpolation::cubic : TimeInterpolation::linear, context,
+                    p.geographic);
   size_t k = flow.interval_of(start, sign);
   const size_t last = flow.interval_of(until, -sign);
   flow.open(k, context);
+  if (const FlowField& first = flow.steps()[flow.base()]; !p.geographic) warn_of_degrees(*first.dataset(), first.field(), "ftle", context);
   StopParams stop;
   stop.max_steps = most_steps, stop.closed = false;
   // Nobody sees the ways themselves: the tolerance alone says how long steps may be.
@@ -175,8 +195,9 @@ DatasetPtr ftle(const Series& given, const FtleParams& p, Context& context) {
     grid = resample_grid(shape, r);
   }
   size_t gone = 0, all = 0;
-  const DatasetPtr out =
-      ftle_of(grid, duration, p.offset, [&](std::span<const Vec3> from, std::vector<Vec3>& to, std::vector<uint8_t>& known) {
+  const DatasetPtr out = ftle_of(
+      grid, duration, p.offset,
+      [&](std::span<const Vec3> from, std::vector<Vec3>& to, std::vector<uint8_t>& known) {
         std::vector<Particle> particles(from.size());
         for (size_t i = 0; i < from.size(); ++i) particles[i].x = from[i], particles[i].t = start;
         for (;; k = size_t(ptrdiff_t(k) + sign)) {
@@ -192,7 +213,8 @@ DatasetPtr ftle(const Series& given, const FtleParams& p, Context& context) {
           to[i] = particles[i].x, known[i] = particles[i].started && !particles[i].ended;
           gone += !known[i];
         }
-      });
+      },
+      p.geographic);
   if (gone > 0)
     context.info(fmt::format("ftle: {:.3g} % of the particles start outside the flow or leave it within {:.4g}: there are holes",
                              100 * double(gone) / double(all), std::abs(duration)));

@@ -21,6 +21,7 @@ struct FtleParams {
   int64_t size = 0;
   std::vector<double> bounds;
   std::optional<double> offset;
+  bool geographic = false;                           ///< see flow/geographic.h
   IntegrationParams integration{.tolerance = 1e-5};  ///< max_step of dormand_prince by default: 8 step
 };
 void describe(Schema& s, FtleParams& p);
@@ -33,8 +34,9 @@ using FlowMap = std::function<void(std::span<const Vec3> from, std::vector<Vec3>
 /// eigenvectors "stretch direction" (of the largest) and "shrink direction" (of the smallest) of C.
 /// F is the derivative of the flow map: central differences between neighbours of the grid (second order; one-sided at the borders), or
 /// between places `offset` beside each point. Where a neighbour left the flow the difference is one-sided; without any: NaN.
-/// Axes of one point do not count.
-DatasetPtr ftle_of(const UniformGrid& grid, double duration, std::optional<double> offset, const FlowMap& map);
+/// Axes of one point do not count. `geographic`: x and y are degrees of longitude and latitude, z metres; distances are those on a sphere
+/// of 6371 km, and the two directions are a degree of latitude long, in the mesh's coordinates.
+DatasetPtr ftle_of(const UniformGrid& grid, double duration, std::optional<double> offset, const FlowMap& map, bool geographic = false);
 
 /// FTLE of a time series from `start` (default: its first time; backwards its last one) over `duration`, or of a steady flow when there is
 /// one step. Without a duration: the whole series, or the time in which the mean speed of a steady flow goes a tenth of the mesh's

@@ -129,3 +129,43 @@ TEST_CASE("unsteady surfaces: the same bytes for any number of threads; one step
   single.times.resize(1);
   CHECK(test::error_of([&] { streak_surface(single, {}, p, context); }).find("step") != std::string::npos);
 }
+
+TEST_CASE("unsteady surfaces: without a curve or a surface they begin across the flow, in flat meshes along them") {
+  Context context;
+  std::string log;
+  context.on_log = [&](LogLevel, std::string_view text) { log += text; };
+  PathSurfaceParams path;
+  path.time = 1;
+  const Box3 swept = path_surface(oscillating(), {}, path, context)->bounds();
+  CHECK(log.find("path_surface: seeds: a line across the flow, from=") != std::string::npos);
+  CHECK(swept.size().z == doctest::Approx(4 * std::sqrt(3.0) / 4).epsilon(0.02));  // an eighth of the diagonal to both sides
+  CHECK(swept.lo.x == doctest::Approx(0));
+  CHECK(swept.hi.x == doctest::Approx(U).epsilon(1e-4));
+  StreakSurfaceParams streak;
+  streak.time = 1;
+  CHECK(streak_surface(oscillating(), {}, streak, context)->bounds().size().z > 1.5);
+  TimeSurfaceParams patch;
+  patch.time = 0.5;
+  const DatasetPtr carried = time_surface(oscillating(), {}, patch, context);
+  CHECK(area(carried) == doctest::Approx(3).epsilon(0.02));
+  const Vec3 centre = carried->bounds().center();
+  CHECK(length(centre - moved({}, 0, 0.5)) < 2e-2);
+  // Flat: the curve lies in the plane, the rectangle too.
+  Series flat;
+  flat.times = {0, 1};
+  flat.load = [](size_t) -> Data {
+    UniformGrid g;
+    g.dims = {21, 21, 1};
+    g.spacing = {0.1, 0.1, 1};
+    return test::velocity_on(g, [](Vec3) { return Vec3(0.2, 0, 0); });
+  };
+  const DatasetPtr sheet = path_surface(flat, {}, {}, context);
+  CHECK(sheet->bounds().size().y > 0.6);
+  CHECK(area(sheet) == doctest::Approx(0.2 * sheet->bounds().size().y).epsilon(1e-3));
+  CHECK(area(time_surface(flat, {}, {}, context)) == doctest::Approx(0.5).epsilon(0.02));
+  flat.load = [](size_t) -> Data { return test::cube_flow(3, -2, 2, [](Vec3) { return Vec3(); }); };
+  CHECK(test::error_of([&] { path_surface(flat, {}, {}, context); }).find("nothing flows") != std::string::npos);
+  CHECK(test::error_of([&] { time_surface(flat, {}, {}, context); }).find("nothing flows") != std::string::npos);
+  patch.size = {1, 1};
+  CHECK(test::error_of([&] { time_surface(oscillating(), {}, patch, context); }).find("center=x,y,z") != std::string::npos);
+}

@@ -132,11 +132,12 @@ TEST_CASE("topology of parts: separatrices, orbits and switch points go through 
   };
   const CollectionPtr blocks = topology(four_blocks(12, 1.5, saddle), {}, context),
                       whole = topology(plane_grid(25, 25, -1.5, 1.5, -1.5, 1.5, saddle), {}, context);
-  for (const char* part : {"critical points", "separatrices", "closed orbits", "switch points"}) {
+  for (const char* part : {"critical points", "separatrices", "closed orbits", "switch points", "border"}) {
     CAPTURE(part);
     CHECK(count(blocks, part) == count(whole, part));
   }
   CHECK(count(blocks, "critical points") == 3);
+  CHECK(count(whole, "border") == 4 * 24);
   const FlowParts flow(four_blocks(12, 1.5, saddle), "", "test", context);
   const CriticalPoints critical = find_critical_points(flow, {}, context);
   size_t arrived = 0;
