@@ -243,6 +243,8 @@ class PacketCells {
     }
     const F before = hn::IfThenElseZero(drawn, sum.pass);
     lit(hn::Add(here, hn::Mul(part, weight)), alpha, r, g, bl);
+    // Lanes that draw nothing may have been lit beside a hole.
+    if constexpr (shaded) r = hn::IfThenElseZero(drawn, r), g = hn::IfThenElseZero(drawn, g), bl = hn::IfThenElseZero(drawn, bl);
     sum.r = hn::Add(sum.r, hn::Mul(before, r)), sum.g = hn::Add(sum.g, hn::Mul(before, g)), sum.b = hn::Add(sum.b, hn::Mul(before, bl));
     const F after = hn::Mul(sum.pass, pass);
     const M halved = hn::And(drawn, hn::And(hn::Lt(after, half), hn::Lt(sum.half_at, zero)));
