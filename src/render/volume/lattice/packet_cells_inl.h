@@ -114,7 +114,9 @@ class PacketCells {
     const F lo = hn::Min(hn::Min(f.a, b1), hn::Min(b2, f.last)), hi = hn::Max(hn::Max(f.a, b1), hn::Max(b2, f.last));
     look = hn::And(look, hn::Eq(f.last, f.last));  // no hole
     const M strange = hn::AndNot(hn::And(hn::Ge(f.a, line_.lo), hn::Le(f.a, line_.hi)), look);
-    if (!hn::AllFalse(d, strange)) at_ = medium.line_of(f.a), line_ = medium.line(at_);
+    // Only these: on a knot either line would do, and which it is must not depend on the other lanes.
+    if (!hn::AllFalse(d, strange))
+      at_ = hn::IfThenElse(hn::RebindMask(IntTag<D>(), strange), medium.line_of(f.a), at_), line_ = medium.line(at_);
     const M same = hn::And(hn::Ge(lo, line_.lo), hn::Le(hi, line_.hi));
     const M dark = hn::And(same, line_.dark());
     look = hn::AndNot(dark, look);

@@ -63,9 +63,25 @@ class Lighting {
     return l;
   }
 
-  /// Light where the field has the world gradient g, of the given length. `sides`, if any, tells on which side of its kinks it is: a bit
-  /// each for the face that is seen, for whether there is as much of a surface as can be, and for every lamp that reaches it.
-  HWY_INLINE LitLanes<D> on(const F g[3], F square, F length, I* sides = nullptr) const {
+  /// Light where the field has the world gradient g, of the given length.
+  HWY_INLINE LitLanes<D> on(const F g[3], F square, F length) const { return lit<false>(g, square, length, nullptr, nullptr); }
+
+  /// The same, and the light that the other face of the surface would have. `sides` tells on which side of its kinks it is: bit 0 for the
+  /// face that is seen, bit 1 for whether there is as much of a surface as can be, then one for every lamp that reaches it.
+  HWY_INLINE LitLanes<D> on_both(const F g[3], F square, F length, I& sides, LitLanes<D>& other) const {
+    return lit<true>(g, square, length, &sides, &other);
+  }
+  /// What `sides` differ by where only the face that is seen is another.
+  HWY_INLINE I turned_over() const { return hn::Set(IntTag<D>(), 1 | ((1 << plan_.lamps.size()) - 1) << 2); }
+
+  F ray[3];  ///< directions
+
+ private:
+  const PacketPlan& plan_;
+  F half_[PacketPlan::most_lamps][3];
+
+  template <bool both>
+  HWY_INLINE LitLanes<D> lit(const F g[3], F square, F length, I* sides, LitLanes<D>* other) const {
     const D d;
     const IntTag<D> di;
     const F zero = hn::Zero(d), one = hn::Set(d, 1.0f);
@@ -74,31 +90,37 @@ class Lighting {
     const auto away = hn::Gt(dot(g, ray), zero);
     const F side = hn::Div(hn::IfThenElse(away, hn::Set(d, -1.0f), one), hn::Max(length, hn::Set(d, 1e-30f)));
     const auto bit = [&](auto mask, int n) HWY_ATTR { return hn::IfThenElseZero(hn::RebindMask(di, mask), hn::Set(di, 1 << n)); };
-    if (sides) *sides = hn::Or(bit(away, 0), bit(hn::Lt(much, one), 1));
-    F diffuse = zero, specular = zero;
+    if constexpr (both) *sides = hn::Or(bit(away, 0), bit(hn::Lt(much, one), 1));
     const Material& m = plan_.material;
+    const auto power_of = [&](F h) HWY_ATTR {
+      F power = one;
+      for (int n = int(m.power); n > 0; n >>= 1, h = hn::Mul(h, h))
+        if (n & 1) power = hn::Mul(power, h);
+      return power;
+    };
+    F diffuse = zero, specular = zero, other_diffuse = zero, other_specular = zero;
     for (size_t l = 0; l < plan_.lamps.size(); ++l) {
       const Vec3f to(plan_.lamps[l].direction);
       const F lamp[3] = {hn::Set(d, to.x), hn::Set(d, to.y), hn::Set(d, to.z)};
-      const F c = hn::Mul(side, dot(g, lamp)), intensity = hn::Set(d, plan_.lamps[l].intensity);
-      const auto lit = hn::Gt(c, zero);
-      if (sides) *sides = hn::Or(*sides, bit(lit, 2 + int(l)));
-      diffuse = hn::Add(diffuse, hn::IfThenElseZero(lit, hn::Mul(intensity, c)));
-      F h = hn::Max(hn::Mul(side, dot(g, half_[l])), zero), power = one;
-      for (int n = int(m.power); n > 0; n >>= 1, h = hn::Mul(h, h))
-        if (n & 1) power = hn::Mul(power, h);
-      specular = hn::Add(specular, hn::IfThenElseZero(lit, hn::Mul(intensity, power)));
+      const F c = hn::Mul(side, dot(g, lamp)), h = hn::Mul(side, dot(g, half_[l])), intensity = hn::Set(d, plan_.lamps[l].intensity);
+      const auto reached = hn::Gt(c, zero);
+      diffuse = hn::Add(diffuse, hn::IfThenElseZero(reached, hn::Mul(intensity, c)));
+      specular = hn::Add(specular, hn::IfThenElseZero(reached, hn::Mul(intensity, power_of(hn::Max(h, zero)))));
+      if constexpr (both) {
+        *sides = hn::Or(*sides, bit(reached, 2 + int(l)));
+        other_diffuse = hn::Sub(other_diffuse, hn::IfThenElseZero(hn::Not(reached), hn::Mul(intensity, c)));
+        other_specular =
+            hn::Add(other_specular, hn::IfThenElseZero(hn::Not(reached), hn::Mul(intensity, power_of(hn::Max(hn::Neg(h), zero)))));
+      }
     }
-    const F factor = hn::Sub(hn::Add(hn::Set(d, m.ambient), hn::Mul(hn::Set(d, m.diffuse), diffuse)), one);
-    return {hn::IfThenElse(bent, hn::Add(one, hn::Mul(surface, factor)), one),
-            hn::IfThenElseZero(bent, hn::Mul(surface, hn::Mul(hn::Set(d, m.specular), specular)))};
+    const auto in_all = [&](F by_lamps, F mirrored) HWY_ATTR {
+      const F factor = hn::Sub(hn::Add(hn::Set(d, m.ambient), hn::Mul(hn::Set(d, m.diffuse), by_lamps)), one);
+      return LitLanes<D>{hn::IfThenElse(bent, hn::Add(one, hn::Mul(surface, factor)), one),
+                         hn::IfThenElseZero(bent, hn::Mul(surface, hn::Mul(hn::Set(d, m.specular), mirrored)))};
+    };
+    if constexpr (both) *other = in_all(other_diffuse, other_specular);
+    return in_all(diffuse, specular);
   }
-
-  F ray[3];  ///< directions
-
- private:
-  const PacketPlan& plan_;
-  F half_[PacketPlan::most_lamps][3];
 };
 
 template <class D, class T>

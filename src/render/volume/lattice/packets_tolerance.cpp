@@ -51,7 +51,8 @@ class TolerantPacket {
     stride_ = hn::Set(d, 1.0f);
     if (plan.bends) here_ = sums_.at(hn::Zero(d));
     lit_ = hn::MaskFromVec(hn::Zero(d));
-    for (F* v : {&here_lit_.light.diffuse, &here_lit_.light.specular, here_lit_.normal, here_lit_.normal + 1, here_lit_.normal + 2})
+    for (F* v : {&here_lit_.light.diffuse, &here_lit_.light.specular, &here_lit_.other.diffuse, &here_lit_.other.specular, &here_lit_.along,
+                 here_lit_.normal, here_lit_.normal + 1, here_lit_.normal + 2})
       *v = hn::Zero(d);
     here_lit_.sides = hn::Zero(IntTag<D>());
   }
@@ -157,20 +158,26 @@ class TolerantPacket {
     const Strides<D> s = strides(sums_, *plan_.medium, float(plan_.budget.tolerance), here_, p1, p2, world, cells, bend);
     const F zero = hn::Zero(d), one = hn::Set(d, 1.0f), tolerance = hn::Set(d, float(plan_.budget.tolerance));
     const F pass = cells_.sum.pass, taken = hn::Mul(pass, hn::Min(one, s.depth));
-    const M seen = hn::And(striding, hn::Gt(s.depth, zero));
-    const bool any_seen = !hn::AllFalse(d, seen);
     F error = hn::Mul(pass, s.error);
     const F own = hn::Mul(tolerance, hn::Add(hn::Mul(taken, hn::Set(d, share_of_light)),
                                              hn::Mul(world, hn::Set(d, float(2 * share_of_length / plan_.budget.length)))));
     const F allowed = hn::Add(own, hn::Mul(reserve_, hn::Set(d, share_at_once)));
+    const M seen = hn::And(hn::And(striding, hn::Le(error, allowed)), hn::Gt(s.depth, zero));
+    const bool any_seen = !hn::AllFalse(d, seen);
     LitPlace<D> lit2;
     StrideLight<D> light;
     if constexpr (shaded)
       if (any_seen) {
         lit2 = light_ends(t, t2, seen);
         light = StrideLight<D>::straight(plan_.material, here_lit_, lit2);
+        const auto over = hn::Eq(hn::Xor(here_lit_.sides, lit2.sides), cells_.lighting.turned_over());
+        const M turned = hn::And(seen, hn::RebindMask(d, over));
+        if (!hn::AllFalse(d, turned)) {
+          const F tau[3] = {here_.tau, p1.tau, p2.tau};
+          light.take(StrideLight<D>::turned_over(plan_.material, here_lit_, lit2, tau, s.depth), turned);
+        }
         // The middle only where the ends do not do.
-        const M rough = hn::And(seen, hn::And(hn::Le(error, allowed), hn::Gt(hn::Add(error, hn::Mul(taken, light.error)), allowed)));
+        const M rough = hn::AndNot(turned, hn::And(seen, hn::Gt(hn::Add(error, hn::Mul(taken, light.error)), allowed)));
         if (!hn::AllFalse(d, rough))
           light.take(StrideLight<D>::curved(plan_.material, here_lit_, lit_at(cells_.lighting, t1), lit2), rough);
         error = hn::Add(error, hn::IfThenElseZero(seen, hn::Mul(taken, light.error)));
