@@ -203,7 +203,7 @@ class TolerantPacket {
     const F next_error = hn::IfThenElse(good, hn::Add(error, hn::Mul(pass, s.ahead)), error);
     F ratio = hn::Div(allowed, hn::Max(next_error, hn::Set(d, 1e-30f)));
     ratio = hn::IfThenElseZero(hn::Eq(error, error), ratio);
-    const F factor = hn::Mul(hn::Set(d, 0.75f), hn::Sqrt(ratio));
+    const F factor = hn::Mul(hn::Set(d, 0.7f), hn::Sqrt(ratio));
     const F longer = hn::Max(hn::Set(d, 0.5f), hn::Min(factor, hn::Set(d, 3.0f)));
     const F shorter = hn::Max(hn::Set(d, 0.1f), hn::Min(factor, hn::Set(d, 0.7f)));
     F next = hn::Min(hn::Mul(stride_, hn::IfThenElse(good, longer, shorter)), hn::Set(d, longest_stride));
