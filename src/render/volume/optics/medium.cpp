@@ -169,7 +169,7 @@ void Medium::make_colors(const ColorScale& scale, const Plan& plan) {
   const auto straight = [&](size_t from, size_t to) {
     for (size_t q = 1; q < 8; ++q) {
       const size_t at = from + (to - from) * q / 8;
-      const double f = double(at - from) / double(std::max<size_t>(to - from, 1));
+      const double f = double(at - from) / double(to - from);
       if (difference(c[from] + (c[to] - c[from]) * f, c[at]) > 2 * plan.accuracy) return false;
     }
     return true;
@@ -178,8 +178,7 @@ void Medium::make_colors(const ColorScale& scale, const Plan& plan) {
   for (; width > 8; width /= 2) {
     bool all = true;
     for (size_t e = 0; e < stretches.size() && all; e += 2)
-      for (size_t i = stretches[e]; i < stretches[e + 1] && all; i += std::max<size_t>(width / 2, 1))
-        all = straight(i, std::min(i + width, stretches[e + 1]));
+      for (size_t i = stretches[e]; i < stretches[e + 1] && all; i += width / 2) all = straight(i, std::min(i + width, stretches[e + 1]));
     if (all) break;
   }
   color_width_ = per > 0 ? float(double(width) * per) : 1e30f, color_slope_ = float(steepest * double(per_node_));
