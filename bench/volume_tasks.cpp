@@ -46,6 +46,7 @@ VolumeItem volume_item(Look look, size_t n, bool bytes) {
   item.unit_distance = 2.0 / 255;
   item.sampling.step = 1.0 / double(n - 1);
   item.shaded = look == Look::shaded;
+  item.light.ambient = 0.2, item.light.diffuse = 0.7, item.light.specular = 0.3, item.light.power = 20;
   return item;
 }
 
@@ -57,6 +58,7 @@ Task volume(const char* label, Look look, size_t n, bool bytes, double tolerance
             VolumeItem item = volume_item(look, n, bytes);
             if (tolerance > 0) item.sampling.step = 0, item.sampling.tolerance = tolerance;
             scene.items.emplace_back(std::move(item));
+            scene.lights = {{{0, 0, 1}, true, 1}};  // the peers' headlight
             auto turn = std::make_shared<double>(0);
             auto shared = std::make_shared<Scene>(std::move(scene));
             return [=] {

@@ -18,7 +18,7 @@ namespace sg::volume::HWY_NAMESPACE {
 template <class D>
 struct Cubic {
   hn::Vec<D> a, b, c, e, last;  // last: at s = 1
-  HWY_INLINE hn::Vec<D> at(hn::Vec<D> s) const { return hn::Add(a, hn::Mul(s, hn::Add(b, hn::Mul(s, hn::Add(c, hn::Mul(s, e)))))); }
+  HWY_INLINE hn::Vec<D> at(hn::Vec<D> s) const { return mul_add(s, mul_add(s, mul_add(s, e, c), b), a); }
 };
 
 /// The trilinear field of a cell along the way from + s * way, corners by rows.
@@ -34,19 +34,18 @@ HWY_INLINE Cubic<D> along_way(D d, const Pair<D>& p00, const Pair<D>& p01, const
   };
   const auto x = [&](const Pair<D>& p) HWY_ATTR {
     const F rise = hn::Sub(p.b, p.a);
-    return Linear{hn::Add(p.a, hn::Mul(from[0], rise)), hn::Mul(way[0], rise)};
+    return Linear{mul_add(from[0], rise, p.a), hn::Mul(way[0], rise)};
   };
   const auto y = [&](const Linear& p, const Linear& q) HWY_ATTR {
     const F rise = hn::Sub(q.a, p.a), bend = hn::Sub(q.b, p.b);
-    return Square{hn::Add(p.a, hn::Mul(from[1], rise)), hn::Add(hn::Add(p.b, hn::Mul(from[1], bend)), hn::Mul(way[1], rise)),
-                  hn::Mul(way[1], bend)};
+    return Square{mul_add(from[1], rise, p.a), mul_add(way[1], rise, mul_add(from[1], bend, p.b)), hn::Mul(way[1], bend)};
   };
   const Square p = y(x(p00), x(p01)), q = y(x(p10), x(p11));
   const F da = hn::Sub(q.a, p.a), db = hn::Sub(q.b, p.b), dc = hn::Sub(q.c, p.c);
   Cubic<D> f;
-  f.a = hn::Add(p.a, hn::Mul(from[2], da));
-  f.b = hn::Add(hn::Add(p.b, hn::Mul(from[2], db)), hn::Mul(way[2], da));
-  f.c = hn::Add(hn::Add(p.c, hn::Mul(from[2], dc)), hn::Mul(way[2], db));
+  f.a = mul_add(from[2], da, p.a);
+  f.b = mul_add(way[2], da, mul_add(from[2], db, p.b));
+  f.c = mul_add(way[2], db, mul_add(from[2], dc, p.c));
   f.e = hn::Mul(way[2], dc);
   f.last = hn::Add(hn::Add(f.a, f.b), hn::Add(f.c, f.e));
   return f;
@@ -97,8 +96,8 @@ class PacketCells {
     F from[3], way[3];
     for (int a = 0; a < 3; ++a) {
       const F base = hn::Sub(start[a], hn::ConvertTo(d, inside[a]));
-      from[a] = hn::Max(zero, hn::Min(hn::Add(base, hn::Mul(along[a], t)), one));
-      way[a] = hn::Sub(hn::Max(zero, hn::Min(hn::Add(base, hn::Mul(along[a], leave)), one)), from[a]);
+      from[a] = hn::Max(zero, hn::Min(mul_add(along[a], t, base), one));
+      way[a] = hn::Sub(hn::Max(zero, hn::Min(mul_add(along[a], leave, base), one)), from[a]);
     }
     const I above = hn::Add(corner, source.layer);
     const Pair<D> p00 = source.pair(corner), p01 = source.pair(hn::Add(corner, source.row));
@@ -110,7 +109,7 @@ class PacketCells {
     if (hn::AllFalse(d, hn::AndNot(hn::And(clear_line, hn::And(hn::Ge(least, line_.lo), hn::Le(largest, line_.hi))), look))) return;
     const Cubic<D> f = along_way(d, p00, p01, p10, p11, from, way);
     // The hull of the cubic's Bernstein coefficients.
-    const F third = hn::Set(d, 1.0f / 3), b1 = hn::Add(f.a, hn::Mul(f.b, third)), b2 = hn::Add(b1, hn::Mul(hn::Add(f.b, f.c), third));
+    const F third = hn::Set(d, 1.0f / 3), b1 = mul_add(f.b, third, f.a), b2 = mul_add(hn::Add(f.b, f.c), third, b1);
     const F lo = hn::Min(hn::Min(f.a, b1), hn::Min(b2, f.last)), hi = hn::Max(hn::Max(f.a, b1), hn::Max(b2, f.last));
     look = hn::And(look, hn::Eq(f.last, f.last));  // no hole
     const M strange = hn::AndNot(hn::And(hn::Ge(f.a, line_.lo), hn::Le(f.a, line_.hi)), look);
@@ -134,7 +133,7 @@ class PacketCells {
     const typename MediumLanes<D>::Line& line = line_;
     const float tolerance = float(plan.budget.tolerance);
     // Of the cubic: a + b/2 + c/3 + e/4.
-    const F mean = hn::Add(hn::Add(f.a, hn::Mul(half, f.b)), hn::Add(hn::Mul(hn::Set(d, 1.0f / 3), f.c), hn::Mul(hn::Set(d, 0.25f), f.e)));
+    const F mean = hn::Add(mul_add(half, f.b, f.a), mul_add(hn::Set(d, 0.25f), f.e, hn::Mul(hn::Set(d, 1.0f / 3), f.c)));
     F tau_mean = line.tau(mean), most = hn::Max(hn::Max(line.tau(lo), line.tau(hi)), tau_mean);
     F slope = hn::Max(line.slope_at(lo), line.slope_at(hi));
     if (!hn::AllFalse(d, hn::AndNot(same, look))) {
@@ -151,12 +150,12 @@ class PacketCells {
     const F beyond = hn::Max(hn::Sub(hi, hn::Max(f.a, f.last)), hn::Sub(hn::Min(f.a, f.last), lo));
     const F deep = hn::Mul(hn::Mul(hn::Mul(length, length), hn::Mul(most, slope)), hn::Mul(range, hn::Set(d, 0.05f)));
     F error = hn::Mul(hn::Mul(taken, hn::Set(d, 0.25f * tolerance)), hn::Mul(widths, widths));
-    error = hn::Add(error, hn::Mul(change, hn::Min(one, deep)));
+    error = mul_add(change, hn::Min(one, deep), error);
     error = hn::Add(error, hn::IfThenElseZero(hn::Not(same), hn::Mul(beyond, hn::Mul(length, slope))));
     error = hn::Mul(error, pass);
     const F share = hn::Mul(pass, hn::Min(one, hn::Mul(length, tau_mean)));
-    const F allowed = hn::Mul(hn::Set(d, tolerance),
-                              hn::Add(hn::Mul(length, hn::Set(d, float(0.3 / plan.budget.length))), hn::Mul(share, hn::Set(d, 0.4f))));
+    const F allowed =
+        hn::Mul(hn::Set(d, tolerance), mul_add(share, hn::Set(d, 0.4f), hn::Mul(length, hn::Set(d, float(0.3 / plan.budget.length)))));
     if constexpr (shaded) {
       light.cell(source, corner, inside, rows);
       error = hn::Max(error, light.error(from, way, hn::Mul(pass, taken)));
@@ -182,21 +181,21 @@ class PacketCells {
         const F knot = hn::IfThenElse(up, l.hi, l.lo);
         const F rise = hn::Sub(target, v);
         const F run = hn::Div(hn::Sub(end, s), hn::IfThenElse(hn::Eq(rise, zero), one, rise));
-        F meet = hn::Add(s, hn::Mul(hn::Sub(knot, v), run));
-        for (int i = 0; i < 2; ++i) meet = hn::Max(s, hn::Min(hn::Sub(meet, hn::Mul(hn::Sub(f.at(meet), knot), run)), end));
+        F meet = mul_add(hn::Sub(knot, v), run, s);
+        for (int i = 0; i < 2; ++i) meet = hn::Max(s, hn::Min(neg_mul_add(hn::Sub(f.at(meet), knot), run, meet), end));
         to = hn::IfThenElse(cut, meet, to), next = hn::IfThenElse(cut, knot, next);
       }
       const F middle = f.at(hn::Mul(half, hn::Add(s, to))), part = hn::Mul(length, hn::Sub(to, s));
       const F t0 = l.tau(v), tm = hn::Mul(hn::Set(d, 4.0f), l.tau(middle)), t1 = l.tau(next), all = hn::Add(hn::Add(t0, tm), t1);
       const F per_all = hn::Div(one, hn::Max(all, hn::Set(d, 1e-37f)));
-      const F by_emission = hn::Mul(hn::Add(hn::Add(hn::Mul(t0, v), hn::Mul(tm, middle)), hn::Mul(t1, next)), per_all);
-      const F weight = hn::Mul(hn::Add(hn::Mul(half, tm), t1), per_all);
-      segment(look, hn::Add(t, hn::Mul(length, s)), part, hn::Mul(part, hn::Mul(all, hn::Set(d, 1.0f / 6))), v, next, by_emission, weight,
+      const F by_emission = hn::Mul(mul_add(t1, next, mul_add(tm, middle, hn::Mul(t0, v))), per_all);
+      const F weight = hn::Mul(mul_add(half, tm, t1), per_all);
+      segment(look, mul_add(length, s, t), part, hn::Mul(part, hn::Mul(all, hn::Set(d, 1.0f / 6))), v, next, by_emission, weight,
               [&](F at, F share, F& red, F& green, F& blue) HWY_ATTR {
                 if constexpr (shaded) {
-                  const auto on = light.at(from, way, hn::Div(hn::Sub(at, t), hn::Max(length, hn::Set(D(), 1e-30f))));
+                  const auto on = light.at(from, way, mul_add(hn::Sub(to, s), at, s));
                   const F flash = hn::Mul(on.specular, share);
-                  for (F* c : {&red, &green, &blue}) *c = hn::Add(hn::Mul(*c, on.diffuse), flash);
+                  for (F* c : {&red, &green, &blue}) *c = mul_add(*c, on.diffuse, flash);
                 }
               });
       // On to the next line, or to the next piece.
@@ -216,8 +215,8 @@ class PacketCells {
     }
   }
 
-  /// Pieces::segment of optics/integrate.cpp. `lit(at, share, r, g, b)` lights the colours and the share of what is mirrored, at world
-  /// length `at`.
+  /// Pieces::segment of optics/integrate.cpp. `lit(at, share, r, g, b)` lights the colours and the share of what is mirrored, at the
+  /// share `at` of the part.
   template <class Lit>
   HWY_INLINE void segment(M look, F here, F part, F depth, F a, F b, F middle, F weight, const Lit& lit) {
     const D d;
@@ -226,33 +225,32 @@ class PacketCells {
     if (hn::AllFalse(d, drawn)) return;
     depth = hn::IfThenElseZero(drawn, depth);
     const F pass = exp_minus_of(d, depth);
-    const F thin = hn::Mul(depth, hn::Sub(one, hn::Mul(depth, hn::Sub(half, hn::Mul(depth, hn::Set(d, 1.0f / 6))))));
+    const F thin = hn::Mul(depth, neg_mul_add(depth, neg_mul_add(depth, hn::Set(d, 1.0f / 6), half), one));
     const F alpha = hn::IfThenElse(hn::Lt(depth, hn::Set(d, 0.02f)), thin, hn::Sub(one, pass));
     auto color = medium.color(middle);
     F r = hn::Mul(color.r, alpha), g = hn::Mul(color.g, alpha), bl = hn::Mul(color.b, alpha);
     M deep = hn::And(drawn, hn::Gt(depth, hn::Set(d, 0.1f)));
     if constexpr (!shaded) deep = hn::And(deep, hn::Gt(hn::Mul(hn::Min(depth, hn::Set(d, 6.0f)), most_hidden_), hn::Set(d, 12.0f)));
     if (!hn::AllFalse(d, deep)) {
-      F hidden = hn::Add(hn::Sub(hn::Mul(half, alpha), hn::Div(alpha, hn::Max(depth, hn::Set(d, 0.05f)))), pass);
-      const F series =
-          hn::Mul(hn::Mul(depth, depth),
-                  hn::Sub(hn::Set(d, 1.0f / 12), hn::Mul(depth, hn::Sub(hn::Set(d, 1.0f / 24), hn::Mul(depth, hn::Set(d, 1.0f / 80))))));
+      F hidden = hn::Add(mul_sub(half, alpha, hn::Div(alpha, hn::Max(depth, hn::Set(d, 0.05f)))), pass);
+      const F series = hn::Mul(hn::Mul(depth, depth),
+                               neg_mul_add(depth, neg_mul_add(depth, hn::Set(d, 1.0f / 80), hn::Set(d, 1.0f / 24)), hn::Set(d, 1.0f / 12)));
       hidden = hn::IfThenElseZero(deep, hn::IfThenElse(hn::Lt(depth, hn::Set(d, 0.2f)), series, hidden));
       const auto front = medium.color(a), back = medium.color(b);
-      r = hn::Sub(r, hn::Mul(hn::Sub(back.r, front.r), hidden)), g = hn::Sub(g, hn::Mul(hn::Sub(back.g, front.g), hidden));
-      bl = hn::Sub(bl, hn::Mul(hn::Sub(back.b, front.b), hidden));
+      r = neg_mul_add(hn::Sub(back.r, front.r), hidden, r), g = neg_mul_add(hn::Sub(back.g, front.g), hidden, g);
+      bl = neg_mul_add(hn::Sub(back.b, front.b), hidden, bl);
       weight = hn::Sub(weight, hn::IfThenElseZero(deep, hn::Div(hidden, hn::Max(alpha, hn::Set(d, 0.05f)))));
     }
     const F before = hn::IfThenElseZero(drawn, sum.pass);
-    lit(hn::Add(here, hn::Mul(part, weight)), alpha, r, g, bl);
+    lit(weight, alpha, r, g, bl);
     // Lanes that draw nothing may have been lit beside a hole.
     if constexpr (shaded) r = hn::IfThenElseZero(drawn, r), g = hn::IfThenElseZero(drawn, g), bl = hn::IfThenElseZero(drawn, bl);
-    sum.r = hn::Add(sum.r, hn::Mul(before, r)), sum.g = hn::Add(sum.g, hn::Mul(before, g)), sum.b = hn::Add(sum.b, hn::Mul(before, bl));
+    sum.r = mul_add(before, r, sum.r), sum.g = mul_add(before, g, sum.g), sum.b = mul_add(before, bl, sum.b);
     const F after = hn::Mul(sum.pass, pass);
     const M halved = hn::And(drawn, hn::And(hn::Lt(after, half), hn::Lt(sum.half_at, zero)));
     if (!hn::AllFalse(d, halved)) {
       const F share = hn::Min(one, hn::Div(hn::Sub(sum.pass, half), hn::Max(hn::Sub(sum.pass, after), hn::Set(d, 1e-30f))));
-      sum.half_at = hn::IfThenElse(halved, hn::Add(here, hn::Mul(part, share)), sum.half_at);
+      sum.half_at = hn::IfThenElse(halved, mul_add(part, share, here), sum.half_at);
     }
     sum.pass = hn::IfThenElse(drawn, after, sum.pass);
   }

@@ -8,6 +8,9 @@
 #define SG_PACKET_LIGHT_INL_H
 #endif
 
+#include <algorithm>
+#include <cmath>
+
 #include "render/volume/lattice/packets_inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -18,6 +21,14 @@ struct LitLanes {
   hn::Vec<D> diffuse, specular;
 };
 
+/// Where a field has a gradient: a surface, seen along a ray.
+template <class D>
+struct FieldSurface {
+  hn::Vec<D> normal[3];  ///< unit, along the gradient
+  hn::Vec<D> along;      ///< of the normal and the ray: the cosine
+  hn::Vec<D> much;       ///< 0 where there is none (no gradient, or one beyond numbers), 1 and more where it is all surface
+};
+
 /// The lamps of a picture and the rays that they are seen along.
 template <class D>
 class Lighting {
@@ -25,101 +36,160 @@ class Lighting {
   using I = Int<D>;
 
  public:
-  HWY_INLINE Lighting(const PacketPlan& plan, const RayPacket& rays) : plan_(plan) {
+  Lighting() = default;
+  HWY_INLINE Lighting(const PacketPlan& plan, const RayPacket& rays) : plan_(&plan) {
     const D d;
     for (int a = 0; a < 3; ++a) ray[a] = hn::Load(d, rays.direction[a]);
     if (!plan.volume.shaded) return;
+    least_ = std::pow(10.0f, -36 / std::max(1.0f, plan.material.power));
+    const auto& m = plan.volume.shade_plan.to_world;
+    upright_ = m[0][1] == 0 && m[0][2] == 0 && m[1][0] == 0 && m[1][2] == 0 && m[2][0] == 0 && m[2][1] == 0;
     for (size_t l = 0; l < plan.lamps.size(); ++l) {
+      intensity_ += plan.lamps[l].intensity;
       // Half way between the light and the viewer.
-      const Vec3 to = plan.lamps[l].direction;
-      const F x = hn::Sub(hn::Set(d, float(to.x)), ray[0]), y = hn::Sub(hn::Set(d, float(to.y)), ray[1]),
-              z = hn::Sub(hn::Set(d, float(to.z)), ray[2]);
-      const F length = hn::Sqrt(hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z)));
+      const Vec3f to(plan.lamps[l].direction);
+      const F h[3] = {hn::Sub(hn::Set(d, to.x), ray[0]), hn::Sub(hn::Set(d, to.y), ray[1]), hn::Sub(hn::Set(d, to.z), ray[2])};
+      const F length = hn::Sqrt(dot(h, h));
       const F per = hn::IfThenElseZero(hn::Gt(length, hn::Zero(d)), hn::Div(hn::Set(d, 1.0f), length));
-      half_[l][0] = hn::Mul(x, per), half_[l][1] = hn::Mul(y, per), half_[l][2] = hn::Mul(z, per);
+      for (int a = 0; a < 3; ++a) half_[l][a] = hn::Mul(h[a], per);
     }
   }
 
-  static HWY_INLINE F dot(const F a[3], const F b[3]) {
-    return hn::Add(hn::Add(hn::Mul(a[0], b[0]), hn::Mul(a[1], b[1])), hn::Mul(a[2], b[2]));
-  }
+  static HWY_INLINE F dot(const F a[3], const F b[3]) { return mul_add(a[2], b[2], mul_add(a[1], b[1], hn::Mul(a[0], b[0]))); }
 
   /// A gradient of the field per world length, from one per cell.
   HWY_INLINE void to_world(const F g[3], F out[3]) const {
     const D d;
-    const auto& m = plan_.volume.shade_plan.to_world;
-    for (int a = 0; a < 3; ++a)
-      out[a] = hn::Add(hn::Add(hn::Mul(hn::Set(d, m[a][0]), g[0]), hn::Mul(hn::Set(d, m[a][1]), g[1])), hn::Mul(hn::Set(d, m[a][2]), g[2]));
+    const auto& m = plan_->volume.shade_plan.to_world;
+    for (int a = 0; a < 3; ++a) {
+      if (upright_) {
+        out[a] = hn::Mul(hn::Set(d, m[a][a]), g[a]);
+        continue;
+      }
+      const F row[3] = {hn::Set(d, m[a][0]), hn::Set(d, m[a][1]), hn::Set(d, m[a][2])};
+      out[a] = dot(row, g);
+    }
   }
 
   /// The same with the rays in another order.
   HWY_INLINE Lighting permuted(Int<D> order) const {
     const D d;
     const auto to = hn::IndicesFromVec(d, order);
-    Lighting l = *this;
+    Lighting l;
+    l.plan_ = plan_, l.upright_ = upright_, l.least_ = least_, l.intensity_ = intensity_;
     for (int a = 0; a < 3; ++a) l.ray[a] = hn::TableLookupLanes(ray[a], to);
-    for (size_t n = 0; n < plan_.lamps.size(); ++n)
+    for (size_t n = 0; n < plan_->lamps.size(); ++n)
       for (int a = 0; a < 3; ++a) l.half_[n][a] = hn::TableLookupLanes(half_[n][a], to);
     return l;
   }
 
-  /// Light where the field has the world gradient g, of the given length.
-  HWY_INLINE LitLanes<D> on(const F g[3], F square, F length) const { return lit<false>(g, square, length, nullptr, nullptr); }
-
-  /// The same, and the light that the other face of the surface would have. `sides` tells on which side of its kinks it is: bit 0 for the
-  /// face that is seen, bit 1 for whether there is as much of a surface as can be, then one for every lamp that reaches it.
-  HWY_INLINE LitLanes<D> on_both(const F g[3], F square, F length, I& sides, LitLanes<D>& other) const {
-    return lit<true>(g, square, length, &sides, &other);
+  /// The surface where the field has this gradient (world); it changes by `over_edge` over an edge of a cell.
+  HWY_INLINE FieldSurface<D> surface(const F g[3]) const {
+    const F square = dot(g, g), length = hn::Sqrt(square);
+    return surface(g, square, length, hn::Mul(length, hn::Set(D(), plan_->edge)));
   }
+  HWY_INLINE FieldSurface<D> surface(const F g[3], F over_edge) const {
+    const F square = dot(g, g);
+    return surface(g, square, hn::Sqrt(square), over_edge);
+  }
+
+  /// Light on the face that is seen.
+  HWY_INLINE LitLanes<D> on(const FieldSurface<D>& s) const { return lit<false>(s, facing(s), nullptr, nullptr); }
+  /// The same; `sides` tells on which side of its kinks the light is: bit 0 for the face that is seen, bit 1 for whether there is as much
+  /// of a surface as can be, then one for every lamp that reaches it. `nearest`: the cosine to the nearest middle of a highlight.
+  HWY_INLINE LitLanes<D> on(const FieldSurface<D>& s, I& sides, F& nearest) const { return lit<true>(s, facing(s), &sides, &nearest); }
+  /// Light on the face that is not seen.
+  HWY_INLINE LitLanes<D> on_back(const FieldSurface<D>& s) const { return lit<false>(s, hn::Xor(facing(s), flipped()), nullptr, nullptr); }
   /// What `sides` differ by where only the face that is seen is another.
-  HWY_INLINE I turned_over() const { return hn::Set(IntTag<D>(), 1 | ((1 << plan_.lamps.size()) - 1) << 2); }
+  HWY_INLINE I turned_over() const { return hn::Set(IntTag<D>(), 1 | ((1 << plan_->lamps.size()) - 1) << 2); }
+
+  /// The second derivative of the light over the angle of the surface, at most, on an arc of `turn` (1 - cosine) from a place that is
+  /// `nearest` to the middle of a highlight, or to such a place. A highlight is exp(-p x^2 / 2) at the angle x.
+  HWY_INLINE F bend(F nearest, F turn) const {
+    const D d;
+    const Material& m = plan_->material;
+    const F zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+    const F away = hn::Sqrt(hn::Max(zero, hn::Sub(one, nearest))), half_arc = hn::Mul(hn::Set(d, 0.5f), hn::Sqrt(hn::Max(zero, turn)));
+    const F closest = hn::Max(zero, hn::Sub(away, half_arc)), fall = hn::Mul(closest, closest);
+    const F lobe = hn::Mul(raised(hn::Sub(one, fall)), hn::Max(one, hn::Mul(hn::Set(d, 2 * m.power), fall)));
+    return mul_add(hn::Set(d, intensity_ * m.specular * m.power), lobe, hn::Set(d, intensity_ * m.diffuse));
+  }
+  /// The same anywhere.
+  HWY_INLINE F most_bend() const {
+    return hn::Set(D(), intensity_ * (plan_->material.diffuse + plan_->material.specular * plan_->material.power));
+  }
+
+  const Material& material() const { return plan_->material; }
 
   F ray[3];  ///< directions
 
  private:
-  const PacketPlan& plan_;
+  const PacketPlan* plan_ = nullptr;
+  bool upright_ = false;  ///< the axes of the lattice are those of the world
+  float intensity_ = 0;   ///< of all lamps
+  float least_ = 0;       ///< what is raised to the power of highlights: smaller than this it would be no normal number
   F half_[PacketPlan::most_lamps][3];
 
-  template <bool both>
-  HWY_INLINE LitLanes<D> lit(const F g[3], F square, F length, I* sides, LitLanes<D>* other) const {
+  static HWY_INLINE F flipped() { return hn::SignBit(D()); }
+  /// The sign bit where the normal points away from the viewer: then the other face is seen.
+  static HWY_INLINE F facing(const FieldSurface<D>& s) { return hn::IfThenElseZero(hn::Gt(s.along, hn::Zero(D())), flipped()); }
+
+  HWY_INLINE FieldSurface<D> surface(const F g[3], F square, F length, F over_edge) const {
+    const D d;
+    const F per = hn::Div(hn::Set(d, 1.0f), hn::Max(length, hn::Set(d, 1e-30f)));
+    FieldSurface<D> s;
+    for (int a = 0; a < 3; ++a) s.normal[a] = hn::Mul(g[a], per);
+    s.along = dot(s.normal, ray);
+    const auto some = hn::And(hn::Gt(square, hn::Zero(d)), hn::Lt(square, hn::Set(d, 1e30f)));
+    s.much = hn::IfThenElseZero(some, hn::Mul(over_edge, hn::Set(d, plan_->volume.shade_plan.per_scale)));
+    return s;
+  }
+
+  template <bool tell>
+  HWY_INLINE LitLanes<D> lit(const FieldSurface<D>& s, F flip, I* sides, F* nearest) const {
     const D d;
     const IntTag<D> di;
     const F zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-    const auto bent = hn::And(hn::Gt(square, zero), hn::Lt(square, hn::Set(d, 1e30f)));
-    const F much = hn::Mul(length, hn::Set(d, plan_.edge * plan_.volume.shade_plan.per_scale)), surface = hn::Min(one, much);
-    const auto away = hn::Gt(dot(g, ray), zero);
-    const F side = hn::Div(hn::IfThenElse(away, hn::Set(d, -1.0f), one), hn::Max(length, hn::Set(d, 1e-30f)));
-    const auto bit = [&](auto mask, int n) HWY_ATTR { return hn::IfThenElseZero(hn::RebindMask(di, mask), hn::Set(di, 1 << n)); };
-    if constexpr (both) *sides = hn::Or(bit(away, 0), bit(hn::Lt(much, one), 1));
-    const Material& m = plan_.material;
-    const auto power_of = [&](F h) HWY_ATTR {
-      F power = one;
-      for (int n = int(m.power); n > 0; n >>= 1, h = hn::Mul(h, h))
-        if (n & 1) power = hn::Mul(power, h);
-      return power;
-    };
-    F diffuse = zero, specular = zero, other_diffuse = zero, other_specular = zero;
-    for (size_t l = 0; l < plan_.lamps.size(); ++l) {
-      const Vec3f to(plan_.lamps[l].direction);
+    if constexpr (tell) {
+      const auto bit = [&](auto mask, int n) HWY_ATTR { return hn::IfThenElseZero(hn::RebindMask(di, mask), hn::Set(di, 1 << n)); };
+      *sides = hn::Or(bit(hn::Gt(s.along, zero), 0), bit(hn::Lt(s.much, one), 1));
+      *nearest = zero;
+    }
+    const Material& m = plan_->material;
+    F diffuse = zero, specular = zero;
+    for (size_t l = 0; l < plan_->lamps.size(); ++l) {
+      const Vec3f to(plan_->lamps[l].direction);
       const F lamp[3] = {hn::Set(d, to.x), hn::Set(d, to.y), hn::Set(d, to.z)};
-      const F c = hn::Mul(side, dot(g, lamp)), h = hn::Mul(side, dot(g, half_[l])), intensity = hn::Set(d, plan_.lamps[l].intensity);
+      const F c = hn::Xor(flip, dot(s.normal, lamp)), h = hn::Xor(flip, dot(s.normal, half_[l]));
+      const F intensity = hn::Set(d, plan_->lamps[l].intensity);
       const auto reached = hn::Gt(c, zero);
-      diffuse = hn::Add(diffuse, hn::IfThenElseZero(reached, hn::Mul(intensity, c)));
-      specular = hn::Add(specular, hn::IfThenElseZero(reached, hn::Mul(intensity, power_of(hn::Max(h, zero)))));
-      if constexpr (both) {
-        *sides = hn::Or(*sides, bit(reached, 2 + int(l)));
-        other_diffuse = hn::Sub(other_diffuse, hn::IfThenElseZero(hn::Not(reached), hn::Mul(intensity, c)));
-        other_specular =
-            hn::Add(other_specular, hn::IfThenElseZero(hn::Not(reached), hn::Mul(intensity, power_of(hn::Max(hn::Neg(h), zero)))));
+      diffuse = mul_add(intensity, hn::Max(c, zero), diffuse);
+      specular = mul_add(intensity, hn::IfThenElseZero(reached, raised(h)), specular);
+      if constexpr (tell) {
+        *sides = hn::Or(*sides, hn::IfThenElseZero(hn::RebindMask(di, reached), hn::Set(di, 4 << l)));
+        *nearest = hn::Max(*nearest, hn::IfThenElseZero(reached, h));
       }
     }
-    const auto in_all = [&](F by_lamps, F mirrored) HWY_ATTR {
-      const F factor = hn::Sub(hn::Add(hn::Set(d, m.ambient), hn::Mul(hn::Set(d, m.diffuse), by_lamps)), one);
-      return LitLanes<D>{hn::IfThenElse(bent, hn::Add(one, hn::Mul(surface, factor)), one),
-                         hn::IfThenElseZero(bent, hn::Mul(surface, hn::Mul(hn::Set(d, m.specular), mirrored)))};
-    };
-    if constexpr (both) *other = in_all(other_diffuse, other_specular);
-    return in_all(diffuse, specular);
+    // Where there is no surface normals may be no numbers.
+    const auto some = hn::Gt(s.much, zero);
+    const F much = hn::Min(s.much, one);
+    const F change = hn::Sub(mul_add(hn::Set(d, m.diffuse), diffuse, hn::Set(d, m.ambient)), one);
+    return {hn::IfThenElse(some, mul_add(much, change, one), one),
+            hn::IfThenElseZero(some, hn::Mul(much, hn::Mul(hn::Set(d, m.specular), specular)))};
+  }
+
+  /// To the power of highlights.
+  HWY_INLINE F raised(F h) const {
+    int power = int(plan_->material.power);
+    if (power == 0) return hn::Set(D(), 1.0f);
+    h = hn::Max(h, hn::Set(D(), least_));
+    for (; (power & 1) == 0; power >>= 1) h = hn::Mul(h, h);
+    F result = h;
+    while (power >>= 1) {
+      h = hn::Mul(h, h);
+      if (power & 1) result = hn::Mul(result, h);
+    }
+    return result;
   }
 };
 
@@ -187,8 +257,7 @@ class CellLight {
   HWY_INLINE LitLanes<D> at(const F from[3], const F way[3], F s) const {
     F g[3];
     gradient(from, way, s, g);
-    const F square = Lighting<D>::dot(g, g);
-    return lighting_.on(g, square, hn::Sqrt(square));
+    return lighting_.on(lighting_.surface(g));
   }
 
  private:
@@ -197,7 +266,7 @@ class CellLight {
     const D d;
     const F one = hn::Set(d, 1.0f);
     F f[3], g[3];
-    for (int a = 0; a < 3; ++a) f[a] = hn::Add(from[a], hn::Mul(way[a], s));
+    for (int a = 0; a < 3; ++a) f[a] = mul_add(way[a], s, from[a]);
     for (int a = 0; a < 3; ++a) {
       const F* c = slope_[a];
       const F sum = mixed(d, mixed(d, mixed(d, c[0], c[1], f[0]), mixed(d, c[2], c[3], f[0]), f[1]),

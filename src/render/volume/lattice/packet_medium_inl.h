@@ -19,11 +19,11 @@ HWY_INLINE hn::Vec<D> exp_minus_of(D d, hn::Vec<D> x) {
   const IntTag<D> di;
   const auto deep = hn::Ge(x, hn::Set(d, 87.0f));
   x = hn::Min(x, hn::Set(d, 87.0f));
-  const auto k = to_int(d, hn::Add(hn::Mul(x, hn::Set(d, 1.44269504f)), hn::Set(d, 0.5f)));
+  const auto k = to_int(d, mul_add(x, hn::Set(d, 1.44269504f), hn::Set(d, 0.5f)));
   const auto kf = hn::ConvertTo(d, k);
-  const auto r = hn::Neg(hn::Sub(hn::Sub(x, hn::Mul(kf, hn::Set(d, 0.693145752f))), hn::Mul(kf, hn::Set(d, 1.42860677e-6f))));
+  const auto r = hn::Neg(neg_mul_add(kf, hn::Set(d, 1.42860677e-6f), neg_mul_add(kf, hn::Set(d, 0.693145752f), x)));
   auto sum = hn::Set(d, 1.0f / 5040);
-  for (const float c : {1.0f / 720, 1.0f / 120, 1.0f / 24, 1.0f / 6, 0.5f, 1.0f, 1.0f}) sum = hn::Add(hn::Mul(sum, r), hn::Set(d, c));
+  for (const float c : {1.0f / 720, 1.0f / 120, 1.0f / 24, 1.0f / 6, 0.5f, 1.0f, 1.0f}) sum = mul_add(sum, r, hn::Set(d, c));
   const auto power = hn::BitCast(d, hn::ShiftLeft<23>(hn::Sub(hn::Set(di, 127), k)));
   return hn::IfThenElseZero(hn::Not(deep), hn::Mul(sum, power));
 }
@@ -40,11 +40,11 @@ struct MediumLanes {
     F lo, hi, origin, at, slope, curve, twist;
     HWY_INLINE F tau(F v) const {
       const F x = hn::Sub(v, origin);
-      return hn::Max(hn::Zero(D()), hn::Add(at, hn::Mul(x, hn::Add(slope, hn::Mul(x, hn::Add(curve, hn::Mul(x, twist)))))));
+      return hn::Max(hn::Zero(D()), mul_add(x, mul_add(x, mul_add(x, twist, curve), slope), at));
     }
     HWY_INLINE F slope_at(F v) const {
       const F x = hn::Sub(v, origin);
-      return hn::Abs(hn::Add(slope, hn::Mul(x, hn::Add(hn::Add(curve, curve), hn::Mul(x, hn::Mul(hn::Set(D(), 3.0f), twist))))));
+      return hn::Abs(mul_add(x, mul_add(x, hn::Mul(hn::Set(D(), 3.0f), twist), hn::Add(curve, curve)), slope));
     }
     HWY_INLINE hn::Mask<D> dark() const {
       const F zero = hn::Zero(D());
@@ -110,10 +110,10 @@ struct MediumLanes {
   HWY_INLINE Color color(F v) const {
     const D d;
     const IntTag<D> di;
-    F at = hn::Add(hn::Mul(hn::Sub(v, hn::Set(d, medium.first_node())), hn::Set(d, medium.per_node())), hn::Set(d, 0.5f));
+    F at = mul_add(hn::Sub(v, hn::Set(d, medium.first_node())), hn::Set(d, medium.per_node()), hn::Set(d, 0.5f));
     at = hn::IfThenElseZero(hn::Ge(at, hn::Zero(d)), hn::Min(at, hn::Set(d, float(Medium::nodes))));
-    const I byte = hn::ShiftLeft<3>(to_int(d, at));
-    const I rg = gather_words(d, medium.colors(), byte), b = gather_words(d, medium.colors(), hn::Add(byte, hn::Set(di, 4)));
+    const Pair<D> words = gather_pair(d, reinterpret_cast<const float*>(medium.colors()), hn::ShiftLeft<1>(to_int(d, at)));
+    const I rg = hn::BitCast(di, words.a), b = hn::BitCast(di, words.b);
     const F per = hn::Set(d, 1.0f / 65535);
     const I low = hn::Set(di, 0xFFFF);
     const hn::RebindToUnsigned<IntTag<D>> du;

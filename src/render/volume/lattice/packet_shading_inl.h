@@ -7,7 +7,7 @@
 #define SG_PACKET_SHADING_INL_H
 #endif
 
-#include "render/volume/lattice/packets_inl.h"
+#include "render/volume/lattice/packet_light_inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {
@@ -109,7 +109,7 @@ struct SlopeFinder {
         slope = hn::Div(change, apart);
       }
       out[a] = slope;
-      square = hn::Add(square, hn::Mul(hn::Mul(hn::Set(d, 0.25f), change), change));
+      square = mul_add(hn::Mul(hn::Set(d, 0.25f), change), change, square);
     }
     return {out[0], out[1], out[2], hn::Sqrt(square)};
   }
@@ -118,24 +118,12 @@ struct SlopeFinder {
 template <class D, class T>
 class ShadeQueue {
   using F = hn::Vec<D>;
+  using I = Int<D>;
   static constexpr size_t lanes_ = lanes_of<D>;
   enum { at_sample, at_r, at_g, at_b, at_flash, at_lane, parts };
 
  public:
-  HWY_INLINE void start(const PacketPlan& plan, const RayPacket& rays) {
-    count_ = 0;
-    const D d;
-    for (size_t l = 0; l < plan.lamps.size(); ++l) {
-      // Half way between the light and the viewer.
-      const Vec3 to = plan.lamps[l].direction;
-      const F x = hn::Sub(hn::Set(d, float(to.x)), hn::Load(d, rays.direction[0])),
-              y = hn::Sub(hn::Set(d, float(to.y)), hn::Load(d, rays.direction[1])),
-              z = hn::Sub(hn::Set(d, float(to.z)), hn::Load(d, rays.direction[2]));
-      const F length = hn::Sqrt(hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z)));
-      const F per = hn::IfThenElseZero(hn::Gt(length, hn::Zero(d)), hn::Div(hn::Set(d, 1.0f), length));
-      hn::Store(hn::Mul(x, per), d, half_[l][0]), hn::Store(hn::Mul(y, per), d, half_[l][1]), hn::Store(hn::Mul(z, per), d, half_[l][2]);
-    }
-  }
+  HWY_INLINE void start(const PacketPlan& plan, const RayPacket& rays) { count_ = 0, lighting_ = Lighting<D>(plan, rays); }
 
   /// The number of the sample; negative: the last, shorter step. Colours and `flash` (the share of what is mirrored) are weighted already.
   HWY_INLINE void push(const PacketPlan& plan, const RayPacket& rays, PacketResult& result, hn::Mask<D> which, F sample, F r, F g, F b,
@@ -161,60 +149,35 @@ class ShadeQueue {
  private:
   HWY_NOINLINE void light(const PacketPlan& plan, const RayPacket& rays, PacketResult& result, size_t count) {
     const D d;
-    const auto& m = plan.volume.shade_plan.to_world;
-    const Material& material = plan.material;
-    const F zero = hn::Zero(d), one = hn::Set(d, 1.0f);
     const Source<D, T> source(plan.volume.voxels);
-    const auto lane = hn::IndicesFromVec(d, to_int(d, hn::Load(d, queue_[at_lane])));
+    const I order = to_int(d, hn::Load(d, queue_[at_lane]));
+    const auto lane = hn::IndicesFromVec(d, order);
     const F sample = hn::Load(d, queue_[at_sample]);
-    const auto in_last = hn::Lt(sample, zero);
+    const auto in_last = hn::Lt(sample, hn::Zero(d));
     F at[3];
     for (int a = 0; a < 3; ++a) {
-      at[a] = hn::Add(of_lanes(rays.first[a], lane), hn::Mul(sample, of_lanes(rays.by[a], lane)));
+      at[a] = mul_add(sample, of_lanes(rays.by[a], lane), of_lanes(rays.first[a], lane));
       at[a] = hn::IfThenElse(in_last, of_lanes(rays.last[a], lane), at[a]);
     }
-    const SlopeFinder<D, T> finder(source, at[0], at[1], at[2]);
-    const Slope<D> g = finder.find();
-    const F x = turned(g, m[0]), y = turned(g, m[1]), z = turned(g, m[2]);
-    const F square = hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
-    const auto bent = hn::And(hn::Gt(square, zero), hn::Lt(square, hn::Set(d, 1e30f)));
-    const F surface = hn::Min(hn::Mul(g.per_cell, hn::Set(d, plan.volume.shade_plan.per_scale)), one);
-    const auto away =
-        hn::Gt(dot(x, y, z, of_lanes(rays.direction[0], lane), of_lanes(rays.direction[1], lane), of_lanes(rays.direction[2], lane)), zero);
-    const F side = hn::Div(hn::IfThenElse(away, hn::Set(d, -1.0f), one), hn::Sqrt(square));
-    F diffuse = zero, specular = zero;
-    for (size_t l = 0; l < plan.lamps.size(); ++l) {
-      const Vec3f to(plan.lamps[l].direction);
-      const F intensity = hn::Set(d, plan.lamps[l].intensity);
-      const F c = hn::Mul(side, dot(x, y, z, hn::Set(d, to.x), hn::Set(d, to.y), hn::Set(d, to.z)));
-      const auto lit = hn::Gt(c, zero);
-      diffuse = hn::Add(diffuse, hn::IfThenElseZero(lit, hn::Mul(intensity, c)));
-      F h =
-          hn::Max(hn::Mul(side, dot(x, y, z, of_lanes(half_[l][0], lane), of_lanes(half_[l][1], lane), of_lanes(half_[l][2], lane))), zero);
-      for (int i = 0; i < 5; ++i) h = hn::Mul(h, h);
-      specular = hn::Add(specular, hn::IfThenElseZero(lit, hn::Mul(intensity, h)));
-    }
-    const F factor = hn::Sub(hn::Add(hn::Set(d, material.ambient), hn::Mul(hn::Set(d, material.diffuse), diffuse)), one);
-    const F shade = hn::IfThenElse(bent, hn::Add(one, hn::Mul(surface, factor)), one);
-    const F gloss = hn::IfThenElseZero(bent, hn::Mul(surface, hn::Mul(hn::Set(d, material.specular), specular)));
-    const F flash = hn::Mul(hn::Load(d, queue_[at_flash]), gloss);
-    for (const int i : {at_r, at_g, at_b}) hn::Store(hn::Add(hn::Mul(hn::Load(d, queue_[i]), shade), flash), d, queue_[i]);
+    const Slope<D> slope = SlopeFinder<D, T>(source, at[0], at[1], at[2]).find();
+    const F cells[3] = {slope.x, slope.y, slope.z};
+    F g[3];
+    lighting_.to_world(cells, g);
+    const Lighting<D> lighting = lighting_.permuted(order);
+    const LitLanes<D> lit = lighting.on(lighting.surface(g, slope.per_cell));
+    const F flash = hn::Mul(hn::Load(d, queue_[at_flash]), lit.specular);
+    for (const int i : {at_r, at_g, at_b}) hn::Store(mul_add(hn::Load(d, queue_[i]), lit.diffuse, flash), d, queue_[i]);
     for (size_t n = 0; n < count; ++n) {
       const auto to = size_t(queue_[at_lane][n]);
       result.r[to] += queue_[at_r][n], result.g[to] += queue_[at_g][n], result.b[to] += queue_[at_b][n];
     }
-  }
-  static HWY_INLINE F dot(F x, F y, F z, F a, F b, F c) { return hn::Add(hn::Add(hn::Mul(a, x), hn::Mul(b, y)), hn::Mul(c, z)); }
-  static HWY_INLINE F turned(const Slope<D>& g, const float* row) {
-    const D d;
-    return dot(g.x, g.y, g.z, hn::Set(d, row[0]), hn::Set(d, row[1]), hn::Set(d, row[2]));
   }
   template <class Indices>
   static HWY_INLINE F of_lanes(const float* values, const Indices& lane) {
     return hn::TableLookupLanes(hn::Load(D(), values), lane);
   }
 
-  alignas(64) float half_[PacketPlan::most_lamps][3][most_lanes];
+  Lighting<D> lighting_;
   alignas(64) float queue_[parts][3 * most_lanes];
   size_t count_;
 };

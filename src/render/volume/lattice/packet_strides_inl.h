@@ -32,17 +32,17 @@ struct SumLanes {
     const IntTag<D> di;
     const F zero = hn::Zero(d), top = hn::Set(d, float(MediumSums::nodes - 1)), lo = hn::Set(d, sums->lo());
     F at = hn::Mul(hn::Sub(value, lo), hn::Set(d, sums->per_width()));
-    at = hn::IfThenElseZero(hn::Ge(at, zero), hn::Min(at, top));
+    at = hn::Min(hn::Max(at, zero), top);  // no number: the first
     Place p;
     p.value = value, p.node = to_int(d, at);
     const auto* table = reinterpret_cast<const float*>(sums->table());
     const I entry = hn::ShiftLeft<2>(p.node);
     const Pair<D> sum_tau = gather_pair(d, table, entry), slope = gather_pair(d, table + 2, entry);
     p.sum = hn::BitCast(di, sum_tau.a);
-    const F x = hn::Sub(hn::Sub(value, lo), hn::Mul(hn::ConvertTo(d, p.node), hn::Set(d, sums->width())));
+    const F x = neg_mul_add(hn::ConvertTo(d, p.node), hn::Set(d, sums->width()), hn::Sub(value, lo));
     p.slope = slope.a;
     const F rise = hn::Mul(x, slope.a);
-    p.beyond = hn::Mul(x, hn::Add(sum_tau.b, hn::Mul(hn::Set(d, 0.5f), rise)));
+    p.beyond = hn::Mul(x, mul_add(hn::Set(d, 0.5f), rise, sum_tau.b));
     p.tau = hn::Max(zero, hn::Add(sum_tau.b, rise));
     return p;
   }
@@ -113,29 +113,25 @@ HWY_INLINE Strides<D> strides(const SumLanes<D>& medium, const Medium& colors, f
   const F steep_a = medium.steepest(p0, p1, pad), steep_b = medium.steepest(p1, p2, pad);
   // A parabola lies `arch` / 12 below its chord in the mean.
   const F sagging = hn::Mul(hn::Set(d, 1.0f / 24), arch);
-  const F depth_a = hn::Max(zero, hn::Sub(mean_a, hn::Mul(sagging, hn::Add(p0.slope, p1.slope))));
-  const F depth_b = hn::Max(zero, hn::Sub(mean_b, hn::Mul(sagging, hn::Add(p1.slope, p2.slope))));
+  const F depth_a = hn::Max(zero, neg_mul_add(sagging, hn::Add(p0.slope, p1.slope), mean_a));
+  const F depth_b = hn::Max(zero, neg_mul_add(sagging, hn::Add(p1.slope, p2.slope), mean_b));
   const F sum = hn::Add(depth_a, depth_b), twice = hn::Add(world, world);
   Strides<D> s;
   s.change = change;
   s.depth = hn::Mul(world, sum);
 
   // Where a stride's tau goes straight its middle lies between a third and two thirds of it.
-  const auto weight = [&](F both, F end) HWY_ATTR {
-    const auto thin = hn::Lt(both, hn::Set(d, 1e-30f));
-    return hn::IfThenElse(thin, half, hn::Mul(third, hn::Add(one, hn::Div(end, hn::IfThenElse(thin, one, both)))));
-  };
-  const F w_a = weight(both_a, p1.tau), w_b = weight(both_b, p2.tau);
-  const auto none = hn::Lt(sum, hn::Set(d, 1e-30f));
-  const F share_b = hn::IfThenElse(none, half, hn::Div(depth_b, hn::IfThenElse(none, one, sum))), share_a = hn::Sub(one, share_b);
+  const F least = hn::Set(d, 1e-30f), twice_least = hn::Set(d, 2e-30f);
+  const auto share_of = [&](F part, F all) HWY_ATTR { return hn::Div(hn::Add(part, least), hn::Add(all, twice_least)); };
+  const F w_a = mul_add(third, share_of(p1.tau, both_a), third), w_b = mul_add(third, share_of(p2.tau, both_b), third);
+  const F share_b = share_of(depth_b, sum), share_a = hn::Sub(one, share_b);
   const F from_a = hn::Sub(w_a, one);
-  s.middle = hn::Add(hn::Mul(share_a, from_a), hn::Mul(share_b, w_b));
-  s.value = hn::Sub(hn::Add(p1.value, hn::Add(hn::Mul(hn::Mul(share_a, from_a), rise_a), hn::Mul(hn::Mul(share_b, w_b), rise_b))),
-                    hn::Mul(hn::Set(d, 1.0f / 12), arch));
-  const auto spread = [&](F w) HWY_ATTR { return hn::Sub(hn::Sub(w, hn::Set(d, 1.0f / 6)), hn::Mul(w, w)); };
+  s.middle = mul_add(share_b, w_b, hn::Mul(share_a, from_a));
+  s.value = neg_mul_add(hn::Set(d, 1.0f / 12), arch,
+                        hn::Add(p1.value, mul_add(hn::Mul(share_b, w_b), rise_b, hn::Mul(hn::Mul(share_a, from_a), rise_a))));
+  const auto spread = [&](F w) HWY_ATTR { return neg_mul_add(w, w, hn::Sub(w, hn::Set(d, 1.0f / 6))); };
   const F apart = hn::Sub(w_b, from_a);
-  s.variance = hn::Add(hn::Add(hn::Mul(share_a, spread(w_a)), hn::Mul(share_b, spread(w_b))),
-                       hn::Mul(hn::Mul(share_a, share_b), hn::Mul(apart, apart)));
+  s.variance = mul_add(hn::Mul(share_a, share_b), hn::Mul(apart, apart), mul_add(share_b, spread(w_b), hn::Mul(share_a, spread(w_a))));
 
   // Colours bend on a width; where tau is no straight line between the ends its middle lies elsewhere; in a deep stride the front shows
   // more of its own colour than a constant tau would have it (optics/integrate.cpp, Pieces::whole).
@@ -149,13 +145,13 @@ HWY_INLINE Strides<D> strides(const SumLanes<D>& medium, const Medium& colors, f
   const F per_steep = hn::Mul(world, hn::Mul(off, hn::Set(d, share_off)));
   F e = hn::Mul(per_steep, hn::Add(steep_a, steep_b));
   s.ahead = hn::Mul(per_steep, hn::Sub(steep_b, steep_a));
-  e = hn::Add(e, hn::Mul(hn::Mul(taken, hn::Set(d, 0.25f * tolerance)), hn::Mul(widths, widths)));
-  e = hn::Add(e, hn::Mul(recolored, hn::Add(hn::Min(one, deep), uneven)));
+  e = mul_add(hn::Mul(taken, hn::Set(d, 0.25f * tolerance)), hn::Mul(widths, widths), e);
+  e = mul_add(recolored, hn::Add(hn::Min(one, deep), uneven), e);
   // A deep pair shows the ends of a parabola of colours more than its middle: for weights exp(-depth x / 2) the mean of x^2 is
   // 1/3 + depth^2 / 90.
   const F ends = hn::Mul(hn::Min(hn::Mul(s.depth, s.depth), hn::Set(d, 16.0f)), hn::Set(d, 1.0f / 90));
-  e = hn::Add(e, hn::Mul(taken, hn::Mul(hn::Mul(hn::Abs(arch), hn::Set(d, 0.5f * colors.color_slope())), ends)));
-  s.error = hn::Add(e, hn::Mul(taken, hn::Mul(off, hn::Set(d, share_off * colors.color_slope()))));
+  e = mul_add(taken, hn::Mul(hn::Mul(hn::Abs(arch), hn::Set(d, 0.5f * colors.color_slope())), ends), e);
+  s.error = mul_add(taken, hn::Mul(off, hn::Set(d, share_off * colors.color_slope())), e);
   return s;
 }
 

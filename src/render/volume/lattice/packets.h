@@ -23,7 +23,7 @@ struct PacketPlan {
   const Projection& projection;
   Knobs knobs;
   std::vector<Lamp> lamps;  ///< of a shaded volume
-  Material material;        ///< power: 32
+  Material material;        ///< power: whole_power
   // Of the integral within a tolerance:
   const Medium* medium = nullptr;
   Budget budget;
@@ -35,6 +35,9 @@ struct PacketPlan {
   float* half = nullptr;
   Vec3 whole_lo, whole_hi;  ///< of all of them, in the q space of this one: steps are counted from where rays enter this box
 };
+
+/// Is the power of highlights one that packets multiply out?
+inline bool whole_power(const Material& m) { return m.power >= 0 && m.power <= 4096 && m.power == float(int(m.power)); }
 
 /// May this volume be drawn by `march_tile`: affine, linear between samples, a linear transfer table, no hidden cells, offsets
 /// of 32 bits? The others go by single rays (optics/cast.h).

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // Vector code that both kinds of packets share; included once per target, after highway.h. D is the tag of a packet: one lane per ray.
-// Only IEEE operations in a fixed order, none fused: the same bits for any number of lanes.
+// Only IEEE operations in a fixed order, fused where it
+// says so (the compiler fuses none): the same bits for any number of lanes.
 #if defined(SG_PACKETS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SG_PACKETS_INL_H
 #undef SG_PACKETS_INL_H
 #else
 #define SG_PACKETS_INL_H
 #endif
+
+#include "render/volume/lattice/fused_inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {
@@ -22,7 +25,7 @@ constexpr int lanes_of = int(hn::MaxLanes(D()));
 
 template <class D>
 HWY_INLINE hn::Vec<D> mixed(D, hn::Vec<D> a, hn::Vec<D> b, hn::Vec<D> f) {
-  return hn::Add(a, hn::Mul(f, hn::Sub(b, a)));
+  return mul_add(f, hn::Sub(b, a), a);
 }
 
 /// Truncated; |v| < 2^31 (hn::ConvertTo looks after larger ones in four more instructions).
@@ -35,6 +38,14 @@ HWY_INLINE Int<D> to_int(D, hn::Vec<D> v) {
   if constexpr (lanes_of<D> == 8) return Int<D>{_mm256_cvttps_epi32(v.raw)};
 #endif
   return hn::ConvertTo(IntTag<D>(), v);
+}
+
+/// 1 / sqrt(x) to a part in 500, x > 1e-38.
+template <class D>
+HWY_INLINE hn::Vec<D> about_one_by_sqrt(D d, hn::Vec<D> x) {
+  const IntTag<D> di;
+  const auto y = hn::BitCast(d, hn::Sub(hn::Set(di, 0x5F3759DF), hn::ShiftRight<1>(hn::BitCast(di, x))));
+  return hn::Mul(y, neg_mul_add(hn::Mul(hn::Set(d, 0.5f), x), hn::Mul(y, y), hn::Set(d, 1.5f)));
 }
 
 #if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
@@ -180,11 +191,11 @@ HWY_INLINE V3<DD> set3(DD d, Vec3 v) {
 }
 template <class DD>
 HWY_INLINE hn::Vec<DD> dot3(DD, const V3<DD>& a, const V3<DD>& b) {
-  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+  return mul_add(a.z, b.z, mul_add(a.y, b.y, hn::Mul(a.x, b.x)));
 }
 template <class DD>
 HWY_INLINE V3<DD> plus(DD, const V3<DD>& a, const V3<DD>& b, hn::Vec<DD> s) {
-  return {hn::Add(a.x, hn::Mul(b.x, s)), hn::Add(a.y, hn::Mul(b.y, s)), hn::Add(a.z, hn::Mul(b.z, s))};
+  return {mul_add(b.x, s, a.x), mul_add(b.y, s, a.y), mul_add(b.z, s, a.z)};
 }
 template <class DD>
 HWY_INLINE void store_narrow(DD, hn::Vec<DD> v, float* to) {
@@ -254,10 +265,10 @@ HWY_INLINE bool set_up(const PacketPlan& plan, int x, int y, int x1, int y1, con
     // A ray that misses has no steps; its places are of no account but finite.
     const V length = hn::IfThenElseZero(hit, hn::Sub(leave, enter)), step = hn::Set(d, v.step);
     V steps = hn::Floor(hn::Div(length, step));
-    V rest = hn::Max(zero, hn::Sub(length, hn::Mul(steps, step)));
+    V rest = hn::Max(zero, neg_mul_add(steps, step, length));
     const V half = hn::Set(d, 0.5);
     enter = hn::IfThenElseZero(hit, enter), leave = hn::IfThenElseZero(hit, leave);
-    V t_first = hn::Add(enter, hn::Mul(half, step)), t_last = hn::Sub(leave, hn::Mul(half, rest));
+    V t_first = mul_add(half, step, enter), t_last = neg_mul_add(half, rest, leave);
     if (plan.half) {
       // Steps of the whole whose middles lie in this part.
       first_enter = hn::IfThenElseZero(hit, first_enter), last_leave = hn::IfThenElseZero(hit, last_leave);
@@ -265,16 +276,16 @@ HWY_INLINE bool set_up(const PacketPlan& plan, int x, int y, int x1, int y1, con
       const auto number = [&](V t) HWY_ATTR { return hn::Min(count, hn::Ceil(hn::Sub(hn::Div(hn::Sub(t, first_enter), step), half))); };
       const V begin = number(enter);
       steps = hn::IfThenElseZero(hit, hn::Max(zero, hn::Sub(number(leave), begin)));
-      t_first = hn::Add(first_enter, hn::Mul(hn::Add(begin, half), step));
-      rest = hn::Max(zero, hn::Sub(all, hn::Mul(count, step)));
-      t_last = hn::Sub(last_leave, hn::Mul(half, rest));
+      t_first = mul_add(hn::Add(begin, half), step, first_enter);
+      rest = hn::Max(zero, neg_mul_add(count, step, all));
+      t_last = neg_mul_add(half, rest, last_leave);
       rest = hn::IfThenElseZero(hn::And(hit, hn::And(hn::Ge(t_last, enter), hn::Lt(t_last, leave))), rest);
     }
     for (int a = 0; a < 3; ++a) {
-      store_narrow(d, hn::Add(start[a], hn::Mul(along[a], t_first)), r.first[a] + n);
+      store_narrow(d, mul_add(along[a], t_first, start[a]), r.first[a] + n);
       store_narrow(d, hn::Mul(along[a], step), r.by[a] + n);
-      store_narrow(d, hn::Add(start[a], hn::Mul(along[a], t_last)), r.last[a] + n);
-      store_narrow(d, hn::Add(start[a], hn::Mul(along[a], enter)), r.entry[a] + n);
+      store_narrow(d, mul_add(along[a], t_last, start[a]), r.last[a] + n);
+      store_narrow(d, mul_add(along[a], enter, start[a]), r.entry[a] + n);
       store_narrow(d, along[a], r.along[a] + n);
     }
     store_narrow(d, direction.x, r.direction[0] + n), store_narrow(d, direction.y, r.direction[1] + n);

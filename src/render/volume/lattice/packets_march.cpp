@@ -55,7 +55,7 @@ struct Lanes {
     s = hn::Zero(d), end = hn::Load(d, r.steps);
   }
   HWY_INLINE hn::Vec<D> u(int a) const { return u(a, s); }
-  HWY_INLINE hn::Vec<D> u(int a, hn::Vec<D> sample) const { return hn::Add(first[a], hn::Mul(sample, by[a])); }
+  HWY_INLINE hn::Vec<D> u(int a, hn::Vec<D> sample) const { return mul_add(sample, by[a], first[a]); }
 };
 
 /// Takes the lanes that are `looking` to their next sample in a brick that draws something, or to their end.
@@ -82,8 +82,7 @@ HWY_INLINE void leap(const Source<D, T>& source, const Space<D>& space, Lanes<D>
     for (int a = 0; a < 3; ++a) {
       const auto forth = hn::Gt(lanes.by[a], zero);
       const auto side = hn::Add(brick[a], hn::IfThenElse(forth, reach, hn::Sub(one, reach)));
-      const auto at =
-          hn::Add(hn::Mul(side, hn::Set(d, float(FineBricks::edge))), hn::IfThenElse(forth, hn::Neg(space.margin), space.margin));
+      const auto at = mul_add(side, hn::Set(d, float(FineBricks::edge)), hn::IfThenElse(forth, hn::Neg(space.margin), space.margin));
       const auto there = hn::Mul(hn::Sub(at, lanes.first[a]), lanes.per_by[a]);
       // Beyond the outermost bricks there is nothing else.
       const auto open = hn::Or(hn::Or(hn::Le(side, zero), hn::Ge(side, space.edges[a])), hn::Eq(lanes.by[a], zero));
@@ -128,15 +127,15 @@ template <class D>
 HWY_INLINE hn::Vec<D> absorbed(D d, hn::Vec<D> x) {
   const IntTag<D> di;
   x = hn::Min(x, hn::Set(d, 80.0f));
-  const auto k = to_int(d, hn::Add(hn::Mul(x, hn::Set(d, 1.44269504f)), hn::Set(d, 0.5f)));
+  const auto k = to_int(d, mul_add(x, hn::Set(d, 1.44269504f), hn::Set(d, 0.5f)));
   const auto kf = hn::ConvertTo(d, k);
   // r = x - k ln 2 in two parts; e = 1 - exp(-r) by its series.
-  const auto r = hn::Sub(hn::Sub(x, hn::Mul(kf, hn::Set(d, 0.693145752f))), hn::Mul(kf, hn::Set(d, 1.42860677e-6f)));
+  const auto r = neg_mul_add(kf, hn::Set(d, 1.42860677e-6f), neg_mul_add(kf, hn::Set(d, 0.693145752f), x));
   auto e = hn::Set(d, 1.0f / 5040);
-  for (const float c : {-1.0f / 720, 1.0f / 120, -1.0f / 24, 1.0f / 6, -0.5f, 1.0f}) e = hn::Add(hn::Mul(e, r), hn::Set(d, c));
+  for (const float c : {-1.0f / 720, 1.0f / 120, -1.0f / 24, 1.0f / 6, -0.5f, 1.0f}) e = mul_add(e, r, hn::Set(d, c));
   e = hn::Mul(e, r);
   const auto power = hn::BitCast(d, hn::ShiftLeft<23>(hn::Sub(hn::Set(di, 127), k)));
-  return hn::Add(hn::Sub(hn::Set(d, 1.0f), power), hn::Mul(power, e));
+  return mul_add(power, e, hn::Sub(hn::Set(d, 1.0f), power));
 }
 
 /// What waits for its light: samples that follow each other are lit together, where the middle of what they take lies; but not samples
@@ -184,7 +183,7 @@ class March {
     inside_ = true;
     for (size_t a = 0; a < 3; ++a) {
       const F first = hn::IfThenElseZero(hn::Not(none), hn::Load(d, rays.first[a])), by = hn::Load(d, rays.by[a]);
-      const F last = hn::Add(first, hn::Mul(hn::Sub(steps, hn::Set(d, 1.0f)), by));
+      const F last = mul_add(hn::Sub(steps, hn::Set(d, 1.0f)), by, first);
       const F top = hn::Set(d, float(plan.volume.voxels.dims[a] - 1));
       const auto good = hn::And(hn::And(hn::Ge(first, zero), hn::Lt(first, top)), hn::And(hn::Ge(last, zero), hn::Lt(last, top)));
       inside_ = inside_ && hn::AllTrue(d, hn::Or(good, none));
@@ -245,7 +244,7 @@ class March {
           const auto turned = due.turns(values[k]);
           if (!hn::AllFalse(d, turned)) push(plan, due, turned);
           due.r = hn::Add(due.r, wr), due.g = hn::Add(due.g, wg), due.b = hn::Add(due.b, wb);
-          due.taken = hn::Add(due.taken, taken), due.moment = hn::Add(due.moment, hn::Mul(taken, s));
+          due.taken = hn::Add(due.taken, taken), due.moment = mul_add(taken, s, due.moment);
           if (k % 2 == 1 || !together) {
             const float enough = !together ? 0 : k + 1 < samples_per_look ? faint : faintest;
             const auto ready = hn::Gt(due.taken, hn::Set(d, enough));
@@ -425,7 +424,7 @@ bool in_packets(const PacketPlan& plan) {
   const Volume& v = plan.volume;
   const size_t bytes = v.voxels.array.bytes();
   const bool offsets_fit = bytes >= 4 && bytes < (size_t(1) << 31) && v.voxels.array.count() < (size_t(1) << 29);
-  return v.direct && offsets_fit && plan.lamps.size() <= PacketPlan::most_lamps && plan.material.power == 32;
+  return v.direct && offsets_fit && plan.lamps.size() <= PacketPlan::most_lamps && whole_power(plan.material);
 }
 
 void put(const PacketPlan& plan, const RayPacket& rays, const PacketResult& result, int lanes, Frame& frame) {

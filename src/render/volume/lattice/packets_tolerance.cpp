@@ -43,18 +43,16 @@ class TolerantPacket {
     for (int a = 0; a < 3; ++a) {
       still_[a] = hn::Eq(cells_.along[a], hn::Zero(d)), up_[a] = hn::Gt(cells_.along[a], hn::Zero(d));
       per_along_[a] = hn::IfThenElseZero(hn::Not(still_[a]), hn::Div(hn::Set(d, 1.0f), cells_.along[a]));
-      square = hn::Add(square, hn::Mul(cells_.along[a], cells_.along[a]));
+      square = mul_add(cells_.along[a], cells_.along[a], square);
     }
-    per_speed_ = hn::Div(hn::Set(d, 1.0f), hn::Max(hn::Sqrt(square), hn::Set(d, 1e-30f)));
+    speed_ = hn::Sqrt(square);
+    per_speed_ = hn::Div(hn::Set(d, 1.0f), hn::Max(speed_, hn::Set(d, 1e-30f)));
     end_ = hn::Load(d, rays.length), cells_.sum.pass = hn::Load(d, rays.before);
     reserve_ = hn::Set(d, share_at_first * float(plan.budget.tolerance));
     stride_ = hn::Set(d, 1.0f);
     if (plan.bends) here_ = sums_.at(hn::Zero(d));
     lit_ = hn::MaskFromVec(hn::Zero(d));
-    for (F* v : {&here_lit_.light.diffuse, &here_lit_.light.specular, &here_lit_.other.diffuse, &here_lit_.other.specular, &here_lit_.along,
-                 here_lit_.normal, here_lit_.normal + 1, here_lit_.normal + 2})
-      *v = hn::Zero(d);
-    here_lit_.sides = hn::Zero(IntTag<D>());
+    here_lit_ = LitPlace<D>::none();
   }
 
   HWY_INLINE void run(PacketResult& result) {
@@ -66,10 +64,11 @@ class TolerantPacket {
     const auto& bricks = v_.fine().dims;
     const I row = hn::Set(di, int(bricks[0])), layer = hn::Set(di, int(bricks[0] * bricks[1]));
     const bool skip = plan_.knobs.skip_empty && v_.any_empty;
-    // Cells -1 and n-1 are the halves beyond the outermost samples.
+    // Cells -1 and n-1 are the halves beyond the outermost samples; where a lane has strode, the nearest cells inside.
     F t = hn::Zero(d);
     I cell[3];
     for (int a = 0; a < 3; ++a) cell[a] = cell_at(a, t);
+    M strode = hn::MaskFromVec(hn::Zero(d));
     M known = hn::MaskFromVec(hn::Zero(d));  // the lanes for which here_ is the place t
     for (;;) {
       const M on = hn::And(hn::Lt(t, end_), hn::Ge(cells_.sum.pass, stop));
@@ -92,13 +91,13 @@ class TolerantPacket {
       if (!hn::AllFalse(d, striding)) {
         const M fresh = hn::AndNot(known, striding);
         if (!hn::AllFalse(d, fresh)) renew(t, fresh), known = hn::Or(known, fresh);
-        const F to = stride_on(t, code, striding);
         // A lane that was refused stays in its cell, which rounding may tell otherwise.
-        const M moved = hn::And(striding, hn::Gt(to, t));
-        t = hn::IfThenElse(moved, to, t);
-        for (int a = 0; a < 3; ++a) cell[a] = hn::IfThenElse(hn::RebindMask(di, moved), cell_at(a, t), cell[a]);
+        strode = hn::Or(strode, stride_on(t, cell, code, striding));
       }
       if (!hn::AllFalse(d, walking)) {
+        const auto unsure = hn::RebindMask(di, hn::And(walking, strode));
+        for (int a = 0; a < 3; ++a) cell[a] = hn::IfThenElse(unsure, cell_at(a, t), cell[a]);
+        strode = hn::AndNot(walking, strode);
         walk(brick, free, inside, leaping, crossing, cell, t);
         known = hn::AndNot(walking, known), lit_ = hn::AndNot(walking, lit_);
         stride_ = hn::IfThenElse(crossing, hn::Max(stride_, hn::Set(d, 2 * shortest_stride)), stride_);
@@ -111,14 +110,18 @@ class TolerantPacket {
   HWY_INLINE I cell_at(int a, F t) const {
     const D d;
     const IntTag<D> di;
-    const F u = hn::Add(cells_.start[a], hn::Mul(cells_.along[a], t));
+    const F u = mul_add(cells_.along[a], t, cells_.start[a]);
     return hn::Min(hn::Max(to_int(d, hn::Floor(u)), hn::Set(di, -1)), hn::Add(cells_.source.last_cell[a], hn::Set(di, 1)));
   }
 
+  HWY_INLINE void places_at(F t, Place<D> p[3]) const {
+    for (int a = 0; a < 3; ++a) p[a] = cells_.source.place(a, mul_add(cells_.along[a], t, cells_.start[a]));
+  }
+  HWY_INLINE F value_at(const Place<D> p[3]) const { return cells_.source.value(p[0], p[1], p[2]); }
   HWY_INLINE F value_at(F t) const {
-    const auto u = [&](int a) HWY_ATTR { return hn::Add(cells_.start[a], hn::Mul(cells_.along[a], t)); };
-    const Source<D, T>& s = cells_.source;
-    return s.value(s.place(0, u(0)), s.place(1, u(1)), s.place(2, u(2)));
+    Place<D> p[3];
+    places_at(t, p);
+    return value_at(p);
   }
 
   /// The samples there will be wanted.
@@ -126,10 +129,12 @@ class TolerantPacket {
     if constexpr (lanes_of<D> >= 8) {
       const Source<D, T>& s = cells_.source;
       alignas(64) int32_t corner[most_lanes];
-      I at[3];
-      for (int a = 0; a < 3; ++a) at[a] = hn::Min(hn::Max(cell_at(a, t), hn::Zero(IntTag<D>())), s.last_cell[a]);
-      hn::Store(s.offset(at[0], at[1], at[2]), IntTag<D>(), corner);
-      for (int n = 0; n < lanes_of<D>; ++n) __builtin_prefetch(s.data + corner[n], 0, 2);
+      Place<D> p[3];
+      places_at(t, p);
+      hn::Store(s.offset(p[0].cell, p[1].cell, p[2].cell), IntTag<D>(), corner);
+      // The rays at the corners of the packet stand for the others.
+      for (const int n : {0, packet_width<D> - 1, lanes_of<D> - packet_width<D>, lanes_of<D> - 1})
+        __builtin_prefetch(s.data + corner[n], 0, 2);
     }
   }
 
@@ -143,25 +148,27 @@ class TolerantPacket {
     here_.node = hn::IfThenElse(whole, p.node, here_.node), here_.sum = hn::IfThenElse(whole, p.sum, here_.sum);
   }
 
-  /// Two strides from t on, as far as their errors are allowed. Returns how far they came.
-  HWY_INLINE F stride_on(F t, I code, M striding) {
+  /// Two strides from t on, if their errors are allowed. Returns which lanes have moved, to which cell.
+  HWY_INLINE M stride_on(F& t, I cell[3], I code, M striding) {
     const D d;
     const IntTag<D> di;
     const F half = hn::Set(d, 0.5f);
     const F bend =
         hn::Mul(hn::BitCast(d, hn::Add(hn::ShiftLeft<21>(code), hn::Set(di, (127 + Bends::least) << 23))), hn::Set(d, plan_.bends->range));
     const F world = hn::Min(hn::Mul(stride_, per_speed_), hn::Mul(half, hn::Sub(end_, t)));
-    const F cells = hn::Div(world, per_speed_);
+    const F cells = hn::Mul(world, speed_);
     const M ends = hn::Le(hn::Sub(end_, t), hn::Mul(hn::Set(d, 2.0f), hn::Mul(stride_, per_speed_)));
     const F t1 = hn::Add(t, world), t2 = hn::IfThenElse(ends, end_, hn::Add(t1, world));
-    const auto p1 = sums_.at(value_at(t1)), p2 = sums_.at(value_at(t2));
+    Place<D> there[3];
+    places_at(t2, there);
+    const auto p1 = sums_.at(value_at(t1)), p2 = sums_.at(value_at(there));
     const Strides<D> s = strides(sums_, *plan_.medium, float(plan_.budget.tolerance), here_, p1, p2, world, cells, bend);
     const F zero = hn::Zero(d), one = hn::Set(d, 1.0f), tolerance = hn::Set(d, float(plan_.budget.tolerance));
     const F pass = cells_.sum.pass, taken = hn::Mul(pass, hn::Min(one, s.depth));
     F error = hn::Mul(pass, s.error);
-    const F own = hn::Mul(tolerance, hn::Add(hn::Mul(taken, hn::Set(d, share_of_light)),
-                                             hn::Mul(world, hn::Set(d, float(2 * share_of_length / plan_.budget.length)))));
-    const F allowed = hn::Add(own, hn::Mul(reserve_, hn::Set(d, share_at_once)));
+    const F own = hn::Mul(tolerance, mul_add(world, hn::Set(d, float(2 * share_of_length / plan_.budget.length)),
+                                             hn::Mul(taken, hn::Set(d, share_of_light))));
+    const F allowed = mul_add(reserve_, hn::Set(d, share_at_once), own);
     const M seen = hn::And(hn::And(striding, hn::Le(error, allowed)), hn::Gt(s.depth, zero));
     const bool any_seen = !hn::AllFalse(d, seen);
     LitPlace<D> lit2;
@@ -169,17 +176,17 @@ class TolerantPacket {
     if constexpr (shaded)
       if (any_seen) {
         lit2 = light_ends(t, t2, seen);
-        light = StrideLight<D>::straight(plan_.material, here_lit_, lit2);
+        light = StrideLight<D>::straight(cells_.lighting, here_lit_, lit2);
         const auto over = hn::Eq(hn::Xor(here_lit_.sides, lit2.sides), cells_.lighting.turned_over());
         const M turned = hn::And(seen, hn::RebindMask(d, over));
         if (!hn::AllFalse(d, turned)) {
           const F tau[3] = {here_.tau, p1.tau, p2.tau};
-          light.take(StrideLight<D>::turned_over(plan_.material, here_lit_, lit2, tau, s.depth), turned);
+          light.take(StrideLight<D>::turned_over(cells_.lighting, here_lit_, lit2, tau, s.depth), turned);
         }
         // The middle only where the ends do not do.
-        const M rough = hn::AndNot(turned, hn::And(seen, hn::Gt(hn::Add(error, hn::Mul(taken, light.error)), allowed)));
+        const M rough = hn::AndNot(turned, hn::And(seen, hn::Gt(mul_add(taken, light.error, error), allowed)));
         if (!hn::AllFalse(d, rough))
-          light.take(StrideLight<D>::curved(plan_.material, here_lit_, lit_at(cells_.lighting, t1), lit2), rough);
+          light.take(StrideLight<D>::curved(cells_.lighting, here_lit_, lit_at(cells_.lighting, t1), lit2), rough);
         error = hn::Add(error, hn::IfThenElseZero(seen, hn::Mul(taken, light.error)));
       }
     const M good = hn::And(striding, hn::Le(error, allowed));
@@ -190,32 +197,35 @@ class TolerantPacket {
       cells_.segment(drawn, t, hn::Add(world, world), s.depth, here_.value, p2.value, s.value, hn::Mul(half, hn::Add(one, s.middle)),
                      [&](F at, F share, F& red, F& green, F& blue) HWY_ATTR {
                        if constexpr (shaded) {
-                         const F x = hn::Div(hn::Sub(at, t1), hn::Max(world, hn::Set(d, 1e-30f)));
+                         const F x = hn::Sub(hn::Add(at, at), one);
                          const F factor = light.diffuse.mean(x, s.variance), flash = hn::Mul(light.specular.mean(x, s.variance), share);
-                         for (F* c : {&red, &green, &blue}) *c = hn::Add(hn::Mul(*c, factor), flash);
+                         for (F* c : {&red, &green, &blue}) *c = mul_add(*c, factor, flash);
                        }
                      });
       if constexpr (shaded) here_lit_.take(lit2, drawn);
     }
     if constexpr (shaded) lit_ = hn::Or(hn::AndNot(good, lit_), hn::And(seen, good));
     take(p2, good);
-    ask_for(hn::Min(hn::Add(t1, hn::Mul(per_speed_, hn::Set(d, cells_asked_ahead))), end_));
-    const F next_error = hn::IfThenElse(good, hn::Add(error, hn::Mul(pass, s.ahead)), error);
-    F ratio = hn::Div(allowed, hn::Max(next_error, hn::Set(d, 1e-30f)));
-    ratio = hn::IfThenElseZero(hn::Eq(error, error), ratio);
-    const F factor = hn::Mul(hn::Set(d, 0.7f), hn::Sqrt(ratio));
+    ask_for(hn::Min(mul_add(per_speed_, hn::Set(d, cells_asked_ahead), t1), end_));
+    const F next_error = hn::IfThenElse(good, mul_add(pass, s.ahead, error), error);
+    // 0.7 sqrt(allowed / error)
+    const F product = hn::Max(hn::Mul(allowed, next_error), hn::Set(d, 1e-36f));
+    const F factor = hn::IfThenElseZero(hn::Eq(error, error), hn::Mul(hn::Mul(hn::Set(d, 0.7f), allowed), about_one_by_sqrt(d, product)));
     const F longer = hn::Max(hn::Set(d, 0.5f), hn::Min(factor, hn::Set(d, 3.0f)));
     const F shorter = hn::Max(hn::Set(d, 0.1f), hn::Min(factor, hn::Set(d, 0.7f)));
     F next = hn::Min(hn::Mul(stride_, hn::IfThenElse(good, longer, shorter)), hn::Set(d, longest_stride));
     // Cells are crossed where strides of about the shortest were refused.
     next = hn::IfThenElse(hn::Lt(stride_, hn::Set(d, 2 * shortest_stride)), next, hn::Max(next, hn::Set(d, shortest_stride)));
     stride_ = hn::IfThenElse(striding, next, stride_);
-    return hn::IfThenElse(good, t2, t);
+    const M moved = hn::And(good, hn::Gt(t2, t));
+    t = hn::IfThenElse(moved, t2, t);
+    for (int a = 0; a < 3; ++a) cell[a] = hn::IfThenElse(hn::RebindMask(di, moved), there[a].cell, cell[a]);
+    return moved;
   }
 
   HWY_INLINE LitPlace<D> lit_at(const Lighting<D>& lighting, F t) const {
     F u[3];
-    for (int a = 0; a < 3; ++a) u[a] = hn::Add(cells_.start[a], hn::Mul(cells_.along[a], t));
+    for (int a = 0; a < 3; ++a) u[a] = mul_add(cells_.along[a], t, cells_.start[a]);
     return LitPlace<D>::at(lighting, cells_.source, u);
   }
 
@@ -243,8 +253,8 @@ class TolerantPacket {
     const auto indices = hn::IndicesFromVec(d, order);
     F u[3];
     for (int a = 0; a < 3; ++a) {
-      const F first = hn::TableLookupLanes(hn::Add(cells_.start[a], hn::Mul(cells_.along[a], t)), indices);
-      u[a] = hn::IfThenElse(seen, hn::Add(cells_.start[a], hn::Mul(cells_.along[a], t2)), first);
+      const F first = hn::TableLookupLanes(mul_add(cells_.along[a], t, cells_.start[a]), indices);
+      u[a] = hn::IfThenElse(seen, mul_add(cells_.along[a], t2, cells_.start[a]), first);
     }
     const LitPlace<D> found = LitPlace<D>::at(cells_.lighting.permuted(order), cells_.source, u);
     here_lit_.take(found.permuted(hn::Load(di, to)), dark);
@@ -280,7 +290,7 @@ class TolerantPacket {
       I next = cell[a];
       if (!hn::AllFalse(d, leaping)) {
         // Inside the cube along the other axes, and never back.
-        const I here = to_int(d, hn::Floor(hn::Add(cells_.start[a], hn::Mul(cells_.along[a], leave))));
+        const I here = to_int(d, hn::Floor(mul_add(cells_.along[a], leave, cells_.start[a])));
         const I forth = hn::IfThenElse(up, hn::Max(cell[a], hn::Min(here, hn::Sub(beyond, one))),
                                        hn::Min(cell[a], hn::Max(here, hn::Add(beyond, one))));
         const auto open = hn::Ge(at[a], hn::Set(d, HUGE_VALF));
@@ -307,7 +317,7 @@ class TolerantPacket {
   PacketCells<D, T, shaded> cells_;
   const SumLanes<D> sums_;
   const RayPacket& rays_;
-  F per_along_[3], per_speed_, end_;
+  F per_along_[3], speed_, per_speed_, end_;  // speed: in cell lengths per world length
   M still_[3], up_[3];
   F stride_, reserve_;
   typename SumLanes<D>::Place here_;
@@ -363,9 +373,7 @@ bool in_tolerant_packets(const PacketPlan& plan) {
   const Volume& v = plan.volume;
   const size_t bytes = v.voxels.array.bytes();
   const bool offsets_fit = bytes >= 4 && bytes < (size_t(1) << 31) && v.voxels.array.count() < (size_t(1) << 29);
-  const float power = plan.material.power;
-  return v.direct && plan.medium->linear() && offsets_fit && plan.lamps.size() <= PacketPlan::most_lamps && power == std::floor(power) &&
-         power >= 0 && power <= 4096;
+  return v.direct && plan.medium->linear() && offsets_fit && plan.lamps.size() <= PacketPlan::most_lamps && whole_power(plan.material);
 }
 
 void cast_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {

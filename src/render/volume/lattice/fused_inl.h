@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Products and sums rounded once. Where a machine has no such instruction the C library computes the same bits, slowly.
+#if defined(SG_FUSED_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SG_FUSED_INL_H
+#undef SG_FUSED_INL_H
+#else
+#define SG_FUSED_INL_H
+#endif
+
+#include <cmath>
+
+HWY_BEFORE_NAMESPACE();
+namespace sg::volume::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+#if (HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2) || HWY_ARCH_ARM_A64
+/// a b + c
+template <class V>
+HWY_INLINE V mul_add(V a, V b, V c) {
+  return hn::MulAdd(a, b, c);
+}
+/// c - a b
+template <class V>
+HWY_INLINE V neg_mul_add(V a, V b, V c) {
+  return hn::NegMulAdd(a, b, c);
+}
+/// a b - c
+template <class V>
+HWY_INLINE V mul_sub(V a, V b, V c) {
+  return hn::MulSub(a, b, c);
+}
+#else
+template <class V>
+HWY_INLINE V mul_add(V a, V b, V c) {
+  const hn::DFromV<V> d;
+  using T = hn::TFromV<V>;
+  HWY_ALIGN T x[hn::MaxLanes(d)], y[hn::MaxLanes(d)], z[hn::MaxLanes(d)];
+  hn::Store(a, d, x), hn::Store(b, d, y), hn::Store(c, d, z);
+  for (size_t n = 0; n < hn::Lanes(d); ++n) z[n] = std::fma(x[n], y[n], z[n]);
+  return hn::Load(d, z);
+}
+template <class V>
+HWY_INLINE V neg_mul_add(V a, V b, V c) {
+  return mul_add(hn::Neg(a), b, c);
+}
+template <class V>
+HWY_INLINE V mul_sub(V a, V b, V c) {
+  return mul_add(a, b, hn::Neg(c));
+}
+#endif
+
+}  // namespace sg::volume::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif
