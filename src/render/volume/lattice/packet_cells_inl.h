@@ -83,9 +83,12 @@ class PacketCells {
     line_ = medium.line(at_);
   }
 
-  /// What a change of the value by `range` may have of itself hidden by its front, in a fifth of the tolerance.
-  HWY_INLINE void may_hide(F range) {
-    most_hidden_ = hn::Mul(range, hn::Set(D(), medium.medium.color_slope() / (0.2f * float(plan.budget.tolerance))));
+  /// What a change of the value by `range` and of its light by `lightening` may have of itself hidden by its front, in a fifth of the
+  /// tolerance.
+  HWY_INLINE void may_hide(F range, F lightening) {
+    const D d;
+    const F change = mul_add(range, hn::Set(d, medium.medium.color_slope()), lightening);
+    most_hidden_ = hn::Mul(change, hn::Set(d, 1 / (0.2f * float(plan.budget.tolerance))));
   }
 
   /// One cell per lane: its cubic, and what the medium makes of it.
@@ -167,7 +170,7 @@ class PacketCells {
       target = hn::IfThenElse(hn::Eq(count, one), f.last, f.at(per_count));
     }
     const F stop = hn::Set(d, plan.budget.stop_below);
-    may_hide(range);
+    may_hide(range, shaded ? one : zero);
 
     // Pieces, cut where the value meets the knots.
     F k = zero, v = f.a, s = zero;
@@ -230,7 +233,7 @@ class PacketCells {
     auto color = medium.color(middle);
     F r = hn::Mul(color.r, alpha), g = hn::Mul(color.g, alpha), bl = hn::Mul(color.b, alpha);
     M deep = hn::And(drawn, hn::Gt(depth, hn::Set(d, 0.1f)));
-    if constexpr (!shaded) deep = hn::And(deep, hn::Gt(hn::Mul(hn::Min(depth, hn::Set(d, 6.0f)), most_hidden_), hn::Set(d, 12.0f)));
+    deep = hn::And(deep, hn::Gt(hn::Mul(hn::Min(depth, hn::Set(d, 6.0f)), most_hidden_), hn::Set(d, 12.0f)));
     if (!hn::AllFalse(d, deep)) {
       F hidden = hn::Add(mul_sub(half, alpha, hn::Div(alpha, hn::Max(depth, hn::Set(d, 0.05f)))), pass);
       const F series = hn::Mul(hn::Mul(depth, depth),

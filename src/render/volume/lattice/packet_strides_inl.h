@@ -77,8 +77,9 @@ struct SumLanes {
   }
 };
 
-/// Of what a stride's value may be off, the share that counts (docs/decisions/0007-strides.md).
-constexpr float share_off = 0.02f;
+/// Of what a stride's value may be off, the share that counts (docs/decisions/0007-strides.md). Longer strides would tell too little of how
+/// a lit surface turns.
+constexpr float share_off = 0.014f, share_off_lit = 0.02f;
 
 /// What two strides of the same length, one after the other, would bring and get wrong. Places are told from the middle between them on,
 /// in strides.
@@ -94,7 +95,7 @@ struct Strides {
 
 /// From p0 by p1 to p2, each stride `world` long; the slope of the value changes by at most `bend` per cell length, of which a stride has
 /// `cells`.
-template <class D>
+template <bool shaded, class D>
 HWY_INLINE Strides<D> strides(const SumLanes<D>& medium, const Medium& colors, float tolerance, const typename SumLanes<D>::Place& p0,
                               const typename SumLanes<D>::Place& p1, const typename SumLanes<D>::Place& p2, hn::Vec<D> world,
                               hn::Vec<D> cells, hn::Vec<D> bend) {
@@ -108,6 +109,7 @@ HWY_INLINE Strides<D> strides(const SumLanes<D>& medium, const Medium& colors, f
   const F mean_a = medium.mean(p0, p1, even_a), mean_b = medium.mean(p1, p2, even_b);
   const F lo = hn::Min(p0.value, hn::Min(p1.value, p2.value)), hi = hn::Max(p0.value, hn::Max(p1.value, p2.value)),
           change = hn::Sub(hi, lo);
+  constexpr float share = shaded ? share_off_lit : share_off;
   const F off = hn::Mul(bend, hn::Mul(cells, cells));  // a fourth of it at most, an eighth in the mean
   const auto pad = medium.nodes_over(hn::Mul(hn::Set(d, 0.25f), off));
   const F steep_a = medium.steepest(p0, p1, pad), steep_b = medium.steepest(p1, p2, pad);
@@ -142,7 +144,7 @@ HWY_INLINE Strides<D> strides(const SumLanes<D>& medium, const Medium& colors, f
       hn::Mul(hn::Mul(hn::Mul(twice, twice), hn::Mul(hn::Max(hn::Max(p0.tau, p2.tau), hn::Mul(half, sum)), hn::Max(steep_a, steep_b))),
               hn::Mul(change, hn::Set(d, 0.05f)));
   const F uneven = hn::Mul(hn::Mul(hn::Set(d, 0.5f), world), hn::Add(hn::Abs(hn::Sub(mean_a, even_a)), hn::Abs(hn::Sub(mean_b, even_b))));
-  const F per_steep = hn::Mul(world, hn::Mul(off, hn::Set(d, share_off)));
+  const F per_steep = hn::Mul(world, hn::Mul(off, hn::Set(d, share)));
   F e = hn::Mul(per_steep, hn::Add(steep_a, steep_b));
   s.ahead = hn::Mul(per_steep, hn::Sub(steep_b, steep_a));
   e = mul_add(hn::Mul(taken, hn::Set(d, 0.25f * tolerance)), hn::Mul(widths, widths), e);
@@ -151,7 +153,7 @@ HWY_INLINE Strides<D> strides(const SumLanes<D>& medium, const Medium& colors, f
   // 1/3 + depth^2 / 90.
   const F ends = hn::Mul(hn::Min(hn::Mul(s.depth, s.depth), hn::Set(d, 16.0f)), hn::Set(d, 1.0f / 90));
   e = mul_add(taken, hn::Mul(hn::Mul(hn::Abs(arch), hn::Set(d, 0.5f * colors.color_slope())), ends), e);
-  s.error = mul_add(taken, hn::Mul(off, hn::Set(d, share_off * colors.color_slope())), e);
+  s.error = mul_add(taken, hn::Mul(off, hn::Set(d, share * colors.color_slope())), e);
   return s;
 }
 

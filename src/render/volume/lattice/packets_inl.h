@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Vector code that both kinds of packets share; included once per target, after highway.h. D is the tag of a packet: one lane per ray.
-// Only IEEE operations in a fixed order, fused where it
-// says so (the compiler fuses none): the same bits for any number of lanes.
+// Only IEEE operations in a fixed order, fused where it says so (the compiler fuses none): the same bits for any number of lanes.
 #if defined(SG_PACKETS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SG_PACKETS_INL_H
 #undef SG_PACKETS_INL_H

@@ -21,8 +21,6 @@ namespace sg::volume::HWY_NAMESPACE {
 /// Strides in cell lengths: none is longer than half a brick (two go at once, and Bends look a brick around); where they would have to
 /// be shorter than the second, cells are crossed instead.
 constexpr float longest_stride = 2, shortest_stride = 1.0f / 8;
-/// So far ahead samples are asked for.
-constexpr float cells_asked_ahead = 12;
 /// Shares of the tolerance: to start with, over the whole length, and over all light that is taken. The rest is for the end of the ray,
 /// the tables, and the cells that are crossed.
 constexpr float share_at_first = 0.2f, share_of_length = 0.2f, share_of_light = 0.5f;
@@ -58,48 +56,40 @@ class TolerantPacket {
   HWY_INLINE void run(PacketResult& result) {
     const D d;
     const IntTag<D> di;
-    const I zero = hn::Zero(di);
     const F stop = hn::Set(d, plan_.budget.stop_below);
-    const Source<D, T>& source = cells_.source;
-    const auto& bricks = v_.fine().dims;
-    const I row = hn::Set(di, int(bricks[0])), layer = hn::Set(di, int(bricks[0] * bricks[1]));
-    const bool skip = plan_.knobs.skip_empty && v_.any_empty;
     // Cells -1 and n-1 are the halves beyond the outermost samples; where a lane has strode, the nearest cells inside.
     F t = hn::Zero(d);
     I cell[3];
     for (int a = 0; a < 3; ++a) cell[a] = cell_at(a, t);
     M strode = hn::MaskFromVec(hn::Zero(d));
     M known = hn::MaskFromVec(hn::Zero(d));  // the lanes for which here_ is the place t
-    for (;;) {
-      const M on = hn::And(hn::Lt(t, end_), hn::Ge(cells_.sum.pass, stop));
-      if (hn::AllFalse(d, on)) break;
-      I inside[3], brick[3];
-      for (int a = 0; a < 3; ++a) {
-        inside[a] = hn::Min(hn::Max(cell[a], zero), source.last_cell[a]);
-        brick[a] = hn::ShiftRight<FineBricks::shift>(inside[a]);
+    const auto on = [&]() HWY_ATTR { return hn::And(hn::Lt(t, end_), hn::Ge(cells_.sum.pass, stop)); };
+    const auto find_cells = [&](M which) HWY_ATTR {
+      const auto unsure = hn::RebindMask(di, hn::And(which, strode));
+      for (int a = 0; a < 3; ++a) cell[a] = hn::IfThenElse(unsure, cell_at(a, t), cell[a]);
+      strode = hn::AndNot(which, strode), known = hn::AndNot(which, known), lit_ = hn::AndNot(which, lit_);
+    };
+    for (M going = on(); !hn::AllFalse(d, going); going = on()) {
+      Bricks here = bricks(cell);
+      const M leaping = hn::And(going, here.empty());
+      if (!hn::AllFalse(d, leaping)) {
+        find_cells(leaping);
+        leap(here, leaping, cell, t);
+        // They stride at once, but not where light would have to be looked up for them: in the next turn other lanes can help.
+        if constexpr (shaded) going = hn::AndNot(leaping, going);
+        else going = on(), here = bricks(cell), going = hn::AndNot(here.empty(), going);
       }
-      const I id = hn::Add(brick[0], hn::Add(hn::Mul(brick[1], row), hn::Mul(brick[2], layer)));
-      I free = zero;
-      if (skip) free = hn::And(gather_words(d, v_.distance.data(), id), hn::Set(di, 255));
-      const I codes = plan_.bends ? gather_words(d, plan_.bends->codes.data(), id) : hn::Set(di, int(Bends::unbounded));
-      const I code = hn::And(codes, hn::Set(di, 255));
-      const M leaping = hn::And(on, hn::RebindMask(d, hn::Gt(free, zero)));
-      const M cellwise =
-          hn::Or(hn::Lt(stride_, hn::Set(d, shortest_stride)), hn::RebindMask(d, hn::Eq(code, hn::Set(di, int(Bends::unbounded)))));
-      const M crossing = hn::And(hn::AndNot(leaping, on), cellwise);
-      const M walking = hn::Or(leaping, crossing), striding = hn::AndNot(walking, on);
+      const M cellwise = hn::Or(hn::Lt(stride_, hn::Set(d, shortest_stride)), here.bent());
+      const M crossing = hn::And(going, cellwise), striding = hn::AndNot(cellwise, going);
       if (!hn::AllFalse(d, striding)) {
         const M fresh = hn::AndNot(known, striding);
         if (!hn::AllFalse(d, fresh)) renew(t, fresh), known = hn::Or(known, fresh);
         // A lane that was refused stays in its cell, which rounding may tell otherwise.
-        strode = hn::Or(strode, stride_on(t, cell, code, striding));
+        strode = hn::Or(strode, stride_on(t, cell, here.bend, striding));
       }
-      if (!hn::AllFalse(d, walking)) {
-        const auto unsure = hn::RebindMask(di, hn::And(walking, strode));
-        for (int a = 0; a < 3; ++a) cell[a] = hn::IfThenElse(unsure, cell_at(a, t), cell[a]);
-        strode = hn::AndNot(walking, strode);
-        walk(brick, free, inside, leaping, crossing, cell, t);
-        known = hn::AndNot(walking, known), lit_ = hn::AndNot(walking, lit_);
+      if (!hn::AllFalse(d, crossing)) {
+        find_cells(crossing);
+        cross(crossing, cell, t);
         stride_ = hn::IfThenElse(crossing, hn::Max(stride_, hn::Set(d, 2 * shortest_stride)), stride_);
       }
     }
@@ -107,6 +97,28 @@ class TolerantPacket {
   }
 
  private:
+  /// What is known of the bricks that the lanes are in.
+  struct Bricks {
+    I at[3];
+    I free;  ///< so many bricks around draw nothing
+    I bend;  ///< Bends' code
+    HWY_INLINE M empty() const { return hn::RebindMask(D(), hn::Gt(free, hn::Zero(IntTag<D>()))); }
+    HWY_INLINE M bent() const { return hn::RebindMask(D(), hn::Eq(bend, hn::Set(IntTag<D>(), int(Bends::unbounded)))); }
+  };
+  HWY_INLINE Bricks bricks(const I cell[3]) const {
+    const D d;
+    const IntTag<D> di;
+    const I zero = hn::Zero(di), byte = hn::Set(di, 255);
+    Bricks b;
+    for (int a = 0; a < 3; ++a) b.at[a] = hn::ShiftRight<FineBricks::shift>(hn::Min(hn::Max(cell[a], zero), cells_.source.last_cell[a]));
+    const auto& dims = v_.fine().dims;
+    const I row = hn::Set(di, int(dims[0])), layer = hn::Set(di, int(dims[0] * dims[1]));
+    const I id = hn::Add(b.at[0], hn::Add(hn::Mul(b.at[1], row), hn::Mul(b.at[2], layer)));
+    b.free = plan_.knobs.skip_empty && v_.any_empty ? hn::And(gather_words(d, v_.distance.data(), id), byte) : zero;
+    b.bend = plan_.bends ? hn::And(gather_words(d, plan_.bends->codes.data(), id), byte) : hn::Set(di, int(Bends::unbounded));
+    return b;
+  }
+
   HWY_INLINE I cell_at(int a, F t) const {
     const D d;
     const IntTag<D> di;
@@ -122,20 +134,6 @@ class TolerantPacket {
     Place<D> p[3];
     places_at(t, p);
     return value_at(p);
-  }
-
-  /// The samples there will be wanted.
-  HWY_INLINE void ask_for(F t) const {
-    if constexpr (lanes_of<D> >= 8) {
-      const Source<D, T>& s = cells_.source;
-      alignas(64) int32_t corner[most_lanes];
-      Place<D> p[3];
-      places_at(t, p);
-      hn::Store(s.offset(p[0].cell, p[1].cell, p[2].cell), IntTag<D>(), corner);
-      // The rays at the corners of the packet stand for the others.
-      for (const int n : {0, packet_width<D> - 1, lanes_of<D> - packet_width<D>, lanes_of<D> - 1})
-        __builtin_prefetch(s.data + corner[n], 0, 2);
-    }
   }
 
   HWY_INLINE void renew(F t, M which) { take(sums_.at(value_at(t)), which); }
@@ -162,7 +160,7 @@ class TolerantPacket {
     Place<D> there[3];
     places_at(t2, there);
     const auto p1 = sums_.at(value_at(t1)), p2 = sums_.at(value_at(there));
-    const Strides<D> s = strides(sums_, *plan_.medium, float(plan_.budget.tolerance), here_, p1, p2, world, cells, bend);
+    const Strides<D> s = strides<shaded>(sums_, *plan_.medium, float(plan_.budget.tolerance), here_, p1, p2, world, cells, bend);
     const F zero = hn::Zero(d), one = hn::Set(d, 1.0f), tolerance = hn::Set(d, float(plan_.budget.tolerance));
     const F pass = cells_.sum.pass, taken = hn::Mul(pass, hn::Min(one, s.depth));
     F error = hn::Mul(pass, s.error);
@@ -193,7 +191,9 @@ class TolerantPacket {
     reserve_ = hn::IfThenElse(good, hn::Sub(hn::Add(reserve_, own), error), reserve_);
     if (any_seen) {
       const M drawn = hn::And(seen, good);
-      cells_.may_hide(s.change);
+      F lightening = zero;
+      if constexpr (shaded) lightening = hn::Mul(hn::Set(d, 2.0f), hn::Add(hn::Abs(light.diffuse.b), hn::Abs(light.specular.b)));
+      cells_.may_hide(s.change, lightening);
       cells_.segment(drawn, t, hn::Add(world, world), s.depth, here_.value, p2.value, s.value, hn::Mul(half, hn::Add(one, s.middle)),
                      [&](F at, F share, F& red, F& green, F& blue) HWY_ATTR {
                        if constexpr (shaded) {
@@ -206,7 +206,6 @@ class TolerantPacket {
     }
     if constexpr (shaded) lit_ = hn::Or(hn::AndNot(good, lit_), hn::And(seen, good));
     take(p2, good);
-    ask_for(hn::Min(mul_add(per_speed_, hn::Set(d, cells_asked_ahead), t1), end_));
     const F next_error = hn::IfThenElse(good, mul_add(pass, s.ahead, error), error);
     // 0.7 sqrt(allowed / error)
     const F product = hn::Max(hn::Mul(allowed, next_error), hn::Set(d, 1e-36f));
@@ -261,46 +260,61 @@ class TolerantPacket {
     return found;
   }
 
-  /// Takes lanes out of their cell (crossing it), or out of the cube of bricks nearer than what is drawn (leaping).
-  HWY_INLINE void walk(const I brick[3], I free, const I inside[3], M leaping, M crossing, I cell[3], F& t) {
+  /// Takes lanes out of the cube of bricks nearer than what is drawn.
+  HWY_INLINE void leap(const Bricks& from, M leaping, I cell[3], F& t) const {
     const D d;
     const IntTag<D> di;
     const I one = hn::Set(di, 1), zero = hn::Zero(di);
-    const auto leaps = hn::RebindMask(di, leaping);
     const I* last_cell = cells_.source.last_cell;
     F leave = end_, at[3];
     I side[3];
+    hn::Mask<IntTag<D>> open[3];
+    for (int a = 0; a < 3; ++a) {
+      const I reach = hn::IfThenElse(hn::RebindMask(di, up_[a]), from.free, hn::Sub(one, from.free));
+      side[a] = hn::ShiftLeft<FineBricks::shift>(hn::Add(from.at[a], reach));
+      // Beyond the outermost bricks there is nothing else.
+      open[a] = hn::Or(hn::RebindMask(di, still_[a]), hn::Or(hn::Lt(side[a], one), hn::Gt(side[a], last_cell[a])));
+      at[a] = hn::IfThenElse(hn::RebindMask(d, open[a]), hn::Set(d, HUGE_VALF), when_at(a, side[a], t));
+      leave = hn::Min(leave, at[a]);
+    }
+    const auto moving = hn::RebindMask(di, leaping);
+    for (int a = 0; a < 3; ++a) {
+      const auto up = hn::RebindMask(di, up_[a]), still = hn::RebindMask(di, still_[a]);
+      const auto through = hn::RebindMask(di, hn::Le(at[a], leave));
+      const I beyond = hn::Sub(side[a], hn::IfThenElse(up, zero, one));
+      // Inside the cube along the other axes, and never back.
+      const I here = to_int(d, hn::Floor(mul_add(cells_.along[a], leave, cells_.start[a])));
+      const I forth =
+          hn::IfThenElse(up, hn::Max(cell[a], hn::Min(here, hn::Sub(beyond, one))), hn::Min(cell[a], hn::Max(here, hn::Add(beyond, one))));
+      const I free_way = hn::Min(hn::Max(here, hn::Set(di, -1)), hn::Add(last_cell[a], one));
+      const I within = hn::IfThenElse(open[a], hn::IfThenElse(still, cell[a], free_way), forth);
+      cell[a] = hn::IfThenElse(moving, hn::IfThenElse(through, beyond, within), cell[a]);
+    }
+    t = hn::IfThenElse(leaping, leave, t);
+  }
+
+  /// Takes lanes through their cells.
+  HWY_INLINE void cross(M crossing, I cell[3], F& t) {
+    const D d;
+    const IntTag<D> di;
+    const I one = hn::Set(di, 1), zero = hn::Zero(di);
+    F leave = end_, at[3];
+    I inside[3], beyond[3];
     for (int a = 0; a < 3; ++a) {
       const auto up = hn::RebindMask(di, up_[a]);
-      const I reach = hn::ShiftLeft<FineBricks::shift>(hn::Add(brick[a], hn::IfThenElse(up, free, hn::Sub(one, free))));
-      side[a] = hn::IfThenElse(leaps, reach, hn::Add(cell[a], hn::IfThenElse(up, one, zero)));
-      F there = hn::Mul(hn::Sub(hn::ConvertTo(d, side[a]), cells_.start[a]), per_along_[a]);
-      // Beyond the outermost bricks there is nothing else.
-      const auto open = hn::And(leaps, hn::Or(hn::Lt(side[a], one), hn::Gt(side[a], last_cell[a])));
-      there = hn::IfThenElse(hn::Or(still_[a], hn::RebindMask(d, open)), hn::Set(d, HUGE_VALF), hn::Max(there, t));
-      at[a] = there, leave = hn::Min(leave, there);
+      inside[a] = hn::Min(hn::Max(cell[a], zero), cells_.source.last_cell[a]);
+      beyond[a] = hn::Add(cell[a], hn::IfThenElse(up, one, hn::Neg(one)));
+      at[a] = hn::IfThenElse(still_[a], hn::Set(d, HUGE_VALF), when_at(a, hn::Max(cell[a], beyond[a]), t));
+      leave = hn::Min(leave, at[a]);
     }
     const M look = hn::And(crossing, hn::Gt(leave, t));
     if (!hn::AllFalse(d, look)) cells_.cross(inside, t, leave, look);
-    const auto moving = hn::RebindMask(di, hn::Or(leaping, crossing));
-    for (int a = 0; a < 3; ++a) {
-      const auto up = hn::RebindMask(di, up_[a]);
-      const auto through = hn::RebindMask(di, hn::Le(at[a], leave));
-      const I beyond = hn::Sub(side[a], hn::IfThenElse(up, zero, one));
-      I next = cell[a];
-      if (!hn::AllFalse(d, leaping)) {
-        // Inside the cube along the other axes, and never back.
-        const I here = to_int(d, hn::Floor(mul_add(cells_.along[a], leave, cells_.start[a])));
-        const I forth = hn::IfThenElse(up, hn::Max(cell[a], hn::Min(here, hn::Sub(beyond, one))),
-                                       hn::Min(cell[a], hn::Max(here, hn::Add(beyond, one))));
-        const auto open = hn::Ge(at[a], hn::Set(d, HUGE_VALF));
-        const I free_way = hn::Min(hn::Max(here, hn::Set(di, -1)), hn::Add(last_cell[a], one));
-        const I leapt = hn::IfThenElse(hn::RebindMask(di, open), hn::IfThenElse(hn::RebindMask(di, still_[a]), cell[a], free_way), forth);
-        next = hn::IfThenElse(leaps, leapt, next);
-      }
-      cell[a] = hn::IfThenElse(moving, hn::IfThenElse(through, beyond, next), cell[a]);
-    }
-    t = hn::IfThenElse(hn::Or(leaping, crossing), leave, t);
+    for (int a = 0; a < 3; ++a) cell[a] = hn::IfThenElse(hn::RebindMask(di, hn::And(crossing, hn::Le(at[a], leave))), beyond[a], cell[a]);
+    t = hn::IfThenElse(crossing, leave, t);
+  }
+  /// When, from t on, a ray meets that side.
+  HWY_INLINE F when_at(int a, I side, F t) const {
+    return hn::Max(hn::Mul(hn::Sub(hn::ConvertTo(D(), side), cells_.start[a]), per_along_[a]), t);
   }
 
   HWY_INLINE void store(PacketResult& result) const {
