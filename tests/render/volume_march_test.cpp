@@ -48,6 +48,25 @@ TEST_CASE("volume: skipping empty bricks is not seen") {
   }
 }
 
+TEST_CASE("volume: highlights of every whole power are those of single rays, in steps and within the tolerance") {
+  for (const double power : {0.0, 1.0, 5.0, 20.0, 32.0, 129.0})
+    for (const double step : {0.0, 0.004}) {
+      Scene scene = blob_scene(true);
+      auto& v = std::get<VolumeItem>(scene.items[0]);
+      v.light.power = power, v.light.specular = 0.6, v.sampling.step = step;
+      const Frame packets = draw(scene, blob_view);
+      volume::Knobs one_lane;
+      one_lane.simd = false;
+      CHECK(same_bytes(packets, draw(scene, blob_view, one_lane)));
+      v.clip = {{{1, 0, 0}, 1e6}};  // packets do not know planes
+      const Frame single = draw(scene, blob_view);
+      INFO("power " << power << " step " << step);
+      CHECK(largest_difference(packets, single) < 2.0f / 512);
+      v.light.specular = 0;
+      CHECK(largest_difference(single, draw(scene, blob_view)) > 0.02f);
+    }
+}
+
 TEST_CASE("volume: skipping works for rectilinear grids, tiny steps and axis-parallel rays") {
   RectilinearGrid r;
   std::vector<double> c;

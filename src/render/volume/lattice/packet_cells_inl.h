@@ -159,13 +159,18 @@ class PacketCells {
     const F share = hn::Mul(pass, hn::Min(one, hn::Mul(length, tau_mean)));
     const F allowed =
         hn::Mul(hn::Set(d, tolerance), mul_add(share, hn::Set(d, 0.4f), hn::Mul(length, hn::Set(d, float(0.3 / plan.budget.length)))));
+    F jump = zero;
     if constexpr (shaded) {
       light.cell(source, corner, inside, rows);
-      error = hn::Max(error, light.error(from, way, hn::Mul(pass, taken)));
+      const auto lit = light.error(from, way);
+      const F weight = hn::Mul(pass, taken);
+      error = hn::Max(error, hn::Mul(weight, lit.bend)), jump = hn::Mul(weight, lit.jump);
     }
     F count = one, per_count = one, end = one, target = f.last;
-    if (!hn::AllFalse(d, hn::And(look, hn::Gt(error, allowed)))) {
-      count = hn::Max(one, hn::Min(hn::Ceil(hn::Sqrt(hn::Div(error, hn::Max(allowed, hn::Set(d, 1e-30f))))), hn::Set(d, 64.0f)));
+    if (!hn::AllFalse(d, hn::And(look, hn::Gt(hn::Max(error, jump), allowed)))) {
+      const F per_allowed = hn::Div(one, hn::Max(allowed, hn::Set(d, 1e-30f)));
+      const F parts = hn::Max(hn::Sqrt(hn::Mul(error, per_allowed)), hn::Mul(jump, per_allowed));
+      count = hn::Max(one, hn::Min(hn::Ceil(parts), hn::Set(d, 64.0f)));
       per_count = hn::Div(one, count), end = per_count;
       target = hn::IfThenElse(hn::Eq(count, one), f.last, f.at(per_count));
     }

@@ -236,22 +236,26 @@ class CellLight {
     }
   }
 
-  /// A bound on what one place on the way gets wrong of the light on all of it, where `weight` of the light is taken.
-  HWY_INLINE F error(const F from[3], const F way[3], F weight) const {
+  /// What one place on the way gets wrong of the light on all of it: where the light bends, and where it jumps (a surface that turns over,
+  /// a lamp that begins to reach it). The one falls with the square of the number of parts, the other with the number.
+  struct Error {
+    F bend, jump;
+  };
+  HWY_INLINE Error error(const F from[3], const F way[3]) const {
     const D d;
-    const F zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-    F g0[3], g1[3];
-    gradient(from, way, zero, g0), gradient(from, way, one, g1);
-    const F s0 = Lighting<D>::dot(g0, g0), s1 = Lighting<D>::dot(g1, g1);
-    const F both = hn::Sqrt(hn::Mul(s0, s1));
-    const F c = hn::Div(Lighting<D>::dot(g0, g1), hn::Max(both, hn::Set(d, 1e-30f)));
-    // For an angle a the light bends by about (diffuse + specular power) a^2 / 24, with a^2 = 2 (1 - cos a).
-    const Material& m = plan_.material;
-    F bend = hn::Mul(hn::Sub(one, c), hn::Set(d, (m.diffuse + m.specular * m.power) / 12));
-    // Where the surface turns away its other side is lit: a jump.
-    const F facing = hn::Mul(Lighting<D>::dot(g0, lighting_.ray), Lighting<D>::dot(g1, lighting_.ray));
-    bend = hn::Add(bend, hn::IfThenElseZero(hn::Lt(facing, zero), hn::Set(d, 0.25f)));
-    return hn::Mul(weight, hn::IfThenElseZero(hn::Gt(both, zero), bend));
+    const F zero = hn::Zero(d), half = hn::Set(d, 0.5f);
+    F g0[3], g1[3], nearest[2];
+    gradient(from, way, zero, g0), gradient(from, way, hn::Set(d, 1.0f), g1);
+    const FieldSurface<D> s0 = lighting_.surface(g0), s1 = lighting_.surface(g1);
+    I sides[2];
+    const LitLanes<D> l0 = lighting_.on(s0, sides[0], nearest[0]), l1 = lighting_.on(s1, sides[1], nearest[1]);
+    const auto both = hn::Gt(hn::Min(s0.much, s1.much), zero);
+    // For an angle a the light bends by a^2 / 24 of its second derivative, with a^2 = 2 (1 - cos a).
+    const F turn = hn::Sub(hn::Set(d, 1.0f), Lighting<D>::dot(s0.normal, s1.normal));
+    const F bend = hn::Mul(turn, hn::Mul(lighting_.bend(hn::Max(nearest[0], nearest[1]), turn), hn::Set(d, 1.0f / 12)));
+    const F apart = hn::Add(hn::Abs(hn::Sub(l0.diffuse, l1.diffuse)), hn::Abs(hn::Sub(l0.specular, l1.specular)));
+    const auto kinked = hn::RebindMask(d, hn::Ne(sides[0], sides[1]));
+    return {hn::IfThenElseZero(both, bend), hn::IfThenElseZero(hn::And(both, kinked), hn::Mul(half, apart))};
   }
 
   HWY_INLINE LitLanes<D> at(const F from[3], const F way[3], F s) const {

@@ -141,7 +141,9 @@ struct StrideLight {
     l.diffuse = mean(p0.light.diffuse, back0.diffuse, p2.light.diffuse, back2.diffuse);
     l.specular = mean(p0.light.specular, back0.specular, p2.light.specular, back2.specular);
     // The jump, where the turn is not even or what lies before hides more of the end.
-    const F jump = hn::Add(hn::Abs(hn::Sub(p2.light.diffuse, back2.diffuse)), hn::Abs(hn::Sub(p0.light.diffuse, back0.diffuse)));
+    const auto apart = [](const LitLanes<D>& x, const LitLanes<D>& y)
+                           HWY_ATTR { return hn::Add(hn::Abs(hn::Sub(x.diffuse, y.diffuse)), hn::Abs(hn::Sub(x.specular, y.specular))); };
+    const F jump = hn::Add(apart(p2.light, back2), apart(p0.light, back0));
     const F turn = hn::Sub(one, Lighting<D>::dot(p0.surface.normal, p2.surface.normal));
     l.error = mul_add(jump, mul_add(hn::Set(d, share_hidden), depth, hn::Mul(hn::Set(d, share_uneven), turn)),
                       hn::Mul(turn, hn::Mul(lighting.most_bend(), hn::Set(d, 1.0f / 6))));
