@@ -46,7 +46,7 @@ VolumeItem volume_item(Look look, size_t n, bool bytes) {
   item.unit_distance = 2.0 / 255;
   item.sampling.step = 1.0 / double(n - 1);
   item.shaded = look == Look::shaded;
-  item.light.ambient = 0.2, item.light.diffuse = 0.7, item.light.specular = 0.3, item.light.power = 20;
+  item.light.ambient = 0.2, item.light.diffuse = 0.7, item.light.specular = 0.3, item.light.power = 20;  // the peers'
   return item;
 }
 
