@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/volume/lattice/empty_space.h"
 
-#include <bit>
+#include <algorithm>
+#include <cmath>
 
 #include "base/error.h"
 #include "base/parallel.h"
@@ -12,42 +13,55 @@ namespace sg::volume {
 
 namespace {
 
-constexpr int farthest = 15;
+constexpr int farthest = (1 << distance_planes) - 1;
+constexpr size_t rows_at_once = 256, words_at_once = 512 * widen_words;
 
-/// One bit per brick, rows along x begin at words.
-struct Bits {
-  size_t nx, ny, nz, words;
-  std::vector<uint64_t> bits;
+/// One bit per brick. Behind each row at least one bit is zero, between two layers a row, and around them all whatever is near.
+struct BitBricks {
+  size_t rows, layers, row, layer, words, pad;
 
-  explicit Bits(const std::array<size_t, 3>& dims) : nx(dims[0]), ny(dims[1]), nz(dims[2]), words((nx + 63) / 64), bits(words * ny * nz) {}
-  uint64_t* row(size_t y, size_t z) { return &bits[words * (y + ny * z)]; }
-  const uint64_t* row(size_t y, size_t z) const { return &bits[words * (y + ny * z)]; }
-  uint64_t used(size_t word) const { return word + 1 < words || nx % 64 == 0 ? ~uint64_t(0) : (uint64_t(1) << nx % 64) - 1; }
+  explicit BitBricks(const std::array<size_t, 3>& dims)
+      : rows(dims[1]), layers(dims[2]), row(dims[0] / 64 + 1), layer(row * (rows + 1)) {
+    words = (layer * layers + widen_words - 1) / widen_words * widen_words;
+    pad = layer + row + 2 * widen_words;
+  }
+  /// The first word of row r, counted over all layers.
+  size_t at(size_t r) const { return r / rows * layer + r % rows * row; }
+  std::vector<uint64_t> padded() const { return std::vector<uint64_t>(words + 2 * pad); }
 };
 
-constexpr size_t rows_at_once = 256;
-
-/// A row or'ed with its neighbours along x and y.
-void widen_row(const Bits& in, size_t y, size_t z, Bits& out) {
-  uint64_t* to = out.row(y, z);
-  for (size_t w = 0; w < in.words; ++w) {
-    uint64_t sum = 0;
-    for (size_t j = y > 0 ? y - 1 : 0; j <= std::min(y + 1, in.ny - 1); ++j) {
-      const uint64_t* from = in.row(j, z);
-      sum |= from[w] | from[w] << 1 | from[w] >> 1;
-      if (w > 0) sum |= from[w - 1] >> 63;
-      if (w + 1 < in.words) sum |= from[w + 1] << 63;
-    }
-    to[w] = sum & in.used(w);
+/// The entries of a transfer function that draw something as runs, one entry longer to each side, for rounding errors.
+DrawnRuns drawn_runs(const Transfer& transfer) {
+  const LinearTable table = transfer.linear_table();
+  struct Run {
+    int from, to;
+  };
+  std::vector<Run> runs;
+  for (int i = 0; i <= table.count + 1; ++i) {
+    if (!transfer.draws(i)) continue;
+    if (!runs.empty() && runs.back().to == i - 1) runs.back().to = i;
+    else runs.push_back({i, i});
   }
-}
-
-/// Entries of a transfer function on a linear axis that draw something, counted.
-std::vector<uint32_t> count_drawn(const Transfer& transfer) {
-  const int count = transfer.linear_table().count;
-  std::vector<uint32_t> before(size_t(count) + 3);
-  for (int i = 0; i <= count + 1; ++i) before[size_t(i) + 1] = before[size_t(i)] + transfer.draws(i);
-  return before;
+  // Too many: those nearest to each other become one.
+  if (runs.size() > size_t(DrawnRuns::most)) {
+    std::vector<size_t> gaps(runs.size() - 1);
+    for (size_t i = 0; i < gaps.size(); ++i) gaps[i] = i;
+    std::stable_sort(gaps.begin(), gaps.end(),
+                     [&](size_t a, size_t b) { return runs[a + 1].from - runs[a].to > runs[b + 1].from - runs[b].to; });
+    gaps.resize(size_t(DrawnRuns::most) - 1);
+    std::sort(gaps.begin(), gaps.end());
+    std::vector<Run> fewer{{runs.front().from, 0}};
+    for (const size_t g : gaps) fewer.back().to = runs[g].to, fewer.push_back({runs[g + 1].from, 0});
+    fewer.back().to = runs.back().to;
+    runs = fewer;
+  }
+  // Entry i has its values between i - 1 and i; the first and the last go on for ever.
+  DrawnRuns r{table.first, table.per_axis, int(runs.size()), {}, {}};
+  for (size_t k = 0; k < runs.size(); ++k) {
+    r.from[k] = runs[k].from == 0 ? -HUGE_VALF : float(runs[k].from - 2);
+    r.to[k] = runs[k].to == table.count + 1 ? HUGE_VALF : float(runs[k].to + 1);
+  }
+  return r;
 }
 
 }  // namespace
@@ -85,68 +99,59 @@ MinMaxBricks coarse_bricks(const FineBricks& fine) {
 }
 
 Distances distance_to_drawn(const FineBricks& bricks, const Transfer& transfer, bool& any_empty) {
-  Bits reached(bricks.dims), flat(bricks.dims), newly(bricks.dims);
-  const size_t rows = reached.ny * reached.nz, nx = reached.nx;
-  Distances distance;
-  distance.resize(bricks.size() + 3);
-  std::fill(distance.end() - 3, distance.end(), uint8_t(farthest));
-  std::vector<uint32_t> before;
-  DrawnEntries entries{};
-  if (transfer.linear()) {
-    before = count_drawn(transfer);
-    const LinearTable t = transfer.linear_table();
-    entries = {t.first, t.per_axis, float(t.count + 1), before.data()};
-  }
-  const auto count_set = [&](size_t row, const Bits& bits) {
-    size_t n = 0;
-    for (size_t w = 0; w < bits.words; ++w) n += size_t(std::popcount(bits.bits[row * bits.words + w]));
-    return n;
-  };
-  size_t left = parallel_reduce(
-      rows, rows_at_once, size_t(0),
+  const BitBricks lattice(bricks.dims);
+  const size_t rows = lattice.rows * lattice.layers, nx = bricks.dims[0];
+  std::vector<uint64_t> reached = lattice.padded(), more = lattice.padded(), used(lattice.words);
+  const bool linear = transfer.linear();
+  const DrawnRuns runs = linear ? drawn_runs(transfer) : DrawnRuns{};
+  any_empty = parallel_reduce(
+      rows, rows_at_once, false,
       [&](size_t begin, size_t end) {
-        size_t empty = 0;
+        bool empty = false;
         for (size_t r = begin; r < end; ++r) {
           const MinMaxBricks::Range* range = &bricks.ranges[r * nx];
-          uint64_t* bits = &reached.bits[r * reached.words];
-          uint8_t* to = &distance[r * nx];
-          if (!before.empty()) find_drawn(range, nx, entries, uint8_t(farthest), bits, to);
+          uint64_t *bits = &reached[lattice.pad + lattice.at(r)], *own = &used[lattice.at(r)];
+          if (linear) find_drawn(range, nx, runs, bits);
           else
-            for (size_t x = 0; x < nx; ++x) {
-              const bool drawn = !transfer.clear(range[x].lo, range[x].hi);
-              bits[x / 64] |= uint64_t(drawn) << x % 64, to[x] = drawn ? uint8_t(0) : uint8_t(farthest);
-            }
-          empty += nx - count_set(r, reached);
+            for (size_t x = 0; x < nx; ++x) bits[x / 64] |= uint64_t(!transfer.clear(range[x].lo, range[x].hi)) << x % 64;
+          for (size_t w = 0; w < lattice.row; ++w) {
+            const size_t left = nx - 64 * w;
+            own[w] = left >= 64 ? ~uint64_t(0) : (uint64_t(1) << left) - 1;
+            empty = empty || bits[w] != own[w];
+          }
         }
         return empty;
       },
-      [](size_t a, size_t b) { return a + b; });
-  any_empty = left > 0;
-  // Level by level the bricks around those that were reached, until all are.
-  for (int level = 1; level < farthest && left > 0 && left < bricks.size(); ++level) {
-    parallel_for(rows, rows_at_once, [&](size_t begin, size_t end) {
-      for (size_t r = begin; r < end; ++r) widen_row(reached, r % reached.ny, r / reached.ny, flat);
-    });
-    left -= parallel_reduce(
-        rows, rows_at_once, size_t(0),
+      [](bool a, bool b) { return a || b; });
+
+  // Level by level the bricks around those that were reached, until all are. The level of a brick goes to planes, a bit each.
+  std::vector<uint64_t> levels(distance_planes * lattice.words);
+  for (int level = 1; level < farthest && any_empty; ++level) {
+    uint64_t* planes[distance_planes];
+    int count = 0;
+    for (int k = 0; k < distance_planes; ++k)
+      if (level >> k & 1) planes[count++] = &levels[size_t(k) * lattice.words];
+    const bool any_new = parallel_reduce(
+        lattice.words, words_at_once, false,
         [&](size_t begin, size_t end) {
-          size_t found = 0;
-          for (size_t r = begin; r < end; ++r) {
-            const size_t y = r % reached.ny, z = r / reached.ny;
-            uint64_t *old = reached.row(y, z), *more = newly.row(y, z);
-            for (size_t w = 0; w < reached.words; ++w) {
-              uint64_t sum = flat.row(y, z)[w];
-              if (z > 0) sum |= flat.row(y, z - 1)[w];
-              if (z + 1 < reached.nz) sum |= flat.row(y, z + 1)[w];
-              more[w] = sum & ~old[w], old[w] = sum;
-              found += size_t(std::popcount(more[w]));
-            }
-            write_level(more, nx, uint8_t(level), &distance[r * nx]);
-          }
-          return found;
+          return widen({lattice.row, lattice.layer, used.data()}, &reached[lattice.pad], begin, end, &more[lattice.pad], planes, count);
         },
-        [](size_t a, size_t b) { return a + b; });
+        [](bool a, bool b) { return a || b; });
+    reached.swap(more);
+    if (!any_new) break;
   }
+
+  Distances distance;
+  distance.resize(bricks.size() + 3);
+  std::fill(distance.end() - 3, distance.end(), uint8_t(farthest));
+  parallel_for(rows, rows_at_once, [&](size_t begin, size_t end) {
+    for (size_t r = begin; r < end; ++r) {
+      const size_t at = lattice.at(r);
+      const uint64_t* planes[distance_planes];
+      for (size_t k = 0; k < distance_planes; ++k) planes[k] = &levels[k * lattice.words + at];
+      write_distances(planes, &reached[lattice.pad + at], nx, &distance[r * nx]);
+    }
+  });
   return distance;
 }
 

@@ -102,9 +102,9 @@ class PacketCells {
       from[a] = hn::Max(zero, hn::Min(mul_add(along[a], t, base), one));
       way[a] = hn::Sub(hn::Max(zero, hn::Min(mul_add(along[a], leave, base), one)), from[a]);
     }
-    const I above = hn::Add(corner, source.layer);
-    const Pair<D> p00 = source.pair(corner), p01 = source.pair(hn::Add(corner, source.row));
-    const Pair<D> p10 = source.pair(above), p11 = source.pair(hn::Add(above, source.row));
+    Pair<D> rows[4];
+    source.corners(corner, rows);
+    const auto &p00 = rows[0], &p01 = rows[1], &p10 = rows[2], &p11 = rows[3];
     // No place in the cell lies outside the range of its corners.
     const F least = hn::Min(hn::Min(hn::Min(p00.a, p00.b), hn::Min(p01.a, p01.b)), hn::Min(hn::Min(p10.a, p10.b), hn::Min(p11.a, p11.b)));
     const F largest = hn::Max(hn::Max(hn::Max(p00.a, p00.b), hn::Max(p01.a, p01.b)), hn::Max(hn::Max(p10.a, p10.b), hn::Max(p11.a, p11.b)));
@@ -123,11 +123,10 @@ class PacketCells {
     const M dark = hn::And(same, line_.dark());
     look = hn::AndNot(dark, look);
     if (hn::AllFalse(d, look)) return;
-    const Pair<D> rows[4] = {p00, p01, p10, p11};
-    integrate(f, lo, hi, same, corner, inside, rows, from, way, t, hn::Sub(leave, t), look);
+    integrate(f, lo, hi, same, inside, from, way, t, hn::Sub(leave, t), look);
   }
 
-  HWY_INLINE void integrate(const Cubic<D>& f, F lo, F hi, M same, I corner, const I inside[3], const Pair<D> rows[4], const F from[3],
+  HWY_INLINE void integrate(const Cubic<D>& f, F lo, F hi, M same, [[maybe_unused]] const I inside[3], const F from[3],
                             const F way[3], F t, F length, M look) {
     const D d;
     const IntTag<D> di;
@@ -161,7 +160,7 @@ class PacketCells {
         hn::Mul(hn::Set(d, tolerance), mul_add(share, hn::Set(d, 0.4f), hn::Mul(length, hn::Set(d, float(0.3 / plan.budget.length)))));
     F jump = zero;
     if constexpr (shaded) {
-      light.cell(source, corner, inside, rows);
+      light.cell(source, inside);
       const auto lit = light.error(from, way);
       const F weight = hn::Mul(pass, taken);
       error = hn::Max(error, hn::Mul(weight, lit.bend)), jump = hn::Mul(weight, lit.jump);

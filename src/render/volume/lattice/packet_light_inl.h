@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/volume/lattice/packets_inl.h"
+#include "render/volume/lattice/packet_around_inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {
@@ -201,39 +201,11 @@ class CellLight {
  public:
   HWY_INLINE CellLight(const PacketPlan& plan, const Lighting<D>& lighting) : plan_(plan), lighting_(lighting) {}
 
-  /// Differences over the samples before and after each corner, of the cell whose lowest corner lies at `corner`; `corners` by rows.
-  HWY_INLINE void cell(const Source<D, T>& s, I corner, const I at[3], const Pair<D> corners[4]) {
-    const D d;
-    const IntTag<D> di;
-    const I zero = hn::Zero(di), one = hn::Set(di, 1);
-    // One sample before the cell and one after it, at the border the outermost again.
-    const I steps[3] = {one, s.row, s.layer};
-    I before[3], after[3];
-    for (int a = 0; a < 3; ++a) {
-      const auto in_first = hn::Eq(at[a], zero), in_last = hn::Eq(at[a], s.last_cell[a]);
-      first_[a] = hn::RebindMask(d, in_first), last_[a] = hn::RebindMask(d, in_last);
-      before[a] = hn::IfThenElse(in_first, zero, hn::Neg(steps[a]));
-      after[a] = hn::IfThenElse(in_last, steps[a], hn::Add(steps[a], steps[a]));
-    }
-    const I rows[4] = {corner, hn::Add(corner, s.row), hn::Add(corner, s.layer), hn::Add(corner, hn::Add(s.layer, s.row))};
-    F own[8];
-    for (int r = 0; r < 4; ++r) own[2 * r] = corners[r].a, own[2 * r + 1] = corners[r].b;
-    for (int r = 0; r < 4; ++r) {
-      // x: a - (one before), (one after) - b.
-      const F lower = s.pair(hn::Add(rows[r], before[0])).a;
-      const F upper = s.pair(hn::Sub(hn::Add(rows[r], after[0]), one)).b;
-      slope_[0][2 * r] = hn::Sub(own[2 * r + 1], lower), slope_[0][2 * r + 1] = hn::Sub(upper, own[2 * r]);
-    }
-    for (int k = 0; k < 2; ++k) {
-      const Pair<D> lower = s.pair(hn::Add(rows[2 * k], before[1])), upper = s.pair(hn::Add(rows[2 * k], after[1]));
-      slope_[1][4 * k] = hn::Sub(own[4 * k + 2], lower.a), slope_[1][4 * k + 1] = hn::Sub(own[4 * k + 3], lower.b);
-      slope_[1][4 * k + 2] = hn::Sub(upper.a, own[4 * k]), slope_[1][4 * k + 3] = hn::Sub(upper.b, own[4 * k + 1]);
-    }
-    for (int j = 0; j < 2; ++j) {
-      const Pair<D> lower = s.pair(hn::Add(rows[j], before[2])), upper = s.pair(hn::Add(rows[j], after[2]));
-      slope_[2][2 * j] = hn::Sub(own[4 + 2 * j], lower.a), slope_[2][2 * j + 1] = hn::Sub(own[5 + 2 * j], lower.b);
-      slope_[2][4 + 2 * j] = hn::Sub(upper.a, own[2 * j]), slope_[2][5 + 2 * j] = hn::Sub(upper.b, own[2 * j + 1]);
-    }
+  HWY_INLINE void cell(const Source<D, T>& source, const I at[3]) {
+    const Around<D, T> around(source, at);
+    Quad<D> rows[4];
+    around.rows(rows);
+    for (int a = 0; a < 3; ++a) around.differences(a, rows, slope_[a]), first_[a] = around.first[a], last_[a] = around.last[a];
   }
 
   /// What one place on the way gets wrong of the light on all of it: where the light bends, and where it jumps (a surface that turns over,
@@ -268,17 +240,9 @@ class CellLight {
   /// World gradient at the share s of the way.
   HWY_INLINE void gradient(const F from[3], const F way[3], F s, F out[3]) const {
     const D d;
-    const F one = hn::Set(d, 1.0f);
     F f[3], g[3];
     for (int a = 0; a < 3; ++a) f[a] = mul_add(way[a], s, from[a]);
-    for (int a = 0; a < 3; ++a) {
-      const F* c = slope_[a];
-      const F sum = mixed(d, mixed(d, mixed(d, c[0], c[1], f[0]), mixed(d, c[2], c[3], f[0]), f[1]),
-                          mixed(d, mixed(d, c[4], c[5], f[0]), mixed(d, c[6], c[7], f[0]), f[1]), f[2]);
-      // Two cells apart, less at the border.
-      const F apart = hn::Add(hn::IfThenElse(first_[a], f[a], one), hn::IfThenElse(last_[a], hn::Sub(one, f[a]), one));
-      g[a] = hn::Div(sum, apart);
-    }
+    for (int a = 0; a < 3; ++a) g[a] = hn::Div(Around<D, T>::trilinear(slope_[a], f), Around<D, T>::apart(first_[a], last_[a], f[a]));
     lighting_.to_world(g, out);
   }
 

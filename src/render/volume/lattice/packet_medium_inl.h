@@ -53,8 +53,9 @@ struct MediumLanes {
   };
   /// As many lines as there are lanes fit a vector: then no gather is needed.
   bool few;
+  bool loads;  ///< of gathers.h
   F few_columns[6];
-  HWY_INLINE explicit MediumLanes(const Medium& m) : medium(m), columns(m.columns()), few(m.lines().size() <= size_t(lanes_of<D>)) {
+  HWY_INLINE explicit MediumLanes(const Medium& m) : medium(m), columns(m.columns()), few(m.lines().size() <= size_t(lanes_of<D>)), loads(loads_beat_gathers()) {
     const D d;
     const std::vector<float>* all[6] = {&columns.origin, &columns.hi, &columns.at, &columns.slope, &columns.curve, &columns.twist};
     for (int c = 0; c < 6; ++c) {
@@ -85,7 +86,7 @@ struct MediumLanes {
     v = hn::Min(v, hn::Set(d, 3e38f));  // the last line ends at infinity
     F at = hn::Mul(hn::Sub(v, hn::Set(d, medium.slice_lo())), hn::Set(d, medium.per_slice()));
     at = hn::IfThenElseZero(hn::Ge(at, hn::Zero(d)), hn::Min(at, hn::Set(d, float(Medium::slices))));
-    I i = hn::And(gather_words(d, medium.first_lines(), hn::ShiftLeft<1>(to_int(d, at))), hn::Set(di, 0xFFFF));
+    I i = hn::And(gather_words(d, medium.first_lines(), hn::ShiftLeft<1>(to_int(d, at)), loads), hn::Set(di, 0xFFFF));
     for (;;) {
       const auto beyond =
           hn::Le(few ? hn::TableLookupLanes(few_columns[1], hn::IndicesFromVec(d, i)) : hn::GatherIndex(d, columns.hi.data(), i), v);
@@ -112,7 +113,7 @@ struct MediumLanes {
     const IntTag<D> di;
     F at = mul_add(hn::Sub(v, hn::Set(d, medium.first_node())), hn::Set(d, medium.per_node()), hn::Set(d, 0.5f));
     at = hn::IfThenElseZero(hn::Ge(at, hn::Zero(d)), hn::Min(at, hn::Set(d, float(Medium::nodes))));
-    const Pair<D> words = gather_pair(d, reinterpret_cast<const float*>(medium.colors()), hn::ShiftLeft<1>(to_int(d, at)));
+    const Pair<D> words = gather_pair(d, reinterpret_cast<const float*>(medium.colors()), hn::ShiftLeft<1>(to_int(d, at)), loads);
     const I rg = hn::BitCast(di, words.a), b = hn::BitCast(di, words.b);
     const F per = hn::Set(d, 1.0f / 65535);
     const I low = hn::Set(di, 0xFFFF);

@@ -20,99 +20,60 @@ struct Slope {
 };
 
 template <class D, class T>
-struct SlopeFinder {
-  const Source<D, T>& source;
-  Place<D> at[3];
-  Int<D> lower[3], upper[3];          // cells one before and one after, inside the lattice
-  hn::Vec<D> f_lower[3], f_upper[3];  // fractions there
-  hn::Mask<D> first[3], last[3];      // in the first or last cell of an axis?
-  bool inner = true;
+class SlopeFinder {
+  using F = hn::Vec<D>;
 
-  HWY_INLINE SlopeFinder(const Source<D, T>& s, hn::Vec<D> x, hn::Vec<D> y, hn::Vec<D> z) : source(s) {
-    const D d;
-    const IntTag<D> di;
-    const hn::Vec<D> u[3] = {x, y, z};
-    for (int a = 0; a < 3; ++a) {
-      at[a] = source.place(a, u[a]);
-      const auto in_first = hn::Eq(at[a].cell, hn::Zero(di)), in_last = hn::Eq(at[a].cell, source.last_cell[a]);
-      first[a] = hn::RebindMask(d, in_first), last[a] = hn::RebindMask(d, in_last);
-      inner = inner && hn::AllFalse(di, hn::Or(in_first, in_last));
-      lower[a] = hn::Max(hn::Sub(at[a].cell, hn::Set(di, 1)), hn::Zero(di));
-      upper[a] = hn::Min(hn::Add(at[a].cell, hn::Set(di, 1)), source.last_cell[a]);
-      // Clamped to the border, a place is a sample.
-      f_lower[a] = hn::IfThenElseZero(hn::Not(first[a]), at[a].fraction);
-      f_upper[a] = hn::IfThenElse(last[a], hn::Set(d, 1.0f), at[a].fraction);
-    }
-  }
-
-  /// Sum over x and y of four samples, at the fractions given.
-  static HWY_INLINE hn::Vec<D> plane(const Pair<D>& p0, const Pair<D>& p1, hn::Vec<D> fx, hn::Vec<D> fy) {
-    const D d;
-    return mixed(d, mixed(d, p0.a, p0.b, fx), mixed(d, p1.a, p1.b, fx), fy);
-  }
-
-  /// Values before and after the place along each axis. Lanes at the border and others come out the same whoever is beside them.
-  HWY_INLINE void values(hn::Vec<D> lo[3], hn::Vec<D> hi[3]) const {
-    const D d;
-    const auto fx = at[0].fraction, fy = at[1].fraction, fz = at[2].fraction;
-    const Int<D> i = at[0].cell, j = at[1].cell, k = at[2].cell;
-    if (!inner) {
-      for (int a = 0; a < 3; ++a) {
-        const Place<D> below{lower[a], f_lower[a]}, above{upper[a], f_upper[a]};
-        lo[a] = source.value(a == 0 ? below : at[0], a == 1 ? below : at[1], a == 2 ? below : at[2]);
-        hi[a] = source.value(a == 0 ? above : at[0], a == 1 ? above : at[1], a == 2 ? above : at[2]);
-      }
-      return;
-    }
-    // Rows (j, k), (j+1, k), (j, k+1), (j+1, k+1), four samples each from i-1 on.
-    const auto corner = source.offset(i, j, k), row = source.row, layer = source.layer;
-    const auto before = hn::Sub(corner, hn::Set(IntTag<D>(), 1)), after = hn::Add(corner, hn::Set(IntTag<D>(), 1));
-    const Pair<D> a00 = source.pair(before), b00 = source.pair(after);
-    const Pair<D> a01 = source.pair(hn::Add(before, row)), b01 = source.pair(hn::Add(after, row));
-    const Pair<D> a10 = source.pair(hn::Add(before, layer)), b10 = source.pair(hn::Add(after, layer));
-    const Pair<D> a11 = source.pair(hn::Add(before, hn::Add(row, layer))), b11 = source.pair(hn::Add(after, hn::Add(row, layer)));
-    lo[0] = mixed(d, plane(a00, a01, fx, fy), plane(a10, a11, fx, fy), fz);
-    hi[0] = mixed(d, plane(b00, b01, fx, fy), plane(b10, b11, fx, fy), fz);
-    const auto m00 = mixed(d, a00.b, b00.a, fx), m01 = mixed(d, a01.b, b01.a, fx), m10 = mixed(d, a10.b, b10.a, fx),
-               m11 = mixed(d, a11.b, b11.a, fx);
-    lo[1] =
-        mixed(d, mixed(d, line(hn::Sub(corner, row), fx), m00, fy), mixed(d, line(hn::Add(hn::Sub(corner, row), layer), fx), m10, fy), fz);
-    const auto two_rows = hn::Add(row, row), two_layers = hn::Add(layer, layer);
-    hi[1] = mixed(d, mixed(d, m01, line(hn::Add(corner, two_rows), fx), fy),
-                  mixed(d, m11, line(hn::Add(hn::Add(corner, two_rows), layer), fx), fy), fz);
-    lo[2] = mixed(d, mixed(d, line(hn::Sub(corner, layer), fx), line(hn::Add(hn::Sub(corner, layer), row), fx), fy), mixed(d, m00, m01, fy),
-                  fz);
-    hi[2] = mixed(d, mixed(d, m10, m11, fy),
-                  mixed(d, line(hn::Add(corner, two_layers), fx), line(hn::Add(hn::Add(corner, two_layers), row), fx), fy), fz);
-  }
-  HWY_INLINE hn::Vec<D> line(Int<D> from, hn::Vec<D> fx) const {
-    const Pair<D> p = source.pair(from);
-    return mixed(D(), p.a, p.b, fx);
-  }
+ public:
+  HWY_INLINE SlopeFinder(const Source<D, T>& source, F x, F y, F z)
+      : source_(source), at_{source.place(0, x), source.place(1, y), source.place(2, z)} {}
 
   HWY_INLINE Slope<D> find() const {
     const D d;
-    const auto one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
-    hn::Vec<D> lo[3], hi[3], out[3];
-    values(lo, hi);
-    auto square = hn::Zero(d);
+    const F half = hn::Set(d, 0.5f), f[3] = {at_[0].fraction, at_[1].fraction, at_[2].fraction};
+    const Int<D> cell[3] = {at_[0].cell, at_[1].cell, at_[2].cell};
+    const Around<D, T> around(source_, cell);
+    Quad<D> rows[4];
+    around.rows(rows);
+    F change[3], slope[3];
     for (int a = 0; a < 3; ++a) {
-      auto change = hn::Sub(hi[a], lo[a]);
-      auto slope = hn::Mul(change, half);
-      if (!inner || !hn::AllFalse(d, hn::IsNaN(change))) {
-        const auto middle = source.value(at[0], at[1], at[2]);
-        const auto lo_good = hn::Eq(lo[a], lo[a]), hi_good = hn::Eq(hi[a], hi[a]);
-        auto apart = hn::Add(hn::IfThenElse(first[a], at[a].fraction, one), hn::IfThenElse(last[a], hn::Sub(one, at[a].fraction), one));
-        apart = hn::IfThenElse(lo_good, apart, hn::Mul(apart, half));
-        apart = hn::IfThenElse(hi_good, apart, hn::Mul(apart, half));
-        change = hn::Sub(hn::IfThenElse(hi_good, hi[a], middle), hn::IfThenElse(lo_good, lo[a], middle));
-        slope = hn::Div(change, apart);
-      }
-      out[a] = slope;
-      square = mul_add(hn::Mul(hn::Set(d, 0.25f), change), change, square);
+      F corners[8];
+      around.differences(a, rows, corners);
+      change[a] = around.trilinear(corners, f), slope[a] = hn::Mul(change[a], half);
+      if (!around.inner) slope[a] = hn::Div(change[a], around.apart(around.first[a], around.last[a], f[a]));
     }
-    return {out[0], out[1], out[2], hn::Sqrt(square)};
+    const auto holes = hn::IsNaN(hn::Add(change[0], hn::Add(change[1], change[2])));
+    if (!hn::AllFalse(d, holes)) beside_holes(around, change, slope);
+    auto square = hn::Zero(d);
+    for (const F& c : change) square = mul_add(hn::Mul(hn::Set(d, 0.25f), c), c, square);
+    return {slope[0], slope[1], slope[2], hn::Sqrt(square)};
   }
+
+ private:
+  /// Differences to one side where there is no number on the other.
+  HWY_NOINLINE void beside_holes(const Around<D, T>& around, F change[3], F slope[3]) const {
+    const D d;
+    const IntTag<D> di;
+    const F half = hn::Set(d, 0.5f), middle = source_.value(at_[0], at_[1], at_[2]);
+    for (int a = 0; a < 3; ++a) {
+      // Clamped to the border, a place is a sample.
+      Place<D> lower[3] = {at_[0], at_[1], at_[2]}, upper[3] = {at_[0], at_[1], at_[2]};
+      lower[a] = {hn::Max(hn::Sub(at_[a].cell, hn::Set(di, 1)), hn::Zero(di)), hn::IfThenElseZero(hn::Not(around.first[a]), at_[a].fraction)};
+      upper[a] = {hn::Min(hn::Add(at_[a].cell, hn::Set(di, 1)), source_.last_cell[a]),
+                  hn::IfThenElse(around.last[a], hn::Set(d, 1.0f), at_[a].fraction)};
+      const F lo = source_.value(lower[0], lower[1], lower[2]), hi = source_.value(upper[0], upper[1], upper[2]);
+      const auto lo_good = hn::Eq(lo, lo), hi_good = hn::Eq(hi, hi);
+      F apart = around.apart(around.first[a], around.last[a], at_[a].fraction);
+      apart = hn::IfThenElse(lo_good, apart, hn::Mul(apart, half));
+      apart = hn::IfThenElse(hi_good, apart, hn::Mul(apart, half));
+      const F one_sided = hn::Sub(hn::IfThenElse(hi_good, hi, middle), hn::IfThenElse(lo_good, lo, middle));
+      const auto hole = hn::IsNaN(change[a]);
+      change[a] = hn::IfThenElse(hole, one_sided, change[a]);
+      slope[a] = hn::IfThenElse(hole, hn::Div(one_sided, apart), slope[a]);
+    }
+  }
+
+  const Source<D, T>& source_;
+  const Place<D> at_[3];
 };
 
 template <class D, class T>

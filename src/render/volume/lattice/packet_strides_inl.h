@@ -21,6 +21,7 @@ struct SumLanes {
   using F = hn::Vec<D>;
   using I = Int<D>;
   const MediumSums* sums;
+  bool loads;  ///< of gathers.h
 
   /// The medium at a value: tau, and the integral of tau up to it in two parts.
   struct Place {
@@ -37,7 +38,7 @@ struct SumLanes {
     p.value = value, p.node = to_int(d, at);
     const auto* table = reinterpret_cast<const float*>(sums->table());
     const I entry = hn::ShiftLeft<2>(p.node);
-    const Pair<D> sum_tau = gather_pair(d, table, entry), slope = gather_pair(d, table + 2, entry);
+    const auto [sum_tau, slope] = gather_quad(d, table, entry, loads);
     p.sum = hn::BitCast(di, sum_tau.a);
     const F x = neg_mul_add(hn::ConvertTo(d, p.node), hn::Set(d, sums->width()), hn::Sub(value, lo));
     p.slope = slope.a;
@@ -67,7 +68,8 @@ struct SumLanes {
     const auto level = hn::BitCast(du, hn::Max(hn::Zero(di), hn::Sub(exponent, hn::Set(di, 126))));
     const auto all = hn::Set(du, uint32_t(2 * MediumSums::nodes));
     const auto first = hn::Sub(all, hn::Shr(all, level));
-    return hn::GatherIndex(d, sums->steepest(), hn::BitCast(di, hn::Add(first, hn::Shr(hn::BitCast(du, lower), level))));
+    const auto entry = hn::BitCast(di, hn::Add(first, hn::Shr(hn::BitCast(du, lower), level)));
+    return hn::BitCast(d, gather_words(d, sums->steepest(), hn::ShiftLeft<2>(entry), loads));
   }
   /// As many as the values change by, and one.
   HWY_INLINE I nodes_over(F change) const {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "render/volume/lattice/bends.h"
+#include "render/volume/lattice/gathers.h"
 #include "render/volume/lattice/lattice_volume.h"
 #include "render/volume/optics/integrate.h"
 #include "render/volume/optics/medium_sums.h"

@@ -9,18 +9,11 @@
 #endif
 
 #include "render/volume/lattice/fused_inl.h"
+#include "render/volume/lattice/gathers_inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-
-template <class D>
-using IntTag = hn::RebindToSigned<D>;
-template <class D>
-using Int = hn::Vec<IntTag<D>>;
-
-template <class D>
-constexpr int lanes_of = int(hn::MaxLanes(D()));
 
 template <class D>
 HWY_INLINE hn::Vec<D> mixed(D, hn::Vec<D> a, hn::Vec<D> b, hn::Vec<D> f) {
@@ -47,79 +40,6 @@ HWY_INLINE hn::Vec<D> about_one_by_sqrt(D d, hn::Vec<D> x) {
   return hn::Mul(y, neg_mul_add(hn::Mul(hn::Set(d, 0.5f), x), hn::Mul(y, y), hn::Set(d, 1.5f)));
 }
 
-#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
-// A gather of all lanes whose mask the compiler cannot see through: it would leave out the zeros, and then each gather waits for
-// what its register held before.
-HWY_INLINE __m512i gather_longs(const void* data, __m256i at) {
-  __mmask8 all = 0xFF;
-  asm("" : "+Yk"(all));
-  return _mm512_mask_i32gather_epi64(_mm512_setzero_si512(), all, at, data, 4);
-}
-HWY_INLINE __m512i gather_ints(const void* data, __m512i at) {
-  __mmask16 all = 0xFFFF;
-  asm("" : "+Yk"(all));
-  return _mm512_mask_i32gather_epi32(_mm512_setzero_si512(), all, at, data, 1);
-}
-#endif
-
-/// The 32-bit word that begins at byte at[n] of the data.
-template <class D>
-HWY_INLINE Int<D> gather_words(D, const void* data, Int<D> at) {
-#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
-  if constexpr (lanes_of<D> == 16) return Int<D>{gather_ints(data, at.raw)};
-#endif
-  return hn::GatherOffset(IntTag<D>(), static_cast<const int32_t*>(data), at);
-}
-
-/// Two values that are neighbours in memory.
-template <class D>
-struct Pair {
-  hn::Vec<D> a, b;
-};
-
-/// data[at] and data[at + 1].
-template <class D>
-HWY_INLINE Pair<D> gather_pair(D d, const float* data, Int<D> at) {
-#if HWY_TARGET <= HWY_AVX2 && HWY_ARCH_X86
-  if constexpr (lanes_of<D> >= 8) {
-    // One 64-bit load brings both; then even and odd places are told apart.
-    const hn::Repartition<int64_t, D> d64;
-    const hn::Half<IntTag<D>> half;
-    using V64 = hn::Vec<decltype(d64)>;
-    const auto below = hn::LowerHalf(half, at).raw, above = hn::UpperHalf(half, at).raw;
-#if HWY_TARGET <= HWY_AVX3
-    const V64 lo{gather_longs(data, below)}, hi{gather_longs(data, above)};
-#else
-    const auto* wide = reinterpret_cast<const long long*>(data);
-    const V64 lo{_mm256_i32gather_epi64(wide, below, 4)}, hi{_mm256_i32gather_epi64(wide, above, 4)};
-#endif
-    return {hn::ConcatEven(d, hn::BitCast(d, hi), hn::BitCast(d, lo)), hn::ConcatOdd(d, hn::BitCast(d, hi), hn::BitCast(d, lo))};
-  }
-#endif
-  return {hn::GatherIndex(d, data, at), hn::GatherIndex(d, data + 1, at)};
-}
-
-/// Small integers: one 32-bit load brings both; near the end of the array it starts earlier and is shifted.
-template <class D, class T>
-HWY_INLINE Pair<D> gather_pair(D d, const T* data, Int<D> at, Int<D> last_load) {
-  const IntTag<D> di;
-  const hn::RebindToUnsigned<D> du;
-  constexpr int bits = 8 * sizeof(T);
-  const auto byte = sizeof(T) == 2 ? hn::ShiftLeft<1>(at) : at;
-  const auto from = hn::Min(byte, last_load);
-  const auto skipped = hn::ShiftLeft<3>(hn::Sub(byte, from));
-  const auto word = hn::BitCast(di, hn::Shr(hn::BitCast(du, gather_words(d, data, from)), hn::BitCast(du, skipped)));
-  if constexpr (std::is_signed_v<T>) {
-    const auto a = hn::ShiftRight<32 - bits>(hn::ShiftLeft<32 - bits>(word)),
-               b = hn::ShiftRight<32 - bits>(hn::ShiftLeft<32 - 2 * bits>(word));
-    return {hn::ConvertTo(d, a), hn::ConvertTo(d, b)};
-  } else {
-    const auto mask = hn::Set(di, (1 << bits) - 1);
-    const auto shifted = hn::BitCast(di, hn::ShiftRight<bits>(hn::BitCast(du, word)));
-    return {hn::ConvertTo(d, hn::And(word, mask)), hn::ConvertTo(d, hn::And(shifted, mask))};
-  }
-}
-
 /// A place along one axis: the cell and the fraction of its edge.
 template <class D>
 struct Place {
@@ -134,11 +54,14 @@ struct Source {
   Int<D> row, layer, last_load;
   hn::Vec<D> top[3];
   Int<D> last_cell[3];
+  ptrdiff_t to_row, to_layer;  ///< row and layer as numbers of samples
+  bool loads;                  ///< of gathers.h
 
-  HWY_INLINE explicit Source(const Voxels& voxels) : data(reinterpret_cast<const T*>(voxels.array.raw())) {
+  HWY_INLINE explicit Source(const Voxels& voxels) : data(reinterpret_cast<const T*>(voxels.array.raw())), loads(loads_beat_gathers()) {
     const D d;
     const IntTag<D> di;
-    row = hn::Set(di, int(voxels.dims[0])), layer = hn::Set(di, int(voxels.dims[0] * voxels.dims[1]));
+    to_row = ptrdiff_t(voxels.dims[0]), to_layer = ptrdiff_t(voxels.dims[0] * voxels.dims[1]);
+    row = hn::Set(di, int(to_row)), layer = hn::Set(di, int(to_layer));
     last_load = hn::Set(di, int(voxels.array.bytes()) - 4);
     for (size_t a = 0; a < 3; ++a) top[a] = hn::Set(d, float(voxels.dims[a] - 1)), last_cell[a] = hn::Set(di, int(voxels.dims[a]) - 2);
   }
@@ -156,20 +79,40 @@ struct Source {
   }
   HWY_INLINE Int<D> offset(Int<D> i, Int<D> j, Int<D> k) const { return hn::Add(i, hn::Add(hn::Mul(j, row), hn::Mul(k, layer))); }
   HWY_INLINE Pair<D> pair(Int<D> at) const {
-    if constexpr (std::is_same_v<T, float>) return gather_pair(D(), data, at);
-    else return gather_pair(D(), data, at, last_load);
+    if constexpr (std::is_same_v<T, float>) return gather_pair(D(), data, at, loads);
+    else return gather_pair(D(), data, at, last_load, loads);
   }
+  /// Pairs so many samples on from `at`, the same for all lanes.
+  template <size_t n>
+  HWY_INLINE void pairs(Int<D> at, const ptrdiff_t (&on)[n], Pair<D>* out) const {
+    if constexpr (std::is_same_v<T, float>) gather_pairs(D(), data, on, at, loads, out);
+    else
+      for (size_t i = 0; i < n; ++i) out[i] = pair(hn::Add(at, hn::Set(IntTag<D>(), int(on[i]))));
+  }
+  /// Four samples in a row each.
+  template <size_t n>
+  HWY_INLINE void quads(Int<D> at, const ptrdiff_t (&on)[n], Quad<D>* out) const {
+    if constexpr (std::is_same_v<T, float>) {
+      gather_quads(D(), data, on, at, loads, out);
+    } else {
+      for (size_t i = 0; i < n; ++i) {
+        const Int<D> from = hn::Add(at, hn::Set(IntTag<D>(), int(on[i])));
+        out[i] = {pair(from), pair(hn::Add(from, hn::Set(IntTag<D>(), 2)))};
+      }
+    }
+  }
+  /// The corners of the cell whose lowest one is there: its rows (0, 0), (1, 0), (0, 1), (1, 1) along y and z.
+  HWY_INLINE void corners(Int<D> lowest, Pair<D> rows[4]) const { pairs(lowest, {0, to_row, to_layer, to_layer + to_row}, rows); }
   HWY_INLINE hn::Vec<D> value(const Place<D>& x, const Place<D>& y, const Place<D>& z) const {
     return value(offset(x.cell, y.cell, z.cell), x.fraction, y.fraction, z.fraction);
   }
   /// At the fractions of the cell whose lowest corner is sample `at`.
   HWY_INLINE hn::Vec<D> value(Int<D> at, hn::Vec<D> fx, hn::Vec<D> fy, hn::Vec<D> fz) const {
     const D d;
-    const auto p00 = pair(at), p01 = pair(hn::Add(at, row));
-    const auto above = hn::Add(at, layer);
-    const auto p10 = pair(above), p11 = pair(hn::Add(above, row));
-    const auto v0 = mixed(d, mixed(d, p00.a, p00.b, fx), mixed(d, p01.a, p01.b, fx), fy);
-    const auto v1 = mixed(d, mixed(d, p10.a, p10.b, fx), mixed(d, p11.a, p11.b, fx), fy);
+    Pair<D> p[4];
+    corners(at, p);
+    const auto v0 = mixed(d, mixed(d, p[0].a, p[0].b, fx), mixed(d, p[1].a, p[1].b, fx), fy);
+    const auto v1 = mixed(d, mixed(d, p[2].a, p[2].b, fx), mixed(d, p[3].a, p[3].b, fx), fy);
     return mixed(d, v0, v1, fz);
   }
 };

@@ -73,7 +73,7 @@ HWY_INLINE void leap(const Source<D, T>& source, const Space<D>& space, Lanes<D>
       brick[a] = hn::ConvertTo(d, b);
       id = hn::Add(id, a == 2 ? hn::Mul(b, space.layer) : a == 1 ? hn::Mul(b, space.row) : b);
     }
-    const auto free = hn::And(gather_words(d, space.distance, id), hn::Set(di, 255));
+    const auto free = hn::And(gather_words(d, space.distance, id, source.loads), hn::Set(di, 255));
     looking = hn::And(looking, hn::RebindMask(d, hn::Gt(free, hn::Zero(di))));
     if (hn::AllFalse(d, looking)) return;
     // All bricks nearer than that are empty: leave their cube, but for a margin wider than rounding errors.
@@ -234,7 +234,7 @@ class March {
       for (int k = 0; k < samples_per_look; ++k) {
         const F s = hn::Add(first, hn::Set(d, float(k)));
         const auto entry = entries.at(values[k]);
-        const Pair<D> r_g = gather_pair(d, steps, entry), b_pass = gather_pair(d, steps + 2, entry);
+        const auto [r_g, b_pass] = gather_quad(d, steps, entry, source.loads);
         const auto active = hn::And(hn::Lt(s, lanes.end), hn::Ge(pass, stop));
         seen_half = hn::IfThenElse(hn::And(active, hn::Ge(pass, half)), s, seen_half);
         const F weight = hn::IfThenElseZero(active, pass);
@@ -283,7 +283,7 @@ class March {
       const F value = source.value(source.place(0, x), source.place(1, y), source.place(2, z));
       const auto entry = entries.at(value);
       const auto* media = reinterpret_cast<const float*>(&transfer.medium(0));
-      const Pair<D> r_g = gather_pair(d, media, entry), b_density = gather_pair(d, media + 2, entry);
+      const auto [r_g, b_density] = gather_quad(d, media, entry, source.loads);
       const auto drawn = hn::And(last, hn::Gt(b_density.b, hn::Zero(d)));
       if (!hn::AllFalse(d, drawn)) {
         const F alpha = absorbed(d, hn::Mul(b_density.b, rest));

@@ -141,7 +141,7 @@ class Climb {
     const auto& dims = volume_.bricks().dims;
     const auto id = hn::Add(to_int(d, w.box[0]), hn::Add(hn::Mul(to_int(d, w.box[1]), hn::Set(di, int(dims[0]))),
                                                          hn::Mul(to_int(d, w.box[2]), hn::Set(di, int(dims[0] * dims[1])))));
-    return hn::BitCast(d, gather_words(d, &volume_.bricks().ranges[0].hi, hn::ShiftLeft<3>(id)));
+    return hn::BitCast(d, gather_words(d, &volume_.bricks().ranges[0].hi, hn::ShiftLeft<3>(id), source_.loads));
   }
 
   /// Cells between the lengths; -1 and the number of cells are the halves beyond the outermost samples, where values are clamped.
@@ -162,9 +162,8 @@ class Climb {
     Int<D> at[3];
     for (int a = 0; a < 3; ++a) low[a] = clamped_to<D>(w.box[a], zero, last_cell_[a]), at[a] = to_int(d, low[a]);
     const auto p = source_.offset(at[0], at[1], at[2]);
-    const auto above = hn::Add(p, source_.layer);
-    const Pair<D> c[4] = {source_.pair(p), source_.pair(hn::Add(p, source_.row)), source_.pair(above),
-                          source_.pair(hn::Add(above, source_.row))};
+    Pair<D> c[4];
+    source_.corners(p, c);
     F top = hn::Max(hn::Max(hn::Max(c[0].a, c[0].b), hn::Max(c[1].a, c[1].b)), hn::Max(hn::Max(c[2].a, c[2].b), hn::Max(c[3].a, c[3].b)));
     if (skip_) m = hn::And(m, hn::Gt(top, best_));
     if constexpr (std::is_same_v<T, float>) {  // a cell with a NaN corner is clear

@@ -35,7 +35,7 @@ class TolerantPacket {
 
  public:
   HWY_INLINE TolerantPacket(const PacketPlan& plan, const RayPacket& rays)
-      : plan_(plan), v_(plan.volume), cells_(plan, rays), sums_{plan.sums}, rays_(rays) {
+      : plan_(plan), v_(plan.volume), cells_(plan, rays), sums_{plan.sums, cells_.source.loads}, rays_(rays) {
     const D d;
     F square = hn::Zero(d);
     for (int a = 0; a < 3; ++a) {
@@ -114,8 +114,8 @@ class TolerantPacket {
     const auto& dims = v_.fine().dims;
     const I row = hn::Set(di, int(dims[0])), layer = hn::Set(di, int(dims[0] * dims[1]));
     const I id = hn::Add(b.at[0], hn::Add(hn::Mul(b.at[1], row), hn::Mul(b.at[2], layer)));
-    b.free = plan_.knobs.skip_empty && v_.any_empty ? hn::And(gather_words(d, v_.distance.data(), id), byte) : zero;
-    b.bend = plan_.bends ? hn::And(gather_words(d, plan_.bends->codes.data(), id), byte) : hn::Set(di, int(Bends::unbounded));
+    b.free = plan_.knobs.skip_empty && v_.any_empty ? hn::And(gather_words(d, v_.distance.data(), id, cells_.source.loads), byte) : zero;
+    b.bend = plan_.bends ? hn::And(gather_words(d, plan_.bends->codes.data(), id, cells_.source.loads), byte) : hn::Set(di, int(Bends::unbounded));
     return b;
   }
 
@@ -184,7 +184,7 @@ class TolerantPacket {
         // The middle only where the ends do not do.
         const M rough = hn::AndNot(turned, hn::And(seen, hn::Gt(mul_add(taken, light.error, error), allowed)));
         if (!hn::AllFalse(d, rough))
-          light.take(StrideLight<D>::curved(cells_.lighting, here_lit_, lit_at(cells_.lighting, t1), lit2), rough);
+          light.take(StrideLight<D>::curved(cells_.lighting, here_lit_, lit_at(t1, rough), lit2), rough);
         error = hn::Add(error, hn::IfThenElseZero(seen, hn::Mul(taken, light.error)));
       }
     const M good = hn::And(striding, hn::Le(error, allowed));
@@ -222,10 +222,20 @@ class TolerantPacket {
     return moved;
   }
 
-  HWY_INLINE LitPlace<D> lit_at(const Lighting<D>& lighting, F t) const {
+  /// The light at places of the rays of `lighting`, where it is wanted. Out of line: it is long, and wanted from several sides.
+  HWY_NOINLINE void lit_at(const Lighting<D>& lighting, const F u[3], M wanted, LitPlace<D>& out) const {
+    const D d;
+    // The others look at the middle, which is no border that would have to be looked after.
+    F v[3];
+    for (int a = 0; a < 3; ++a) v[a] = hn::IfThenElse(wanted, u[a], hn::Mul(hn::Set(d, 0.5f), cells_.source.top[a]));
+    out = LitPlace<D>::at(lighting, cells_.source, v);
+  }
+  HWY_INLINE LitPlace<D> lit_at(F t, M wanted) const {
     F u[3];
     for (int a = 0; a < 3; ++a) u[a] = mul_add(cells_.along[a], t, cells_.start[a]);
-    return LitPlace<D>::at(lighting, cells_.source, u);
+    LitPlace<D> p;
+    lit_at(cells_.lighting, u, wanted, p);
+    return p;
   }
 
   /// The light at t2, and at t for those lanes of `seen` that do not know it. Lanes that are not seen help: they look for others.
@@ -234,19 +244,20 @@ class TolerantPacket {
     const IntTag<D> di;
     const M dark = hn::AndNot(lit_, seen);
     lit_ = hn::Or(lit_, seen);
-    if (hn::AllFalse(d, dark)) return lit_at(cells_.lighting, t2);
-    if (hn::CountTrue(d, dark) + hn::CountTrue(d, seen) > hn::Lanes(d)) {
-      here_lit_.take(lit_at(cells_.lighting, t), dark);
-      return lit_at(cells_.lighting, t2);
+    const bool any_dark = !hn::AllFalse(d, dark);
+    if (!any_dark || hn::CountTrue(d, dark) + hn::CountTrue(d, seen) > hn::Lanes(d)) {
+      if (any_dark) here_lit_.take(lit_at(t, dark), dark);
+      return lit_at(t2, seen);
     }
     alignas(64) int32_t from[most_lanes], to[most_lanes];
     uint8_t bits[2][8] = {};
     hn::StoreMaskBits(d, dark, bits[0]), hn::StoreMaskBits(d, seen, bits[1]);
     uint32_t asking = uint32_t(bits[0][0]) | uint32_t(bits[0][1]) << 8, busy = uint32_t(bits[1][0]) | uint32_t(bits[1][1]) << 8;
+    uint32_t wanted = busy;
     hn::Store(hn::Iota(di, 0), di, from), hn::Store(hn::Iota(di, 0), di, to);
     for (uint32_t free = ~busy; asking; asking &= asking - 1, free &= free - 1) {
       const int who = std::countr_zero(asking), helper = std::countr_zero(free);
-      from[helper] = who, to[who] = helper;
+      from[helper] = who, to[who] = helper, wanted |= 1u << helper;
     }
     const I order = hn::Load(di, from);
     const auto indices = hn::IndicesFromVec(d, order);
@@ -255,7 +266,9 @@ class TolerantPacket {
       const F first = hn::TableLookupLanes(mul_add(cells_.along[a], t, cells_.start[a]), indices);
       u[a] = hn::IfThenElse(seen, mul_add(cells_.along[a], t2, cells_.start[a]), first);
     }
-    const LitPlace<D> found = LitPlace<D>::at(cells_.lighting.permuted(order), cells_.source, u);
+    const uint8_t wanted_bits[8] = {uint8_t(wanted), uint8_t(wanted >> 8)};
+    LitPlace<D> found;
+    lit_at(cells_.lighting.permuted(order), u, hn::LoadMaskBits(d, wanted_bits), found);
     here_lit_.take(found.permuted(hn::Load(di, to)), dark);
     return found;
   }

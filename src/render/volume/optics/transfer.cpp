@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel.h"
+
 namespace sg::volume {
 
 // exp(-x) = 2^-k exp(-r), |r| <= ln2/2, by Taylor's series to the 13th power (error below 1e-17).
@@ -73,7 +75,7 @@ Transfer::Transfer(const ColorScale& scale, const OpacityCurve& curve, double un
     for (int i = std::max(index(from) - 1, 0); i <= std::min(index(to) + 1, count_ + 1); ++i) thin[size_t(i)] = 1;
   }
   const double beyond = std::max(1e-3 * (last - first), 1e-9 * std::max(std::abs(first), std::abs(last)));
-  for (int i = 0; i < count_ + 3; ++i) {
+  const auto enter = [&](int i) {
     double value = double(value_on_axis(double(first_) + (double(i) - 0.5) * entry)) + base;
     // Beyond the ends opacity and colour are constant: one takes effect at once, the other where its rounding allows.
     double shade_at = value;
@@ -95,8 +97,12 @@ Transfer::Transfer(const ColorScale& scale, const OpacityCurve& curve, double un
     const double pass = exp_negative(density * step), alpha = 1 - pass;
     media_[size_t(i)] = {color.x, color.y, color.z, float(std::min(density, 1e30))};
     steps_[size_t(i)] = {float(color.x * alpha), float(color.y * alpha), float(color.z * alpha), float(pass)};
-    drawn_before_[size_t(i) + 1] = drawn_before_[size_t(i)] + (density > 0 || thin[size_t(i)]);
-  }
+    drawn_before_[size_t(i) + 1] = density > 0 || thin[size_t(i)];
+  };
+  parallel_for(size_t(count_) + 3, 256, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) enter(int(i));
+  });
+  for (size_t i = 1; i < drawn_before_.size(); ++i) drawn_before_[i] += drawn_before_[i - 1];
 }
 
 bool Transfer::clear(float lo, float hi) const {

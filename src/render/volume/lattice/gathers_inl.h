@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: Apache-2.0
+// One number, or some that are neighbours in memory, for every lane. `loads`: by a load for each lane instead of gathers (gathers.h).
+#if defined(SG_GATHERS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SG_GATHERS_INL_H
+#undef SG_GATHERS_INL_H
+#else
+#define SG_GATHERS_INL_H
+#endif
+
+#include <cstring>
+
+#define SG_HARDWARE_GATHERS (HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2)
+
+HWY_BEFORE_NAMESPACE();
+namespace sg::volume::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+template <class D>
+using IntTag = hn::RebindToSigned<D>;
+template <class D>
+using Int = hn::Vec<IntTag<D>>;
+
+template <class D>
+constexpr int lanes_of = int(hn::MaxLanes(D()));
+
+/// Values that are neighbours in memory.
+template <class D>
+struct Pair {
+  hn::Vec<D> a, b;
+};
+template <class D>
+struct Quad {
+  Pair<D> low, high;
+};
+
+#if SG_HARDWARE_GATHERS
+#if HWY_TARGET <= HWY_AVX3
+// A gather of all lanes whose mask the compiler cannot see through: it would leave out the zeros, and then each gather waits for
+// what its register held before.
+HWY_INLINE __m512i gather_longs(const void* data, __m256i at) {
+  __mmask8 all = 0xFF;
+  asm("" : "+Yk"(all));
+  return _mm512_mask_i32gather_epi64(_mm512_setzero_si512(), all, at, data, 4);
+}
+HWY_INLINE __m512i gather_ints(const void* data, __m512i at) {
+  __mmask16 all = 0xFFFF;
+  asm("" : "+Yk"(all));
+  return _mm512_mask_i32gather_epi32(_mm512_setzero_si512(), all, at, data, 1);
+}
+#endif
+
+/// Where eight lanes read.
+struct EightIndices {
+  uint32_t at[8];
+  HWY_INLINE explicit EightIndices(__m256i v) {
+    // Two at a time: single ones take more steps, and those through memory wait longer.
+    const __m128i low = _mm256_castsi256_si128(v), high = _mm256_extracti128_si256(v, 1);
+    const uint64_t two[4] = {uint64_t(_mm_cvtsi128_si64(low)), uint64_t(_mm_extract_epi64(low, 1)), uint64_t(_mm_cvtsi128_si64(high)),
+                             uint64_t(_mm_extract_epi64(high, 1))};
+    for (int i = 0; i < 8; ++i) at[i] = uint32_t(two[i / 2] >> 32 * (i % 2));
+  }
+};
+struct EightPairs {
+  __m256 a, b;
+};
+
+HWY_INLINE __m256 load_words(const char* data, const EightIndices& i) {
+  const auto four = [&](int n) HWY_ATTR {
+    int32_t v[4];
+    for (int k = 0; k < 4; ++k) std::memcpy(&v[k], data + i.at[n + k], sizeof v[k]);
+    return _mm_insert_epi32(_mm_insert_epi32(_mm_insert_epi32(_mm_cvtsi32_si128(v[0]), v[1], 1), v[2], 2), v[3], 3);
+  };
+  return _mm256_castsi256_ps(_mm256_inserti128_si256(_mm256_castsi128_si256(four(0)), four(4), 1));
+}
+HWY_INLINE EightPairs load_pairs(const float* data, const EightIndices& i) {
+  const auto two = [&](int n, int m) HWY_ATTR {
+    long long first, second;
+    std::memcpy(&first, data + i.at[n], sizeof first), std::memcpy(&second, data + i.at[m], sizeof second);
+    return _mm_castsi128_ps(_mm_unpacklo_epi64(_mm_cvtsi64_si128(first), _mm_cvtsi64_si128(second)));
+  };
+  const auto four = [&](int n) HWY_ATTR { return _mm256_insertf128_ps(_mm256_castps128_ps256(two(n, n + 1)), two(n + 4, n + 5), 1); };
+  const __m256 x = four(0), y = four(2);
+  return {_mm256_shuffle_ps(x, y, 0x88), _mm256_shuffle_ps(x, y, 0xDD)};
+}
+HWY_INLINE void load_quads(const float* data, const EightIndices& i, __m256 out[4]) {
+  const auto two = [&](int n) HWY_ATTR {
+    return _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(data + i.at[n])), _mm_loadu_ps(data + i.at[n + 4]), 1);
+  };
+  const __m256 x = two(0), y = two(1), z = two(2), w = two(3);
+  const __m256 xy = _mm256_unpacklo_ps(x, y), zw = _mm256_unpacklo_ps(z, w), xy2 = _mm256_unpackhi_ps(x, y), zw2 = _mm256_unpackhi_ps(z, w);
+  out[0] = _mm256_shuffle_ps(xy, zw, 0x44), out[1] = _mm256_shuffle_ps(xy, zw, 0xEE);
+  out[2] = _mm256_shuffle_ps(xy2, zw2, 0x44), out[3] = _mm256_shuffle_ps(xy2, zw2, 0xEE);
+}
+/// read(the indices of eight lanes, number of that half) for all lanes.
+template <class D, class Read>
+HWY_INLINE void by_halves(D, Int<D> at, const Read& read) {
+#if HWY_TARGET <= HWY_AVX3
+  if constexpr (lanes_of<D> == 16) {
+    read(EightIndices(_mm512_castsi512_si256(at.raw)), 0), read(EightIndices(_mm512_extracti64x4_epi64(at.raw, 1)), 1);
+    return;
+  }
+#endif
+  if constexpr (lanes_of<D> == 8) read(EightIndices(at.raw), 0);
+}
+template <class D>
+HWY_INLINE hn::Vec<D> joined(D, const __m256 half[2]) {
+#if HWY_TARGET <= HWY_AVX3
+  if constexpr (lanes_of<D> == 16) return hn::Vec<D>{_mm512_insertf32x8(_mm512_castps256_ps512(half[0]), half[1], 1)};
+#endif
+  if constexpr (lanes_of<D> == 8) return hn::Vec<D>{half[0]};
+}
+#endif
+
+/// The 32-bit word that begins at byte at[n] of the data.
+template <class D>
+HWY_INLINE Int<D> gather_words([[maybe_unused]] D d, const void* data, Int<D> at, [[maybe_unused]] bool loads) {
+#if SG_HARDWARE_GATHERS
+  if constexpr (lanes_of<D> >= 8) {
+    if (loads) {
+      __m256 half[2];
+      by_halves(d, at, [&](const EightIndices& i, int h) HWY_ATTR { half[h] = load_words(static_cast<const char*>(data), i); });
+      return hn::BitCast(IntTag<D>(), joined(d, half));
+    }
+  }
+#if HWY_TARGET <= HWY_AVX3
+  if constexpr (lanes_of<D> == 16) return Int<D>{gather_ints(data, at.raw)};
+#endif
+#endif
+  return hn::GatherOffset(IntTag<D>(), static_cast<const int32_t*>(data), at);
+}
+
+/// data[at] and data[at + 1], by gathers.
+template <class D>
+HWY_INLINE Pair<D> gathered_pair(D d, const float* data, Int<D> at) {
+#if SG_HARDWARE_GATHERS
+  if constexpr (lanes_of<D> >= 8) {
+    // One 64-bit load brings both; then even and odd places are told apart.
+    const hn::Repartition<int64_t, D> d64;
+    const hn::Half<IntTag<D>> half;
+    using V64 = hn::Vec<decltype(d64)>;
+    const auto below = hn::LowerHalf(half, at).raw, above = hn::UpperHalf(half, at).raw;
+#if HWY_TARGET <= HWY_AVX3
+    const V64 lo{gather_longs(data, below)}, hi{gather_longs(data, above)};
+#else
+    const auto* wide = reinterpret_cast<const long long*>(data);
+    const V64 lo{_mm256_i32gather_epi64(wide, below, 4)}, hi{_mm256_i32gather_epi64(wide, above, 4)};
+#endif
+    return {hn::ConcatEven(d, hn::BitCast(d, hi), hn::BitCast(d, lo)), hn::ConcatOdd(d, hn::BitCast(d, hi), hn::BitCast(d, lo))};
+  }
+#endif
+  return {hn::GatherIndex(d, data, at), hn::GatherIndex(d, data + 1, at)};
+}
+
+/// data[on[r] + at] and the next number, for every r.
+template <class D, size_t n>
+HWY_INLINE void gather_pairs(D d, const float* data, const ptrdiff_t (&on)[n], Int<D> at, [[maybe_unused]] bool loads, Pair<D>* out) {
+#if SG_HARDWARE_GATHERS
+  if constexpr (lanes_of<D> >= 8) {
+    if (loads) {
+      __m256 a[n][2], b[n][2];
+      by_halves(d, at, [&](const EightIndices& i, int h) HWY_ATTR {
+        for (size_t r = 0; r < n; ++r) {
+          const EightPairs p = load_pairs(data + on[r], i);
+          a[r][h] = p.a, b[r][h] = p.b;
+        }
+      });
+      for (size_t r = 0; r < n; ++r) out[r] = {joined(d, a[r]), joined(d, b[r])};
+      return;
+    }
+  }
+#endif
+  for (size_t r = 0; r < n; ++r) out[r] = gathered_pair(d, data + on[r], at);
+}
+template <class D>
+HWY_INLINE Pair<D> gather_pair(D d, const float* data, Int<D> at, bool loads) {
+  Pair<D> p;
+  gather_pairs(d, data, {0}, at, loads, &p);
+  return p;
+}
+
+/// data[on[r] + at] and the next three numbers, for every r.
+template <class D, size_t n>
+HWY_INLINE void gather_quads(D d, const float* data, const ptrdiff_t (&on)[n], Int<D> at, [[maybe_unused]] bool loads, Quad<D>* out) {
+#if SG_HARDWARE_GATHERS
+  if constexpr (lanes_of<D> >= 8) {
+    if (loads) {
+      __m256 columns[n][4][2];
+      by_halves(d, at, [&](const EightIndices& i, int h) HWY_ATTR {
+        for (size_t r = 0; r < n; ++r) {
+          __m256 v[4];
+          load_quads(data + on[r], i, v);
+          for (int c = 0; c < 4; ++c) columns[r][c][h] = v[c];
+        }
+      });
+      for (size_t r = 0; r < n; ++r) {
+        const auto& c = columns[r];
+        out[r] = {{joined(d, c[0]), joined(d, c[1])}, {joined(d, c[2]), joined(d, c[3])}};
+      }
+      return;
+    }
+  }
+#endif
+  for (size_t r = 0; r < n; ++r) out[r] = {gathered_pair(d, data + on[r], at), gathered_pair(d, data + on[r] + 2, at)};
+}
+template <class D>
+HWY_INLINE Quad<D> gather_quad(D d, const float* data, Int<D> at, bool loads) {
+  Quad<D> q;
+  gather_quads(d, data, {0}, at, loads, &q);
+  return q;
+}
+
+/// Pairs of small integers: one 32-bit word brings both; near the end of the array it starts earlier and is shifted.
+template <class D, class T>
+HWY_INLINE Pair<D> gather_pair(D d, const T* data, Int<D> at, Int<D> last_load, bool loads) {
+  const IntTag<D> di;
+  const hn::RebindToUnsigned<D> du;
+  constexpr int bits = 8 * sizeof(T);
+  const auto byte = sizeof(T) == 2 ? hn::ShiftLeft<1>(at) : at;
+  const auto from = hn::Min(byte, last_load);
+  const auto skipped = hn::ShiftLeft<3>(hn::Sub(byte, from));
+  const auto word = hn::BitCast(di, hn::Shr(hn::BitCast(du, gather_words(d, data, from, loads)), hn::BitCast(du, skipped)));
+  if constexpr (std::is_signed_v<T>) {
+    const auto a = hn::ShiftRight<32 - bits>(hn::ShiftLeft<32 - bits>(word)),
+               b = hn::ShiftRight<32 - bits>(hn::ShiftLeft<32 - 2 * bits>(word));
+    return {hn::ConvertTo(d, a), hn::ConvertTo(d, b)};
+  } else {
+    const auto mask = hn::Set(di, (1 << bits) - 1);
+    const auto shifted = hn::BitCast(di, hn::ShiftRight<bits>(hn::BitCast(du, word)));
+    return {hn::ConvertTo(d, hn::And(word, mask)), hn::ConvertTo(d, hn::And(shifted, mask))};
+  }
+}
+
+}  // namespace sg::volume::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

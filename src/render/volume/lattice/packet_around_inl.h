@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// Central differences at the corners of cells. Trilinear between the corners they are the central differences of the trilinear field.
+#if defined(SG_PACKET_AROUND_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SG_PACKET_AROUND_INL_H
+#undef SG_PACKET_AROUND_INL_H
+#else
+#define SG_PACKET_AROUND_INL_H
+#endif
+
+#include "render/volume/lattice/packets_inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sg::volume::HWY_NAMESPACE {
+
+/// A cell of each lane with the samples one beyond it along each axis; beyond the border those are the outermost again.
+template <class D, class T>
+class Around {
+  using F = hn::Vec<D>;
+  using I = Int<D>;
+
+ public:
+  hn::Mask<D> first[3], last[3];  ///< is it the first or last cell of an axis?
+  bool inner = true;              ///< no lane's is
+
+  HWY_INLINE Around(const Source<D, T>& source, const I cell[3])
+      : source_(source), corner_(source.offset(cell[0], cell[1], cell[2])) {
+    const D d;
+    const IntTag<D> di;
+    for (int a = 0; a < 3; ++a) {
+      const auto in_first = hn::Eq(cell[a], hn::Zero(di)), in_last = hn::Eq(cell[a], source.last_cell[a]);
+      first[a] = hn::RebindMask(d, in_first), last[a] = hn::RebindMask(d, in_last);
+      inner = inner && hn::AllFalse(di, hn::Or(in_first, in_last));
+    }
+  }
+
+  /// The cell's own samples: 4 rows of Source::corners. They come with those before and after them along x.
+  HWY_INLINE void rows(Quad<D> rows[4]) const {
+    const ptrdiff_t row = source_.to_row, layer = source_.to_layer;
+    if (inner) return source_.quads(corner_, {-1, row - 1, layer - 1, layer + row - 1}, rows);
+    const I before = hn::Add(corner_, step(first[0], 0, -1)), after = hn::Add(corner_, step(last[0], 0, 1));
+    Pair<D> low[4], own[4], high[4];
+    source_.corners(before, low), source_.corners(corner_, own), source_.corners(after, high);
+    for (int r = 0; r < 4; ++r) rows[r] = {{low[r].a, own[r].a}, {own[r].b, high[r].b}};
+  }
+  /// Differences over two cells along an axis at the corners i + 2 j + 4 k, of what rows() told.
+  HWY_INLINE void differences(int axis, const Quad<D> rows[4], F out[8]) const {
+    if (axis == 0) {
+      for (int r = 0; r < 4; ++r)
+        out[2 * r] = hn::Sub(rows[r].high.a, rows[r].low.a), out[2 * r + 1] = hn::Sub(rows[r].high.b, rows[r].low.b);
+      return;
+    }
+    // The rows of the side before and after; across them the other axis.
+    const ptrdiff_t along = axis == 1 ? source_.to_row : source_.to_layer, across = axis == 1 ? source_.to_layer : source_.to_row;
+    Pair<D> beyond[4];
+    if (inner) {
+      source_.pairs(corner_, {-along, across - along, 2 * along, 2 * along + across}, beyond);
+    } else {
+      const I before = hn::Add(corner_, step(first[axis], 0, -int(along))),
+              after = hn::Add(corner_, step(last[axis], int(along), int(2 * along)));
+      source_.pairs(before, {0, across}, beyond), source_.pairs(after, {0, across}, beyond + 2);
+    }
+    const int s = axis == 1 ? 1 : 2, t = 3 - s;  // numbers of rows from one to the next along and across
+    for (int n = 0; n < 2; ++n) {
+      const Quad<D>&own = rows[n * t], &next = rows[n * t + s];
+      F *lower = out + 2 * (n * t), *upper = lower + 2 * s;
+      lower[0] = hn::Sub(next.low.b, beyond[n].a), lower[1] = hn::Sub(next.high.a, beyond[n].b);
+      upper[0] = hn::Sub(beyond[2 + n].a, own.low.b), upper[1] = hn::Sub(beyond[2 + n].b, own.high.a);
+    }
+  }
+  /// Between the corners.
+  static HWY_INLINE F trilinear(const F c[8], const F f[3]) {
+    const D d;
+    return mixed(d, mixed(d, mixed(d, c[0], c[1], f[0]), mixed(d, c[2], c[3], f[0]), f[1]),
+                 mixed(d, mixed(d, c[4], c[5], f[0]), mixed(d, c[6], c[7], f[0]), f[1]), f[2]);
+  }
+  /// Over how many cells the differences go at a fraction of the edge: two, less at the border.
+  static HWY_INLINE F apart(hn::Mask<D> first, hn::Mask<D> last, F fraction) {
+    const D d;
+    const F one = hn::Set(d, 1.0f);
+    return hn::Add(hn::IfThenElse(first, fraction, one), hn::IfThenElse(last, hn::Sub(one, fraction), one));
+  }
+
+ private:
+  static HWY_INLINE I step(hn::Mask<D> border, int there, int elsewhere) {
+    const IntTag<D> di;
+    return hn::IfThenElse(hn::RebindMask(di, border), hn::Set(di, there), hn::Set(di, elsewhere));
+  }
+
+  const Source<D, T>& source_;
+  const I corner_;
+};
+
+}  // namespace sg::volume::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif
