@@ -74,9 +74,8 @@ HWY_INLINE __m256 load_words(const char* data, const EightIndices& i) {
 }
 HWY_INLINE EightPairs load_pairs(const float* data, const EightIndices& i) {
   const auto two = [&](int n, int m) HWY_ATTR {
-    long long first, second;
-    std::memcpy(&first, data + i.at[n], sizeof first), std::memcpy(&second, data + i.at[m], sizeof second);
-    return _mm_castsi128_ps(_mm_unpacklo_epi64(_mm_cvtsi64_si128(first), _mm_cvtsi64_si128(second)));
+    const __m128i first = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(data + i.at[n]));
+    return _mm_loadh_pi(_mm_castsi128_ps(first), reinterpret_cast<const __m64*>(data + i.at[m]));
   };
   const auto four = [&](int n) HWY_ATTR { return _mm256_insertf128_ps(_mm256_castps128_ps256(two(n, n + 1)), two(n + 4, n + 5), 1); };
   const __m256 x = four(0), y = four(2);

@@ -43,28 +43,29 @@ class Around {
     for (int r = 0; r < 4; ++r) rows[r] = {{low[r].a, own[r].a}, {own[r].b, high[r].b}};
   }
   /// Differences over two cells along an axis at the corners i + 2 j + 4 k, of what rows() told.
-  HWY_INLINE void differences(int axis, const Quad<D> rows[4], F out[8]) const {
-    if (axis == 0) {
+  template <int axis>
+  HWY_INLINE void differences(const Quad<D> rows[4], F out[8]) const {
+    if constexpr (axis == 0) {
       for (int r = 0; r < 4; ++r)
         out[2 * r] = hn::Sub(rows[r].high.a, rows[r].low.a), out[2 * r + 1] = hn::Sub(rows[r].high.b, rows[r].low.b);
-      return;
-    }
-    // The rows of the side before and after; across them the other axis.
-    const ptrdiff_t along = axis == 1 ? source_.to_row : source_.to_layer, across = axis == 1 ? source_.to_layer : source_.to_row;
-    Pair<D> beyond[4];
-    if (inner) {
-      source_.pairs(corner_, {-along, across - along, 2 * along, 2 * along + across}, beyond);
     } else {
-      const I before = hn::Add(corner_, step(first[axis], 0, -int(along))),
-              after = hn::Add(corner_, step(last[axis], int(along), int(2 * along)));
-      source_.pairs(before, {0, across}, beyond), source_.pairs(after, {0, across}, beyond + 2);
-    }
-    const int s = axis == 1 ? 1 : 2, t = 3 - s;  // numbers of rows from one to the next along and across
-    for (int n = 0; n < 2; ++n) {
-      const Quad<D>&own = rows[n * t], &next = rows[n * t + s];
-      F *lower = out + 2 * (n * t), *upper = lower + 2 * s;
-      lower[0] = hn::Sub(next.low.b, beyond[n].a), lower[1] = hn::Sub(next.high.a, beyond[n].b);
-      upper[0] = hn::Sub(beyond[2 + n].a, own.low.b), upper[1] = hn::Sub(beyond[2 + n].b, own.high.a);
+      // The rows beyond, on the side before and the one after, each at both places across.
+      const ptrdiff_t along = axis == 1 ? source_.to_row : source_.to_layer, across = axis == 1 ? source_.to_layer : source_.to_row;
+      Pair<D> beyond[4];
+      if (inner) {
+        source_.pairs(corner_, {-along, across - along, 2 * along, 2 * along + across}, beyond);
+      } else {
+        source_.pairs(hn::Add(corner_, step(first[axis], 0, -int(along))), {0, across}, beyond);
+        source_.pairs(hn::Add(corner_, step(last[axis], int(along), int(2 * along))), {0, across}, beyond + 2);
+      }
+      constexpr int s = axis, t = 3 - axis;  // numbers of rows from one to the next along and across
+      const auto side = [&](int n) HWY_ATTR {
+        const Quad<D>&own = rows[n * t], &next = rows[n * t + s];
+        F *lower = out + 2 * (n * t), *upper = lower + 2 * s;
+        lower[0] = hn::Sub(next.low.b, beyond[n].a), lower[1] = hn::Sub(next.high.a, beyond[n].b);
+        upper[0] = hn::Sub(beyond[2 + n].a, own.low.b), upper[1] = hn::Sub(beyond[2 + n].b, own.high.a);
+      };
+      side(0), side(1);
     }
   }
   /// Between the corners.

@@ -158,26 +158,40 @@ class PacketCells {
     const F share = hn::Mul(pass, hn::Min(one, hn::Mul(length, tau_mean)));
     const F allowed =
         hn::Mul(hn::Set(d, tolerance), mul_add(share, hn::Set(d, 0.4f), hn::Mul(length, hn::Set(d, float(0.3 / plan.budget.length)))));
-    F jump = zero;
+    F kinks[2] = {hn::Set(d, 2.0f), hn::Set(d, 2.0f)};  // where the light jumps
     if constexpr (shaded) {
       light.cell(source, inside);
       const auto lit = light.error(from, way);
       const F weight = hn::Mul(pass, taken);
-      error = hn::Max(error, hn::Mul(weight, lit.bend)), jump = hn::Mul(weight, lit.jump);
+      error = hn::Max(error, hn::Mul(weight, lit.bend));
+      const M jumping = hn::And(look, hn::Gt(hn::Mul(weight, lit.jump), allowed));
+      if (!hn::AllFalse(d, jumping)) light.jumps(from, way, lit, jumping, kinks);
     }
-    F count = one, per_count = one, end = one, target = f.last;
-    if (!hn::AllFalse(d, hn::And(look, hn::Gt(hn::Max(error, jump), allowed)))) {
-      const F per_allowed = hn::Div(one, hn::Max(allowed, hn::Set(d, 1e-30f)));
-      const F parts = hn::Max(hn::Sqrt(hn::Mul(error, per_allowed)), hn::Mul(jump, per_allowed));
+    F count = one, per_count = one;
+    if (!hn::AllFalse(d, hn::And(look, hn::Gt(error, allowed)))) {
+      const F parts = hn::Sqrt(hn::Div(error, hn::Max(allowed, hn::Set(d, 1e-30f))));
       count = hn::Max(one, hn::Min(hn::Ceil(parts), hn::Set(d, 64.0f)));
-      per_count = hn::Div(one, count), end = per_count;
-      target = hn::IfThenElse(hn::Eq(count, one), f.last, f.at(per_count));
+      per_count = hn::Div(one, count);
     }
     const F stop = hn::Set(d, plan.budget.stop_below);
     may_hide(range, shaded ? one : zero);
 
     // Pieces, cut where the value meets the knots.
-    F k = zero, v = f.a, s = zero;
+    F k = zero, v = f.a, s = zero, end, target;
+    M at_kink;
+    const auto aim = [&] HWY_ATTR {
+      const F after = hn::Add(k, one);
+      const M final_piece = hn::Ge(after, count);
+      end = hn::IfThenElse(final_piece, one, hn::Mul(after, per_count));
+      at_kink = hn::MaskFromVec(zero);
+      if constexpr (shaded) {
+        const F kink = hn::IfThenElse(hn::Gt(kinks[0], s), kinks[0], kinks[1]);
+        at_kink = hn::And(hn::Gt(kink, s), hn::Lt(kink, end));
+        end = hn::IfThenElse(at_kink, kink, end);
+      }
+      target = hn::IfThenElse(hn::AndNot(at_kink, final_piece), f.last, f.at(end));
+    };
+    aim();
     typename MediumLanes<D>::Line& l = line_;
     for (;;) {
       const M up = hn::Ge(target, v);
@@ -206,7 +220,7 @@ class PacketCells {
                 }
               });
       // On to the next line, or to the next piece.
-      k = hn::IfThenElse(ends, hn::Add(k, one), k);
+      k = hn::IfThenElse(hn::AndNot(at_kink, ends), hn::Add(k, one), k);
       look = hn::And(look, hn::And(hn::Lt(k, count), hn::Ge(sum.pass, stop)));
       if (hn::AllFalse(d, look)) return;
       v = next, s = to;
@@ -215,10 +229,7 @@ class PacketCells {
                              at_);
         l = medium.line(at_);
       }
-      const F after = hn::Add(k, one), there = hn::Mul(after, per_count);
-      const M final_piece = hn::Ge(after, count);
-      end = hn::IfThenElse(ends, hn::IfThenElse(final_piece, one, there), end);
-      target = hn::IfThenElse(ends, hn::IfThenElse(final_piece, f.last, f.at(there)), target);
+      aim();
     }
   }
 

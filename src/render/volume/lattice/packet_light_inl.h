@@ -205,29 +205,58 @@ class CellLight {
     const Around<D, T> around(source, at);
     Quad<D> rows[4];
     around.rows(rows);
-    for (int a = 0; a < 3; ++a) around.differences(a, rows, slope_[a]), first_[a] = around.first[a], last_[a] = around.last[a];
+    around.template differences<0>(rows, slope_[0]), around.template differences<1>(rows, slope_[1]);
+    around.template differences<2>(rows, slope_[2]);
+    for (int a = 0; a < 3; ++a) first_[a] = around.first[a], last_[a] = around.last[a];
   }
 
-  /// What one place on the way gets wrong of the light on all of it: where the light bends, and where it jumps (a surface that turns over,
-  /// a lamp that begins to reach it). The one falls with the square of the number of parts, the other with the number.
+  /// What one place on the way gets wrong of the light on all of it where the light bends; it falls with the square of the number of parts.
+  /// And by how much it jumps between the ends (a surface that turns over, a lamp that begins to reach it), or may jump forth and back.
   struct Error {
     F bend, jump;
+    I sides[2];
   };
   HWY_INLINE Error error(const F from[3], const F way[3]) const {
     const D d;
-    const F zero = hn::Zero(d), half = hn::Set(d, 0.5f);
+    const F zero = hn::Zero(d);
     F g0[3], g1[3], nearest[2];
     gradient(from, way, zero, g0), gradient(from, way, hn::Set(d, 1.0f), g1);
     const FieldSurface<D> s0 = lighting_.surface(g0), s1 = lighting_.surface(g1);
-    I sides[2];
-    const LitLanes<D> l0 = lighting_.on(s0, sides[0], nearest[0]), l1 = lighting_.on(s1, sides[1], nearest[1]);
+    Error e;
+    const LitLanes<D> l0 = lighting_.on(s0, e.sides[0], nearest[0]), l1 = lighting_.on(s1, e.sides[1], nearest[1]);
     const auto both = hn::Gt(hn::Min(s0.much, s1.much), zero);
     // For an angle a the light bends by a^2 / 24 of its second derivative, with a^2 = 2 (1 - cos a).
     const F turn = hn::Sub(hn::Set(d, 1.0f), Lighting<D>::dot(s0.normal, s1.normal));
     const F bend = hn::Mul(turn, hn::Mul(lighting_.bend(hn::Max(nearest[0], nearest[1]), turn), hn::Set(d, 1.0f / 12)));
     const F apart = hn::Add(hn::Abs(hn::Sub(l0.diffuse, l1.diffuse)), hn::Abs(hn::Sub(l0.specular, l1.specular)));
-    const auto kinked = hn::RebindMask(d, hn::Ne(sides[0], sides[1]));
-    return {hn::IfThenElseZero(both, bend), hn::IfThenElseZero(hn::And(both, kinked), hn::Mul(half, apart))};
+    const auto kinked = hn::RebindMask(d, hn::Ne(e.sides[0], e.sides[1]));
+    const auto grazing = hn::Lt(hn::Min(hn::Abs(s0.along), hn::Abs(s1.along)), turn);
+    e.bend = hn::IfThenElseZero(both, bend);
+    e.jump = hn::IfThenElseZero(both, hn::IfThenElse(kinked, apart, hn::IfThenElseZero(grazing, turn)));
+    return e;
+  }
+
+  /// Where the light jumps on the way of the lanes told, at most twice; 2 where it does not.
+  HWY_NOINLINE void jumps(const F from[3], const F way[3], const Error& e, hn::Mask<D> which, F at[2]) const {
+    const D d;
+    const F zero = hn::Zero(d), half = hn::Set(d, 0.5f), one = hn::Set(d, 1.0f), none = hn::Set(d, 2.0f);
+    // Ever smaller parts that begin on one side and end on another.
+    const auto first = [&](F begin, F end, I side) HWY_ATTR {
+      for (int n = 0; n < 14; ++n) {
+        const F middle = hn::Mul(half, hn::Add(begin, end));
+        const auto before = hn::RebindMask(d, hn::Eq(sides(from, way, middle), side));
+        begin = hn::IfThenElse(before, middle, begin), end = hn::IfThenElse(before, end, middle);
+      }
+      return end;
+    };
+    const auto other = [&](I a, I b) HWY_ATTR { return hn::RebindMask(d, hn::Ne(a, b)); };
+    const I& last = e.sides[1];
+    const auto early = other(sides(from, way, half), e.sides[0]), one_at_least = hn::And(which, hn::Or(early, other(e.sides[0], last)));
+    at[0] = first(hn::IfThenElse(early, zero, half), hn::IfThenElse(early, half, one), e.sides[0]);
+    const I after = sides(from, way, at[0]);
+    const auto two = hn::And(one_at_least, other(after, last));
+    at[1] = hn::AllFalse(d, two) ? none : hn::IfThenElse(two, first(at[0], one, after), none);
+    at[0] = hn::IfThenElse(one_at_least, at[0], none);
   }
 
   HWY_INLINE LitLanes<D> at(const F from[3], const F way[3], F s) const {
@@ -237,9 +266,15 @@ class CellLight {
   }
 
  private:
+  HWY_INLINE I sides(const F from[3], const F way[3], F s) const {
+    F g[3], nearest;
+    I found;
+    gradient(from, way, s, g);
+    (void)lighting_.on(lighting_.surface(g), found, nearest);
+    return found;
+  }
   /// World gradient at the share s of the way.
   HWY_INLINE void gradient(const F from[3], const F way[3], F s, F out[3]) const {
-    const D d;
     F f[3], g[3];
     for (int a = 0; a < 3; ++a) f[a] = mul_add(way[a], s, from[a]);
     for (int a = 0; a < 3; ++a) g[a] = hn::Div(Around<D, T>::trilinear(slope_[a], f), Around<D, T>::apart(first_[a], last_[a], f[a]));

@@ -81,6 +81,11 @@ struct StrideLight {
   Parabola<D> diffuse, specular;
   F error;
 
+  /// Rays so near to the surface's edge that it may turn over and back between the ends.
+  static HWY_INLINE hn::Mask<D> grazing(const LitPlace<D>& p0, const LitPlace<D>& p2) {
+    const F turn = hn::Sub(hn::Set(D(), 1.0f), Lighting<D>::dot(p0.surface.normal, p2.surface.normal));
+    return hn::Lt(hn::Min(hn::Abs(p0.surface.along), hn::Abs(p2.surface.along)), turn);
+  }
   /// A straight line between the ends of both. Its error is more than anybody accepts where there is a kink.
   static HWY_INLINE StrideLight straight(const Lighting<D>& lighting, const LitPlace<D>& p0, const LitPlace<D>& p2) {
     const D d;
@@ -107,8 +112,11 @@ struct StrideLight {
     const F lobe = hn::Mul(square, hn::Mul(hn::Set(d, lobe_share), lighting.bend(nearest, hn::Max(turn01, turn12))));
     const F bend = hn::Max(hn::Mul(hn::Set(d, 2.0f), hn::Add(hn::Abs(l.diffuse.c), hn::Abs(l.specular.c))), lobe);
     const F share = mul_add(square, hn::Set(d, share_turned * lighting.material().power), hn::Set(d, share_least));
-    const auto kinks = hn::Or(kinked(p0.sides, p1.sides), kinked(p1.sides, p2.sides));
-    l.error = hn::Mul(bend, hn::IfThenElse(kinks, hn::Max(share, hn::Set(d, share_kinked)), share));
+    // A jump may lie anywhere in its half, which has about half of what is taken.
+    const auto jump = [&](const LitPlace<D>& a, const LitPlace<D>& b) HWY_ATTR {
+      return hn::IfThenElseZero(kinked(a.sides, b.sides), hn::Mul(hn::Set(d, share_kinked), apart(a.light, b.light)));
+    };
+    l.error = hn::Max(hn::Mul(bend, share), hn::Add(jump(p0, p1), jump(p1, p2)));
     return l;
   }
   /// Where the surface turns over between the ends, and nothing else is a kink: each face on its part of the way, lit by a straight line
@@ -141,8 +149,6 @@ struct StrideLight {
     l.diffuse = mean(p0.light.diffuse, back0.diffuse, p2.light.diffuse, back2.diffuse);
     l.specular = mean(p0.light.specular, back0.specular, p2.light.specular, back2.specular);
     // The jump, where the turn is not even or what lies before hides more of the end.
-    const auto apart = [](const LitLanes<D>& x, const LitLanes<D>& y)
-                           HWY_ATTR { return hn::Add(hn::Abs(hn::Sub(x.diffuse, y.diffuse)), hn::Abs(hn::Sub(x.specular, y.specular))); };
     const F jump = hn::Add(apart(p2.light, back2), apart(p0.light, back0));
     const F turn = hn::Sub(one, Lighting<D>::dot(p0.surface.normal, p2.surface.normal));
     l.error = mul_add(jump, mul_add(hn::Set(d, share_hidden), depth, hn::Mul(hn::Set(d, share_uneven), turn)),
@@ -157,6 +163,9 @@ struct StrideLight {
  private:
   static constexpr float lobe_share = 0.05f, share_least = 1.0f / 256, share_turned = 1.0f / 128, share_kinked = 1.0f / 4;
   static constexpr float share_uneven = 0.25f, share_hidden = 1.0f / 16;
+  static HWY_INLINE F apart(const LitLanes<D>& x, const LitLanes<D>& y) {
+    return hn::Add(hn::Abs(hn::Sub(x.diffuse, y.diffuse)), hn::Abs(hn::Sub(x.specular, y.specular)));
+  }
   static HWY_INLINE hn::Mask<D> kinked(Int<D> a, Int<D> b) { return hn::RebindMask(D(), hn::Ne(a, b)); }
 };
 

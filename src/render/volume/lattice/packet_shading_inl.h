@@ -34,13 +34,13 @@ class SlopeFinder {
     const Around<D, T> around(source_, cell);
     Quad<D> rows[4];
     around.rows(rows);
-    F change[3], slope[3];
-    for (int a = 0; a < 3; ++a) {
-      F corners[8];
-      around.differences(a, rows, corners);
-      change[a] = around.trilinear(corners, f), slope[a] = hn::Mul(change[a], half);
-      if (!around.inner) slope[a] = hn::Div(change[a], around.apart(around.first[a], around.last[a], f[a]));
-    }
+    F change[3], slope[3], corners[8];
+    around.template differences<0>(rows, corners), change[0] = around.trilinear(corners, f);
+    around.template differences<1>(rows, corners), change[1] = around.trilinear(corners, f);
+    around.template differences<2>(rows, corners), change[2] = around.trilinear(corners, f);
+    for (int a = 0; a < 3; ++a) slope[a] = hn::Mul(change[a], half);
+    if (!around.inner)
+      for (int a = 0; a < 3; ++a) slope[a] = hn::Div(change[a], around.apart(around.first[a], around.last[a], f[a]));
     const auto holes = hn::IsNaN(hn::Add(change[0], hn::Add(change[1], change[2])));
     if (!hn::AllFalse(d, holes)) beside_holes(around, change, slope);
     auto square = hn::Zero(d);

@@ -81,7 +81,9 @@ struct SumLanes {
 
 /// Of what a stride's value may be off, the share that counts (docs/decisions/0007-strides.md). Longer strides would tell too little of how
 /// a lit surface turns.
-constexpr float share_off = 0.014f, share_off_lit = 0.02f;
+constexpr float share_off = 0.01f, share_off_lit = 0.014f;
+/// What a brick allows need not be so on this ray: so much of it counts at least, and this many times what the values met tell.
+constexpr float least_off = 0.25f, times_met = 1.5f;
 
 /// What two strides of the same length, one after the other, would bring and get wrong. Places are told from the middle between them on,
 /// in strides.
@@ -146,7 +148,8 @@ HWY_INLINE Strides<D> strides(const SumLanes<D>& medium, const Medium& colors, f
       hn::Mul(hn::Mul(hn::Mul(twice, twice), hn::Mul(hn::Max(hn::Max(p0.tau, p2.tau), hn::Mul(half, sum)), hn::Max(steep_a, steep_b))),
               hn::Mul(change, hn::Set(d, 0.05f)));
   const F uneven = hn::Mul(hn::Mul(hn::Set(d, 0.5f), world), hn::Add(hn::Abs(hn::Sub(mean_a, even_a)), hn::Abs(hn::Sub(mean_b, even_b))));
-  const F per_steep = hn::Mul(world, hn::Mul(off, hn::Set(d, share)));
+  const F counted = hn::Max(hn::Mul(off, hn::Set(d, least_off)), hn::Min(off, hn::Mul(hn::Abs(arch), hn::Set(d, times_met))));
+  const F per_steep = hn::Mul(world, hn::Mul(counted, hn::Set(d, share)));
   F e = hn::Mul(per_steep, hn::Add(steep_a, steep_b));
   s.ahead = hn::Mul(per_steep, hn::Sub(steep_b, steep_a));
   e = mul_add(hn::Mul(taken, hn::Set(d, 0.25f * tolerance)), hn::Mul(widths, widths), e);
@@ -155,7 +158,7 @@ HWY_INLINE Strides<D> strides(const SumLanes<D>& medium, const Medium& colors, f
   // 1/3 + depth^2 / 90.
   const F ends = hn::Mul(hn::Min(hn::Mul(s.depth, s.depth), hn::Set(d, 16.0f)), hn::Set(d, 1.0f / 90));
   e = mul_add(taken, hn::Mul(hn::Mul(hn::Abs(arch), hn::Set(d, 0.5f * colors.color_slope())), ends), e);
-  s.error = mul_add(taken, hn::Mul(off, hn::Set(d, share * colors.color_slope())), e);
+  s.error = mul_add(taken, hn::Mul(counted, hn::Set(d, share * colors.color_slope())), e);
   return s;
 }
 

@@ -156,7 +156,6 @@ class Climb {
 
   HWY_INLINE void cell(M m, const Walk<D>& w) {
     const D d;
-    const IntTag<D> di;
     const F zero = hn::Zero(d), one = hn::Set(d, 1.0f);
     F low[3];
     Int<D> at[3];
