@@ -63,16 +63,20 @@ TEST_CASE("brick packets: the picture is that of the volume in memory, shaded or
     float most = 0;
     for (size_t i = 3; i < whole.rgba.size(); i += 4) most = std::max(most, whole.rgba[i]);
     CHECK(most > 0.9f);
-    // What can be picked lies at the same depth, but where half of the light is gone near an empty stretch.
+    // What can be picked lies at the same depth, but where half of the light is gone near an empty stretch. How far apart they may lie in
+    // thin parts is the tolerance over what is taken there, so it is made small.
+    VolumeItem near = look_of(in_memory(m), shaded), near_bricks = look_of(m.dataset, shaded);
+    near.sampling.tolerance = near_bricks.sampling.tolerance = 1.0 / 8192;
+    const Frame exact = draw(scene_of({near}), p), exact_bricks = draw(scene_of({near_bricks}), p);
     size_t picked = 0, off = 0;
-    for (size_t i = 0; i < whole.depth.size(); ++i) {
-      if (!(whole.depth[i] < HUGE_VALF) || !(bricks.depth[i] < HUGE_VALF)) continue;
-      CHECK(bricks.ids[i] == 1);
-      off += std::abs(whole.depth[i] - bricks.depth[i]) > 0.3f;
+    for (size_t i = 0; i < exact.depth.size(); ++i) {
+      if (!(exact.depth[i] < HUGE_VALF) || !(exact_bricks.depth[i] < HUGE_VALF)) continue;
+      CHECK(exact_bricks.ids[i] == 1);
+      off += std::abs(exact.depth[i] - exact_bricks.depth[i]) > 0.1f;
       ++picked;
     }
     CHECK(picked > 500);
-    CHECK(off <= picked / 200);
+    CHECK(off <= picked / 500);
   }
 }
 

@@ -3,6 +3,7 @@
 // empty space are kept with them.
 #include <hwy/targets.h>
 
+#include "render/volume/lattice/gathers.h"
 #include "volume_cells_support.h"
 #include "volume_support.h"
 
@@ -11,21 +12,26 @@ using namespace sg::test;
 
 namespace {
 
-/// Draws with the best target and with each alone; the number of targets.
+/// Draws with the best target and with each alone, by gathers and by single loads; the number of targets.
 template <class Draw>
 size_t same_on_all_targets(Draw&& draw_it) {
+  const bool measured = volume::loads_beat_gathers();
   const Frame best = draw_it();
   CHECK(*std::max_element(best.rgba.begin(), best.rgba.end()) > 0.2f);
   const auto targets = hwy::SupportedAndGeneratedTargets();
   for (const int64_t target : targets) {
     hwy::SetSupportedTargetsForTest(target);
     hwy::GetChosenTarget().Update(target);
-    INFO(std::string(hwy::TargetName(target)));
-    const Frame frame = draw_it();
-    CHECK(largest_difference(best, frame) == 0);
-    CHECK(best.depth == frame.depth);
-    CHECK(same_bytes(best, frame));
+    for (const bool loads : {false, true}) {
+      volume::set_loads_beat_gathers(loads);
+      INFO(std::string(hwy::TargetName(target)) << (loads ? ", by loads" : ", by gathers"));
+      const Frame frame = draw_it();
+      CHECK(largest_difference(best, frame) == 0);
+      CHECK(best.depth == frame.depth);
+      CHECK(same_bytes(best, frame));
+    }
   }
+  volume::set_loads_beat_gathers(measured);
   hwy::SetSupportedTargetsForTest(0);
   hwy::GetChosenTarget().DeInit();
   return targets.size();

@@ -20,8 +20,7 @@ constexpr size_t rows_at_once = 256, words_at_once = 512 * widen_words;
 struct BitBricks {
   size_t rows, layers, row, layer, words, pad;
 
-  explicit BitBricks(const std::array<size_t, 3>& dims)
-      : rows(dims[1]), layers(dims[2]), row(dims[0] / 64 + 1), layer(row * (rows + 1)) {
+  explicit BitBricks(const std::array<size_t, 3>& dims) : rows(dims[1]), layers(dims[2]), row(dims[0] / 64 + 1), layer(row * (rows + 1)) {
     words = (layer * layers + widen_words - 1) / widen_words * widen_words;
     pad = layer + row + 2 * widen_words;
   }

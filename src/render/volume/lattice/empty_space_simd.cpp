@@ -66,7 +66,8 @@ bool widen_in(const BitLattice& lattice, const uint64_t* from, size_t begin, siz
       const uint64_t* p = across + widen_words + i;
       const V here = hn::Load(d, p), before = hn::LoadU(d, p - 1), after = hn::LoadU(d, p + 1);
       const V in_word = hn::Or(here, hn::Or(hn::ShiftLeft<1>(here), hn::ShiftRight<1>(here)));
-      const V all = hn::And(hn::Or(in_word, hn::Or(hn::ShiftRight<63>(before), hn::ShiftLeft<63>(after))), hn::LoadU(d, lattice.used + b + i));
+      const V all =
+          hn::And(hn::Or(in_word, hn::Or(hn::ShiftRight<63>(before), hn::ShiftLeft<63>(after))), hn::LoadU(d, lattice.used + b + i));
       const V found = hn::AndNot(hn::LoadU(d, from + b + i), all);
       hn::StoreU(all, d, to + b + i);
       for (int k = 0; k < plane_count; ++k) hn::StoreU(hn::Or(hn::LoadU(d, planes[k] + b + i), found), d, planes[k] + b + i);

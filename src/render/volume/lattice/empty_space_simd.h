@@ -28,7 +28,8 @@ struct BitLattice {
 constexpr size_t widen_words = 8;
 /// For the words begin .. end: to = every bit of `from` and its 26 neighbours. What is new is set in the `planes` too. Returns whether
 /// there is anything new.
-bool widen(const BitLattice& lattice, const uint64_t* from, size_t begin, size_t end, uint64_t* to, uint64_t* const* planes, int plane_count);
+bool widen(const BitLattice& lattice, const uint64_t* from, size_t begin, size_t end, uint64_t* to, uint64_t* const* planes,
+           int plane_count);
 
 constexpr int distance_planes = 4;
 /// distance[i]: bit p is that of planes[p]; 15 where bit i of `reached` is not set.

@@ -22,8 +22,7 @@ class Around {
   hn::Mask<D> first[3], last[3];  ///< is it the first or last cell of an axis?
   bool inner = true;              ///< no lane's is
 
-  HWY_INLINE Around(const Source<D, T>& source, const I cell[3])
-      : source_(source), corner_(source.offset(cell[0], cell[1], cell[2])) {
+  HWY_INLINE Around(const Source<D, T>& source, const I cell[3]) : source_(source), corner_(source.offset(cell[0], cell[1], cell[2])) {
     const D d;
     const IntTag<D> di;
     for (int a = 0; a < 3; ++a) {

@@ -126,8 +126,8 @@ class PacketCells {
     integrate(f, lo, hi, same, inside, from, way, t, hn::Sub(leave, t), look);
   }
 
-  HWY_INLINE void integrate(const Cubic<D>& f, F lo, F hi, M same, [[maybe_unused]] const I inside[3], const F from[3],
-                            const F way[3], F t, F length, M look) {
+  HWY_INLINE void integrate(const Cubic<D>& f, F lo, F hi, M same, [[maybe_unused]] const I inside[3], const F from[3], const F way[3], F t,
+                            F length, M look) {
     const D d;
     const IntTag<D> di;
     const F zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
@@ -211,7 +211,8 @@ class PacketCells {
       const F per_all = hn::Div(one, hn::Max(all, hn::Set(d, 1e-37f)));
       const F by_emission = hn::Mul(mul_add(t1, next, mul_add(tm, middle, hn::Mul(t0, v))), per_all);
       const F weight = hn::Mul(mul_add(half, tm, t1), per_all);
-      segment(look, mul_add(length, s, t), part, hn::Mul(part, hn::Mul(all, hn::Set(d, 1.0f / 6))), v, next, by_emission, weight,
+      const F taus[3] = {t0, hn::Mul(tm, hn::Set(d, 0.25f)), t1};
+      segment(look, mul_add(length, s, t), part, hn::Mul(part, hn::Mul(all, hn::Set(d, 1.0f / 6))), taus, v, next, by_emission, weight,
               [&](F at, F share, F& red, F& green, F& blue) HWY_ATTR {
                 if constexpr (shaded) {
                   const auto on = light.at(from, way, mul_add(hn::Sub(to, s), at, s));
@@ -233,10 +234,26 @@ class PacketCells {
     }
   }
 
+  /// The share of the way after which the share q of its depth is passed; tau at the begin, the middle and the end.
+  static HWY_INLINE F way_of_depth(const F tau[3], F q) {
+    const D d;
+    const F zero = hn::Zero(d), half = hn::Set(d, 0.5f), least = hn::Set(d, 1e-30f);
+    const F front = hn::Add(tau[0], tau[1]), back = hn::Add(tau[1], tau[2]);
+    const F x = hn::Mul(q, hn::Add(front, back));
+    const M in_front = hn::Le(x, front);
+    // a s + (b - a) s^2 / 2 = rest / 2
+    const F a = hn::IfThenElse(in_front, tau[0], tau[1]), b = hn::IfThenElse(in_front, tau[1], tau[2]);
+    const F rest = hn::IfThenElse(in_front, x, hn::Sub(x, front)), sum = hn::Add(a, b);
+    const F root = hn::Sqrt(hn::Max(zero, mul_add(a, a, hn::Mul(rest, hn::Sub(b, a)))));
+    const F s = hn::Div(rest, hn::Max(hn::Add(a, root), least));
+    return mul_add(half, hn::Min(hn::IfThenElse(hn::Gt(sum, zero), s, hn::Set(d, 1.0f)), hn::Set(d, 1.0f)),
+                   hn::IfThenElse(in_front, zero, half));
+  }
+
   /// Pieces::segment of optics/integrate.cpp. `lit(at, share, r, g, b)` lights the colours and the share of what is mirrored, at the
   /// share `at` of the part.
   template <class Lit>
-  HWY_INLINE void segment(M look, F here, F part, F depth, F a, F b, F middle, F weight, const Lit& lit) {
+  HWY_INLINE void segment(M look, F here, F part, F depth, const F tau[3], F a, F b, F middle, F weight, const Lit& lit) {
     const D d;
     const F zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
     const M drawn = hn::And(look, hn::Gt(depth, zero));
@@ -267,7 +284,11 @@ class PacketCells {
     const F after = hn::Mul(sum.pass, pass);
     const M halved = hn::And(drawn, hn::And(hn::Lt(after, half), hn::Lt(sum.half_at, zero)));
     if (!hn::AllFalse(d, halved)) {
-      const F share = hn::Min(one, hn::Div(hn::Sub(sum.pass, half), hn::Max(hn::Sub(sum.pass, after), hn::Set(d, 1e-30f))));
+      // ln(2 pass) = 2 atanh z
+      const F z = hn::Div(hn::Sub(sum.pass, half), hn::Add(sum.pass, half)), z2 = hn::Mul(z, z);
+      const F log =
+          hn::Mul(hn::Add(z, z), mul_add(z2, mul_add(z2, mul_add(z2, hn::Set(d, 1.0f / 7), hn::Set(d, 0.2f)), hn::Set(d, 1.0f / 3)), one));
+      const F share = way_of_depth(tau, hn::Max(zero, hn::Min(hn::Div(log, hn::Max(depth, hn::Set(d, 1e-30f))), one)));
       sum.half_at = hn::IfThenElse(halved, mul_add(part, share, here), sum.half_at);
     }
     sum.pass = hn::IfThenElse(drawn, after, sum.pass);

@@ -55,7 +55,8 @@ struct MediumLanes {
   bool few;
   bool loads;  ///< of gathers.h
   F few_columns[6];
-  HWY_INLINE explicit MediumLanes(const Medium& m) : medium(m), columns(m.columns()), few(m.lines().size() <= size_t(lanes_of<D>)), loads(loads_beat_gathers()) {
+  HWY_INLINE explicit MediumLanes(const Medium& m)
+      : medium(m), columns(m.columns()), few(m.lines().size() <= size_t(lanes_of<D>)), loads(loads_beat_gathers()) {
     const D d;
     const std::vector<float>* all[6] = {&columns.origin, &columns.hi, &columns.at, &columns.slope, &columns.curve, &columns.twist};
     for (int c = 0; c < 6; ++c) {

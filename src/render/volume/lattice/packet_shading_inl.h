@@ -57,7 +57,8 @@ class SlopeFinder {
     for (int a = 0; a < 3; ++a) {
       // Clamped to the border, a place is a sample.
       Place<D> lower[3] = {at_[0], at_[1], at_[2]}, upper[3] = {at_[0], at_[1], at_[2]};
-      lower[a] = {hn::Max(hn::Sub(at_[a].cell, hn::Set(di, 1)), hn::Zero(di)), hn::IfThenElseZero(hn::Not(around.first[a]), at_[a].fraction)};
+      lower[a] = {hn::Max(hn::Sub(at_[a].cell, hn::Set(di, 1)), hn::Zero(di)),
+                  hn::IfThenElseZero(hn::Not(around.first[a]), at_[a].fraction)};
       upper[a] = {hn::Min(hn::Add(at_[a].cell, hn::Set(di, 1)), source_.last_cell[a]),
                   hn::IfThenElse(around.last[a], hn::Set(d, 1.0f), at_[a].fraction)};
       const F lo = source_.value(lower[0], lower[1], lower[2]), hi = source_.value(upper[0], upper[1], upper[2]);

@@ -115,7 +115,8 @@ class TolerantPacket {
     const I row = hn::Set(di, int(dims[0])), layer = hn::Set(di, int(dims[0] * dims[1]));
     const I id = hn::Add(b.at[0], hn::Add(hn::Mul(b.at[1], row), hn::Mul(b.at[2], layer)));
     b.free = plan_.knobs.skip_empty && v_.any_empty ? hn::And(gather_words(d, v_.distance.data(), id, cells_.source.loads), byte) : zero;
-    b.bend = plan_.bends ? hn::And(gather_words(d, plan_.bends->codes.data(), id, cells_.source.loads), byte) : hn::Set(di, int(Bends::unbounded));
+    b.bend = plan_.bends ? hn::And(gather_words(d, plan_.bends->codes.data(), id, cells_.source.loads), byte)
+                         : hn::Set(di, int(Bends::unbounded));
     return b;
   }
 
@@ -184,8 +185,7 @@ class TolerantPacket {
         // The middle only where the ends do not do.
         const M unsure = hn::Or(hn::Gt(mul_add(taken, light.error, error), allowed), StrideLight<D>::grazing(here_lit_, lit2));
         const M rough = hn::AndNot(turned, hn::And(seen, unsure));
-        if (!hn::AllFalse(d, rough))
-          light.take(StrideLight<D>::curved(cells_.lighting, here_lit_, lit_at(t1, rough), lit2), rough);
+        if (!hn::AllFalse(d, rough)) light.take(StrideLight<D>::curved(cells_.lighting, here_lit_, lit_at(t1, rough), lit2), rough);
         error = hn::Add(error, hn::IfThenElseZero(seen, hn::Mul(taken, light.error)));
       }
     const M good = hn::And(striding, hn::Le(error, allowed));
@@ -195,7 +195,8 @@ class TolerantPacket {
       F lightening = zero;
       if constexpr (shaded) lightening = hn::Mul(hn::Set(d, 2.0f), hn::Add(hn::Abs(light.diffuse.b), hn::Abs(light.specular.b)));
       cells_.may_hide(s.change, lightening);
-      cells_.segment(drawn, t, hn::Add(world, world), s.depth, here_.value, p2.value, s.value, hn::Mul(half, hn::Add(one, s.middle)),
+      const F taus[3] = {here_.tau, p1.tau, p2.tau};
+      cells_.segment(drawn, t, hn::Add(world, world), s.depth, taus, here_.value, p2.value, s.value, hn::Mul(half, hn::Add(one, s.middle)),
                      [&](F at, F share, F& red, F& green, F& blue) HWY_ATTR {
                        if constexpr (shaded) {
                          const F x = hn::Sub(hn::Add(at, at), one);
