@@ -59,6 +59,7 @@ struct EightIndices {
                              uint64_t(_mm_extract_epi64(high, 1))};
     for (int i = 0; i < 8; ++i) at[i] = uint32_t(two[i / 2] >> 32 * (i % 2));
   }
+  HWY_INLINE explicit EightIndices(const int32_t* from) { std::memcpy(at, from, sizeof at); }
 };
 struct EightPairs {
   __m256 a, b;
@@ -100,6 +101,10 @@ HWY_INLINE void by_halves(D, Int<D> at, const Read& read) {
   }
 #endif
   if constexpr (lanes_of<D> == 8) read(EightIndices(at.raw), 0);
+}
+template <class D, class Read>
+HWY_INLINE void by_halves(D, const int32_t* at, const Read& read) {
+  for (int h = 0; h < lanes_of<D> / 8; ++h) read(EightIndices(at + 8 * h), h);
 }
 template <class D>
 HWY_INLINE hn::Vec<D> joined(D, const __m256 half[2]) {
@@ -150,9 +155,19 @@ HWY_INLINE Pair<D> gathered_pair(D d, const float* data, Int<D> at) {
   return {hn::GatherIndex(d, data, at), hn::GatherIndex(d, data + 1, at)};
 }
 
+/// Places of lanes are told by a vector, or by the array it would be loaded from: single loads need them as scalars.
+template <class D>
+HWY_INLINE Int<D> in_vector(D, Int<D> at) {
+  return at;
+}
+template <class D>
+HWY_INLINE Int<D> in_vector(D, const int32_t* at) {
+  return hn::Load(IntTag<D>(), at);
+}
+
 /// data[on[r] + at] and the next number, for every r.
-template <class D, size_t n>
-HWY_INLINE void gather_pairs(D d, const float* data, const ptrdiff_t (&on)[n], Int<D> at, [[maybe_unused]] bool loads, Pair<D>* out) {
+template <class D, size_t n, class At>
+HWY_INLINE void gather_pairs(D d, const float* data, const ptrdiff_t (&on)[n], At at, [[maybe_unused]] bool loads, Pair<D>* out) {
 #if SG_HARDWARE_GATHERS
   if constexpr (lanes_of<D> >= 8) {
     if (loads) {
@@ -168,7 +183,7 @@ HWY_INLINE void gather_pairs(D d, const float* data, const ptrdiff_t (&on)[n], I
     }
   }
 #endif
-  for (size_t r = 0; r < n; ++r) out[r] = gathered_pair(d, data + on[r], at);
+  for (size_t r = 0; r < n; ++r) out[r] = gathered_pair(d, data + on[r], in_vector(d, at));
 }
 template <class D>
 HWY_INLINE Pair<D> gather_pair(D d, const float* data, Int<D> at, bool loads) {

@@ -83,11 +83,11 @@ struct Source {
     else return gather_pair(D(), data, at, last_load, loads);
   }
   /// Pairs so many samples on from `at`, the same for all lanes.
-  template <size_t n>
-  HWY_INLINE void pairs(Int<D> at, const ptrdiff_t (&on)[n], Pair<D>* out) const {
+  template <size_t n, class At>
+  HWY_INLINE void pairs(At at, const ptrdiff_t (&on)[n], Pair<D>* out) const {
     if constexpr (std::is_same_v<T, float>) gather_pairs(D(), data, on, at, loads, out);
     else
-      for (size_t i = 0; i < n; ++i) out[i] = pair(hn::Add(at, hn::Set(IntTag<D>(), int(on[i]))));
+      for (size_t i = 0; i < n; ++i) out[i] = pair(hn::Add(in_vector(D(), at), hn::Set(IntTag<D>(), int(on[i]))));
   }
   /// Four samples in a row each.
   template <size_t n>
@@ -102,12 +102,16 @@ struct Source {
     }
   }
   /// The corners of the cell whose lowest one is there: its rows (0, 0), (1, 0), (0, 1), (1, 1) along y and z.
-  HWY_INLINE void corners(Int<D> lowest, Pair<D> rows[4]) const { pairs(lowest, {0, to_row, to_layer, to_layer + to_row}, rows); }
+  template <class At>
+  HWY_INLINE void corners(At lowest, Pair<D> rows[4]) const {
+    pairs(lowest, {0, to_row, to_layer, to_layer + to_row}, rows);
+  }
   HWY_INLINE hn::Vec<D> value(const Place<D>& x, const Place<D>& y, const Place<D>& z) const {
     return value(offset(x.cell, y.cell, z.cell), x.fraction, y.fraction, z.fraction);
   }
   /// At the fractions of the cell whose lowest corner is sample `at`.
-  HWY_INLINE hn::Vec<D> value(Int<D> at, hn::Vec<D> fx, hn::Vec<D> fy, hn::Vec<D> fz) const {
+  template <class At>
+  HWY_INLINE hn::Vec<D> value(At at, hn::Vec<D> fx, hn::Vec<D> fy, hn::Vec<D> fz) const {
     const D d;
     Pair<D> p[4];
     corners(at, p);

@@ -229,8 +229,8 @@ class March {
       now_ ^= 1;
       F values[samples_per_look];
       for (int k = 0; k < samples_per_look; ++k)
-        values[k] = source.value(hn::Load(di, here.corner[k]), hn::Load(d, here.fraction[k][0]), hn::Load(d, here.fraction[k][1]),
-                                 hn::Load(d, here.fraction[k][2]));
+        values[k] = source.value(static_cast<const int32_t*>(here.corner[k]), hn::Load(d, here.fraction[k][0]),
+                                 hn::Load(d, here.fraction[k][1]), hn::Load(d, here.fraction[k][2]));
       for (int k = 0; k < samples_per_look; ++k) {
         const F s = hn::Add(first, hn::Set(d, float(k)));
         const auto entry = entries.at(values[k]);
