@@ -26,6 +26,9 @@ constexpr float longest_stride = 2, shortest_stride = 1.0f / 8;
 constexpr float share_at_first = 0.2f, share_of_length = 0.2f, share_of_light = 0.5f;
 /// Of what is left so much may go for one stride.
 constexpr float share_at_once = 1.0f / 3;
+/// The next stride over this one is so much of what the error would allow, within these bounds. A stride that is refused costs a whole
+/// turn, so they grow slowly.
+constexpr float safety = 0.65f, least_growth = 0.5f, most_growth = 1.4f, least_if_refused = 0.4f, most_if_refused = 0.7f;
 
 template <class D, class T, bool shaded>
 class TolerantPacket {
@@ -209,11 +212,11 @@ class TolerantPacket {
     if constexpr (shaded) lit_ = hn::Or(hn::AndNot(good, lit_), hn::And(seen, good));
     take(p2, good);
     const F next_error = hn::IfThenElse(good, mul_add(pass, s.ahead, error), error);
-    // 0.7 sqrt(allowed / error)
+    // safety sqrt(allowed / error)
     const F product = hn::Max(hn::Mul(allowed, next_error), hn::Set(d, 1e-36f));
-    const F factor = hn::IfThenElseZero(hn::Eq(error, error), hn::Mul(hn::Mul(hn::Set(d, 0.7f), allowed), about_one_by_sqrt(d, product)));
-    const F longer = hn::Max(hn::Set(d, 0.5f), hn::Min(factor, hn::Set(d, 3.0f)));
-    const F shorter = hn::Max(hn::Set(d, 0.1f), hn::Min(factor, hn::Set(d, 0.7f)));
+    const F factor = hn::IfThenElseZero(hn::Eq(error, error), hn::Mul(hn::Mul(hn::Set(d, safety), allowed), about_one_by_sqrt(d, product)));
+    const F longer = hn::Max(hn::Set(d, least_growth), hn::Min(factor, hn::Set(d, most_growth)));
+    const F shorter = hn::Max(hn::Set(d, least_if_refused), hn::Min(factor, hn::Set(d, most_if_refused)));
     F next = hn::Min(hn::Mul(stride_, hn::IfThenElse(good, longer, shorter)), hn::Set(d, longest_stride));
     // Cells are crossed where strides of about the shortest were refused.
     next = hn::IfThenElse(hn::Lt(stride_, hn::Set(d, 2 * shortest_stride)), next, hn::Max(next, hn::Set(d, shortest_stride)));
