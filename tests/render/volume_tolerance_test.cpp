@@ -240,10 +240,10 @@ Lattice sum_of_waves(double cells) {
 
 /// The default picture against brute force at these pixels and some others, `apart` from each other.
 void check_waves(double cells, OpacityCurve opacity, double unit, bool shaded, int per_cell, std::vector<std::pair<int, int>> pixels,
-                 int apart) {
+                 int apart, bool single_rays = false) {
   const Projection view = perspective_view(64, 64, 80, {1.9, 1.4, 2.6}, {0, 0, 0});
   Case c{"", sum_of_waves(cells), nullptr, colored(-1.7, 1.7), std::move(opacity), unit, shaded, per_cell};
-  c.data = dataset_of(c.lattice, false);
+  c.data = dataset_of(c.lattice, single_rays);  // as a rectilinear grid
   VolumeItem v = item(c.data, c.color, c.opacity);
   v.unit_distance = unit, v.shaded = shaded;
   const Scene scene = scene_of({v});
@@ -266,7 +266,9 @@ TEST_CASE("volume: rays that graze dense lit surfaces stay within the tolerance"
   const OpacityCurve ramp = curve({{-1.7, 0}, {-0.2, 0}, {1.7, 0.8}}), solid = curve({{-2, 0}, {0.2, 0}, {0.6, 0.95}, {2, 0.95}});
   for (const double cells : {2.2, 3.0, 4.0, 6.0, 10.0})
     for (const OpacityCurve& opacity : {ramp, solid})
-      check_waves(cells, opacity, 0.03, true, 2000, {{46, 26}, {28, 35}, {30, 36}, {16, 21}, {61, 11}, {46, 51}, {23, 63}}, 9);
+      for (const bool single_rays : {false, true})
+        check_waves(cells, opacity, 0.03, true, 2000, {{46, 26}, {28, 35}, {30, 36}, {16, 21}, {61, 11}, {46, 51}, {23, 63}}, 9,
+                    single_rays);
 }
 
 TEST_CASE("volume: strides through waves of all lengths stay within the tolerance") {

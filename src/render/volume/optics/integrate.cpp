@@ -80,7 +80,7 @@ double optical_depth(const Detail& detail, const Stretch& s, RayField& walker) {
 
 namespace {
 
-constexpr int most_cuts = 6;   // halvings of a stretch for its light
+constexpr int most_cuts = 12;  // halvings of a stretch for its light: where it jumps only the part with the jump is cut on
 constexpr float deep = 0.05f;  // optical depth from which on the order within a segment is seen
 
 /// Where there is light on the ends of a part of a stretch, linear between them.
@@ -213,12 +213,15 @@ void composite_lit(const Look& look, const Stretch& s, float lo, float hi, const
                    RayState& state) {
   const float depth = float(s.to - s.from) * look.medium.most_tau(lo, hi);
   const float weight = state.sum.transmittance * std::min(depth, 1.0f);
-  const float change = difference(first, last);
-  if (cuts < most_cuts && weight * change > 0.25f * float(look.budget.tolerance)) {
+  // What may be wrong of it: a share of the tolerance by the light that is taken, one by the length.
+  const float allowed = float(look.budget.tolerance) * (0.5f * weight + 0.5f * float((s.to - s.from) / look.budget.length));
+  // Ends that agree tell little of a way on which much is taken: a surface may turn over and back.
+  const float change = std::max(difference(first, last), cuts <= 1 ? 0.1f : 0.0f);
+  if (cuts < most_cuts && weight * change > allowed) {
     const double middle = 0.5 * (s.from + s.to);
     const Lit there = light_on(look, walker, s, middle);
     const float off = difference(there, lerp(first, last, 0.5f));
-    if (cuts == 0 || weight * off > 0.1f * float(look.budget.tolerance)) {
+    if (cuts == 0 || weight * off > allowed) {
       const Stretch a = part_of(s, s.from, middle), b = part_of(s, middle, s.to);
       if (!look.medium.clear(a.lowest(), a.highest()))
         composite_lit(look, a, a.lowest(), a.highest(), first, there, walker, cuts + 1, state);
