@@ -21,6 +21,12 @@ struct LitLanes {
   hn::Vec<D> diffuse, specular;
 };
 
+/// By how much light differs.
+template <class D>
+HWY_INLINE hn::Vec<D> apart(const LitLanes<D>& x, const LitLanes<D>& y) {
+  return hn::Add(hn::Abs(hn::Sub(x.diffuse, y.diffuse)), hn::Abs(hn::Sub(x.specular, y.specular)));
+}
+
 /// Where a field has a gradient: a surface, seen along a ray.
 template <class D>
 struct FieldSurface {
@@ -28,6 +34,18 @@ struct FieldSurface {
   hn::Vec<D> along;      ///< of the normal and the ray: the cosine
   hn::Vec<D> much;       ///< 0 where there is none (no gradient, or one beyond numbers), 1 and more where it is all surface
 };
+
+/// 1 - cosine of the angle by which the surface turns from one place to another.
+template <class D>
+HWY_INLINE hn::Vec<D> turn_between(const FieldSurface<D>& a, const FieldSurface<D>& b) {
+  const hn::Vec<D> cosine = mul_add(a.normal[2], b.normal[2], mul_add(a.normal[1], b.normal[1], hn::Mul(a.normal[0], b.normal[0])));
+  return hn::Sub(hn::Set(D(), 1.0f), cosine);
+}
+/// Is the ray so near to the surface's edge that it may turn over and back between two places?
+template <class D>
+HWY_INLINE hn::Mask<D> grazing(const FieldSurface<D>& a, const FieldSurface<D>& b) {
+  return hn::Lt(hn::Min(hn::Abs(a.along), hn::Abs(b.along)), turn_between(a, b));
+}
 
 /// The lamps of a picture and the rays that they are seen along.
 template <class D>
@@ -226,13 +244,11 @@ class CellLight {
     const LitLanes<D> l0 = lighting_.on(s0, e.sides[0], nearest[0]), l1 = lighting_.on(s1, e.sides[1], nearest[1]);
     const auto both = hn::Gt(hn::Min(s0.much, s1.much), zero);
     // For an angle a the light bends by a^2 / 24 of its second derivative, with a^2 = 2 (1 - cos a).
-    const F turn = hn::Sub(hn::Set(d, 1.0f), Lighting<D>::dot(s0.normal, s1.normal));
+    const F turn = turn_between(s0, s1);
     const F bend = hn::Mul(turn, hn::Mul(lighting_.bend(hn::Max(nearest[0], nearest[1]), turn), hn::Set(d, 1.0f / 12)));
-    const F apart = hn::Add(hn::Abs(hn::Sub(l0.diffuse, l1.diffuse)), hn::Abs(hn::Sub(l0.specular, l1.specular)));
     const auto kinked = hn::RebindMask(d, hn::Ne(e.sides[0], e.sides[1]));
-    const auto grazing = hn::Lt(hn::Min(hn::Abs(s0.along), hn::Abs(s1.along)), turn);
     e.bend = hn::IfThenElseZero(both, bend);
-    e.jump = hn::IfThenElseZero(both, hn::IfThenElse(kinked, apart, hn::IfThenElseZero(grazing, turn)));
+    e.jump = hn::IfThenElseZero(both, hn::IfThenElse(kinked, apart(l0, l1), hn::IfThenElseZero(grazing(s0, s1), turn)));
     return e;
   }
 

@@ -81,11 +81,6 @@ struct StrideLight {
   Parabola<D> diffuse, specular;
   F error;
 
-  /// Rays so near to the surface's edge that it may turn over and back between the ends.
-  static HWY_INLINE hn::Mask<D> grazing(const LitPlace<D>& p0, const LitPlace<D>& p2) {
-    const F turn = hn::Sub(hn::Set(D(), 1.0f), Lighting<D>::dot(p0.surface.normal, p2.surface.normal));
-    return hn::Lt(hn::Min(hn::Abs(p0.surface.along), hn::Abs(p2.surface.along)), turn);
-  }
   /// A straight line between the ends of both. Its error is more than anybody accepts where there is a kink.
   static HWY_INLINE StrideLight straight(const Lighting<D>& lighting, const LitPlace<D>& p0, const LitPlace<D>& p2) {
     const D d;
@@ -93,7 +88,7 @@ struct StrideLight {
     const auto line = [&](F a, F b) HWY_ATTR { return Parabola<D>{hn::Mul(half, hn::Add(a, b)), hn::Mul(half, hn::Sub(b, a)), zero}; };
     StrideLight l{line(p0.light.diffuse, p2.light.diffuse), line(p0.light.specular, p2.light.specular), zero};
     // The square of the angle by which the surface turns is 2 (1 - cos); an arc lies a twelfth of its bend above its chord in the mean.
-    const F turn = hn::Sub(hn::Set(d, 1.0f), Lighting<D>::dot(p0.surface.normal, p2.surface.normal));
+    const F turn = turn_between(p0.surface, p2.surface);
     l.error = hn::Mul(turn, hn::Mul(lighting.bend(hn::Max(p0.nearest, p2.nearest), turn), hn::Set(d, 1.0f / 6)));
     l.error = hn::IfThenElse(kinked(p0.sides, p2.sides), hn::Set(d, 1.0f), l.error);
     return l;
@@ -104,8 +99,7 @@ struct StrideLight {
     const F one = hn::Set(d, 1.0f);
     StrideLight l{Parabola<D>::through(p0.light.diffuse, p1.light.diffuse, p2.light.diffuse),
                   Parabola<D>::through(p0.light.specular, p1.light.specular, p2.light.specular), hn::Zero(d)};
-    const F turn01 = hn::Sub(one, Lighting<D>::dot(p0.surface.normal, p1.surface.normal)),
-            turn12 = hn::Sub(one, Lighting<D>::dot(p1.surface.normal, p2.surface.normal));
+    const F turn01 = turn_between(p0.surface, p1.surface), turn12 = turn_between(p1.surface, p2.surface);
     const F square = hn::Mul(hn::Set(d, 4.0f), hn::Add(turn01, turn12));
     // The fourth derivative of a highlight is 3 power times its second.
     const F nearest = hn::Max(p1.nearest, hn::Max(p0.nearest, p2.nearest));
@@ -150,7 +144,7 @@ struct StrideLight {
     l.specular = mean(p0.light.specular, back0.specular, p2.light.specular, back2.specular);
     // The jump, where the turn is not even or what lies before hides more of the end.
     const F jump = hn::Add(apart(p2.light, back2), apart(p0.light, back0));
-    const F turn = hn::Sub(one, Lighting<D>::dot(p0.surface.normal, p2.surface.normal));
+    const F turn = turn_between(p0.surface, p2.surface);
     l.error = mul_add(jump, mul_add(hn::Set(d, share_hidden), depth, hn::Mul(hn::Set(d, share_uneven), turn)),
                       hn::Mul(turn, hn::Mul(lighting.most_bend(), hn::Set(d, 1.0f / 6))));
     return l;
@@ -163,9 +157,6 @@ struct StrideLight {
  private:
   static constexpr float lobe_share = 0.05f, share_least = 1.0f / 256, share_turned = 1.0f / 128, share_kinked = 1.0f / 4;
   static constexpr float share_uneven = 0.25f, share_hidden = 1.0f / 16;
-  static HWY_INLINE F apart(const LitLanes<D>& x, const LitLanes<D>& y) {
-    return hn::Add(hn::Abs(hn::Sub(x.diffuse, y.diffuse)), hn::Abs(hn::Sub(x.specular, y.specular)));
-  }
   static HWY_INLINE hn::Mask<D> kinked(Int<D> a, Int<D> b) { return hn::RebindMask(D(), hn::Ne(a, b)); }
 };
 

@@ -201,7 +201,6 @@ class March {
   /// Goes on until no ray has samples before `until`; false when all are through.
   HWY_INLINE bool go(const PacketPlan& plan, float until) {
     const D d;
-    const IntTag<D> di;
     const Volume& v = plan.volume;
     const Source<D, T> source(v.voxels);
     const Space<D> space(v);

@@ -186,7 +186,7 @@ class TolerantPacket {
           light.take(StrideLight<D>::turned_over(cells_.lighting, here_lit_, lit2, tau, s.depth), turned);
         }
         // The middle only where the ends do not do.
-        const M unsure = hn::Or(hn::Gt(mul_add(taken, light.error, error), allowed), StrideLight<D>::grazing(here_lit_, lit2));
+        const M unsure = hn::Or(hn::Gt(mul_add(taken, light.error, error), allowed), grazing(here_lit_.surface, lit2.surface));
         const M rough = hn::AndNot(turned, hn::And(seen, unsure));
         if (!hn::AllFalse(d, rough)) light.take(StrideLight<D>::curved(cells_.lighting, here_lit_, lit_at(t1, rough), lit2), rough);
         error = hn::Add(error, hn::IfThenElseZero(seen, hn::Mul(taken, light.error)));
