@@ -128,10 +128,10 @@ HWY_INLINE void queue_triangles(const GlyphJob& job, const GlyphShape& s, uint32
     }
     const I area = (c[1].x - c[0].x) * (c[2].y - c[0].y) - (c[1].y - c[0].y) * (c[2].x - c[0].x);
     seen = hn::And(seen, front > 0 ? hn::Gt(area, zero) : front < 0 ? hn::Lt(area, zero) : hn::Ne(area, zero));
-    const size_t n = hn::CompressStore(hn::Add(number[0], base), seen, di, &q.corner[0][q.triangles]);
-    hn::CompressStore(hn::Add(number[1], base), seen, di, &q.corner[1][q.triangles]);
-    hn::CompressStore(hn::Add(number[2], base), seen, di, &q.corner[2][q.triangles]);
-    hn::CompressStore(hn::Iota(di, int32_t(first + uint32_t(t))), seen, di, &q.primitive[q.triangles]);
+    const size_t n = compress_store(di, hn::Add(number[0], base), seen, &q.corner[0][q.triangles]);
+    compress_store(di, hn::Add(number[1], base), seen, &q.corner[1][q.triangles]);
+    compress_store(di, hn::Add(number[2], base), seen, &q.corner[2][q.triangles]);
+    compress_store(di, hn::Iota(di, int32_t(first + uint32_t(t))), seen, &q.primitive[q.triangles]);
     q.triangles += n;
     if (q.triangles + lanes > GlyphQueue::waiting) {
       const size_t points = q.points;

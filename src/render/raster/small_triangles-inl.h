@@ -7,12 +7,14 @@
 #else
 #define SG_RASTER_SMALL_TRIANGLES_INL
 #endif
+#include "base/compress_inl.h"
 #include "render/raster/discs.h"
 #include "render/raster/kernels.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::raster::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+using sg::HWY_NAMESPACE::compress_store;
 
 using DF = hn::ScalableTag<float>;
 using DI = hn::RebindToSigned<DF>;
@@ -129,9 +131,9 @@ HWY_INLINE void draw_thin(const EyeView& view, uint64_t* keys, const Setup& s, M
         if (!hn::AllFalse(di, inside)) {
           F w = (hn::ConvertTo(d, e1) * s.w[0] + hn::ConvertTo(d, e2) * s.w[1] + hn::ConvertTo(d, e0) * s.w[2]) * s.inverse_area;
           if (!view.parallel) w = hn::Set(d, 1.0f) / w;
-          const size_t more = hn::CompressStore(at, inside, di, out.pixel + out.count);
-          hn::CompressStore(primitive, inside, di, out.primitive + out.count);
-          hn::CompressStore(w, hn::RebindMask(d, inside), d, out.depth + out.count);
+          const size_t more = compress_store(di, at, inside, out.pixel + out.count);
+          compress_store(di, primitive, inside, out.primitive + out.count);
+          compress_store(d, w, hn::RebindMask(d, inside), out.depth + out.count);
           out.count += more;
           if (out.count >= PixelQueue::full) out.flush(keys);
         }

@@ -7,6 +7,7 @@
 #define SG_GATHERS_INL_H
 #endif
 
+#include <algorithm>
 #include <cstring>
 
 #define SG_HARDWARE_GATHERS (HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2)
@@ -65,7 +66,8 @@ struct EightPairs {
   __m256 a, b;
 };
 
-HWY_INLINE __m256 load_words(const char* data, const EightIndices& i) {
+template <class T>
+HWY_INLINE __m256 load_words(const T* data, const EightIndices& i) {
   const auto four = [&](int n) HWY_ATTR {
     int32_t v[4];
     for (int k = 0; k < 4; ++k) std::memcpy(&v[k], data + i.at[n + k], sizeof v[k]);
@@ -115,7 +117,7 @@ HWY_INLINE hn::Vec<D> joined(D, const __m256 half[2]) {
 }
 #endif
 
-/// The 32-bit word that begins at byte at[n] of the data.
+/// The 32-bit word that begins at byte `at` of the data.
 template <class D>
 HWY_INLINE Int<D> gather_words([[maybe_unused]] D d, const void* data, Int<D> at, [[maybe_unused]] bool loads) {
 #if SG_HARDWARE_GATHERS
@@ -223,25 +225,83 @@ HWY_INLINE Quad<D> gather_quad(D d, const float* data, Int<D> at, bool loads) {
   return q;
 }
 
-/// Pairs of small integers: one 32-bit word brings both; near the end of the array it starts earlier and is shifted.
-template <class D, class T>
-HWY_INLINE Pair<D> gather_pair(D d, const T* data, Int<D> at, Int<D> last_load, bool loads) {
+/// The 32-bit words that begin at data[on[r] + at], for every r.
+template <class D, class T, size_t n, class At>
+HWY_INLINE void gather_words_at(D d, const T* data, const ptrdiff_t (&on)[n], At at, [[maybe_unused]] bool loads, Int<D>* out) {
+#if SG_HARDWARE_GATHERS
+  if constexpr (lanes_of<D> >= 8) {
+    if (loads) {
+      __m256 half[n][2];
+      by_halves(d, at, [&](const EightIndices& i, int h) HWY_ATTR {
+        for (size_t r = 0; r < n; ++r) half[r][h] = load_words(data + on[r], i);
+      });
+      for (size_t r = 0; r < n; ++r) out[r] = hn::BitCast(IntTag<D>(), joined(d, half[r]));
+      return;
+    }
+  }
+#endif
+  const Int<D> first = in_vector(d, at), byte = sizeof(T) == 2 ? hn::ShiftLeft<1>(first) : first;
+  for (size_t r = 0; r < n; ++r) out[r] = gather_words(d, data + on[r], byte, false);
+}
+
+/// Small integer number k of a word.
+template <class T, int k, class D>
+HWY_INLINE hn::Vec<D> number_in(D d, Int<D> word) {
+  constexpr int bits = 8 * sizeof(T), above = 32 - bits * (k + 1);
   const IntTag<D> di;
   const hn::RebindToUnsigned<D> du;
-  constexpr int bits = 8 * sizeof(T);
-  const auto byte = sizeof(T) == 2 ? hn::ShiftLeft<1>(at) : at;
-  const auto from = hn::Min(byte, last_load);
-  const auto skipped = hn::ShiftLeft<3>(hn::Sub(byte, from));
-  const auto word = hn::BitCast(di, hn::Shr(hn::BitCast(du, gather_words(d, data, from, loads)), hn::BitCast(du, skipped)));
-  if constexpr (std::is_signed_v<T>) {
-    const auto a = hn::ShiftRight<32 - bits>(hn::ShiftLeft<32 - bits>(word)),
-               b = hn::ShiftRight<32 - bits>(hn::ShiftLeft<32 - 2 * bits>(word));
-    return {hn::ConvertTo(d, a), hn::ConvertTo(d, b)};
-  } else {
-    const auto mask = hn::Set(di, (1 << bits) - 1);
-    const auto shifted = hn::BitCast(di, hn::ShiftRight<bits>(hn::BitCast(du, word)));
-    return {hn::ConvertTo(d, hn::And(word, mask)), hn::ConvertTo(d, hn::And(shifted, mask))};
+  if constexpr (std::is_signed_v<T>) return hn::ConvertTo(d, hn::ShiftRight<32 - bits>(hn::ShiftLeft<above>(word)));
+  else if constexpr (above == 0) return hn::ConvertTo(d, hn::BitCast(di, hn::ShiftRight<32 - bits>(hn::BitCast(du, word))));
+  else return hn::ConvertTo(d, hn::And(hn::ShiftRight<bits * k>(word), hn::Set(di, (1 << bits) - 1)));
+}
+template <class T, class D>
+HWY_INLINE Pair<D> pair_in(D d, Int<D> word) {
+  return {number_in<T, 0>(d, word), number_in<T, 1>(d, word)};
+}
+
+/// May words begin at `at` + on for all lanes? The last one within the array begins at `last_word`.
+template <class D, size_t n, class At>
+HWY_INLINE bool words_fit(D d, const ptrdiff_t (&on)[n], At at, Int<D> last_word) {
+  const IntTag<D> di;
+  return hn::AllFalse(di, hn::Gt(in_vector(d, at), hn::Sub(last_word, hn::Set(di, int(*std::max_element(on, on + n))))));
+}
+/// A pair of small integers by one word, which near the end of the array starts earlier.
+template <class D, class T>
+HWY_INLINE Pair<D> gather_pair(D d, const T* data, Int<D> at, Int<D> last_word, bool loads) {
+  const hn::RebindToUnsigned<D> du;
+  const Int<D> from = hn::Min(at, last_word), skipped = hn::ShiftLeft<sizeof(T) == 2 ? 4 : 3>(hn::Sub(at, from));
+  Int<D> word;
+  gather_words_at(d, data, {0}, from, loads, &word);
+  return pair_in<T>(d, hn::BitCast(IntTag<D>(), hn::Shr(hn::BitCast(du, word), hn::BitCast(du, skipped))));
+}
+/// gather_pairs() of small integers.
+template <class D, class T, size_t n, class At>
+HWY_INLINE void gather_pairs(D d, const T* data, const ptrdiff_t (&on)[n], At at, Int<D> last_word, bool loads, Pair<D>* out) {
+  if (words_fit(d, on, at, last_word)) {
+    Int<D> words[n];
+    gather_words_at(d, data, on, at, loads, words);
+    for (size_t r = 0; r < n; ++r) out[r] = pair_in<T>(d, words[r]);
+    return;
   }
+  const Int<D> first = in_vector(d, at);
+  for (size_t r = 0; r < n; ++r) out[r] = gather_pair(d, data, hn::Add(first, hn::Set(IntTag<D>(), int(on[r]))), last_word, loads);
+}
+/// gather_quads() of small integers.
+template <class D, class T, size_t n>
+HWY_INLINE void gather_quads(D d, const T* data, const ptrdiff_t (&on)[n], Int<D> at, Int<D> last_word, bool loads, Quad<D>* out) {
+  if constexpr (sizeof(T) == 1) {
+    if (words_fit(d, on, at, last_word)) {
+      Int<D> words[n];
+      gather_words_at(d, data, on, at, loads, words);
+      for (size_t r = 0; r < n; ++r)
+        out[r] = {pair_in<T>(d, words[r]), {number_in<T, 2>(d, words[r]), number_in<T, 3>(d, words[r])}};
+      return;
+    }
+  }
+  Pair<D> low[n], high[n];
+  gather_pairs(d, data, on, at, last_word, loads, low);
+  gather_pairs(d, data, on, hn::Add(at, hn::Set(IntTag<D>(), 2)), last_word, loads, high);
+  for (size_t r = 0; r < n; ++r) out[r] = {low[r], high[r]};
 }
 
 }  // namespace sg::volume::HWY_NAMESPACE

@@ -8,48 +8,12 @@
 #define SG_PACKET_CELLS_INL_H
 #endif
 
+#include "render/volume/lattice/packet_cubic_inl.h"
 #include "render/volume/lattice/packet_light_inl.h"
 #include "render/volume/lattice/packet_medium_inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {
-
-/// a + b s + c s^2 + e s^3.
-template <class D>
-struct Cubic {
-  hn::Vec<D> a, b, c, e, last;  // last: at s = 1
-  HWY_INLINE hn::Vec<D> at(hn::Vec<D> s) const { return mul_add(s, mul_add(s, mul_add(s, e, c), b), a); }
-};
-
-/// The trilinear field of a cell along the way from + s * way, corners by rows.
-template <class D>
-HWY_INLINE Cubic<D> along_way(D d, const Pair<D>& p00, const Pair<D>& p01, const Pair<D>& p10, const Pair<D>& p11, const hn::Vec<D> from[3],
-                              const hn::Vec<D> way[3]) {
-  using F = hn::Vec<D>;
-  struct Linear {
-    F a, b;
-  };
-  struct Square {
-    F a, b, c;
-  };
-  const auto x = [&](const Pair<D>& p) HWY_ATTR {
-    const F rise = hn::Sub(p.b, p.a);
-    return Linear{mul_add(from[0], rise, p.a), hn::Mul(way[0], rise)};
-  };
-  const auto y = [&](const Linear& p, const Linear& q) HWY_ATTR {
-    const F rise = hn::Sub(q.a, p.a), bend = hn::Sub(q.b, p.b);
-    return Square{mul_add(from[1], rise, p.a), mul_add(way[1], rise, mul_add(from[1], bend, p.b)), hn::Mul(way[1], bend)};
-  };
-  const Square p = y(x(p00), x(p01)), q = y(x(p10), x(p11));
-  const F da = hn::Sub(q.a, p.a), db = hn::Sub(q.b, p.b), dc = hn::Sub(q.c, p.c);
-  Cubic<D> f;
-  f.a = mul_add(from[2], da, p.a);
-  f.b = mul_add(way[2], da, mul_add(from[2], db, p.b));
-  f.c = mul_add(way[2], db, mul_add(from[2], dc, p.c));
-  f.e = hn::Mul(way[2], dc);
-  f.last = hn::Add(hn::Add(f.a, f.b), hn::Add(f.c, f.e));
-  return f;
-}
 
 /// What is gathered so far, and where half of the light was gone.
 template <class D>
@@ -110,7 +74,7 @@ class PacketCells {
     const F largest = hn::Max(hn::Max(hn::Max(p00.a, p00.b), hn::Max(p01.a, p01.b)), hn::Max(hn::Max(p10.a, p10.b), hn::Max(p11.a, p11.b)));
     const M clear_line = line_.dark();
     if (hn::AllFalse(d, hn::AndNot(hn::And(clear_line, hn::And(hn::Ge(least, line_.lo), hn::Le(largest, line_.hi))), look))) return;
-    const Cubic<D> f = along_way(d, p00, p01, p10, p11, from, way);
+    const Cubic<D> f = along_way(rows, from, way);
     // The hull of the cubic's Bernstein coefficients.
     const F third = hn::Set(d, 1.0f / 3), b1 = mul_add(f.b, third, f.a), b2 = mul_add(hn::Add(f.b, f.c), third, b1);
     const F lo = hn::Min(hn::Min(f.a, b1), hn::Min(b2, f.last)), hi = hn::Max(hn::Max(f.a, b1), hn::Max(b2, f.last));

@@ -96,7 +96,6 @@ struct StrideLight {
   /// A parabola through the ends and the middle.
   static HWY_INLINE StrideLight curved(const Lighting<D>& lighting, const LitPlace<D>& p0, const LitPlace<D>& p1, const LitPlace<D>& p2) {
     const D d;
-    const F one = hn::Set(d, 1.0f);
     StrideLight l{Parabola<D>::through(p0.light.diffuse, p1.light.diffuse, p2.light.diffuse),
                   Parabola<D>::through(p0.light.specular, p1.light.specular, p2.light.specular), hn::Zero(d)};
     const F turn01 = turn_between(p0.surface, p1.surface), turn12 = turn_between(p1.surface, p2.surface);

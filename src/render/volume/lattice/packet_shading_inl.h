@@ -7,6 +7,7 @@
 #define SG_PACKET_SHADING_INL_H
 #endif
 
+#include "base/compress_inl.h"
 #include "render/volume/lattice/packet_light_inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -93,7 +94,7 @@ class ShadeQueue {
     const D d;
     const F part[parts] = {sample, r, g, b, flash, hn::ConvertTo(d, hn::Iota(IntTag<D>(), 0))};
     size_t n = 0;
-    for (int i = 0; i < parts; ++i) n = hn::CompressStore(part[i], which, d, queue_[i] + count_);
+    for (int i = 0; i < parts; ++i) n = sg::HWY_NAMESPACE::compress_store(d, part[i], which, queue_[i] + count_);
     count_ += n;
     if (count_ < lanes_) return;
     light(plan, rays, result, lanes_);

@@ -51,7 +51,7 @@ struct Place {
 template <class D, class T>
 struct Source {
   const T* data;
-  Int<D> row, layer, last_load;
+  Int<D> row, layer, last_word;
   hn::Vec<D> top[3];
   Int<D> last_cell[3];
   ptrdiff_t to_row, to_layer;  ///< row and layer as numbers of samples
@@ -62,7 +62,7 @@ struct Source {
     const IntTag<D> di;
     to_row = ptrdiff_t(voxels.dims[0]), to_layer = ptrdiff_t(voxels.dims[0] * voxels.dims[1]);
     row = hn::Set(di, int(to_row)), layer = hn::Set(di, int(to_layer));
-    last_load = hn::Set(di, int(voxels.array.bytes()) - 4);
+    last_word = hn::Set(di, (int(voxels.array.bytes()) - 4) / int(sizeof(T)));
     for (size_t a = 0; a < 3; ++a) top[a] = hn::Set(d, float(voxels.dims[a] - 1)), last_cell[a] = hn::Set(di, int(voxels.dims[a]) - 2);
   }
   HWY_INLINE Place<D> place(int axis, hn::Vec<D> u) const {
@@ -78,28 +78,17 @@ struct Source {
     return {cell, hn::Sub(u, hn::ConvertTo(d, cell))};
   }
   HWY_INLINE Int<D> offset(Int<D> i, Int<D> j, Int<D> k) const { return hn::Add(i, hn::Add(hn::Mul(j, row), hn::Mul(k, layer))); }
-  HWY_INLINE Pair<D> pair(Int<D> at) const {
-    if constexpr (std::is_same_v<T, float>) return gather_pair(D(), data, at, loads);
-    else return gather_pair(D(), data, at, last_load, loads);
-  }
   /// Pairs so many samples on from `at`, the same for all lanes.
   template <size_t n, class At>
   HWY_INLINE void pairs(At at, const ptrdiff_t (&on)[n], Pair<D>* out) const {
     if constexpr (std::is_same_v<T, float>) gather_pairs(D(), data, on, at, loads, out);
-    else
-      for (size_t i = 0; i < n; ++i) out[i] = pair(hn::Add(in_vector(D(), at), hn::Set(IntTag<D>(), int(on[i]))));
+    else gather_pairs(D(), data, on, at, last_word, loads, out);
   }
   /// Four samples in a row each.
   template <size_t n>
   HWY_INLINE void quads(Int<D> at, const ptrdiff_t (&on)[n], Quad<D>* out) const {
-    if constexpr (std::is_same_v<T, float>) {
-      gather_quads(D(), data, on, at, loads, out);
-    } else {
-      for (size_t i = 0; i < n; ++i) {
-        const Int<D> from = hn::Add(at, hn::Set(IntTag<D>(), int(on[i])));
-        out[i] = {pair(from), pair(hn::Add(from, hn::Set(IntTag<D>(), 2)))};
-      }
-    }
+    if constexpr (std::is_same_v<T, float>) gather_quads(D(), data, on, at, loads, out);
+    else gather_quads(D(), data, on, at, last_word, loads, out);
   }
   /// The corners of the cell whose lowest one is there: its rows (0, 0), (1, 0), (0, 1), (1, 1) along y and z.
   template <class At>

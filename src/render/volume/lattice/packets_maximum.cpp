@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The largest value along packets of rays, exactly that of the trilinear field (maximum.cpp, one ray at a time, is the reference).
-// First the brick that promises most; then the bricks from near to far, but only those that promise more than what was found.
+// Bricks are visited from those that promise most on, as long as they promise more than what was found.
 #include "render/volume/lattice/packet_rays.h"
 
 // Targets without gathers of their own share one version.
@@ -10,6 +10,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "render/volume/lattice/packet_cubic_inl.h"
 #include "render/volume/lattice/packets_inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -69,6 +70,7 @@ struct Walk {
 template <class D, class T>
 class Climb {
   using F = hn::Vec<D>;
+  using I = Int<D>;
   using M = hn::Mask<D>;
 
  public:
@@ -86,40 +88,11 @@ class Climb {
 
   HWY_INLINE void run() {
     const D d;
-    const M hit = hn::Gt(length_, hn::Zero(d));
-    const F none = hn::Set(d, -HUGE_VALF);
     Walk<D> walk = bricks();
-    // Which brick of each ray promises most?
-    F most = none, from = hn::Set(d, -1.0f), to = from;
     walk.start(hn::Zero(d), length_);
-    for (M m = hit; !hn::AllFalse(d, m); m = walk.advance(m)) {
-      const F hi = highest_in(walk);
-      const M more = hn::And(m, hn::Gt(hi, most));
-      most = hn::IfThenElse(more, hi, most);
-      from = hn::IfThenElse(more, walk.t, from), to = hn::IfThenElse(more, walk.leave(), to);
-    }
-    M there = hn::And(hit, hn::Gt(most, none));
-    if (hn::AllFalse(d, there)) return;
-    cells(there, from, to);
-    // Then those that can still be higher.
-    walk.start(hn::Zero(d), length_);
-    for (M m = hit; !hn::AllFalse(d, m);) {
-      // Each lane looks for a brick of its own.
-      M looking = m;
-      there = hn::Gt(none, none);
-      while (!hn::AllFalse(d, looking)) {
-        const F hi = highest_in(walk);
-        M here = hn::And(looking, hn::AndNot(hn::And(hn::Eq(walk.t, from), hn::Eq(walk.leave(), to)), hn::Gt(hi, skip_ ? best_ : none)));
-        there = hn::Or(there, here);
-        looking = hn::AndNot(here, looking);
-        const M on = walk.advance(looking);
-        m = hn::AndNot(hn::AndNot(on, looking), m);
-        looking = on;
-      }
-      if (hn::AllFalse(d, there)) break;
-      cells(there, walk.t, walk.leave());
-      const M on = walk.advance(there);
-      m = hn::AndNot(hn::AndNot(on, there), m);
+    for (M going = hn::Gt(length_, hn::Zero(d)); !hn::AllFalse(d, going);) {
+      going = look(walk, going);
+      visit();
     }
   }
   HWY_INLINE void result(float* best, float* where) const {
@@ -142,6 +115,41 @@ class Climb {
     const auto id = hn::Add(to_int(d, w.box[0]), hn::Add(hn::Mul(to_int(d, w.box[1]), hn::Set(di, int(dims[0]))),
                                                          hn::Mul(to_int(d, w.box[2]), hn::Set(di, int(dims[0] * dims[1])))));
     return hn::BitCast(d, gather_words(d, &volume_.bricks().ranges[0].hi, hn::ShiftLeft<3>(id), source_.loads));
+  }
+
+  /// Notes what the next bricks promise; returns the lanes that have more of them.
+  HWY_INLINE M look(Walk<D>& walk, M going) {
+    const D d;
+    hn::Store(walk.t, d, begin_[0]);
+    for (seen_ = 0; seen_ < most_seen && !hn::AllFalse(d, going); ++seen_) {
+      hn::Store(hn::IfThenElse(going, highest_in(walk), hn::Set(d, -HUGE_VALF)), d, promise_[seen_]);
+      const F leave = walk.leave();
+      going = walk.advance(going);
+      hn::Store(leave, d, begin_[seen_ + 1]);
+    }
+    return going;
+  }
+  /// Each lane goes from the brick that promises most, the nearest of those, to the next.
+  HWY_INLINE void visit() {
+    const D d;
+    const IntTag<D> di;
+    const I lanes = hn::Set(di, lanes_of<D>), lane = hn::Iota(di, 0);
+    while (true) {
+      F most = skip_ ? best_ : hn::Set(d, -HUGE_VALF);
+      I which = hn::Set(di, -1);
+      for (int i = 0; i < seen_; ++i) {
+        const F promise = hn::Load(d, promise_[i]);
+        which = hn::IfThenElse(hn::RebindMask(di, hn::Gt(promise, most)), hn::Set(di, i), which), most = hn::Max(most, promise);
+      }
+      const auto chosen = hn::Gt(which, hn::Set(di, -1));
+      if (hn::AllFalse(di, chosen)) return;
+      alignas(64) int32_t at[most_lanes];
+      hn::Store(which, di, at);
+      for (int n = 0; n < lanes_of<D>; ++n)
+        if (at[n] >= 0) promise_[at[n]][n] = -HUGE_VALF;
+      const I from = hn::Add(hn::Mul(hn::Max(which, hn::Zero(di)), lanes), lane);
+      cells(hn::RebindMask(d, chosen), hn::GatherIndex(d, begin_[0], from), hn::GatherIndex(d, begin_[1], from));
+    }
   }
 
   /// Cells between the lengths; -1 and the number of cells are the halves beyond the outermost samples, where values are clamped.
@@ -183,32 +191,23 @@ class Climb {
       leaves = hn::IfThenElse(hn::And(inside, hn::Le(w.next[a], crossing)), hn::IfThenElse(forth, one, zero), leaves);
       f0[a] = enters, df[a] = hn::Sub(leaves, enters);
     }
-    // The cubic a s^3 + b s^2 + c s + v0 through four places, and the zeros of its derivative.
-    const F v0 = along_cell(c, f0, df, zero), v1 = along_cell(c, f0, df, hn::Set(d, 1.0f / 3)),
-            v2 = along_cell(c, f0, df, hn::Set(d, 2.0f / 3)), v3 = along_cell(c, f0, df, one);
-    offer(m, v0, w.t), offer(m, v3, leave);
-    const F q3 = hn::Mul(hn::Set(d, 4.5f), hn::Add(hn::Sub(v3, v0), hn::Mul(hn::Set(d, 3.0f), hn::Sub(v1, v2))));
-    const F q2 = hn::Mul(hn::Set(d, 4.5f),
-                         hn::Sub(hn::Add(hn::Sub(hn::Add(v0, v0), hn::Mul(hn::Set(d, 5.0f), v1)), hn::Mul(hn::Set(d, 4.0f), v2)), v3));
-    const F q1 =
-        hn::Mul(hn::Set(d, 0.5f),
-                hn::Add(hn::Sub(hn::Sub(hn::Mul(hn::Set(d, 18.0f), v1), hn::Mul(hn::Set(d, 11.0f), v0)), hn::Mul(hn::Set(d, 9.0f), v2)),
-                        hn::Add(v3, v3)));
-    const F discriminant = hn::Sub(hn::Mul(q2, q2), hn::Mul(hn::Set(d, 3.0f), hn::Mul(q3, q1)));
-    m = hn::And(m, hn::Gt(discriminant, zero));
-    if (hn::AllFalse(d, m)) return;
+    const Cubic<D> f = along_way(c, f0, df);
+    offer(m, along_cell(c, f0, df, zero), w.t), offer(m, along_cell(c, f0, df, one), leave);
+    // Of the zeros of f' = b + 2 c s + 3 e s^2 the one where f'' < 0.
+    const F discriminant = neg_mul_add(hn::Mul(hn::Set(d, 3.0f), f.e), f.b, hn::Mul(f.c, f.c));
     const F square_root = hn::Sqrt(hn::Max(discriminant, zero));
-    const F root = hn::Neg(hn::Add(q2, hn::CopySign(square_root, q2)));
-    for (const F s : {hn::Div(q1, root), hn::Div(root, hn::Mul(hn::Set(d, 3.0f), q3))}) {
-      const M within = hn::And(m, hn::And(hn::Gt(s, zero), hn::Lt(s, one)));
-      offer(within, along_cell(c, f0, df, s), hn::Add(w.t, hn::Mul(s, length)));
-    }
+    const M falling = hn::Gt(f.c, zero);
+    const F s = hn::Div(hn::IfThenElse(falling, hn::Neg(hn::Add(f.c, square_root)), f.b),
+                        hn::IfThenElse(falling, hn::Mul(hn::Set(d, 3.0f), f.e), hn::Sub(square_root, f.c)));
+    m = hn::And(hn::And(m, hn::Gt(discriminant, zero)), hn::And(hn::Gt(s, zero), hn::Lt(s, one)));
+    if (hn::AllFalse(d, m)) return;
+    offer(m, along_cell(c, f0, df, s), mul_add(s, length, w.t));
   }
 
   /// Exact at the corners.
-  static HWY_INLINE F between(F a, F b, F x) { return hn::Add(hn::Mul(a, hn::Sub(hn::Set(D(), 1.0f), x)), hn::Mul(b, x)); }
+  static HWY_INLINE F between(F a, F b, F x) { return mul_add(b, x, hn::Mul(a, hn::Sub(hn::Set(D(), 1.0f), x))); }
   static HWY_INLINE F along_cell(const Pair<D>* c, const F* f0, const F* df, F s) {
-    const F x = hn::Add(f0[0], hn::Mul(s, df[0])), y = hn::Add(f0[1], hn::Mul(s, df[1])), z = hn::Add(f0[2], hn::Mul(s, df[2]));
+    const F x = mul_add(s, df[0], f0[0]), y = mul_add(s, df[1], f0[1]), z = mul_add(s, df[2], f0[2]);
     return between(between(between(c[0].a, c[0].b, x), between(c[1].a, c[1].b, x), y),
                    between(between(c[2].a, c[2].b, x), between(c[3].a, c[3].b, x), y), z);
   }
@@ -221,6 +220,9 @@ class Climb {
   const bool skip_;
   const Source<D, T> source_;
   F entry_[3], along_[3], per_along_[3], last_cell_[3], length_, best_, where_;
+  static constexpr int most_seen = 128;
+  int seen_ = 0;  ///< bricks that were looked at
+  alignas(64) float promise_[most_seen][lanes_of<D>], begin_[most_seen + 1][lanes_of<D>];
 };
 
 template <class D, class T>

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// The trilinear field of a cell along a ray: a cubic.
+#if defined(SG_PACKET_CUBIC_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SG_PACKET_CUBIC_INL_H
+#undef SG_PACKET_CUBIC_INL_H
+#else
+#define SG_PACKET_CUBIC_INL_H
+#endif
+
+#include "render/volume/lattice/packets_inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sg::volume::HWY_NAMESPACE {
+
+/// a + b s + c s^2 + e s^3.
+template <class D>
+struct Cubic {
+  hn::Vec<D> a, b, c, e, last;  // last: at s = 1
+  HWY_INLINE hn::Vec<D> at(hn::Vec<D> s) const { return mul_add(s, mul_add(s, mul_add(s, e, c), b), a); }
+};
+
+/// The trilinear field of a cell along the way from + s * way, corners by rows (Source::corners).
+template <class D>
+HWY_INLINE Cubic<D> along_way(const Pair<D> rows[4], const hn::Vec<D> from[3], const hn::Vec<D> way[3]) {
+  using F = hn::Vec<D>;
+  struct Linear {
+    F a, b;
+  };
+  struct Square {
+    F a, b, c;
+  };
+  const auto x = [&](const Pair<D>& p) HWY_ATTR {
+    const F rise = hn::Sub(p.b, p.a);
+    return Linear{mul_add(from[0], rise, p.a), hn::Mul(way[0], rise)};
+  };
+  const auto y = [&](const Linear& p, const Linear& q) HWY_ATTR {
+    const F rise = hn::Sub(q.a, p.a), bend = hn::Sub(q.b, p.b);
+    return Square{mul_add(from[1], rise, p.a), mul_add(way[1], rise, mul_add(from[1], bend, p.b)), hn::Mul(way[1], bend)};
+  };
+  const Square p = y(x(rows[0]), x(rows[1])), q = y(x(rows[2]), x(rows[3]));
+  const F da = hn::Sub(q.a, p.a), db = hn::Sub(q.b, p.b), dc = hn::Sub(q.c, p.c);
+  Cubic<D> f;
+  f.a = mul_add(from[2], da, p.a);
+  f.b = mul_add(way[2], da, mul_add(from[2], db, p.b));
+  f.c = mul_add(way[2], db, mul_add(from[2], dc, p.c));
+  f.e = hn::Mul(way[2], dc);
+  f.last = hn::Add(hn::Add(f.a, f.b), hn::Add(f.c, f.e));
+  return f;
+}
+
+}  // namespace sg::volume::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif
