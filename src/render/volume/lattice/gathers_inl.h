@@ -269,7 +269,7 @@ HWY_INLINE bool words_fit(D d, const ptrdiff_t (&on)[n], At at, Int<D> last_word
 template <class D, class T>
 HWY_INLINE Pair<D> gather_pair(D d, const T* data, Int<D> at, Int<D> last_word, bool loads) {
   const hn::RebindToUnsigned<D> du;
-  const Int<D> from = hn::Min(at, last_word), skipped = hn::ShiftLeft<sizeof(T) == 2 ? 4 : 3>(hn::Sub(at, from));
+  const Int<D> from = hn::Min(at, last_word), skipped = hn::ShiftLeft < sizeof(T) == 2 ? 4 : 3 > (hn::Sub(at, from));
   Int<D> word;
   gather_words_at(d, data, {0}, from, loads, &word);
   return pair_in<T>(d, hn::BitCast(IntTag<D>(), hn::Shr(hn::BitCast(du, word), hn::BitCast(du, skipped))));
@@ -293,8 +293,7 @@ HWY_INLINE void gather_quads(D d, const T* data, const ptrdiff_t (&on)[n], Int<D
     if (words_fit(d, on, at, last_word)) {
       Int<D> words[n];
       gather_words_at(d, data, on, at, loads, words);
-      for (size_t r = 0; r < n; ++r)
-        out[r] = {pair_in<T>(d, words[r]), {number_in<T, 2>(d, words[r]), number_in<T, 3>(d, words[r])}};
+      for (size_t r = 0; r < n; ++r) out[r] = {pair_in<T>(d, words[r]), {number_in<T, 2>(d, words[r]), number_in<T, 3>(d, words[r])}};
       return;
     }
   }
