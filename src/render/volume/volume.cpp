@@ -128,12 +128,18 @@ class Alone {
     };
     if (picture.lattices[0]) {
       if (wants_reconstruction(item.sampling)) return;
-      plan_for(*picture.lattices[0]);
+      const Volume& lattice = *picture.lattices[0];
+      plan_for(lattice);
       const bool in_steps = post || item.mode == RayFunction::maximum;
       if (by_tolerance && in_tolerant_packets(*plan_)) {
         packets_ = cast_tile;
-        sums_.emplace(*v.medium), bends_ = bends_of(item, *picture.lattices[0]);
-        plan_->sums = &*sums_, plan_->bends = bends_.get();
+        if (lattice.affine) {
+          sums_.emplace(*v.medium), bends_ = bends_of(item, lattice);
+          plan_->sums = &*sums_, plan_->bends = bends_.get();
+        } else {
+          uneven_.emplace(lattice);
+          plan_->uneven = &*uneven_;
+        }
       } else if (!by_tolerance && in_steps && in_packets(*plan_)) packets_ = march_tile;
     } else if (const auto* bricks = dynamic_cast<const BrickedSource*>(v.source.get())) {
       stage_ = brick_stage(*bricks, item, v.id, v.unit, v.per_scale);
@@ -191,6 +197,7 @@ class Alone {
   const Picture& picture_;
   std::optional<PacketPlan> plan_;
   std::optional<MediumSums> sums_;
+  std::optional<UnevenAxes> uneven_;
   std::shared_ptr<const Bends> bends_;
   void (*packets_)(const PacketPlan&, int, int, int, int, Frame&) = nullptr;
   Volume stage_;  // of bricks

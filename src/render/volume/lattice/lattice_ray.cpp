@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "render/volume/lattice/uneven_axes.h"
+
 namespace sg::volume {
 
 namespace {
@@ -29,6 +31,13 @@ class Axis {
   }
   /// The cell of samples from which a box takes its values.
   long cell(long box) const { return std::clamp<long>(box, 0, samples_ - 2); }
+  DerivativeWeights weights(long i) const {
+    return derivative_weights(i > 0 ? sample(i) - sample(i - 1) : 0, i + 1 < samples_ ? sample(i + 1) - sample(i) : 0);
+  }
+  double lean(long cell) const {
+    const auto span = [&](long i) { return sample(std::min(i + 1, samples_ - 1)) - sample(std::max(i - 1, 0L)); };
+    return border_lean(cell == 0 || cell + 2 == samples_, span(cell), span(cell + 1));
+  }
   double fraction(long cell, double q) const {
     const double from = sample(cell);
     return std::clamp(v_.affine ? q - from : (q - from) / (sample(cell + 1) - from), 0.0, 1.0);
@@ -94,6 +103,8 @@ class LatticeRay final : public LatticeWalker {
 
   double entry() const override { return c_.enter; }
 
+  /// Central differences at the corners of the cell, trilinear between them; on even axes those are the differences of the trilinear field
+  /// over a cell to each side.
   Vec3f gradient(const Stretch&, double t) override { return gradient_at(c_.start + c_.along * t); }
 
   /// Differences of the gradient over half a cell to each side.
@@ -156,8 +167,61 @@ class LatticeRay final : public LatticeWalker {
 
  private:
   Vec3f gradient_at(Vec3 q) {
+    long cell[3];
+    double f[3];
+    for (int a = 0; a < 3; ++a) {
+      q[a] = std::clamp(q[a], axes_[a].sample(0), axes_[a].sample(axes_[a].last()));
+      cell[a] = axes_[a].cell(long(v_.u(a, q[a]))), f[a] = axes_[a].fraction(cell[a], q[a]);
+    }
+    find_slopes(cell);
+    if (beside_holes_) return to_world(slope_beside_holes(q));
     Vec3 slope;
-    for (int a = 0; a < 3; ++a) q[a] = std::clamp(q[a], axes_[a].sample(0), axes_[a].sample(axes_[a].last()));
+    for (int a = 0; a < 3; ++a) {
+      if (v_.affine) {
+        const double cells = (cell[a] == 0 ? f[a] : 1) + (cell[a] + 1 == axes_[a].last() ? 1 - f[a] : 1);
+        slope[a] = double(trilinear(slopes_[a], f)) / cells;
+      } else {
+        double share[3] = {f[0], f[1], f[2]};
+        share[a] *= lean_[a] / (1 + f[a] * (lean_[a] - 1));
+        slope[a] = double(trilinear(slopes_[a], share));
+      }
+    }
+    return to_world(slope);
+  }
+  Vec3f to_world(Vec3 slope) const {
+    Vec3 world{0, 0, 0};
+    for (int r = 0; r < 3; ++r)
+      for (int a = 0; a < 3; ++a) world[r] += v_.to_q.m[a][r] * slope[a];
+    return Vec3f(world);
+  }
+
+  /// At the corners of a cell.
+  void find_slopes(const long cell[3]) {
+    if (std::equal(cell, cell + 3, slopes_of_)) return;
+    std::copy(cell, cell + 3, slopes_of_);
+    const size_t stride[3] = {1, row_, layer_};
+    const T* corner = data_ + size_t(cell[0]) + row_ * size_t(cell[1]) + layer_ * size_t(cell[2]);
+    float sum = 0;
+    for (int a = 0; a < 3; ++a) {
+      if (!v_.affine) lean_[a] = axes_[a].lean(cell[a]);
+      const DerivativeWeights weights[2] = {axes_[a].weights(cell[a]), axes_[a].weights(cell[a] + 1)};
+      const ptrdiff_t back = cell[a] > 0 ? ptrdiff_t(stride[a]) : 0, on = cell[a] + 1 < axes_[a].last() ? ptrdiff_t(stride[a]) : 0;
+      for (int c = 0; c < 8; ++c) {
+        const bool upper = c >> a & 1;
+        const T* own = corner + (c & 1) * stride[0] + (c >> 1 & 1) * stride[1] + (c >> 2) * stride[2];
+        const ptrdiff_t to_before = upper ? ptrdiff_t(stride[a]) : back, to_after = upper ? on : ptrdiff_t(stride[a]);
+        const float before = float(own[-to_before]), here = float(*own), after = float(own[to_after]);
+        const auto& w = weights[upper];
+        slopes_[a][c] = v_.affine ? after - before : w.back * (here - before) + w.on * (after - here);
+        sum += slopes_[a][c];
+      }
+    }
+    beside_holes_ = sum != sum;
+  }
+
+  /// One-sided where there is no number on the other side.
+  Vec3 slope_beside_holes(Vec3 q) {
+    Vec3 slope;
     float centre = NAN;
     for (int a = 0; a < 3; ++a) {
       const double edge = v_.cell_length(a, q[a]);
@@ -167,7 +231,6 @@ class LatticeRay final : public LatticeWalker {
       float below = value_at(place);
       place[a] = to;
       float above = value_at(place);
-      // One-sided beside NaN.
       if (below != below || above != above) {
         if (centre != centre) centre = value_at(q);
         if (below != below) below = centre, from = q[a];
@@ -175,10 +238,7 @@ class LatticeRay final : public LatticeWalker {
       }
       slope[a] = to > from ? double(above - below) / (to - from) : 0;
     }
-    Vec3 world{0, 0, 0};
-    for (int r = 0; r < 3; ++r)
-      for (int a = 0; a < 3; ++a) world[r] += v_.to_q.m[a][r] * slope[a];
-    return Vec3f(world);
+    return slope;
   }
 
   double crossing(int a) const {
@@ -337,6 +397,10 @@ class LatticeRay final : public LatticeWalker {
   long loaded_[3] = {-9, -9, -9};
   float corner_[8] = {};
   bool holes_ = false;
+  long slopes_of_[3] = {-9, -9, -9};
+  float slopes_[3][8] = {};
+  double lean_[3] = {1, 1, 1};
+  bool beside_holes_ = false;
 };
 
 std::unique_ptr<LatticeWalker> walker_of(const std::shared_ptr<const Volume>& v, const Invisible& invisible,

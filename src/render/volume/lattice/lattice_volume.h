@@ -54,7 +54,7 @@ struct Volume {
   Box3 bounds;                     ///< world
   std::vector<Transfer> transfer;  ///< one
   Kernels kernels{};
-  bool direct = false;  ///< affine, a linear table, no holes to look after: packets may draw it
+  bool direct = false;  ///< a linear table, no holes to look after: packets may draw it
   ShadePlan shade_plan{};
 
   // world -> q

@@ -44,9 +44,18 @@ class Around {
   /// Differences over two cells along an axis at the corners i + 2 j + 4 k, of what rows() told.
   template <int axis>
   HWY_INLINE void differences(const Quad<D> rows[4], F out[8]) const {
+    F before[8], after[8];
+    neighbours<axis>(rows, before, after);
+    for (int c = 0; c < 8; ++c) out[c] = hn::Sub(after[c], before[c]);
+  }
+  /// The samples before and after the corners.
+  template <int axis>
+  HWY_INLINE void neighbours(const Quad<D> rows[4], F before[8], F after[8]) const {
     if constexpr (axis == 0) {
-      for (int r = 0; r < 4; ++r)
-        out[2 * r] = hn::Sub(rows[r].high.a, rows[r].low.a), out[2 * r + 1] = hn::Sub(rows[r].high.b, rows[r].low.b);
+      for (int r = 0; r < 4; ++r) {
+        before[2 * r] = rows[r].low.a, before[2 * r + 1] = rows[r].low.b;
+        after[2 * r] = rows[r].high.a, after[2 * r + 1] = rows[r].high.b;
+      }
     } else {
       // The rows beyond, on the side before and the one after, each at both places across.
       const ptrdiff_t along = axis == 1 ? source_.to_row : source_.to_layer, across = axis == 1 ? source_.to_layer : source_.to_row;
@@ -60,9 +69,9 @@ class Around {
       constexpr int s = axis, t = 3 - axis;  // numbers of rows from one to the next along and across
       const auto side = [&](int n) HWY_ATTR {
         const Quad<D>&own = rows[n * t], &next = rows[n * t + s];
-        F *lower = out + 2 * (n * t), *upper = lower + 2 * s;
-        lower[0] = hn::Sub(next.low.b, beyond[n].a), lower[1] = hn::Sub(next.high.a, beyond[n].b);
-        upper[0] = hn::Sub(beyond[2 + n].a, own.low.b), upper[1] = hn::Sub(beyond[2 + n].b, own.high.a);
+        const int lower = 2 * (n * t), upper = lower + 2 * s;
+        before[lower] = beyond[n].a, before[lower + 1] = beyond[n].b, after[lower] = next.low.b, after[lower + 1] = next.high.a;
+        before[upper] = own.low.b, before[upper + 1] = own.high.a, after[upper] = beyond[2 + n].a, after[upper + 1] = beyond[2 + n].b;
       };
       side(0), side(1);
     }

@@ -25,7 +25,7 @@ struct Gathering {
   }
 };
 
-template <class D, class T, bool shaded>
+template <class D, class T, bool shaded, class Axes>
 class PacketCells {
   using F = hn::Vec<D>;
   using I = Int<D>;
@@ -34,13 +34,14 @@ class PacketCells {
  public:
   const PacketPlan& plan;
   const Source<D, T> source;
+  const Axes axes;
   const MediumLanes<D> medium;
   const Lighting<D> lighting;
-  F start[3], along[3];  ///< in u: where the rays enter, and one world length
+  F start[3], along[3];  ///< in q: where the rays enter, and one world length
   Gathering<D> sum;
 
   HWY_INLINE PacketCells(const PacketPlan& p, const RayPacket& rays)
-      : plan(p), source(p.volume.voxels), medium(*p.medium), lighting(p, rays), light(p, lighting) {
+      : plan(p), source(p.volume.voxels), axes(p, source), medium(*p.medium), lighting(p, rays), light(lighting, axes) {
     const D d;
     for (int a = 0; a < 3; ++a) start[a] = hn::Load(d, rays.entry[a]), along[a] = hn::Load(d, rays.along[a]);
     at_ = hn::Zero(IntTag<D>());
@@ -62,9 +63,9 @@ class PacketCells {
     const I corner = source.offset(inside[0], inside[1], inside[2]);
     F from[3], way[3];
     for (int a = 0; a < 3; ++a) {
-      const F base = hn::Sub(start[a], hn::ConvertTo(d, inside[a]));
-      from[a] = hn::Max(zero, hn::Min(mul_add(along[a], t, base), one));
-      way[a] = hn::Sub(hn::Max(zero, hn::Min(mul_add(along[a], leave, base), one)), from[a]);
+      const auto shares = axes.shares(a, inside[a], start[a]);
+      from[a] = hn::Max(zero, hn::Min(shares.at(along[a], t), one));
+      way[a] = hn::Sub(hn::Max(zero, hn::Min(shares.at(along[a], leave), one)), from[a]);
     }
     Pair<D> rows[4];
     source.corners(corner, rows);
@@ -259,7 +260,7 @@ class PacketCells {
   }
 
  private:
-  CellLight<D, T> light;
+  CellLight<D, T, Axes> light;
   // The line of the medium on which each lane's value was last: most often it is there still.
   I at_;
   typename MediumLanes<D>::Line line_;

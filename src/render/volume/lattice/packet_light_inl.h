@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/volume/lattice/packet_around_inl.h"
+#include "render/volume/lattice/packet_axes_inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {
@@ -211,22 +211,15 @@ class Lighting {
   }
 };
 
-template <class D, class T>
+template <class D, class T, class Axes>
 class CellLight {
   using F = hn::Vec<D>;
   using I = Int<D>;
 
  public:
-  HWY_INLINE CellLight(const PacketPlan& plan, const Lighting<D>& lighting) : plan_(plan), lighting_(lighting) {}
+  HWY_INLINE CellLight(const Lighting<D>& lighting, const Axes& axes) : lighting_(lighting), axes_(axes) {}
 
-  HWY_INLINE void cell(const Source<D, T>& source, const I at[3]) {
-    const Around<D, T> around(source, at);
-    Quad<D> rows[4];
-    around.rows(rows);
-    around.template differences<0>(rows, slope_[0]), around.template differences<1>(rows, slope_[1]);
-    around.template differences<2>(rows, slope_[2]);
-    for (int a = 0; a < 3; ++a) first_[a] = around.first[a], last_[a] = around.last[a];
-  }
+  HWY_INLINE void cell(const Source<D, T>& source, const I at[3]) { slopes_.find(axes_, Around<D, T>(source, at), at); }
 
   /// What one place on the way gets wrong of the light on all of it where the light bends; it falls with the square of the number of parts.
   /// And by how much it jumps between the ends (a surface that turns over, a lamp that begins to reach it), or may jump forth and back.
@@ -293,14 +286,13 @@ class CellLight {
   HWY_INLINE void gradient(const F from[3], const F way[3], F s, F out[3]) const {
     F f[3], g[3];
     for (int a = 0; a < 3; ++a) f[a] = mul_add(way[a], s, from[a]);
-    for (int a = 0; a < 3; ++a) g[a] = hn::Div(Around<D, T>::trilinear(slope_[a], f), Around<D, T>::apart(first_[a], last_[a], f[a]));
+    for (int a = 0; a < 3; ++a) g[a] = slopes_.along(a, f);
     lighting_.to_world(g, out);
   }
 
-  const PacketPlan& plan_;
   const Lighting<D>& lighting_;
-  F slope_[3][8];
-  hn::Mask<D> first_[3], last_[3];
+  const Axes& axes_;
+  typename Axes::template Slopes<T> slopes_;
 };
 
 }  // namespace sg::volume::HWY_NAMESPACE

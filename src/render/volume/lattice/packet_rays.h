@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rays of a packet as plain arrays, for packets_march.cpp and packets_maximum.cpp.
+// The rays of a packet as plain arrays, and what draws tiles of them.
 #pragma once
 #include "render/volume/lattice/packets.h"
 
@@ -8,7 +8,7 @@ namespace sg::volume {
 constexpr int most_lanes = 16;
 
 struct RayPacket {
-  // Places in u, one array per axis.
+  // Places in q, one array per axis.
   alignas(64) float first[3][most_lanes], by[3][most_lanes];     ///< the middle of the first step, and one step
   alignas(64) float last[3][most_lanes];                         ///< the middle of the last, shorter step
   alignas(64) float entry[3][most_lanes], along[3][most_lanes];  ///< where the ray enters, and one world length
@@ -35,5 +35,8 @@ void put(const PacketPlan& plan, const RayPacket& rays, const PacketResult& resu
 
 /// Draws the maximum; the same contract as march_tile.
 void maximum_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame);
+
+/// cast_tile() for rectilinear grids: plan.uneven.
+void cast_uneven_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame);
 
 }  // namespace sg::volume

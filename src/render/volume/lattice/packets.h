@@ -6,6 +6,7 @@
 #include "render/volume/lattice/bends.h"
 #include "render/volume/lattice/gathers.h"
 #include "render/volume/lattice/lattice_volume.h"
+#include "render/volume/lattice/uneven_axes.h"
 #include "render/volume/optics/integrate.h"
 #include "render/volume/optics/medium_sums.h"
 #include "scene/camera.h"
@@ -29,12 +30,13 @@ struct PacketPlan {
   const Medium* medium = nullptr;
   Budget budget;
   float edge = 1;
-  const MediumSums* sums = nullptr;  ///< of the medium; null: cells are crossed one by one
-  const Bends* bends = nullptr;      ///< of the volume
+  const MediumSums* sums = nullptr;    ///< of the medium; null: cells are crossed one by one
+  const Bends* bends = nullptr;        ///< of the volume
+  const UnevenAxes* uneven = nullptr;  ///< of a rectilinear grid
   /// One lattice of several, drawn from front to back: what is in the frame lies before it, and rays go on with the light that is left (1 -
   /// alpha). The depth where half of it is gone goes here, for each pixel of the frame (infinite: not yet), instead of into the frame.
   float* half = nullptr;
-  Vec3 whole_lo, whole_hi;  ///< of all of them, in the q space of this one: steps are counted from where rays enter this box
+  Vec3 whole_lo{}, whole_hi{};  ///< of all of them, in the q space of this one: steps are counted from where rays enter this box
 };
 
 /// Is the power of highlights one that packets multiply out?
@@ -49,7 +51,7 @@ bool in_packets(const PacketPlan& plan);
 /// depend neither on the borders of tiles nor on the width of vectors; knobs.simd = false takes one ray at a time.
 void march_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame);
 
-/// May this volume be drawn by `cast_tile`: as above, with whole powers of light.
+/// May this volume be drawn by `cast_tile`: as above; rectilinear grids, too, with plan.uneven.
 bool in_tolerant_packets(const PacketPlan& plan);
 
 /// The same within plan.budget instead of in steps. For tests: knobs.simd = false takes one ray at a time, with the same bytes.

@@ -423,7 +423,7 @@ bool in_packets(const PacketPlan& plan) {
   const Volume& v = plan.volume;
   const size_t bytes = v.voxels.array.bytes();
   const bool offsets_fit = bytes >= 4 && bytes < (size_t(1) << 31) && v.voxels.array.count() < (size_t(1) << 29);
-  return v.direct && offsets_fit && plan.lamps.size() <= PacketPlan::most_lamps && whole_power(plan.material);
+  return v.affine && v.direct && offsets_fit && plan.lamps.size() <= PacketPlan::most_lamps && whole_power(plan.material);
 }
 
 void put(const PacketPlan& plan, const RayPacket& rays, const PacketResult& result, int lanes, Frame& frame) {

@@ -11,9 +11,10 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "render/volume/lattice/packet_cells_inl.h"
+#include "render/volume/lattice/packet_cast_inl.h"
 #include "render/volume/lattice/packet_lit_strides_inl.h"
 #include "render/volume/lattice/packet_strides_inl.h"
+#include "render/volume/lattice/packet_walk_inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {
@@ -31,24 +32,19 @@ constexpr float share_at_once = 1.0f / 3;
 constexpr float safety = 0.65f, least_growth = 0.5f, most_growth = 1.4f, least_if_refused = 0.4f, most_if_refused = 0.7f;
 
 template <class D, class T, bool shaded>
-class TolerantPacket {
-  using F = hn::Vec<D>;
-  using I = Int<D>;
-  using M = hn::Mask<D>;
+class TolerantPacket : CellWalk<D, T, shaded, EvenAxes<D>> {
+  using Walk = CellWalk<D, T, shaded, EvenAxes<D>>;
+  using typename Walk::Bricks, typename Walk::F, typename Walk::I, typename Walk::M;
+  using Walk::bricks, Walk::cell_at, Walk::cross, Walk::leap, Walk::store;
+  using Walk::plan_, Walk::cells_, Walk::end_;
 
  public:
-  HWY_INLINE TolerantPacket(const PacketPlan& plan, const RayPacket& rays)
-      : plan_(plan), v_(plan.volume), cells_(plan, rays), sums_{plan.sums, cells_.source.loads}, rays_(rays) {
+  HWY_INLINE TolerantPacket(const PacketPlan& plan, const RayPacket& rays) : Walk(plan, rays), sums_{plan.sums, cells_.source.loads} {
     const D d;
     F square = hn::Zero(d);
-    for (int a = 0; a < 3; ++a) {
-      still_[a] = hn::Eq(cells_.along[a], hn::Zero(d)), up_[a] = hn::Gt(cells_.along[a], hn::Zero(d));
-      per_along_[a] = hn::IfThenElseZero(hn::Not(still_[a]), hn::Div(hn::Set(d, 1.0f), cells_.along[a]));
-      square = mul_add(cells_.along[a], cells_.along[a], square);
-    }
+    for (int a = 0; a < 3; ++a) square = mul_add(cells_.along[a], cells_.along[a], square);
     speed_ = hn::Sqrt(square);
     per_speed_ = hn::Div(hn::Set(d, 1.0f), hn::Max(speed_, hn::Set(d, 1e-30f)));
-    end_ = hn::Load(d, rays.length), cells_.sum.pass = hn::Load(d, rays.before);
     reserve_ = hn::Set(d, share_at_first * float(plan.budget.tolerance));
     stride_ = hn::Set(d, 1.0f);
     if (plan.bends) here_ = sums_.at(hn::Zero(d));
@@ -100,36 +96,6 @@ class TolerantPacket {
   }
 
  private:
-  /// What is known of the bricks that the lanes are in.
-  struct Bricks {
-    I at[3];
-    I free;  ///< so many bricks around draw nothing
-    I bend;  ///< Bends' code
-    HWY_INLINE M empty() const { return hn::RebindMask(D(), hn::Gt(free, hn::Zero(IntTag<D>()))); }
-    HWY_INLINE M bent() const { return hn::RebindMask(D(), hn::Eq(bend, hn::Set(IntTag<D>(), int(Bends::unbounded)))); }
-  };
-  HWY_INLINE Bricks bricks(const I cell[3]) const {
-    const D d;
-    const IntTag<D> di;
-    const I zero = hn::Zero(di), byte = hn::Set(di, 255);
-    Bricks b;
-    for (int a = 0; a < 3; ++a) b.at[a] = hn::ShiftRight<FineBricks::shift>(hn::Min(hn::Max(cell[a], zero), cells_.source.last_cell[a]));
-    const auto& dims = v_.fine().dims;
-    const I row = hn::Set(di, int(dims[0])), layer = hn::Set(di, int(dims[0] * dims[1]));
-    const I id = hn::Add(b.at[0], hn::Add(hn::Mul(b.at[1], row), hn::Mul(b.at[2], layer)));
-    b.free = plan_.knobs.skip_empty && v_.any_empty ? hn::And(gather_words(d, v_.distance.data(), id, cells_.source.loads), byte) : zero;
-    b.bend = plan_.bends ? hn::And(gather_words(d, plan_.bends->codes.data(), id, cells_.source.loads), byte)
-                         : hn::Set(di, int(Bends::unbounded));
-    return b;
-  }
-
-  HWY_INLINE I cell_at(int a, F t) const {
-    const D d;
-    const IntTag<D> di;
-    const F u = mul_add(cells_.along[a], t, cells_.start[a]);
-    return hn::Min(hn::Max(to_int(d, hn::Floor(u)), hn::Set(di, -1)), hn::Add(cells_.source.last_cell[a], hn::Set(di, 1)));
-  }
-
   HWY_INLINE void places_at(F t, Place<D> p[3]) const {
     for (int a = 0; a < 3; ++a) p[a] = cells_.source.place(a, mul_add(cells_.along[a], t, cells_.start[a]));
   }
@@ -278,118 +244,21 @@ class TolerantPacket {
     return found;
   }
 
-  /// Takes lanes out of the cube of bricks nearer than what is drawn.
-  HWY_INLINE void leap(const Bricks& from, M leaping, I cell[3], F& t) const {
-    const D d;
-    const IntTag<D> di;
-    const I one = hn::Set(di, 1), zero = hn::Zero(di);
-    const I* last_cell = cells_.source.last_cell;
-    F leave = end_, at[3];
-    I side[3];
-    hn::Mask<IntTag<D>> open[3];
-    for (int a = 0; a < 3; ++a) {
-      const I reach = hn::IfThenElse(hn::RebindMask(di, up_[a]), from.free, hn::Sub(one, from.free));
-      side[a] = hn::ShiftLeft<FineBricks::shift>(hn::Add(from.at[a], reach));
-      // Beyond the outermost bricks there is nothing else.
-      open[a] = hn::Or(hn::RebindMask(di, still_[a]), hn::Or(hn::Lt(side[a], one), hn::Gt(side[a], last_cell[a])));
-      at[a] = hn::IfThenElse(hn::RebindMask(d, open[a]), hn::Set(d, HUGE_VALF), when_at(a, side[a], t));
-      leave = hn::Min(leave, at[a]);
-    }
-    const auto moving = hn::RebindMask(di, leaping);
-    for (int a = 0; a < 3; ++a) {
-      const auto up = hn::RebindMask(di, up_[a]), still = hn::RebindMask(di, still_[a]);
-      const auto through = hn::RebindMask(di, hn::Le(at[a], leave));
-      const I beyond = hn::Sub(side[a], hn::IfThenElse(up, zero, one));
-      // Inside the cube along the other axes, and never back.
-      const I here = to_int(d, hn::Floor(mul_add(cells_.along[a], leave, cells_.start[a])));
-      const I forth =
-          hn::IfThenElse(up, hn::Max(cell[a], hn::Min(here, hn::Sub(beyond, one))), hn::Min(cell[a], hn::Max(here, hn::Add(beyond, one))));
-      const I free_way = hn::Min(hn::Max(here, hn::Set(di, -1)), hn::Add(last_cell[a], one));
-      const I within = hn::IfThenElse(open[a], hn::IfThenElse(still, cell[a], free_way), forth);
-      cell[a] = hn::IfThenElse(moving, hn::IfThenElse(through, beyond, within), cell[a]);
-    }
-    t = hn::IfThenElse(leaping, leave, t);
-  }
-
-  /// Takes lanes through their cells.
-  HWY_INLINE void cross(M crossing, I cell[3], F& t) {
-    const D d;
-    const IntTag<D> di;
-    const I one = hn::Set(di, 1), zero = hn::Zero(di);
-    F leave = end_, at[3];
-    I inside[3], beyond[3];
-    for (int a = 0; a < 3; ++a) {
-      const auto up = hn::RebindMask(di, up_[a]);
-      inside[a] = hn::Min(hn::Max(cell[a], zero), cells_.source.last_cell[a]);
-      beyond[a] = hn::Add(cell[a], hn::IfThenElse(up, one, hn::Neg(one)));
-      at[a] = hn::IfThenElse(still_[a], hn::Set(d, HUGE_VALF), when_at(a, hn::Max(cell[a], beyond[a]), t));
-      leave = hn::Min(leave, at[a]);
-    }
-    const M look = hn::And(crossing, hn::Gt(leave, t));
-    if (!hn::AllFalse(d, look)) cells_.cross(inside, t, leave, look);
-    for (int a = 0; a < 3; ++a) cell[a] = hn::IfThenElse(hn::RebindMask(di, hn::And(crossing, hn::Le(at[a], leave))), beyond[a], cell[a]);
-    t = hn::IfThenElse(crossing, leave, t);
-  }
-  /// When, from t on, a ray meets that side.
-  HWY_INLINE F when_at(int a, I side, F t) const {
-    return hn::Max(hn::Mul(hn::Sub(hn::ConvertTo(D(), side), cells_.start[a]), per_along_[a]), t);
-  }
-
-  HWY_INLINE void store(PacketResult& result) const {
-    const D d;
-    const Gathering<D>& sum = cells_.sum;
-    alignas(64) float half_at[most_lanes];
-    hn::Store(sum.r, d, result.r), hn::Store(sum.g, d, result.g), hn::Store(sum.b, d, result.b);
-    hn::Store(sum.pass, d, result.transmittance), hn::Store(sum.half_at, d, half_at);
-    for (size_t n = 0; n < hn::Lanes(d); ++n) result.surface[n] = half_at[n] >= 0 ? rays_.enter[n] + double(half_at[n]) : -1;
-  }
-
-  const PacketPlan& plan_;
-  const Volume& v_;
-  PacketCells<D, T, shaded> cells_;
   const SumLanes<D> sums_;
-  const RayPacket& rays_;
-  F per_along_[3], speed_, per_speed_, end_;  // speed: in cell lengths per world length
-  M still_[3], up_[3];
+  F speed_, per_speed_;  // speed: in cell lengths per world length
   F stride_, reserve_;
   typename SumLanes<D>::Place here_;
   LitPlace<D> here_lit_;
   M lit_;  // the lanes for which it is the place where they are
 };
 
-template <class D, class T, bool shaded>
-HWY_NOINLINE void cast_all(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
-  constexpr int lanes = lanes_of<D>, width = packet_width<D>, height = lanes / width;
-  RayPacket rays;
-  PacketResult result;
-  for (int y = y0; y < y1; y += height)
-    for (int x = x0; x < x1; x += width) {
-      if (!set_up<D>(plan, x, y, x1, y1, frame, rays)) continue;
-      TolerantPacket<D, T, shaded> packet(plan, rays);
-      packet.run(result);
-      put(plan, rays, result, lanes, frame);
-    }
-}
-
-template <class D>
-HWY_INLINE void cast_with(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
-  const bool shaded = plan.volume.shaded;
-  switch (plan.volume.voxels.array.type()) {
-    case ElementType::u8: return (shaded ? cast_all<D, uint8_t, true> : cast_all<D, uint8_t, false>)(plan, x0, y0, x1, y1, frame);
-    case ElementType::i8: return (shaded ? cast_all<D, int8_t, true> : cast_all<D, int8_t, false>)(plan, x0, y0, x1, y1, frame);
-    case ElementType::u16: return (shaded ? cast_all<D, uint16_t, true> : cast_all<D, uint16_t, false>)(plan, x0, y0, x1, y1, frame);
-    case ElementType::i16: return (shaded ? cast_all<D, int16_t, true> : cast_all<D, int16_t, false>)(plan, x0, y0, x1, y1, frame);
-    default: return (shaded ? cast_all<D, float, true> : cast_all<D, float, false>)(plan, x0, y0, x1, y1, frame);
-  }
-}
-
 void cast_in_packets(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
-  cast_with<hn::CappedTag<float, most_lanes>>(plan, x0, y0, x1, y1, frame);
+  cast_with<TolerantPacket, hn::CappedTag<float, most_lanes>>(plan, x0, y0, x1, y1, frame);
 }
 
 #if HWY_ONCE
 void cast_singly(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
-  cast_with<hn::CappedTag<float, 1>>(plan, x0, y0, x1, y1, frame);
+  cast_with<TolerantPacket, hn::CappedTag<float, 1>>(plan, x0, y0, x1, y1, frame);
 }
 #endif
 
@@ -405,10 +274,12 @@ bool in_tolerant_packets(const PacketPlan& plan) {
   const Volume& v = plan.volume;
   const size_t bytes = v.voxels.array.bytes();
   const bool offsets_fit = bytes >= 4 && bytes < (size_t(1) << 31) && v.voxels.array.count() < (size_t(1) << 29);
-  return v.direct && plan.medium->linear() && offsets_fit && plan.lamps.size() <= PacketPlan::most_lamps && whole_power(plan.material);
+  return v.direct && (v.affine || UnevenAxes::fits(v)) && plan.medium->linear() && offsets_fit &&
+         plan.lamps.size() <= PacketPlan::most_lamps && whole_power(plan.material);
 }
 
 void cast_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+  if (plan.uneven) return cast_uneven_tile(plan, x0, y0, x1, y1, frame);
   if (plan.knobs.simd) return HWY_DYNAMIC_DISPATCH(cast_in_packets)(plan, x0, y0, x1, y1, frame);
   return HWY_STATIC_DISPATCH(cast_singly)(plan, x0, y0, x1, y1, frame);
 }

@@ -274,8 +274,7 @@ Volume prepare(const VolumeItem& item, uint32_t id, const Knobs& knobs) {
   v.transfer.emplace_back(item.color, item.opacity, unit, v.step, lo + double(v.base), hi + double(v.base), double(v.base));
   if (item.mode != VolumeItem::Mode::maximum) v.distance = distance_to_drawn(v.fine(), v.transfer[0], v.any_empty);
   v.kernels = knobs.simd ? best_kernels(v.voxels) : scalar_kernels(v.voxels);
-  v.direct =
-      v.affine && !v.nearest && v.hidden().empty() && v.transfer[0].linear() && !(v.dual && v.voxels.array.type() == ElementType::f32);
+  v.direct = !v.nearest && v.hidden().empty() && v.transfer[0].linear() && !(v.dual && v.voxels.array.type() == ElementType::f32);
   // A gradient in q becomes one in the world by the transpose of world -> q.
   for (int r = 0; r < 3; ++r)
     for (int c = 0; c < 3; ++c) v.shade_plan.to_world[r][c] = float(v.to_q.m[c][r]);

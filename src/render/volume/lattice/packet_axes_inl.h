@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+// The axes of a lattice along which packets go from cell to cell: samples are one apart, or lie where a table says.
+#if defined(SG_PACKET_AXES_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SG_PACKET_AXES_INL_H
+#undef SG_PACKET_AXES_INL_H
+#else
+#define SG_PACKET_AXES_INL_H
+#endif
+
+#include "render/volume/lattice/packet_around_inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sg::volume::HWY_NAMESPACE {
+
+/// q = u.
+template <class D>
+class EvenAxes {
+  using F = hn::Vec<D>;
+  using I = Int<D>;
+
+ public:
+  template <class T>
+  HWY_INLINE EvenAxes(const PacketPlan&, const Source<D, T>& source) {
+    for (int a = 0; a < 3; ++a) last_cell_[a] = source.last_cell[a];
+  }
+
+  /// The cell at a place of an axis; -1 and last + 1 are the halves beyond the outermost samples.
+  HWY_INLINE I cell_at(int a, F q) const {
+    const D d;
+    const IntTag<D> di;
+    return hn::Min(hn::Max(to_int(d, hn::Floor(q)), hn::Set(di, -1)), hn::Add(last_cell_[a], hn::Set(di, 1)));
+  }
+  /// Where sample `number` lies, or what is beyond all of them.
+  HWY_INLINE F sample(int, I number) const { return hn::ConvertTo(D(), number); }
+  /// The share of the edge of cell `inside` at a place start + along * t, for any t.
+  struct Shares {
+    F base;
+    HWY_INLINE F at(F along, F t) const { return mul_add(along, t, base); }
+  };
+  HWY_INLINE Shares shares(int, I inside, F start) const { return {hn::Sub(start, hn::ConvertTo(D(), inside))}; }
+
+  /// Derivatives in q in one cell of each lane.
+  template <class T>
+  class Slopes {
+   public:
+    HWY_INLINE void find(const EvenAxes&, const Around<D, T>& around, const I[3]) {
+      Quad<D> rows[4];
+      around.rows(rows);
+      around.template differences<0>(rows, change_[0]), around.template differences<1>(rows, change_[1]);
+      around.template differences<2>(rows, change_[2]);
+      for (int a = 0; a < 3; ++a) first_[a] = around.first[a], last_[a] = around.last[a];
+    }
+    HWY_INLINE F along(int a, const F share[3]) const {
+      return hn::Div(Around<D, T>::trilinear(change_[a], share), Around<D, T>::apart(first_[a], last_[a], share[a]));
+    }
+
+   private:
+    F change_[3][8];  // at the corners, over two cells
+    hn::Mask<D> first_[3], last_[3];
+  };
+
+ private:
+  I last_cell_[3];
+};
+
+/// UnevenAxes of rectilinear grids.
+template <class D>
+class UnevenLanes {
+  using F = hn::Vec<D>;
+  using I = Int<D>;
+
+ public:
+  template <class T>
+  HWY_INLINE UnevenLanes(const PacketPlan& plan, const Source<D, T>& source) : axes_(*plan.uneven), loads_(source.loads) {
+    for (int a = 0; a < 3; ++a) last_cell_[a] = source.last_cell[a];
+  }
+
+  HWY_INLINE I cell_at(int a, F q) const {
+    const D d;
+    const IntTag<D> di;
+    const I zero = hn::Zero(di), one = hn::Set(di, 1);
+    const F slice = hn::Mul(hn::Sub(q, hn::Set(d, axes_.first[a])), hn::Set(d, axes_.slices_per_q[a]));
+    const F last_slice = hn::Set(d, float(axes_.slices[a].size() - 1));
+    const I in_slice = to_int(d, hn::Max(hn::Zero(d), hn::Min(slice, last_slice)));
+    I cell = gather_words(d, axes_.slices[a].data(), hn::ShiftLeft<2>(in_slice), loads_);
+    // The slice may begin before it by rounding, and end some cells on.
+    const auto before = [&](I c) HWY_ATTR { return hn::RebindMask(di, hn::Lt(q, sample(a, c))); };
+    cell = hn::IfThenElse(before(cell), hn::Max(hn::Sub(cell, one), zero), cell);
+    while (true) {
+      const I next = hn::Add(cell, one);
+      const auto on = hn::Not(hn::Or(before(next), hn::Eq(cell, last_cell_[a])));
+      if (hn::AllFalse(di, on)) break;
+      cell = hn::IfThenElse(on, next, cell);
+    }
+    const I end = hn::Add(last_cell_[a], one);
+    cell = hn::IfThenElse(before(zero), hn::Set(di, -1), cell);
+    return hn::IfThenElse(hn::RebindMask(di, hn::Gt(q, sample(a, end))), end, cell);
+  }
+  HWY_INLINE F sample(int a, I number) const {
+    const D d;
+    const IntTag<D> di;
+    const I zero = hn::Zero(di), last = hn::Add(last_cell_[a], hn::Set(di, 1));
+    const I inside = hn::Max(zero, hn::Min(number, last));
+    const F at = hn::BitCast(d, gather_words(d, axes_.cells[a].data(), hn::ShiftLeft<3>(inside), loads_));
+    const F below = hn::Set(d, -HUGE_VALF), above = hn::Set(d, HUGE_VALF);
+    return hn::IfThenElse(hn::RebindMask(d, hn::Lt(number, zero)), below,
+                          hn::IfThenElse(hn::RebindMask(d, hn::Gt(number, last)), above, at));
+  }
+  struct Shares {
+    F base, per_width;
+    HWY_INLINE F at(F along, F t) const { return hn::Mul(mul_add(along, t, base), per_width); }
+  };
+  HWY_INLINE Shares shares(int a, I inside, F start) const {
+    const Pair<D> cell = gather_pair(D(), reinterpret_cast<const float*>(axes_.cells[a].data()), hn::ShiftLeft<1>(inside), loads_);
+    return {hn::Sub(start, cell.a), cell.b};
+  }
+
+  template <class T>
+  class Slopes {
+   public:
+    HWY_INLINE void find(const UnevenLanes& lanes, const Around<D, T>& around, const I cell[3]) {
+      Quad<D> rows[4];
+      around.rows(rows);
+      corners<0>(lanes, around, rows, cell), corners<1>(lanes, around, rows, cell), corners<2>(lanes, around, rows, cell);
+      inner_ = around.inner;
+      if (!inner_)
+        for (int a = 0; a < 3; ++a) lean_[a] = lanes.lean(a, cell[a]);
+    }
+    HWY_INLINE F along(int a, const F share[3]) const {
+      if (inner_) return Around<D, T>::trilinear(slope_[a], share);
+      const D d;
+      const F one = hn::Set(d, 1.0f);
+      F leaning[3] = {share[0], share[1], share[2]};
+      leaning[a] = hn::Div(hn::Mul(share[a], lean_[a]), mul_add(share[a], hn::Sub(lean_[a], one), one));
+      return Around<D, T>::trilinear(slope_[a], leaning);
+    }
+
+   private:
+    template <int axis>
+    HWY_INLINE void corners(const UnevenLanes& lanes, const Around<D, T>& around, const Quad<D> rows[4], const I cell[3]) {
+      const Quad<D> w = lanes.weights(axis, cell[axis]);
+      F before[8], after[8];
+      around.template neighbours<axis>(rows, before, after);
+      for (int c = 0; c < 8; ++c) {
+        const F own = c & 1 ? rows[c / 2].high.a : rows[c / 2].low.b;
+        const Pair<D>& weight = c >> axis & 1 ? w.high : w.low;
+        slope_[axis][c] = mul_add(weight.b, hn::Sub(after[c], own), hn::Mul(weight.a, hn::Sub(own, before[c])));
+      }
+    }
+
+    F slope_[3][8];  // at the corners
+    F lean_[3];
+    bool inner_;  // no lane's cell lies at the border: all lean_ are 1
+  };
+
+ private:
+  /// DerivativeWeights of both samples of a cell.
+  HWY_INLINE Quad<D> weights(int a, I cell) const {
+    return gather_quad(D(), reinterpret_cast<const float*>(axes_.weights[a].data()), hn::ShiftLeft<1>(cell), loads_);
+  }
+
+  HWY_INLINE F lean(int a, I cell) const {
+    return hn::BitCast(D(), gather_words(D(), axes_.lean[a].data(), hn::ShiftLeft<2>(cell), loads_));
+  }
+
+  const UnevenAxes& axes_;
+  I last_cell_[3];
+  const bool loads_;
+};
+
+}  // namespace sg::volume::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// A packet on its way from cell to cell: every lane has its own place on its own ray, leaps over what draws nothing and crosses the rest.
+#if defined(SG_PACKET_WALK_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SG_PACKET_WALK_INL_H
+#undef SG_PACKET_WALK_INL_H
+#else
+#define SG_PACKET_WALK_INL_H
+#endif
+
+#include "render/volume/lattice/packet_cells_inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sg::volume::HWY_NAMESPACE {
+
+/// Cells are told by their lowest samples; -1 and last + 1 are the halves beyond the outermost samples.
+template <class D, class T, bool shaded, class Axes>
+class CellWalk {
+ protected:
+  using F = hn::Vec<D>;
+  using I = Int<D>;
+  using M = hn::Mask<D>;
+
+  HWY_INLINE CellWalk(const PacketPlan& plan, const RayPacket& rays) : plan_(plan), v_(plan.volume), cells_(plan, rays), rays_(rays) {
+    const D d;
+    for (int a = 0; a < 3; ++a) {
+      still_[a] = hn::Eq(cells_.along[a], hn::Zero(d)), up_[a] = hn::Gt(cells_.along[a], hn::Zero(d));
+      per_along_[a] = hn::IfThenElseZero(hn::Not(still_[a]), hn::Div(hn::Set(d, 1.0f), cells_.along[a]));
+    }
+    end_ = hn::Load(d, rays.length), cells_.sum.pass = hn::Load(d, rays.before);
+  }
+
+  /// What is known of the bricks that the lanes are in.
+  struct Bricks {
+    I at[3];
+    I free;  ///< so many bricks around draw nothing
+    I bend;  ///< Bends' code
+    HWY_INLINE M empty() const { return hn::RebindMask(D(), hn::Gt(free, hn::Zero(IntTag<D>()))); }
+    HWY_INLINE M bent() const { return hn::RebindMask(D(), hn::Eq(bend, hn::Set(IntTag<D>(), int(Bends::unbounded)))); }
+  };
+  HWY_INLINE Bricks bricks(const I cell[3]) const {
+    const D d;
+    const IntTag<D> di;
+    const I zero = hn::Zero(di), byte = hn::Set(di, 255);
+    Bricks b;
+    for (int a = 0; a < 3; ++a) b.at[a] = hn::ShiftRight<FineBricks::shift>(hn::Min(hn::Max(cell[a], zero), cells_.source.last_cell[a]));
+    const auto& dims = v_.fine().dims;
+    const I row = hn::Set(di, int(dims[0])), layer = hn::Set(di, int(dims[0] * dims[1]));
+    const I id = hn::Add(b.at[0], hn::Add(hn::Mul(b.at[1], row), hn::Mul(b.at[2], layer)));
+    b.free = plan_.knobs.skip_empty && v_.any_empty ? hn::And(gather_words(d, v_.distance.data(), id, cells_.source.loads), byte) : zero;
+    b.bend = plan_.bends ? hn::And(gather_words(d, plan_.bends->codes.data(), id, cells_.source.loads), byte)
+                         : hn::Set(di, int(Bends::unbounded));
+    return b;
+  }
+
+  HWY_INLINE I cell_at(int a, F t) const { return cells_.axes.cell_at(a, mul_add(cells_.along[a], t, cells_.start[a])); }
+
+  /// Takes lanes out of the cube of bricks nearer than what is drawn.
+  HWY_INLINE void leap(const Bricks& from, M leaping, I cell[3], F& t) const {
+    const D d;
+    const IntTag<D> di;
+    const I one = hn::Set(di, 1), zero = hn::Zero(di);
+    const I* last_cell = cells_.source.last_cell;
+    F leave = end_, at[3];
+    I side[3];
+    hn::Mask<IntTag<D>> open[3];
+    for (int a = 0; a < 3; ++a) {
+      const I reach = hn::IfThenElse(hn::RebindMask(di, up_[a]), from.free, hn::Sub(one, from.free));
+      side[a] = hn::ShiftLeft<FineBricks::shift>(hn::Add(from.at[a], reach));
+      // Beyond the outermost bricks there is nothing else.
+      open[a] = hn::Or(hn::RebindMask(di, still_[a]), hn::Or(hn::Lt(side[a], one), hn::Gt(side[a], last_cell[a])));
+      at[a] = hn::IfThenElse(hn::RebindMask(d, open[a]), hn::Set(d, HUGE_VALF), when_at(a, side[a], t));
+      leave = hn::Min(leave, at[a]);
+    }
+    const auto moving = hn::RebindMask(di, leaping);
+    for (int a = 0; a < 3; ++a) {
+      const auto up = hn::RebindMask(di, up_[a]), still = hn::RebindMask(di, still_[a]);
+      const auto through = hn::RebindMask(di, hn::Le(at[a], leave));
+      const I beyond = hn::Sub(side[a], hn::IfThenElse(up, zero, one));
+      // Inside the cube along the other axes, and never back.
+      const I here = cell_at(a, leave);
+      const I forth =
+          hn::IfThenElse(up, hn::Max(cell[a], hn::Min(here, hn::Sub(beyond, one))), hn::Min(cell[a], hn::Max(here, hn::Add(beyond, one))));
+      const I within = hn::IfThenElse(open[a], hn::IfThenElse(still, cell[a], here), forth);
+      cell[a] = hn::IfThenElse(moving, hn::IfThenElse(through, beyond, within), cell[a]);
+    }
+    t = hn::IfThenElse(leaping, leave, t);
+  }
+
+  /// Takes lanes through their cells.
+  HWY_INLINE void cross(M crossing, I cell[3], F& t) {
+    const D d;
+    const IntTag<D> di;
+    const I one = hn::Set(di, 1), zero = hn::Zero(di);
+    F leave = end_, at[3];
+    I inside[3], beyond[3];
+    for (int a = 0; a < 3; ++a) {
+      const auto up = hn::RebindMask(di, up_[a]);
+      inside[a] = hn::Min(hn::Max(cell[a], zero), cells_.source.last_cell[a]);
+      beyond[a] = hn::Add(cell[a], hn::IfThenElse(up, one, hn::Neg(one)));
+      at[a] = hn::IfThenElse(still_[a], hn::Set(d, HUGE_VALF), when_at(a, hn::Max(cell[a], beyond[a]), t));
+      leave = hn::Min(leave, at[a]);
+    }
+    const M look = hn::And(crossing, hn::Gt(leave, t));
+    if (!hn::AllFalse(d, look)) cells_.cross(inside, t, leave, look);
+    for (int a = 0; a < 3; ++a) cell[a] = hn::IfThenElse(hn::RebindMask(di, hn::And(crossing, hn::Le(at[a], leave))), beyond[a], cell[a]);
+    t = hn::IfThenElse(crossing, leave, t);
+  }
+
+  HWY_INLINE void store(PacketResult& result) const {
+    const D d;
+    const Gathering<D>& sum = cells_.sum;
+    alignas(64) float half_at[most_lanes];
+    hn::Store(sum.r, d, result.r), hn::Store(sum.g, d, result.g), hn::Store(sum.b, d, result.b);
+    hn::Store(sum.pass, d, result.transmittance), hn::Store(sum.half_at, d, half_at);
+    for (size_t n = 0; n < hn::Lanes(d); ++n) result.surface[n] = half_at[n] >= 0 ? rays_.enter[n] + double(half_at[n]) : -1;
+  }
+
+  const PacketPlan& plan_;
+  const Volume& v_;
+  PacketCells<D, T, shaded, Axes> cells_;
+  F end_;
+  M still_[3], up_[3];
+
+ private:
+  /// When, from t on, a ray meets that side.
+  HWY_INLINE F when_at(int a, I side, F t) const {
+    return hn::Max(hn::Mul(hn::Sub(cells_.axes.sample(a, side), cells_.start[a]), per_along_[a]), t);
+  }
+
+  const RayPacket& rays_;
+  F per_along_[3];
+};
+
+}  // namespace sg::volume::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif
