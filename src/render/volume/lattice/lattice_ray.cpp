@@ -171,7 +171,10 @@ class LatticeRay final : public LatticeWalker {
     double f[3];
     for (int a = 0; a < 3; ++a) {
       q[a] = std::clamp(q[a], axes_[a].sample(0), axes_[a].sample(axes_[a].last()));
-      cell[a] = axes_[a].cell(long(v_.u(a, q[a]))), f[a] = axes_[a].fraction(cell[a], q[a]);
+      const long last = slopes_of_[a];  // most places lie in the cell of the one before
+      const bool same = last >= 0 && q[a] >= axes_[a].sample(last) && q[a] <= axes_[a].sample(last + 1);
+      cell[a] = same ? last : axes_[a].cell(long(v_.u(a, q[a])));
+      f[a] = axes_[a].fraction(cell[a], q[a]);
     }
     find_slopes(cell);
     if (beside_holes_) return to_world(slope_beside_holes(q));

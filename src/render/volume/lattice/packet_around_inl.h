@@ -44,17 +44,15 @@ class Around {
   /// Differences over two cells along an axis at the corners i + 2 j + 4 k, of what rows() told.
   template <int axis>
   HWY_INLINE void differences(const Quad<D> rows[4], F out[8]) const {
-    F before[8], after[8];
-    neighbours<axis>(rows, before, after);
-    for (int c = 0; c < 8; ++c) out[c] = hn::Sub(after[c], before[c]);
+    neighbours<axis>(rows, [&](int corner, F before, F, F after) HWY_ATTR { out[corner] = hn::Sub(after, before); });
   }
-  /// The samples before and after the corners.
-  template <int axis>
-  HWY_INLINE void neighbours(const Quad<D> rows[4], F before[8], F after[8]) const {
+  /// each(corner, the sample before it along the axis, its own, the one after it)
+  template <int axis, class Each>
+  HWY_INLINE void neighbours(const Quad<D> rows[4], const Each& each) const {
     if constexpr (axis == 0) {
       for (int r = 0; r < 4; ++r) {
-        before[2 * r] = rows[r].low.a, before[2 * r + 1] = rows[r].low.b;
-        after[2 * r] = rows[r].high.a, after[2 * r + 1] = rows[r].high.b;
+        const auto& [low, high] = rows[r];
+        each(2 * r, low.a, low.b, high.a), each(2 * r + 1, low.b, high.a, high.b);
       }
     } else {
       // The rows beyond, on the side before and the one after, each at both places across.
@@ -70,8 +68,8 @@ class Around {
       const auto side = [&](int n) HWY_ATTR {
         const Quad<D>&own = rows[n * t], &next = rows[n * t + s];
         const int lower = 2 * (n * t), upper = lower + 2 * s;
-        before[lower] = beyond[n].a, before[lower + 1] = beyond[n].b, after[lower] = next.low.b, after[lower + 1] = next.high.a;
-        before[upper] = own.low.b, before[upper + 1] = own.high.a, after[upper] = beyond[2 + n].a, after[upper + 1] = beyond[2 + n].b;
+        each(lower, beyond[n].a, own.low.b, next.low.b), each(lower + 1, beyond[n].b, own.high.a, next.high.a);
+        each(upper, own.low.b, next.low.b, beyond[2 + n].a), each(upper + 1, own.high.a, next.high.a, beyond[2 + n].b);
       };
       side(0), side(1);
     }

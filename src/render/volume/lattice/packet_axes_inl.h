@@ -139,13 +139,10 @@ class UnevenLanes {
     template <int axis>
     HWY_INLINE void corners(const UnevenLanes& lanes, const Around<D, T>& around, const Quad<D> rows[4], const I cell[3]) {
       const Quad<D> w = lanes.weights(axis, cell[axis]);
-      F before[8], after[8];
-      around.template neighbours<axis>(rows, before, after);
-      for (int c = 0; c < 8; ++c) {
-        const F own = c & 1 ? rows[c / 2].high.a : rows[c / 2].low.b;
-        const Pair<D>& weight = c >> axis & 1 ? w.high : w.low;
-        slope_[axis][c] = mul_add(weight.b, hn::Sub(after[c], own), hn::Mul(weight.a, hn::Sub(own, before[c])));
-      }
+      around.template neighbours<axis>(rows, [&](int corner, F before, F own, F after) HWY_ATTR {
+        const Pair<D>& weight = corner >> axis & 1 ? w.high : w.low;
+        slope_[axis][corner] = mul_add(weight.b, hn::Sub(after, own), hn::Mul(weight.a, hn::Sub(own, before)));
+      });
     }
 
     F slope_[3][8];  // at the corners

@@ -34,11 +34,19 @@ Stretch part_of(const Stretch& s, double from, double to) {
   return {from, to, {blossom(a, a, a), blossom(a, a, b), blossom(a, b, b), blossom(b, b, b)}, s.cell};
 }
 
-Lit light_on(const Look& look, RayField& walker, const Stretch& s, double t) {
+namespace {
+
+Lit light_on(const Look& look, RayField& walker, const Stretch& s, double t, Vec3f& gradient) {
   const LightEffects* effects = look.lit->effects;
-  if (!effects) return light_at(*look.lit, walker.gradient(s, t), look.edge, look.per_scale);
-  const Vec3f gradient = effects->needs_gradient(look.lit->material.lit) ? walker.gradient(s, t) : Vec3f{};
-  return light_at(*look.lit, t, gradient, look.edge, look.per_scale);
+  gradient = !effects || effects->needs_gradient(look.lit->material.lit) ? walker.gradient(s, t) : Vec3f{0, 0, 0};
+  return effects ? light_at(*look.lit, t, gradient, look.edge, look.per_scale) : light_at(*look.lit, gradient, look.edge, look.per_scale);
+}
+
+}  // namespace
+
+Lit light_on(const Look& look, RayField& walker, const Stretch& s, double t) {
+  Vec3f gradient;
+  return light_on(look, walker, s, t, gradient);
 }
 
 float tau_at(const Detail& detail, const Stretch& s, double t, RayField& walker, TransferFunction::Sample& sample) {
@@ -80,7 +88,6 @@ double optical_depth(const Detail& detail, const Stretch& s, RayField& walker) {
 
 namespace {
 
-constexpr int most_cuts = 12;  // halvings of a stretch for its light: where it jumps only the part with the jump is cut on
 constexpr float deep = 0.05f;  // optical depth from which on the order within a segment is seen
 
 /// Where there is light on the ends of a part of a stretch, linear between them.
@@ -208,33 +215,110 @@ class Pieces {
   bool styled_ = false;  // is there one at all?
 };
 
-/// Cuts the stretch until the light on its ends tells the light on its way.
-void composite_lit(const Look& look, const Stretch& s, float lo, float hi, const Lit& first, const Lit& last, RayField& walker, int cuts,
-                   RayState& state) {
-  const float depth = float(s.to - s.from) * look.medium.most_tau(lo, hi);
-  const float weight = state.sum.transmittance * std::min(depth, 1.0f);
-  // What may be wrong of it: a share of the tolerance by the light that is taken, one by the length.
-  const float allowed = float(look.budget.tolerance) * (0.5f * weight + 0.5f * float((s.to - s.from) / look.budget.length));
-  // Ends that agree tell little of a way on which much is taken: a surface may turn over and back.
-  const float change = std::max(difference(first, last), cuts <= 1 ? 0.1f : 0.0f);
-  if (cuts < most_cuts && weight * change > allowed) {
-    const double middle = 0.5 * (s.from + s.to);
-    const Lit there = light_on(look, walker, s, middle);
-    const float off = difference(there, lerp(first, last, 0.5f));
-    if (cuts == 0 || weight * off > allowed) {
-      const Stretch a = part_of(s, s.from, middle), b = part_of(s, middle, s.to);
-      if (!look.medium.clear(a.lowest(), a.highest()))
-        composite_lit(look, a, a.lowest(), a.highest(), first, there, walker, cuts + 1, state);
-      if (!look.medium.clear(b.lowest(), b.highest()))
-        composite_lit(look, b, b.lowest(), b.highest(), there, last, walker, cuts + 1, state);
-      return;
-    }
-  }
-  Pieces pieces(look, state);
-  const LitPart part{s.from, s.to, first, last};
-  pieces.light(part);
-  pieces.whole(s, lo, hi);
+/// The light at a place of a ray, and the surface there.
+struct LitPlace {
+  double t = 0;
+  Lit light;
+  Vec3f normal{0, 0, 0};  // unit, along the gradient; zero where there is none
+  float along = 0;        // of the normal and the ray: the cosine
+  float nearest = 0;      // the cosine to the nearest middle of a highlight
+};
+
+LitPlace lit_place(const Look& look, RayField& walker, const Stretch& s, double t) {
+  LitPlace p;
+  Vec3f gradient{0, 0, 0};
+  p.t = t, p.light = light_on(look, walker, s, t, gradient);
+  const float square = dot(gradient, gradient);
+  if (!(square > 0 && square < 1e30f)) return p;
+  p.normal = gradient * (1 / std::sqrt(square)), p.along = dot(p.normal, look.lit->direction);
+  const float side = p.along > 0 ? -1.0f : 1.0f;
+  for (const LitRay::One& l : look.lit->lights)
+    if (side * dot(p.normal, l.light) > 0) p.nearest = std::max(p.nearest, side * dot(p.normal, l.half));
+  return p;
 }
+
+/// What light that is linear between two places may have wrong in between, besides what a look at the middle tells.
+float may_bend(const LitRay& lit, const LitPlace& a, const LitPlace& b) {
+  if (a.along == 0 || b.along == 0) return 0;
+  const float turn = std::max(0.0f, 1 - dot(a.normal, b.normal));
+  // So near to the surface's edge that it may turn over and back, a ray sees as much of its other side as it turns.
+  const float over = std::min(std::abs(a.along), std::abs(b.along)) < turn ? std::min(turn, 1.0f) : 0;
+  // A highlight is exp(-p x^2 / 2) at the angle x: its second derivative, at most, on an arc of `turn` (1 - cosine) from such a place.
+  const float power = lit.material.power, away = std::sqrt(std::max(0.0f, 1 - std::max(a.nearest, b.nearest)));
+  const float closest = std::max(0.0f, away - 0.5f * std::sqrt(turn)), fall = closest * closest;
+  const float lobe = exp_minus(power * fall) * std::max(1.0f, 2 * power * fall);
+  float all = 0;
+  for (const LitRay::One& l : lit.lights) all += l.intensity;
+  const float bend = all * (lit.material.diffuse + lit.material.specular * power * lobe);
+  return std::max(over, turn * bend * (1.0f / 12));
+}
+
+/// Integrates a stretch with light.
+class LitStretch {
+ public:
+  LitStretch(const Look& look, RayField& walker, RayState& state) : look_(look), walker_(walker), state_(state) {}
+
+  void whole(const Stretch& s, float lo, float hi) {
+    part(s, lo, hi, lit_place(look_, walker_, s, s.from), lit_place(look_, walker_, s, s.to), 0);
+  }
+
+ private:
+  static constexpr int most_cuts = 10;
+
+  /// Cuts the stretch until the light on its ends tells the light on its way.
+  void part(const Stretch& s, float lo, float hi, const LitPlace& first, const LitPlace& last, int cuts) {
+    const float depth = float(s.to - s.from) * look_.medium.most_tau(lo, hi);
+    const float weight = state_.sum.transmittance * std::min(depth, 1.0f);
+    // What may be wrong of it: a share of the tolerance by the light that is taken, one by the length.
+    const float allowed = float(look_.budget.tolerance) * (0.4f * weight + 0.4f * float((s.to - s.from) / look_.budget.length));
+    const float bend = may_bend(*look_.lit, first, last), differ = std::max(bend, difference(first.light, last.light));
+    // The ends of a whole stretch tell little of it.
+    if (cuts < most_cuts && weight * std::max(differ, cuts == 0 ? 0.1f : 0.0f) > allowed) {
+      const LitPlace middle = lit_place(look_, walker_, s, 0.5 * (s.from + s.to));
+      const float off = difference(middle.light, lerp(first.light, last.light, 0.5f));
+      if (weight * std::max(off, bend) > allowed) {
+        LitPlace before = middle, after = middle;
+        if (jumps(s, first, middle, last, before, after)) {
+          within(s, first, before, cuts + 1);
+          return within(s, after, last, cuts + 1);
+        }
+        within(s, first, middle, cuts + 1);
+        return within(s, middle, last, cuts + 1);
+      }
+    }
+    Pieces pieces(look_, state_);
+    const LitPart lit{s.from, s.to, first.light, last.light};
+    pieces.light(lit);
+    pieces.whole(s, lo, hi);
+  }
+  void within(const Stretch& s, const LitPlace& first, const LitPlace& last, int cuts) {
+    if (!(last.t > first.t)) return;
+    const Stretch p = part_of(s, first.t, last.t);
+    const float lo = p.lowest(), hi = p.highest();
+    if (!look_.medium.clear(lo, hi)) part(p, lo, hi, first, last, cuts);
+  }
+
+  /// Does the light jump, as where a surface turns over? Then between two places next to each other, which count as one.
+  bool jumps(const Stretch& s, const LitPlace& first, const LitPlace& middle, const LitPlace& last, LitPlace& before,
+             LitPlace& after) const {
+    const float all = difference(first.light, last.light), front = difference(first.light, middle.light),
+                back = difference(middle.light, last.light);
+    if (!(std::max(front, back) > 0.7f * all && std::min(front, back) < 0.3f * all)) return false;
+    before = front > back ? first : middle, after = front > back ? middle : last;
+    for (int n = 0; n < 14; ++n) {
+      const LitPlace there = lit_place(look_, walker_, s, 0.5 * (before.t + after.t));
+      const bool later = difference(before.light, there.light) < difference(there.light, after.light);
+      (later ? before : after) = there;
+      if (difference(before.light, after.light) < 0.5f * all) return false;
+    }
+    after.t = before.t;
+    return true;
+  }
+
+  const Look& look_;
+  RayField& walker_;
+  RayState& state_;
+};
 
 /// A place of a medium that depends on more than the value.
 struct Place {
@@ -295,8 +379,7 @@ void composite(const Look& look, const Stretch& s, RayField& walker, RayState& s
   }
   if (!(lo <= hi) || look.medium.clear(lo, hi)) return;
   if (!look.lit) return Pieces(look, state).whole(s, lo, hi);
-  const Lit first = light_on(look, walker, s, s.from), last = light_on(look, walker, s, s.to);
-  composite_lit(look, s, lo, hi, first, last, walker, 0, state);
+  LitStretch(look, walker, state).whole(s, lo, hi);
 }
 
 void composite_straight(const Look& look, double from, double to, float a, float b, const Lit* lit, RayState& state) {
