@@ -67,6 +67,24 @@ TEST_CASE("volume targets: packets give the same bytes with every width of vecto
   CHECK(targets > 1);
 }
 
+TEST_CASE("volume targets: rectilinear grids are the same with every width of vectors") {
+  for (const bool shaded : {false, true})
+    same_on_all_targets([&] {
+      RectilinearGrid g;
+      std::vector<double> x, v;
+      for (int i = 0; i < 25; ++i) x.push_back(i / 12.0 - 1 + 0.03 * std::sin(0.9 * i));
+      for (const double z : x)
+        for (const double y : x)
+          for (const double u : x) v.push_back(waves({u, y, z}));
+      g.x = g.y = g.z = Array::from_vector(x);
+      FieldSet fields;
+      fields.add({"f", Association::point, Array::from_vector(v).converted(ElementType::f32), "", Role::scalars});
+      VolumeItem item = wave_item(ElementType::f32, shaded, 0);
+      item.data = make_dataset(g, fields);
+      return draw(scene_of({item}), oblique);
+    });
+}
+
 TEST_CASE("volume targets: light beside holes is the same with every width of vectors") {
   for (const double step : {0.0, 0.01, 0.1}) {
     CAPTURE(step);

@@ -35,6 +35,7 @@ struct Lattice {
     }
     return sum;
   }
+  /// On even axes: differences over a cell to each side, as far as there is one.
   Vec3 gradient(const Vec3& p) const {
     Vec3 edges, g;
     at(p, &edges);
@@ -42,9 +43,34 @@ struct Lattice {
       Vec3 lo = p, hi = p;
       const double here = std::clamp(p[a], x[a].front(), x[a].back());
       lo[a] = std::max(here - edges[a], x[a].front()), hi[a] = std::min(here + edges[a], x[a].back());
-      g[a] = (at(hi) - at(lo)) / (hi[a] - lo[a]);
+      g[a] = uneven ? between_samples(a, p) : (at(hi) - at(lo)) / (hi[a] - lo[a]);
     }
     return turn * g;
+  }
+
+  /// On uneven axes: of Lagrange's parabola through each sample and its neighbours, linear between the two samples around p; in the
+  /// outermost cells each weighs as much as the distance between its neighbours.
+  bool uneven = false;
+  double between_samples(int axis, Vec3 p) const {
+    const auto& g = x[axis];
+    const double q = std::clamp(p[axis], g.front(), g.back());
+    const size_t c = std::min(size_t(std::upper_bound(g.begin(), g.end(), q) - g.begin()), g.size() - 1) - 1;
+    const auto value = [&](size_t i) {
+      p[axis] = g[i];
+      return at(p);
+    };
+    const auto derivative = [&](size_t i) {
+      if (i == 0) return (value(1) - value(0)) / (g[1] - g[0]);
+      if (i + 1 == g.size()) return (value(i) - value(i - 1)) / (g[i] - g[i - 1]);
+      const double before = g[i - 1], own = g[i], after = g[i + 1];
+      return value(i - 1) * (own - after) / ((before - own) * (before - after)) +
+             value(i) * (2 * own - before - after) / ((own - before) * (own - after)) +
+             value(i + 1) * (own - before) / ((after - before) * (after - own));
+    };
+    const auto span = [&](size_t i) { return g[std::min(i + 1, g.size() - 1)] - g[i > 0 ? i - 1 : 0]; };
+    const bool outermost = c == 0 || c + 2 == g.size();
+    const double f = (q - g[c]) / (g[c + 1] - g[c]), w0 = (1 - f) * (outermost ? span(c) : 1), w1 = f * (outermost ? span(c + 1) : 1);
+    return (w0 * derivative(c) + w1 * derivative(c + 1)) / (w0 + w1);
   }
 };
 
@@ -61,7 +87,7 @@ struct Case {
 
 Lattice lattice_of(size_t n, const std::function<double(Vec3)>& f, bool uneven = false) {
   Lattice l;
-  l.n = {n, n, n};
+  l.n = {n, n, n}, l.uneven = uneven;
   for (int a = 0; a < 3; ++a)
     for (size_t i = 0; i < n; ++i) {
       double t = double(i) / double(n - 1);
@@ -191,6 +217,7 @@ std::vector<Case> cases() {
   logarithmic.kind = ScaleKind::log;
   add("logarithmic colours", lattice_of(24, [](Vec3 p) { return std::exp(2 * bumpy(p)); }), logarithmic,
       curve({{0, 0}, {0.1, 0.02}, {1, 0.1}, {5, 0.4}}), 0.1);
+  add("uneven axes, lit", lattice_of(20, bumpy, true), colored(-1.7, 1.7), ramp, 0.1, true, true);
   add("lit", lattice_of(24, bumpy), colored(-1.7, 1.7), ramp, 0.1, true);
   add("lit and solid", lattice_of(24, bumpy), colored(-1.7, 1.7), curve({{-2, 0}, {0.2, 0}, {0.6, 0.95}, {2, 0.95}}), 0.05, true);
   return all;
@@ -238,14 +265,17 @@ Lattice sum_of_waves(double cells) {
   });
 }
 
+enum class Way { packets, rectilinear_packets, single_rays };
+
 /// The default picture against brute force at these pixels and some others, `apart` from each other.
 void check_waves(double cells, OpacityCurve opacity, double unit, bool shaded, int per_cell, std::vector<std::pair<int, int>> pixels,
-                 int apart, bool single_rays = false) {
+                 int apart, Way way = Way::packets) {
   const Projection view = perspective_view(64, 64, 80, {1.9, 1.4, 2.6}, {0, 0, 0});
   Case c{"", sum_of_waves(cells), nullptr, colored(-1.7, 1.7), std::move(opacity), unit, shaded, per_cell};
-  c.data = dataset_of(c.lattice, single_rays);  // as a rectilinear grid
+  c.data = dataset_of(c.lattice, way == Way::rectilinear_packets);
   VolumeItem v = item(c.data, c.color, c.opacity);
   v.unit_distance = unit, v.shaded = shaded;
+  if (way == Way::single_rays) v.clip = {{{0, 0, 1}, 10}};  // cuts nothing away
   const Scene scene = scene_of({v});
   const Frame f = draw(scene, view);
   for (int y = 5; y < view.height; y += apart)
@@ -266,9 +296,8 @@ TEST_CASE("volume: rays that graze dense lit surfaces stay within the tolerance"
   const OpacityCurve ramp = curve({{-1.7, 0}, {-0.2, 0}, {1.7, 0.8}}), solid = curve({{-2, 0}, {0.2, 0}, {0.6, 0.95}, {2, 0.95}});
   for (const double cells : {2.2, 3.0, 4.0, 6.0, 10.0})
     for (const OpacityCurve& opacity : {ramp, solid})
-      for (const bool single_rays : {false, true})
-        check_waves(cells, opacity, 0.03, true, 2000, {{46, 26}, {28, 35}, {30, 36}, {16, 21}, {61, 11}, {46, 51}, {23, 63}}, 9,
-                    single_rays);
+      for (const Way way : {Way::packets, Way::rectilinear_packets, Way::single_rays})
+        check_waves(cells, opacity, 0.03, true, 2000, {{46, 26}, {28, 35}, {30, 36}, {16, 21}, {61, 11}, {46, 51}, {23, 63}}, 9, way);
 }
 
 TEST_CASE("volume: strides through waves of all lengths stay within the tolerance") {

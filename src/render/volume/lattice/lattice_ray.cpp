@@ -216,13 +216,20 @@ class LatticeRay final : public LatticeWalker {
         const float before = float(own[-to_before]), here = float(*own), after = float(own[to_after]);
         const auto& w = weights[upper];
         slopes_[a][c] = v_.affine ? after - before : w.back * (here - before) + w.on * (after - here);
-        sum += slopes_[a][c];
+        if (slopes_[a][c] != slopes_[a][c]) slopes_[a][c] = one_sided(w, before, here, after);
+        sum += here;
       }
     }
     beside_holes_ = sum != sum;
   }
 
-  /// One-sided where there is no number on the other side.
+  /// What stands for a slope of find_slopes() where a neighbour is no number.
+  float one_sided(const DerivativeWeights& w, float before, float here, float after) const {
+    const float back = here - before, on = after - here, whole = v_.affine ? 1 : std::sqrt(w.back * w.on);
+    const float slope = back == back ? back * (v_.affine ? 2 : w.back + whole) : on * (v_.affine ? 2 : w.on + whole);
+    return slope == slope ? slope : 0;
+  }
+  /// In a cell with holes of its own: one-sided where there is no number a cell before or after.
   Vec3 slope_beside_holes(Vec3 q) {
     Vec3 slope;
     float centre = NAN;

@@ -50,6 +50,21 @@ class EvenAxes {
       around.template differences<2>(rows, change_[2]);
       for (int a = 0; a < 3; ++a) first_[a] = around.first[a], last_[a] = around.last[a];
     }
+    /// The same; where a neighbour is no number, the difference is one-sided.
+    HWY_NOINLINE void find_beside_holes(const EvenAxes&, const Around<D, T>& around, const I[3]) {
+      const auto mend = [](F before, F own, F after) HWY_ATTR {
+        const F twice = hn::Add(own, own);
+        const F lo = hn::IfThenElse(hn::IsNaN(before), hn::Sub(twice, after), before);
+        const F hi = hn::IfThenElse(hn::IsNaN(after), hn::Sub(twice, before), after);
+        const F change = hn::Sub(hi, lo);
+        return hn::IfThenElseZero(hn::Not(hn::IsNaN(change)), change);
+      };
+      Quad<D> rows[4];
+      around.rows(rows);
+      around.template neighbours<0>(rows, [&](int c, F x, F own, F y) HWY_ATTR { change_[0][c] = mend(x, own, y); });
+      around.template neighbours<1>(rows, [&](int c, F x, F own, F y) HWY_ATTR { change_[1][c] = mend(x, own, y); });
+      around.template neighbours<2>(rows, [&](int c, F x, F own, F y) HWY_ATTR { change_[2][c] = mend(x, own, y); });
+    }
     HWY_INLINE F along(int a, const F share[3]) const {
       return hn::Div(Around<D, T>::trilinear(change_[a], share), Around<D, T>::apart(first_[a], last_[a], share[a]));
     }
@@ -119,12 +134,19 @@ class UnevenLanes {
   class Slopes {
    public:
     HWY_INLINE void find(const UnevenLanes& lanes, const Around<D, T>& around, const I cell[3]) {
-      Quad<D> rows[4];
-      around.rows(rows);
-      corners<0>(lanes, around, rows, cell), corners<1>(lanes, around, rows, cell), corners<2>(lanes, around, rows, cell);
-      inner_ = around.inner;
-      if (!inner_)
-        for (int a = 0; a < 3; ++a) lean_[a] = lanes.lean(a, cell[a]);
+      corners(lanes, around, cell, [](const Pair<D>& w, F before, F own, F after) HWY_ATTR {
+        return mul_add(w.b, hn::Sub(after, own), hn::Mul(w.a, hn::Sub(own, before)));
+      });
+    }
+    HWY_NOINLINE void find_beside_holes(const UnevenLanes& lanes, const Around<D, T>& around, const I cell[3]) {
+      corners(lanes, around, cell, [](const Pair<D>& w, F before, F own, F after) HWY_ATTR {
+        const F back = hn::Sub(own, before), on = hn::Sub(after, own),
+                whole = hn::Sqrt(hn::Mul(w.a, w.b));  // 1 / distance of the neighbours
+        F slope = mul_add(w.b, on, hn::Mul(w.a, back));
+        slope = hn::IfThenElse(hn::IsNaN(back), hn::Mul(on, hn::Add(w.b, whole)), slope);
+        slope = hn::IfThenElse(hn::IsNaN(on), hn::Mul(back, hn::Add(w.a, whole)), slope);
+        return hn::IfThenElseZero(hn::Not(hn::IsNaN(slope)), slope);
+      });
     }
     HWY_INLINE F along(int a, const F share[3]) const {
       if (inner_) return Around<D, T>::trilinear(slope_[a], share);
@@ -136,12 +158,21 @@ class UnevenLanes {
     }
 
    private:
-    template <int axis>
-    HWY_INLINE void corners(const UnevenLanes& lanes, const Around<D, T>& around, const Quad<D> rows[4], const I cell[3]) {
-      const Quad<D> w = lanes.weights(axis, cell[axis]);
+    template <class Slope>
+    HWY_INLINE void corners(const UnevenLanes& lanes, const Around<D, T>& around, const I cell[3], const Slope& slope) {
+      Quad<D> rows[4];
+      around.rows(rows);
+      corners_along<0>(lanes, around, rows, cell[0], slope), corners_along<1>(lanes, around, rows, cell[1], slope);
+      corners_along<2>(lanes, around, rows, cell[2], slope);
+      inner_ = around.inner;
+      if (!inner_)
+        for (int a = 0; a < 3; ++a) lean_[a] = lanes.lean(a, cell[a]);
+    }
+    template <int axis, class Slope>
+    HWY_INLINE void corners_along(const UnevenLanes& lanes, const Around<D, T>& around, const Quad<D> rows[4], I cell, const Slope& slope) {
+      const Quad<D> w = lanes.weights(axis, cell);
       around.template neighbours<axis>(rows, [&](int corner, F before, F own, F after) HWY_ATTR {
-        const Pair<D>& weight = corner >> axis & 1 ? w.high : w.low;
-        slope_[axis][corner] = mul_add(weight.b, hn::Sub(after, own), hn::Mul(weight.a, hn::Sub(own, before)));
+        slope_[axis][corner] = slope(corner >> axis & 1 ? w.high : w.low, before, own, after);
       });
     }
 

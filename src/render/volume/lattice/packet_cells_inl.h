@@ -125,8 +125,7 @@ class PacketCells {
         hn::Mul(hn::Set(d, tolerance), mul_add(share, hn::Set(d, 0.4f), hn::Mul(length, hn::Set(d, float(0.3 / plan.budget.length)))));
     F kinks[2] = {hn::Set(d, 2.0f), hn::Set(d, 2.0f)};  // where the light jumps
     if constexpr (shaded) {
-      light.cell(source, inside);
-      const auto lit = light.error(from, way);
+      const auto lit = light.error(source, inside, from, way);
       const F weight = hn::Mul(pass, taken);
       error = hn::Max(error, hn::Mul(weight, lit.bend));
       const M jumping = hn::And(look, hn::Gt(hn::Mul(weight, lit.jump), allowed));

@@ -219,19 +219,24 @@ class CellLight {
  public:
   HWY_INLINE CellLight(const Lighting<D>& lighting, const Axes& axes) : lighting_(lighting), axes_(axes) {}
 
-  HWY_INLINE void cell(const Source<D, T>& source, const I at[3]) { slopes_.find(axes_, Around<D, T>(source, at), at); }
-
   /// What one place on the way gets wrong of the light on all of it where the light bends; it falls with the square of the number of parts.
   /// And by how much it jumps between the ends (a surface that turns over, a lamp that begins to reach it), or may jump forth and back.
   struct Error {
     F bend, jump;
     I sides[2];
   };
-  HWY_INLINE Error error(const F from[3], const F way[3]) const {
+  /// On the way through this cell, which those that follow speak of, too.
+  HWY_INLINE Error error(const Source<D, T>& source, const I cell[3], const F from[3], const F way[3]) {
     const D d;
     const F zero = hn::Zero(d);
+    slopes_.find(axes_, Around<D, T>(source, cell), cell);
     F g0[3], g1[3], nearest[2];
-    gradient(from, way, zero, g0), gradient(from, way, hn::Set(d, 1.0f), g1);
+    gradient(from, way, zero, g0);
+    if (std::is_same_v<T, float> && !hn::AllFalse(d, hn::IsNaN(hn::Add(g0[0], hn::Add(g0[1], g0[2]))))) {
+      slopes_.find_beside_holes(axes_, Around<D, T>(source, cell), cell);
+      gradient(from, way, zero, g0);
+    }
+    gradient(from, way, hn::Set(d, 1.0f), g1);
     const FieldSurface<D> s0 = lighting_.surface(g0), s1 = lighting_.surface(g1);
     Error e;
     const LitLanes<D> l0 = lighting_.on(s0, e.sides[0], nearest[0]), l1 = lighting_.on(s1, e.sides[1], nearest[1]);

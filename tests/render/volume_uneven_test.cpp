@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rectilinear grids with uneven axes: derivatives, and packets of rays against single ones.
+#include "render/volume/lattice/lattice_ray.h"
+#include "render/volume/lattice/uneven_axes.h"
+#include "volume_support.h"
+
+using namespace sg;
+using namespace sg::test;
+
+namespace {
+
+/// n samples from -1 to 1, wider towards the middle; backwards on request.
+std::vector<double> uneven_axis(size_t n, double phase, bool backwards = false) {
+  std::vector<double> x;
+  for (size_t i = 0; i < n; ++i) {
+    const double t = 2 * double(i) / double(n - 1) - 1;
+    x.push_back(t + 0.25 * std::sin(std::numbers::pi * t) + 0.05 * phase * (1 - t * t));
+  }
+  if (backwards) std::reverse(x.begin(), x.end());
+  return x;
+}
+
+DatasetPtr on_axes(const std::vector<double> (&x)[3], const std::function<double(Vec3)>& f, ElementType type = ElementType::f32) {
+  std::vector<double> v;
+  for (const double z : x[2])
+    for (const double y : x[1])
+      for (const double u : x[0]) v.push_back(f({u, y, z}));
+  FieldSet fields;
+  fields.add({"f", Association::point, Array::from_vector(v).converted(type), "", Role::scalars});
+  RectilinearGrid g;
+  g.x = Array::from_vector(x[0]), g.y = Array::from_vector(x[1]), g.z = Array::from_vector(x[2]);
+  return make_dataset(g, fields);
+}
+DatasetPtr uneven(const std::function<double(Vec3)>& f, ElementType type = ElementType::f32) {
+  return on_axes({uneven_axis(33, 0.3), uneven_axis(29, -1, true), uneven_axis(37, 1)}, f, type);
+}
+
+double waves(Vec3 p) { return 60 + 25 * std::sin(5 * p.x + 1) * std::cos(4 * p.y) + 20 * std::sin(6 * p.z + p.x); }
+
+VolumeItem wave_item(DatasetPtr data, bool shaded) {
+  VolumeItem v = item(std::move(data), grey(0, 120), {});
+  v.opacity.points = {{60, 0}, {70, 0.4}, {75, 0}, {85, 0}, {95, 0.9}};
+  v.unit_distance = 0.05, v.shaded = shaded;
+  return v;
+}
+/// A plane that cuts nothing away sends every ray by itself.
+VolumeItem by_single_rays(VolumeItem v) {
+  v.clip = {{{0, 0, 1}, 10}};
+  return v;
+}
+const Projection oblique = perspective_view(45, 37, 55, {1.5, 1.1, 3}, {0, 0, 0});
+const Projection within = perspective_view(45, 37, 30, {0.1, 0.2, 0.3}, {-1, -0.5, -0.7});
+
+}  // namespace
+
+TEST_CASE("volume uneven: derivatives are exact for straight fields everywhere, for parabolas but in the outermost cells") {
+  const auto check = [](const std::function<double(Vec3)>& f, const std::function<Vec3(Vec3)>& exact, double reach) {
+    const VolumeItem v = wave_item(uneven(f), true);
+    const auto source = volume::lattice_source(std::make_shared<const volume::Volume>(volume::prepare(v, 1, {})), nullptr);
+    const auto walker = source->walker();
+    int places = 0;
+    for (uint64_t i = 0; i < 100; ++i) {
+      const Vec3 from{random_unit(1, i) * 2 - 1, random_unit(2, i) * 2 - 1, random_unit(3, i) * 2 - 1};
+      const Vec3 along = normalize(Vec3{random_unit(4, i) - 0.5, random_unit(5, i) - 0.5, random_unit(6, i) - 0.5});
+      walker->start(from * reach, along, 0, 0.3);
+      volume::Stretch parts[16];
+      for (size_t n = walker->next(parts); n > 0; n = walker->next(parts))
+        for (size_t k = 0; k < n; ++k) {
+          const double t = 0.3 * parts[k].from + 0.7 * parts[k].to;
+          const Vec3 p = from * reach + along * t;
+          if (std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) > reach) continue;
+          CHECK(length(Vec3(walker->gradient(parts[k], t)) - exact(p)) < 2e-4);
+          ++places;
+        }
+    }
+    CHECK(places > 300);
+  };
+  check([](Vec3 p) { return 3 * p.x - 2 * p.y + p.z; }, [](Vec3) { return Vec3{3, -2, 1}; }, 1);
+  check([](Vec3 p) { return 3 * p.x * p.x - 2 * p.y * p.y + p.z * p.z + p.x * p.y; },
+        [](Vec3 p) {
+          return Vec3{6 * p.x + p.y, -4 * p.y + p.x, 2 * p.z};
+        },
+        0.8);
+}
+
+TEST_CASE("volume uneven: packets show what single rays show, whatever the type, lit or not, from outside and inside") {
+  for (const ElementType type : {ElementType::f32, ElementType::u8, ElementType::i8, ElementType::u16, ElementType::i16})
+    for (const bool shaded : {false, true})
+      for (const Projection* view : {&oblique, &within}) {
+        INFO(std::string(element_name(type)) << " shaded " << shaded << (view == &within ? " from inside" : ""));
+        const VolumeItem v = wave_item(uneven(waves, type), shaded);
+        const Frame packets = draw(scene_of({v}), *view), single = draw(scene_of({by_single_rays(v)}), *view);
+        CHECK(largest_difference(packets, single) < 2.0f / 512);
+        CHECK(*std::max_element(packets.rgba.begin(), packets.rgba.end()) > 0.2f);
+        volume::Knobs one;
+        one.simd = false;
+        CHECK(same_bytes(packets, draw(scene_of({v}), *view, one)));
+        one.simd = true, one.skip_empty = false;
+        CHECK(largest_difference(packets, draw(scene_of({v}), *view, one)) < 1e-3f);
+      }
+}
+
+TEST_CASE("volume uneven: holes, thin grids and even axes are drawn as by single rays and uniform grids") {
+  const auto same = [](const std::string& what, const VolumeItem& v, const VolumeItem& w) {
+    INFO(what);
+    CHECK(largest_difference(draw(scene_of({v}), oblique), draw(scene_of({w}), oblique)) < 2.0f / 512);
+  };
+  const VolumeItem holed = wave_item(uneven([](Vec3 p) { return length(p - Vec3(0.4, 0.3, 0.5)) < 0.35 ? NAN : waves(p); }), true);
+  same("holes", holed, by_single_rays(holed));
+  const VolumeItem ho2 =
+      wave_item(grid(cube(37, -1, 1), [](Vec3 p) { return length(p - Vec3(0.4, 0.3, 0.5)) < 0.35 ? NAN : waves(p); }), true);
+  same("uniform holes", ho2, by_single_rays(ho2));
+  const VolumeItem thin = wave_item(on_axes({uneven_axis(9, 1), {0.25}, uneven_axis(8, 0)}, waves), true);
+  same("thin", thin, by_single_rays(thin));
+  std::vector<double> even;
+  for (int i = 0; i < 37; ++i) even.push_back(i / 18.0 - 1);
+  same("even", wave_item(on_axes({even, even, even}, waves), true), wave_item(grid(cube(37, -1, 1), waves), true));
+}
+
+TEST_CASE("volume uneven: grids with cells too small for floats go by single rays, which draw them") {
+  const std::vector<double> x = uneven_axis(20, 1);
+  std::vector<double> dense = x;
+  dense.insert(dense.begin() + 10, dense[10] - 1e-6);
+  const VolumeItem v = wave_item(on_axes({dense, x, x}, waves), false), plain = wave_item(on_axes({x, x, x}, waves), false);
+  CHECK(volume::UnevenAxes::fits(volume::prepare(plain, 1, {})));
+  CHECK_FALSE(volume::UnevenAxes::fits(volume::prepare(v, 1, {})));
+  CHECK(largest_difference(draw(scene_of({v}), oblique), draw(scene_of({plain}), oblique)) < 2.0f / 512);
+}
