@@ -105,11 +105,12 @@ TEST_CASE("volume uneven: holes, thin grids and even axes are drawn as by single
     INFO(what);
     CHECK(largest_difference(draw(scene_of({v}), oblique), draw(scene_of({w}), oblique)) < 2.0f / 512);
   };
-  const VolumeItem holed = wave_item(uneven([](Vec3 p) { return length(p - Vec3(0.4, 0.3, 0.5)) < 0.35 ? NAN : waves(p); }), true);
-  same("holes", holed, by_single_rays(holed));
-  const VolumeItem ho2 =
-      wave_item(grid(cube(37, -1, 1), [](Vec3 p) { return length(p - Vec3(0.4, 0.3, 0.5)) < 0.35 ? NAN : waves(p); }), true);
-  same("uniform holes", ho2, by_single_rays(ho2));
+  const auto holes = [](Vec3 p) { return length(p - Vec3(0.4, 0.3, 0.5)) < 0.35 ? NAN : waves(p); };
+  const VolumeItem holed = wave_item(uneven(holes), true), even_holed = wave_item(grid(cube(37, -1, 1), holes), true);
+  same("holes", holed, by_single_rays(holed)), same("holes, even axes", even_holed, by_single_rays(even_holed));
+  VolumeItem steps = even_holed;
+  steps.sampling.step = 0.001;
+  same("holes, small steps", even_holed, steps);
   const VolumeItem thin = wave_item(on_axes({uneven_axis(9, 1), {0.25}, uneven_axis(8, 0)}, waves), true);
   same("thin", thin, by_single_rays(thin));
   std::vector<double> even;

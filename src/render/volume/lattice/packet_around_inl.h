@@ -41,12 +41,7 @@ class Around {
     source_.corners(before, low), source_.corners(corner_, own), source_.corners(after, high);
     for (int r = 0; r < 4; ++r) rows[r] = {{low[r].a, own[r].a}, {own[r].b, high[r].b}};
   }
-  /// Differences over two cells along an axis at the corners i + 2 j + 4 k, of what rows() told.
-  template <int axis>
-  HWY_INLINE void differences(const Quad<D> rows[4], F out[8]) const {
-    neighbours<axis>(rows, [&](int corner, F before, F, F after) HWY_ATTR { out[corner] = hn::Sub(after, before); });
-  }
-  /// each(corner, the sample before it along the axis, its own, the one after it)
+  /// each(corner i + 2 j + 4 k, the sample before it along the axis, its own, the one after it), of what rows() told.
   template <int axis, class Each>
   HWY_INLINE void neighbours(const Quad<D> rows[4], const Each& each) const {
     if constexpr (axis == 0) {
@@ -95,6 +90,41 @@ class Around {
 
   const Source<D, T>& source_;
   const I corner_;
+};
+
+/// Differences over two cells along each axis at the corners of a cell.
+template <class D, class T>
+class CornerChanges {
+  using F = hn::Vec<D>;
+
+ public:
+  HWY_INLINE void find(const Around<D, T>& around) {
+    each(around, [](F before, F, F after) HWY_ATTR { return hn::Sub(after, before); });
+  }
+  /// The same; where a neighbour is no number, twice the difference to the other one.
+  HWY_NOINLINE void find_beside_holes(const Around<D, T>& around) {
+    each(around, [](F before, F own, F after) HWY_ATTR {
+      const F twice = hn::Add(own, own);
+      const F lo = hn::IfThenElse(hn::IsNaN(before), hn::Sub(twice, after), before);
+      const F hi = hn::IfThenElse(hn::IsNaN(after), hn::Sub(twice, before), after);
+      const F change = hn::Sub(hi, lo);
+      return hn::IfThenElseZero(hn::Not(hn::IsNaN(change)), change);
+    });
+  }
+  /// Along axis a, between the corners.
+  HWY_INLINE F at(int a, const F share[3]) const { return Around<D, T>::trilinear(change_[a], share); }
+
+ private:
+  template <class Change>
+  HWY_INLINE void each(const Around<D, T>& around, const Change& change) {
+    Quad<D> rows[4];
+    around.rows(rows);
+    around.template neighbours<0>(rows, [&](int c, F x, F own, F y) HWY_ATTR { change_[0][c] = change(x, own, y); });
+    around.template neighbours<1>(rows, [&](int c, F x, F own, F y) HWY_ATTR { change_[1][c] = change(x, own, y); });
+    around.template neighbours<2>(rows, [&](int c, F x, F own, F y) HWY_ATTR { change_[2][c] = change(x, own, y); });
+  }
+
+  F change_[3][8];
 };
 
 }  // namespace sg::volume::HWY_NAMESPACE

@@ -44,33 +44,17 @@ class EvenAxes {
   class Slopes {
    public:
     HWY_INLINE void find(const EvenAxes&, const Around<D, T>& around, const I[3]) {
-      Quad<D> rows[4];
-      around.rows(rows);
-      around.template differences<0>(rows, change_[0]), around.template differences<1>(rows, change_[1]);
-      around.template differences<2>(rows, change_[2]);
+      changes_.find(around);
       for (int a = 0; a < 3; ++a) first_[a] = around.first[a], last_[a] = around.last[a];
     }
-    /// The same; where a neighbour is no number, the difference is one-sided.
-    HWY_NOINLINE void find_beside_holes(const EvenAxes&, const Around<D, T>& around, const I[3]) {
-      const auto mend = [](F before, F own, F after) HWY_ATTR {
-        const F twice = hn::Add(own, own);
-        const F lo = hn::IfThenElse(hn::IsNaN(before), hn::Sub(twice, after), before);
-        const F hi = hn::IfThenElse(hn::IsNaN(after), hn::Sub(twice, before), after);
-        const F change = hn::Sub(hi, lo);
-        return hn::IfThenElseZero(hn::Not(hn::IsNaN(change)), change);
-      };
-      Quad<D> rows[4];
-      around.rows(rows);
-      around.template neighbours<0>(rows, [&](int c, F x, F own, F y) HWY_ATTR { change_[0][c] = mend(x, own, y); });
-      around.template neighbours<1>(rows, [&](int c, F x, F own, F y) HWY_ATTR { change_[1][c] = mend(x, own, y); });
-      around.template neighbours<2>(rows, [&](int c, F x, F own, F y) HWY_ATTR { change_[2][c] = mend(x, own, y); });
-    }
+    /// The same; where a neighbour is no number, one-sided.
+    HWY_INLINE void find_beside_holes(const EvenAxes&, const Around<D, T>& around, const I[3]) { changes_.find_beside_holes(around); }
     HWY_INLINE F along(int a, const F share[3]) const {
-      return hn::Div(Around<D, T>::trilinear(change_[a], share), Around<D, T>::apart(first_[a], last_[a], share[a]));
+      return hn::Div(changes_.at(a, share), Around<D, T>::apart(first_[a], last_[a], share[a]));
     }
 
    private:
-    F change_[3][8];  // at the corners, over two cells
+    CornerChanges<D, T> changes_;
     hn::Mask<D> first_[3], last_[3];
   };
 

@@ -33,47 +33,23 @@ class SlopeFinder {
     const F half = hn::Set(d, 0.5f), f[3] = {at_[0].fraction, at_[1].fraction, at_[2].fraction};
     const Int<D> cell[3] = {at_[0].cell, at_[1].cell, at_[2].cell};
     const Around<D, T> around(source_, cell);
-    Quad<D> rows[4];
-    around.rows(rows);
-    F change[3], slope[3], corners[8];
-    around.template differences<0>(rows, corners), change[0] = around.trilinear(corners, f);
-    around.template differences<1>(rows, corners), change[1] = around.trilinear(corners, f);
-    around.template differences<2>(rows, corners), change[2] = around.trilinear(corners, f);
+    CornerChanges<D, T> changes;
+    changes.find(around);
+    F change[3], slope[3];
+    for (int a = 0; a < 3; ++a) change[a] = changes.at(a, f);
+    if (std::is_same_v<T, float> && !hn::AllFalse(d, hn::IsNaN(hn::Add(change[0], hn::Add(change[1], change[2]))))) {
+      changes.find_beside_holes(around);
+      for (int a = 0; a < 3; ++a) change[a] = changes.at(a, f);
+    }
     for (int a = 0; a < 3; ++a) slope[a] = hn::Mul(change[a], half);
     if (!around.inner)
       for (int a = 0; a < 3; ++a) slope[a] = hn::Div(change[a], around.apart(around.first[a], around.last[a], f[a]));
-    const auto holes = hn::IsNaN(hn::Add(change[0], hn::Add(change[1], change[2])));
-    if (!hn::AllFalse(d, holes)) beside_holes(around, change, slope);
     auto square = hn::Zero(d);
     for (const F& c : change) square = mul_add(hn::Mul(hn::Set(d, 0.25f), c), c, square);
     return {slope[0], slope[1], slope[2], hn::Sqrt(square)};
   }
 
  private:
-  /// Differences to one side where there is no number on the other.
-  HWY_NOINLINE void beside_holes(const Around<D, T>& around, F change[3], F slope[3]) const {
-    const D d;
-    const IntTag<D> di;
-    const F half = hn::Set(d, 0.5f), middle = source_.value(at_[0], at_[1], at_[2]);
-    for (int a = 0; a < 3; ++a) {
-      // Clamped to the border, a place is a sample.
-      Place<D> lower[3] = {at_[0], at_[1], at_[2]}, upper[3] = {at_[0], at_[1], at_[2]};
-      lower[a] = {hn::Max(hn::Sub(at_[a].cell, hn::Set(di, 1)), hn::Zero(di)),
-                  hn::IfThenElseZero(hn::Not(around.first[a]), at_[a].fraction)};
-      upper[a] = {hn::Min(hn::Add(at_[a].cell, hn::Set(di, 1)), source_.last_cell[a]),
-                  hn::IfThenElse(around.last[a], hn::Set(d, 1.0f), at_[a].fraction)};
-      const F lo = source_.value(lower[0], lower[1], lower[2]), hi = source_.value(upper[0], upper[1], upper[2]);
-      const auto lo_good = hn::Eq(lo, lo), hi_good = hn::Eq(hi, hi);
-      F apart = around.apart(around.first[a], around.last[a], at_[a].fraction);
-      apart = hn::IfThenElse(lo_good, apart, hn::Mul(apart, half));
-      apart = hn::IfThenElse(hi_good, apart, hn::Mul(apart, half));
-      const F one_sided = hn::Sub(hn::IfThenElse(hi_good, hi, middle), hn::IfThenElse(lo_good, lo, middle));
-      const auto hole = hn::IsNaN(change[a]);
-      change[a] = hn::IfThenElse(hole, one_sided, change[a]);
-      slope[a] = hn::IfThenElse(hole, hn::Div(one_sided, apart), slope[a]);
-    }
-  }
-
   const Source<D, T>& source_;
   const Place<D> at_[3];
 };
