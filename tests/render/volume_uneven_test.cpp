@@ -118,6 +118,26 @@ TEST_CASE("volume uneven: holes, thin grids and even axes are drawn as by single
   same("even", wave_item(on_axes({even, even, even}, waves), true), wave_item(grid(cube(37, -1, 1), waves), true));
 }
 
+TEST_CASE("volume uneven: fields of cells are drawn as by single rays, on even axes too; holes stay clear") {
+  for (const bool even : {false, true})
+    for (const bool holes : {false, true}) {
+      INFO(std::string(even ? "even" : "uneven") << std::string(holes ? ", holes" : ""));
+      std::vector<double> v;
+      for (uint64_t i = 0; i < 16 * 16 * 16; ++i) {
+        const Vec3 p{double(i % 16), double(i / 16 % 16), double(i / 256)};
+        v.push_back(holes && i % 7 == 0 ? NAN : waves(p / 8.0 - Vec3(1, 1, 1)));
+      }
+      FieldSet fields;
+      fields.add({"f", Association::cell, Array::from_vector(v).converted(ElementType::f32), "", Role::scalars});
+      RectilinearGrid g;
+      g.x = Array::from_vector(uneven_axis(17, 1)), g.y = g.z = Array::from_vector(uneven_axis(17, -1));
+      VolumeItem item = wave_item(even ? make_dataset(cube(17, -1, 1), fields) : make_dataset(g, fields), true);
+      item.association = Association::cell;
+      CHECK(volume::prepare(item, 1, {}).direct != holes);
+      CHECK(largest_difference(draw(scene_of({item}), oblique), draw(scene_of({by_single_rays(item)}), oblique)) < 2.0f / 512);
+    }
+}
+
 TEST_CASE("volume uneven: grids with cells too small for floats go by single rays, which draw them") {
   const std::vector<double> x = uneven_axis(20, 1);
   std::vector<double> dense = x;

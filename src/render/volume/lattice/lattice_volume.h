@@ -39,6 +39,7 @@ struct LatticeSamples {
   FineBricks fine;                       ///< for empty space
   MinMaxBricks bricks;                   ///< for maxima
   double lo = HUGE_VAL, hi = -HUGE_VAL;  ///< of the finite values stored; lo > hi when there are none
+  bool holes = false;                    ///< samples are cells, some without a value
 };
 
 struct Volume {

@@ -123,13 +123,15 @@ class PacketCells {
     const F share = hn::Mul(pass, hn::Min(one, hn::Mul(length, tau_mean)));
     const F allowed =
         hn::Mul(hn::Set(d, tolerance), mul_add(share, hn::Set(d, 0.4f), hn::Mul(length, hn::Set(d, float(0.3 / plan.budget.length)))));
-    F kinks[2] = {hn::Set(d, 2.0f), hn::Set(d, 2.0f)};  // where the light jumps
+    constexpr int most_kinks = CellLight<D, T, Axes>::most_jumps;
+    F kinks[most_kinks];  // where the light jumps
+    bool any_kink = false;
     if constexpr (shaded) {
       const auto lit = light.error(source, inside, from, way);
       const F weight = hn::Mul(pass, taken);
       error = hn::Max(error, hn::Mul(weight, lit.bend));
       const M jumping = hn::And(look, hn::Gt(hn::Mul(weight, lit.jump), allowed));
-      if (!hn::AllFalse(d, jumping)) light.jumps(from, way, lit, jumping, kinks);
+      if (any_kink = !hn::AllFalse(d, jumping); any_kink) light.jumps(from, way, lit, jumping, kinks);
     }
     F count = one, per_count = one;
     if (!hn::AllFalse(d, hn::And(look, hn::Gt(error, allowed)))) {
@@ -148,10 +150,11 @@ class PacketCells {
       const M final_piece = hn::Ge(after, count);
       end = hn::IfThenElse(final_piece, one, hn::Mul(after, per_count));
       at_kink = hn::MaskFromVec(zero);
-      if constexpr (shaded) {
-        const F kink = hn::IfThenElse(hn::Gt(kinks[0], s), kinks[0], kinks[1]);
-        at_kink = hn::And(hn::Gt(kink, s), hn::Lt(kink, end));
-        end = hn::IfThenElse(at_kink, kink, end);
+      if (shaded && any_kink) {
+        for (const F& kink : kinks) {
+          const M nearer = hn::And(hn::Gt(kink, s), hn::Lt(kink, end));
+          at_kink = hn::Or(at_kink, nearer), end = hn::IfThenElse(nearer, kink, end);
+        }
       }
       target = hn::IfThenElse(hn::AndNot(at_kink, final_piece), f.last, f.at(end));
     };

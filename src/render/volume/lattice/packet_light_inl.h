@@ -230,47 +230,60 @@ class CellLight {
     const D d;
     const F zero = hn::Zero(d);
     slopes_.find(axes_, Around<D, T>(source, cell), cell);
-    F g0[3], g1[3], nearest[2];
+    F g0[3], g1[3], middle[3], nearest[2];
     gradient(from, way, zero, g0);
     if (std::is_same_v<T, float> && !hn::AllFalse(d, hn::IsNaN(hn::Add(g0[0], hn::Add(g0[1], g0[2]))))) {
       slopes_.find_beside_holes(axes_, Around<D, T>(source, cell), cell);
       gradient(from, way, zero, g0);
     }
-    gradient(from, way, hn::Set(d, 1.0f), g1);
-    const FieldSurface<D> s0 = lighting_.surface(g0), s1 = lighting_.surface(g1);
+    gradient(from, way, hn::Set(d, 1.0f), g1), gradient(from, way, hn::Set(d, 0.5f), middle);
+    const FieldSurface<D> s0 = lighting_.surface(g0), s1 = lighting_.surface(g1), sm = lighting_.surface(middle);
     Error e;
     const LitLanes<D> l0 = lighting_.on(s0, e.sides[0], nearest[0]), l1 = lighting_.on(s1, e.sides[1], nearest[1]);
     const auto both = hn::Gt(hn::Min(s0.much, s1.much), zero);
-    // For an angle a the light bends by a^2 / 24 of its second derivative, with a^2 = 2 (1 - cos a).
-    const F turn = turn_between(s0, s1);
+    // For an angle a the light bends by a^2 / 24 of its second derivative, with a^2 = 2 (1 - cos a). An even turn is twice those to and
+    // from the middle; a rough field may turn there and back.
+    const F halves = hn::Add(turn_between(s0, sm), turn_between(sm, s1)), turn = hn::Max(turn_between(s0, s1), hn::Add(halves, halves));
     const F bend = hn::Mul(turn, hn::Mul(lighting_.bend(hn::Max(nearest[0], nearest[1]), turn), hn::Set(d, 1.0f / 12)));
     const auto kinked = hn::RebindMask(d, hn::Ne(e.sides[0], e.sides[1]));
     e.bend = hn::IfThenElseZero(both, bend);
-    e.jump = hn::IfThenElseZero(both, hn::IfThenElse(kinked, apart(l0, l1), hn::IfThenElseZero(grazing(s0, s1), turn)));
+    const auto unsure = hn::Or(hn::Or(grazing(s0, sm), grazing(sm, s1)), hn::Gt(turn, hn::Set(d, rough)));
+    const F over = hn::IfThenElseZero(unsure, turn);
+    e.jump = hn::IfThenElseZero(both, hn::IfThenElse(kinked, hn::Max(over, apart(l0, l1)), over));
     return e;
   }
 
-  /// Where the light jumps on the way of the lanes told, at most twice; 2 where it does not.
-  HWY_NOINLINE void jumps(const F from[3], const F way[3], const Error& e, hn::Mask<D> which, F at[2]) const {
+  static constexpr int quarters = 4, most_jumps = 2 * quarters;
+
+  /// Where the light of the lanes told jumps on the way, ascending; 2 where it does not. Two jumps are found in each quarter, where they
+  /// leave another side than the one before them.
+  HWY_NOINLINE void jumps(const F from[3], const F way[3], const Error& e, hn::Mask<D> which, F at[most_jumps]) const {
     const D d;
-    const F zero = hn::Zero(d), half = hn::Set(d, 0.5f), one = hn::Set(d, 1.0f), none = hn::Set(d, 2.0f);
+    const F half = hn::Set(d, 0.5f), none = hn::Set(d, 2.0f);
+    const auto other = [&](I a, I b) HWY_ATTR { return hn::And(which, hn::RebindMask(d, hn::Ne(a, b))); };
     // Ever smaller parts that begin on one side and end on another.
     const auto first = [&](F begin, F end, I side) HWY_ATTR {
-      for (int n = 0; n < 14; ++n) {
+      for (int n = 0; n < 12; ++n) {
         const F middle = hn::Mul(half, hn::Add(begin, end));
-        const auto before = hn::RebindMask(d, hn::Eq(sides(from, way, middle), side));
-        begin = hn::IfThenElse(before, middle, begin), end = hn::IfThenElse(before, end, middle);
+        const auto later = hn::RebindMask(d, hn::Eq(sides(from, way, middle), side));
+        begin = hn::IfThenElse(later, middle, begin), end = hn::IfThenElse(later, end, middle);
       }
       return end;
     };
-    const auto other = [&](I a, I b) HWY_ATTR { return hn::RebindMask(d, hn::Ne(a, b)); };
-    const I& last = e.sides[1];
-    const auto early = other(sides(from, way, half), e.sides[0]), one_at_least = hn::And(which, hn::Or(early, other(e.sides[0], last)));
-    at[0] = first(hn::IfThenElse(early, zero, half), hn::IfThenElse(early, half, one), e.sides[0]);
-    const I after = sides(from, way, at[0]);
-    const auto two = hn::And(one_at_least, other(after, last));
-    at[1] = hn::AllFalse(d, two) ? none : hn::IfThenElse(two, first(at[0], one, after), none);
-    at[0] = hn::IfThenElse(one_at_least, at[0], none);
+    I before = e.sides[0];
+    for (int q = 0; q < quarters; ++q) {
+      const F begin = hn::Set(d, float(q) / quarters), end = hn::Set(d, float(q + 1) / quarters);
+      const I after = q + 1 < quarters ? sides(from, way, end) : e.sides[1];
+      at[2 * q] = at[2 * q + 1] = none;
+      if (const auto jump = other(before, after); !hn::AllFalse(d, jump)) {
+        const F there = first(begin, end, before);
+        at[2 * q] = hn::IfThenElse(jump, there, none);
+        const I between = sides(from, way, there);
+        if (const auto again = hn::And(jump, other(between, after)); !hn::AllFalse(d, again))
+          at[2 * q + 1] = hn::IfThenElse(again, first(there, end, between), none);
+      }
+      before = after;
+    }
   }
 
   HWY_INLINE LitLanes<D> at(const F from[3], const F way[3], F s) const {
@@ -294,6 +307,8 @@ class CellLight {
     for (int a = 0; a < 3; ++a) g[a] = slopes_.along(a, f);
     lighting_.to_world(g, out);
   }
+
+  static constexpr float rough = 0.25f;  // 1 - cosine of a turn within a cell from which on jumps are looked for
 
   const Lighting<D>& lighting_;
   const Axes& axes_;

@@ -130,6 +130,13 @@ Array narrowed(const Array& wide, Range range, float& base) {
   return r;
 }
 
+bool any_nan(const Array& values) {
+  if (values.type() != ElementType::f32) return false;
+  const View<float> in = values.view<float>();
+  const auto among = [&](size_t begin, size_t end) { return std::any_of(in.data + begin, in.data + end, [](float x) { return x != x; }); };
+  return parallel_reduce(in.count, 65536, false, among, [](bool a, bool b) { return a || b; });
+}
+
 bool native(ElementType t) {
   return t == ElementType::u8 || t == ElementType::i8 || t == ElementType::u16 || t == ElementType::i16 || t == ElementType::f32;
 }
@@ -159,7 +166,7 @@ LatticeSamples take_samples(const VolumeItem& item, const Field& field, std::arr
   v.voxels.dims = dims;
   for (size_t& n : v.voxels.dims) n = std::max<size_t>(n, 2);
   if (v.voxels.dims != dims) a = dispatch(a, [&](auto view) { return doubled(view.data, dims, v.voxels.dims); });
-  v.voxels.array = a;
+  v.voxels.array = a, v.holes = cells && any_nan(a);
   v.fine = fine_bricks(v.voxels.array, v.voxels.dims);
   v.bricks = coarse_bricks(v.fine);
   for (const MinMaxBricks::Range& r : v.bricks.ranges) {
@@ -274,7 +281,7 @@ Volume prepare(const VolumeItem& item, uint32_t id, const Knobs& knobs) {
   v.transfer.emplace_back(item.color, item.opacity, unit, v.step, lo + double(v.base), hi + double(v.base), double(v.base));
   if (item.mode != VolumeItem::Mode::maximum) v.distance = distance_to_drawn(v.fine(), v.transfer[0], v.any_empty);
   v.kernels = knobs.simd ? best_kernels(v.voxels) : scalar_kernels(v.voxels);
-  v.direct = !v.nearest && v.hidden().empty() && v.transfer[0].linear() && !(v.dual && v.voxels.array.type() == ElementType::f32);
+  v.direct = !v.nearest && v.hidden().empty() && v.transfer[0].linear() && !v.samples->holes;
   // A gradient in q becomes one in the world by the transpose of world -> q.
   for (int r = 0; r < 3; ++r)
     for (int c = 0; c < 3; ++c) v.shade_plan.to_world[r][c] = float(v.to_q.m[c][r]);
