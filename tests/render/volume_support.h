@@ -100,6 +100,16 @@ inline Scene scene_of(std::vector<Item> items) {
   s.items = std::move(items);
   return s;
 }
+/// A clear fragment before the volume in every pixel: such pictures go by single rays.
+inline FragmentLists by_single_rays(const Projection& view) {
+  FragmentLists clear;
+  clear.start.push_back(0);
+  for (int i = 0; i < view.width * view.height; ++i) {
+    clear.fragments.push_back({1e-3f, {0, 0, 0, 0}, 9});
+    clear.start.push_back(uint32_t(i + 1));
+  }
+  return clear;
+}
 /// The one pixel of a ray along -z through (x, y).
 inline Frame look(const Scene& scene, double x = 0.013, double y = 0.017, const volume::Knobs& knobs = {},
                   const FragmentLists& fragments = {}) {

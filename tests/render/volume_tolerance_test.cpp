@@ -275,9 +275,8 @@ void check_waves(double cells, OpacityCurve opacity, double unit, bool shaded, i
   c.data = dataset_of(c.lattice, way == Way::rectilinear_packets);
   VolumeItem v = item(c.data, c.color, c.opacity);
   v.unit_distance = unit, v.shaded = shaded;
-  if (way == Way::single_rays) v.clip = {{{0, 0, 1}, 10}};  // cuts nothing away
   const Scene scene = scene_of({v});
-  const Frame f = draw(scene, view);
+  const Frame f = draw(scene, view, {}, way == Way::single_rays ? by_single_rays(view) : FragmentLists());
   for (int y = 5; y < view.height; y += apart)
     for (int x = 5; x < view.width; x += apart) pixels.emplace_back(x, y);
   for (const auto& [x, y] : pixels) {

@@ -118,7 +118,7 @@ class Alone {
     if (picture.volumes.size() != 1) return;
     const CastVolume& v = picture.volumes[0];
     const VolumeItem& item = *v.item;
-    if (!item.clip.empty() || v.detail || v.effects || v.averaged) return;
+    if (v.detail || v.effects || v.averaged) return;
     const bool composite = item.mode == RayFunction::composite, by_tolerance = composite && !(v.step > 0);
     const bool post = composite && item.sampling.classify == "post" && !item.sampling.jitter;
     const auto plan_for = [&](const Volume& volume) {
@@ -130,6 +130,7 @@ class Alone {
       if (wants_reconstruction(item.sampling)) return;
       const Volume& lattice = *picture.lattices[0];
       plan_for(lattice);
+      plan_->clip = item.clip;
       const bool in_steps = post || item.mode == RayFunction::maximum;
       if (by_tolerance && in_tolerant_packets(*plan_)) {
         packets_ = cast_tile;
@@ -141,6 +142,8 @@ class Alone {
           plan_->uneven = &*uneven_;
         }
       } else if (!by_tolerance && in_steps && in_packets(*plan_)) packets_ = march_tile;
+    } else if (!item.clip.empty()) {
+      return;
     } else if (const auto* bricks = dynamic_cast<const BrickedSource*>(v.source.get())) {
       stage_ = brick_stage(*bricks, item, v.id, v.unit, v.per_scale);
       plan_for(stage_);

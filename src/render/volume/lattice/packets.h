@@ -36,7 +36,8 @@ struct PacketPlan {
   /// One lattice of several, drawn from front to back: what is in the frame lies before it, and rays go on with the light that is left (1 -
   /// alpha). The depth where half of it is gone goes here, for each pixel of the frame (infinite: not yet), instead of into the frame.
   float* half = nullptr;
-  Vec3 whole_lo{}, whole_hi{};  ///< of all of them, in the q space of this one: steps are counted from where rays enter this box
+  Vec3 whole_lo{}, whole_hi{};    ///< of all of them, in the q space of this one: steps are counted from where rays enter this box
+  std::vector<ClipPlane> clip{};  ///< not with `half`
 };
 
 /// Is the power of highlights one that packets multiply out?

@@ -195,6 +195,15 @@ HWY_INLINE bool set_up(const PacketPlan& plan, int x, int y, int x1, int y1, con
       first_enter = hn::IfThenElse(still, first_enter, hn::Max(first_enter, hn::Min(w0, w1)));
       last_leave = hn::IfThenElse(still, last_leave, hn::Min(last_leave, hn::Max(w0, w1)));
     }
+    for (const ClipPlane& plane : plan.clip) {
+      const V3<DD> normal = set3(d, plane.normal);
+      const V along_normal = dot3(d, normal, direction), rest = hn::Sub(hn::Set(d, plane.offset), dot3(d, normal, origin));
+      const V at = hn::Div(rest, along_normal);
+      leave = hn::IfThenElse(hn::Gt(along_normal, zero), hn::Min(leave, at), leave);
+      enter = hn::IfThenElse(hn::Lt(along_normal, zero), hn::Max(enter, at), enter);
+      const auto outside = hn::And(hn::Eq(along_normal, zero), hn::Lt(rest, zero));
+      leave = hn::IfThenElse(outside, hn::Set(d, -HUGE_VAL), leave);
+    }
     const auto hit = hn::Gt(leave, enter);
     any = any || !hn::AllFalse(d, hit);
     // A ray that misses has no steps; its places are of no account but finite.
