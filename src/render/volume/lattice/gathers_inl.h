@@ -269,7 +269,8 @@ HWY_INLINE bool words_fit(D d, const ptrdiff_t (&on)[n], At at, Int<D> last_word
 template <class D, class T>
 HWY_INLINE Pair<D> gather_pair(D d, const T* data, Int<D> at, Int<D> last_word, bool loads) {
   const hn::RebindToUnsigned<D> du;
-  const Int<D> from = hn::Min(at, last_word), skipped = hn::ShiftLeft < sizeof(T) == 2 ? 4 : 3 > (hn::Sub(at, from));
+  constexpr int bits_by_shift = sizeof(T) == 2 ? 4 : 3;
+  const Int<D> from = hn::Min(at, last_word), skipped = hn::ShiftLeft<bits_by_shift>(hn::Sub(at, from));
   Int<D> word;
   gather_words_at(d, data, {0}, from, loads, &word);
   return pair_in<T>(d, hn::BitCast(IntTag<D>(), hn::Shr(hn::BitCast(du, word), hn::BitCast(du, skipped))));
