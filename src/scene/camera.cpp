@@ -77,7 +77,7 @@ Projection make_projection(const Camera& c, int width, int height) {
 }
 
 Projection::Ray Projection::ray(double px, double py) const {
-  const double x = (px - 0.5 * width) / scale, y = (0.5 * height + shift_y - py) / scale;
+  const double x = (px - middle_x()) / scale, y = (middle_y() - py) / scale;
   if (parallel) return {eye + right * x + up * y, forward, 1.0};
   const Vec3 d = forward + right * x + up * y;
   const double l = length(d);
@@ -85,9 +85,14 @@ Projection::Ray Projection::ray(double px, double py) const {
 }
 
 Projection band_of(const Projection& whole, int first, int rows) {
+  return window_of(whole, 0, first, whole.width, rows);
+}
+
+Projection window_of(const Projection& whole, int x, int y, int width, int height, int finer) {
   Projection p = whole;
-  p.height = rows, p.rows = whole.rows > 0 ? whole.rows : whole.height;
-  p.shift_y = 0.5 * whole.height + whole.shift_y - first - 0.5 * rows;
+  p.width = finer * width, p.height = finer * height, p.rows = finer * (whole.rows > 0 ? whole.rows : whole.height);
+  p.scale = finer * whole.scale;
+  p.shift_x = finer * (whole.middle_x() - x - 0.5 * width), p.shift_y = finer * (whole.middle_y() - y - 0.5 * height);
   return p;
 }
 

@@ -24,10 +24,14 @@ struct Projection {
   int width = 1, height = 1;
   bool parallel = false;
   Vec3 eye, right, up, forward;  ///< orthonormal, world
-  double shift_y = 0;            ///< pixels added to y: a band of a picture is drawn with the projection of the whole, shifted
+  double shift_x = 0, shift_y = 0;  ///< pixels added: a part of a picture is drawn with the projection of the whole, shifted
   double scale = 1;              ///< pixels per unit of (x/z) in perspective, pixels per world unit in parallel
   double near_plane = 0.01, far_plane = 1000;
-  int rows = 0;  ///< of the whole picture of which this is a band; 0 = height
+  int rows = 0;  ///< of the whole picture of which this is a part; 0 = height
+
+  /// Where the view's axis meets the picture.
+  double middle_x() const { return 0.5 * width + shift_x; }
+  double middle_y() const { return 0.5 * height + shift_y; }
 
   Vec3 to_eye(Vec3 world) const {
     const Vec3 d = world - eye;
@@ -37,7 +41,7 @@ struct Projection {
   Vec3 to_pixel(Vec3 world) const {
     const Vec3 e = to_eye(world);
     const double s = parallel ? scale : scale / e.z;
-    return {0.5 * width + s * e.x, 0.5 * height + shift_y - s * e.y, e.z};
+    return {middle_x() + s * e.x, middle_y() - s * e.y, e.z};
   }
   struct Ray {
     Vec3 origin, direction;  ///< direction has length 1
@@ -48,6 +52,8 @@ struct Projection {
 Projection make_projection(const Camera& camera, int width, int height);
 /// The projection of rows [first, first + rows) of the picture as a picture of their own.
 Projection band_of(const Projection& whole, int first, int rows);
+/// The projection of the pixels [x, x + width) x [y, y + height) as a picture of their own, each of them as `finer` x `finer` pixels.
+Projection window_of(const Projection& whole, int x, int y, int width, int height, int finer = 1);
 
 /// Looks at the box from `direction` (towards the viewer; need not be unit) so that all of it is seen with `margin` of the
 /// picture left free on each side; sets near and far. A flat or empty box works too.

@@ -31,8 +31,9 @@ void describe(Schema& s, VolumeSampling& p) {
   s("gradient", p.gradient, "How gradients are taken: differences, or the kernel's own derivative.")
       .choices({"central", "sobel", "intermediate", "analytic"});
   s("antialias", p.antialias,
-    "Of uniform grids seen from afar: none, or mip, the means of values where cells are smaller than a pixel (slower, before the colours).")
-      .choices({"none", "mip"});
+    "Where cells are smaller than a pixel: none, split, rays that divide (right for any colours and mesh; slower the farther away), or mip, "
+    "means of the values of uniform grids (before the colours).")
+      .choices({"none", "split", "mip"});
 }
 
 void describe(Schema& s, VolumeLight& p) {

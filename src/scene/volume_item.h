@@ -42,7 +42,7 @@ struct VolumeSampling {
   bool jitter = false;               ///< with steps: the first sample anywhere in the first step
   std::string kernel = "linear";     ///< nearest, linear, catmull_rom, mitchell, bspline, bspline_smooth, gaussian, sinc
   std::string gradient = "central";  ///< central, sobel, intermediate, analytic
-  std::string antialias = "none";    ///< none, or mip: means of cells where those are smaller than a pixel (uniform grids)
+  std::string antialias = "none";    ///< none, split (rays divide where cells are smaller than a pixel) or mip (means of such cells)
 };
 void describe(Schema& s, VolumeSampling& p);
 

@@ -27,7 +27,7 @@ void composite_background(const Scene& scene, Frame& frame) {
 Vec3f background_of_row(const Scene& scene, const Projection& projection, int row) {
   const Vec3f bottom = scene.background, top = scene.background_top.value_or(bottom);
   const int rows = projection.rows > 0 ? projection.rows : projection.height;
-  const double y = row + 0.5 - 0.5 * projection.height - projection.shift_y + 0.5 * rows;
+  const double y = row + 0.5 - projection.middle_y() + 0.5 * rows;
   const Vec3f c = top == bottom || rows < 2 ? bottom : lerp(top, bottom, std::clamp(float((y - 0.5) / (rows - 1)), 0.0f, 1.0f));
   return {srgb_decode(c.x), srgb_decode(c.y), srgb_decode(c.z)};
 }

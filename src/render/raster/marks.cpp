@@ -22,7 +22,7 @@ bool finite(Vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::is
 
 void place(const Projection& p, Vec3 eye, double& x, double& y, double& w) {
   const double s = p.parallel ? p.scale : p.scale / eye.z;
-  x = 0.5 * p.width + s * eye.x, y = 0.5 * p.height + p.shift_y - s * eye.y, w = p.parallel ? eye.z : 1 / eye.z;
+  x = p.middle_x() + s * eye.x, y = p.middle_y() - s * eye.y, w = p.parallel ? eye.z : 1 / eye.z;
 }
 
 /// Keeps the part of a segment between near and far; false when nothing is left.

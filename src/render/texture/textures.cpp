@@ -25,7 +25,7 @@ void apply_texture(const RenderTextures& textures, const PreparedItem& item, uin
   const int rows = projection.rows > 0 ? projection.rows : projection.height;
   const double across = double(textures.width) / projection.width, down = double(textures.height) / rows;
   // A band's first row in the whole picture.
-  const double first = projection.rows > 0 ? 0.5 * rows - (0.5 * projection.height + projection.shift_y) : 0.0;
+  const double first = projection.rows > 0 ? 0.5 * rows - projection.middle_y() : 0.0;
   const float contrast = float(item.lic->contrast), strength = float(item.lic->strength);
   const float reach = float(8 / (projection.scale * across));  // times depth in perspective: eight of the texture's pixels
   const auto off = [&](size_t i, float z) {

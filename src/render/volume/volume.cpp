@@ -16,6 +16,7 @@
 #include "render/volume/lattice/reconstructed_ray.h"
 #include "render/volume/light/effects.h"
 #include "render/volume/prepare_cast.h"
+#include "render/volume/split_rays.h"
 
 namespace sg::volume {
 
@@ -95,7 +96,7 @@ void pixel(const Picture& picture, int x, int y, Scratch& s) {
   for (Fragment& f : s.fragments) f.depth = float((double(f.depth) - first_depth) / per_length);
   if (picture.shaded) light(picture, y, ray.origin, ray.direction, s.lit), cast.lights = &s.lit;
   // The same place in the step for a pixel of the whole picture, whatever band it is drawn in.
-  cast.jitter = random_unit(uint64_t(x), uint64_t(std::llround(2 * y - projection.height - 2 * projection.shift_y)));
+  cast.jitter = random_unit(uint64_t(std::llround(2 * (x - projection.middle_x()))), uint64_t(std::llround(2 * (y - projection.middle_y()))));
 
   float* out = &picture.frame.rgba[4 * p];
   if (picture.scene && opaque < HUGE_VAL) {
@@ -306,13 +307,10 @@ Course course(const Volume& v, Vec3 origin, Vec3 direction, double from, double 
   return c;
 }
 
-void composite_volumes(const Scene& scene, const Projection& projection, const FragmentLists& fragments, Frame& frame, Context& context,
-                       const Knobs& knobs) {
-  if (frame.width != projection.width || frame.height != projection.height)
-    fail_internal(
-        fmt::format("a frame of {} x {} for a projection of {} x {}", frame.width, frame.height, projection.width, projection.height));
-  check_fragments(fragments, frame);
-  draw_layers(scene, projection, frame, context);
+namespace {
+
+void cast_volumes(const Scene& scene, const Projection& projection, const FragmentLists& fragments, Frame& frame, Context& context,
+                  const Knobs& knobs) {
   Picture picture{projection, fragments, frame, knobs, {}, {}, false, {}, {}, nullptr, 0, nullptr};
   for (size_t i = 0; i < scene.items.size(); ++i)
     if (const auto* item = std::get_if<VolumeItem>(&scene.items[i]); item && item->method == VolumeMethod::ray) {
@@ -367,6 +365,25 @@ void composite_volumes(const Scene& scene, const Projection& projection, const F
         }
       },
       &context);
+}
+
+}  // namespace
+
+void composite_volumes(const Scene& scene, const Projection& projection, const FragmentLists& fragments, Frame& frame, Context& context,
+                       const Knobs& knobs) {
+  if (frame.width != projection.width || frame.height != projection.height)
+    fail_internal(
+        fmt::format("a frame of {} x {} for a projection of {} x {}", frame.width, frame.height, projection.width, projection.height));
+  check_fragments(fragments, frame);
+  draw_layers(scene, projection, frame, context);
+  // A draft has no rays to spare.
+  const std::vector<RaySlab> slabs = knobs.coarser > 1 ? std::vector<RaySlab>() : ray_slabs(scene, projection);
+  if (slabs.empty()) return cast_volumes(scene, projection, fragments, frame, context, knobs);
+  draw_in_slabs(slabs, scene, projection, fragments, frame, knobs,
+                [&](const Scene& s, const Projection& p, const FragmentLists& among, Frame& f, const Knobs& k) {
+                  context.check();
+                  cast_volumes(s, p, among, f, context, k);
+                });
 }
 
 }  // namespace sg::volume

@@ -26,8 +26,8 @@ EyeSpace::EyeSpace(const CellVolume& volume, const Projection& projection, Conte
 }
 
 void EyeSpace::line(RayLines& lines, int lane, double px, double py) const {
-  const double sx = (px - 0.5 * projection_.width) / projection_.scale;
-  const double sy = -(py - 0.5 * projection_.height - projection_.shift_y) / projection_.scale;
+  const double sx = (px - projection_.middle_x()) / projection_.scale;
+  const double sy = (projection_.middle_y() - py) / projection_.scale;
   const bool flat = projection_.parallel;
   lines.dx[lane] = flat ? 0 : float(sx), lines.dy[lane] = flat ? 0 : float(sy);
   lines.x0[lane] = float(flat ? sx : sx * middle_depth_), lines.y0[lane] = float(flat ? sy : sy * middle_depth_);
@@ -43,7 +43,7 @@ TileBox EyeSpace::tiles(const std::array<uint32_t, N>& vertices, int size, int a
     const double s = projection_.parallel ? projection_.scale : projection_.scale / z;
     // Near the eye's plane a shadow has no end.
     before += z > 1e-4 * wide, behind += z < -1e-4 * wide;
-    const double p[2] = {0.5 * projection_.width + s * double(e[0]), 0.5 * projection_.height + projection_.shift_y - s * double(e[1])};
+    const double p[2] = {projection_.middle_x() + s * double(e[0]), projection_.middle_y() - s * double(e[1])};
     for (int a = 0; a < 2; ++a) lo[a] = std::min(lo[a], p[a]), hi[a] = std::max(hi[a], p[a]);
   }
   if (!projection_.parallel && before < N && behind < N) return {0, 0, across - 1, down - 1};

@@ -40,8 +40,8 @@ Footprints::Footprints(const Stage& s) : projection_(s.projection) {
 }
 
 Vec3 Footprints::q_at(double x, double y, double depth) const {
-  const double sx = (x - 0.5 * projection_.width) / projection_.scale,
-               sy = (0.5 * projection_.height + projection_.shift_y - y) / projection_.scale;
+  const double sx = (x - projection_.middle_x()) / projection_.scale,
+               sy = (projection_.middle_y() - y) / projection_.scale;
   const Vec3 across = right_ * sx + up_ * sy;
   return eye_ + (projection_.parallel ? across + forward_ * depth : (across + forward_) * depth);
 }
@@ -89,7 +89,7 @@ bool Footprints::at(Vec3 q, Footprint& out) const {
     shape(eye, out);
     scale /= eye.z;
   }
-  out.x = float(0.5 * projection_.width + scale * eye.x), out.y = float(0.5 * projection_.height + projection_.shift_y - scale * eye.y);
+  out.x = float(projection_.middle_x() + scale * eye.x), out.y = float(projection_.middle_y() - scale * eye.y);
   out.depth = float(eye.z);
   // Far beside the picture numbers may be anything.
   return std::abs(out.x) + out.half_x < 1e8f && std::abs(out.y) + out.half_y < 1e8f;

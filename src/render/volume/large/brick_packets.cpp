@@ -128,7 +128,7 @@ void BrickPackets::draw(int x0, int y0, int x1, int y1, Frame& frame) const {
   for (size_t y = 0; y < height; ++y)
     for (size_t x = 0; x < width; ++x) part.depth[y * width + x] = frame.depth[(size_t(y0) + y) * size_t(frame.width) + size_t(x0) + x];
   Projection p = plan_.projection;
-  p.width -= 2 * x0, p.shift_y -= y0;
+  p.shift_x -= x0, p.shift_y -= y0;
   Volume volume = stage_;
   PacketPlan plan{volume, p, plan_.knobs, plan_.lamps, plan_.material, plan_.medium, plan_.budget, plan_.edge};
   plan.half = half.data();

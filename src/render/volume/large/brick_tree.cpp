@@ -95,7 +95,7 @@ bool BrickTree::in_view(const BrickNode& node, double& nearest) const {
     nearest = std::min(nearest, e.z);
     const double s = projection_.parallel ? projection_.scale : projection_.scale / std::max(e.z, 1e-300);
     const bool front = projection_.parallel || e.z > 0;
-    const double x = 0.5 * projection_.width + s * e.x;
+    const double x = projection_.middle_x() + s * e.x;
     left = left && front && x < -1, right = right && front && x > projection_.width + 1;
     behind = behind && e.z < projection_.near_plane;
   }

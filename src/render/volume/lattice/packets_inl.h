@@ -161,8 +161,8 @@ HWY_INLINE bool set_up(const PacketPlan& plan, int x, int y, int x1, int y1, con
   const V zero = hn::Zero(d);
   bool any = false;
   for (size_t n = 0; n < size_t(lanes); n += hn::Lanes(d)) {
-    const V sx = hn::Div(hn::Sub(hn::Load(d, px + n), hn::Set(d, 0.5 * p.width)), hn::Set(d, p.scale));
-    const V sy = hn::Div(hn::Sub(hn::Set(d, 0.5 * p.height + p.shift_y), hn::Load(d, py + n)), hn::Set(d, p.scale));
+    const V sx = hn::Div(hn::Sub(hn::Load(d, px + n), hn::Set(d, p.middle_x())), hn::Set(d, p.scale));
+    const V sy = hn::Div(hn::Sub(hn::Set(d, p.middle_y()), hn::Load(d, py + n)), hn::Set(d, p.scale));
     const V3<DD> eye = set3(d, p.eye), right = set3(d, p.right), up = set3(d, p.up), forward = set3(d, p.forward);
     V3<DD> origin = eye, direction = forward;
     if (p.parallel) {
