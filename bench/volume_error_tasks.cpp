@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // How wrong pictures of volumes are: ours and VTK's (bench/vtk_volume_picture.py) against the midpoint rule at a hundredth of a voxel in
-// double precision, at every sixteenth pixel of every sixteenth row. Emission is the value itself, so no colour space is in the way.
+// double precision, at every sixteenth pixel of every sixteenth row. Emission is the value itself, so no colour space is in the way. Lit
+// scenes have the peers' headlight and material; VTK's light is another than ours where the field hardly changes, and it takes the viewer
+// to look along the middle of the picture everywhere.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -12,6 +14,7 @@
 #include "bench.h"
 #include "inputs.h"
 #include "render/render.h"
+#include "render/volume/optics/light_model.h"
 
 namespace sg::bench {
 
@@ -22,9 +25,12 @@ constexpr int pixels = 1024, every = 16;
 struct ErrorScene {
   const char* name;
   std::vector<Vec2> opacity;
+  bool shaded = false;
 };
+const std::vector<Vec2> bands{{-3, 0}, {-.9, 0}, {-.6, .15}, {-.3, 0}, {.2, 0}, {.5, .3}, {.8, 0}, {1.6, 0}, {2, .8}, {4, .8}};
 const ErrorScene error_scenes[] = {
-    {"bands", {{-3, 0}, {-.9, 0}, {-.6, .15}, {-.3, 0}, {.2, 0}, {.5, .3}, {.8, 0}, {1.6, 0}, {2, .8}, {4, .8}}},
+    {"bands", bands},
+    {"lit", bands, true},
     {"fog", {{-3, .002}, {4, .01}}},
 };
 
@@ -38,10 +44,38 @@ VolumeItem grey_item(const ErrorScene& scene, size_t n, double tolerance) {
   }
   item.color.lo = -3, item.color.hi = 4;
   item.opacity.points = scene.opacity;
-  item.unit_distance = 2.0 / 255, item.shaded = false;
+  item.unit_distance = 2.0 / 255, item.shaded = scene.shaded;
+  item.light.ambient = 0.2, item.light.diffuse = 0.7, item.light.specular = 0.3, item.light.power = 20;  // the peers'
   if (tolerance > 0) item.sampling.tolerance = tolerance;
   else item.sampling.step = 1.0 / double(n - 1);
   return item;
+}
+
+/// The trilinear field.
+double value_at(const float* f, size_t n, Vec3 p) {
+  size_t c[3];
+  double g[3];
+  for (int a = 0; a < 3; ++a) {
+    const double u = std::clamp((p[a] + 1) * (double(n - 1) / 2), 0.0, double(n - 1));
+    c[a] = std::min(size_t(u), n - 2), g[a] = u - double(c[a]);
+  }
+  double v = 0;
+  for (size_t k = 0; k < 8; ++k)
+    v += (k & 1 ? g[0] : 1 - g[0]) * (k & 2 ? g[1] : 1 - g[1]) * (k & 4 ? g[2] : 1 - g[2]) *
+         double(f[c[0] + (k & 1) + n * (c[1] + (k >> 1 & 1) + n * (c[2] + (k >> 2)))]);
+  return v;
+}
+
+/// Differences over a cell to both sides, as far as there is a field; per world length.
+Vec3 gradient(const float* f, size_t n, Vec3 p) {
+  const double h = 2 / double(n - 1);
+  Vec3 g;
+  for (int a = 0; a < 3; ++a) {
+    Vec3 lo = p, hi = p;
+    lo[a] = std::max(p[a] - h, -1.0), hi[a] = std::min(p[a] + h, 1.0);
+    g[a] = (value_at(f, n, hi) - value_at(f, n, lo)) / (hi[a] - lo[a]);
+  }
+  return g;
 }
 
 /// Emission along the ray through a place of the picture.
@@ -56,23 +90,28 @@ double brute_force(const VolumeItem& item, const float* f, size_t n, const Proje
   const double per_voxel = double(n - 1) / 2;
   const auto steps = size_t((to - from) * per_voxel * 100) + 1;
   const double h = (to - from) / double(steps);
+  // As for every lit volume: a change by 0.002 of the range over a cell is a surface.
+  const Range range = item.data->range(item.data->fields()[0]);
+  const auto edge = float(1 / per_voxel), per_scale = float(1 / (0.002 * (range.hi - range.lo)));
+  volume::LitRay lit;
+  lit.direction = Vec3f(ray.direction);
+  const VolumeLight& m = item.light;
+  lit.material = {float(m.ambient), float(m.diffuse), float(m.specular), float(m.power), true};
+  const Vec3 lamp = view.forward * -1.0;
+  lit.lights.push_back({Vec3f(lamp), Vec3f(normalize(lamp - ray.direction)), 1});
   double sum = 0, pass = 1;
   for (size_t i = 0; i < steps && pass > 1e-7; ++i) {
     const Vec3 p = ray.origin + ray.direction * (from + (double(i) + 0.5) * h);
-    size_t c[3];
-    double g[3];
-    for (int a = 0; a < 3; ++a) {
-      const double u = std::clamp((p[a] + 1) * per_voxel, 0.0, double(n - 1));
-      c[a] = std::min(size_t(u), n - 2), g[a] = u - double(c[a]);
-    }
-    double v = 0;
-    for (size_t k = 0; k < 8; ++k)
-      v += (k & 1 ? g[0] : 1 - g[0]) * (k & 2 ? g[1] : 1 - g[1]) * (k & 4 ? g[2] : 1 - g[2]) *
-           double(f[c[0] + (k & 1) + n * (c[1] + (k >> 1 & 1) + n * (c[2] + (k >> 2)))]);
+    const double v = value_at(f, n, p);
     const double opacity = item.opacity.at(v);
     if (!(opacity > 0)) continue;
     const double alpha = 1 - std::exp(std::log1p(-opacity) * h / item.unit_distance);
-    sum += pass * alpha * std::clamp((v + 3) / 7, 0.0, 1.0), pass *= 1 - alpha;
+    double emission = std::clamp((v + 3) / 7, 0.0, 1.0);
+    if (item.shaded) {
+      const volume::Lit l = volume::light_at(lit, Vec3f(gradient(f, n, p)), edge, per_scale);
+      emission = emission * double(l.diffuse) + double(l.specular);
+    }
+    sum += pass * alpha * emission, pass *= 1 - alpha;
   }
   return sum;
 }
@@ -115,6 +154,7 @@ Task ours(const ErrorScene& scene, size_t n, double tolerance) {
   return {"volume_error", fmt::format("{} {}^3", scene.name, n), fmt::format("sightglass:raycast({})", label), "millionths", [=, &scene] {
             Scene s;
             s.transparent = true;
+            s.lights = {{{0, 0, 1}, true, 1}};  // the peers' headlight
             s.items.emplace_back(grey_item(scene, n, tolerance));
             const auto shared = std::make_shared<Scene>(std::move(s));
             const std::vector<double> want = reference(std::get<VolumeItem>(shared->items[0]), n, 0.5, 0.5);

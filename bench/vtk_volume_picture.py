@@ -11,6 +11,7 @@ from vtk.util import numpy_support as ns
 path, n, scene, out = sys.argv[1], int(sys.argv[2]), sys.argv[3], sys.argv[4]
 SCENES = {
     "bands": [(-3, 0), (-.9, 0), (-.6, .15), (-.3, 0), (.2, 0), (.5, .3), (.8, 0), (1.6, 0), (2, .8), (4, .8)],
+    "lit": [(-3, 0), (-.9, 0), (-.6, .15), (-.3, 0), (.2, 0), (.5, .3), (.8, 0), (1.6, 0), (2, .8), (4, .8)],
     "fog": [(-3, .002), (4, .01)],
 }
 image = vtk.vtkImageData()
@@ -37,7 +38,11 @@ prop.SetColor(color)
 prop.SetScalarOpacity(opacity)
 prop.SetScalarOpacityUnitDistance(2.0 / 255)
 prop.SetInterpolationTypeToLinear()
-prop.ShadeOff()
+prop.SetShade(scene == "lit")
+prop.SetAmbient(0.2)
+prop.SetDiffuse(0.7)
+prop.SetSpecular(0.3)
+prop.SetSpecularPower(20)
 volume = vtk.vtkVolume()
 volume.SetMapper(mapper)
 volume.SetProperty(prop)

@@ -84,9 +84,7 @@ Projection::Ray Projection::ray(double px, double py) const {
   return {eye, d / l, l};
 }
 
-Projection band_of(const Projection& whole, int first, int rows) {
-  return window_of(whole, 0, first, whole.width, rows);
-}
+Projection band_of(const Projection& whole, int first, int rows) { return window_of(whole, 0, first, whole.width, rows); }
 
 Projection window_of(const Projection& whole, int x, int y, int width, int height, int finer) {
   Projection p = whole;

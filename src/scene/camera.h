@@ -23,9 +23,9 @@ struct Camera {
 struct Projection {
   int width = 1, height = 1;
   bool parallel = false;
-  Vec3 eye, right, up, forward;  ///< orthonormal, world
+  Vec3 eye, right, up, forward;     ///< orthonormal, world
   double shift_x = 0, shift_y = 0;  ///< pixels added: a part of a picture is drawn with the projection of the whole, shifted
-  double scale = 1;              ///< pixels per unit of (x/z) in perspective, pixels per world unit in parallel
+  double scale = 1;                 ///< pixels per unit of (x/z) in perspective, pixels per world unit in parallel
   double near_plane = 0.01, far_plane = 1000;
   int rows = 0;  ///< of the whole picture of which this is a part; 0 = height
 

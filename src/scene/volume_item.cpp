@@ -31,7 +31,8 @@ void describe(Schema& s, VolumeSampling& p) {
   s("gradient", p.gradient, "How gradients are taken: differences, or the kernel's own derivative.")
       .choices({"central", "sobel", "intermediate", "analytic"});
   s("antialias", p.antialias,
-    "Where cells are smaller than a pixel: none, split, rays that divide (right for any colours and mesh; slower the farther away), or mip, "
+    "Where cells are smaller than a pixel: none, split, rays that divide (right for any colours and mesh; slower the farther away), or "
+    "mip, "
     "means of the values of uniform grids (before the colours).")
       .choices({"none", "split", "mip"});
 }

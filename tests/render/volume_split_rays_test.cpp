@@ -125,10 +125,10 @@ TEST_CASE("volume split rays: surfaces, sheets and picks stay where they are") {
   VolumeItem v = item(grid(cube(65, -4, 4), [](Vec3) { return 0.5; }), one_color({0.8f, 0.5f, 0.2f}), constant_opacity(0.2));
   const Projection p = perspective_view(16, 16, 48, {0.2, 0.1, 12}, {0, 0, 0});
   REQUIRE(volume::ray_slabs(scene_of({[&] {
-            VolumeItem s = v;
-            s.sampling.antialias = "split";
-            return s;
-          }()}),
+                              VolumeItem s = v;
+                              s.sampling.antialias = "split";
+                              return s;
+                            }()}),
                             p)
               .size() >= 2);
   for (const float surface : {6.0f, 10.3f, 14.5f, 17.0f, HUGE_VALF})

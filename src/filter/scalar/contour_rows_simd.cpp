@@ -5,6 +5,7 @@
 
 #include <bit>
 #include <cstring>
+#include <memory>
 
 #include "base/bits.h"
 #include "filter/scalar/cell_cases.h"

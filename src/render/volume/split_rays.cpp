@@ -178,9 +178,7 @@ class SplitRays {
   }
 
   // Of the picture, by a place in the finer one.
-  size_t pixel(int x, int y) const {
-    return size_t(window_.y0 + y / finer_) * size_t(frame_.width) + size_t(window_.x0 + x / finer_);
-  }
+  size_t pixel(int x, int y) const { return size_t(window_.y0 + y / finer_) * size_t(frame_.width) + size_t(window_.x0 + x / finer_); }
   bool within(const RaySlab& slab, float depth) const {
     const bool first = &slab == &slabs_.front(), last = &slab == &slabs_.back();
     return (first || double(depth) >= slab.from) && (last || double(depth) < slab.to);
@@ -234,8 +232,8 @@ std::vector<RaySlab> ray_slabs(const Scene& scene, const Projection& p) {
     whole = whole || (v->mode != RayFunction::composite && v->mode != RayFunction::isosurface);
     if (v->sampling.antialias != "split") continue;
     if (bricked_of(*v->data))
-      fail_usage("antialias=split is for volumes in memory; this one is drawn from a file whose levels are means of cells already", "volume",
-                 "leave antialias=none, or allow more --memory");
+      fail_usage("antialias=split is for volumes in memory; this one is drawn from a file whose levels are means of cells already",
+                 "volume", "leave antialias=none, or allow more --memory");
     cell = std::min(cell, cell_size(*v->data));
     const Box3 b = v->data->bounds();
     for (int c = 0; c < 8; ++c) {

@@ -96,7 +96,8 @@ void pixel(const Picture& picture, int x, int y, Scratch& s) {
   for (Fragment& f : s.fragments) f.depth = float((double(f.depth) - first_depth) / per_length);
   if (picture.shaded) light(picture, y, ray.origin, ray.direction, s.lit), cast.lights = &s.lit;
   // The same place in the step for a pixel of the whole picture, whatever band it is drawn in.
-  cast.jitter = random_unit(uint64_t(std::llround(2 * (x - projection.middle_x()))), uint64_t(std::llround(2 * (y - projection.middle_y()))));
+  cast.jitter =
+      random_unit(uint64_t(std::llround(2 * (x - projection.middle_x()))), uint64_t(std::llround(2 * (y - projection.middle_y()))));
 
   float* out = &picture.frame.rgba[4 * p];
   if (picture.scene && opaque < HUGE_VAL) {

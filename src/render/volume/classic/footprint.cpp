@@ -40,8 +40,7 @@ Footprints::Footprints(const Stage& s) : projection_(s.projection) {
 }
 
 Vec3 Footprints::q_at(double x, double y, double depth) const {
-  const double sx = (x - projection_.middle_x()) / projection_.scale,
-               sy = (projection_.middle_y() - y) / projection_.scale;
+  const double sx = (x - projection_.middle_x()) / projection_.scale, sy = (projection_.middle_y() - y) / projection_.scale;
   const Vec3 across = right_ * sx + up_ * sy;
   return eye_ + (projection_.parallel ? across + forward_ * depth : (across + forward_) * depth);
 }

@@ -201,8 +201,8 @@ Layer fourier(const LayerInput& input) {
             const Course whole = course(stage.volume, ray.origin, ray.direction, -HUGE_VAL, HUGE_VAL);
             const double chord = whole.leave - whole.enter;
             if (!(chord > 0) || cut.enter > whole.enter || cut.leave < whole.leave) continue;
-            const double value = xray.at((x + 0.5 - p.middle_x()) / p.scale - centre_x,
-                                         (p.middle_y() - double(y) - 0.5) / p.scale - centre_y);
+            const double value =
+                xray.at((x + 0.5 - p.middle_x()) / p.scale - centre_x, (p.middle_y() - double(y) - 0.5) / p.scale - centre_y);
             ink.draw(input.item.mode == RayFunction::sum ? value : value / chord, &layer.rgba[4 * pixel]);
           }
       },

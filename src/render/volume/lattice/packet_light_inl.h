@@ -41,6 +41,41 @@ HWY_INLINE hn::Vec<D> turn_between(const FieldSurface<D>& a, const FieldSurface<
   const hn::Vec<D> cosine = mul_add(a.normal[2], b.normal[2], mul_add(a.normal[1], b.normal[1], hn::Mul(a.normal[0], b.normal[0])));
   return hn::Sub(hn::Set(D(), 1.0f), cosine);
 }
+/// Where the gradient goes straight it turns fastest where it is small: half way it has turned by this share, if it began at 0.
+template <class D>
+HWY_INLINE hn::Vec<D> turned_half_way(const FieldSurface<D>& a, const FieldSurface<D>& b) {
+  const D d;
+  return hn::Div(b.much, hn::Max(hn::Add(a.much, b.much), hn::Set(d, 1e-30f)));
+}
+
+/// How much of a surface there is between two places where the gradient goes straight: around a place without one it fades
+/// (FieldSurface::much), and a ray that passes by there may end in as much as it began.
+template <class D>
+struct Fade {
+  hn::Vec<D> middle;  ///< half way, 1 at most
+  hn::Vec<D> hollow;  ///< by how much less there is somewhere than a straight line between the ends would have it
+
+  HWY_INLINE Fade(const FieldSurface<D>& a, const FieldSurface<D>& b, hn::Vec<D> turn) {
+    using F = hn::Vec<D>;
+    const D d;
+    const F zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f), least = hn::Set(d, 1e-30f);
+    middle = one, hollow = zero;
+    // The triangle of both gradients is at least as high as it would be if both were as the smaller one.
+    const F smaller = hn::Min(a.much, b.much);
+    const auto fading = hn::Lt(hn::Mul(hn::Mul(smaller, smaller), neg_mul_add(half, turn, one)), one);
+    if (hn::AllFalse(d, fading)) return;
+    const F aa = hn::Mul(a.much, a.much), bb = hn::Mul(b.much, b.much), ab = hn::Mul(hn::Mul(a.much, b.much), hn::Sub(one, turn));
+    const F ends = hn::Mul(half, hn::Add(hn::Min(a.much, one), hn::Min(b.much, one)));
+    const F half_way = hn::Min(one, hn::Mul(half, hn::Sqrt(hn::Max(zero, hn::Add(hn::Add(aa, bb), hn::Add(ab, ab))))));
+    // The nearest to nothing, where that lies between: the height of that triangle.
+    const F square =
+        hn::Div(hn::Max(zero, neg_mul_add(ab, ab, hn::Mul(aa, bb))), hn::Max(hn::Sub(hn::Add(aa, bb), hn::Add(ab, ab)), least));
+    const F nearest = hn::IfThenElse(hn::Lt(ab, hn::Min(aa, bb)), hn::Sqrt(square), smaller);
+    const F dip = hn::Sub(hn::Min(one, smaller), hn::Min(one, nearest));
+    middle = hn::IfThenElse(fading, half_way, one);
+    hollow = hn::IfThenElseZero(fading, hn::Max(hn::Sub(ends, half_way), dip));
+  }
+};
 /// Is the ray so near to the surface's edge that it may turn over and back between two places?
 template <class D>
 HWY_INLINE hn::Mask<D> grazing(const FieldSurface<D>& a, const FieldSurface<D>& b) {
@@ -135,6 +170,13 @@ class Lighting {
   /// The same anywhere.
   HWY_INLINE F most_bend() const {
     return hn::Set(D(), intensity_ * (plan_->material.diffuse + plan_->material.specular * plan_->material.power));
+  }
+
+  /// By how much light may differ between where there is a surface and where there is none.
+  HWY_INLINE F most_fade() const {
+    const Material& m = plan_->material;
+    const float flat = std::abs(1 - m.ambient), lit = std::abs(m.ambient + m.diffuse * intensity_ - 1);
+    return hn::Set(D(), std::max(flat, lit) + m.specular * intensity_);
   }
 
   const Material& material() const { return plan_->material; }
@@ -243,10 +285,16 @@ class CellLight {
     const auto both = hn::Gt(hn::Min(s0.much, s1.much), zero);
     // For an angle a the light bends by a^2 / 24 of its second derivative, with a^2 = 2 (1 - cos a). An even turn is twice those to and
     // from the middle; a rough field may turn there and back.
-    const F halves = hn::Add(turn_between(s0, sm), turn_between(sm, s1)), turn = hn::Max(turn_between(s0, s1), hn::Add(halves, halves));
+    const F turn0 = turn_between(s0, sm), turn1 = turn_between(sm, s1), halves = hn::Add(turn0, turn1);
+    const F turn = hn::Max(turn_between(s0, s1), hn::Add(halves, halves));
+    const F faded =
+        hn::Mul(hn::Mul(hn::Set(d, 0.5f), hn::Add(Fade<D>(s0, sm, turn0).hollow, Fade<D>(sm, s1, turn1).hollow)), lighting_.most_fade());
     const F bend = hn::Mul(turn, hn::Mul(lighting_.bend(hn::Max(nearest[0], nearest[1]), turn), hn::Set(d, 1.0f / 12)));
     const auto kinked = hn::RebindMask(d, hn::Ne(e.sides[0], e.sides[1]));
-    e.bend = hn::IfThenElseZero(both, bend);
+    // The middle of an uneven turn is not its mean: by half the square of how uneven, never by more than a tenth.
+    const F uneven = hn::Sub(hn::Set(d, 1.0f), hn::Mul(hn::Set(d, 2.0f), turned_half_way(s0, s1)));
+    const F off = hn::Mul(apart(l0, l1), hn::Min(hn::Mul(hn::Mul(hn::Set(d, 0.5f), uneven), uneven), hn::Set(d, 0.1f)));
+    e.bend = hn::IfThenElseZero(both, hn::Add(hn::Add(bend, faded), off));
     const auto unsure = hn::Or(hn::Or(grazing(s0, sm), grazing(sm, s1)), hn::Gt(turn, hn::Set(d, rough)));
     const F over = hn::IfThenElseZero(unsure, turn);
     e.jump = hn::IfThenElseZero(both, hn::IfThenElse(kinked, hn::Max(over, apart(l0, l1)), over));

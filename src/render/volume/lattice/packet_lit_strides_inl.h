@@ -29,6 +29,13 @@ struct LitPlace {
     lighting.to_world(cells, g);
     LitPlace p;
     p.surface = lighting.surface(g), p.light = lighting.on(p.surface, p.sides, p.nearest);
+    // In the outermost cells differences are of less than two cells: their inner faces are kinks.
+    const D d;
+    const IntTag<D> di;
+    const hn::Vec<D> one = hn::Set(d, 1.0f);
+    auto outermost = hn::MaskFromVec(hn::Zero(d));
+    for (int a = 0; a < 3; ++a) outermost = hn::Or(outermost, hn::Or(hn::Lt(u[a], one), hn::Gt(u[a], hn::Sub(source.top[a], one))));
+    p.sides = hn::Or(p.sides, hn::IfThenElseZero(hn::RebindMask(di, outermost), hn::Set(di, 1 << 30)));
     return p;
   }
   static HWY_INLINE LitPlace none() {
@@ -57,6 +64,46 @@ struct LitPlace {
   }
 };
 
+/// How straight the gradient goes along a ray, told from the last two places.
+template <class D>
+class GradientPath {
+  using F = hn::Vec<D>;
+
+ public:
+  HWY_INLINE GradientPath() : length_(hn::Zero(D())) {
+    for (F& c : change_) c = hn::Zero(D());
+  }
+  /// By what share of its change from here to p2, so far away, it may leave the straight line between them. Where there is nothing to
+  /// compare with, what rough fields do.
+  HWY_INLINE F swerve(const LitPlace<D>& here, const LitPlace<D>& p2, F length, hn::Mask<D> known) const {
+    const D d;
+    const F ratio = hn::Div(length, hn::Max(length_, hn::Set(d, 1e-30f)));
+    F change[3], bend[3];
+    step(here, p2, change);
+    for (int a = 0; a < 3; ++a) bend[a] = neg_mul_add(change_[a], ratio, change[a]);
+    // The second derivative s counts by s length^2 / 8 in the middle.
+    const F size = hn::Max(Lighting<D>::dot(change, change), hn::Set(d, 1e-30f));
+    const F share = hn::Div(length, hn::Mul(hn::Set(d, 4.0f), hn::Add(length, length_)));
+    const F off = hn::Mul(share, hn::Sqrt(hn::Div(Lighting<D>::dot(bend, bend), size)));
+    return hn::IfThenElse(hn::And(known, hn::Gt(length_, hn::Zero(d))), hn::Min(off, hn::Set(d, 0.5f)), hn::Set(d, unknown));
+  }
+  HWY_INLINE void go(const LitPlace<D>& here, const LitPlace<D>& p2, F length, hn::Mask<D> which) {
+    F change[3];
+    step(here, p2, change);
+    for (int a = 0; a < 3; ++a) change_[a] = hn::IfThenElse(which, change[a], change_[a]);
+    length_ = hn::IfThenElse(which, length, length_);
+  }
+  HWY_INLINE void forget(hn::Mask<D> which) { length_ = hn::IfThenZeroElse(which, length_); }
+
+ private:
+  static constexpr float unknown = 1.0f / 16;
+  static HWY_INLINE void step(const LitPlace<D>& a, const LitPlace<D>& b, F change[3]) {
+    for (int i = 0; i < 3; ++i)
+      change[i] = hn::Sub(hn::Mul(b.surface.normal[i], b.surface.much), hn::Mul(a.surface.normal[i], a.surface.much));
+  }
+  F change_[3], length_;  // of the gradient, up to here; 0: not known
+};
+
 /// a + b x + c x^2 with x = -1, 0, 1 at the three places.
 template <class D>
 struct Parabola {
@@ -81,15 +128,24 @@ struct StrideLight {
   Parabola<D> diffuse, specular;
   F error;
 
-  /// A straight line between the ends of both. Its error is more than anybody accepts where there is a kink.
-  static HWY_INLINE StrideLight straight(const Lighting<D>& lighting, const LitPlace<D>& p0, const LitPlace<D>& p2) {
+  /// Between the ends of both as the surface turns, which may `swerve` from that by a share of the change (GradientPath). Its error is more
+  /// than anybody accepts where there is a kink.
+  static HWY_INLINE StrideLight straight(const Lighting<D>& lighting, const LitPlace<D>& p0, const LitPlace<D>& p2, F swerve) {
     const D d;
-    const F half = hn::Set(d, 0.5f), zero = hn::Zero(d);
-    const auto line = [&](F a, F b) HWY_ATTR { return Parabola<D>{hn::Mul(half, hn::Add(a, b)), hn::Mul(half, hn::Sub(b, a)), zero}; };
-    StrideLight l{line(p0.light.diffuse, p2.light.diffuse), line(p0.light.specular, p2.light.specular), zero};
+    const F turn = turn_between(p0.surface, p2.surface), zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+    // Half way the normal has turned by turned_half_way(), and light is that of so much of a surface.
+    const Fade<D> fade(p0.surface, p2.surface, turn);
+    const F per = hn::Div(fade.middle, hn::Max(hn::Add(p0.surface.much, p2.surface.much), hn::Set(d, 1e-30f)));
+    const F share0 = hn::Mul(per, hn::Max(one, p0.surface.much)), share2 = hn::Mul(per, hn::Max(one, p2.surface.much));
+    const auto between = [&](F a, F b, F flat) HWY_ATTR {
+      return Parabola<D>::through(a, mul_add(share0, hn::Sub(a, flat), mul_add(share2, hn::Sub(b, flat), flat)), b);
+    };
+    StrideLight l{between(p0.light.diffuse, p2.light.diffuse, one), between(p0.light.specular, p2.light.specular, zero), zero};
     // The square of the angle by which the surface turns is 2 (1 - cos); an arc lies a twelfth of its bend above its chord in the mean.
-    const F turn = turn_between(p0.surface, p2.surface);
     l.error = hn::Mul(turn, hn::Mul(lighting.bend(hn::Max(p0.nearest, p2.nearest), turn), hn::Set(d, 1.0f / 6)));
+    l.error = mul_add(hn::Mul(fade.hollow, hn::Set(d, share_hollow)), lighting.most_fade(), l.error);
+    l.error = hn::Add(l.error, beside_parabola(p0, p2));
+    l.error = mul_add(apart(p0.light, p2.light), hn::Mul(hn::Set(d, 2.0f / 3), swerve), l.error);
     l.error = hn::IfThenElse(kinked(p0.sides, p2.sides), hn::Set(d, 1.0f), l.error);
     return l;
   }
@@ -109,7 +165,10 @@ struct StrideLight {
     const auto jump = [&](const LitPlace<D>& a, const LitPlace<D>& b) HWY_ATTR {
       return hn::IfThenElseZero(kinked(a.sides, b.sides), hn::Mul(hn::Set(d, share_kinked), apart(a.light, b.light)));
     };
-    l.error = hn::Max(hn::Mul(bend, share), hn::Add(jump(p0, p1), jump(p1, p2)));
+    const F hollows = hn::Add(Fade<D>(p0.surface, p1.surface, turn01).hollow, Fade<D>(p1.surface, p2.surface, turn12).hollow);
+    const F faded = hn::Mul(hn::Mul(hollows, hn::Set(d, 0.5f * share_hollow)), lighting.most_fade());
+    const F aside = hn::Add(faded, beside_parabola(p0, p2));
+    l.error = hn::Max(hn::Mul(bend, share), hn::Add(aside, hn::Add(jump(p0, p1), jump(p1, p2))));
     return l;
   }
   /// Where the surface turns over between the ends, and nothing else is a kink: each face on its part of the way, lit by a straight line
@@ -119,8 +178,9 @@ struct StrideLight {
     const D d;
     const LitLanes<D> back0 = lighting.on_back(p0.surface), back2 = lighting.on_back(p2.surface);
     const F zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f), third = hn::Set(d, 1.0f / 3), least = hn::Set(d, 1e-30f);
-    const F fall = hn::Sub(p0.surface.along, p2.surface.along);
-    const F at = hn::Max(zero, hn::Min(hn::Div(p0.surface.along, hn::IfThenElse(hn::Eq(fall, zero), one, fall)), one));  // of the way
+    const F rise_0 = hn::Mul(p0.surface.along, p0.surface.much), rise_2 = hn::Mul(p2.surface.along, p2.surface.much);
+    const F fall = hn::Sub(rise_0, rise_2);
+    const F at = hn::Max(zero, hn::Min(hn::Div(rise_0, hn::IfThenElse(hn::Eq(fall, zero), one, fall)), one));  // of the way
     const F x = hn::Add(at, at), s0 = hn::Min(x, one), s1 = hn::Max(zero, hn::Sub(x, one));
     // Weights and first moments of straight tau in the first stride and the second, from the begin on.
     const F rise0 = hn::Sub(tau[1], tau[0]), rise1 = hn::Sub(tau[2], tau[1]);
@@ -146,6 +206,8 @@ struct StrideLight {
     const F turn = turn_between(p0.surface, p2.surface);
     l.error = mul_add(jump, mul_add(hn::Set(d, share_hidden), depth, hn::Mul(hn::Set(d, share_uneven), turn)),
                       hn::Mul(turn, hn::Mul(lighting.most_bend(), hn::Set(d, 1.0f / 6))));
+    const Fade<D> fade(p0.surface, p2.surface, turn);
+    l.error = mul_add(hn::Mul(fade.hollow, hn::Set(d, 2 * share_hollow)), lighting.most_fade(), l.error);
     return l;
   }
   HWY_INLINE void take(const StrideLight& o, hn::Mask<D> which) {
@@ -154,8 +216,16 @@ struct StrideLight {
   }
 
  private:
-  static constexpr float lobe_share = 0.05f, share_least = 1.0f / 256, share_turned = 1.0f / 128, share_kinked = 1.0f / 4;
+  static constexpr float lobe_share = 0.05f, share_least = 1.0f / 64, share_turned = 1.0f / 128, share_kinked = 1.0f / 4;
+  static constexpr float share_hollow = 1.0f / 3;
   static constexpr float share_uneven = 0.25f, share_hidden = 1.0f / 16;
+  /// The mean of an uneven turn beside that of the parabola through its ends and its middle: a tenth of the cube of how uneven, by
+  /// quadrature.
+  static HWY_INLINE F beside_parabola(const LitPlace<D>& p0, const LitPlace<D>& p2) {
+    const D d;
+    const F uneven = hn::Sub(hn::Set(d, 1.0f), hn::Mul(hn::Set(d, 2.0f), turned_half_way(p0.surface, p2.surface)));
+    return hn::Mul(hn::Mul(hn::Set(d, 0.1f), apart(p0.light, p2.light)), hn::Abs(hn::Mul(uneven, hn::Mul(uneven, uneven))));
+  }
   static HWY_INLINE hn::Mask<D> kinked(Int<D> a, Int<D> b) { return hn::RebindMask(D(), hn::Ne(a, b)); }
 };
 

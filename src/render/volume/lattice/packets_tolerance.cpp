@@ -143,8 +143,10 @@ class TolerantPacket : CellWalk<D, T, shaded, EvenAxes<D>> {
     StrideLight<D> light;
     if constexpr (shaded)
       if (any_seen) {
+        const M was_lit = lit_;
         lit2 = light_ends(t, t2, seen);
-        light = StrideLight<D>::straight(cells_.lighting, here_lit_, lit2);
+        const F swerve = path_.swerve(here_lit_, lit2, hn::Sub(t2, t), was_lit);
+        light = StrideLight<D>::straight(cells_.lighting, here_lit_, lit2, swerve);
         const auto over = hn::Eq(hn::Xor(here_lit_.sides, lit2.sides), cells_.lighting.turned_over());
         const M turned = hn::And(seen, hn::RebindMask(d, over));
         if (!hn::AllFalse(d, turned)) {
@@ -173,9 +175,12 @@ class TolerantPacket : CellWalk<D, T, shaded, EvenAxes<D>> {
                          for (F* c : {&red, &green, &blue}) *c = mul_add(*c, factor, flash);
                        }
                      });
-      if constexpr (shaded) here_lit_.take(lit2, drawn);
+      if constexpr (shaded) path_.go(here_lit_, lit2, hn::Sub(t2, t), drawn), here_lit_.take(lit2, drawn);
     }
-    if constexpr (shaded) lit_ = hn::Or(hn::AndNot(good, lit_), hn::And(seen, good));
+    if constexpr (shaded) {
+      lit_ = hn::Or(hn::AndNot(good, lit_), hn::And(seen, good));
+      path_.forget(hn::AndNot(lit_, good));
+    }
     take(p2, good);
     const F next_error = hn::IfThenElse(good, mul_add(pass, s.ahead, error), error);
     // safety sqrt(allowed / error)
@@ -249,6 +254,7 @@ class TolerantPacket : CellWalk<D, T, shaded, EvenAxes<D>> {
   F stride_, reserve_;
   typename SumLanes<D>::Place here_;
   LitPlace<D> here_lit_;
+  GradientPath<D> path_;
   M lit_;  // the lanes for which it is the place where they are
 };
 
