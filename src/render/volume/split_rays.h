@@ -17,8 +17,8 @@ struct RaySlab {
 /// Where the volumes of a scene with antialias=split want how many rays. In perspective rays draw apart: one ray a pixel is enough as long
 /// as a pixel covers at most a cell, behind that each divides into four, and again at twice the depth (Kreeger, Bitter, Dachille, Chen,
 /// Kaufman, "Adaptive perspective ray casting", IEEE Volume Visualization 1998). Slabs by rising depth, from the near to the far plane;
-/// empty when one ray a pixel does everywhere. Ray functions that look at whole rays (a maximum is none of slabs) take as many as the
-/// far end wants all the way, and so do parallel projections.
+/// empty when one ray a pixel does everywhere. Ray functions of whole rays (a maximum, say) take as many as the far end wants all the way,
+/// and so do parallel projections.
 ///
 /// At most 64 x 64 rays a pixel. The size of cells: the smallest edge of uniform and rectilinear grids, of other meshes the side of a
 /// cube of their mean volume. Throws Error(usage) for volumes that memory does not hold.
