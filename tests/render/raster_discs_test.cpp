@@ -133,7 +133,7 @@ TEST_CASE("discs: surfels of a ball on a grid leave no hole in its picture") {
   Context ctx;
   for (int cells : {12, 40}) {
     UniformGrid g;
-    g.dims = {cells + 1, cells + 1, cells + 1};
+    g.dims = {size_t(cells) + 1, size_t(cells) + 1, size_t(cells) + 1};
     g.origin = {-1.2, -1.2, -1.2};
     g.spacing = Vec3{2.4, 2.4, 2.4} * (1.0 / cells);
     std::vector<double> f;
