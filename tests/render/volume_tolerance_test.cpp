@@ -306,8 +306,8 @@ TEST_CASE("volume: strides through waves of all lengths stay within the toleranc
       for (const bool shaded : {false, true}) check_waves(cells, bands, unit, shaded, shaded ? 400 : 100, {}, 9);
 }
 
-// Smooth and rough, in all materials, dense and thin, seen from their border on. Each of these had pixels over the tolerance when light was
-// taken to turn evenly between the ends of strides, and never to leave that.
+// Smooth and rough, in all materials, dense and thin, seen from their border on. Each of these had pixels over the tolerance with one or
+// another simpler idea of how light goes between the ends of strides.
 TEST_CASE("volume: lit polynomials of three variables stay within the tolerance") {
   struct Scenes {
     uint64_t seed;
