@@ -4,6 +4,7 @@
 
 #include "render/volume/lattice/empty_space.h"
 #include "render/volume/lattice/kernels.h"
+#include "render/volume/lattice/passages.h"
 #include "render/volume/optics/medium_sums.h"
 #include "volume_support.h"
 
@@ -86,4 +87,19 @@ TEST_CASE("strides: sums over the value are the integrals of the medium, across 
       for (int i = node >> level << level; i < std::min(node + (1 << level), volume::MediumSums::nodes); ++i)
         CHECK(std::abs(sums.table()[i].slope) <= most * 1.0001f);
     }
+}
+
+TEST_CASE("strides: bricks that draw nothing are leapt over, the others tell how they bend") {
+  volume::Bends bends;
+  bends.range = 3;
+  bends.codes.assign({0, 15, 16, 200, volume::Bends::unbounded, 40, 40, volume::Bends::unbounded});
+  volume::Distances empty;
+  empty.assign({0, 0, 0, 0, 0, 1, 15, 2});
+  const std::vector<int> leaping{16, 16, 16, 200, 255, 1, 15, 2}, none{16, 16, 16, 200, 255, 40, 40, 255};
+  const volume::Passages with(bends, &empty), without(bends, nullptr);
+  CHECK(std::vector<int>(with.codes.begin(), with.codes.end()) == leaping);
+  CHECK(std::vector<int>(without.codes.begin(), without.codes.end()) == none);
+  CHECK(with.range == 3);
+  empty.pop_back();
+  CHECK_THROWS_AS(volume::Passages(bends, &empty), Error);
 }

@@ -49,6 +49,25 @@ const Projection oblique = perspective_view(45, 37, 55, {1.5, 1.1, 3}, {0, 0, 0}
 
 }  // namespace
 
+TEST_CASE("volume targets: rows a page apart, fetched for few rays at a time, give the same bytes") {
+  UniformGrid g = cube(14, -1, 1);
+  g.dims[0] = 1024, g.spacing.x = 2.0 / 1023;
+  for (const bool shaded : {false, true}) {
+    const auto made = [&] {
+      VolumeItem v = wave_item(ElementType::f32, shaded, 0.02);
+      v.data = grid(g, waves);
+      return v;
+    };
+    INFO("shaded " << shaded);
+    CHECK(same_on_all_targets([&] { return draw(scene_of({made()}), oblique); }) >= 2);
+    CHECK(same_bytes(draw(scene_of({made()}), oblique), draw(scene_of({made()}), oblique, [] {
+                       volume::Knobs one;
+                       one.simd = false;
+                       return one;
+                     }())));
+  }
+}
+
 TEST_CASE("volume targets: packets give the same bytes with every width of vectors") {
   size_t targets = 0;
   for (const ElementType type : {ElementType::f32, ElementType::u8, ElementType::i16})

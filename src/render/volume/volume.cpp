@@ -137,8 +137,9 @@ class Alone {
       if (by_tolerance && in_tolerant_packets(*plan_)) {
         packets_ = cast_tile;
         if (lattice.affine) {
-          sums_.emplace(*v.medium), bends_ = bends_of(item, lattice);
-          plan_->sums = &*sums_, plan_->bends = bends_.get();
+          sums_.emplace(*v.medium);
+          passages_.emplace(*bends_of(item, lattice), picture.knobs.skip_empty ? &lattice.distance : nullptr);
+          plan_->sums = &*sums_, plan_->passages = &*passages_;
         } else {
           uneven_.emplace(lattice);
           plan_->uneven = &*uneven_;
@@ -203,7 +204,7 @@ class Alone {
   std::optional<PacketPlan> plan_;
   std::optional<MediumSums> sums_;
   std::optional<UnevenAxes> uneven_;
-  std::shared_ptr<const Bends> bends_;
+  std::optional<Passages> passages_;
   void (*packets_)(const PacketPlan&, int, int, int, int, Frame&) = nullptr;
   Volume stage_;  // of bricks
   std::optional<BrickPackets> bricks_;

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <type_traits>
 
 #define SG_HARDWARE_GATHERS (HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2)
 
@@ -83,6 +84,15 @@ HWY_INLINE EightPairs load_pairs(const float* data, const EightIndices& i) {
   const auto four = [&](int n) HWY_ATTR { return _mm256_insertf128_ps(_mm256_castps128_ps256(two(n, n + 1)), two(n + 4, n + 5), 1); };
   const __m256 x = four(0), y = four(2);
   return {_mm256_shuffle_ps(x, y, 0x88), _mm256_shuffle_ps(x, y, 0xDD)};
+}
+HWY_INLINE Pair<hn::CappedTag<float, 4>> load_four_pairs(const float* data, const int32_t* at) {
+  const auto two = [&](int n) HWY_ATTR {
+    const __m128i first = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(data + at[n]));
+    return _mm_loadh_pi(_mm_castsi128_ps(first), reinterpret_cast<const __m64*>(data + at[n + 1]));
+  };
+  const __m128 x = two(0), y = two(2);
+  using V = hn::Vec<hn::CappedTag<float, 4>>;
+  return {V{_mm_shuffle_ps(x, y, 0x88)}, V{_mm_shuffle_ps(x, y, 0xDD)}};
 }
 HWY_INLINE void load_quads(const float* data, const EightIndices& i, __m256 out[4]) {
   const auto two = [&](int n) HWY_ATTR {
@@ -171,6 +181,10 @@ HWY_INLINE Int<D> in_vector(D, const int32_t* at) {
 template <class D, size_t n, class At>
 HWY_INLINE void gather_pairs(D d, const float* data, const ptrdiff_t (&on)[n], At at, [[maybe_unused]] bool loads, Pair<D>* out) {
 #if SG_HARDWARE_GATHERS
+  if constexpr (lanes_of<D> == 4 && std::is_pointer_v<At>) {
+    for (size_t r = 0; r < n; ++r) out[r] = load_four_pairs(data + on[r], at);
+    return;
+  }
   if constexpr (lanes_of<D> >= 8) {
     if (loads) {
       __m256 a[n][2], b[n][2];

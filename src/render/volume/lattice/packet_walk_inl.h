@@ -33,7 +33,7 @@ class CellWalk {
   struct Bricks {
     I at[3];
     I free;  ///< so many bricks around draw nothing
-    I bend;  ///< Bends' code
+    I bend;  ///< where they do: Bends' code
     HWY_INLINE M empty() const { return hn::RebindMask(D(), hn::Gt(free, hn::Zero(IntTag<D>()))); }
     HWY_INLINE M bent() const { return hn::RebindMask(D(), hn::Eq(bend, hn::Set(IntTag<D>(), int(Bends::unbounded)))); }
   };
@@ -46,9 +46,13 @@ class CellWalk {
     const auto& dims = v_.fine().dims;
     const I row = hn::Set(di, int(dims[0])), layer = hn::Set(di, int(dims[0] * dims[1]));
     const I id = hn::Add(b.at[0], hn::Add(hn::Mul(b.at[1], row), hn::Mul(b.at[2], layer)));
+    if (plan_.passages) {
+      b.bend = hn::And(gather_words(d, plan_.passages->codes.data(), id, cells_.source.loads), byte);
+      b.free = hn::IfThenElseZero(hn::Lt(b.bend, hn::Set(di, int(Passages::drawn))), b.bend);
+      return b;
+    }
     b.free = plan_.knobs.skip_empty && v_.any_empty ? hn::And(gather_words(d, v_.distance.data(), id, cells_.source.loads), byte) : zero;
-    b.bend = plan_.bends ? hn::And(gather_words(d, plan_.bends->codes.data(), id, cells_.source.loads), byte)
-                         : hn::Set(di, int(Bends::unbounded));
+    b.bend = hn::Set(di, int(Bends::unbounded));
     return b;
   }
 

@@ -3,9 +3,9 @@
 #pragma once
 #include <vector>
 
-#include "render/volume/lattice/bends.h"
 #include "render/volume/lattice/gathers.h"
 #include "render/volume/lattice/lattice_volume.h"
+#include "render/volume/lattice/passages.h"
 #include "render/volume/lattice/uneven_axes.h"
 #include "render/volume/optics/integrate.h"
 #include "render/volume/optics/medium_sums.h"
@@ -31,7 +31,7 @@ struct PacketPlan {
   Budget budget;
   float edge = 1;
   const MediumSums* sums = nullptr;    ///< of the medium; null: cells are crossed one by one
-  const Bends* bends = nullptr;        ///< of the volume
+  const Passages* passages = nullptr;  ///< of the volume
   const UnevenAxes* uneven = nullptr;  ///< of a rectilinear grid
   /// One lattice of several, drawn from front to back: what is in the frame lies before it, and rays go on with the light that is left (1 -
   /// alpha). The depth where half of it is gone goes here, for each pixel of the frame (infinite: not yet), instead of into the frame.

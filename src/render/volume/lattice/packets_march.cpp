@@ -4,6 +4,7 @@
 #include <array>
 #include <memory>
 
+#include "render/volume/lattice/cache_rows.h"
 #include "render/volume/lattice/packet_rays.h"
 
 // Targets without gathers of their own share one version.
@@ -49,39 +50,48 @@ template <class D>
 struct Lanes {
   hn::Vec<D> first[3], by[3], per_by[3], s, end;
 
-  HWY_INLINE Lanes(const RayPacket& r, const float (*per)[most_lanes]) {
+  HWY_INLINE Lanes(const RayPacket& r, const float (*per)[most_lanes], hn::Vec<D> sample) : s(sample) {
     const D d;
     for (int a = 0; a < 3; ++a) first[a] = hn::Load(d, r.first[a]), by[a] = hn::Load(d, r.by[a]), per_by[a] = hn::Load(d, per[a]);
-    s = hn::Zero(d), end = hn::Load(d, r.steps);
+    end = hn::Load(d, r.steps);
   }
   HWY_INLINE hn::Vec<D> u(int a) const { return u(a, s); }
   HWY_INLINE hn::Vec<D> u(int a, hn::Vec<D> sample) const { return mul_add(sample, by[a], first[a]); }
 };
 
+/// The bricks that the lanes are in.
+template <class D>
+struct Nearby {
+  Int<D> brick[3];
+  Int<D> free;  ///< so many bricks around draw nothing
+
+  template <class T>
+  HWY_INLINE void find(const Source<D, T>& source, const Space<D>& space, const Lanes<D>& lanes) {
+    const D d;
+    for (int a = 0; a < 3; ++a) {
+      const auto cell = to_int(d, hn::Max(hn::Zero(d), hn::Min(lanes.u(a), source.top[a])));
+      brick[a] = hn::Min(hn::ShiftRight<FineBricks::shift>(cell), space.last[a]);
+    }
+    const auto id = hn::Add(brick[0], hn::Add(hn::Mul(brick[1], space.row), hn::Mul(brick[2], space.layer)));
+    free = hn::And(gather_words(d, space.distance, id, source.loads), hn::Set(IntTag<D>(), 255));
+  }
+};
+
 /// Takes the lanes that are `looking` to their next sample in a brick that draws something, or to their end.
 template <class D, class T>
-HWY_INLINE void leap(const Source<D, T>& source, const Space<D>& space, Lanes<D>& lanes, hn::Mask<D> looking) {
+HWY_INLINE void leap(const Source<D, T>& source, const Space<D>& space, Nearby<D> here, Lanes<D>& lanes, hn::Mask<D> looking) {
   const D d;
   const IntTag<D> di;
   const auto zero = hn::Zero(d), one = hn::Set(d, 1.0f);
   while (true) {
-    hn::Vec<D> brick[3];
-    auto id = hn::Zero(di);
-    for (int a = 2; a >= 0; --a) {
-      const auto cell = to_int(d, hn::Max(zero, hn::Min(lanes.u(a), source.top[a])));
-      const auto b = hn::Min(hn::ShiftRight<FineBricks::shift>(cell), space.last[a]);
-      brick[a] = hn::ConvertTo(d, b);
-      id = hn::Add(id, a == 2 ? hn::Mul(b, space.layer) : a == 1 ? hn::Mul(b, space.row) : b);
-    }
-    const auto free = hn::And(gather_words(d, space.distance, id, source.loads), hn::Set(di, 255));
-    looking = hn::And(looking, hn::RebindMask(d, hn::Gt(free, hn::Zero(di))));
+    looking = hn::And(looking, hn::RebindMask(d, hn::Gt(here.free, hn::Zero(di))));
     if (hn::AllFalse(d, looking)) return;
     // All bricks nearer than that are empty: leave their cube, but for a margin wider than rounding errors.
-    const auto reach = hn::ConvertTo(d, free);
+    const auto reach = hn::ConvertTo(d, here.free);
     auto out = lanes.end;
     for (int a = 0; a < 3; ++a) {
       const auto forth = hn::Gt(lanes.by[a], zero);
-      const auto side = hn::Add(brick[a], hn::IfThenElse(forth, reach, hn::Sub(one, reach)));
+      const auto side = hn::Add(hn::ConvertTo(d, here.brick[a]), hn::IfThenElse(forth, reach, hn::Sub(one, reach)));
       const auto at = mul_add(side, hn::Set(d, float(FineBricks::edge)), hn::IfThenElse(forth, hn::Neg(space.margin), space.margin));
       const auto there = hn::Mul(hn::Sub(at, lanes.first[a]), lanes.per_by[a]);
       // Beyond the outermost bricks there is nothing else.
@@ -94,6 +104,7 @@ HWY_INLINE void leap(const Source<D, T>& source, const Space<D>& space, Lanes<D>
     lanes.s = hn::IfThenElse(looking, next, lanes.s);
     looking = hn::And(looking, hn::Lt(lanes.s, lanes.end));
     if (hn::AllFalse(d, looking)) return;
+    here.find(source, space, lanes);
   }
 }
 
@@ -171,6 +182,23 @@ template <class D, class T, bool shaded>
 class March {
   using F = hn::Vec<D>;
 
+  /// The samples between two looks at the bricks: the cells they lie in.
+  struct Look {
+    alignas(64) int32_t corner[samples_per_look][most_lanes];
+    alignas(64) float fraction[samples_per_look][3][most_lanes];
+
+    /// The field at all of them, for as many lanes at a time as the tag of `source` has.
+    template <class Part>
+    HWY_INLINE void values(const Source<Part, T>& source, float to[samples_per_look][most_lanes]) const {
+      const Part part;
+      for (int n = 0; n < lanes_of<D>; n += lanes_of<Part>)
+        for (int k = 0; k < samples_per_look; ++k)
+          hn::Store(source.value(corner[k] + n, hn::Load(part, fraction[k][0] + n), hn::Load(part, fraction[k][1] + n),
+                                 hn::Load(part, fraction[k][2] + n)),
+                    part, to[k] + n);
+    }
+  };
+
  public:
   RayPacket rays;
   PacketResult result;
@@ -193,9 +221,17 @@ class March {
     hn::Store(hn::Load(d, rays.before), d, result.transmittance), hn::Store(hn::Set(d, -1.0f), d, seen_half_);
     hn::Store(hn::Zero(d), d, result.r), hn::Store(hn::Zero(d), d, result.g), hn::Store(hn::Zero(d), d, result.b);
     if constexpr (shaded) queue_.start(plan, rays), Due<D>().store(due_);
-    now_ = 0;
-    Lanes<D> lanes(rays, per_by_);
-    look_ahead(Source<D, T>(plan.volume.voxels), Space<D>(plan.volume), skips(plan), lanes, hn::Eq(zero, zero));
+    Lanes<D> lanes(rays, per_by_, hn::Zero(d));
+    const Source<D, T> source(plan.volume.voxels);
+    const Space<D> space(plan.volume);
+    if (skips(plan)) {
+      Nearby<D> nearby;
+      nearby.find(source, space, lanes);
+      leap(source, space, nearby, lanes, hn::Lt(lanes.s, lanes.end));
+    }
+    hn::Store(lanes.s, d, next_);
+    constexpr bool may_part = std::is_same_v<T, float> && (lanes_of < D >> 4);
+    crowded_ = may_part && source.loads && crowded(plan.volume.voxels, rays, packet_width<D>, lanes_of<D>);
   }
 
   /// Goes on until no ray has samples before `until`; false when all are through.
@@ -203,6 +239,7 @@ class March {
     const D d;
     const Volume& v = plan.volume;
     const Source<D, T> source(v.voxels);
+    const Source<hn::CappedTag<float, 4>, T> by_fours(v.voxels);
     const Space<D> space(v);
     const Transfer& transfer = v.transfer[0];
     const Entries<D> entries(transfer.linear_table());
@@ -212,27 +249,31 @@ class March {
     [[maybe_unused]] const bool together = v.step > 0.4 * v.edge;
     const F stop = hn::Set(d, plan.knobs.stop_below), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
 
-    Lanes<D> lanes(rays, per_by_);
+    Lanes<D> lanes(rays, per_by_, hn::Load(d, next_));
     F r = hn::Load(d, result.r), g = hn::Load(d, result.g), b = hn::Load(d, result.b);
     F pass = hn::Load(d, result.transmittance), seen_half = hn::Load(d, seen_half_);
     const F horizon = hn::Min(hn::Set(d, until), lanes.end);
-    // Values wait for nothing but their samples: the places are known already. Leaps do not wait for the light that the last samples took.
-    auto was_bright = hn::Ge(pass, stop);
-    F first = hn::Load(d, looks_[now_].s);
+    // Values wait for nothing but their samples: the places are known already. The bricks of the next samples are asked for before them,
+    // and leaps do not wait for the light that these samples take.
+    F first = lanes.s;
+    Look look;
+    look_ahead(source, lanes, look);
     [[maybe_unused]] Due<D> due;
     if constexpr (shaded) due.load(due_);
     while (true) {
       const auto bright = hn::Ge(pass, stop);
       if (hn::AllFalse(d, hn::And(hn::Lt(first, horizon), bright))) break;
-      const Look& here = looks_[now_];
-      now_ ^= 1;
-      F values[samples_per_look];
-      for (int k = 0; k < samples_per_look; ++k)
-        values[k] = source.value(static_cast<const int32_t*>(here.corner[k]), hn::Load(d, here.fraction[k][0]),
-                                 hn::Load(d, here.fraction[k][1]), hn::Load(d, here.fraction[k][2]));
+      lanes.s = hn::Add(first, hn::Set(d, float(samples_per_look)));
+      Nearby<D> nearby;
+      if (skip) nearby.find(source, space, lanes);
+      alignas(64) float values[samples_per_look][most_lanes];
+      if (crowded_) look.values(by_fours, values);
+      else look.values(source, values);
+      if (skip) leap(source, space, nearby, lanes, hn::And(hn::Lt(lanes.s, lanes.end), bright));
+      look_ahead(source, lanes, look);
       for (int k = 0; k < samples_per_look; ++k) {
-        const F s = hn::Add(first, hn::Set(d, float(k)));
-        const auto entry = entries.at(values[k]);
+        const F s = hn::Add(first, hn::Set(d, float(k))), value = hn::Load(d, values[k]);
+        const auto entry = entries.at(value);
         const auto [r_g, b_pass] = gather_quad(d, steps, entry, source.loads);
         const auto active = hn::And(hn::Lt(s, lanes.end), hn::Ge(pass, stop));
         seen_half = hn::IfThenElse(hn::And(active, hn::Ge(pass, half)), s, seen_half);
@@ -240,7 +281,7 @@ class March {
         const F wr = hn::Mul(weight, r_g.a), wg = hn::Mul(weight, r_g.b), wb = hn::Mul(weight, b_pass.a);
         if constexpr (shaded) {
           const F taken = hn::Mul(weight, hn::Sub(one, b_pass.b));
-          const auto turned = due.turns(values[k]);
+          const auto turned = due.turns(value);
           if (!hn::AllFalse(d, turned)) push(plan, due, turned);
           due.r = hn::Add(due.r, wr), due.g = hn::Add(due.g, wg), due.b = hn::Add(due.b, wb);
           due.taken = hn::Add(due.taken, taken), due.moment = mul_add(taken, s, due.moment);
@@ -254,11 +295,9 @@ class March {
         }
         pass = hn::IfThenElse(active, hn::Mul(pass, b_pass.b), pass);
       }
-      lanes.s = hn::Add(first, hn::Set(d, float(samples_per_look)));
-      look_ahead(source, space, skip, lanes, was_bright);
-      was_bright = bright;
       first = lanes.s;
     }
+    hn::Store(first, d, next_);
     if constexpr (shaded) due.store(due_);
     else hn::Store(r, d, result.r), hn::Store(g, d, result.g), hn::Store(b, d, result.b);
     hn::Store(pass, d, result.transmittance), hn::Store(seen_half, d, seen_half_);
@@ -320,20 +359,10 @@ class March {
     due.drop(which);
   }
 
-  /// The samples between two looks at the bricks: the cells they lie in.
-  struct Look {
-    alignas(64) float s[most_lanes];  ///< number of the first
-    alignas(64) int32_t corner[samples_per_look][most_lanes];
-    alignas(64) float fraction[samples_per_look][3][most_lanes];
-  };
-
-  /// Takes the lanes to their next samples, notes where those are, and asks for them.
-  HWY_INLINE void look_ahead(const Source<D, T>& source, const Space<D>& space, bool skip, Lanes<D>& lanes, hn::Mask<D> bright) {
+  /// Notes where the lanes' next samples are, and asks for later ones.
+  HWY_INLINE void look_ahead(const Source<D, T>& source, const Lanes<D>& lanes, Look& look) const {
     const D d;
     const IntTag<D> di;
-    if (skip) leap(source, space, lanes, hn::And(hn::Lt(lanes.s, lanes.end), bright));
-    Look& look = looks_[now_];
-    hn::Store(lanes.s, d, look.s);
     const F final_sample = hn::Max(hn::Zero(d), hn::Sub(lanes.end, hn::Set(d, 1.0f)));
     for (int k = 0; k < samples_per_look; ++k) {
       const F s = hn::Min(hn::Add(lanes.s, hn::Set(d, float(k))), final_sample);
@@ -351,10 +380,10 @@ class March {
   }
 
   alignas(64) float per_by_[3][most_lanes], seen_half_[most_lanes];
-  Look looks_[2];
+  alignas(64) float next_[most_lanes];  ///< the number of the next sample
   alignas(64) float due_[shaded ? Due<D>::parts : 1][most_lanes];
-  int now_;
-  bool inside_;  ///< are all samples of whole steps in cells, none beyond the outermost samples?
+  bool crowded_;  ///< are samples fetched for four rays at a time?
+  bool inside_;   ///< are all samples of whole steps in cells, none beyond the outermost samples?
   struct None {};
   std::conditional_t<shaded, ShadeQueue<D, T>, None> queue_;
 };

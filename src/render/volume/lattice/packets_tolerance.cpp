@@ -47,7 +47,7 @@ class TolerantPacket : CellWalk<D, T, shaded, EvenAxes<D>> {
     per_speed_ = hn::Div(hn::Set(d, 1.0f), hn::Max(speed_, hn::Set(d, 1e-30f)));
     reserve_ = hn::Set(d, share_at_first * float(plan.budget.tolerance));
     stride_ = hn::Set(d, 1.0f);
-    if (plan.bends) here_ = sums_.at(hn::Zero(d));
+    if (plan.passages) here_ = sums_.at(hn::Zero(d));
     lit_ = hn::MaskFromVec(hn::Zero(d));
     here_lit_ = LitPlace<D>::none();
   }
@@ -121,8 +121,8 @@ class TolerantPacket : CellWalk<D, T, shaded, EvenAxes<D>> {
     const D d;
     const IntTag<D> di;
     const F half = hn::Set(d, 0.5f);
-    const F bend =
-        hn::Mul(hn::BitCast(d, hn::Add(hn::ShiftLeft<21>(code), hn::Set(di, (127 + Bends::least) << 23))), hn::Set(d, plan_.bends->range));
+    const F bend = hn::Mul(hn::BitCast(d, hn::Add(hn::ShiftLeft<21>(code), hn::Set(di, (127 + Bends::least) << 23))),
+                           hn::Set(d, plan_.passages->range));
     const F world = hn::Min(hn::Mul(stride_, per_speed_), hn::Mul(half, hn::Sub(end_, t)));
     const F cells = hn::Mul(world, speed_);
     const M ends = hn::Le(hn::Sub(end_, t), hn::Mul(hn::Set(d, 2.0f), hn::Mul(stride_, per_speed_)));
