@@ -155,12 +155,14 @@ HWY_INLINE Pair<D> gathered_pair(D d, const float* data, Int<D> at) {
     const hn::Half<IntTag<D>> half;
     using V64 = hn::Vec<decltype(d64)>;
     const auto below = hn::LowerHalf(half, at).raw, above = hn::UpperHalf(half, at).raw;
+    const auto longs = [data](auto from) HWY_ATTR {
 #if HWY_TARGET <= HWY_AVX3
-    const V64 lo{gather_longs(data, below)}, hi{gather_longs(data, above)};
-#else
-    const auto* wide = reinterpret_cast<const long long*>(data);
-    const V64 lo{_mm256_i32gather_epi64(wide, below, 4)}, hi{_mm256_i32gather_epi64(wide, above, 4)};
+      if constexpr (lanes_of<D> == 16) return V64{gather_longs(data, from)};
+      else
 #endif
+        return V64{_mm256_i32gather_epi64(reinterpret_cast<const long long*>(data), from, 4)};
+    };
+    const V64 lo = longs(below), hi = longs(above);
     return {hn::ConcatEven(d, hn::BitCast(d, hi), hn::BitCast(d, lo)), hn::ConcatOdd(d, hn::BitCast(d, hi), hn::BitCast(d, lo))};
   }
 #endif

@@ -21,9 +21,9 @@ struct LitPlace {
   hn::Vec<D> nearest;  ///< of Lighting::on, as
   Int<D> sides;
 
+  /// Where the field has that slope, at u of the source.
   template <class T>
-  static HWY_INLINE LitPlace at(const Lighting<D>& lighting, const Source<D, T>& source, const hn::Vec<D> u[3]) {
-    const Slope<D> slope = SlopeFinder<D, T>(source, u[0], u[1], u[2]).find();
+  static HWY_INLINE LitPlace at(const Lighting<D>& lighting, const Source<D, T>& source, const hn::Vec<D> u[3], const Slope<D>& slope) {
     const hn::Vec<D> cells[3] = {slope.x, slope.y, slope.z};
     hn::Vec<D> g[3];
     lighting.to_world(cells, g);

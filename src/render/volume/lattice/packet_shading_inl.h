@@ -54,6 +54,31 @@ class SlopeFinder {
   const Place<D> at_[3];
 };
 
+/// The slopes at the places of the lanes that want them, found by vectors half as wide when those are few; the others' are anything.
+template <class D, class T>
+HWY_INLINE Slope<D> slopes_at(const Source<D, T>& source, [[maybe_unused]] const Voxels& voxels, const hn::Vec<D> u[3],
+                              hn::Mask<D> wanted) {
+  using F = hn::Vec<D>;
+  const D d;
+  // Lanes that want none look at the middle, which is no border that would have to be looked after.
+  F v[3];
+  for (int a = 0; a < 3; ++a) v[a] = hn::Mul(hn::Set(d, 0.5f), source.top[a]);
+#if SG_HARDWARE_GATHERS && HWY_TARGET <= HWY_AVX3
+  if constexpr (lanes_of<D> == 16) {
+    using H = hn::Half<D>;
+    if (hn::CountTrue(d, wanted) <= lanes_of<H>) {
+      hn::Vec<H> few[3];
+      for (int a = 0; a < 3; ++a) few[a].raw = _mm512_castps512_ps256(_mm512_mask_compress_ps(v[a].raw, wanted.raw, u[a].raw));
+      const Slope<H> found = SlopeFinder<H, T>(Source<H, T>(voxels), few[0], few[1], few[2]).find();
+      const auto back = [&](hn::Vec<H> x) HWY_ATTR { return F{_mm512_maskz_expand_ps(wanted.raw, _mm512_castps256_ps512(x.raw))}; };
+      return {back(found.x), back(found.y), back(found.z), back(found.per_cell)};
+    }
+  }
+#endif
+  for (int a = 0; a < 3; ++a) v[a] = hn::IfThenElse(wanted, u[a], v[a]);
+  return SlopeFinder<D, T>(source, v[0], v[1], v[2]).find();
+}
+
 template <class D, class T>
 class ShadeQueue {
   using F = hn::Vec<D>;

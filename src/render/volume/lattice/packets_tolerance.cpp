@@ -200,11 +200,7 @@ class TolerantPacket : CellWalk<D, T, shaded, EvenAxes<D>> {
 
   /// The light at places of the rays of `lighting`, where it is wanted. Out of line: it is long, and wanted from several sides.
   HWY_NOINLINE void lit_at(const Lighting<D>& lighting, const F u[3], M wanted, LitPlace<D>& out) const {
-    const D d;
-    // The others look at the middle, which is no border that would have to be looked after.
-    F v[3];
-    for (int a = 0; a < 3; ++a) v[a] = hn::IfThenElse(wanted, u[a], hn::Mul(hn::Set(d, 0.5f), cells_.source.top[a]));
-    out = LitPlace<D>::at(lighting, cells_.source, v);
+    out = LitPlace<D>::at(lighting, cells_.source, u, slopes_at(cells_.source, this->v_.voxels, u, wanted));
   }
   HWY_INLINE LitPlace<D> lit_at(F t, M wanted) const {
     F u[3];
