@@ -230,8 +230,8 @@ class March {
       leap(source, space, nearby, lanes, hn::Lt(lanes.s, lanes.end));
     }
     hn::Store(lanes.s, d, next_);
-    constexpr bool may_part = std::is_same_v<T, float> && (lanes_of < D >> 4);
-    crowded_ = may_part && source.loads && crowded(plan.volume.voxels, rays, packet_width<D>, lanes_of<D>);
+    constexpr int lanes_here = lanes_of<D>;
+    crowded_ = std::is_same_v<T, float> && lanes_here > 4 && source.loads && crowded(plan.volume.voxels, rays, packet_width<D>, lanes_here);
   }
 
   /// Goes on until no ray has samples before `until`; false when all are through.
