@@ -28,7 +28,7 @@ bool crowded(const Voxels& voxels, const RayPacket& rays, int width, int lanes) 
   const auto count = [&](int axis) {
     const float spread =
         std::max(std::abs(place(axis, lanes - 1) - place(axis, 0)), std::abs(place(axis, lanes - width) - place(axis, width - 1)));
-    return size_t(std::min(std::ceil(spread), most_rows)) + 2;
+    return size_t(std::min(most_rows, std::ceil(spread))) + 2;
   };
   const size_t row_bytes = voxels.array.bytes() / std::max<size_t>(voxels.array.count(), 1) * voxels.dims[0];
   return rows_on_one_line(count(1), count(2), row_bytes, row_bytes * voxels.dims[1]) > ways;

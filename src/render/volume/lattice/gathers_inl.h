@@ -76,21 +76,18 @@ HWY_INLINE __m256 load_words(const T* data, const EightIndices& i) {
   };
   return _mm256_castsi256_ps(_mm256_inserti128_si256(_mm256_castsi128_si256(four(0)), four(4), 1));
 }
+HWY_INLINE __m128 load_two_pairs(const float* first, const float* second) {
+  const __m128i low = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(first));
+  return _mm_loadh_pi(_mm_castsi128_ps(low), reinterpret_cast<const __m64*>(second));
+}
 HWY_INLINE EightPairs load_pairs(const float* data, const EightIndices& i) {
-  const auto two = [&](int n, int m) HWY_ATTR {
-    const __m128i first = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(data + i.at[n]));
-    return _mm_loadh_pi(_mm_castsi128_ps(first), reinterpret_cast<const __m64*>(data + i.at[m]));
-  };
-  const auto four = [&](int n) HWY_ATTR { return _mm256_insertf128_ps(_mm256_castps128_ps256(two(n, n + 1)), two(n + 4, n + 5), 1); };
+  const auto two = [&](int n) HWY_ATTR { return load_two_pairs(data + i.at[n], data + i.at[n + 1]); };
+  const auto four = [&](int n) HWY_ATTR { return _mm256_insertf128_ps(_mm256_castps128_ps256(two(n)), two(n + 4), 1); };
   const __m256 x = four(0), y = four(2);
   return {_mm256_shuffle_ps(x, y, 0x88), _mm256_shuffle_ps(x, y, 0xDD)};
 }
 HWY_INLINE Pair<hn::CappedTag<float, 4>> load_four_pairs(const float* data, const int32_t* at) {
-  const auto two = [&](int n) HWY_ATTR {
-    const __m128i first = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(data + at[n]));
-    return _mm_loadh_pi(_mm_castsi128_ps(first), reinterpret_cast<const __m64*>(data + at[n + 1]));
-  };
-  const __m128 x = two(0), y = two(2);
+  const __m128 x = load_two_pairs(data + at[0], data + at[1]), y = load_two_pairs(data + at[2], data + at[3]);
   using V = hn::Vec<hn::CappedTag<float, 4>>;
   return {V{_mm_shuffle_ps(x, y, 0x88)}, V{_mm_shuffle_ps(x, y, 0xDD)}};
 }
@@ -184,8 +181,10 @@ template <class D, size_t n, class At>
 HWY_INLINE void gather_pairs(D d, const float* data, const ptrdiff_t (&on)[n], At at, [[maybe_unused]] bool loads, Pair<D>* out) {
 #if SG_HARDWARE_GATHERS
   if constexpr (lanes_of<D> == 4 && std::is_pointer_v<At>) {
-    for (size_t r = 0; r < n; ++r) out[r] = load_four_pairs(data + on[r], at);
-    return;
+    if (loads) {
+      for (size_t r = 0; r < n; ++r) out[r] = load_four_pairs(data + on[r], at);
+      return;
+    }
   }
   if constexpr (lanes_of<D> >= 8) {
     if (loads) {

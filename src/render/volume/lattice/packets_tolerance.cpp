@@ -200,7 +200,7 @@ class TolerantPacket : CellWalk<D, T, shaded, EvenAxes<D>> {
 
   /// The light at places of the rays of `lighting`, where it is wanted. Out of line: it is long, and wanted from several sides.
   HWY_NOINLINE void lit_at(const Lighting<D>& lighting, const F u[3], M wanted, LitPlace<D>& out) const {
-    out = LitPlace<D>::at(lighting, cells_.source, u, slopes_at(cells_.source, this->v_.voxels, u, wanted));
+    out = LitPlace<D>::at(lighting, cells_.source, u, slopes_at(cells_.source, plan_.volume.voxels, u, wanted));
   }
   HWY_INLINE LitPlace<D> lit_at(F t, M wanted) const {
     F u[3];
