@@ -66,14 +66,24 @@ double value_at(const float* f, size_t n, Vec3 p) {
   return v;
 }
 
-/// Differences over a cell to both sides, as far as there is a field; per world length.
+/// Differences over a cell to both sides, in the outermost cells of the field that goes on as a parabola; per world length.
 Vec3 gradient(const float* f, size_t n, Vec3 p) {
   const double h = 2 / double(n - 1);
   Vec3 g;
   for (int a = 0; a < 3; ++a) {
-    Vec3 lo = p, hi = p;
-    lo[a] = std::max(p[a] - h, -1.0), hi[a] = std::min(p[a] + h, 1.0);
-    g[a] = (value_at(f, n, hi) - value_at(f, n, lo)) / (hi[a] - lo[a]);
+    const auto at = [&](double along) {
+      Vec3 q = p;
+      q[a] = along;
+      return value_at(f, n, q);
+    };
+    const auto beyond = [&](double along) {
+      const double border = along < 0 ? -1 : 1, inwards = along < 0 ? h : -h, out = (border - along) / inwards;
+      if (!(out > 0)) return at(along);
+      // Between the outermost layer and the one that the parabola through three has outside.
+      const double outside = 3 * at(border) - 3 * at(border + inwards) + at(border + 2 * inwards);
+      return at(border) + out * (outside - at(border));
+    };
+    g[a] = (beyond(p[a] + h) - beyond(p[a] - h)) / (2 * h);
   }
   return g;
 }

@@ -255,6 +255,23 @@ TEST_CASE("bricked: gradients are central differences of the trilinear field, in
   CHECK(most > 0.1);
 }
 
+TEST_CASE("bricked: gradients of parabolas are exact up to the border") {
+  const auto bowl = [](double x, double y, double z) { return 3e-3 * x * x - 2e-2 * y * y + 0.01 * z * z + 1e-3 * x * y; };
+  const MadeVolume m = make_volume({140, 20, 9}, 1, bowl);
+  const auto source = source_of(m, look(box_of(m), 1, 4000, true));
+  const auto ray = source->walker();
+  int outermost = 0;
+  for (const Vec3 origin : {Vec3{-1, 0.3, 0.2}, Vec3{-1, 18.7, 7.9}, Vec3{-1, 7, 4}})
+    for (const auto& s : stretches(*ray, origin, normalize(Vec3{1, 1e-3, 1e-3}))) {
+      const double t = 0.4 * s.from + 0.6 * s.to;
+      const Vec3 u = origin + normalize(Vec3{1, 1e-3, 1e-3}) * t, g = Vec3(ray->gradient(s, t));
+      if (u.x < 0 || u.x > 139) continue;
+      CHECK(length(g - Vec3{6e-3 * u.x + 1e-3 * u.y, -4e-2 * u.y + 1e-3 * u.x, 0.02 * u.z}) < 2e-5);
+      outermost += u.x < 1 || u.x > 138;
+    }
+  CHECK(outermost >= 4);
+}
+
 TEST_CASE("bricked: a cell with a corner without a value is clear") {
   const MadeVolume m = make_volume({20, 20, 20}, 1, [](double x, double y, double z) { return x == 10 && y == 10 && z == 10 ? NAN : x; });
   const auto source = source_of(m, look(box_of(m), 1, 4000));

@@ -18,7 +18,7 @@ struct Lattice {
   Mat3 turn;  // world = origin + turn * (x, y, z)
   std::vector<double> v;
 
-  double at(const Vec3& p, Vec3* cell_edges = nullptr) const {
+  double at(const Vec3& p) const {
     size_t c[3];
     double f[3];
     for (int a = 0; a < 3; ++a) {
@@ -26,7 +26,6 @@ struct Lattice {
       const double q = std::clamp(p[a], g.front(), g.back());
       c[a] = std::min(size_t(std::upper_bound(g.begin(), g.end(), q) - g.begin()), g.size() - 1) - 1;
       f[a] = (q - g[c[a]]) / (g[c[a] + 1] - g[c[a]]);
-      if (cell_edges) (*cell_edges)[a] = g[c[a] + 1] - g[c[a]];
     }
     double sum = 0;
     for (int k = 0; k < 8; ++k) {
@@ -35,22 +34,14 @@ struct Lattice {
     }
     return sum;
   }
-  /// On even axes: differences over a cell to each side, as far as there is one.
+  /// Of Lagrange's parabola through each sample and its neighbours (at the border: the two next to it), linear between the samples.
   Vec3 gradient(const Vec3& p) const {
-    Vec3 edges, g;
-    at(p, &edges);
-    for (int a = 0; a < 3; ++a) {
-      Vec3 lo = p, hi = p;
-      const double here = std::clamp(p[a], x[a].front(), x[a].back());
-      lo[a] = std::max(here - edges[a], x[a].front()), hi[a] = std::min(here + edges[a], x[a].back());
-      g[a] = uneven ? between_samples(a, p) : (at(hi) - at(lo)) / (hi[a] - lo[a]);
-    }
+    Vec3 g;
+    for (int a = 0; a < 3; ++a) g[a] = between_samples(a, p);
     return turn * g;
   }
 
-  /// On uneven axes: of Lagrange's parabola through each sample and its neighbours, linear between the two samples around p; in the
-  /// outermost cells each weighs as much as the distance between its neighbours.
-  bool uneven = false;
+ private:
   double between_samples(int axis, Vec3 p) const {
     const auto& g = x[axis];
     const double q = std::clamp(p[axis], g.front(), g.back());
@@ -60,17 +51,17 @@ struct Lattice {
       return at(p);
     };
     const auto derivative = [&](size_t i) {
-      if (i == 0) return (value(1) - value(0)) / (g[1] - g[0]);
-      if (i + 1 == g.size()) return (value(i) - value(i - 1)) / (g[i] - g[i - 1]);
-      const double before = g[i - 1], own = g[i], after = g[i + 1];
-      return value(i - 1) * (own - after) / ((before - own) * (before - after)) +
-             value(i) * (2 * own - before - after) / ((own - before) * (own - after)) +
-             value(i + 1) * (own - before) / ((after - before) * (after - own));
+      if (g.size() == 2) return (value(1) - value(0)) / (g[1] - g[0]);
+      const size_t m = std::clamp<size_t>(i, 1, g.size() - 2);
+      double sum = 0;
+      for (size_t k = m - 1; k <= m + 1; ++k) {
+        const double one = g[m - 1 + (k + 2 - m) % 3], two = g[m - 1 + (k + 3 - m) % 3];  // the places of the other two
+        sum += value(k) * (2 * g[i] - one - two) / ((g[k] - one) * (g[k] - two));
+      }
+      return sum;
     };
-    const auto span = [&](size_t i) { return g[std::min(i + 1, g.size() - 1)] - g[i > 0 ? i - 1 : 0]; };
-    const bool outermost = c == 0 || c + 2 == g.size();
-    const double f = (q - g[c]) / (g[c + 1] - g[c]), w0 = (1 - f) * (outermost ? span(c) : 1), w1 = f * (outermost ? span(c + 1) : 1);
-    return (w0 * derivative(c) + w1 * derivative(c + 1)) / (w0 + w1);
+    const double f = (q - g[c]) / (g[c + 1] - g[c]);
+    return (1 - f) * derivative(c) + f * derivative(c + 1);
   }
 };
 
@@ -87,7 +78,7 @@ struct Case {
 
 Lattice lattice_of(size_t n, const std::function<double(Vec3)>& f, bool uneven = false) {
   Lattice l;
-  l.n = {n, n, n}, l.uneven = uneven;
+  l.n = {n, n, n};
   for (int a = 0; a < 3; ++a)
     for (size_t i = 0; i < n; ++i) {
       double t = double(i) / double(n - 1);

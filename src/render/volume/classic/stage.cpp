@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "render/volume/lattice/uneven_axes.h"
 
 namespace sg::volume {
 
@@ -165,19 +166,27 @@ void Ink::draw(double value, float rgba[4]) const {
 
 PointGradient gradient_at_sample(const Volume& v, size_t i, size_t j, size_t k) {
   const std::array<size_t, 3> here{i, j, k};
-  const float centre = value_at(v, i, j, k);
   PointGradient g{{0, 0, 0}, 0};
   for (int a = 0; a < 3; ++a) {
-    std::array<size_t, 3> below = here, above = here;
-    const size_t n = v.voxels.dims[size_t(a)];
-    if (here[size_t(a)] > 0) --below[size_t(a)];
-    if (here[size_t(a)] + 1 < n) ++above[size_t(a)];
-    float lo = value_at(v, below[0], below[1], below[2]), hi = value_at(v, above[0], above[1], above[2]);
-    float apart = float(above[size_t(a)] - below[size_t(a)]);
-    if (lo != lo) lo = centre, apart *= 0.5f;
-    if (hi != hi) hi = centre, apart *= 0.5f;
-    g.q[a] = (hi - lo) / apart;
-    g.per_cell += 0.25f * (hi - lo) * (hi - lo);
+    const size_t n = v.voxels.dims[size_t(a)], own = here[size_t(a)];
+    const auto value = [&](size_t m) {
+      std::array<size_t, 3> at = here;
+      at[size_t(a)] = m;
+      return value_at(v, at[0], at[1], at[2]);
+    };
+    const auto inside = [&](size_t m) {
+      const float at = value(m), back = at - value(m - 1), on = value(m + 1) - at;
+      const float slope = 0.5f * (back + on);
+      return slope == slope ? slope : back == back ? back : on == on ? on : 0.0f;
+    };
+    float slope;
+    if (own > 0 && own + 1 < n) {
+      slope = inside(own);
+    } else {
+      const float over = own == 0 ? value(1) - value(0) : value(own) - value(own - 1);
+      slope = over != over ? 0 : n == 2 ? over : border_slope(over, inside(own == 0 ? 1 : own - 1));
+    }
+    g.q[a] = slope, g.per_cell += slope * slope;
   }
   g.per_cell = std::sqrt(g.per_cell);
   return g;

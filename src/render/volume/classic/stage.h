@@ -92,7 +92,7 @@ class Ink {
   ColorTable table_;
 };
 
-/// Central differences at a lattice point in q (one-sided at the border and beside NaN), and the change over a cell, as the kernels'.
+/// The derivatives at a lattice point in q and the change over a cell, as the kernels'.
 struct PointGradient {
   Vec3f q;
   float per_cell;

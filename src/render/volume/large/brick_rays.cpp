@@ -266,10 +266,23 @@ class Walker final : public RayField {
     const Vec3 v = u * p_.scale[level] + p_.shift[level];
     if (inner_slope(d, v, g)) return g * p_.scale[level];
     for (int i = 0; i < 3; ++i) {
-      Vec3 before = v, after = v;
-      before[i] = std::clamp(v[i] - 1, 0.0, d.most[size_t(i)]), after[i] = std::clamp(v[i] + 1, 0.0, d.most[size_t(i)]);
-      const double length = after[i] - before[i];
-      const double rise = length > 0 ? (sample(d, after) - sample(d, before)) / length : 0;
+      const double most = d.most[size_t(i)], here = std::clamp(v[i], 0.0, most);
+      Vec3 place = v;
+      const auto at = [&](double along) {
+        place[i] = std::clamp(along, 0.0, most);
+        return sample(d, place);
+      };
+      const bool first = here<1, last = here> most - 1;
+      double rise = 0;
+      if (!first && !last) {
+        rise = 0.5 * (at(here + 1) - at(here - 1));
+      } else if (most > 0) {
+        // Inwards from the border (border_slope()).
+        const double border = first ? 0 : most, step = first ? 1 : -1;
+        const double v0 = at(border), v1 = at(border + step), over = v1 - v0;
+        const double inner = most < 2 ? over : 0.5 * (at(border + 2 * step) - v0);
+        rise = step * (2 * over - inner + std::abs(here - border) * 2 * (inner - over));
+      }
       g[i] = std::isfinite(rise) ? rise * p_.scale[level][i] : 0;
     }
     return g;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/volume/lattice/uneven_axes.h"
+
 namespace sg::volume {
 
 namespace {
@@ -30,28 +32,46 @@ void sample(const Voxels& voxels, const float* ux, const float* uy, const float*
 
 template <class T>
 void gradients(const Voxels& voxels, const float* const u[3], const float* centre, Gradients& out) {
-  alignas(64) float below[run_length], above[run_length], lo[run_length], hi[run_length], apart[run_length];
+  alignas(64) float at[run_length], place_lo[run_length], place_hi[run_length], lo[run_length], hi[run_length];
   float* result[3] = {out.x, out.y, out.z};
   std::fill(out.per_cell, out.per_cell + run_length, 0.0f);
   for (int a = 0; a < 3; ++a) {
     const float top = float(voxels.dims[size_t(a)] - 1);
-    for (int n = 0; n < run_length; ++n) {
-      const float here = clamped(u[a][n], top);
-      below[n] = std::max(here - 1, 0.0f), above[n] = std::min(here + 1, top), apart[n] = above[n] - below[n];
-    }
     const float* place[3] = {u[0], u[1], u[2]};
-    place[a] = below;
-    sample<T>(voxels, place[0], place[1], place[2], lo);
-    place[a] = above;
-    sample<T>(voxels, place[0], place[1], place[2], hi);
+    const auto sample_at = [&](const float* along, float* values) {
+      place[a] = along;
+      sample<T>(voxels, place[0], place[1], place[2], values);
+    };
+    bool outermost = false;
     for (int n = 0; n < run_length; ++n) {
-      float length = apart[n];
+      at[n] = clamped(u[a][n], top), place_lo[n] = std::max(at[n] - 1, 0.0f), place_hi[n] = std::min(at[n] + 1, top);
+      outermost = outermost || at[n] < 1 || at[n] > top - 1;
+    }
+    sample_at(place_lo, lo), sample_at(place_hi, hi);
+    for (int n = 0; n < run_length; ++n) {
+      float length = place_hi[n] - place_lo[n];
       if (lo[n] != lo[n]) lo[n] = centre[n], length *= 0.5f;
       if (hi[n] != hi[n]) hi[n] = centre[n], length *= 0.5f;
-      const float d = hi[n] - lo[n];
-      result[a][n] = d / length;
-      out.per_cell[n] += 0.25f * d * d;
+      result[a][n] = (hi[n] - lo[n]) / length;
     }
+    if (outermost) {
+      // The three outermost layers, inwards.
+      alignas(64) float layer[run_length], value[3][run_length];
+      for (int i = 0; i < 3; ++i) {
+        for (int n = 0; n < run_length; ++n) layer[n] = std::max(0.0f, at[n] < 1 ? std::min(float(i), top) : top - float(i));
+        sample_at(layer, value[i]);
+      }
+      for (int n = 0; n < run_length; ++n) {
+        const bool first = at[n] < 1;
+        if (!first && !(at[n] > top - 1)) continue;
+        const float over = first ? value[1][n] - value[0][n] : value[0][n] - value[1][n];
+        float inner = 0.5f * (first ? value[2][n] - value[0][n] : value[0][n] - value[2][n]);
+        if (!(inner == inner) || top < 2) inner = over;
+        const float slope = mixed(border_slope(over, inner), inner, first ? at[n] : top - at[n]);
+        if (slope == slope) result[a][n] = slope;
+      }
+    }
+    for (int n = 0; n < run_length; ++n) out.per_cell[n] += result[a][n] * result[a][n];
   }
   for (float& c : out.per_cell) c = std::sqrt(c);
 }

@@ -62,7 +62,8 @@ struct LinearTable {
 struct Kernels {
   /// Trilinear values at places in u (clamped to the lattice); NaN where a corner is NaN.
   void (*sample)(const Voxels& voxels, const float* ux, const float* uy, const float* uz, float* values);
-  /// Central differences over one cell to each side (one-sided at the border and beside NaN), q = u.
+  /// Central differences over one cell to each side, q = u: one-sided beside NaN; in the outermost cells linear between what they are at
+  /// the inner sample and border_slope().
   void (*gradients)(const Voxels& voxels, const float* const u[3], const float* centre, Gradients& out);
 };
 /// The scalar reference, and the best for this machine.

@@ -115,6 +115,25 @@ HWY_ATTR void sample(const Voxels& voxels, const float* ux, const float* uy, con
               d, values + n);
 }
 
+/// The derivative along an axis in its outermost cells; anything elsewhere.
+template <class T>
+HWY_ATTR HWY_NOINLINE F slope_at_border(const Source<T>& source, const Place here[3], int axis, F at) {
+  const D d;
+  const F zero = hn::Zero(d), top = hn::Set(d, source.top[axis]), half = hn::Set(d, 0.5f);
+  const auto first = hn::Lt(at, hn::Set(d, 1.0f));
+  F value[3];  // in the three outermost layers, inwards
+  for (int i = 0; i < 3; ++i) {
+    const F n = hn::Set(d, float(i)), layer = hn::Max(zero, hn::IfThenElse(first, hn::Min(n, top), hn::Sub(top, n)));
+    const Place p = place(layer, source.top[axis]);
+    value[i] = source.value(axis == 0 ? p : here[0], axis == 1 ? p : here[1], axis == 2 ? p : here[2]);
+  }
+  const F over = hn::IfThenElse(first, hn::Sub(value[1], value[0]), hn::Sub(value[0], value[1]));
+  F inner = hn::Mul(half, hn::IfThenElse(first, hn::Sub(value[2], value[0]), hn::Sub(value[0], value[2])));
+  inner = hn::IfThenElse(hn::And(hn::Eq(inner, inner), hn::Ge(top, hn::Set(d, 2.0f))), inner, over);
+  const F border = hn::Sub(hn::Add(over, over), inner);
+  return mixed(border, inner, hn::IfThenElse(first, at, hn::Sub(top, at)));
+}
+
 template <class T>
 HWY_ATTR void gradients(const Voxels& voxels, const float* const u[3], const float* centre, Gradients& out) {
   const D d;
@@ -137,9 +156,14 @@ HWY_ATTR void gradients(const Voxels& voxels, const float* const u[3], const flo
       length = hn::IfThenElse(lo_good, length, hn::Mul(length, half));
       length = hn::IfThenElse(hi_good, length, hn::Mul(length, half));
       lo = hn::IfThenElse(lo_good, lo, middle), hi = hn::IfThenElse(hi_good, hi, middle);
-      const F change = hn::Sub(hi, lo);
-      hn::Store(hn::Div(change, length), d, result[a] + n);
-      square = hn::Add(square, hn::Mul(hn::Mul(hn::Set(d, 0.25f), change), change));
+      F slope = hn::Div(hn::Sub(hi, lo), length);
+      const auto outermost = hn::Or(hn::Lt(at, one), hn::Gt(at, hn::Sub(top, one)));
+      if (!hn::AllFalse(d, outermost)) {
+        const F mended = slope_at_border(source, here, a, at);
+        slope = hn::IfThenElse(hn::And(outermost, hn::Eq(mended, mended)), mended, slope);
+      }
+      hn::Store(slope, d, result[a] + n);
+      square = hn::Add(square, hn::Mul(slope, slope));
     }
     hn::Store(hn::Sqrt(square), d, out.per_cell + n);
   }

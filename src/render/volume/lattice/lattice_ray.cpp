@@ -34,10 +34,6 @@ class Axis {
   DerivativeWeights weights(long i) const {
     return derivative_weights(i > 0 ? sample(i) - sample(i - 1) : 0, i + 1 < samples_ ? sample(i + 1) - sample(i) : 0);
   }
-  double lean(long cell) const {
-    const auto span = [&](long i) { return sample(std::min(i + 1, samples_ - 1)) - sample(std::max(i - 1, 0L)); };
-    return border_lean(cell == 0 || cell + 2 == samples_, span(cell), span(cell + 1));
-  }
   double fraction(long cell, double q) const {
     const double from = sample(cell);
     return std::clamp(v_.affine ? q - from : (q - from) / (sample(cell + 1) - from), 0.0, 1.0);
@@ -103,8 +99,8 @@ class LatticeRay final : public LatticeWalker {
 
   double entry() const override { return c_.enter; }
 
-  /// Central differences at the corners of the cell, trilinear between them; on even axes those are the differences of the trilinear field
-  /// over a cell to each side.
+  /// Derivatives of parabolas at the corners of the cell, trilinear between them; on even axes those are, but for the outermost cells, the
+  /// differences of the trilinear field over a cell to each side.
   Vec3f gradient(const Stretch&, double t) override { return gradient_at(c_.start + c_.along * t); }
 
   /// Differences of the gradient over half a cell to each side.
@@ -179,16 +175,7 @@ class LatticeRay final : public LatticeWalker {
     find_slopes(cell);
     if (beside_holes_) return to_world(slope_beside_holes(q));
     Vec3 slope;
-    for (int a = 0; a < 3; ++a) {
-      if (v_.affine) {
-        const double cells = (cell[a] == 0 ? f[a] : 1) + (cell[a] + 1 == axes_[a].last() ? 1 - f[a] : 1);
-        slope[a] = double(trilinear(slopes_[a], f)) / cells;
-      } else {
-        double share[3] = {f[0], f[1], f[2]};
-        share[a] *= lean_[a] / (1 + f[a] * (lean_[a] - 1));
-        slope[a] = double(trilinear(slopes_[a], share));
-      }
-    }
+    for (int a = 0; a < 3; ++a) slope[a] = double(trilinear(slopes_[a], f));
     return to_world(slope);
   }
   Vec3f to_world(Vec3 slope) const {
@@ -206,7 +193,6 @@ class LatticeRay final : public LatticeWalker {
     const T* corner = data_ + size_t(cell[0]) + row_ * size_t(cell[1]) + layer_ * size_t(cell[2]);
     float sum = 0;
     for (int a = 0; a < 3; ++a) {
-      if (!v_.affine) lean_[a] = axes_[a].lean(cell[a]);
       const DerivativeWeights weights[2] = {axes_[a].weights(cell[a]), axes_[a].weights(cell[a] + 1)};
       const ptrdiff_t back = cell[a] > 0 ? ptrdiff_t(stride[a]) : 0, on = cell[a] + 1 < axes_[a].last() ? ptrdiff_t(stride[a]) : 0;
       for (int c = 0; c < 8; ++c) {
@@ -215,18 +201,29 @@ class LatticeRay final : public LatticeWalker {
         const ptrdiff_t to_before = upper ? ptrdiff_t(stride[a]) : back, to_after = upper ? on : ptrdiff_t(stride[a]);
         const float before = float(own[-to_before]), here = float(*own), after = float(own[to_after]);
         const auto& w = weights[upper];
-        slopes_[a][c] = v_.affine ? after - before : w.back * (here - before) + w.on * (after - here);
+        slopes_[a][c] = w.back * (here - before) + w.on * (after - here);
         if (slopes_[a][c] != slopes_[a][c]) slopes_[a][c] = one_sided(w, before, here, after);
         sum += here;
       }
+      if (!back || !on) mend_border(a, !back, !on);
     }
     beside_holes_ = sum != sum;
   }
 
+  /// At the border of an axis, where find_slopes() told differences over the cell. With samples at both borders those are all there is.
+  void mend_border(int axis, bool first, bool last) {
+    if (first && last) return;
+    for (int c = 0; c < 8; ++c) {
+      if (c >> axis & 1) continue;
+      float &lower = slopes_[axis][c], &upper = slopes_[axis][c | 1 << axis];
+      if (first) lower = border_slope(lower, upper);
+      else upper = border_slope(upper, lower);
+    }
+  }
   /// What stands for a slope of find_slopes() where a neighbour is no number.
   float one_sided(const DerivativeWeights& w, float before, float here, float after) const {
-    const float back = here - before, on = after - here, whole = v_.affine ? 1 : std::sqrt(w.back * w.on);
-    const float slope = back == back ? back * (v_.affine ? 2 : w.back + whole) : on * (v_.affine ? 2 : w.on + whole);
+    const float back = here - before, on = after - here, whole = std::sqrt(w.back * w.on);
+    const float slope = back == back ? back * (w.back + whole) : on * (w.on + whole);
     return slope == slope ? slope : 0;
   }
   /// In a cell with holes of its own: one-sided where there is no number a cell before or after.
@@ -409,7 +406,6 @@ class LatticeRay final : public LatticeWalker {
   bool holes_ = false;
   long slopes_of_[3] = {-9, -9, -9};
   float slopes_[3][8] = {};
-  double lean_[3] = {1, 1, 1};
   bool beside_holes_ = false;
 };
 

@@ -43,19 +43,13 @@ class EvenAxes {
   template <class T>
   class Slopes {
    public:
-    HWY_INLINE void find(const EvenAxes&, const Around<D, T>& around, const I[3]) {
-      changes_.find(around);
-      for (int a = 0; a < 3; ++a) first_[a] = around.first[a], last_[a] = around.last[a];
-    }
+    HWY_INLINE void find(const EvenAxes&, const Around<D, T>& around, const I[3]) { changes_.find(around); }
     /// The same; where a neighbour is no number, one-sided.
     HWY_INLINE void find_beside_holes(const EvenAxes&, const Around<D, T>& around, const I[3]) { changes_.find_beside_holes(around); }
-    HWY_INLINE F along(int a, const F share[3]) const {
-      return hn::Div(changes_.at(a, share), Around<D, T>::apart(first_[a], last_[a], share[a]));
-    }
+    HWY_INLINE F along(int a, const F share[3]) const { return hn::Mul(hn::Set(D(), 0.5f), changes_.at(a, share)); }
 
    private:
     CornerChanges<D, T> changes_;
-    hn::Mask<D> first_[3], last_[3];
   };
 
  private:
@@ -132,14 +126,7 @@ class UnevenLanes {
         return hn::IfThenElseZero(hn::Not(hn::IsNaN(slope)), slope);
       });
     }
-    HWY_INLINE F along(int a, const F share[3]) const {
-      if (inner_) return Around<D, T>::trilinear(slope_[a], share);
-      const D d;
-      const F one = hn::Set(d, 1.0f);
-      F leaning[3] = {share[0], share[1], share[2]};
-      leaning[a] = hn::Div(hn::Mul(share[a], lean_[a]), mul_add(share[a], hn::Sub(lean_[a], one), one));
-      return Around<D, T>::trilinear(slope_[a], leaning);
-    }
+    HWY_INLINE F along(int a, const F share[3]) const { return Around<D, T>::trilinear(slope_[a], share); }
 
    private:
     template <class Slope>
@@ -148,9 +135,6 @@ class UnevenLanes {
       around.rows(rows);
       corners_along<0>(lanes, around, rows, cell[0], slope), corners_along<1>(lanes, around, rows, cell[1], slope);
       corners_along<2>(lanes, around, rows, cell[2], slope);
-      inner_ = around.inner;
-      if (!inner_)
-        for (int a = 0; a < 3; ++a) lean_[a] = lanes.lean(a, cell[a]);
     }
     template <int axis, class Slope>
     HWY_INLINE void corners_along(const UnevenLanes& lanes, const Around<D, T>& around, const Quad<D> rows[4], I cell, const Slope& slope) {
@@ -158,21 +142,22 @@ class UnevenLanes {
       around.template neighbours<axis>(rows, [&](int corner, F before, F own, F after) HWY_ATTR {
         slope_[axis][corner] = slope(corner >> axis & 1 ? w.high : w.low, before, own, after);
       });
+      if (around.inner) return;
+      const Edge<D> edge = around.edge(axis);
+      for (int c = 0; c < 8; ++c)
+        if ((c >> axis & 1) == 0) {
+          F &lower = slope_[axis][c], &upper = slope_[axis][c | 1 << axis];
+          edge.mend(lower, upper, hn::IfThenElse(edge.first, lower, upper));
+        }
     }
 
     F slope_[3][8];  // at the corners
-    F lean_[3];
-    bool inner_;  // no lane's cell lies at the border: all lean_ are 1
   };
 
  private:
   /// DerivativeWeights of both samples of a cell.
   HWY_INLINE Quad<D> weights(int a, I cell) const {
     return gather_quad(D(), reinterpret_cast<const float*>(axes_.weights[a].data()), hn::ShiftLeft<1>(cell), loads_);
-  }
-
-  HWY_INLINE F lean(int a, I cell) const {
-    return hn::BitCast(D(), gather_words(D(), axes_.lean[a].data(), hn::ShiftLeft<2>(cell), loads_));
   }
 
   const UnevenAxes& axes_;

@@ -8,7 +8,7 @@
 #endif
 
 #include "render/volume/lattice/packet_light_inl.h"
-#include "render/volume/lattice/packet_shading_inl.h"
+#include "render/volume/lattice/packet_slopes_inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {
@@ -21,21 +21,13 @@ struct LitPlace {
   hn::Vec<D> nearest;  ///< of Lighting::on, as
   Int<D> sides;
 
-  /// Where the field has that slope, at u of the source.
-  template <class T>
-  static HWY_INLINE LitPlace at(const Lighting<D>& lighting, const Source<D, T>& source, const hn::Vec<D> u[3], const Slope<D>& slope) {
+  /// Where the field has that slope.
+  static HWY_INLINE LitPlace at(const Lighting<D>& lighting, const Slope<D>& slope) {
     const hn::Vec<D> cells[3] = {slope.x, slope.y, slope.z};
     hn::Vec<D> g[3];
     lighting.to_world(cells, g);
     LitPlace p;
     p.surface = lighting.surface(g), p.light = lighting.on(p.surface, p.sides, p.nearest);
-    // In the outermost cells differences are of less than two cells: their inner faces are kinks.
-    const D d;
-    const IntTag<D> di;
-    const hn::Vec<D> one = hn::Set(d, 1.0f);
-    auto outermost = hn::MaskFromVec(hn::Zero(d));
-    for (int a = 0; a < 3; ++a) outermost = hn::Or(outermost, hn::Or(hn::Lt(u[a], one), hn::Gt(u[a], hn::Sub(source.top[a], one))));
-    p.sides = hn::Or(p.sides, hn::IfThenElseZero(hn::RebindMask(di, outermost), hn::Set(di, 1 << 30)));
     return p;
   }
   static HWY_INLINE LitPlace none() {

@@ -9,75 +9,10 @@
 
 #include "base/compress_inl.h"
 #include "render/volume/lattice/packet_light_inl.h"
+#include "render/volume/lattice/packet_slopes_inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {
-
-/// Differences of the field over one cell to each side of a place (one-sided at the border and beside NaN).
-template <class D>
-struct Slope {
-  hn::Vec<D> x, y, z;   ///< in u
-  hn::Vec<D> per_cell;  ///< change of the value over the length of a cell
-};
-
-template <class D, class T>
-class SlopeFinder {
-  using F = hn::Vec<D>;
-
- public:
-  HWY_INLINE SlopeFinder(const Source<D, T>& source, F x, F y, F z)
-      : source_(source), at_{source.place(0, x), source.place(1, y), source.place(2, z)} {}
-
-  HWY_INLINE Slope<D> find() const {
-    const D d;
-    const F half = hn::Set(d, 0.5f), f[3] = {at_[0].fraction, at_[1].fraction, at_[2].fraction};
-    const Int<D> cell[3] = {at_[0].cell, at_[1].cell, at_[2].cell};
-    const Around<D, T> around(source_, cell);
-    CornerChanges<D, T> changes;
-    changes.find(around);
-    F change[3], slope[3];
-    for (int a = 0; a < 3; ++a) change[a] = changes.at(a, f);
-    if (std::is_same_v<T, float> && !hn::AllFalse(d, hn::IsNaN(hn::Add(change[0], hn::Add(change[1], change[2]))))) {
-      changes.find_beside_holes(around);
-      for (int a = 0; a < 3; ++a) change[a] = changes.at(a, f);
-    }
-    for (int a = 0; a < 3; ++a) slope[a] = hn::Mul(change[a], half);
-    if (!around.inner)
-      for (int a = 0; a < 3; ++a) slope[a] = hn::Div(change[a], around.apart(around.first[a], around.last[a], f[a]));
-    auto square = hn::Zero(d);
-    for (const F& c : change) square = mul_add(hn::Mul(hn::Set(d, 0.25f), c), c, square);
-    return {slope[0], slope[1], slope[2], hn::Sqrt(square)};
-  }
-
- private:
-  const Source<D, T>& source_;
-  const Place<D> at_[3];
-};
-
-/// The slopes at the places of the lanes that want them, found by vectors half as wide when those are few; the others' are anything.
-template <class D, class T>
-HWY_INLINE Slope<D> slopes_at(const Source<D, T>& source, [[maybe_unused]] const Voxels& voxels, const hn::Vec<D> u[3],
-                              hn::Mask<D> wanted) {
-  using F = hn::Vec<D>;
-  const D d;
-  // Lanes that want none look at the middle, which is no border that would have to be looked after.
-  F v[3];
-  for (int a = 0; a < 3; ++a) v[a] = hn::Mul(hn::Set(d, 0.5f), source.top[a]);
-#if SG_HARDWARE_GATHERS && HWY_TARGET <= HWY_AVX3
-  if constexpr (lanes_of<D> == 16) {
-    using H = hn::Half<D>;
-    if (hn::CountTrue(d, wanted) <= lanes_of<H>) {
-      hn::Vec<H> few[3];
-      for (int a = 0; a < 3; ++a) few[a].raw = _mm512_castps512_ps256(_mm512_mask_compress_ps(v[a].raw, wanted.raw, u[a].raw));
-      const Slope<H> found = SlopeFinder<H, T>(Source<H, T>(voxels), few[0], few[1], few[2]).find();
-      const auto back = [&](hn::Vec<H> x) HWY_ATTR { return F{_mm512_maskz_expand_ps(wanted.raw, _mm512_castps256_ps512(x.raw))}; };
-      return {back(found.x), back(found.y), back(found.z), back(found.per_cell)};
-    }
-  }
-#endif
-  for (int a = 0; a < 3; ++a) v[a] = hn::IfThenElse(wanted, u[a], v[a]);
-  return SlopeFinder<D, T>(source, v[0], v[1], v[2]).find();
-}
 
 template <class D, class T>
 class ShadeQueue {

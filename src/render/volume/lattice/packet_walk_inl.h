@@ -29,37 +29,32 @@ class CellWalk {
     end_ = hn::Load(d, rays.length), cells_.sum.pass = hn::Load(d, rays.before);
   }
 
-  /// What is known of the bricks that the lanes are in.
-  struct Bricks {
-    I at[3];
-    I free;  ///< so many bricks around draw nothing
-    I bend;  ///< where they do: Bends' code
-    HWY_INLINE M empty() const { return hn::RebindMask(D(), hn::Gt(free, hn::Zero(IntTag<D>()))); }
-    HWY_INLINE M bent() const { return hn::RebindMask(D(), hn::Eq(bend, hn::Set(IntTag<D>(), int(Bends::unbounded)))); }
+  /// How the bricks that the lanes are in are passed, a code of Passages each.
+  struct Passage {
+    I code;
+    HWY_INLINE M empty() const { return hn::RebindMask(D(), hn::Lt(code, hn::Set(IntTag<D>(), int(Passages::drawn)))); }
+    HWY_INLINE M bent() const { return hn::RebindMask(D(), hn::Eq(code, hn::Set(IntTag<D>(), int(Bends::unbounded)))); }
   };
-  HWY_INLINE Bricks bricks(const I cell[3]) const {
+  HWY_INLINE I brick_of(int a, I cell) const {
+    return hn::ShiftRight<FineBricks::shift>(hn::Min(hn::Max(cell, hn::Zero(IntTag<D>())), cells_.source.last_cell[a]));
+  }
+  HWY_INLINE Passage passage(const I cell[3]) const {
     const D d;
     const IntTag<D> di;
-    const I zero = hn::Zero(di), byte = hn::Set(di, 255);
-    Bricks b;
-    for (int a = 0; a < 3; ++a) b.at[a] = hn::ShiftRight<FineBricks::shift>(hn::Min(hn::Max(cell[a], zero), cells_.source.last_cell[a]));
+    const I byte = hn::Set(di, 255), unbounded = hn::Set(di, int(Bends::unbounded));
     const auto& dims = v_.fine().dims;
     const I row = hn::Set(di, int(dims[0])), layer = hn::Set(di, int(dims[0] * dims[1]));
-    const I id = hn::Add(b.at[0], hn::Add(hn::Mul(b.at[1], row), hn::Mul(b.at[2], layer)));
-    if (plan_.passages) {
-      b.bend = hn::And(gather_words(d, plan_.passages->codes.data(), id, cells_.source.loads), byte);
-      b.free = hn::IfThenElseZero(hn::Lt(b.bend, hn::Set(di, int(Passages::drawn))), b.bend);
-      return b;
-    }
-    b.free = plan_.knobs.skip_empty && v_.any_empty ? hn::And(gather_words(d, v_.distance.data(), id, cells_.source.loads), byte) : zero;
-    b.bend = hn::Set(di, int(Bends::unbounded));
-    return b;
+    const I id = hn::Add(brick_of(0, cell[0]), hn::Add(hn::Mul(brick_of(1, cell[1]), row), hn::Mul(brick_of(2, cell[2]), layer)));
+    if (plan_.passages) return {hn::And(gather_words(d, plan_.passages->codes.data(), id, cells_.source.loads), byte)};
+    if (!plan_.knobs.skip_empty || !v_.any_empty) return {unbounded};
+    const I free = hn::And(gather_words(d, v_.distance.data(), id, cells_.source.loads), byte);
+    return {hn::IfThenElse(hn::Gt(free, hn::Zero(di)), free, unbounded)};
   }
 
   HWY_INLINE I cell_at(int a, F t) const { return cells_.axes.cell_at(a, mul_add(cells_.along[a], t, cells_.start[a])); }
 
   /// Takes lanes out of the cube of bricks nearer than what is drawn.
-  HWY_INLINE void leap(const Bricks& from, M leaping, I cell[3], F& t) const {
+  HWY_INLINE void leap(const Passage& from, M leaping, I cell[3], F& t) const {
     const D d;
     const IntTag<D> di;
     const I one = hn::Set(di, 1), zero = hn::Zero(di);
@@ -68,8 +63,8 @@ class CellWalk {
     I side[3];
     hn::Mask<IntTag<D>> open[3];
     for (int a = 0; a < 3; ++a) {
-      const I reach = hn::IfThenElse(hn::RebindMask(di, up_[a]), from.free, hn::Sub(one, from.free));
-      side[a] = hn::ShiftLeft<FineBricks::shift>(hn::Add(from.at[a], reach));
+      const I reach = hn::IfThenElse(hn::RebindMask(di, up_[a]), from.code, hn::Sub(one, from.code));
+      side[a] = hn::ShiftLeft<FineBricks::shift>(hn::Add(brick_of(a, cell[a]), reach));
       // Beyond the outermost bricks there is nothing else.
       open[a] = hn::Or(hn::RebindMask(di, still_[a]), hn::Or(hn::Lt(side[a], one), hn::Gt(side[a], last_cell[a])));
       at[a] = hn::IfThenElse(hn::RebindMask(d, open[a]), hn::Set(d, HUGE_VALF), when_at(a, side[a], t));

@@ -34,8 +34,8 @@ constexpr float safety = 0.65f, least_growth = 0.5f, most_growth = 1.4f, least_i
 template <class D, class T, bool shaded>
 class TolerantPacket : CellWalk<D, T, shaded, EvenAxes<D>> {
   using Walk = CellWalk<D, T, shaded, EvenAxes<D>>;
-  using typename Walk::Bricks, typename Walk::F, typename Walk::I, typename Walk::M;
-  using Walk::bricks, Walk::cell_at, Walk::cross, Walk::leap, Walk::store;
+  using typename Walk::Passage, typename Walk::F, typename Walk::I, typename Walk::M;
+  using Walk::cell_at, Walk::cross, Walk::leap, Walk::passage, Walk::store;
   using Walk::plan_, Walk::cells_, Walk::end_;
 
  public:
@@ -68,15 +68,16 @@ class TolerantPacket : CellWalk<D, T, shaded, EvenAxes<D>> {
       for (int a = 0; a < 3; ++a) cell[a] = hn::IfThenElse(unsure, cell_at(a, t), cell[a]);
       strode = hn::AndNot(which, strode), known = hn::AndNot(which, known), lit_ = hn::AndNot(which, lit_);
     };
+    Passage here = passage(cell);
     for (M going = on(); !hn::AllFalse(d, going); going = on()) {
-      Bricks here = bricks(cell);
       const M leaping = hn::And(going, here.empty());
       if (!hn::AllFalse(d, leaping)) {
         find_cells(leaping);
         leap(here, leaping, cell, t);
+        here = passage(cell);
         // They stride at once, but not where light would have to be looked up for them: in the next turn other lanes can help.
         if constexpr (shaded) going = hn::AndNot(leaping, going);
-        else going = on(), here = bricks(cell), going = hn::AndNot(here.empty(), going);
+        else going = on(), going = hn::AndNot(here.empty(), going);
       }
       const M cellwise = hn::Or(hn::Lt(stride_, hn::Set(d, shortest_stride)), here.bent());
       const M crossing = hn::And(going, cellwise), striding = hn::AndNot(cellwise, going);
@@ -84,11 +85,12 @@ class TolerantPacket : CellWalk<D, T, shaded, EvenAxes<D>> {
         const M fresh = hn::AndNot(known, striding);
         if (!hn::AllFalse(d, fresh)) renew(t, fresh), known = hn::Or(known, fresh);
         // A lane that was refused stays in its cell, which rounding may tell otherwise.
-        strode = hn::Or(strode, stride_on(t, cell, here.bend, striding));
+        strode = hn::Or(strode, stride_on(t, cell, here, striding));
       }
       if (!hn::AllFalse(d, crossing)) {
         find_cells(crossing);
         cross(crossing, cell, t);
+        here = passage(cell);
         stride_ = hn::IfThenElse(crossing, hn::Max(stride_, hn::Set(d, 2 * shortest_stride)), stride_);
       }
     }
@@ -116,12 +118,13 @@ class TolerantPacket : CellWalk<D, T, shaded, EvenAxes<D>> {
     here_.node = hn::IfThenElse(whole, p.node, here_.node), here_.sum = hn::IfThenElse(whole, p.sum, here_.sum);
   }
 
-  /// Two strides from t on, if their errors are allowed. Returns which lanes have moved, to which cell.
-  HWY_INLINE M stride_on(F& t, I cell[3], I code, M striding) {
+  /// Two strides from t on, if their errors are allowed. Returns which lanes have moved, to which cell. How that is passed is looked up
+  /// before anything else: what the next turn does hangs on it.
+  HWY_INLINE M stride_on(F& t, I cell[3], Passage& here, M striding) {
     const D d;
     const IntTag<D> di;
     const F half = hn::Set(d, 0.5f);
-    const F bend = hn::Mul(hn::BitCast(d, hn::Add(hn::ShiftLeft<21>(code), hn::Set(di, (127 + Bends::least) << 23))),
+    const F bend = hn::Mul(hn::BitCast(d, hn::Add(hn::ShiftLeft<21>(here.code), hn::Set(di, (127 + Bends::least) << 23))),
                            hn::Set(d, plan_.passages->range));
     const F world = hn::Min(hn::Mul(stride_, per_speed_), hn::Mul(half, hn::Sub(end_, t)));
     const F cells = hn::Mul(world, speed_);
@@ -129,6 +132,8 @@ class TolerantPacket : CellWalk<D, T, shaded, EvenAxes<D>> {
     const F t1 = hn::Add(t, world), t2 = hn::IfThenElse(ends, end_, hn::Add(t1, world));
     Place<D> there[3];
     places_at(t2, there);
+    const I cell2[3] = {there[0].cell, there[1].cell, there[2].cell};
+    const Passage next_passage = passage(cell2);
     const auto p1 = sums_.at(value_at(t1)), p2 = sums_.at(value_at(there));
     const Strides<D> s = strides<shaded>(sums_, *plan_.medium, float(plan_.budget.tolerance), here_, p1, p2, world, cells, bend);
     const F zero = hn::Zero(d), one = hn::Set(d, 1.0f), tolerance = hn::Set(d, float(plan_.budget.tolerance));
@@ -194,13 +199,15 @@ class TolerantPacket : CellWalk<D, T, shaded, EvenAxes<D>> {
     stride_ = hn::IfThenElse(striding, next, stride_);
     const M moved = hn::And(good, hn::Gt(t2, t));
     t = hn::IfThenElse(moved, t2, t);
-    for (int a = 0; a < 3; ++a) cell[a] = hn::IfThenElse(hn::RebindMask(di, moved), there[a].cell, cell[a]);
+    const auto to = hn::RebindMask(di, moved);
+    for (int a = 0; a < 3; ++a) cell[a] = hn::IfThenElse(to, cell2[a], cell[a]);
+    here.code = hn::IfThenElse(to, next_passage.code, here.code);
     return moved;
   }
 
   /// The light at places of the rays of `lighting`, where it is wanted. Out of line: it is long, and wanted from several sides.
   HWY_NOINLINE void lit_at(const Lighting<D>& lighting, const F u[3], M wanted, LitPlace<D>& out) const {
-    out = LitPlace<D>::at(lighting, cells_.source, u, slopes_at(cells_.source, plan_.volume.voxels, u, wanted));
+    out = LitPlace<D>::at(lighting, slopes_at(cells_.source, plan_.volume.voxels, u, wanted));
   }
   HWY_INLINE LitPlace<D> lit_at(F t, M wanted) const {
     F u[3];

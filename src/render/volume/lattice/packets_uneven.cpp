@@ -18,7 +18,7 @@ namespace sg::volume::HWY_NAMESPACE {
 template <class D, class T, bool shaded>
 class UnevenPacket : CellWalk<D, T, shaded, UnevenLanes<D>> {
   using Walk = CellWalk<D, T, shaded, UnevenLanes<D>>;
-  using typename Walk::Bricks, typename Walk::F, typename Walk::I, typename Walk::M;
+  using typename Walk::F, typename Walk::I, typename Walk::M;
 
  public:
   HWY_INLINE UnevenPacket(const PacketPlan& plan, const RayPacket& rays) : Walk(plan, rays) {}
@@ -32,7 +32,7 @@ class UnevenPacket : CellWalk<D, T, shaded, UnevenLanes<D>> {
     while (true) {
       const M going = hn::And(hn::Lt(t, this->end_), hn::Ge(this->cells_.sum.pass, stop));
       if (hn::AllFalse(d, going)) break;
-      const Bricks here = this->bricks(cell);
+      const auto here = this->passage(cell);
       const M leaping = hn::And(going, here.empty()), crossing = hn::AndNot(leaping, going);
       if (!hn::AllFalse(d, leaping)) this->leap(here, leaping, cell, t);
       if (!hn::AllFalse(d, crossing)) this->cross(crossing, cell, t);

@@ -26,8 +26,6 @@ UnevenAxes::UnevenAxes(const Volume& v) {
       // The width between the rounded samples: shares of the edge are whole at both.
       cells[a].push_back({float(c[i]), i + 1 < n ? 1 / (float(c[i + 1]) - float(c[i])) : 0});
     }
-    const auto span = [&](size_t i) { return c[std::min(i + 1, n - 1)] - c[i > 0 ? i - 1 : 0]; };
-    for (size_t i = 0; i + 1 < n; ++i) lean[a].push_back(float(border_lean(i == 0 || i + 2 == n, span(i), span(i + 1))));
     slices[a] = v.first_cell[a];
     first[a] = float(c.front()), slices_per_q[a] = float(v.slices_per_q[a]);
   }

@@ -19,10 +19,10 @@ inline DerivativeWeights derivative_weights(double back, double on) {
   return {float(on / (back * (back + on))), float(back / (on * (back + on)))};
 }
 
-/// In the outermost cells derivatives lean to the inner sample: share f of the edge counts as f k / (1 + f (k - 1)). On even axes that
-/// makes them differences of the field itself, over what there is of a cell to each side. Spans: between the neighbours of the cell's
-/// samples.
-inline double border_lean(bool outermost, double first_span, double last_span) { return outermost ? last_span / first_span : 1; }
+/// The derivative at an outermost sample, from that at the one next to it and the difference over the cell between them: that of the
+/// parabola through the three outermost samples, whose derivative goes straight and is that difference in the mean. On an axis of two
+/// samples all three are the same.
+inline float border_slope(float over_cell, float inner) { return 2 * over_cell - inner; }
 
 struct UnevenAxes {
   struct Cell {
@@ -30,7 +30,6 @@ struct UnevenAxes {
   };
   std::vector<Cell> cells[3];  ///< one for every sample; the last has no width
   std::vector<DerivativeWeights> weights[3];
-  std::vector<float> lean[3];       ///< of each cell, border_lean()
   std::vector<uint32_t> slices[3];  ///< of equal width: the cell in which each begins
   float first[3], slices_per_q[3];
 
