@@ -50,7 +50,7 @@ const Projection within = perspective_view(45, 37, 30, {0.1, 0.2, 0.3}, {-1, -0.
 }  // namespace
 
 TEST_CASE("volume uneven: derivatives of straight lines and parabolas are exact up to the border, on even axes too") {
-  const auto check = [](const DatasetPtr& data, const std::function<Vec3(Vec3)>& exact) {
+  const auto check = [](const DatasetPtr& data, const std::function<Vec3(Vec3)>& exact, int least_places = 300) {
     const VolumeItem v = wave_item(data, true);
     const auto source = volume::lattice_source(std::make_shared<const volume::Volume>(volume::prepare(v, 1, {})), nullptr);
     const auto walker = source->walker();
@@ -69,7 +69,7 @@ TEST_CASE("volume uneven: derivatives of straight lines and parabolas are exact 
           ++places;
         }
     }
-    CHECK(places > 80);
+    CHECK(places > least_places);
   };
   const auto plane = [](Vec3 p) { return 3 * p.x - 2 * p.y + p.z; };
   const auto bowl = [](Vec3 p) { return 3 * p.x * p.x - 2 * p.y * p.y + p.z * p.z + p.x * p.y; };
@@ -78,8 +78,13 @@ TEST_CASE("volume uneven: derivatives of straight lines and parabolas are exact 
   check(uneven(bowl), bowl_slope);
   check(grid(cube(14, -1, 1), bowl), bowl_slope);
   // With three samples an axis there is one parabola, with two a straight line.
-  check(grid(cube(3, -1, 1), bowl), bowl_slope);
-  check(grid(cube(2, -1, 1), plane), [](Vec3) { return Vec3{3, -2, 1}; });
+  check(grid(cube(3, -1, 1), bowl), bowl_slope, 80);
+  check(
+      grid(cube(2, -1, 1), plane),
+      [](Vec3) {
+        return Vec3{3, -2, 1};
+      },
+      80);
 }
 
 TEST_CASE("volume uneven: packets show what single rays show, whatever the type, lit or not, from outside and inside") {

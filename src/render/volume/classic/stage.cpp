@@ -8,7 +8,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
-#include "render/volume/lattice/uneven_axes.h"
+#include "render/volume/lattice/derivatives.h"
 
 namespace sg::volume {
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "render/volume/large/brick_source.h"
+#include "render/volume/lattice/derivatives.h"
 
 namespace sg::volume {
 
@@ -272,16 +273,17 @@ class Walker final : public RayField {
         place[i] = std::clamp(along, 0.0, most);
         return sample(d, place);
       };
-      const bool first = here<1, last = here> most - 1;
+      const bool first = here < 1;
       double rise = 0;
-      if (!first && !last) {
+      if (!first && here <= most - 1) {
         rise = 0.5 * (at(here + 1) - at(here - 1));
       } else if (most > 0) {
-        // Inwards from the border (border_slope()).
+        // Inwards from the border.
         const double border = first ? 0 : most, step = first ? 1 : -1;
         const double v0 = at(border), v1 = at(border + step), over = v1 - v0;
         const double inner = most < 2 ? over : 0.5 * (at(border + 2 * step) - v0);
-        rise = step * (2 * over - inner + std::abs(here - border) * 2 * (inner - over));
+        const double outer = border_slope(over, inner);
+        rise = step * (outer + std::abs(here - border) * (inner - outer));
       }
       g[i] = std::isfinite(rise) ? rise * p_.scale[level][i] : 0;
     }

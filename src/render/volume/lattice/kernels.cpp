@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/volume/lattice/uneven_axes.h"
+#include "render/volume/lattice/derivatives.h"
 
 namespace sg::volume {
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "render/volume/lattice/uneven_axes.h"
+#include "render/volume/lattice/derivatives.h"
 
 namespace sg::volume {
 

@@ -26,6 +26,15 @@ struct Edge {
     const F twice = hn::Add(whole, whole), lo = hn::IfThenElse(alone, whole, lower), hi = hn::IfThenElse(alone, whole, upper);
     lower = hn::IfThenElse(first, hn::Sub(twice, hi), lower), upper = hn::IfThenElse(last, hn::Sub(twice, lo), upper);
   }
+  /// The same for the corners i + 2 j + 4 k of a cell, `per_cell` being what a difference over one cell, as there is at the border, counts.
+  HWY_INLINE void mend_corners(F at[8], int axis, float per_cell) const {
+    if (inner) return;
+    for (int c = 0; c < 8; ++c) {
+      if (c >> axis & 1) continue;
+      F &lower = at[c], &upper = at[c | 1 << axis];
+      mend(lower, upper, hn::Mul(hn::Set(D(), per_cell), hn::IfThenElse(first, lower, upper)));
+    }
+  }
   /// The difference over two cells around a fraction of the edge from a to b.
   HWY_INLINE F change(F before, F a, F b, F after, F fraction) const {
     const D d;
@@ -147,16 +156,7 @@ class CornerChanges {
     around.template neighbours<0>(rows, [&](int c, F x, F own, F y) HWY_ATTR { change_[0][c] = change(x, own, y); });
     around.template neighbours<1>(rows, [&](int c, F x, F own, F y) HWY_ATTR { change_[1][c] = change(x, own, y); });
     around.template neighbours<2>(rows, [&](int c, F x, F own, F y) HWY_ATTR { change_[2][c] = change(x, own, y); });
-    if (!around.inner)
-      for (int a = 0; a < 3; ++a) mend_border(around.edge(a), a);
-  }
-  HWY_INLINE void mend_border(const Edge<D>& edge, int axis) {
-    for (int c = 0; c < 8; ++c) {
-      if (c >> axis & 1) continue;
-      F &lower = change_[axis][c], &upper = change_[axis][c | 1 << axis];
-      const F over = hn::IfThenElse(edge.first, lower, upper);  // at the border both are of one cell
-      edge.mend(lower, upper, hn::Add(over, over));
-    }
+    for (int a = 0; a < 3; ++a) around.edge(a).mend_corners(change_[a], a, 2);
   }
 
   F change_[3][8];

@@ -142,13 +142,7 @@ class UnevenLanes {
       around.template neighbours<axis>(rows, [&](int corner, F before, F own, F after) HWY_ATTR {
         slope_[axis][corner] = slope(corner >> axis & 1 ? w.high : w.low, before, own, after);
       });
-      if (around.inner) return;
-      const Edge<D> edge = around.edge(axis);
-      for (int c = 0; c < 8; ++c)
-        if ((c >> axis & 1) == 0) {
-          F &lower = slope_[axis][c], &upper = slope_[axis][c | 1 << axis];
-          edge.mend(lower, upper, hn::IfThenElse(edge.first, lower, upper));
-        }
+      around.edge(axis).mend_corners(slope_[axis], axis, 1);
     }
 
     F slope_[3][8];  // at the corners
