@@ -2,7 +2,6 @@
 // What strides rest on: bounds on how a lattice's field bends, and the extinction summed up over the value.
 #include "render/volume/lattice/bends.h"
 
-#include "render/volume/lattice/empty_space.h"
 #include "render/volume/lattice/kernels.h"
 #include "render/volume/lattice/passages.h"
 #include "render/volume/optics/medium_sums.h"
@@ -37,14 +36,17 @@ TEST_CASE("strides: no field leaves its chord by more than its bend allows") {
       for (int a = 0; a < 3; ++a) {
         const double most = double(n[size_t(a)] - 1);
         from[a] = most * random_unit(7, 6 * ray + uint64_t(a));
-        to[a] = std::clamp(from[a] + 2.3 * (2 * random_unit(7, 6 * ray + 3 + uint64_t(a)) - 1), 0.0, most);
+        const double reach = ray % 2 ? 4.6 : 2.3;
+        to[a] = std::clamp(from[a] + reach * (2 * random_unit(7, 6 * ray + 3 + uint64_t(a)) - 1), 0.0, most);
       }
       const double s = length(to - from);
-      if (s < 1 || s > 4) continue;
+      if (s < 1 || s > 8) continue;
+      // What is said of a brick holds around it: from its begin on over a brick's length, from its middle on over one to both sides.
+      const Vec3 known = s > 4 ? (from + to) * 0.5 : from;
       size_t brick = 0, step = 1;
       for (size_t a = 0; a < 3; ++a) {
         const size_t bricks = (n[a] - 2) / volume::FineBricks::edge + 1;
-        brick += step * std::min(size_t(from[int(a)]) / volume::FineBricks::edge, bricks - 1), step *= bricks;
+        brick += step * std::min(size_t(known[int(a)]) / volume::FineBricks::edge, bricks - 1), step *= bricks;
       }
       const double bend = double(volume::Bends::decoded(bends.codes[brick]) * bends.range);
       double off = 0;
@@ -90,16 +92,16 @@ TEST_CASE("strides: sums over the value are the integrals of the medium, across 
 }
 
 TEST_CASE("strides: bricks that draw nothing are leapt over, the others tell how they bend") {
-  volume::Bends bends;
-  bends.range = 3;
-  bends.codes.assign({0, 15, 16, 200, volume::Bends::unbounded, 40, 40, volume::Bends::unbounded});
-  volume::Distances empty;
-  empty.assign({0, 0, 0, 0, 0, 1, 15, 2});
-  const std::vector<int> leaping{16, 16, 16, 200, 255, 1, 15, 2}, none{16, 16, 16, 200, 255, 40, 40, 255};
-  const volume::Passages with(bends, &empty), without(bends, nullptr);
-  CHECK(std::vector<int>(with.codes.begin(), with.codes.end()) == leaping);
+  const auto bends = std::make_shared<volume::Bends>();
+  bends->range = 3;
+  bends->codes.assign({0, 15, 16, 200, volume::Bends::unbounded, 40, 40, volume::Bends::unbounded});
+  volume::Distances drawn;
+  drawn.assign({0, 0, 0, 0, 1, 0, 0, 0});  // and three bytes more
+  const volume::SpaceAhead up(drawn, {5, 1, 1}, {{false, true, true}, {true, false, false}});
+  const std::vector<int> leaping{16, 16, 16, 200, 15}, none{16, 16, 16, 200, 255, 40, 40, 255};
+  const volume::Passages with(bends, up), without(bends);
+  CHECK(std::vector<int>(with.codes.begin(), with.codes.begin() + 5) == leaping);
   CHECK(std::vector<int>(without.codes.begin(), without.codes.end()) == none);
-  CHECK(with.range == 3);
-  empty.pop_back();
-  CHECK_THROWS_AS(volume::Passages(bends, &empty), Error);
+  bends->codes.pop_back();
+  CHECK_THROWS_AS(volume::Passages(bends, up), Error);
 }

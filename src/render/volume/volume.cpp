@@ -133,18 +133,26 @@ class Alone {
       const Volume& lattice = *picture.lattices[0];
       plan_for(lattice);
       plan_->clip = item.clip;
+      const bool leaps = picture.knobs.skip_empty && lattice.any_empty;
+      const auto ahead = [&] { return SpaceAhead(lattice.distance, lattice.fine().dims, Ways::of(picture.projection, lattice.to_q)); };
       const bool in_steps = post || item.mode == RayFunction::maximum;
       if (by_tolerance && in_tolerant_packets(*plan_)) {
         packets_ = cast_tile;
         if (lattice.affine) {
           sums_.emplace(*v.medium);
-          passages_.emplace(*bends_of(item, lattice), picture.knobs.skip_empty ? &lattice.distance : nullptr);
+          auto bends = bends_of(item, lattice);
+          if (leaps) passages_.emplace(std::move(bends), ahead());
+          else passages_.emplace(std::move(bends));
           plan_->sums = &*sums_, plan_->passages = &*passages_;
         } else {
           uneven_.emplace(lattice);
           plan_->uneven = &*uneven_;
+          if (leaps) plan_->ahead = &ahead_.emplace(ahead());
         }
-      } else if (!by_tolerance && in_steps && in_packets(*plan_)) packets_ = march_tile;
+      } else if (!by_tolerance && in_steps && in_packets(*plan_)) {
+        packets_ = march_tile;
+        if (post && leaps) plan_->ahead = &ahead_.emplace(ahead());
+      }
     } else if (!item.clip.empty()) {
       return;
     } else if (const auto* bricks = dynamic_cast<const BrickedSource*>(v.source.get())) {
@@ -205,6 +213,7 @@ class Alone {
   std::optional<MediumSums> sums_;
   std::optional<UnevenAxes> uneven_;
   std::optional<Passages> passages_;
+  std::optional<SpaceAhead> ahead_;
   void (*packets_)(const PacketPlan&, int, int, int, int, Frame&) = nullptr;
   Volume stage_;  // of bricks
   std::optional<BrickPackets> bricks_;

@@ -26,6 +26,10 @@ class CellWalk {
       still_[a] = hn::Eq(cells_.along[a], hn::Zero(d)), up_[a] = hn::Gt(cells_.along[a], hn::Zero(d));
       per_along_[a] = hn::IfThenElseZero(hn::Not(still_[a]), hn::Div(hn::Set(d, 1.0f), cells_.along[a]));
     }
+    octant_ = hn::Zero(IntTag<D>());
+    if (const auto* up = plan.passages ? &plan.passages->up : plan.ahead ? &plan.ahead->up : nullptr)
+      for (size_t a = 0; a < 3; ++a)
+        octant_ = hn::Add(octant_, hn::IfThenElseZero(hn::RebindMask(IntTag<D>(), up_[a]), hn::Set(IntTag<D>(), (*up)[a])));
     end_ = hn::Load(d, rays.length), cells_.sum.pass = hn::Load(d, rays.before);
   }
 
@@ -35,19 +39,27 @@ class CellWalk {
     HWY_INLINE M empty() const { return hn::RebindMask(D(), hn::Lt(code, hn::Set(IntTag<D>(), int(Passages::drawn)))); }
     HWY_INLINE M bent() const { return hn::RebindMask(D(), hn::Eq(code, hn::Set(IntTag<D>(), int(Bends::unbounded)))); }
   };
-  HWY_INLINE I brick_of(int a, I cell) const {
-    return hn::ShiftRight<FineBricks::shift>(hn::Min(hn::Max(cell, hn::Zero(IntTag<D>())), cells_.source.last_cell[a]));
+  HWY_INLINE I brick_of(int a, I cell) const { return hn::ShiftRight<FineBricks::shift>(within(a, cell)); }
+  /// Of cells of the lattice.
+  HWY_INLINE I brick_id(I x, I y, I z) const {
+    const IntTag<D> di;
+    const auto& dims = v_.fine().dims;
+    const I row = hn::Set(di, int(dims[0])), layer = hn::Set(di, int(dims[0] * dims[1]));
+    constexpr int shift = FineBricks::shift;
+    return hn::Add(hn::ShiftRight<shift>(x), hn::Add(hn::Mul(hn::ShiftRight<shift>(y), row), hn::Mul(hn::ShiftRight<shift>(z), layer)));
   }
   HWY_INLINE Passage passage(const I cell[3]) const {
+    return passage(brick_id(within(0, cell[0]), within(1, cell[1]), within(2, cell[2])));
+  }
+  HWY_INLINE Passage passage(I id) const {
     const D d;
     const IntTag<D> di;
     const I byte = hn::Set(di, 255), unbounded = hn::Set(di, int(Bends::unbounded));
-    const auto& dims = v_.fine().dims;
-    const I row = hn::Set(di, int(dims[0])), layer = hn::Set(di, int(dims[0] * dims[1]));
-    const I id = hn::Add(brick_of(0, cell[0]), hn::Add(hn::Mul(brick_of(1, cell[1]), row), hn::Mul(brick_of(2, cell[2]), layer)));
-    if (plan_.passages) return {hn::And(gather_words(d, plan_.passages->codes.data(), id, cells_.source.loads), byte)};
+    const I place = hn::Add(id, octant_);
+    if (plan_.passages) return {hn::And(gather_words(d, plan_.passages->codes.data(), place, cells_.source.loads), byte)};
     if (!plan_.knobs.skip_empty || !v_.any_empty) return {unbounded};
-    const I free = hn::And(gather_words(d, v_.distance.data(), id, cells_.source.loads), byte);
+    const uint8_t* distance = plan_.ahead ? plan_.ahead->bricks.data() : v_.distance.data();
+    const I free = hn::And(gather_words(d, distance, place, cells_.source.loads), byte);
     return {hn::IfThenElse(hn::Gt(free, hn::Zero(di)), free, unbounded)};
   }
 
@@ -119,8 +131,10 @@ class CellWalk {
   PacketCells<D, T, shaded, Axes> cells_;
   F end_;
   M still_[3], up_[3];
+  I octant_;  // where the codes of the octants that rays go to begin
 
  private:
+  HWY_INLINE I within(int a, I cell) const { return hn::Min(hn::Max(cell, hn::Zero(IntTag<D>())), cells_.source.last_cell[a]); }
   /// When, from t on, a ray meets that side.
   HWY_INLINE F when_at(int a, I side, F t) const {
     return hn::Max(hn::Mul(hn::Sub(cells_.axes.sample(a, side), cells_.start[a]), per_along_[a]), t);

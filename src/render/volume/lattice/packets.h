@@ -32,6 +32,7 @@ struct PacketPlan {
   float edge = 1;
   const MediumSums* sums = nullptr;    ///< of the medium; null: cells are crossed one by one
   const Passages* passages = nullptr;  ///< of the volume
+  const SpaceAhead* ahead = nullptr;   ///< of the volume, where there are no passages; null: by its distances
   const UnevenAxes* uneven = nullptr;  ///< of a rectilinear grid
   /// One lattice of several, drawn from front to back: what is in the frame lies before it, and rays go on with the light that is left (1 -
   /// alpha). The depth where half of it is gone goes here, for each pixel of the frame (infinite: not yet), instead of into the frame.

@@ -32,12 +32,14 @@ constexpr float samples_asked_ahead = 48;
 template <class D>
 struct Space {
   const uint8_t* distance;
-  Int<D> row, layer, last[3];
+  Int<D> row, layer, last[3], up[3];  ///< up: of SpaceAhead
   hn::Vec<D> margin, edges[3];
 
-  HWY_INLINE explicit Space(const Volume& v) : distance(v.distance.data()) {
+  HWY_INLINE explicit Space(const PacketPlan& plan) : distance(plan.ahead ? plan.ahead->bricks.data() : plan.volume.distance.data()) {
     const D d;
     const IntTag<D> di;
+    const Volume& v = plan.volume;
+    for (size_t a = 0; a < 3; ++a) up[a] = hn::Set(di, plan.ahead ? plan.ahead->up[a] : 0);
     const auto& dims = v.fine().dims;
     row = hn::Set(di, int(dims[0])), layer = hn::Set(di, int(dims[0] * dims[1]));
     for (size_t a = 0; a < 3; ++a) last[a] = hn::Set(di, int(dims[a]) - 1), edges[a] = hn::Set(d, float(dims[a]));
@@ -72,7 +74,9 @@ struct Nearby {
       const auto cell = to_int(d, hn::Max(hn::Zero(d), hn::Min(lanes.u(a), source.top[a])));
       brick[a] = hn::Min(hn::ShiftRight<FineBricks::shift>(cell), space.last[a]);
     }
-    const auto id = hn::Add(brick[0], hn::Add(hn::Mul(brick[1], space.row), hn::Mul(brick[2], space.layer)));
+    auto id = hn::Add(brick[0], hn::Add(hn::Mul(brick[1], space.row), hn::Mul(brick[2], space.layer)));
+    for (int a = 0; a < 3; ++a)
+      id = hn::Add(id, hn::IfThenElseZero(hn::RebindMask(IntTag<D>(), hn::Gt(lanes.by[a], hn::Zero(d))), space.up[a]));
     free = hn::And(gather_words(d, space.distance, id, source.loads), hn::Set(IntTag<D>(), 255));
   }
 };
@@ -223,7 +227,7 @@ class March {
     if constexpr (shaded) queue_.start(plan, rays), Due<D>().store(due_);
     Lanes<D> lanes(rays, per_by_, hn::Zero(d));
     const Source<D, T> source(plan.volume.voxels);
-    const Space<D> space(plan.volume);
+    const Space<D> space(plan);
     if (skips(plan)) {
       Nearby<D> nearby;
       nearby.find(source, space, lanes);
@@ -240,7 +244,7 @@ class March {
     const Volume& v = plan.volume;
     const Source<D, T> source(v.voxels);
     const Source<hn::CappedTag<float, 4>, T> by_fours(v.voxels);
-    const Space<D> space(v);
+    const Space<D> space(plan);
     const Transfer& transfer = v.transfer[0];
     const Entries<D> entries(transfer.linear_table());
     const auto* steps = reinterpret_cast<const float*>(transfer.steps());

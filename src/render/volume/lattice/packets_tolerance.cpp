@@ -19,9 +19,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {
 
-/// Strides in cell lengths: none is longer than half a brick (two go at once, and Bends look a brick around); where they would have to
-/// be shorter than the second, cells are crossed instead.
-constexpr float longest_stride = 2, shortest_stride = 1.0f / 8;
+/// Strides in cell lengths. Two go at once, and Bends look a brick around: those from here on up to half a brick, those around the middle
+/// up to a whole one. Where they would have to be shorter than the last, cells are crossed instead.
+constexpr float half_brick = 2, longest_stride = 4, shortest_stride = 1.0f / 8;
 /// Shares of the tolerance: to start with, over the whole length, and over all light that is taken. The rest is for the end of the ray,
 /// the tables, and the cells that are crossed.
 constexpr float share_at_first = 0.2f, share_of_length = 0.2f, share_of_light = 0.5f;
@@ -29,13 +29,14 @@ constexpr float share_at_first = 0.2f, share_of_length = 0.2f, share_of_light = 
 constexpr float share_at_once = 1.0f / 3;
 /// The next stride over this one is so much of what the error would allow, within these bounds. A stride that is refused costs a whole
 /// turn, so they grow slowly.
-constexpr float safety = 0.65f, least_growth = 0.5f, most_growth = 1.4f, least_if_refused = 0.4f, most_if_refused = 0.7f;
+constexpr float safety = 0.65f, least_growth = 0.5f, most_growth = 1.4f, most_growth_in_the_dark = 1.2f;
+constexpr float least_if_refused = 0.4f, most_if_refused = 0.7f;
 
 template <class D, class T, bool shaded>
 class TolerantPacket : CellWalk<D, T, shaded, EvenAxes<D>> {
   using Walk = CellWalk<D, T, shaded, EvenAxes<D>>;
   using typename Walk::Passage, typename Walk::F, typename Walk::I, typename Walk::M;
-  using Walk::cell_at, Walk::cross, Walk::leap, Walk::passage, Walk::store;
+  using Walk::brick_id, Walk::cell_at, Walk::cross, Walk::leap, Walk::passage, Walk::store;
   using Walk::plan_, Walk::cells_, Walk::end_;
 
  public:
@@ -75,9 +76,7 @@ class TolerantPacket : CellWalk<D, T, shaded, EvenAxes<D>> {
         find_cells(leaping);
         leap(here, leaping, cell, t);
         here = passage(cell);
-        // They stride at once, but not where light would have to be looked up for them: in the next turn other lanes can help.
-        if constexpr (shaded) going = hn::AndNot(leaping, going);
-        else going = on(), going = hn::AndNot(here.empty(), going);
+        going = on(), going = hn::AndNot(here.empty(), going);
       }
       const M cellwise = hn::Or(hn::Lt(stride_, hn::Set(d, shortest_stride)), here.bent());
       const M crossing = hn::And(going, cellwise), striding = hn::AndNot(cellwise, going);
@@ -118,14 +117,22 @@ class TolerantPacket : CellWalk<D, T, shaded, EvenAxes<D>> {
     here_.node = hn::IfThenElse(whole, p.node, here_.node), here_.sum = hn::IfThenElse(whole, p.sum, here_.sum);
   }
 
+  /// How the field bends along two strides.
+  HWY_INLINE I bends_around(const Passage& here, const Place<D> between[3], M longer) const {
+    const D d;
+    const IntTag<D> di;
+    if (hn::AllFalse(d, longer)) return here.code;
+    const I id = brick_id(between[0].cell, between[1].cell, between[2].cell);
+    const I there = hn::And(gather_words(d, plan_.passages->bends->codes.data(), id, cells_.source.loads), hn::Set(di, 255));
+    return hn::IfThenElse(hn::RebindMask(di, longer), there, here.code);
+  }
+
   /// Two strides from t on, if their errors are allowed. Returns which lanes have moved, to which cell. How that is passed is looked up
   /// before anything else: what the next turn does hangs on it.
   HWY_INLINE M stride_on(F& t, I cell[3], Passage& here, M striding) {
     const D d;
     const IntTag<D> di;
     const F half = hn::Set(d, 0.5f);
-    const F bend = hn::Mul(hn::BitCast(d, hn::Add(hn::ShiftLeft<21>(here.code), hn::Set(di, (127 + Bends::least) << 23))),
-                           hn::Set(d, plan_.passages->range));
     const F world = hn::Min(hn::Mul(stride_, per_speed_), hn::Mul(half, hn::Sub(end_, t)));
     const F cells = hn::Mul(world, speed_);
     const M ends = hn::Le(hn::Sub(end_, t), hn::Mul(hn::Set(d, 2.0f), hn::Mul(stride_, per_speed_)));
@@ -133,12 +140,19 @@ class TolerantPacket : CellWalk<D, T, shaded, EvenAxes<D>> {
     Place<D> there[3];
     places_at(t2, there);
     const I cell2[3] = {there[0].cell, there[1].cell, there[2].cell};
-    const Passage next_passage = passage(cell2);
-    const auto p1 = sums_.at(value_at(t1)), p2 = sums_.at(value_at(there));
+    const Passage next_passage = passage(brick_id(cell2[0], cell2[1], cell2[2]));
+    Place<D> between[3];
+    places_at(t1, between);
+    const M longer_pair = hn::Gt(cells, hn::Set(d, half_brick));
+    const I bend_code = bends_around(here, between, longer_pair);
+    const F bend = hn::Mul(hn::BitCast(d, hn::Add(hn::ShiftLeft<21>(bend_code), hn::Set(di, (127 + Bends::least) << 23))),
+                           hn::Set(d, plan_.passages->bends->range));
+    const auto p1 = sums_.at(value_at(between)), p2 = sums_.at(value_at(there));
     const Strides<D> s = strides<shaded>(sums_, *plan_.medium, float(plan_.budget.tolerance), here_, p1, p2, world, cells, bend);
     const F zero = hn::Zero(d), one = hn::Set(d, 1.0f), tolerance = hn::Set(d, float(plan_.budget.tolerance));
     const F pass = cells_.sum.pass, taken = hn::Mul(pass, hn::Min(one, s.depth));
-    F error = hn::Mul(pass, s.error);
+    const M unbounded = hn::RebindMask(d, hn::Eq(bend_code, hn::Set(di, int(Bends::unbounded))));
+    F error = hn::IfThenElse(unbounded, hn::Set(d, 1e30f), hn::Mul(pass, s.error));
     const F own = hn::Mul(tolerance, mul_add(world, hn::Set(d, float(2 * share_of_length / plan_.budget.length)),
                                              hn::Mul(taken, hn::Set(d, share_of_light))));
     const F allowed = mul_add(reserve_, hn::Set(d, share_at_once), own);
@@ -191,7 +205,8 @@ class TolerantPacket : CellWalk<D, T, shaded, EvenAxes<D>> {
     // safety sqrt(allowed / error)
     const F product = hn::Max(hn::Mul(allowed, next_error), hn::Set(d, 1e-36f));
     const F factor = hn::IfThenElseZero(hn::Eq(error, error), hn::Mul(hn::Mul(hn::Set(d, safety), allowed), about_one_by_sqrt(d, product)));
-    const F longer = hn::Max(hn::Set(d, least_growth), hn::Min(factor, hn::Set(d, most_growth)));
+    const F most = hn::IfThenElse(hn::Gt(s.depth, zero), hn::Set(d, most_growth), hn::Set(d, most_growth_in_the_dark));
+    const F longer = hn::Max(hn::Set(d, least_growth), hn::Min(factor, most));
     const F shorter = hn::Max(hn::Set(d, least_if_refused), hn::Min(factor, hn::Set(d, most_if_refused)));
     F next = hn::Min(hn::Mul(stride_, hn::IfThenElse(good, longer, shorter)), hn::Set(d, longest_stride));
     // Cells are crossed where strides of about the shortest were refused.

@@ -1,21 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/volume/lattice/passages.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "base/parallel.h"
 
 namespace sg::volume {
 
-Passages::Passages(const Bends& bends, const Distances* empty) : range(bends.range) {
-  const size_t n = bends.codes.size();
-  if (empty && empty->size() != n) fail_internal("passages: bends and distances of the same bricks were expected");
-  codes.resize(n);
-  const uint8_t *bend = bends.codes.data(), *distance = empty ? empty->data() : nullptr;
-  uint8_t* to = codes.data();
-  parallel_for(n, 1 << 18, [=](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) to[i] = std::max(bend[i], drawn);
-    for (size_t i = begin; distance && i < end; ++i) to[i] = distance[i] > 0 ? distance[i] : to[i];
-  });
+Passages::Passages(std::shared_ptr<const Bends> of) : codes(of->codes), bends(std::move(of)) {
+  for (uint8_t& code : codes) code = std::max(code, drawn);
+}
+
+Passages::Passages(std::shared_ptr<const Bends> of, SpaceAhead empty) : codes(std::move(empty.bricks)), up(empty.up), bends(std::move(of)) {
+  constexpr size_t after = 3;
+  const size_t n = bends->codes.size() - after;
+  if (codes.size() != empty.octants * n + after) fail_internal("passages: bends and empty space of the same bricks were expected");
+  for (size_t o = 0; o < empty.octants; ++o)
+    parallel_for(n, 1 << 18, [&](size_t begin, size_t end) {
+      const uint8_t* bend = bends->codes.data();
+      uint8_t* own = &codes[o * n];
+      for (size_t i = begin; i < end; ++i) own[i] = own[i] > 0 ? own[i] : std::max(bend[i], drawn);
+    });
 }
 
 }  // namespace sg::volume
