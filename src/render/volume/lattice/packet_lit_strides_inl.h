@@ -67,7 +67,7 @@ class GradientPath {
   }
   /// By what share of its change from here to p2, so far away, it may leave the straight line between them. Where there is nothing to
   /// compare with, what rough fields do.
-  HWY_INLINE F swerve(const LitPlace<D>& here, const LitPlace<D>& p2, F length, hn::Mask<D> known) const {
+  HWY_INLINE F swerve(const LitPlace<D>& here, const LitPlace<D>& p2, F length) const {
     const D d;
     const F ratio = hn::Div(length, hn::Max(length_, hn::Set(d, 1e-30f)));
     F change[3], bend[3];
@@ -77,7 +77,7 @@ class GradientPath {
     const F size = hn::Max(Lighting<D>::dot(change, change), hn::Set(d, 1e-30f));
     const F share = hn::Div(length, hn::Mul(hn::Set(d, 4.0f), hn::Add(length, length_)));
     const F off = hn::Mul(share, hn::Sqrt(hn::Div(Lighting<D>::dot(bend, bend), size)));
-    return hn::IfThenElse(hn::And(known, hn::Gt(length_, hn::Zero(d))), hn::Min(off, hn::Set(d, 0.5f)), hn::Set(d, unknown));
+    return hn::IfThenElse(hn::Gt(length_, hn::Zero(d)), hn::Min(off, hn::Set(d, 0.5f)), hn::Set(d, unknown));
   }
   HWY_INLINE void go(const LitPlace<D>& here, const LitPlace<D>& p2, F length, hn::Mask<D> which) {
     F change[3];

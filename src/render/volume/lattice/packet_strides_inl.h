@@ -139,15 +139,18 @@ HWY_INLINE Strides<D> strides(const SumLanes<D>& medium, const Medium& colors, f
   const F apart = hn::Sub(w_b, from_a);
   s.variance = mul_add(hn::Mul(share_a, share_b), hn::Mul(apart, apart), mul_add(share_b, spread(w_b), hn::Mul(share_a, spread(w_a))));
 
-  // Colours bend on a width; where tau is no straight line between the ends its middle lies elsewhere; in a deep stride the front shows
-  // more of its own colour than a constant tau would have it (optics/integrate.cpp, Pieces::whole).
+  // Colours bend on a width; where tau is no straight line between the ends its middle lies elsewhere, by two thirds of the stride at most;
+  // in a deep stride the front shows more of its own colour.
   const F taken = hn::Min(one, s.depth);
   const F recolored = hn::Min(one, hn::Mul(change, hn::Set(d, colors.color_slope())));
   const F widths = hn::Mul(change, hn::Set(d, 1 / colors.color_width()));
-  const F deep =
-      hn::Mul(hn::Mul(hn::Mul(twice, twice), hn::Mul(hn::Max(hn::Max(p0.tau, p2.tau), hn::Mul(half, sum)), hn::Max(steep_a, steep_b))),
-              hn::Mul(change, hn::Set(d, 0.05f)));
-  const F uneven = hn::Mul(hn::Mul(hn::Set(d, 0.5f), world), hn::Add(hn::Abs(hn::Sub(mean_a, even_a)), hn::Abs(hn::Sub(mean_b, even_b))));
+  // A constant tau would hide as much of the back as this one by two straight pieces does, but for 1 / 240 of the square of what the depth
+  // tilts by, and 1 / 192 of the depth times what it turns by in the middle; and the third order. Twice that, as tau may do more.
+  const F tilt = hn::Mul(twice, hn::Abs(hn::Sub(p2.tau, p0.tau))),
+          turn = hn::Mul(twice, hn::Abs(hn::Sub(hn::Add(p0.tau, p2.tau), hn::Add(p1.tau, p1.tau))));
+  const F tilted = mul_add(hn::Mul(s.depth, s.depth), hn::Set(d, 1.0f / 360), hn::Mul(tilt, hn::Set(d, 1.0f / 120)));
+  const F deep = mul_add(tilt, tilted, hn::Mul(s.depth, hn::Mul(turn, hn::Set(d, 1.0f / 96))));
+  const F uneven = hn::Mul(hn::Mul(third, world), hn::Add(hn::Abs(hn::Sub(mean_a, even_a)), hn::Abs(hn::Sub(mean_b, even_b))));
   const F counted = hn::Max(hn::Mul(off, hn::Set(d, least_off)), hn::Min(off, hn::Mul(hn::Abs(arch), hn::Set(d, times_met))));
   const F per_steep = hn::Mul(world, hn::Mul(counted, hn::Set(d, share)));
   F e = hn::Mul(per_steep, hn::Add(steep_a, steep_b));

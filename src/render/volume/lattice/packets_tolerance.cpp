@@ -29,7 +29,7 @@ constexpr float share_at_first = 0.2f, share_of_length = 0.2f, share_of_light = 
 constexpr float share_at_once = 1.0f / 3;
 /// The next stride over this one is so much of what the error would allow, within these bounds. A stride that is refused costs a whole
 /// turn, so they grow slowly.
-constexpr float safety = 0.65f, least_growth = 0.5f, most_growth = 1.4f, most_growth_in_the_dark = 1.2f;
+constexpr float safety = 0.55f, least_growth = 0.5f, most_growth = 1.4f, most_growth_in_the_dark = 1.2f;
 constexpr float least_if_refused = 0.4f, most_if_refused = 0.7f;
 
 template <class D, class T, bool shaded>
@@ -68,6 +68,7 @@ class TolerantPacket : CellWalk<D, T, shaded, EvenAxes<D>> {
       const auto unsure = hn::RebindMask(di, hn::And(which, strode));
       for (int a = 0; a < 3; ++a) cell[a] = hn::IfThenElse(unsure, cell_at(a, t), cell[a]);
       strode = hn::AndNot(which, strode), known = hn::AndNot(which, known), lit_ = hn::AndNot(which, lit_);
+      if constexpr (shaded) path_.forget(which);
     };
     Passage here = passage(cell);
     for (M going = on(); !hn::AllFalse(d, going); going = on()) {
@@ -162,9 +163,8 @@ class TolerantPacket : CellWalk<D, T, shaded, EvenAxes<D>> {
     StrideLight<D> light;
     if constexpr (shaded)
       if (any_seen) {
-        const M was_lit = lit_;
         lit2 = light_ends(t, t2, seen);
-        const F swerve = path_.swerve(here_lit_, lit2, hn::Sub(t2, t), was_lit);
+        const F swerve = path_.swerve(here_lit_, lit2, hn::Sub(t2, t));
         light = StrideLight<D>::straight(cells_.lighting, here_lit_, lit2, swerve);
         const auto over = hn::Eq(hn::Xor(here_lit_.sides, lit2.sides), cells_.lighting.turned_over());
         const M turned = hn::And(seen, hn::RebindMask(d, over));
