@@ -71,6 +71,27 @@ float FastCurve::most(float lo, float hi) const {
   return most;
 }
 
+float FastCurve::narrow() const {
+  float least = HUGE_VALF;
+  for (size_t i = 0; i + 1 < x_.size(); ++i)
+    if (x_[i + 1] > x_[i]) least = std::min(least, x_[i + 1] - x_[i]);
+  return least;
+}
+
+std::vector<FastCurve::Edge> FastCurve::edges() const {
+  std::vector<Edge> all;
+  for (size_t i = 0; i + 1 < x_.size(); ++i) {
+    if (x_[i + 1] == x_[i]) {
+      if (y_[i + 1] != y_[i]) all.push_back({x_[i], HUGE_VALF});
+    } else if (y_[i] == 0 && y_[i + 1] > 0) {
+      all.push_back({x_[i], slope_[i]});
+    } else if (y_[i] > 0 && y_[i + 1] == 0) {
+      all.push_back({x_[i + 1], -slope_[i]});
+    }
+  }
+  return all;
+}
+
 TransferFunction::Colors::Colors(const ColorScale& s, double b) : scale(s), base(b) {
   const ColorTable ends = color_table(s, 2);
   below = ends.below, above = ends.above, nan = ends.nan;
@@ -135,6 +156,19 @@ TransferFunction::TransferFunction(const ColorScale& scale, const OpacityCurve& 
   }
   drawn_lo_ = scale.clamp ? -HUGE_VALF : float(std::min(scale.lo, scale.hi) - base);
   drawn_hi_ = scale.clamp ? HUGE_VALF : float(std::max(scale.lo, scale.hi) - base);
+  if (!scale.clamp) edges_ = {{drawn_lo_, HUGE_VALF}, {drawn_hi_, HUGE_VALF}};
+  if (widgets_.empty()) {
+    narrow_ = curve_.narrow();
+    const std::vector<Edge> more = curve_.edges();
+    edges_.insert(edges_.end(), more.begin(), more.end());
+    if (with_factor_) narrow_second_ = factor_.narrow(), second_edges_ = factor_.edges();
+  }
+  for (const Widget& w : widgets_) {
+    narrow_ = std::min(narrow_, 0.5f * (w.hi - w.lo));
+    if (w.second_hi > w.second_lo) narrow_second_ = std::min(narrow_second_, w.second_hi - w.second_lo);
+    for (const float at : {w.lo, w.hi}) edges_.push_back({at, w.triangle ? HUGE_VALF : w.opacity * w.per_half});
+    for (const float at : {w.second_lo, w.second_hi}) second_edges_.push_back({at, HUGE_VALF});
+  }
 }
 
 // The strongest decides the opacity; colours mix by opacity, so that they change smoothly where widgets overlap.

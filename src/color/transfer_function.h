@@ -2,6 +2,7 @@
 // TransferDetail: what a volume's opacity and colour depend on besides the value of its field; TransferFunction: all of it, evaluated.
 #pragma once
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -81,6 +82,13 @@ class FastCurve {
   bool zero(float lo, float hi) const;
   /// Largest value over [lo, hi].
   float most(float lo, float hi) const;
+  /// Length of the shortest line; infinite when there is none.
+  float narrow() const;
+  /// Where it jumps, or begins to be more than zero.
+  struct Edge {
+    float at, steep;  ///< change per x where it begins; infinite where it jumps
+  };
+  std::vector<Edge> edges() const;
 
  private:
   size_t after(float x) const;  // points at or below x
@@ -117,6 +125,13 @@ class TransferFunction {
   bool clear(float lo, float hi) const;
   /// No opacity on [lo, hi] is larger than this, whatever the second axis says.
   float most_opacity(float lo, float hi) const;
+  /// Samples nearer to each other than this, over the value and over the second axis, miss no line of a curve and no widget.
+  float narrow() const { return narrow_; }
+  float narrow_second() const { return narrow_second_; }
+  /// Where opacity jumps or begins to be more than zero, over the (stored) value and over the second axis; by how much at most.
+  using Edge = FastCurve::Edge;
+  const std::vector<Edge>& edges() const { return edges_; }
+  const std::vector<Edge>& second_edges() const { return second_edges_; }
 
  private:
   struct Widget {
@@ -144,7 +159,8 @@ class TransferFunction {
   bool with_factor_ = false, color_by_second_ = false;
   std::vector<Colors> second_colors_;  // none or one
   std::vector<Widget> widgets_;
-  float most_factor_ = 1, drawn_lo_, drawn_hi_;
+  float most_factor_ = 1, drawn_lo_, drawn_hi_, narrow_ = HUGE_VALF, narrow_second_ = HUGE_VALF;
+  std::vector<Edge> edges_, second_edges_;
 };
 
 }  // namespace sg

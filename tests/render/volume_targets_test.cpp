@@ -76,6 +76,12 @@ TEST_CASE("volume targets: packets give the same bytes with every width of vecto
         INFO(std::string(element_name(type)) << " shaded " << shaded << " step " << step);
         targets = same_on_all_targets([&] { return draw(scene_of({wave_item(type, shaded, step)}), oblique); });
       }
+      INFO(std::string(element_name(type)) << " opacity by the gradient, shaded " << shaded);
+      same_on_all_targets([&] {
+        VolumeItem v = wave_item(type, shaded, 0);
+        v.detail.second = SecondAxis::gradient, v.detail.second_factor.points = {{0, 0}, {100, 0}, {100, 0.2}, {200, 1}};
+        return draw(scene_of({v}), oblique);
+      });
       INFO(std::string(element_name(type)) << " maximum");
       same_on_all_targets([&] {
         VolumeItem v = wave_item(type, shaded, 0);

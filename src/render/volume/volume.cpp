@@ -12,6 +12,7 @@
 #include "render/volume/cells/tet_rays.h"
 #include "render/volume/classic/layers.h"
 #include "render/volume/large/brick_packets.h"
+#include "render/volume/lattice/detail_table.h"
 #include "render/volume/lattice/packets.h"
 #include "render/volume/lattice/reconstructed_ray.h"
 #include "render/volume/light/effects.h"
@@ -120,8 +121,9 @@ class Alone {
     if (picture.volumes.size() != 1) return;
     const CastVolume& v = picture.volumes[0];
     const VolumeItem& item = *v.item;
-    if (v.detail || v.effects || v.averaged) return;
+    if (v.effects || v.averaged) return;
     const bool composite = item.mode == RayFunction::composite, by_tolerance = composite && !(v.step > 0);
+    if (v.detail && !(by_tolerance && picture.lattices[0] && picture.lattices[0]->affine && DetailTable::fits(item, *v.detail))) return;
     const bool post = composite && item.sampling.classify == "post" && !item.sampling.jitter;
     const auto plan_for = [&](const Volume& volume) {
       plan_.emplace(PacketPlan{volume, picture.projection, picture.knobs, {}, v.material, v.medium.get(), v.budget, float(v.source->edge)});
@@ -138,7 +140,10 @@ class Alone {
       const bool in_steps = post || item.mode == RayFunction::maximum;
       if (by_tolerance && in_tolerant_packets(*plan_)) {
         packets_ = cast_tile;
-        if (lattice.affine) {
+        if (v.detail) {
+          plan_->detail = &detail_.emplace(item, *v.detail, double(v.source->base));
+          if (leaps) plan_->ahead = &ahead_.emplace(ahead());
+        } else if (lattice.affine) {
           sums_.emplace(*v.medium);
           auto bends = bends_of(item, lattice);
           if (leaps) passages_.emplace(std::move(bends), ahead());
@@ -212,6 +217,7 @@ class Alone {
   std::optional<PacketPlan> plan_;
   std::optional<MediumSums> sums_;
   std::optional<UnevenAxes> uneven_;
+  std::optional<DetailTable> detail_;
   std::optional<Passages> passages_;
   std::optional<SpaceAhead> ahead_;
   void (*packets_)(const PacketPlan&, int, int, int, int, Frame&) = nullptr;

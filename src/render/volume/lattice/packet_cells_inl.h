@@ -25,25 +25,47 @@ struct Gathering {
   }
 };
 
-template <class D, class T, bool shaded, class Axes>
-class PacketCells {
+/// The rays of a packet in their lattice.
+template <class D, class T, class Axes>
+struct RayLanes {
   using F = hn::Vec<D>;
   using I = Int<D>;
   using M = hn::Mask<D>;
 
- public:
   const PacketPlan& plan;
   const Source<D, T> source;
   const Axes axes;
-  const MediumLanes<D> medium;
-  const Lighting<D> lighting;
   F start[3], along[3];  ///< in q: where the rays enter, and one world length
   Gathering<D> sum;
 
-  HWY_INLINE PacketCells(const PacketPlan& p, const RayPacket& rays)
-      : plan(p), source(p.volume.voxels), axes(p, source), medium(*p.medium), lighting(p, rays), light(lighting, axes) {
+  HWY_INLINE RayLanes(const PacketPlan& p, const RayPacket& rays) : plan(p), source(p.volume.voxels), axes(p, source) {
     const D d;
     for (int a = 0; a < 3; ++a) start[a] = hn::Load(d, rays.entry[a]), along[a] = hn::Load(d, rays.along[a]);
+  }
+  /// The way from t to `leave` through a cell each, in shares of its edges.
+  HWY_INLINE void way_through(const I cell[3], F t, F leave, F from[3], F way[3]) const {
+    const D d;
+    const F zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+    for (int a = 0; a < 3; ++a) {
+      const auto shares = axes.shares(a, cell[a], start[a]);
+      from[a] = hn::Max(zero, hn::Min(shares.at(along[a], t), one));
+      way[a] = hn::Sub(hn::Max(zero, hn::Min(shares.at(along[a], leave), one)), from[a]);
+    }
+  }
+};
+
+template <class D, class T, bool shaded, class Axes>
+class PacketCells : public RayLanes<D, T, Axes> {
+  using Rays = RayLanes<D, T, Axes>;
+  using typename Rays::F, typename Rays::I, typename Rays::M;
+
+ public:
+  using Rays::plan, Rays::source, Rays::axes, Rays::sum;
+  const MediumLanes<D> medium;
+  const Lighting<D> lighting;
+
+  HWY_INLINE PacketCells(const PacketPlan& p, const RayPacket& rays)
+      : Rays(p, rays), medium(*p.medium), lighting(p, rays), light(lighting, axes) {
     at_ = hn::Zero(IntTag<D>());
     line_ = medium.line(at_);
   }
@@ -59,16 +81,10 @@ class PacketCells {
   /// One cell per lane: its cubic, and what the medium makes of it.
   HWY_INLINE void cross(const I inside[3], F t, F leave, M look) {
     const D d;
-    const F zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-    const I corner = source.offset(inside[0], inside[1], inside[2]);
     F from[3], way[3];
-    for (int a = 0; a < 3; ++a) {
-      const auto shares = axes.shares(a, inside[a], start[a]);
-      from[a] = hn::Max(zero, hn::Min(shares.at(along[a], t), one));
-      way[a] = hn::Sub(hn::Max(zero, hn::Min(shares.at(along[a], leave), one)), from[a]);
-    }
+    this->way_through(inside, t, leave, from, way);
     Pair<D> rows[4];
-    source.corners(corner, rows);
+    source.corners(source.offset(inside[0], inside[1], inside[2]), rows);
     const auto &p00 = rows[0], &p01 = rows[1], &p10 = rows[2], &p11 = rows[3];
     // No place in the cell lies outside the range of its corners.
     const F least = hn::Min(hn::Min(hn::Min(p00.a, p00.b), hn::Min(p01.a, p01.b)), hn::Min(hn::Min(p10.a, p10.b), hn::Min(p11.a, p11.b)));
@@ -76,9 +92,8 @@ class PacketCells {
     const M clear_line = line_.dark();
     if (hn::AllFalse(d, hn::AndNot(hn::And(clear_line, hn::And(hn::Ge(least, line_.lo), hn::Le(largest, line_.hi))), look))) return;
     const Cubic<D> f = along_way(rows, from, way);
-    // The hull of the cubic's Bernstein coefficients.
-    const F third = hn::Set(d, 1.0f / 3), b1 = mul_add(f.b, third, f.a), b2 = mul_add(hn::Add(f.b, f.c), third, b1);
-    const F lo = hn::Min(hn::Min(f.a, b1), hn::Min(b2, f.last)), hi = hn::Max(hn::Max(f.a, b1), hn::Max(b2, f.last));
+    F lo, hi;
+    f.hull(lo, hi);
     look = hn::And(look, hn::Eq(f.last, f.last));  // no hole
     const M strange = hn::AndNot(hn::And(hn::Ge(f.a, line_.lo), hn::Le(f.a, line_.hi)), look);
     // Only these: on a knot either line would do, and which it is must not depend on the other lanes.

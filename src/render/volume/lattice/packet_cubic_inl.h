@@ -17,6 +17,11 @@ template <class D>
 struct Cubic {
   hn::Vec<D> a, b, c, e, last;  // last: at s = 1
   HWY_INLINE hn::Vec<D> at(hn::Vec<D> s) const { return mul_add(s, mul_add(s, mul_add(s, e, c), b), a); }
+  /// Bounds on [0, 1]: those of the Bernstein coefficients.
+  HWY_INLINE void hull(hn::Vec<D>& lo, hn::Vec<D>& hi) const {
+    const auto third = hn::Set(D(), 1.0f / 3), b1 = mul_add(b, third, a), b2 = mul_add(hn::Add(b, c), third, b1);
+    lo = hn::Min(hn::Min(a, b1), hn::Min(b2, last)), hi = hn::Max(hn::Max(a, b1), hn::Max(b2, last));
+  }
 };
 
 /// The trilinear field of a cell along the way from + s * way, corners by rows (Source::corners).

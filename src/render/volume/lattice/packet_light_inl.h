@@ -33,6 +33,11 @@ struct FieldSurface {
   hn::Vec<D> normal[3];  ///< unit, along the gradient
   hn::Vec<D> along;      ///< of the normal and the ray: the cosine
   hn::Vec<D> much;       ///< 0 where there is none (no gradient, or one beyond numbers), 1 and more where it is all surface
+
+  HWY_INLINE void take(const FieldSurface& o, hn::Mask<D> which) {
+    for (int a = 0; a < 3; ++a) normal[a] = hn::IfThenElse(which, o.normal[a], normal[a]);
+    along = hn::IfThenElse(which, o.along, along), much = hn::IfThenElse(which, o.much, much);
+  }
 };
 
 /// 1 - cosine of the angle by which the surface turns from one place to another.
@@ -93,10 +98,10 @@ class Lighting {
   HWY_INLINE Lighting(const PacketPlan& plan, const RayPacket& rays) : plan_(&plan) {
     const D d;
     for (int a = 0; a < 3; ++a) ray[a] = hn::Load(d, rays.direction[a]);
-    if (!plan.volume.shaded) return;
-    least_ = std::pow(10.0f, -36 / std::max(1.0f, plan.material.power));
     const auto& m = plan.volume.shade_plan.to_world;
     upright_ = m[0][1] == 0 && m[0][2] == 0 && m[1][0] == 0 && m[1][2] == 0 && m[2][0] == 0 && m[2][1] == 0;
+    if (!plan.volume.shaded) return;
+    least_ = std::pow(10.0f, -36 / std::max(1.0f, plan.material.power));
     for (size_t l = 0; l < plan.lamps.size(); ++l) {
       intensity_ += plan.lamps[l].intensity;
       // Half way between the light and the viewer.
@@ -267,17 +272,23 @@ class CellLight {
     F bend, jump;
     I sides[2];
   };
-  /// On the way through this cell, which those that follow speak of, too.
+  /// The slopes of this cell, of which those that follow speak.
+  HWY_INLINE void find(const Source<D, T>& source, const I cell[3], const F from[3], const F way[3]) {
+    const D d;
+    slopes_.find(axes_, Around<D, T>(source, cell), cell);
+    if constexpr (std::is_same_v<T, float>) {
+      F g[3];
+      gradient(from, way, hn::Zero(d), g);
+      if (!hn::AllFalse(d, hn::IsNaN(hn::Add(g[0], hn::Add(g[1], g[2])))))
+        slopes_.find_beside_holes(axes_, Around<D, T>(source, cell), cell);
+    }
+  }
   HWY_INLINE Error error(const Source<D, T>& source, const I cell[3], const F from[3], const F way[3]) {
     const D d;
     const F zero = hn::Zero(d);
-    slopes_.find(axes_, Around<D, T>(source, cell), cell);
+    find(source, cell, from, way);
     F g0[3], g1[3], middle[3], nearest[2];
     gradient(from, way, zero, g0);
-    if (std::is_same_v<T, float> && !hn::AllFalse(d, hn::IsNaN(hn::Add(g0[0], hn::Add(g0[1], g0[2]))))) {
-      slopes_.find_beside_holes(axes_, Around<D, T>(source, cell), cell);
-      gradient(from, way, zero, g0);
-    }
     gradient(from, way, hn::Set(d, 1.0f), g1), gradient(from, way, hn::Set(d, 0.5f), middle);
     const FieldSurface<D> s0 = lighting_.surface(g0), s1 = lighting_.surface(g1), sm = lighting_.surface(middle);
     Error e;
@@ -334,6 +345,13 @@ class CellLight {
     }
   }
 
+  /// World gradient at the share s of the way.
+  HWY_INLINE void gradient(const F from[3], const F way[3], F s, F out[3]) const {
+    F f[3], g[3];
+    for (int a = 0; a < 3; ++a) f[a] = mul_add(way[a], s, from[a]);
+    for (int a = 0; a < 3; ++a) g[a] = slopes_.along(a, f);
+    lighting_.to_world(g, out);
+  }
   HWY_INLINE LitLanes<D> at(const F from[3], const F way[3], F s) const {
     F g[3];
     gradient(from, way, s, g);
@@ -347,13 +365,6 @@ class CellLight {
     gradient(from, way, s, g);
     (void)lighting_.on(lighting_.surface(g), found, nearest);
     return found;
-  }
-  /// World gradient at the share s of the way.
-  HWY_INLINE void gradient(const F from[3], const F way[3], F s, F out[3]) const {
-    F f[3], g[3];
-    for (int a = 0; a < 3; ++a) f[a] = mul_add(way[a], s, from[a]);
-    for (int a = 0; a < 3; ++a) g[a] = slopes_.along(a, f);
-    lighting_.to_world(g, out);
   }
 
   static constexpr float rough = 0.25f;  // 1 - cosine of a turn within a cell from which on jumps are looked for

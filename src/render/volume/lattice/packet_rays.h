@@ -38,5 +38,7 @@ void maximum_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame&
 
 /// cast_tile() for rectilinear grids: plan.uneven.
 void cast_uneven_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame);
+/// cast_tile() where opacity hangs on the gradient, too: plan.detail.
+void cast_detail_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame);
 
 }  // namespace sg::volume

@@ -13,7 +13,7 @@ HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {
 
 /// Cells are told by their lowest samples; -1 and last + 1 are the halves beyond the outermost samples.
-template <class D, class T, bool shaded, class Axes>
+template <class D, class Cells>
 class CellWalk {
  protected:
   using F = hn::Vec<D>;
@@ -128,7 +128,7 @@ class CellWalk {
 
   const PacketPlan& plan_;
   const Volume& v_;
-  PacketCells<D, T, shaded, Axes> cells_;
+  Cells cells_;
   F end_;
   M still_[3], up_[3];
   I octant_;  // where the codes of the octants that rays go to begin
@@ -142,6 +142,33 @@ class CellWalk {
 
   const RayPacket& rays_;
   F per_along_[3];
+};
+
+/// Crosses all cells that draw something, none in strides.
+template <class D, class Cells>
+class CellByCell : CellWalk<D, Cells> {
+  using Walk = CellWalk<D, Cells>;
+  using typename Walk::F, typename Walk::I, typename Walk::M;
+
+ public:
+  HWY_INLINE CellByCell(const PacketPlan& plan, const RayPacket& rays) : Walk(plan, rays) {}
+
+  HWY_INLINE void run(PacketResult& result) {
+    const D d;
+    const F stop = hn::Set(d, this->plan_.budget.stop_below);
+    F t = hn::Zero(d);
+    I cell[3];
+    for (int a = 0; a < 3; ++a) cell[a] = this->cell_at(a, t);
+    while (true) {
+      const M going = hn::And(hn::Lt(t, this->end_), hn::Ge(this->cells_.sum.pass, stop));
+      if (hn::AllFalse(d, going)) break;
+      const auto here = this->passage(cell);
+      const M leaping = hn::And(going, here.empty()), crossing = hn::AndNot(leaping, going);
+      if (!hn::AllFalse(d, leaping)) this->leap(here, leaping, cell, t);
+      if (!hn::AllFalse(d, crossing)) this->cross(crossing, cell, t);
+    }
+    this->store(result);
+  }
 };
 
 }  // namespace sg::volume::HWY_NAMESPACE

@@ -13,6 +13,8 @@
 
 namespace sg::volume {
 
+struct DetailTable;
+
 /// What the rays of a picture share.
 struct PacketPlan {
   struct Lamp {
@@ -30,10 +32,11 @@ struct PacketPlan {
   const Medium* medium = nullptr;
   Budget budget;
   float edge = 1;
-  const MediumSums* sums = nullptr;    ///< of the medium; null: cells are crossed one by one
-  const Passages* passages = nullptr;  ///< of the volume
-  const SpaceAhead* ahead = nullptr;   ///< of the volume, where there are no passages; null: by its distances
-  const UnevenAxes* uneven = nullptr;  ///< of a rectilinear grid
+  const MediumSums* sums = nullptr;     ///< of the medium; null: cells are crossed one by one
+  const Passages* passages = nullptr;   ///< of the volume
+  const SpaceAhead* ahead = nullptr;    ///< of the volume, where there are no passages; null: by its distances
+  const UnevenAxes* uneven = nullptr;   ///< of a rectilinear grid
+  const DetailTable* detail = nullptr;  ///< where opacity hangs on the gradient, too; not with uneven
   /// One lattice of several, drawn from front to back: what is in the frame lies before it, and rays go on with the light that is left (1 -
   /// alpha). The depth where half of it is gone goes here, for each pixel of the frame (infinite: not yet), instead of into the frame.
   float* half = nullptr;

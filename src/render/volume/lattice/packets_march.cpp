@@ -379,7 +379,7 @@ class March {
       alignas(64) int32_t corner[most_lanes];
       const F s = hn::Min(hn::Add(lanes.s, hn::Set(d, samples_asked_ahead)), final_sample);
       hn::Store(source.offset(to_int(d, lanes.u(0, s)), to_int(d, lanes.u(1, s)), to_int(d, lanes.u(2, s))), di, corner);
-      for (int n = 0; n < lanes_of<D>; ++n) __builtin_prefetch(source.data + corner[n], 0, 2);
+      for (int n = 0; n < lanes_of<D>; ++n) __builtin_prefetch(source.data + corner[n], 0, 3);
     }
   }
 

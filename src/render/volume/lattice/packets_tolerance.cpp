@@ -33,8 +33,8 @@ constexpr float safety = 0.55f, least_growth = 0.5f, most_growth = 1.4f, most_gr
 constexpr float least_if_refused = 0.4f, most_if_refused = 0.7f;
 
 template <class D, class T, bool shaded>
-class TolerantPacket : CellWalk<D, T, shaded, EvenAxes<D>> {
-  using Walk = CellWalk<D, T, shaded, EvenAxes<D>>;
+class TolerantPacket : CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>> {
+  using Walk = CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>>;
   using typename Walk::Passage, typename Walk::F, typename Walk::I, typename Walk::M;
   using Walk::brick_id, Walk::cell_at, Walk::cross, Walk::leap, Walk::passage, Walk::store;
   using Walk::plan_, Walk::cells_, Walk::end_;
@@ -304,6 +304,7 @@ bool in_tolerant_packets(const PacketPlan& plan) {
 
 void cast_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
   if (plan.uneven) return cast_uneven_tile(plan, x0, y0, x1, y1, frame);
+  if (plan.detail) return cast_detail_tile(plan, x0, y0, x1, y1, frame);
   if (plan.knobs.simd) return HWY_DYNAMIC_DISPATCH(cast_in_packets)(plan, x0, y0, x1, y1, frame);
   return HWY_STATIC_DISPATCH(cast_singly)(plan, x0, y0, x1, y1, frame);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/volume/optics/integrate.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -49,30 +50,69 @@ Lit light_on(const Look& look, RayField& walker, const Stretch& s, double t) {
   return light_on(look, walker, s, t, gradient);
 }
 
-float tau_at(const Detail& detail, const Stretch& s, double t, RayField& walker, TransferFunction::Sample& sample) {
-  float second = 0;
+DetailPlace place_at(const Detail& detail, const Stretch& s, double t, RayField& walker) {
+  DetailPlace p;
   SecondDerivatives h;
+  p.value = s.value(t);
   switch (detail.axis) {
     case SecondAxis::none: break;
-    case SecondAxis::gradient: second = length(walker.gradient(s, t)); break;
-    case SecondAxis::field: second = walker.second(s, t); break;
-    case SecondAxis::second_derivative: second = walker.bend(s, t, h) ? second_derivative_along(walker.gradient(s, t), h) : NAN; break;
-    case SecondAxis::curvature: second = walker.bend(s, t, h) ? mean_curvature(walker.gradient(s, t), h) : NAN; break;
+    case SecondAxis::gradient: p.second = length(walker.gradient(s, t)); break;
+    case SecondAxis::field: p.second = walker.second(s, t); break;
+    case SecondAxis::second_derivative: p.second = walker.bend(s, t, h) ? second_derivative_along(walker.gradient(s, t), h) : NAN; break;
+    case SecondAxis::curvature: p.second = walker.bend(s, t, h) ? mean_curvature(walker.gradient(s, t), h) : NAN; break;
   }
-  sample = detail.transfer.at(s.value(t), second);
-  if (!(sample.opacity > 0)) return 0;
-  if (!(sample.opacity < 1)) return detail.most_tau;
-  return std::min(float(minus_log_one_minus(double(sample.opacity)) / detail.unit), detail.most_tau);
+  p.sample = detail.transfer.at(p.value, p.second);
+  if (!(p.sample.opacity < 1)) p.tau = p.sample.opacity >= 1 ? detail.most_tau : 0;
+  else if (p.sample.opacity > 0) p.tau = std::min(float(minus_log_one_minus(double(p.sample.opacity)) / detail.unit), detail.most_tau);
+  return p;
 }
 
 namespace {
 
-double depth_between(const Detail& detail, const Stretch& s, RayField& walker, double from, double to, float a, float b, int cuts) {
-  TransferFunction::Sample o;
+/// Samples of one axis of a transfer function at the begin, the middle and the end of a part.
+struct AxisSamples {
+  using Edges = std::vector<TransferFunction::Edge>;
+  float a, m, b, narrow;
+  const Edges& edges;
+
+  /// A parabola through them goes an eighth of its second difference beyond them at most; other curves somewhat more.
+  float beyond() const { return 0.5f * std::abs(a - 2 * m + b); }
+  /// May a line of the curve lie between two of them, or beyond them all an edge with more opacity than that?
+  bool overlook(float opacity) const {
+    const auto [lo, hi] = std::minmax({a, m, b});
+    const float far = beyond();
+    return std::max(std::abs(a - m), std::abs(m - b)) > narrow || std::any_of(edges.begin(), edges.end(), [&](const auto& e) {
+             return e.steep * far > opacity && ((e.at > lo - far && e.at <= lo) || (e.at >= hi && e.at < hi + far));
+           });
+  }
+  static bool jumps(const Edges& edges, float x, float y) {
+    return std::any_of(edges.begin(), edges.end(),
+                       [&](const auto& e) { return e.steep == HUGE_VALF && e.at >= std::min(x, y) && e.at <= std::max(x, y); });
+  }
+  bool front_jumps() const { return jumps(edges, a, m); }
+  bool back_jumps() const { return jumps(edges, m, b); }
+};
+
+/// May these places, such a length apart from the first to the last, have missed something that is drawn between them?
+bool overlooks(const Detail& detail, double length, const DetailPlace& a, const DetailPlace& m, const DetailPlace& b) {
+  const TransferFunction& f = detail.transfer;
+  const AxisSamples value{a.value, m.value, b.value, f.narrow(), f.edges()};
+  const AxisSamples second{a.second, m.second, b.second, f.narrow_second(), f.second_edges()};
+  const auto faint = float(overlooked_depth * detail.unit / length);
+  // What begins over one axis where it ends over the other.
+  const bool both = (value.front_jumps() && second.front_jumps()) || (value.back_jumps() && second.back_jumps());
+  if (!both && !value.overlook(faint) && !second.overlook(faint)) return false;
+  const auto [lo, hi] = std::minmax({a.value, m.value, b.value});
+  return !f.clear(lo - value.beyond(), hi + value.beyond());
+}
+
+double depth_between(const Detail& detail, const Stretch& s, RayField& walker, double from, double to, const DetailPlace& a,
+                     const DetailPlace& b, int cuts) {
   const double middle = 0.5 * (from + to), length = to - from;
-  const float m = tau_at(detail, s, middle, walker, o);
-  const double simpson = length / 6 * double(a + 4 * m + b), rough = length / 4 * double(a + 2 * m + b);
-  if (cuts >= 6 || (cuts > 0 && std::abs(simpson - rough) <= 1e-3 * std::max(1.0, simpson))) return simpson;
+  const DetailPlace m = place_at(detail, s, middle, walker);
+  const double simpson = length / 6 * double(a.tau + 4 * m.tau + b.tau), rough = length / 4 * double(a.tau + 2 * m.tau + b.tau);
+  const bool agree = std::abs(simpson - rough) <= 1e-3 * std::max(1.0, simpson) && !overlooks(detail, length, a, m, b);
+  if (cuts >= 6 || (cuts > 0 && agree)) return simpson;
   return depth_between(detail, s, walker, from, middle, a, m, cuts + 1) + depth_between(detail, s, walker, middle, to, m, b, cuts + 1);
 }
 
@@ -81,9 +121,7 @@ double depth_between(const Detail& detail, const Stretch& s, RayField& walker, d
 double optical_depth(const Detail& detail, const Stretch& s, RayField& walker) {
   const float lo = s.lowest(), hi = s.highest();
   if (!(lo <= hi) || detail.transfer.clear(lo, hi)) return 0;
-  TransferFunction::Sample o;
-  const float a = tau_at(detail, s, s.from, walker, o), b = tau_at(detail, s, s.to, walker, o);
-  return depth_between(detail, s, walker, s.from, s.to, a, b, 0);
+  return depth_between(detail, s, walker, s.from, s.to, place_at(detail, s, s.from, walker), place_at(detail, s, s.to, walker), 0);
 }
 
 namespace {
@@ -320,27 +358,26 @@ class LitStretch {
   RayState& state_;
 };
 
-/// A place of a medium that depends on more than the value.
-struct Place {
-  float tau = 0;
-  Vec3f glow;  // tau times colour, lit
+/// A place of a medium that depends on more than the value, lit.
+struct Place : DetailPlace {
+  Vec3f glow;  // tau times colour
 };
 
 Place place_at(const Look& look, const Stretch& s, double t, RayField& walker) {
-  TransferFunction::Sample o;
   const Detail& detail = *look.detail;
-  float tau = tau_at(detail, s, t, walker, o);
-  Vec3f glow = Vec3f{o.r, o.g, o.b} * tau;
-  if (look.lit && (tau > 0 || detail.ink > 0)) {
+  Place p{place_at(detail, s, t, walker), {}};
+  const Vec3f color{p.sample.r, p.sample.g, p.sample.b};
+  p.glow = color * p.tau;
+  if (look.lit && (p.tau > 0 || detail.ink > 0)) {
     const Lit l = light_on(look, walker, s, t);
-    tau *= l.opacity, glow = l.color({o.r, o.g, o.b}) * tau;
+    p.tau *= l.opacity, p.glow = l.color(color) * p.tau;
     // Ink is black, in the distance as the background.
     const float ink = detail.ink * l.ink;
-    tau += ink;
+    p.tau += ink;
     if (look.lit->effects && ink > 0)
-      glow += look.lit->background * (ink * look.lit->effects->fade(look.lit->origin + look.lit->along * t));
+      p.glow += look.lit->background * (ink * look.lit->effects->fade(look.lit->origin + look.lit->along * t));
   }
-  return {tau, glow};
+  return p;
 }
 
 void composite_detailed(const Look& look, const Stretch& s, double from, double to, const Place& a, const Place& b, RayField& walker,
@@ -356,10 +393,12 @@ void composite_detailed(const Look& look, const Stretch& s, double from, double 
   const float off = std::max(
       {std::abs(depth - rough), std::abs(glow.x - rough_glow.x), std::abs(glow.y - rough_glow.y), std::abs(glow.z - rough_glow.z)});
   const float pass = state.sum.transmittance, taken = std::min(1.0f, depth);
-  const float allowed = float(look.budget.tolerance) * (0.3f * float(length / look.budget.length) + 0.3f * pass * taken);
+  const float allowed = float(look.budget.tolerance) * (0.3f * float(length / look.budget.length) + 0.15f * pass * taken);
   // The order of colours within a deep part, too.
   const bool order = depth > 0.1f && pass * taken > float(look.budget.tolerance);
-  if (cuts < 8 && (pass * std::min(off, 1.0f) > allowed || order)) {
+  // Three samples tell little of what is light.
+  const bool few = cuts == 0 && pass * taken > 0.1f * float(look.budget.tolerance);
+  if (cuts < 10 && (pass * std::min(off, 1.0f) > allowed || order || few || overlooks(*look.detail, double(length), a, m, b))) {
     composite_detailed(look, s, from, middle, a, m, walker, cuts + 1, state);
     return composite_detailed(look, s, middle, to, m, b, walker, cuts + 1, state);
   }

@@ -35,10 +35,18 @@ struct Detail {
   float ink = 0;   ///< extinction that silhouettes and strokes have of their own (Lit::ink of it)
 };
 
-/// Extinction at t of a stretch; what it depends on is asked of the walker. `sample` gets the straight colour and the opacity.
-float tau_at(const Detail& detail, const Stretch& stretch, double t, RayField& walker, TransferFunction::Sample& sample);
+/// Optical depth of what samples of such a medium may overlook in a part.
+constexpr float overlooked_depth = 1.0f / 8192;
+
+/// A place of such a medium. `sample`: its straight colour and opacity.
+struct DetailPlace {
+  float tau = 0, value = 0, second = 0;
+  TransferFunction::Sample sample{};
+};
+/// At t of a stretch; what it depends on is asked of the walker.
+DetailPlace place_at(const Detail& detail, const Stretch& stretch, double t, RayField& walker);
 /// Optical depth of a stretch, by Simpson's rule on parts that are halved until it agrees with the trapezoid rule to 1e-3 (absolute, or of
-/// the depth of the part), 6 times at most: an estimate, no bound.
+/// the depth of the part) and no line of the curves may lie between its samples, 6 times at most: an estimate, no bound.
 double optical_depth(const Detail& detail, const Stretch& stretch, RayField& walker);
 
 /// What a volume is made of and how it is lit.
@@ -56,7 +64,8 @@ struct Look {
 Lit light_on(const Look& look, RayField& walker, const Stretch& stretch, double t);
 
 /// Puts one stretch behind what the ray has gathered. `walker` is asked for gradients where the look is lit. With a detail, tau is
-/// integrated by Simpson's rule on parts that are halved until it agrees with the trapezoid rule, 8 times at most: an estimate, no bound.
+/// integrated by Simpson's rule on parts that are halved until it agrees with the trapezoid rule and no line of the curves may lie between
+/// its samples, 10 times at most: an estimate, no bound.
 void composite(const Look& look, const Stretch& stretch, RayField& walker, RayState& state);
 
 /// A piece of the ray on which the value goes straight from `a` to `b` (pre-integrated classification is this over a step).
