@@ -112,3 +112,28 @@ TEST_CASE("volume: thin sheets of a second field are seen") {
     CHECK(double(draw(scene_of({v}), along).rgba[4 * 4 + 3]) == doctest::Approx(1 - std::exp(-depth)).epsilon(2e-3));
   }
 }
+
+TEST_CASE("volume: a rectangle over value and gradient is a curve times steps") {
+  const Projection view = perspective_view(45, 37, 55, {1.9, 1.4, 2.6}, {0, 0, 0});
+  Case c{"", lattice_of(24, bumpy), nullptr, colored(-1.7, 1.7), curve({{0.1, 0}, {0.25, 0.6}, {0.4, 0}}), 0.05};
+  c.factor = curve({{2, 0}, {2, 1}, {2.6, 1}, {2.6, 0}});
+  c.data = dataset_of(c.lattice, false);
+  VolumeItem by_curves = item_of(c), by_widget = by_curves;
+  by_widget.detail.second_factor = {{{0, 1}}};
+  by_widget.detail.widgets = {{TransferWidget::Shape::rectangle, 0.1, 0.4, 2, 2.6, 0.6, {-1, -1, -1}}};
+  const Frame packets = draw(scene_of({by_curves}), view), single = draw(scene_of({by_widget}), view);
+  CHECK(largest_difference(packets, single) < 1.0f / 512);
+  CHECK(*std::max_element(packets.rgba.begin(), packets.rgba.end()) > 0.2f);
+}
+
+// Two media at once are cut until order does not matter; what is thin must be seen there, too.
+TEST_CASE("volume: thin shells are seen among other volumes") {
+  const Projection view = perspective_view(45, 37, 55, {1.9, 1.4, 2.6}, {0, 0, 0});
+  const Scenes& thin = scenes[2];
+  Case c{thin.name,         lattice_of(thin.n, thin.field), nullptr, colored(-1.7, 1.7), curve(thin.opacity), thin.unit, false, 1,
+         curve(thin.factor)};
+  c.data = dataset_of(c.lattice, false);
+  VolumeItem faint = item(grid(cube(5, -1, 1), [](Vec3) { return 0.5; }), one_color({0, 0, 0}), constant_opacity(1e-4));
+  const Frame alone = draw(scene_of({item_of(c)}), view), among = draw(scene_of({item_of(c), faint}), view);
+  CHECK(largest_difference(alone, among) < 3.0f / 512);
+}

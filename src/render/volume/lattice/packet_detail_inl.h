@@ -8,8 +8,6 @@
 #define SG_PACKET_DETAIL_INL_H
 #endif
 
-#include <algorithm>
-
 #include "render/volume/lattice/detail_table.h"
 #include "render/volume/lattice/packet_cells_inl.h"
 
@@ -199,8 +197,8 @@ class DetailCells : public RayLanes<D, T, Axes> {
       F lo, hi;
       values.reach(lo, hi);
       const F faint = hn::Div(hn::Set(d, overlooked_depth / table.per_unit), hn::Max(whole, hn::Set(d, 1e-30f)));
-      M missed =
-          hn::And(detail_.draw(lo, hi), hn::Or(hn::Or(values.overlook(faint), gradients.overlook(faint)), values.jump_with(gradients)));
+      M missed = hn::And(detail_.draw(lo, hi), hn::Or(hn::Or(values.overlook(faint), gradients.overlook(faint)),
+                                                      hn::And(values.cross_edge(), gradients.cross_edge())));
       if constexpr (shaded) {
         // A surface seen from so far aside may turn over and back between two places.
         const M turning = hn::Or(hn::Or(grazing(a.surface, p1.surface), grazing(p1.surface, m.surface)),
@@ -261,23 +259,15 @@ class DetailCells : public RayLanes<D, T, Axes> {
       }
       return missed;
     }
-    HWY_INLINE M jump_with(const AxisSamples& other) const {
-      M both = hn::MaskFromVec(hn::Zero(D()));
-      if (!any_jump() || !other.any_jump()) return both;
-      for (int i = 0; i < 4; ++i) both = hn::Or(both, hn::And(jumps(i), other.jumps(i)));
-      return both;
-    }
-
-   private:
-    bool any_jump() const {
-      return std::any_of(edges.begin(), edges.end(), [](const TransferFunction::Edge& e) { return e.steep == HUGE_VALF; });
-    }
-    HWY_INLINE M jumps(int i) const {
+    HWY_INLINE M cross_edge() const {
       const D d;
-      const F lo = hn::Min(*at[i], *at[i + 1]), hi = hn::Max(*at[i], *at[i + 1]);
+      F lo, hi;
+      range(lo, hi);
       M found = hn::MaskFromVec(hn::Zero(d));
-      for (const TransferFunction::Edge& edge : edges)
-        if (const F e = hn::Set(d, edge.at); edge.steep == HUGE_VALF) found = hn::Or(found, hn::And(hn::Ge(e, lo), hn::Le(e, hi)));
+      for (const TransferFunction::Edge& edge : edges) {
+        const F e = hn::Set(d, edge.at);
+        found = hn::Or(found, hn::And(hn::Ge(e, lo), hn::Le(e, hi)));
+      }
       return found;
     }
   };

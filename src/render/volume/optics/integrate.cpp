@@ -85,12 +85,10 @@ struct AxisSamples {
              return e.steep * far > opacity && ((e.at > lo - far && e.at <= lo) || (e.at >= hi && e.at < hi + far));
            });
   }
-  static bool jumps(const Edges& edges, float x, float y) {
-    return std::any_of(edges.begin(), edges.end(),
-                       [&](const auto& e) { return e.steep == HUGE_VALF && e.at >= std::min(x, y) && e.at <= std::max(x, y); });
+  bool cross_edge() const {
+    const auto [lo, hi] = std::minmax({a, m, b});
+    return std::any_of(edges.begin(), edges.end(), [&](const auto& e) { return e.at >= lo && e.at <= hi; });
   }
-  bool front_jumps() const { return jumps(edges, a, m); }
-  bool back_jumps() const { return jumps(edges, m, b); }
 };
 
 /// May these places, such a length apart from the first to the last, have missed something that is drawn between them?
@@ -99,8 +97,8 @@ bool overlooks(const Detail& detail, double length, const DetailPlace& a, const 
   const AxisSamples value{a.value, m.value, b.value, f.narrow(), f.edges()};
   const AxisSamples second{a.second, m.second, b.second, f.narrow_second(), f.second_edges()};
   const auto faint = float(overlooked_depth * detail.unit / length);
-  // What begins over one axis where it ends over the other.
-  const bool both = (value.front_jumps() && second.front_jumps()) || (value.back_jumps() && second.back_jumps());
+  // What begins over one axis may end over the other.
+  const bool both = value.cross_edge() && second.cross_edge();
   if (!both && !value.overlook(faint) && !second.overlook(faint)) return false;
   const auto [lo, hi] = std::minmax({a.value, m.value, b.value});
   return !f.clear(lo - value.beyond(), hi + value.beyond());
@@ -467,10 +465,13 @@ void composite_joint(const std::vector<Joint>& joint, RayState& state, int cuts)
     const float lo = s.lowest(), hi = s.highest();
     if (j.look->detail) {
       if (!(lo <= hi) || (!(j.look->detail->ink > 0) && j.look->detail->transfer.clear(lo, hi))) continue;
-      simple = simple && cuts >= 3;
-      const Place p = place_at(*j.look, s, 0.5 * (from + to), *j.walker);
-      const double d = (to - from) * double(p.tau);
-      depth += d, glow += Vec3(p.glow) * (to - from);
+      const auto at = [&](double t) { return place_at(*j.look, s, t, *j.walker); };
+      const Place a = at(from), m = at(0.5 * (from + to)), b = at(to);
+      const double sixth = (to - from) / 6, d = sixth * double(a.tau + 4 * m.tau + b.tau);
+      const double off = std::abs(d - 1.5 * sixth * double(a.tau + 2 * m.tau + b.tau));  // from the trapezoid rule
+      const double allowed = double(tolerance) * (0.3 * (to - from) / j.look->budget.length + 0.15 * std::min(d, 1.0));
+      simple = simple && cuts >= 2 && off <= allowed && !overlooks(*j.look->detail, to - from, a, m, b);
+      depth += d, glow += Vec3(a.glow + m.glow * 4 + b.glow) * sixth;
       if (d > densest) densest = d, id = j.look->id;
       continue;
     }
