@@ -40,6 +40,7 @@ struct LatticeSamples {
   MinMaxBricks bricks;                   ///< for maxima
   double lo = HUGE_VAL, hi = -HUGE_VAL;  ///< of the finite values stored; lo > hi when there are none
   bool holes = false;                    ///< samples are cells, some without a value
+  bool infinite = false;                 ///< are some?
 };
 
 struct Volume {
@@ -55,7 +56,8 @@ struct Volume {
   Box3 bounds;                     ///< world
   std::vector<Transfer> transfer;  ///< one
   Kernels kernels{};
-  bool direct = false;  ///< a linear table, no holes to look after: packets may draw it
+  bool direct = false;   ///< a linear table, no holes to look after: packets may draw it
+  bool spanned = false;  ///< no value lies beyond the ends of the table
   ShadePlan shade_plan{};
 
   // world -> q

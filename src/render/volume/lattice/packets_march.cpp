@@ -81,47 +81,46 @@ struct Nearby {
   }
 };
 
-/// Takes the lanes that are `looking` to their next sample in a brick that draws something, or to their end.
-template <class D, class T>
-HWY_INLINE void leap(const Source<D, T>& source, const Space<D>& space, Nearby<D> here, Lanes<D>& lanes, hn::Mask<D> looking) {
+/// Takes the lanes that are `looking`, if they are in bricks that draw nothing, to their first sample beyond those that are known to be so.
+/// Whether that is in such a brick, too, is asked with the next look: to go on at once would let the other lanes wait.
+template <class D>
+HWY_INLINE void leap(const Space<D>& space, const Nearby<D>& here, Lanes<D>& lanes, hn::Mask<D> looking) {
   const D d;
-  const IntTag<D> di;
   const auto zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-  while (true) {
-    looking = hn::And(looking, hn::RebindMask(d, hn::Gt(here.free, hn::Zero(di))));
-    if (hn::AllFalse(d, looking)) return;
-    // All bricks nearer than that are empty: leave their cube, but for a margin wider than rounding errors.
-    const auto reach = hn::ConvertTo(d, here.free);
-    auto out = lanes.end;
-    for (int a = 0; a < 3; ++a) {
-      const auto forth = hn::Gt(lanes.by[a], zero);
-      const auto side = hn::Add(hn::ConvertTo(d, here.brick[a]), hn::IfThenElse(forth, reach, hn::Sub(one, reach)));
-      const auto at = mul_add(side, hn::Set(d, float(FineBricks::edge)), hn::IfThenElse(forth, hn::Neg(space.margin), space.margin));
-      const auto there = hn::Mul(hn::Sub(at, lanes.first[a]), lanes.per_by[a]);
-      // Beyond the outermost bricks there is nothing else.
-      const auto open = hn::Or(hn::Or(hn::Le(side, zero), hn::Ge(side, space.edges[a])), hn::Eq(lanes.by[a], zero));
-      out = hn::IfThenElse(open, out, hn::Min(out, there));
-    }
-    // Always by twos, as samples are taken.
-    const auto next = hn::Mul(hn::Floor(hn::Mul(hn::Ceil(out), hn::Set(d, 0.5f))), hn::Set(d, 2.0f));
-    looking = hn::And(looking, hn::Gt(next, lanes.s));
-    lanes.s = hn::IfThenElse(looking, next, lanes.s);
-    looking = hn::And(looking, hn::Lt(lanes.s, lanes.end));
-    if (hn::AllFalse(d, looking)) return;
-    here.find(source, space, lanes);
+  looking = hn::And(looking, hn::RebindMask(d, hn::Gt(here.free, hn::Zero(IntTag<D>()))));
+  if (hn::AllFalse(d, looking)) return;
+  // All bricks nearer than that are empty: leave their cube, but for a margin wider than rounding errors.
+  const auto reach = hn::ConvertTo(d, here.free);
+  auto out = lanes.end;
+  for (int a = 0; a < 3; ++a) {
+    const auto forth = hn::Gt(lanes.by[a], zero);
+    const auto side = hn::Add(hn::ConvertTo(d, here.brick[a]), hn::IfThenElse(forth, reach, hn::Sub(one, reach)));
+    const auto at = mul_add(side, hn::Set(d, float(FineBricks::edge)), hn::IfThenElse(forth, hn::Neg(space.margin), space.margin));
+    const auto there = hn::Mul(hn::Sub(at, lanes.first[a]), lanes.per_by[a]);
+    // Beyond the outermost bricks there is nothing else.
+    const auto open = hn::Or(hn::Or(hn::Le(side, zero), hn::Ge(side, space.edges[a])), hn::Eq(lanes.by[a], zero));
+    out = hn::IfThenElse(open, out, hn::Min(out, there));
   }
+  // Always by twos, as samples are taken.
+  const auto next = hn::Mul(hn::Floor(hn::Mul(hn::Ceil(out), hn::Set(d, 0.5f))), hn::Set(d, 2.0f));
+  lanes.s = hn::IfThenElse(looking, hn::Max(next, lanes.s), lanes.s);
 }
 
 /// Transfer::index, times four: where the entry's numbers begin.
-template <class D>
+template <class D, class T>
 struct Entries {
-  hn::Vec<D> first, per_axis, count;
+  hn::Vec<D> first, per_axis, count, last;
   Int<D> below_count, above, none;
+  bool spanned;         ///< no values are beyond the ends
+  Int<D> drawn_eights;  ///< Transfer::drawn_eights
 
-  HWY_INLINE explicit Entries(const LinearTable& t) {
+  HWY_INLINE explicit Entries(const Volume& v) : spanned(v.spanned) {
     const D d;
     const IntTag<D> di;
-    first = hn::Set(d, t.first), per_axis = hn::Set(d, t.per_axis), count = hn::Set(d, float(t.count));
+    drawn_eights = hn::LoadU(di, reinterpret_cast<const int32_t*>(v.transfer[0].drawn_eights().data()));
+    const LinearTable t = v.transfer[0].linear_table();
+    first = hn::Set(d, t.first), per_axis = hn::Set(d, t.per_axis), count = hn::Set(d, float(t.count)),
+    last = hn::Set(d, float(t.count - 1));
     below_count = hn::Set(di, t.count - 1), above = hn::Set(di, t.count + 1), none = hn::Set(di, t.count + 2);
   }
   HWY_INLINE Int<D> at(hn::Vec<D> value) const {
@@ -129,11 +128,26 @@ struct Entries {
     const IntTag<D> di;
     const auto zero = hn::Zero(d);
     const auto place = hn::Mul(hn::Sub(value, first), per_axis);
+    if (spanned) {
+      auto e = hn::Add(to_int(d, hn::Min(hn::Max(place, zero), last)), hn::Set(di, 1));
+      if constexpr (std::is_same_v<T, float>) e = hn::IfThenElse(hn::RebindMask(di, hn::IsNaN(value)), none, e);
+      return hn::ShiftLeft<2>(e);
+    }
     auto e = hn::Add(hn::Min(to_int(d, hn::Max(hn::Min(place, count), zero)), below_count), hn::Set(di, 1));
     e = hn::IfThenElse(hn::RebindMask(di, hn::Gt(place, count)), above, e);
     e = hn::IfThenElseZero(hn::RebindMask(di, hn::Ge(place, zero)), e);
     e = hn::IfThenElse(hn::RebindMask(di, hn::Eq(value, value)), e, none);
     return hn::ShiftLeft<2>(e);
+  }
+  /// False where none of these entries draws anything, as far as can be told at once.
+  HWY_INLINE bool may_draw([[maybe_unused]] Int<D> entry, hn::Mask<D> which) const {
+    if constexpr (lanes_of<D> == 16) {
+      const IntTag<D> di;
+      const auto word = hn::And(hn::ShiftRight<10>(entry), hn::Set(di, 15)), bit = hn::And(hn::ShiftRight<5>(entry), hn::Set(di, 31));
+      const auto words = hn::TableLookupLanes(drawn_eights, hn::IndicesFromVec(di, word));
+      return !hn::AllFalse(di, hn::And(hn::RebindMask(di, which), hn::TestBit(hn::Shr(words, bit), hn::Set(di, 1))));
+    }
+    return !hn::AllFalse(D(), which);
   }
 };
 
@@ -231,7 +245,7 @@ class March {
     if (skips(plan)) {
       Nearby<D> nearby;
       nearby.find(source, space, lanes);
-      leap(source, space, nearby, lanes, hn::Lt(lanes.s, lanes.end));
+      leap(space, nearby, lanes, hn::Lt(lanes.s, lanes.end));
     }
     hn::Store(lanes.s, d, next_);
     constexpr int lanes_here = lanes_of<D>;
@@ -246,7 +260,7 @@ class March {
     const Source<hn::CappedTag<float, 4>, T> by_fours(v.voxels);
     const Space<D> space(plan);
     const Transfer& transfer = v.transfer[0];
-    const Entries<D> entries(transfer.linear_table());
+    const Entries<D, T> entries(v);
     const auto* steps = reinterpret_cast<const float*>(transfer.steps());
     const bool skip = skips(plan);
     // Who asks for shorter steps wants to see each of them lit.
@@ -273,31 +287,37 @@ class March {
       alignas(64) float values[samples_per_look][most_lanes];
       if (crowded_) look.values(by_fours, values);
       else look.values(source, values);
-      if (skip) leap(source, space, nearby, lanes, hn::And(hn::Lt(lanes.s, lanes.end), bright));
+      if (skip) leap(space, nearby, lanes, hn::And(hn::Lt(lanes.s, lanes.end), bright));
       look_ahead(source, lanes, look);
       for (int k = 0; k < samples_per_look; ++k) {
         const F s = hn::Add(first, hn::Set(d, float(k))), value = hn::Load(d, values[k]);
         const auto entry = entries.at(value);
-        const auto [r_g, b_pass] = gather_quad(d, steps, entry, source.loads);
         const auto active = hn::And(hn::Lt(s, lanes.end), hn::Ge(pass, stop));
-        seen_half = hn::IfThenElse(hn::And(active, hn::Ge(pass, half)), s, seen_half);
-        const F weight = hn::IfThenElseZero(active, pass);
-        const F wr = hn::Mul(weight, r_g.a), wg = hn::Mul(weight, r_g.b), wb = hn::Mul(weight, b_pass.a);
         if constexpr (shaded) {
-          const F taken = hn::Mul(weight, hn::Sub(one, b_pass.b));
           const auto turned = due.turns(value);
           if (!hn::AllFalse(d, turned)) push(plan, due, turned);
-          due.r = hn::Add(due.r, wr), due.g = hn::Add(due.g, wg), due.b = hn::Add(due.b, wb);
-          due.taken = hn::Add(due.taken, taken), due.moment = mul_add(taken, s, due.moment);
+        }
+        if (entries.may_draw(entry, active)) {
+          const auto [r_g, b_pass] = gather_quad(d, steps, entry, source.loads);
+          seen_half = hn::IfThenElse(hn::And(active, hn::Ge(pass, half)), s, seen_half);
+          const F weight = hn::IfThenElseZero(active, pass);
+          const F wr = hn::Mul(weight, r_g.a), wg = hn::Mul(weight, r_g.b), wb = hn::Mul(weight, b_pass.a);
+          if constexpr (shaded) {
+            const F taken = hn::Mul(weight, hn::Sub(one, b_pass.b));
+            due.r = hn::Add(due.r, wr), due.g = hn::Add(due.g, wg), due.b = hn::Add(due.b, wb);
+            due.taken = hn::Add(due.taken, taken), due.moment = mul_add(taken, s, due.moment);
+          } else {
+            r = hn::Add(r, wr), g = hn::Add(g, wg), b = hn::Add(b, wb);
+          }
+          pass = hn::IfThenElse(active, hn::Mul(pass, b_pass.b), pass);
+        }
+        if constexpr (shaded) {
           if (k % 2 == 1 || !together) {
             const float enough = !together ? 0 : k + 1 < samples_per_look ? faint : faintest;
             const auto ready = hn::Gt(due.taken, hn::Set(d, enough));
             if (!hn::AllFalse(d, ready)) push(plan, due, ready);
           }
-        } else {
-          r = hn::Add(r, wr), g = hn::Add(g, wg), b = hn::Add(b, wb);
         }
-        pass = hn::IfThenElse(active, hn::Mul(pass, b_pass.b), pass);
       }
       first = lanes.s;
     }
@@ -314,7 +334,7 @@ class March {
     const Volume& v = plan.volume;
     const Source<D, T> source(v.voxels);
     const Transfer& transfer = v.transfer[0];
-    const Entries<D> entries(transfer.linear_table());
+    const Entries<D, T> entries(v);
     F pass = hn::Load(d, result.transmittance);
     alignas(64) float before[most_lanes];
     hn::Store(pass, d, before);
@@ -392,8 +412,8 @@ class March {
   std::conditional_t<shaded, ShadeQueue<D, T>, None> queue_;
 };
 
-constexpr int group = 16;  ///< pixels across of the packets that take turns
-constexpr float samples_per_turn = 32;
+constexpr int group = 16;               ///< pixels across of the packets that take turns
+constexpr float samples_per_turn = 96;  ///< fewer are better where nothing is empty, more where rays leap
 
 template <class D, class T, bool shaded>
 HWY_NOINLINE void march_all(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {

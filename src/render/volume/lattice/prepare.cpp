@@ -172,6 +172,7 @@ LatticeSamples take_samples(const VolumeItem& item, const Field& field, std::arr
   for (const MinMaxBricks::Range& r : v.bricks.ranges) {
     if (std::isfinite(r.lo)) v.lo = std::min(v.lo, double(r.lo));
     if (std::isfinite(r.hi)) v.hi = std::max(v.hi, double(r.hi));
+    v.infinite = v.infinite || (r.lo <= r.hi && !(std::isfinite(r.lo) && std::isfinite(r.hi)));
   }
   return v;
 }
@@ -282,6 +283,7 @@ Volume prepare(const VolumeItem& item, uint32_t id, const Knobs& knobs) {
   if (item.mode != VolumeItem::Mode::maximum) v.distance = distance_to_drawn(v.fine(), v.transfer[0], v.any_empty);
   v.kernels = knobs.simd ? best_kernels(v.voxels) : scalar_kernels(v.voxels);
   v.direct = !v.nearest && v.hidden().empty() && v.transfer[0].linear() && !v.samples->holes;
+  v.spanned = !v.samples->infinite && v.transfer[0].spans(float(lo), float(hi));
   // A gradient in q becomes one in the world by the transpose of world -> q.
   for (int r = 0; r < 3; ++r)
     for (int c = 0; c < 3; ++c) v.shade_plan.to_world[r][c] = float(v.to_q.m[c][r]);

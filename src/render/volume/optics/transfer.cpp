@@ -103,6 +103,12 @@ Transfer::Transfer(const ColorScale& scale, const OpacityCurve& curve, double un
     for (size_t i = begin; i < end; ++i) enter(int(i));
   });
   for (size_t i = 1; i < drawn_before_.size(); ++i) drawn_before_[i] += drawn_before_[i - 1];
+  for (int i = 0; i < count_ + 3; ++i) drawn_eights_[size_t(i) / 256 % 16] |= uint32_t(draws(i)) << i / 8 % 32;
+}
+
+bool Transfer::spans(float lo, float hi) const {
+  const float slack = 1e-3f;  // of an entry
+  return lo <= hi && (axis(lo) - first_) * per_axis_ >= -slack && (axis(hi) - first_) * per_axis_ <= float(count_) + slack;
 }
 
 bool Transfer::clear(float lo, float hi) const {

@@ -2,6 +2,7 @@
 // Transfer: from a value to the premultiplied colour and transmittance of one step, as a table; no transcendental function per sample.
 #pragma once
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -49,6 +50,10 @@ class Transfer {
   const Medium& medium(int index) const { return media_[size_t(index)]; }
   /// May values of this entry draw something? True also for spikes of opacity too narrow for the table.
   bool draws(int entry) const { return drawn_before_[size_t(entry) + 1] != drawn_before_[size_t(entry)]; }
+  /// Are all values in [lo, hi] (stored) among those between the ends, but for rounding errors of an entry's place?
+  bool spans(float lo, float hi) const;
+  /// Bit n tells whether some entry i with i / 8 % 512 = n draws, as above.
+  const std::array<uint32_t, 16>& drawn_eights() const { return drawn_eights_; }
   /// Does every value in [lo, hi] (stored) draw nothing?
   bool clear(float lo, float hi) const;
 
@@ -69,6 +74,7 @@ class Transfer {
   std::vector<Step> steps_;
   std::vector<Medium> media_;
   std::vector<uint32_t> drawn_before_;  // entries before this one that draw something
+  std::array<uint32_t, 16> drawn_eights_{};
 };
 
 }  // namespace sg::volume
