@@ -40,7 +40,7 @@ struct LatticeSamples {
   MinMaxBricks bricks;                   ///< for maxima
   double lo = HUGE_VAL, hi = -HUGE_VAL;  ///< of the finite values stored; lo > hi when there are none
   bool holes = false;                    ///< samples are cells, some without a value
-  bool infinite = false;                 ///< are some?
+  bool infinite = false;                 ///< some values stored are
 };
 
 struct Volume {

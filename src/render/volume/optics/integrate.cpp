@@ -194,7 +194,7 @@ class Pieces {
 
   /// The share [f0, f1], on which the value goes one way from a to b: cut where it meets the knots of the medium.
   void monotone(const Stretch& s, float f0, float f1, float a, float b) {
-    if (a != a || b != b) return;  // between values of opposite signs near the largest floats there are none
+    if (a != a || b != b) return;  // sums of values near the largest float may be no numbers
     const std::vector<Medium::Line>& lines = look_.medium.lines();
     int i = look_.medium.line_of(a);
     const bool up = b >= a;
