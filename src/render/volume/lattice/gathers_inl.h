@@ -36,7 +36,17 @@ struct Quad {
 };
 
 #if SG_HARDWARE_GATHERS
+/// Two numbers of each block of four from a, then two from b.
+template <int which>
+HWY_INLINE __m256 shuffled(__m256 a, __m256 b) {
+  return _mm256_shuffle_ps(a, b, which);
+}
 #if HWY_TARGET <= HWY_AVX3
+template <int which>
+HWY_INLINE __m512 shuffled(__m512 a, __m512 b) {
+  return _mm512_shuffle_ps(a, b, which);
+}
+
 // A gather of all lanes whose mask the compiler cannot see through: it would leave out the zeros, and then each gather waits for
 // what its register held before.
 HWY_INLINE __m512i gather_longs(const void* data, __m256i at) {
@@ -66,6 +76,10 @@ struct EightIndices {
 struct EightPairs {
   __m256 a, b;
 };
+/// The pairs of the lanes 0 1 4 5 side by side in x, those of 2 3 6 7 in y.
+struct LoadedPairs {
+  __m256 x, y;
+};
 
 template <class T>
 HWY_INLINE __m256 load_words(const T* data, const EightIndices& i) {
@@ -80,11 +94,14 @@ HWY_INLINE __m128 load_two_pairs(const float* first, const float* second) {
   const __m128i low = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(first));
   return _mm_loadh_pi(_mm_castsi128_ps(low), reinterpret_cast<const __m64*>(second));
 }
-HWY_INLINE EightPairs load_pairs(const float* data, const EightIndices& i) {
+HWY_INLINE LoadedPairs load_side_by_side(const float* data, const EightIndices& i) {
   const auto two = [&](int n) HWY_ATTR { return load_two_pairs(data + i.at[n], data + i.at[n + 1]); };
   const auto four = [&](int n) HWY_ATTR { return _mm256_insertf128_ps(_mm256_castps128_ps256(two(n)), two(n + 4), 1); };
-  const __m256 x = four(0), y = four(2);
-  return {_mm256_shuffle_ps(x, y, 0x88), _mm256_shuffle_ps(x, y, 0xDD)};
+  return {four(0), four(2)};
+}
+HWY_INLINE EightPairs load_pairs(const float* data, const EightIndices& i) {
+  const LoadedPairs p = load_side_by_side(data, i);
+  return {shuffled<0x88>(p.x, p.y), shuffled<0xDD>(p.x, p.y)};
 }
 HWY_INLINE Pair<hn::CappedTag<float, 4>> load_four_pairs(const float* data, const int32_t* at) {
   const __m128 x = load_two_pairs(data + at[0], data + at[1]), y = load_two_pairs(data + at[2], data + at[3]);
@@ -141,6 +158,31 @@ HWY_INLINE Int<D> gather_words([[maybe_unused]] D d, const void* data, Int<D> at
 #endif
   return hn::GatherOffset(IntTag<D>(), static_cast<const int32_t*>(data), at);
 }
+
+#if SG_HARDWARE_GATHERS
+/// Pairs as loads bring them: those of the lanes 0 1, 4 5, ... side by side in x, those of 2 3, 6 7, ... in y.
+template <class D>
+struct SideBySide {
+  using F = hn::Vec<D>;
+  F x, y;
+
+  /// A number of each lane beside itself.
+  static HWY_INLINE SideBySide twice(F f) { return {hn::InterleaveLower(D(), f, f), hn::InterleaveUpper(D(), f, f)}; }
+  HWY_INLINE Pair<D> by_lanes() const { return {F{shuffled<0x88>(x.raw, y.raw)}, F{shuffled<0xDD>(x.raw, y.raw)}}; }
+};
+/// data[on[r] + at] and the next number, for every r.
+template <class D, size_t n, class At>
+HWY_INLINE void load_side_by_side(D d, const float* data, const ptrdiff_t (&on)[n], At at, SideBySide<D>* out) {
+  __m256 x[n][2], y[n][2];
+  by_halves(d, at, [&](const EightIndices& i, int h) HWY_ATTR {
+    for (size_t r = 0; r < n; ++r) {
+      const LoadedPairs p = load_side_by_side(data + on[r], i);
+      x[r][h] = p.x, y[r][h] = p.y;
+    }
+  });
+  for (size_t r = 0; r < n; ++r) out[r] = {joined(d, x[r]), joined(d, y[r])};
+}
+#endif
 
 /// data[at] and data[at + 1], by gathers.
 template <class D>

@@ -79,6 +79,8 @@ struct Volume {
   const FineBricks& fine() const { return samples->fine; }
   const std::vector<uint8_t>& hidden() const { return samples->hidden; }
 
+  /// q = u, and all of the volume lies between samples; on axes on which 32-bit places on rays are off by less than a cell.
+  bool within_samples() const;
   Vec3 q(Vec3 world) const { return to_q * (world - origin); }
   /// Sample index of a place in q along one axis, clamped.
   float u(int axis, double q) const;

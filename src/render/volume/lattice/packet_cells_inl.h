@@ -38,9 +38,13 @@ struct RayLanes {
   F start[3], along[3];  ///< in q: where the rays enter, and one world length
   Gathering<D> sum;
 
-  HWY_INLINE RayLanes(const PacketPlan& p, const RayPacket& rays) : plan(p), source(p.volume.voxels), axes(p, source) {
+  HWY_INLINE RayLanes(const PacketPlan& p, const RayPacket& rays)
+      : plan(p), source(p.volume.voxels, p.volume.within_samples()), axes(p, source) {
     const D d;
-    for (int a = 0; a < 3; ++a) start[a] = hn::Load(d, rays.entry[a]), along[a] = hn::Load(d, rays.along[a]);
+    // Rays that miss stay where there are samples.
+    const M meets = hn::Gt(hn::Load(d, rays.length), hn::Zero(d));
+    const auto of_meeting = [&](const float* from) HWY_ATTR { return hn::IfThenElseZero(meets, hn::Load(d, from)); };
+    for (int a = 0; a < 3; ++a) start[a] = of_meeting(rays.entry[a]), along[a] = of_meeting(rays.along[a]);
   }
   /// The way from t to `leave` through a cell each, in shares of its edges.
   HWY_INLINE void way_through(const I cell[3], F t, F leave, F from[3], F way[3]) const {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How fast the field changes at one place of each lane: differences over two cells at the corners of a cell, trilinear between them, which
-// is the central difference of the trilinear field itself.
+// How fast the field changes at one place of each lane, and its value there: differences over two cells at the corners of a cell, trilinear
+// between them, which is the central difference of the trilinear field itself.
 #if defined(SG_PACKET_SLOPES_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SG_PACKET_SLOPES_INL_H
 #undef SG_PACKET_SLOPES_INL_H
@@ -19,6 +19,7 @@ template <class D>
 struct Slope {
   hn::Vec<D> x, y, z;
   hn::Vec<D> per_cell;  ///< change of the value over the length of a cell
+  hn::Vec<D> value;     ///< of the field, as Source::value() has it
 };
 
 template <class D, class T>
@@ -29,35 +30,36 @@ class SlopeFinder {
  public:
   HWY_INLINE SlopeFinder(const Source<D, T>& source, F x, F y, F z)
       : source_(source), at_{source.place(0, x), source.place(1, y), source.place(2, z)} {}
+  HWY_INLINE SlopeFinder(const Source<D, T>& source, const Place<D> at[3]) : source_(source), at_{at[0], at[1], at[2]} {}
 
   HWY_INLINE Slope<D> find() const {
     const D d;
     const I cell[3] = {at_[0].cell, at_[1].cell, at_[2].cell};
     const Around<D, T> around(source_, cell);
-    F change[3];
-    find(around, change);
+    F change[3], value;
+    find(around, change, value);
     if constexpr (std::is_same_v<T, float>) {
       const auto holes = hn::IsNaN(hn::Add(change[0], hn::Add(change[1], change[2])));
       if (!hn::AllFalse(d, holes)) find_beside_holes(around, holes, change);
     }
     F slope[3], square = hn::Zero(d);
     for (int a = 0; a < 3; ++a) slope[a] = hn::Mul(hn::Set(d, 0.5f), change[a]), square = mul_add(slope[a], slope[a], square);
-    return {slope[0], slope[1], slope[2], hn::Sqrt(square)};
+    return {slope[0], slope[1], slope[2], hn::Sqrt(square), value};
   }
 
  private:
   /// Along y and z first: what is left is four values in a row, and two differences of either.
-  HWY_INLINE void find(const Around<D, T>& around, F change[3]) const {
+  HWY_INLINE void find(const Around<D, T>& around, F change[3], F& value) const {
     const D d;
     const F fx = at_[0].fraction, fy = at_[1].fraction, fz = at_[2].fraction;
-    F value[4], y[2], z[2];
-    if (!rows_by_rays(around, value, y, z)) {
+    F row[4], y[2], z[2];
+    if (!rows_by_rays(around, row, y, z)) {
       Quad<D> own[4];
       Pair<D> beyond_y[4], beyond_z[4];
       around.rows(own), around.template beyond<1>(beyond_y), around.template beyond<2>(beyond_z);
       const Edge<D> edge_y = around.edge(1), edge_z = around.edge(2);
-      value[0] = mixed(d, mixed(d, own[0].low.a, own[1].low.a, fy), mixed(d, own[2].low.a, own[3].low.a, fy), fz);
-      value[3] = mixed(d, mixed(d, own[0].high.b, own[1].high.b, fy), mixed(d, own[2].high.b, own[3].high.b, fy), fz);
+      row[0] = mixed(d, mixed(d, own[0].low.a, own[1].low.a, fy), mixed(d, own[2].low.a, own[3].low.a, fy), fz);
+      row[3] = mixed(d, mixed(d, own[0].high.b, own[1].high.b, fy), mixed(d, own[2].high.b, own[3].high.b, fy), fz);
       for (int i = 0; i < 2; ++i) {
         F samples[12];
         for (int r = 0; r < 4; ++r) {
@@ -66,10 +68,11 @@ class SlopeFinder {
           samples[8 + r] = i == 0 ? beyond_z[r].a : beyond_z[r].b;
         }
         const RowSums<D> sums(samples, fy, fz, edge_y, edge_z);
-        value[1 + i] = sums.value, y[i] = sums.along_y, z[i] = sums.along_z;
+        row[1 + i] = sums.value, y[i] = sums.along_y, z[i] = sums.along_z;
       }
     }
-    change[0] = around.edge(0).change(value[0], value[1], value[2], value[3], fx);
+    value = mixed(d, row[1], row[2], fx);
+    change[0] = around.edge(0).change(row[0], row[1], row[2], row[3], fx);
     change[1] = mixed(d, y[0], y[1], fx), change[2] = mixed(d, z[0], z[1], fx);
   }
 
@@ -99,13 +102,22 @@ class SlopeFinder {
   const Place<D> at_[3];
 };
 
-/// The slopes at the places of the lanes that want them, found by vectors half as wide when those are few; the others' are anything.
+/// The slopes and values at the places of the lanes that want them; the others' are anything. Out of line: it is long.
+template <class D, class T>
+HWY_NOINLINE void slopes_of_most(const Source<D, T>& source, const Place<D> at[3], hn::Mask<D> wanted, Slope<D>& out) {
+  // Lanes that want none look at the middle, which is no border that would have to be looked after.
+  const auto kept = hn::RebindMask(IntTag<D>(), wanted);
+  Place<D> p[3];
+  for (int a = 0; a < 3; ++a) p[a] = {hn::IfThenElse(kept, at[a].cell, hn::ShiftRight<1>(source.last_cell[a])), at[a].fraction};
+  out = SlopeFinder<D, T>(source, p).find();
+}
+
+/// The same, found by vectors half as wide when those lanes are few.
 template <class D, class T>
 HWY_INLINE Slope<D> slopes_at(const Source<D, T>& source, [[maybe_unused]] const Voxels& voxels, const hn::Vec<D> u[3],
                               hn::Mask<D> wanted) {
   using F = hn::Vec<D>;
   const D d;
-  // Lanes that want none look at the middle, which is no border that would have to be looked after.
   F v[3];
   for (int a = 0; a < 3; ++a) v[a] = hn::Mul(hn::Set(d, 0.5f), source.top[a]);
 #if SG_HARDWARE_GATHERS && HWY_TARGET <= HWY_AVX3
@@ -114,9 +126,9 @@ HWY_INLINE Slope<D> slopes_at(const Source<D, T>& source, [[maybe_unused]] const
     if (hn::CountTrue(d, wanted) <= lanes_of<H>) {
       hn::Vec<H> few[3];
       for (int a = 0; a < 3; ++a) few[a].raw = _mm512_castps512_ps256(_mm512_mask_compress_ps(v[a].raw, wanted.raw, u[a].raw));
-      const Slope<H> found = SlopeFinder<H, T>(Source<H, T>(voxels), few[0], few[1], few[2]).find();
+      const Slope<H> found = SlopeFinder<H, T>(Source<H, T>(voxels, source.within), few[0], few[1], few[2]).find();
       const auto back = [&](hn::Vec<H> x) HWY_ATTR { return F{_mm512_maskz_expand_ps(wanted.raw, _mm512_castps256_ps512(x.raw))}; };
-      return {back(found.x), back(found.y), back(found.z), back(found.per_cell)};
+      return {back(found.x), back(found.y), back(found.z), back(found.per_cell), back(found.value)};
     }
   }
 #endif

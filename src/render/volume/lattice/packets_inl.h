@@ -56,8 +56,10 @@ struct Source {
   Int<D> last_cell[3];
   ptrdiff_t to_row, to_layer;  ///< row and layer as numbers of samples
   bool loads;                  ///< of gathers.h
+  bool within;                 ///< no place that is asked for lies beyond the outermost samples, but for rounding
 
-  HWY_INLINE explicit Source(const Voxels& voxels) : data(reinterpret_cast<const T*>(voxels.array.raw())), loads(loads_beat_gathers()) {
+  HWY_INLINE explicit Source(const Voxels& voxels, bool all_within = false)
+      : data(reinterpret_cast<const T*>(voxels.array.raw())), loads(loads_beat_gathers()), within(all_within) {
     const D d;
     const IntTag<D> di;
     to_row = ptrdiff_t(voxels.dims[0]), to_layer = ptrdiff_t(voxels.dims[0] * voxels.dims[1]);
@@ -67,9 +69,9 @@ struct Source {
   }
   HWY_INLINE Place<D> place(int axis, hn::Vec<D> u) const {
     const D d;
-    const auto x = hn::Max(hn::Zero(d), hn::Min(u, top[axis]));
-    const auto cell = hn::Min(to_int(d, x), last_cell[axis]);
-    return {cell, hn::Sub(x, hn::ConvertTo(d, cell))};
+    if (!within) u = hn::Max(hn::Zero(d), hn::Min(u, top[axis]));
+    const auto cell = hn::Min(to_int(d, u), last_cell[axis]);
+    return {cell, hn::Sub(u, hn::ConvertTo(d, cell))};
   }
   /// For places that are known to lie in [0, top).
   HWY_INLINE Place<D> inner_place(hn::Vec<D> u) const {
@@ -98,15 +100,43 @@ struct Source {
   HWY_INLINE hn::Vec<D> value(const Place<D>& x, const Place<D>& y, const Place<D>& z) const {
     return value(offset(x.cell, y.cell, z.cell), x.fraction, y.fraction, z.fraction);
   }
-  /// At the fractions of the cell whose lowest corner is sample `at`.
+  /// At the fractions of the cell whose lowest corner is sample `at`. Along x last, as SlopeFinder does: the same bits.
   template <class At>
   HWY_INLINE hn::Vec<D> value(At at, hn::Vec<D> fx, hn::Vec<D> fy, hn::Vec<D> fz) const {
     const D d;
-    Pair<D> p[4];
-    corners(at, p);
-    const auto v0 = mixed(d, mixed(d, p[0].a, p[0].b, fx), mixed(d, p[1].a, p[1].b, fx), fy);
-    const auto v1 = mixed(d, mixed(d, p[2].a, p[2].b, fx), mixed(d, p[3].a, p[3].b, fx), fy);
-    return mixed(d, v0, v1, fz);
+    Pair<D> p;
+    if (!value_of_loads(at, fy, fz, p)) {
+      Pair<D> rows[4];
+      corners(at, rows);
+      p.a = across(rows[0].a, rows[1].a, rows[2].a, rows[3].a, fy, fz);
+      p.b = across(rows[0].b, rows[1].b, rows[2].b, rows[3].b, fy, fz);
+    }
+    return mixed(d, p.a, p.b, fx);
+  }
+
+ private:
+  static HWY_INLINE hn::Vec<D> across(hn::Vec<D> v0, hn::Vec<D> v1, hn::Vec<D> v2, hn::Vec<D> v3, hn::Vec<D> fy, hn::Vec<D> fz) {
+    const D d;
+    return mixed(d, mixed(d, v0, v1, fy), mixed(d, v2, v3, fy), fz);
+  }
+  /// Both values along x where numbers are loaded lane by lane: their rows are mixed while the pairs are side by side.
+  template <class At>
+  HWY_INLINE bool value_of_loads([[maybe_unused]] At at, [[maybe_unused]] hn::Vec<D> fy, [[maybe_unused]] hn::Vec<D> fz,
+                                 [[maybe_unused]] Pair<D>& out) const {
+#if SG_HARDWARE_GATHERS
+    if constexpr (std::is_same_v<T, float> && lanes_of<D> >= 8) {
+      if (loads) {
+        SideBySide<D> rows[4];
+        load_side_by_side(D(), data, {0, to_row, to_layer, to_layer + to_row}, at, rows);
+        const auto y = SideBySide<D>::twice(fy), z = SideBySide<D>::twice(fz);
+        out = SideBySide<D>{across(rows[0].x, rows[1].x, rows[2].x, rows[3].x, y.x, z.x),
+                            across(rows[0].y, rows[1].y, rows[2].y, rows[3].y, y.y, z.y)}
+                  .by_lanes();
+        return true;
+      }
+    }
+#endif
+    return false;
   }
 };
 

@@ -148,7 +148,12 @@ class TolerantPacket : CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>> {
     const I bend_code = bends_around(here, between, longer_pair);
     const F bend = hn::Mul(hn::BitCast(d, hn::Add(hn::ShiftLeft<21>(bend_code), hn::Set(di, (127 + Bends::least) << 23))),
                            hn::Set(d, plan_.passages->bends->range));
-    const auto p1 = sums_.at(value_at(between)), p2 = sums_.at(value_at(there));
+    // Where most lanes are lit already the slopes are found together with the values.
+    const bool lit_ahead = shaded && 2 * hn::CountTrue(d, hn::And(striding, lit_)) > hn::Lanes(d);
+    const F value1 = value_at(between);
+    Slope<D> slope2;
+    if (lit_ahead) slopes_of_most(cells_.source, there, striding, slope2);
+    const auto p1 = sums_.at(value1), p2 = sums_.at(lit_ahead ? slope2.value : value_at(there));
     const Strides<D> s = strides<shaded>(sums_, *plan_.medium, float(plan_.budget.tolerance), here_, p1, p2, world, cells, bend);
     const F zero = hn::Zero(d), one = hn::Set(d, 1.0f), tolerance = hn::Set(d, float(plan_.budget.tolerance));
     const F pass = cells_.sum.pass, taken = hn::Mul(pass, hn::Min(one, s.depth));
@@ -163,7 +168,7 @@ class TolerantPacket : CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>> {
     StrideLight<D> light;
     if constexpr (shaded)
       if (any_seen) {
-        lit2 = light_ends(t, t2, seen);
+        lit2 = light_ends(t, t2, lit_ahead ? &slope2 : nullptr, seen);
         const F swerve = path_.swerve(here_lit_, lit2, hn::Sub(t2, t));
         light = StrideLight<D>::straight(cells_.lighting, here_lit_, lit2, swerve);
         const auto over = hn::Eq(hn::Xor(here_lit_.sides, lit2.sides), cells_.lighting.turned_over());
@@ -232,16 +237,17 @@ class TolerantPacket : CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>> {
     return p;
   }
 
-  /// The light at t2, and at t for those lanes of `seen` that do not know it. Lanes that are not seen help: they look for others.
-  HWY_INLINE LitPlace<D> light_ends(F t, F t2, M seen) {
+  /// The light at t2, whose slopes may be known, and at t for those lanes of `seen` that do not know it. Lanes that are not seen help: they
+  /// look for others.
+  HWY_INLINE LitPlace<D> light_ends(F t, F t2, const Slope<D>* slope2, M seen) {
     const D d;
     const IntTag<D> di;
     const M dark = hn::AndNot(lit_, seen);
     lit_ = hn::Or(lit_, seen);
     const bool any_dark = !hn::AllFalse(d, dark);
-    if (!any_dark || hn::CountTrue(d, dark) + hn::CountTrue(d, seen) > hn::Lanes(d)) {
+    if (slope2 || !any_dark || hn::CountTrue(d, dark) + hn::CountTrue(d, seen) > hn::Lanes(d)) {
       if (any_dark) here_lit_.take(lit_at(t, dark), dark);
-      return lit_at(t2, seen);
+      return slope2 ? LitPlace<D>::at(cells_.lighting, *slope2) : lit_at(t2, seen);
     }
     alignas(64) int32_t from[most_lanes], to[most_lanes];
     uint8_t bits[2][8] = {};

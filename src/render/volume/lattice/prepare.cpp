@@ -216,6 +216,13 @@ void lay_borders(Volume& v) {
 
 }  // namespace
 
+bool Volume::within_samples() const {
+  constexpr size_t most = 1 << 20;  // of numbers with 24 bits, which some roundings add up
+  for (size_t a = 0; a < 3; ++a)
+    if (lo[int(a)] < 0 || hi[int(a)] > double(voxels.dims[a] - 1) || voxels.dims[a] > most) return false;
+  return affine;
+}
+
 float Volume::u(int a, double q) const {
   if (affine) return float(std::clamp(q, 0.0, double(voxels.dims[size_t(a)] - 1)));
   const std::vector<double>& c = coordinates[a];

@@ -30,18 +30,6 @@ struct RowSums {
 };
 
 #if SG_HARDWARE_GATHERS
-/// Two numbers of each block of four from a, then two from b.
-template <int which>
-HWY_INLINE __m256 shuffled(__m256 a, __m256 b) {
-  return _mm256_shuffle_ps(a, b, which);
-}
-#if HWY_TARGET <= HWY_AVX3
-template <int which>
-HWY_INLINE __m512 shuffled(__m512 a, __m512 b) {
-  return _mm512_shuffle_ps(a, b, which);
-}
-#endif
-
 /// Four numbers each of rays n, 4 + n, ...
 template <class D>
 HWY_INLINE hn::Vec<D> blocks_of(D, const float* data, const int32_t* at) {
