@@ -230,6 +230,7 @@ HWY_INLINE void gather_pairs(D d, const float* data, const ptrdiff_t (&on)[n], A
   }
   if constexpr (lanes_of<D> >= 8) {
     if (loads) {
+      // Told apart by eights: sixteen at a time, from SideBySide, takes 8 to 12 % longer in fixed steps.
       __m256 a[n][2], b[n][2];
       by_halves(d, at, [&](const EightIndices& i, int h) HWY_ATTR {
         for (size_t r = 0; r < n; ++r) {
