@@ -14,8 +14,24 @@ Dataset::Dataset(DatasetParts parts)
       cells_(sg::cell_count(parts_.mesh)),
       memo_(std::make_shared<Memo>()) {}
 
+namespace {
+
+// A mesh without points has an empty list of 3-vectors, not of nothing in particular: what copies it may rely on that.
+void shape_empty_points(Mesh& mesh) {
+  std::visit(
+      [](auto& m) {
+        if constexpr (requires { m.points.xyz; }) {
+          if (m.points.xyz.empty() && m.points.xyz.components() != 3) m.points.xyz = Array(Buffer{}, ElementType::f32, 0, 3);
+        }
+      },
+      mesh);
+}
+
+}  // namespace
+
 DatasetPtr make_dataset(DatasetParts parts) {
   validate(parts.mesh);
+  shape_empty_points(parts.mesh);
   const size_t points = point_count(parts.mesh), cells = cell_count(parts.mesh);
   for (const Field& f : parts.fields) {
     if (f.association == Association::whole) continue;

@@ -6,6 +6,7 @@
 #include "data/cell_topology.h"
 #include "filter/mesh/face_matching.h"
 #include "filter/mesh/faces_impl.h"
+#include "filter/mesh/hanging_faces.h"
 
 namespace sg::detail {
 
@@ -135,7 +136,8 @@ class ChunkWalk {
 
 std::vector<SurfaceChunk> unstructured_faces(const UnstructuredMesh& mesh, const std::vector<uint8_t>& states,
                                              std::vector<CurvedChunk>& curved, const Context& ctx) {
-  const FaceMarks marks = match_faces(mesh, states, ctx);
+  FaceMarks marks = match_faces(mesh, states, ctx);
+  unmark_hanging_faces(mesh, marks, ctx);
   const PointReader at(mesh.points);
   const size_t cells = mesh.cells.size();
   std::array<int, 256> dimension{};  // looked up once per type, not per cell
