@@ -5,6 +5,8 @@
 #include "data/bricked.h"
 #include "data/lattice.h"
 #include "data/memo.h"
+#include "data/own_indices.h"
+#include "data/trusted.h"
 
 namespace sg {
 
@@ -15,6 +17,7 @@ Dataset::Dataset(DatasetParts parts)
       memo_(std::make_shared<Memo>()) {}
 
 DatasetPtr make_dataset(DatasetParts parts) {
+  if (!detail::mesh_is_trusted()) own_indices(parts.mesh);
   validate(parts.mesh);
   const size_t points = point_count(parts.mesh), cells = cell_count(parts.mesh);
   for (const Field& f : parts.fields) {
