@@ -8,6 +8,7 @@
 #include <new>
 
 #include "base/error.h"
+#include "base/mapped_watch.h"
 #include "base/parallel.h"
 #include "cli/info.h"
 #include "data/memory_budget.h"
@@ -71,6 +72,7 @@ int cli_main(int argc, char** argv) {
     ::signal(SIGPIPE, SIG_IGN);
     const int status = dispatch_command(o, context);
     interruptible = nullptr;
+    check_files_unchanged();  // what was said on stdout
     if (std::fflush(stdout) != 0) fail_data("standard output cannot be written");
     return status;
   } catch (const Error& e) {

@@ -5,6 +5,8 @@
 #include "data/bricked.h"
 #include "data/lattice.h"
 #include "data/memo.h"
+#include "data/own_indices.h"
+#include "data/trusted.h"
 
 namespace sg {
 
@@ -30,6 +32,7 @@ void shape_empty_points(Mesh& mesh) {
 }  // namespace
 
 DatasetPtr make_dataset(DatasetParts parts) {
+  if (!detail::mesh_is_trusted()) own_indices(parts.mesh);
   validate(parts.mesh);
   shape_empty_points(parts.mesh);
   const size_t points = point_count(parts.mesh), cells = cell_count(parts.mesh);

@@ -11,15 +11,21 @@ namespace sg {
 
 namespace {
 std::atomic<size_t> limit{0}, in_use{0};
+thread_local detail::ClaimWatch* innermost = nullptr;
 }  // namespace
 
 void set_memory_limit(size_t bytes) {
   limit = bytes;
   if (bytes) keep_freed_blocks(0);  // what is kept for later counts for the system
 }
+size_t memory_limit() { return limit; }
 size_t array_memory() { return in_use; }
 
+detail::ClaimWatch::ClaimWatch() : outer_(std::exchange(innermost, this)) {}
+detail::ClaimWatch::~ClaimWatch() { innermost = outer_; }
+
 void detail::claim_memory(size_t bytes) {
+  if (innermost) innermost->on_claim(bytes);
   const size_t before = in_use.fetch_add(bytes);
   const size_t most = limit;
   if (most == 0 || before + bytes <= most) return;
