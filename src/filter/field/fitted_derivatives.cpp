@@ -27,6 +27,14 @@ class IdList {
     if (2 * ids_.size() >= table_.size()) grow();
     if (claim(id)) ids_.push_back(id);
   }
+  bool contains(int64_t id) const {
+    const size_t mask = table_.size() - 1;
+    for (size_t at = place(id);; ++at) {
+      const Entry& e = table_[at & mask];
+      if (e.stamp != stamp_) return false;
+      if (e.id == id) return true;
+    }
+  }
   const std::vector<int64_t>& ids() const { return ids_; }
 
  private:
@@ -34,9 +42,10 @@ class IdList {
     int64_t id = -1;
     uint32_t stamp = 0;
   };
+  static size_t place(int64_t id) { return size_t(uint64_t(id) * 0x9e3779b97f4a7c15u >> 40); }
   bool claim(int64_t id) {
     const size_t mask = table_.size() - 1;
-    for (size_t at = size_t(uint64_t(id) * 0x9e3779b97f4a7c15u >> 40) & mask;; at = (at + 1) & mask) {
+    for (size_t at = place(id) & mask;; at = (at + 1) & mask) {
       Entry& e = table_[at];
       if (e.stamp == stamp_ && e.id == id) return false;
       if (e.stamp == stamp_) continue;
@@ -89,16 +98,16 @@ class Surroundings {
     normal_ = {0, 0, 0};
     if (on_ == Association::cell) {
       open_cell(i);
-      dimension_ = reader_.dimension();
+      dimension_ = cell_dimension_;
       if (dimension_ == 2) add_normal(0, reader_.at().size());
       grow();
       return;
     }
     for (const uint32_t c : cells_[i]) {
       open_cell(c);
-      if (reader_.dimension() < dimension_) continue;
-      if (reader_.dimension() > dimension_) {  // what was found before does not count
-        dimension_ = reader_.dimension();
+      if (cell_dimension_ < dimension_) continue;
+      if (cell_dimension_ > dimension_) {  // what was found before does not count
+        dimension_ = cell_dimension_;
         found_.clear(), found_.add(int64_t(i));
       }
       add_points(int64_t(i));
@@ -109,6 +118,7 @@ class Surroundings {
   /// One ring more; false when there is none.
   bool grow() {
     const size_t end = found_.ids().size();
+    if (begin_ == 1) visited_.clear();
     for (size_t k = begin_; k < end; ++k) add_around(size_t(found_.ids()[k]));
     begin_ = end;
     return found_.ids().size() > end;
@@ -120,17 +130,22 @@ class Surroundings {
 
  private:
   void open_cell(size_t cell) {
-    if (opened_ != cell) reader_.open(cell), opened_ = cell;
+    if (opened_ == cell) return;
+    reader_.open(cell);
+    opened_ = cell;
+    if (reader_.type() != type_) type_ = reader_.type(), cell_dimension_ = reader_.dimension();
   }
-  // f(begin, end) for the nodes of the open cell that lie about one of its points: all, but of polylines and strips, which may be as
+  // How many nodes before and after one of its points the open cell's neighbours are: all, but of polylines and strips, which may be as
   // long as the mesh, those of the segments or triangles that use it.
+  size_t reach() const { return reader_.type() == CellType::poly_line ? 1 : reader_.type() == CellType::triangle_strip ? 2 : SIZE_MAX; }
+  // f(begin, end) for the nodes of the open cell within reach of one of its points.
   template <class F>
   void about(int64_t point, F&& f) {
     const auto ids = reader_.ids();
-    const size_t reach = reader_.type() == CellType::poly_line ? 1 : reader_.type() == CellType::triangle_strip ? 2 : ids.size();
-    if (ids.size() <= reach + 1) return f(size_t(0), ids.size());
+    const size_t near = reach();
+    if (near >= ids.size()) return f(size_t(0), ids.size());
     for (size_t k = 0; k < ids.size(); ++k)
-      if (ids[k] == point) f(k - std::min(k, reach), std::min(k + reach + 1, ids.size()));
+      if (ids[k] == point) f(k - std::min(k, near), std::min(k + near + 1, ids.size()));
   }
   void add_points(int64_t about_point) {
     about(about_point, [&](size_t begin, size_t end) {
@@ -150,8 +165,10 @@ class Surroundings {
   void add_around(size_t i) {
     if (on_ == Association::point) {
       for (const uint32_t c : cells_[i]) {
+        if (visited_.contains(c)) continue;
         open_cell(c);
-        if (reader_.dimension() != dimension_) continue;
+        if (reach() == SIZE_MAX) visited_.add(c);
+        if (cell_dimension_ != dimension_) continue;
         add_points(int64_t(i));
       }
       return;
@@ -168,9 +185,11 @@ class Surroundings {
   const PointCells& cells_;
   const CellDimensions* dimensions_;
   View<double> at_;
-  IdList found_;
+  IdList found_, visited_;    // places; cells that gave theirs
   size_t begin_ = 0;          // of the last ring
   size_t opened_ = SIZE_MAX;  // the reader's cell
+  CellType type_ = CellType::empty;
+  int cell_dimension_ = 0;
   std::vector<int64_t> points_;
   int dimension_ = 0;
   Vec3 normal_;
@@ -259,15 +278,20 @@ class Worker {
     while (fit_.determined() < QuadraticFit::well_determined && rings < most_rings) {
       const size_t before = used_.size();
       const double determined = fit_.determined();
-      const size_t undetermined = fit_.undetermined();
       if (!around_.grow()) break;
       ++rings;
       choose(i, c);
       if (used_.size() == before) continue;
       fit_.place(offsets_, dimension, around_.normal());
-      if (before < enough || fit_.undetermined() < undetermined || fit_.determined() > worth_a_ring * determined + least_gain) continue;
-      used_.resize(before), offsets_.resize(before);  // nothing gained: nearer ones alone
-      fit_.place(offsets_, dimension, around_.normal());
+      if (before < enough || fit_.determined() > worth_a_ring * determined + least_gain) continue;
+      // Nothing gained in the worst direction, as in a mesh of one layer of cells; perhaps in another one. Else nearer places do.
+      const size_t undetermined = fit_.undetermined();
+      fit_.place(std::span(offsets_).first(before), dimension, around_.normal());
+      if (undetermined < fit_.undetermined()) {
+        fit_.place(offsets_, dimension, around_.normal());
+        continue;
+      }
+      used_.resize(before), offsets_.resize(before);
       break;
     }
   }

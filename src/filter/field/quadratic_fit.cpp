@@ -63,7 +63,6 @@ void QuadraticFit::place(std::span<const Vec3> offsets, int dimension, Vec3 norm
   }
   split_ = bent_ = false;
   undetermined_ = 0;
-  if (determined_ < well_determined) split_products();
   if (dimension < 3) fit_heights(offsets);
 }
 
@@ -208,6 +207,7 @@ void QuadraticFit::split_products() {
 
 // right_ (weighted, overwritten) to derivatives along the axes; those not determined are 0.
 void QuadraticFit::fit(double* slope, double* bend) {
+  split_when_poor();
   const auto n = size_t(dimension_), products = columns_ - n;
   for (size_t c = 0; c < rank_; ++c) {  // Q^T b
     const double* v = q_.data() + order_[c] * rows_;

@@ -30,10 +30,13 @@ class QuadraticFit {
   /// while linear() is true.
   void solve(std::span<const double> differences, Vec3& gradient, double* hessian);
   /// How many derivatives, or combinations of them, are taken as 0.
-  size_t undetermined() const { return undetermined_; }
+  size_t undetermined() {
+    split_when_poor();
+    return undetermined_;
+  }
   /// All first derivatives are determined; all second ones are too.
   bool linear() const { return slopes_ == size_t(dimension_); }
-  bool quadratic() const { return undetermined_ == 0; }
+  bool quadratic() { return undetermined() == 0; }
   /// Neighbours that a parabola needs.
   static size_t needed(int dimension) { return size_t(dimension + dimension * (dimension + 1) / 2); }
 
@@ -44,6 +47,9 @@ class QuadraticFit {
   void factorise(std::span<const Vec3> offsets);
   void fill_columns(std::span<const Vec3> offsets);
   void take_columns(size_t begin, size_t end, double smallest);
+  void split_when_poor() {
+    if (determined_ < well_determined && !split_) split_products();
+  }
   void split_products();
   void fit_heights(std::span<const Vec3> offsets);
   void fit(double* slope, double* bend);
