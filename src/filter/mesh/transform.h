@@ -30,7 +30,7 @@ inline void describe(Schema& s, TransformParams& p) {
     "Turns and scales fields of vectors, normals (which stay perpendicular and of length 1) and tensors with the mesh; false: no field.");
   s("unmarked", p.fields.unmarked,
     "Also fields that nothing marks: of 3 floats as vectors, as streamlines follow them (not when their name says color, rgb, texture or "
-    "the like), of 9 and 6 as tensors, of 2 as vectors when they are the only flow. A note names them; false: only marked ones.");
+    "the like), of 9 and 6 as tensors, of 2 on a mesh of equal z as vectors. A note names them; false: only marked ones.");
   s("turn", p.fields.turn, "Further fields to turn, by name: as tensors those of 9, 7, 6 and 4 components, as vectors those of 3 and 2.");
   s("keep", p.fields.keep, "Fields that stay as they are, by name.");
   s("gradients", p.fields.gradients,

@@ -179,8 +179,7 @@ FieldLaw field_law(const Dataset& d, const Field& f, const FieldLawParams& p) {
   if (!p.unmarked || !plain || !is_float(f.array.type()) || says_colors_or_texture(f.name)) return FieldLaw::none;
   if (n == 3) return vector_law(f);
   if (n == 9 || n == 6) return tensor_law(f);
-  // What flow operations take when nothing else is there (flow_field_of).
-  if (n == 2 && !d.fields().with_role(Role::vectors) && !d.fields().active(3) && d.fields().active(2) == &f) return vector_law(f);
+  if (n == 2 && d.bounds().size().z == 0) return vector_law(f);  // a flow of the plane
   return FieldLaw::none;
 }
 
