@@ -2,30 +2,26 @@
 #include "base/file.h"
 
 #include <dirent.h>
-#include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <cctype>
 #include <cerrno>
 #include <cstring>
 
 #include "base/error.h"
+#include "base/file_fence.h"
 #include "base/mapped_watch.h"
 #include "base/parallel.h"
+#include "base/partial_file.h"
 
 namespace sg {
 
 MappedFile::MappedFile(const std::string& path) : path_(path) {
-  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (fd < 0) fail_data(errno == ENOENT ? "no such file" : std::string("cannot be opened: ") + std::strerror(errno), path);
+  const int fd = open_plain_file(path);
   struct stat st {};
-  if (::fstat(fd, &st) != 0 || S_ISDIR(st.st_mode)) {
-    ::close(fd);
-    fail_data("is a folder, not a file", path, "name a file in it");
-  }
+  if (::fstat(fd, &st) != 0) st.st_size = 0;
   size_ = size_t(st.st_size);
   if (size_ == 0) {
     ::close(fd);
@@ -47,14 +43,6 @@ MappedFile::MappedFile(const std::string& path) : path_(path) {
   data_ = static_cast<const std::byte*>(p);
 }
 
-namespace {
-// Two writers of one path, in one process or in two, must not share a partial file.
-std::string partial_name(const std::string& path) {
-  static std::atomic<unsigned> count{0};
-  return fmt::format("{}.partial-{}-{}", path, ::getpid(), count++);
-}
-}  // namespace
-
 void MappedFile::release(const std::byte* begin, const std::byte* end) const noexcept {
   const auto page = size_t(::sysconf(_SC_PAGESIZE));
   const size_t from = (size_t(begin - data_) + page - 1) / page * page, to = size_t(end - data_) / page * page;
@@ -73,20 +61,19 @@ void MappedFile::copy_to(void* to, size_t offset, size_t bytes) const {
   });
 }
 
-AtomicFile::AtomicFile(const std::string& path) : path_(path), partial_(partial_name(path)) {
-  struct stat st {};
-  if (::stat(path.c_str(), &st) == 0 && S_ISDIR(st.st_mode)) fail_data("cannot be written: it is a folder", path);
-  file_ = std::fopen(partial_.c_str(), "wb");
-  if (!file_) {
-    if (errno == ENOENT) fail_data("cannot be written: the folder does not exist", path, "make the folder first");
-    fail("cannot be written");
-  }
+AtomicFile::AtomicFile(const std::string& path) : path_(path) {
+  const int fd = create_partial(path, partial_);
+  file_ = ::fdopen(fd, "wb");
+  if (file_) return;
+  ::close(fd), ::unlink(partial_.c_str());
+  fail("cannot be written");
 }
 
 AtomicFile::~AtomicFile() {
   if (!file_) return;
   std::fclose(file_);
   ::unlink(partial_.c_str());
+  forget_partial(partial_);
 }
 
 void AtomicFile::fail(const char* what) const { fail_data(std::string(what) + ": " + std::strerror(errno ? errno : EIO), path_); }
@@ -103,6 +90,7 @@ void AtomicFile::commit() {
   if (std::fflush(file_) != 0) fail("write failed");
   const int closed = std::fclose(file_);
   file_ = nullptr;
+  forget_partial(partial_);
   if (closed != 0 || ::rename(partial_.c_str(), path_.c_str()) != 0) {
     const int error = errno;
     ::unlink(partial_.c_str());
@@ -150,6 +138,7 @@ bool natural_less(std::string_view a, std::string_view b) {
 }
 
 std::vector<std::string> folder_entries(const std::string& path) {
+  check_may_read(path);
   DIR* folder = ::opendir(path.c_str());
   if (!folder) fail_data(std::string("cannot be listed: ") + std::strerror(errno), path);
   std::vector<std::string> names;

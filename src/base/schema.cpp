@@ -27,7 +27,7 @@ std::string range_text(const ParamDecl& d) {
 struct Setter {
   const ParamDecl& decl;
   std::string where;
-  std::string_view text;
+  std::string_view text, given;  // without the blanks around it, and with them
 
   [[noreturn]] void fail(const std::string& wanted) const { fail(wanted, text); }
   // `part` is the item of a list that is wrong.
@@ -74,8 +74,8 @@ struct Setter {
   }
   void operator()(int64_t* p) const { *p = integer(text); }
   void operator()(double* p) const { *p = number(text); }
-  void operator()(std::string* p) const { *p = word(text); }
-  void operator()(FieldName* p) const { p->name = std::string(text); }
+  void operator()(std::string* p) const { *p = decl.unit_.ends_with("file") ? std::string(given) : word(text); }
+  void operator()(FieldName* p) const { p->name = std::string(given); }  // blanks at its ends may belong to it
   void operator()(Vec3* p) const { *p = triple(); }
   void operator()(std::optional<double>* p) const { *p = text == "auto" ? std::optional<double>() : number(text); }
   void operator()(std::optional<Vec3>* p) const { *p = text == "auto" ? std::optional<Vec3>() : triple(); }
@@ -127,7 +127,7 @@ void set_param(Schema& schema, std::string_view name, std::string_view text, std
     for (const ParamDecl& d : schema.decls()) names.push_back(d.name);
     fail_usage(fmt::format("unknown parameter '{}'", name), std::string(owner), unknown_name_hint(name, names));
   }
-  std::visit(Setter{*decl, fmt::format("{} {}", owner, name), trim(text)}, decl->ref);
+  std::visit(Setter{*decl, fmt::format("{} {}", owner, name), trim(text), text}, decl->ref);
 }
 
 void set_params(Schema& schema, const std::vector<std::string>& words, std::string_view owner) {

@@ -5,6 +5,7 @@
 #include <charconv>
 
 #include "base/error.h"
+#include "base/utf8.h"
 
 namespace sg {
 
@@ -166,13 +167,19 @@ std::string human_bytes(uint64_t bytes) {
 }
 
 std::string json_string(std::string_view s) {
+  // Names may hold any bytes: the text is UTF-8 all the same, and does nothing to a terminal that it is printed on.
+  const std::string text = text_of_bytes(s);
   std::string r = "\"";
-  for (const char c : s) {
-    if (c == '"' || c == '\\') r += '\\', r += c;
+  for (size_t i = 0; i < text.size();) {
+    uint32_t c = 0;
+    const size_t n = decode_utf8(text, i, c);
+    if (c == '"' || c == '\\') r += '\\', r += char(c);
     else if (c == '\n') r += "\\n";
     else if (c == '\t') r += "\\t";
-    else if (static_cast<unsigned char>(c) < 0x20) r += fmt::format("\\u{:04x}", int(c));
-    else r += c;
+    else if (!is_control(c)) r.append(text, i, n);
+    else if (c < 0x10000) r += fmt::format("\\u{:04x}", c);
+    else r += fmt::format("\\u{:04x}\\u{:04x}", 0xd7c0 + (c >> 10), 0xdc00 + (c & 0x3ff));
+    i += n;
   }
   return r + '"';
 }

@@ -4,13 +4,19 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <new>
 
 #include "base/error.h"
+#include "base/file_fence.h"
 #include "base/mapped_watch.h"
 #include "base/parallel.h"
+#include "base/partial_file.h"
+#include "base/utf8.h"
 #include "cli/info.h"
+#include "cli/say.h"
+#include "cli/spool.h"
 #include "data/memory_budget.h"
 #include "io/plugin.h"
 
@@ -19,9 +25,40 @@ namespace sg {
 namespace {
 
 Context* interruptible = nullptr;
+volatile std::sig_atomic_t stopped_by = 0;
 
-void on_interrupt(int) {
-  if (interruptible) interruptible->cancel();
+// The first signal lets the work stop and clean up after itself, the second ends the program at once.
+void on_signal(int signal) {
+  if (interruptible && !interruptible->cancelled()) {
+    stopped_by = signal;
+    interruptible->cancel();
+    return;
+  }
+  remove_partials_at_exit();
+  ::signal(signal, SIG_DFL);
+  ::raise(signal);
+}
+
+void catch_signals() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction before {
+    }, ours{};
+    ::sigaction(signal, nullptr, &before);
+    if (before.sa_handler == SIG_IGN) continue;  // nohup, or a shell's background
+    ours.sa_handler = on_signal;
+    ::sigemptyset(&ours.sa_mask);
+    ::sigaction(signal, &ours, nullptr);
+  }
+  ::signal(SIGPIPE, SIG_IGN);
+}
+
+// Out of a pipe comes at most this much, unless --memory says more.
+constexpr size_t most_piped = size_t(1) << 30;
+
+Options with_streams(Options o, const Context& context) {
+  if (o.command == "ops" || o.command == "demo") return o;
+  for (std::string& path : o.inputs) path = spooled(path, o.memory ? o.memory : most_piped, context);
+  return o;
 }
 
 // Messages go to stderr, so that stdout holds results alone.
@@ -31,12 +68,12 @@ void connect(Context& context, const Options& o) {
   set_plugin_memory(o.memory);
   context.on_log = [quiet = o.quiet, verbose = o.verbose](LogLevel level, std::string_view text) {
     if (quiet || (level == LogLevel::debug && !verbose)) return;
-    std::fprintf(stderr, "%s%.*s\n", level == LogLevel::warning ? "warning: " : "note: ", int(text.size()), text.data());
+    say_error((level == LogLevel::warning ? "warning: " : "note: ") + std::string(text));
   };
   if (!o.quiet && ::isatty(2))
     context.on_progress = [](double fraction, std::string_view doing) {
       if (fraction >= 1) std::fprintf(stderr, "\r\x1b[K");
-      else std::fprintf(stderr, "\r%3.0f%% %.*s\x1b[K", fraction * 100, int(std::min<size_t>(doing.size(), 60)), doing.data());
+      else std::fprintf(stderr, "\r%3.0f%% %s\x1b[K", fraction * 100, printable(doing.substr(0, 60)).c_str());
     };
 }
 
@@ -52,13 +89,6 @@ int dispatch_command(const Options& o, Context& context) {
   return 0;  // --help or --version: all is said
 }
 
-// A message may quote what it was given; it stays one line all the same.
-std::string one_line(std::string s) {
-  for (char& c : s)
-    if (c == '\n' || c == '\r') c = ' ';
-  return s;
-}
-
 }  // namespace
 
 int cli_main(int argc, char** argv) {
@@ -67,23 +97,23 @@ int cli_main(int argc, char** argv) {
     if (o.threads > 0) set_thread_count(o.threads);
     Context context;
     connect(context, o);
+    if (o.read_anywhere) allow_reading_anywhere();
     interruptible = &context;
-    ::signal(SIGINT, on_interrupt);
-    ::signal(SIGPIPE, SIG_IGN);
-    const int status = dispatch_command(o, context);
+    catch_signals();
+    const int status = dispatch_command(with_streams(o, context), context);
     interruptible = nullptr;
     check_files_unchanged();  // what was said on stdout
     if (std::fflush(stdout) != 0) fail_data("standard output cannot be written");
     return status;
   } catch (const Error& e) {
     interruptible = nullptr;
-    std::fprintf(stderr, "sightglass: %s\n", one_line(e.what()).c_str());
-    return e.exit_code();
+    say_error(std::string("sightglass: ") + e.what());
+    return e.kind() == ErrorKind::cancelled && stopped_by ? 128 + stopped_by : e.exit_code();
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "sightglass: not enough memory; state a smaller region or fewer fields\n");
     return 3;
   } catch (const std::exception& e) {
-    std::fprintf(stderr, "sightglass: internal error: %s; please report it with the command and the file\n", one_line(e.what()).c_str());
+    say_error(fmt::format("sightglass: internal error: {}; please report it with the command and the file", e.what()));
     return 4;
   }
 }
@@ -104,7 +134,7 @@ int run_info(const Options& o, Context& context) {
       const std::vector<double> times = file_times(path, read, context);
       text = o.json ? info_json(data, o.quick, times) : info_text(data, path, o.quick, times);
     }
-    std::fwrite(text.data(), 1, text.size(), stdout);
+    say(text);
   }
   return 0;
 }

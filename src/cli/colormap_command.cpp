@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/text.h"
+#include "base/utf8.h"
 #include "cli/cli.h"
 #include "color/colormap.h"
 #include "color/colormap_file.h"
@@ -78,7 +79,7 @@ void list_file(const std::string& path, const std::vector<FileColormap>& maps, b
       text += fmt::format("{}{{\"name\":{},\"kind\":\"{}\",{}}}", i ? "," : "", json_string(f.map.name), kind_name(f.map.kind),
                           file_facts(f, true));
     else
-      std::printf("  %-44s %-12s %zu %s\n", f.map.name.c_str(), std::string(kind_name(f.map.kind)).c_str(), f.entries,
+      std::printf("  %-44s %-12s %zu %s\n", printable(f.map.name).c_str(), std::string(kind_name(f.map.kind)).c_str(), f.entries,
                   f.map.categorical() ? "colours" : "entries");
   }
   if (json) std::printf("%s]}\n", text.c_str());
@@ -123,8 +124,8 @@ int run_colormap(const Options& o, Context&) {
       for (size_t i = 0; i < r.lightness.size(); ++i) std::printf("%s%s", i ? "," : "", short_number(r.lightness[i], 7).c_str());
       std::printf("]%s%s}\n", file ? "," : "", file ? file_facts(*file, true).c_str() : "");
     } else {
-      std::printf("%s (%s): %s\n", map.name.c_str(), std::string(kind_name(map.kind)).c_str(), map.about.c_str());
-      if (file) std::printf("  %s\n", file_facts(*file, false).c_str());
+      std::printf("%s (%s): %s\n", printable(map.name).c_str(), std::string(kind_name(map.kind)).c_str(), printable(map.about).c_str());
+      if (file) std::printf("  %s\n", printable(file_facts(*file, false)).c_str());
       const bool hinge_only = map.kind == MapKind::diverging && kind_of_colors(map.colors) != MapKind::diverging;
       std::printf("  %s\n",
                   hinge_only ? "two sides that meet at a value; lightness does not tell how far from it" : verdict(map, r).c_str());

@@ -8,8 +8,10 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/text.h"
+#include "base/utf8.h"
 #include "cli/chain.h"
 #include "cli/cli.h"
+#include "cli/say.h"
 #include "color/colormap_file.h"
 #include "image/codec.h"
 #include "pipeline/picture.h"
@@ -156,19 +158,20 @@ int sheet_of_folder(const Options& o, Context& context) {
     c.caption = path.substr(o.inputs[0].size() + (o.inputs[0].back() == '/' ? 0 : 1));
     if (const auto why = why_skipped(path)) {
       ++skipped;
-      if (!o.quiet) std::printf("%s: skipped: %s\n", c.caption.c_str(), why->c_str());
+      if (!o.quiet) say(fmt::format("{}: skipped: {}\n", printable(c.caption), printable(*why)));
       continue;
     }
     try {
       PipelineFile file;
       file.steps.push_back({"input", "read", {"path=" + path}, {}, 0});
-      Context quiet;
+      Context quiet(context, 0, 1);
+      quiet.on_log = nullptr, quiet.on_progress = nullptr;
       Picture p = make_picture(file, {}, quiet);
       c.image = std::move(p.image);
-      if (!o.quiet) std::printf("%s: %s\n", c.caption.c_str(), p.notes.empty() ? "" : p.notes[0].c_str());
+      if (!o.quiet) say(fmt::format("{}: {}\n", printable(c.caption), p.notes.empty() ? "" : printable(p.notes[0])));
     } catch (const Error& e) {
       ++failed;
-      if (!o.quiet) std::printf("%s: refused: %s\n", c.caption.c_str(), e.what());
+      if (!o.quiet) say(fmt::format("{}: refused: {}\n", printable(c.caption), printable(e.what())));
       c.caption += " (refused)";
     }
     pictures.push_back(std::move(c));

@@ -2,6 +2,7 @@
 #include "cli/info.h"
 
 #include "base/text.h"
+#include "base/utf8.h"
 #include "data/lattice.h"
 
 namespace sg {
@@ -98,7 +99,7 @@ std::string range_text(const Range& r) {
 std::string field_line(const Dataset& d, const Field& f, size_t width, bool quick) {
   std::string type(element_name(f.array.type()));
   if (f.components() > 1) type += fmt::format(" x{}", f.components());
-  std::string line = fmt::format("  {:<{}}  {:<5}  {:<8}", f.name, width, association_name(f.association), type);
+  std::string line = fmt::format("  {:<{}}  {:<5}  {:<8}", printable(f.name), width, association_name(f.association), type);
   if (f.association == Association::whole) line += fmt::format("  {} values", f.array.count());
   if (!quick) {
     const FieldStats& s = d.stats(f);
@@ -112,7 +113,7 @@ std::string field_line(const Dataset& d, const Field& f, size_t width, bool quic
       for (const Range& r : s.range) all.add(r);
       line += "  " + range_text(all) + " over all components";
     }
-    if (!f.unit.empty()) line += " " + f.unit;
+    if (!f.unit.empty()) line += " " + printable(f.unit);
     if (s.nan) line += fmt::format("; {} NaN", s.nan);
     if (s.infinite) line += fmt::format("; {} infinite", s.infinite);
   }
@@ -120,7 +121,7 @@ std::string field_line(const Dataset& d, const Field& f, size_t width, bool quic
 }
 
 std::string dataset_text(const Dataset& d, const std::string& name, bool quick) {
-  std::string r = name + "\n  mesh    " + std::string(d.kind());
+  std::string r = printable(name) + "\n  mesh    " + std::string(d.kind());
   if (is_lattice(d.mesh())) {
     const auto n = lattice_dims(d.mesh());
     r += fmt::format(" {} x {} x {}", n[0], n[1], n[2]);
@@ -161,18 +162,18 @@ namespace {
 std::string table_cell(const Table& t, size_t column, size_t row) {
   const Array& a = t.columns[column].array;
   const double v = a.get(row);
-  if (const auto* labels = t.words(column)) return v >= 0 && size_t(v) < labels->size() ? (*labels)[size_t(v)] : "-";
+  if (const auto* labels = t.words(column)) return v >= 0 && size_t(v) < labels->size() ? printable((*labels)[size_t(v)]) : "-";
   return std::isnan(v) ? "-" : is_float(a.type()) ? short_number(v) : exact_number(v);
 }
 
 // A table that fits a screen is shown; of a longer one, what each column holds.
 std::string table_text(const Table& t, const std::string& name) {
   const size_t rows = t.columns.empty() ? 0 : t.columns[0].array.count();
-  std::string r = fmt::format("{}\n  table of {} rows, {} columns\n", name, rows, t.columns.size());
+  std::string r = fmt::format("{}\n  table of {} rows, {} columns\n", printable(name), rows, t.columns.size());
   if (rows <= 32 && t.columns.size() <= 24) {
     std::vector<size_t> width;
     for (size_t c = 0; c < t.columns.size(); ++c) {
-      width.push_back(t.columns[c].name.size());
+      width.push_back(printable(t.columns[c].name).size());
       for (size_t i = 0; i < rows; ++i) width[c] = std::max(width[c], table_cell(t, c, i).size());
     }
     auto line = [&](auto&& cell) {
@@ -180,7 +181,7 @@ std::string table_text(const Table& t, const std::string& name) {
         r += t.words(c) ? fmt::format("  {:<{}}", cell(c), width[c]) : fmt::format("  {:>{}}", cell(c), width[c]);
       r += "\n";
     };
-    line([&](size_t c) { return t.columns[c].name; });
+    line([&](size_t c) { return printable(t.columns[c].name); });
     for (size_t i = 0; i < rows; ++i) line([&](size_t c) { return table_cell(t, c, i); });
     return r;
   }
@@ -190,7 +191,7 @@ std::string table_text(const Table& t, const std::string& name) {
     const Field& f = t.columns[i];
     const auto* labels = t.words(i);
     const std::string what = labels ? fmt::format("{} words", labels->size()) : range_text(field_stats(f.array).range[0]);
-    r += fmt::format("  {:<{}}  {:<5}  {}\n", f.name, width, labels ? "words" : element_name(f.array.type()), what);
+    r += fmt::format("  {:<{}}  {:<5}  {}\n", printable(f.name), width, labels ? "words" : element_name(f.array.type()), what);
   }
   return r;
 }
@@ -217,7 +218,7 @@ void add_parts(const Data& data, const std::string& name, const std::string& pat
 std::string info_text(const Data& data, const std::string& name, bool quick, const std::vector<double>& times) {
   std::string r;
   add_parts(data, name, "", quick, r);
-  return (r.empty() ? name + "\n  nothing in it\n" : r) + times_text(times);
+  return (r.empty() ? printable(name) + "\n  nothing in it\n" : r) + times_text(times);
 }
 
 std::string series_json(const SeriesRange& range, const std::vector<double>& times) {
@@ -231,11 +232,11 @@ std::string series_json(const SeriesRange& range, const std::vector<double>& tim
 }
 
 std::string series_text(const SeriesRange& range, const std::string& name, const std::vector<double>& times) {
-  std::string r = name + ", over all steps\n" + times_text(times);
+  std::string r = printable(name) + ", over all steps\n" + times_text(times);
   size_t width = 5;
   for (const SeriesField& f : range.fields) width = std::max(width, std::min<size_t>(f.name.size(), 32));
   for (const SeriesField& f : range.fields) {
-    r += fmt::format("  {:<{}}  {:<5}  ", f.name, width, association_name(f.association));
+    r += fmt::format("  {:<{}}  {:<5}  ", printable(f.name), width, association_name(f.association));
     for (size_t c = 0; c < std::min<size_t>(f.stats.range.size(), 4); ++c) r += (c ? ", " : "") + range_text(f.stats.range[c]);
     if (f.steps != times.size()) r += fmt::format("; in {} steps", f.steps);
     if (f.stats.nan) r += fmt::format("; {} NaN", f.stats.nan);

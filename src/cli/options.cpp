@@ -25,6 +25,8 @@ void add_common(CLI::App& a, Options& o, RawText& raw) {
   a.add_option("--memory", raw.memory, "Memory to stay within, like 2G");
   a.add_flag("--quiet,-q", o.quiet, "Print errors only");
   a.add_flag("--verbose,-v", o.verbose, "Print what is done, step by step");
+  a.add_flag("--read-anywhere", o.read_anywhere,
+             "Files and recipes may name files anywhere, not only below their own folder and the working folder");
 }
 
 void add_reading(CLI::App& a, Options& o, RawText& raw) {

@@ -9,10 +9,13 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/file_fence.h"
 #include "base/text.h"
+#include "base/utf8.h"
 #include "cli/chain.h"
 #include "cli/cli.h"
 #include "cli/info.h"
+#include "cli/say.h"
 #include "filter/mesh/piece.h"
 #include "image/codec.h"
 #include "io/file_series.h"
@@ -54,7 +57,7 @@ std::vector<Target> targets_of(const PipelineGraph& built) {
 
 void print_explanation(const PipelineFile& file) {
   const PipelineGraph built = build_graph(file);
-  std::fputs(built.graph.explain(targets_of(built)).c_str(), stdout);
+  say(built.graph.explain(targets_of(built)));
 }
 
 // With --memory, what the steps are expected to hold together is known before any of them runs. Files in formats of which parts can be
@@ -89,7 +92,7 @@ void set_drafts(PictureOptions& options, const PipelineFile& file, const std::st
     write_image(output, image);
     if (quiet) return;
     const std::chrono::duration<double> since = std::chrono::steady_clock::now() - program_start;
-    std::printf("%s: after %.2f s: %s\n", output.c_str(), since.count(), describe(draft).c_str());
+    say(fmt::format("{}: after {:.2f} s: {}\n", printable(output), since.count(), describe(draft)));
     std::fflush(stdout);
   };
   if (o.within > 0) {
@@ -110,13 +113,13 @@ int render_to(PipelineFile& file, const std::string& output, PictureOptions opti
   attach_recipe(picture.image, file, output);
   write_image(output, picture.image);
   if (!o.quiet) {
-    std::string line = output;
+    std::string line = printable(output);
     if (!picture.drafts.empty()) {
       const std::chrono::duration<double> since = std::chrono::steady_clock::now() - program_start;
       picture.notes.insert(picture.notes.begin(), fmt::format("after {:.2f} s: {}", since.count(), describe(picture.drafts.back())));
     }
-    for (size_t i = 0; i < picture.notes.size(); ++i) line += (i ? "; " : ": ") + picture.notes[i];
-    std::printf("%s\n", line.c_str());
+    for (size_t i = 0; i < picture.notes.size(); ++i) line += (i ? "; " : ": ") + printable(picture.notes[i]);
+    say(line + "\n");
   }
   return 0;
 }
@@ -178,18 +181,34 @@ int run_pipeline_file(const Options& o, Context& context) {
   return 0;
 }
 
+namespace {
+
+// Around all that a recipe out of a picture makes this process do.
+struct Fence {
+  Fence(const std::string& picture, const std::string& output) {
+    set_file_fence({{folder_of(picture), ""}, {output}, fmt::format("the recipe in '{}'", picture)});
+  }
+  ~Fence() { remove_file_fence(); }
+  Fence(const Fence&) = delete;
+  Fence& operator=(const Fence&) = delete;
+};
+
+}  // namespace
+
 int run_open(const Options& o, Context& context) {
   for (const std::string& path : o.inputs) {
     const Image image = read_png(path);
-    std::vector<std::string> changed;
-    PipelineFile file = recipe_in(image, path, changed);
     if (o.recipe) {
-      std::fputs(emit_pipeline(file).c_str(), stdout);
+      say(emit_pipeline(recipe_in(image, path)));
       continue;
     }
+    const std::string output = !o.output.empty() ? o.output : folder_of(path) + stem_of(path) + "-again.png";
+    const Fence fence(path, output);
+    std::vector<std::string> changed;
+    PipelineFile file = recipe_in(image, path, changed);
     for (const std::string& c : changed) context.warn(fmt::format("'{}' is not what it was when the picture was made", c));
     if (!o.size.empty()) file.picture.push_back("size=" + o.size);
-    render_to(file, !o.output.empty() ? o.output : folder_of(path) + stem_of(path) + "-again.png", {}, o, context);
+    render_to(file, output, {}, o, context);
   }
   return 0;
 }
@@ -206,7 +225,7 @@ int run_info_of_pipeline(const Options& o, Context& context) {
   check_memory(built, o);
   const Data data = built.graph.evaluate(built.last, {}, context);
   const std::string name = o.inputs.empty() ? o.source : o.inputs[0];
-  std::fputs((o.json ? info_json(data, o.quick) : info_text(data, name, o.quick)).c_str(), stdout);
+  say(o.json ? info_json(data, o.quick) : info_text(data, name, o.quick));
   return 0;
 }
 
@@ -223,7 +242,7 @@ int convert_slabs(const PipelineFile& file, const Options& o, Context& context) 
   });
   write_zarr_slabs(o.output, source, options, context);
   const auto& n = source.grid.dims;
-  if (!o.quiet) std::printf("%s: uniform %zux%zux%zu, field '%s'\n", o.output.c_str(), n[0], n[1], n[2], source.field.c_str());
+  if (!o.quiet) say(fmt::format("{}: uniform {}x{}x{}, field '{}'\n", printable(o.output), n[0], n[1], n[2], printable(source.field)));
   return 0;
 }
 
@@ -245,10 +264,10 @@ int run_convert(const Options& o, Context& context) {
   write_data(o.output, in_pieces(data, o.write.pieces, context), o.write, context);
   if (!o.quiet)
     for_each_dataset(data, [&](const std::string& part, const DatasetPtr& d) {
-      std::printf("%s: %s%s\n", o.output.c_str(), part.empty() ? "" : (part + ": ").c_str(), summary(*d).c_str());
+      say(fmt::format("{}: {}{}\n", printable(o.output), part.empty() ? "" : printable(part) + ": ", summary(*d)));
     });
   if (auto* t = std::get_if<TablePtr>(&data); t && !o.quiet)
-    std::printf("%s: table of %zu columns\n", o.output.c_str(), (*t)->columns.size());
+    say(fmt::format("{}: table of {} columns\n", printable(o.output), (*t)->columns.size()));
   return 0;
 }
 

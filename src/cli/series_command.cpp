@@ -9,8 +9,10 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/text.h"
+#include "base/utf8.h"
 #include "cli/chain.h"
 #include "cli/cli.h"
+#include "cli/say.h"
 #include "data/memory_budget.h"
 #include "filter/glyph/choose.h"
 #include "image/codec.h"
@@ -316,8 +318,8 @@ int render_series(PipelineFile plain, const SeriesRequest& request, const Pictur
   }
   const std::string what = sink.finish();
   if (!o.quiet)
-    std::printf("%s: %zu pictures, times %s to %s\n", what.c_str(), times.size(), short_number(times.front()).c_str(),
-                short_number(times.back()).c_str());
+    say(fmt::format("{}: {} pictures, times {} to {}\n", printable(what), times.size(), short_number(times.front()),
+                    short_number(times.back())));
   return 0;
 }
 

@@ -2,6 +2,7 @@
 // BOV, "brick of values": a text header of KEY: VALUE lines beside one or several raw files. Source: VisIt, "Getting Data Into VisIt",
 // chapter 3. Also a raw file that is called .bov and says its size in its name only.
 #include "base/bytes.h"
+#include "base/file_fence.h"
 #include "base/parallel.h"
 #include "base/text.h"
 #include "io/brick.h"
@@ -144,7 +145,7 @@ Array assembled(const std::string& path, const BovHeader& h, size_t count, Conte
   const size_t each = count / files, tuple = element_size(h.type) * size_t(h.components);
   const std::vector<std::string> names = pattern_names(h.file, 0, int64_t(files) - 1, 1, path);
   std::vector<Array> parts;
-  for (const std::string& name : names) parts.push_back(brick_of(path_beside(path, name), h, each, context));
+  for (const std::string& name : names) parts.push_back(brick_of(named_file(path, name), h, each, context));
   std::byte* out = nullptr;
   Array a = Array::make_raw(h.type, count, h.components, &out);
   parallel_for(files, 1, [&](size_t f, size_t) {
@@ -194,7 +195,7 @@ Data read_bov(const std::string& path, const ReadOptions& options, Context& cont
   if (!is_wanted(options.fields, h.variable)) return grid_of(h, {});
   const bool several = h.file.find('%') != std::string::npos;
   if (options.header_only) return grid_of(h, unread_values(h.type, count, h.components));
-  return grid_of(h, several ? assembled(path, h, count, context) : brick_of(path_beside(path, h.file), h, count, context));
+  return grid_of(h, several ? assembled(path, h, count, context) : brick_of(named_file(path, h.file), h, count, context));
 }
 
 Data read_bare_bov(const std::string& path, const ReadOptions&, Context& context) {

@@ -19,11 +19,13 @@ extern char** environ;
 namespace sg {
 
 FfmpegPipe::FfmpegPipe(std::string path, int width, int height, double fps)
-    : path_(std::move(path)), partial_(path_ + ".partial." + extension_of(path_)), log_(partial_ + ".log"), width_(width), height_(height) {
+    : path_(std::move(path)), partial_(path_), log_(partial_.folder() + "log"), width_(width), height_(height) {
   int ends[2];
   // A socket and not a pipe: writing to one that nobody reads can be told not to raise a signal.
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) fail_data(fmt::format("no pipe: {}", std::strerror(errno)), path_);
   socket_ = ends[0];
+  // It takes "a:b" for a protocol and "-a" for an option.
+  const std::string target = "file:" + partial_.name();
   const std::string size = fmt::format("{}x{}", width, height), rate = exact_number(fps);
   const std::vector<std::string> words{"ffmpeg",
                                        "-nostdin",
@@ -60,7 +62,7 @@ FfmpegPipe::FfmpegPipe(std::string path, int width, int height, double fps)
                                        "+bitexact",
                                        "-movflags",
                                        "+faststart",
-                                       partial_};
+                                       target};
   std::vector<char*> argv;
   for (const std::string& w : words) argv.push_back(const_cast<char*>(w.c_str()));
   argv.push_back(nullptr);
@@ -68,14 +70,13 @@ FfmpegPipe::FfmpegPipe(std::string path, int width, int height, double fps)
   ::posix_spawn_file_actions_init(&actions);
   ::posix_spawn_file_actions_adddup2(&actions, ends[1], 0);
   ::posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
-  ::posix_spawn_file_actions_addopen(&actions, 2, log_.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  ::posix_spawn_file_actions_addopen(&actions, 2, log_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW, 0600);
   pid_t child = -1;
   const int failed = ::posix_spawnp(&child, "ffmpeg", &actions, nullptr, argv.data(), environ);
   ::posix_spawn_file_actions_destroy(&actions);
   ::close(ends[1]);
   if (failed != 0) {
     ::close(socket_);
-    ::unlink(log_.c_str());
     fail_data(fmt::format("ffmpeg, which writes .{} films, does not start: {}", extension_of(path_), std::strerror(failed)), path_,
               "apt-get install ffmpeg, or write a .webm, which needs no other program");
   }
@@ -87,7 +88,6 @@ FfmpegPipe::~FfmpegPipe() {
   ::close(socket_);
   ::kill(child_, SIGTERM);
   ::waitpid(child_, nullptr, 0);
-  ::unlink(partial_.c_str()), ::unlink(log_.c_str());
 }
 
 std::string FfmpegPipe::last_words() const {
@@ -122,10 +122,8 @@ void FfmpegPipe::finish() {
   while (::waitpid(child_, &status, 0) < 0 && errno == EINTR) {
   }
   child_ = -1;
+  if (status == 0) return partial_.commit();
   const std::string said = last_words();
-  ::unlink(log_.c_str());
-  if (status == 0 && std::rename(partial_.c_str(), path_.c_str()) == 0) return;
-  ::unlink(partial_.c_str());
   fail_data(fmt::format("ffmpeg did not write the film: {}", said.empty() ? "it says nothing" : said), path_);
 }
 

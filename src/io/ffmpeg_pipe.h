@@ -3,6 +3,7 @@
 #pragma once
 #include <string>
 
+#include "base/partial_file.h"
 #include "image/image.h"
 
 namespace sg {
@@ -21,7 +22,9 @@ class FfmpegPipe {
 
  private:
   std::string last_words() const;
-  std::string path_, partial_, log_;
+  std::string path_;
+  PartialFile partial_;
+  std::string log_;
   int width_, height_, socket_ = -1, child_ = -1;
 };
 

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "base/file.h"
+#include "base/file_fence.h"
 #include "base/mapped_watch.h"
 #include "base/text.h"
 #include "data/lattice.h"
@@ -81,12 +82,14 @@ const Format& format_of_file(const std::string& path, const ReadOptions& options
 
 const Format& format_of(std::string& path, const ReadOptions& options) {
   while (path.size() > 1 && path.back() == '/') path.pop_back();
+  check_may_read(path);
   return is_folder(path) ? format_of_folder(path) : format_of_file(path, options);
 }
 
 /// Runs f(format, path); errors that do not say where get the path.
 template <class F>
 auto with_format(std::string path, const ReadOptions& options, F&& f) {
+  trust_folder_of(path);
   try {
     return f(format_of(path, options), path);
   } catch (Error& e) {  // most say where; those found when the dataset is made cannot

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // MetaImage (.mhd with data files beside it, .mha in one file): "Key = value" lines, the last of which is ElementDataFile.
 // The consecutive numbers of TransformMatrix are the directions of the axes, one axis after the other.
+#include "base/file_fence.h"
 #include "base/text.h"
 #include "data/lattice_crop.h"
 #include "io/brick.h"
@@ -119,7 +120,7 @@ std::vector<BrickPart> find_parts(const Header& h, const MappedFile& file, size_
   std::vector<BrickPart> parts;
   for (const std::string& name : names) {
     BrickPart p;
-    p.file = MappedFile(path_beside(h.path, name));
+    p.file = MappedFile(named_file(h.path, name));
     parts.push_back(std::move(p));
   }
   return parts;

@@ -5,6 +5,7 @@
 // without positions take those of the first step. Source: the Nek5000 documentation, "Field files", and the files.
 #include "base/bytes.h"
 #include "base/file.h"
+#include "base/file_fence.h"
 #include "base/text.h"
 #include "io/formats.h"
 #include "io/mesh_text.h"
@@ -100,7 +101,7 @@ std::string file_of(const std::string& path, const std::string& format, size_t w
     name += fmt::format("{:0{}}", k == places.size() ? step : int64_t(writer), std::max<size_t>(digits, 1));
     i = j;
   }
-  return path_beside(path, name);
+  return named_file(path, name);
 }
 
 struct NekStep {

@@ -3,6 +3,7 @@
 // grid and one point field. The field is named by the key "field name" that we write, else as VTK names it: ImageFile for raw data,
 // ImageScalars for all other encodings.
 #include "base/bytes.h"
+#include "base/file_fence.h"
 #include "base/parallel.h"
 #include "base/text.h"
 #include "data/lattice.h"
@@ -53,7 +54,7 @@ std::vector<BrickPart> find_parts(const NrrdHeader& h, const MappedFile& file) {
     if (sub == n ? h.axes[n - 1].size % h.data_files.size() != 0 : want != h.data_files.size())
       fail_data(fmt::format("{} data files, the sizes ask for {}", h.data_files.size(), want), h.path);
   }
-  for (const std::string& name : h.data_files) add(MappedFile(path_beside(h.path, name)), 0);
+  for (const std::string& name : h.data_files) add(MappedFile(named_file(h.path, name)), 0);
   return parts;
 }
 

@@ -2,6 +2,7 @@
 #include "io/plugin.h"
 
 #include <dlfcn.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -34,7 +35,9 @@ const Package& package_of(std::string_view plugin) {
   fail_internal(fmt::format("plug-in '{}' has no package", plugin));
 }
 
-// Where plug-ins are looked for: the environment's folder, beside the program, an installation's lib, where the build put them.
+// Where plug-ins are looked for: the environment's folder alone, else beside the program and in the installation's lib. A folder or file
+// that anybody may write, or that belongs to somebody who neither runs nor owns the program, is passed over with a word: what lies there
+// would run as this user.
 std::vector<std::string> plugin_folders() {
   std::vector<std::string> folders;
   if (const char* set = std::getenv("SIGHTGLASS_PLUGINS")) return {std::string(set) + "/"};
@@ -45,10 +48,15 @@ std::vector<std::string> plugin_folders() {
     folders.push_back(here + "plugins/");
     folders.push_back(here + "../lib/sightglass/");
   }
-#ifdef SG_PLUGIN_FOLDER
-  folders.push_back(SG_PLUGIN_FOLDER "/");
-#endif
   return folders;
+}
+
+bool may_be_trusted(const std::string& path) {
+  struct stat st {
+  }, program{};
+  if (::stat(path.c_str(), &st) != 0) return false;
+  const bool ours = st.st_uid == 0 || st.st_uid == ::geteuid() || (::stat("/proc/self/exe", &program) == 0 && st.st_uid == program.st_uid);
+  return ours && !(st.st_mode & S_IWOTH);
 }
 
 struct Loaded {
@@ -65,6 +73,10 @@ Loaded load(std::string_view name) {
   for (const std::string& folder : plugin_folders()) {
     tried += (tried.empty() ? "" : ", ") + folder;
     if (!file_exists(folder + file)) continue;
+    if (!may_be_trusted(folder) || !may_be_trusted(folder + file)) {
+      tried += " (passed over: others may write there)";
+      continue;
+    }
     void* handle = ::dlopen((folder + file).c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!handle)
       fail_data(fmt::format("the reader for {} cannot be loaded: {}", package.what, ::dlerror()), folder + file,

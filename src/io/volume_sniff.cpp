@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How to know the volumes that plug-ins read: DICOM ("gdcm"), OpenVDB ("openvdb").
 #include "base/file.h"
+#include "base/file_fence.h"
 #include "io/formats.h"
 
 namespace sg {
@@ -17,7 +18,7 @@ bool sniff_dicom_folder(const std::string& path) {
   size_t looked = 0;
   for (const std::string& name : folder_entries(path)) {
     const std::string file = path + "/" + name;
-    if (is_folder(file)) continue;
+    if (!is_plain_file(file)) continue;
     const std::string e = extension_of(name);
     if (e == "dcm" || e == "ima") return true;
     if (!e.empty() && e.find_first_not_of("0123456789") != std::string::npos) continue;

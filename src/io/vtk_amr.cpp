@@ -7,6 +7,7 @@
 #include <set>
 
 #include "base/bytes.h"
+#include "base/file_fence.h"
 #include "base/text.h"
 #include "io/formats.h"
 #include "io/vtk_cells.h"
@@ -128,7 +129,7 @@ class AmrReader {
     options.region = {}, options.time.reset(), options.step = -1;
     for (Patch& p : patches_) {
       context_.check();
-      const std::string at = path_beside(path(), p.node.attribute("file").value());
+      const std::string at = named_file(path(), p.node.attribute("file").value());
       p.data = with_context(fmt::format("reading the patches of '{}'", path()), [&] {
         const Data data = read_vtk_xml(at, options, context_);
         return std::get<DatasetPtr>(data);

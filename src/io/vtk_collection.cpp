@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <map>
 
+#include "base/file_fence.h"
 #include "base/text.h"
 #include "io/formats.h"
 #include "io/vtk_xml.h"
@@ -152,7 +153,7 @@ class TreeReader {
         if (source.empty()) continue;  // a block without a mesh
         if (!is_mine()) continue;
         part.data =
-            with_context(fmt::format("reading the parts of '{}'", file.path()), [&] { return read(path_beside(file.path(), source)); });
+            with_context(fmt::format("reading the parts of '{}'", file.path()), [&] { return read(named_file(file.path(), source)); });
       }
       out.parts.push_back(std::move(part));
     }
@@ -180,7 +181,7 @@ class TreeReader {
       const size_t place = i++;
       if (!is_mine()) continue;
       Data data =
-          with_context(fmt::format("reading the parts of '{}'", file.path()), [&] { return read(path_beside(file.path(), source)); });
+          with_context(fmt::format("reading the parts of '{}'", file.path()), [&] { return read(named_file(file.path(), source)); });
       if (!steps.times.empty()) data = at_time(data, steps.times[step]);
       collection->parts.push_back({part_name(n, sets, place), std::move(data)});
     }

@@ -4,11 +4,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <cerrno>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/partial_file.h"
 #include "base/text.h"
 
 namespace sg::vtk {
@@ -28,9 +28,6 @@ PartsFolder::PartsFolder(const std::string& path) {
   const std::string name = file_name_of(path);
   stem_ = name.substr(0, name.rfind('.'));
   folder_ = folder_of(path) + stem_;
-  static std::atomic<unsigned> count{0};
-  const std::string mark = fmt::format("{}-{}", ::getpid(), count++);
-  partial_ = folder_ + ".partial-" + mark, old_ = folder_ + ".old-" + mark;
   if (is_folder(folder_)) {
     for (const std::string& entry : folder_entries(folder_))
       if (!entry.starts_with(stem_ + "_") || !extension_of(entry).starts_with("vt"))
@@ -38,9 +35,7 @@ PartsFolder::PartsFolder(const std::string& path) {
   } else if (file_exists(folder_)) {
     fail_usage("a file has the name that the folder of parts needs", folder_, "choose another name");
   }
-  if (::mkdir(partial_.c_str(), 0777) != 0)
-    fail_data(errno == ENOENT ? "cannot be written: the folder does not exist" : std::string("cannot be made: ") + std::strerror(errno),
-              partial_);
+  partial_ = make_partial_folder(folder_, false), old_ = partial_ + "-old";
 }
 
 PartsFolder::~PartsFolder() {

@@ -2,6 +2,7 @@
 #include "io/vtk_xml_encode.h"
 
 #include "base/parallel.h"
+#include "base/utf8.h"
 #include "io/vtk_numbers.h"
 
 namespace sg::vtk {
@@ -15,17 +16,26 @@ constexpr size_t header_bytes = 8;  // header_type UInt64
 }  // namespace
 
 std::string escaped_xml(std::string_view s) {
-  std::string r;
-  for (const char c : s) {
+  // Bytes that are no UTF-8 can only be Latin-1; controls other than tab and line ends cannot stand in XML 1.0, not even as references.
+  std::string from_latin1, r;
+  if (!is_utf8(s)) {
+    for (const char c : s) append_utf8(from_latin1, static_cast<unsigned char>(c));
+    s = from_latin1;
+  }
+  for (size_t i = 0; i < s.size();) {
+    uint32_t c = 0;
+    const size_t n = decode_utf8(s, i, c);
     switch (c) {
       case '&': r += "&amp;"; break;
       case '<': r += "&lt;"; break;
       case '>': r += "&gt;"; break;
       case '"': r += "&quot;"; break;
       default:
-        if (static_cast<unsigned char>(c) < ' ') r += fmt::format("&#{};", int(c));
-        else r += c;
+        if (c == '\t' || c == '\n' || c == '\r' || (c > 0x7f && is_control(c))) r += fmt::format("&#{};", c);
+        else if (is_control(c)) r += fmt::format("\\x{:02x}", c);
+        else r.append(s, i, n);
     }
+    i += n;
   }
   return r;
 }

@@ -5,6 +5,7 @@
 
 #include <set>
 
+#include "base/file_fence.h"
 #include "base/text.h"
 #include "io/formats.h"
 #include "io/vtk_cells.h"
@@ -106,7 +107,7 @@ Data read_vtk_parallel(const std::string& path, const ReadOptions& options, Cont
   for (size_t i = begin; i < end; ++i) {
     context.check();
     files.push_back(with_context(fmt::format("reading the pieces of '{}'", path),
-                                 [&] { return std::make_unique<vtk::XmlFile>(path_beside(path, sources[i])); }));
+                                 [&] { return std::make_unique<vtk::XmlFile>(named_file(path, sources[i])); }));
     if (files.back()->type() != kind->type)
       fail_data(fmt::format("holds {}", files.back()->type()), files.back()->path(),
                 fmt::format("{}, as the other pieces of {}", kind->type, file_name_of(path)));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // XDMF: the values of DataItems.
 #include "base/bytes.h"
+#include "base/file_fence.h"
 #include "base/text.h"
 #include "io/plugin.h"
 #include "io/text_scan.h"
@@ -78,7 +79,7 @@ Item Document::binary_item(pugi::xml_node n, const std::vector<size_t>& dims) co
   const std::string_view seek_text = n.attribute("Seek").value();
   const auto seek = seek_text.empty() ? std::optional<int64_t>(0) : parse_int(seek_text);
   if (!seek || *seek < 0) fail(fmt::format("has Seek=\"{}\"", seek_text), n, "the byte at which the numbers begin");
-  const MappedFile file(path_beside(path_, name));
+  const MappedFile file(named_file(path_, name));
   if (!multiply(product(dims, where(n)), element_size(type), bytes) || !add(bytes, uint64_t(*seek), end) || end > file.size())
     fail(fmt::format("asks for {} bytes from byte {} on, but '{}' has {}", bytes, *seek, name, file.size()), n, "the file is truncated");
   const std::byte* from = file.data() + *seek;
@@ -116,7 +117,7 @@ Item Document::hdf_item(pugi::xml_node n, const std::vector<size_t>& dims, const
   }
   const auto array = plugin_format("hdf5", "array").array;
   const PluginArray a =
-      with_context(fmt::format("reading {}", where(n)), [&] { return array(path_beside(path_, text.substr(0, colon)), wanted, context_); });
+      with_context(fmt::format("reading {}", where(n)), [&] { return array(named_file(path_, text.substr(0, colon)), wanted, context_); });
   if (!slab && !dims.empty() && product(dims, where(n)) != a.values.count())
     fail(fmt::format("says {} numbers, but '{}' has {}", product(dims, where(n)), text, a.values.count()), n);
   return {a.values, slab ? a.dims : dims.empty() ? a.dims : dims};

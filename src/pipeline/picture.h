@@ -67,8 +67,15 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
 /// the folder of `picture_path`, where the picture is going to be.
 void attach_recipe(Image& image, const PipelineFile& file, const std::string& picture_path);
 
-/// The recipe inside a picture; its relative paths begin at the picture. Throws Error(data) when there is none.
-/// `changed` receives the inputs whose content is no longer what it was.
+/// The recipe inside a picture as it stands there, to be looked at. Throws Error(data) when there is none.
+PipelineFile recipe_in(const Image& image, const std::string& picture_path);
+/// The recipe inside a picture, to be followed; its relative paths begin at the picture. Throws Error(data) when there is none,
+/// Error(usage) when it breaks check_recipe(). `changed` receives the inputs whose content is no longer what it was.
 PipelineFile recipe_in(const Image& image, const std::string& picture_path, std::vector<std::string>& changed);
+
+/// A recipe is data from outside, whoever made the picture: it may write no file (parameters in the unit "new file"), and read only below
+/// the folder of the picture or the working folder (unit "file"). Throws one Error(usage) that names all steps and files in the way;
+/// reading is allowed by allow_reading_anywhere(). See docs/security.md.
+void check_recipe(const PipelineFile& recipe, const std::string& picture_path);
 
 }  // namespace sg

@@ -2,6 +2,8 @@
 // From YAML to PipelineFile, collecting all mistakes, and back.
 #include "pipeline/pipeline_file.h"
 
+#include <map>
+
 #include "base/file.h"
 #include "base/text.h"
 #include "pipeline/graph_state.h"
@@ -12,6 +14,8 @@ namespace sg {
 namespace {
 
 using Kind = YamlNode::Kind;
+
+constexpr size_t most_steps = 1000, most_shows = 250;
 
 class FileParser {
  public:
@@ -118,6 +122,7 @@ class FileParser {
 
   void parse_steps(const YamlNode& steps, PipelineFile& file) {
     if (steps.kind != Kind::map) return mistake(steps.line, "steps: must be a map of names, like {head: {read: FILE}}");
+    if (steps.pairs.size() > most_steps) return mistake(steps.line, fmt::format("steps: more than {}", most_steps));
     unique_keys(steps, "steps: ");
     for (const auto& [key, body] : steps.pairs) {
       PipelineFile::Step step{key.text, {}, {}, {}, key.line};
@@ -152,6 +157,7 @@ class FileParser {
 
   void parse_shows(const YamlNode& shows, PipelineFile& file) {
     if (shows.kind != Kind::list) return mistake(shows.line, "show: must be a list, like [{surface: {opacity: 0.5}, of: bone}]");
+    if (shows.items.size() > most_shows) return mistake(shows.line, fmt::format("show: more than {} items", most_shows));
     for (const YamlNode& body : shows.items) {
       PipelineFile::Show show;
       show.line = body.line;
@@ -186,6 +192,8 @@ class FileParser {
     if (picture.kind == Kind::null) return;
     if (picture.kind != Kind::map) return mistake(picture.line, "picture: must be a map, like {size: 1280x720, output: out.png}");
     unique_keys(picture, "picture: ");
+    std::map<std::string_view, int> lines;
+    for (const auto& [key, value] : picture.pairs) lines[key.text] = key.line;
     for (const auto& [key, value] : picture.pairs) {
       check_known(key.text.substr(0, key.text.find('.')), key.line, "picture: unknown key", vocabulary_.picture);
       if (value.kind != Kind::map) {
@@ -195,8 +203,9 @@ class FileParser {
       unique_keys(value, fmt::format("picture {}: ", key.text));
       for (const auto& [k, v] : value.pairs) {
         if (k.text.find('.') != k.text.npos) mistake(k.line, fmt::format("picture {}: '{}' is no name", key.text, k.text));
-        for (const auto& [flat, other] : picture.pairs)
-          if (flat.text == key.text + "." + k.text) mistake(flat.line, fmt::format("picture: the key '{}' stands twice", flat.text));
+        const std::string flat = key.text + "." + k.text;
+        if (const auto at = lines.find(flat); at != lines.end())
+          mistake(at->second, fmt::format("picture: the key '{}' stands twice", flat));
         add_word(key.text + "." + k.text, v, k.line, "picture", file.picture);
       }
     }
@@ -248,12 +257,11 @@ std::string key_of(const std::string& word) { return word.substr(0, word.find('=
 
 // Of words with the same key the last counts, as in set_params.
 std::vector<std::string> last_words(const std::vector<std::string>& words) {
+  std::map<std::string, size_t> last;
+  for (size_t i = 0; i < words.size(); ++i) last[key_of(words[i])] = i;
   std::vector<std::string> r;
-  for (size_t i = 0; i < words.size(); ++i) {
-    const bool again =
-        std::any_of(words.begin() + ptrdiff_t(i) + 1, words.end(), [&](const std::string& w) { return key_of(w) == key_of(words[i]); });
-    if (!again) r.push_back(words[i]);
-  }
+  for (size_t i = 0; i < words.size(); ++i)
+    if (last[key_of(words[i])] == i) r.push_back(words[i]);
   return r;
 }
 

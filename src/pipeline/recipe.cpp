@@ -3,6 +3,7 @@
 #include <xxhash.h>
 
 #include <filesystem>
+#include <set>
 
 #include "base/file.h"
 #include "base/parallel.h"
@@ -10,6 +11,7 @@
 #include "io/file_series.h"
 #include "pipeline/key.h"
 #include "pipeline/picture.h"
+#include "pipeline/yaml_tree.h"
 
 namespace sg {
 
@@ -66,6 +68,13 @@ bool is_there(const std::string& path) {
   }
 }
 
+// One line of "sightglass-inputs": a name may hold anything, line ends too.
+std::string line_text(const std::string& hash, const std::string& path) { return fmt::format("{} xxh3-4m {}\n", hash, yaml_scalar(path)); }
+
+std::string path_in_line(std::string_view text) {
+  return text.starts_with('"') ? parse_yaml(text, "sightglass-inputs").text : std::string(text);
+}
+
 void replace_path(std::vector<std::string>& words, const std::string& path) {
   for (std::string& w : words)
     if (w.starts_with("path=")) w = "path=" + path;
@@ -84,7 +93,7 @@ void attach_recipe(Image& image, const PipelineFile& file, const std::string& pi
     const std::string path = series_beside(file.origin, *stated);
     const std::string relative = map_series(path, [&](const std::string& part) { return relative_to_folder(part, folder); });
     replace_path(step.words, relative);
-    inputs += fmt::format("{} xxh3-4m {}\n", content_hash(path), relative);
+    inputs += line_text(content_hash(path), relative);
   }
   std::erase_if(recipe.picture, [](const std::string& w) { return w.starts_with("output="); });
   for (auto& show : recipe.show) std::erase_if(show.words, [](const std::string& w) { return w.starts_with("save="); });
@@ -93,20 +102,40 @@ void attach_recipe(Image& image, const PipelineFile& file, const std::string& pi
   if (!inputs.empty()) image.text.emplace_back("sightglass-inputs", inputs);
 }
 
-PipelineFile recipe_in(const Image& image, const std::string& picture_path, std::vector<std::string>& changed) {
-  const std::string *recipe = nullptr, *inputs = nullptr;
-  for (const auto& [key, value] : image.text) {
-    if (key == "sightglass") recipe = &value;
-    if (key == "sightglass-inputs") inputs = &value;
-  }
+namespace {
+
+const std::string* text_in(const Image& image, std::string_view name) {
+  const std::string* last = nullptr;
+  for (const auto& [key, value] : image.text)
+    if (key == name) last = &value;
+  return last;
+}
+
+}  // namespace
+
+PipelineFile recipe_in(const Image& image, const std::string& picture_path) {
+  const std::string* recipe = text_in(image, "sightglass");
   if (!recipe)
     fail_data("has no recipe inside", picture_path, "pictures made by sightglass carry one, unless another program rewrote them");
-  PipelineFile file = parse_pipeline(*recipe, picture_path, picture_vocabulary());
-  if (inputs)
+  return parse_pipeline(*recipe, picture_path, picture_vocabulary());
+}
+
+PipelineFile recipe_in(const Image& image, const std::string& picture_path, std::vector<std::string>& changed) {
+  PipelineFile file = recipe_in(image, picture_path);
+  check_recipe(file, picture_path);
+  std::erase_if(file.picture,
+                [](const std::string& w) { return w.starts_with("output=") || w.starts_with("times=") || w.starts_with("fps="); });
+  // Only what the recipe reads is looked at, each once.
+  std::set<std::string> read;
+  for (const auto& step : file.steps)
+    if (step.operation == "read") read.insert(word_value(step.words, "path").value_or(""));
+  if (const std::string* inputs = text_in(image, "sightglass-inputs"))
     for (std::string_view line : split(*inputs, '\n')) {
       const size_t a = line.find(' '), b = a == line.npos ? line.npos : line.find(' ', a + 1);
       if (b == line.npos) continue;
-      const std::string path = series_beside(picture_path, std::string(line.substr(b + 1)));
+      const std::string named = path_in_line(line.substr(b + 1));
+      if (read.erase(named) == 0) continue;
+      const std::string path = series_beside(picture_path, named);
       if (is_there(path) && content_hash(path) != line.substr(0, a)) changed.push_back(path);
     }
   return file;

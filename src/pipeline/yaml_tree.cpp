@@ -10,13 +10,14 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "base/utf8.h"
 
 namespace sg {
 
 namespace {
 
 constexpr size_t most_bytes = size_t(1) << 20, most_nodes = 100'000;
-constexpr size_t deepest = 32;
+constexpr size_t deepest = 32, longest = size_t(256) << 10, most_keys = 4096;
 
 class TreeBuilder : public YAML::EventHandler {
  public:
@@ -30,7 +31,8 @@ class TreeBuilder : public YAML::EventHandler {
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, const std::string& value) override {
     check_tag(mark, tag);
     YamlNode n = make(mark, anchor, YamlNode::Kind::scalar);
-    n.text = value;
+    if (value.size() > longest) fail(mark, fmt::format("a value of more than {}", human_bytes(longest)));
+    n.text = bytes_of_text(value);
     put(std::move(n));
   }
   void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, YAML::EmitterStyle::value) override {
@@ -80,6 +82,8 @@ class TreeBuilder : public YAML::EventHandler {
     } else if (!top.has_key) {
       if (n.kind != YamlNode::Kind::scalar || n.text.empty()) fail_usage("a key must be a word", fmt::format("{}:{}", origin_, n.line));
       if (n.text.size() > 256) fail_usage("a key of more than 256 letters", fmt::format("{}:{}", origin_, n.line));
+      if (top.node.pairs.size() >= most_keys)
+        fail_usage(fmt::format("more than {} keys", most_keys), fmt::format("{}:{}", origin_, n.line));
       top.key = std::move(n);
       top.has_key = true;
     } else {
@@ -97,26 +101,11 @@ class TreeBuilder : public YAML::EventHandler {
   size_t nodes_ = 0;
 };
 
-// Length of the UTF-8 sequence at s[i] and its code point; 0 when it is none.
-size_t decode(std::string_view s, size_t i, uint32_t& code) {
-  const auto byte = [&](size_t k) { return uint32_t(static_cast<unsigned char>(s[k])); };
-  const uint32_t b = byte(i);
-  const size_t n = b < 0x80 ? 1 : b >> 5 == 6 ? 2 : b >> 4 == 14 ? 3 : b >> 3 == 30 ? 4 : 0;
-  if (n == 0 || i + n > s.size()) return 0;
-  code = n == 1 ? b : b & (0x7fu >> n);
-  for (size_t k = 1; k < n; ++k) {
-    if (byte(i + k) >> 6 != 2) return 0;
-    code = code << 6 | (byte(i + k) & 0x3f);
-  }
-  constexpr uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000};
-  return code < least[n] || code > 0x10ffff || (code >= 0xd800 && code < 0xe000) ? 0 : n;
-}
-
 void check_utf8(std::string_view text, const std::string& origin) {
   int line = 1;
   uint32_t code = 0;
   for (size_t i = 0; i < text.size();) {
-    const size_t n = decode(text, i, code);
+    const size_t n = decode_utf8(text, i, code);
     if (n == 0) fail_usage("is not UTF-8 text", fmt::format("{}:{}", origin, line));
     line += code == '\n';
     i += n;
@@ -156,16 +145,17 @@ bool plain(const std::string& s) {
 
 }  // namespace
 
-std::string yaml_scalar(const std::string& s) {
-  if (plain(s)) return s;
+std::string yaml_scalar(const std::string& bytes) {
+  if (plain(bytes)) return bytes;
+  const std::string s = text_of_bytes(bytes);
   std::string r = "\"";
   for (size_t i = 0; i < s.size();) {
     uint32_t code = 0;
-    const size_t n = decode(s, i, code);
-    if (n == 0) fail_usage("is not UTF-8 text and cannot stand in a pipeline file", s.substr(0, 200));
+    const size_t n = decode_utf8(s, i, code);
     if (code == '"' || code == '\\') r += '\\', r += s[i];
     else if (code < 0x20 || (code >= 0x7f && code < 0xa0)) r += fmt::format("\\x{:02x}", code);
-    else if (code == 0x2028 || code == 0x2029 || code == 0xfeff || code == 0xfffe || code == 0xffff) r += fmt::format("\\u{:04x}", code);
+    else if (code < 0x10000 && (is_control(code) || code >= 0xfffe)) r += fmt::format("\\u{:04x}", code);
+    else if (is_control(code)) r += fmt::format("\\U{:08x}", code);
     else r.append(s, i, n);
     i += n;
   }

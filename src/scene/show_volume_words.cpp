@@ -20,7 +20,7 @@ void describe(Schema& s, VolumeShow& p) {
     "What decides on opacity (and colours) where none are stated: auto, histogram, boundaries (of materials: where gradients are large), "
     "or a "
     "FILE.yaml made with save.");
-  s("save", p.save, "Writes the look to this file, for transfer=FILE.yaml.");
+  s("save", p.save, "Writes the look to this file, for transfer=FILE.yaml.").unit("new file");
   s("opacity", p.opacity,
     "Opacity as place:opacity points with straight lines between them, ascending: 0:0,0.3:0.1,1:0.8. A place is a position on the range, "
     "or with @ a "

@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Damaged HDF5 files: read or refused, never a crash. What the library itself cannot stand is kept from it (see h5_data.h, guarded.h).
+#include <sys/stat.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "base/file.h"
 #include "samples.h"
 
 using namespace sg;
@@ -181,4 +187,30 @@ TEST_CASE("hdf5: a header that the library does not survive is met by a child pr
     CHECK(refused(test::temp_file("layout.vtkhdf", damaged)));
   }
   CHECK(places == 2);
+}
+
+TEST_CASE("hdf5: external links lead below the folder of the file or the working folder, to files, and nowhere else") {
+  const std::string inside = test::temp_folder() + "elinks/";
+  std::filesystem::create_directories(inside);
+  const auto linked = [&](const std::string& to) {
+    H5Sample h("elinks/here.vtkhdf");
+    H5Lcreate_external(to.c_str(), "/VTKHDF", h.id(), "/VTKHDF", H5P_DEFAULT, H5P_DEFAULT);
+    h.close();
+    try {
+      test::read_any(h.path);
+      return true;
+    } catch (const Error&) {
+      return false;
+    }
+  };
+  const std::string grid = sample(false);
+  for (const char* name : {"elinks_outside.vtkhdf", "elinks/inside.vtkhdf"}) sg::write_file(test::temp_folder() + name, grid);
+  CHECK(linked("inside.vtkhdf"));
+  CHECK_FALSE(linked("../elinks_outside.vtkhdf"));
+  CHECK_FALSE(linked(test::temp_folder() + "elinks_outside.vtkhdf"));
+  ::setenv("SIGHTGLASS_READ_ANYWHERE", "1", 1);
+  CHECK(linked("../elinks_outside.vtkhdf"));
+  ::unsetenv("SIGHTGLASS_READ_ANYWHERE");
+  REQUIRE(::mkfifo((inside + "pipe").c_str(), 0600) == 0);
+  CHECK_FALSE(linked("pipe"));
 }

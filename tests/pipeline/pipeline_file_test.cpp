@@ -5,6 +5,7 @@
 #include "base/random.h"
 #include "base/text.h"
 #include "pipeline/test_operations.h"
+#include "support/property.h"
 #include "support/test.h"
 
 using namespace sg;
@@ -162,11 +163,79 @@ TEST_CASE("pipeline file: doubles written exactly come back as the same doubles"
 
 TEST_CASE("pipeline file: what cannot be written is refused") {
   PipelineFile f;
-  f.steps = {{"a", "read", {"path=\xff\xfe.vti"}, {}, 0}};
-  CHECK(has(test::error_of([&] { emit_pipeline(f); }), "not UTF-8"));
   CHECK(has(error_of("sightglass: 1\nsteps: {a: {read: \xff}}"), "p.yaml:2: is not UTF-8 text"));
   f.steps = {{"a", "scale", {"=3"}, {}, 0}};
   CHECK(has(test::error_of([&] { emit_pipeline(f); }), "without a name"));
+}
+
+TEST_CASE("property: no name, path or title adds structure to a pipeline file: any bytes survive emit and parse") {
+  constexpr std::string_view pieces[] = {"save: x",
+                                         "\n",
+                                         "\n  - {volume: {save: p}}",
+                                         "}}",
+                                         "]",
+                                         "{",
+                                         "[",
+                                         ", ",
+                                         ": ",
+                                         "#",
+                                         " #",
+                                         "\"",
+                                         "'",
+                                         "\\",
+                                         "\\x0a",
+                                         "&a",
+                                         "*a",
+                                         "!!str",
+                                         "|",
+                                         ">",
+                                         "%",
+                                         "@",
+                                         "`",
+                                         "- ",
+                                         "---",
+                                         "...",
+                                         "~",
+                                         "null",
+                                         "=",
+                                         "\t",
+                                         "\r",
+                                         "\x1b[2J",
+                                         "\xff",
+                                         "\xc0\x80",
+                                         "\xed\xa0\x80",
+                                         "\xee\xbe\x80",
+                                         "\xe2\x80\xa8",
+                                         "\xc2\x85",
+                                         "\xef\xbb\xbf",
+                                         "\xef\xbf\xbf",
+                                         " "};
+  for (uint64_t seed : test::property_seeds(300)) {
+    CAPTURE(seed);
+    test::Random random(seed);
+    const auto nasty = [&](bool key) {
+      std::string s;
+      for (int n = random.whole(key, 6); n > 0; --n) {
+        if (random.chance(0.2)) s += char(random.whole(0, 255));
+        else if (random.chance(0.2)) s += random.one_of({"1", "2.5", ",", "nan", "-3"});
+        else s += pieces[size_t(random.whole(0, int(std::size(pieces)) - 1))];
+      }
+      if (key) std::erase(s, '='), std::erase(s, '.'), s += "k";
+      return s;
+    };
+    PipelineFile f;
+    f.steps = {{nasty(true), "read", {"path=" + nasty(false)}, {}, 0},
+               {nasty(true) + "2", "scale", {nasty(true) + "=" + nasty(false)}, {}, 0}};
+    f.steps[1].from = {f.steps[0].name};
+    f.show = {{"volume", {"field=" + nasty(false), nasty(true)}, nasty(true)}};
+    f.picture = {"title=" + nasty(false), "camera." + nasty(true) + "=" + nasty(false)};
+    const std::string text = emit_pipeline(f);
+    CAPTURE(text);
+    for (const char c : text) REQUIRE((c == '\n' || static_cast<unsigned char>(c) >= 0x20));
+    PipelineVocabulary any;
+    any.picture.clear(), any.show.clear();
+    CHECK(parse_pipeline(text, {}, any) == f);
+  }
 }
 
 TEST_CASE("pipeline file: of words with one key the last is written") {

@@ -2,6 +2,7 @@
 #include "io/amrex/plotfile.h"
 
 #include "base/file.h"
+#include "base/file_fence.h"
 #include "base/text.h"
 #include "io/text_scan.h"
 
@@ -117,7 +118,7 @@ void read_cell_header(const std::string& path, const Plotfile& p, Level& level, 
   for (size_t b = 0; b < boxes; ++b) {
     if (t.word("'FabOnDisk:'") != "FabOnDisk:") t.fail("'FabOnDisk: FILE BYTE' is due");
     Fab f;
-    f.file = path_beside(path, t.word("a file name"));
+    f.file = named_file(path, t.word("a file name"));
     f.offset = uint64_t(t.integer("a byte", 0, INT64_MAX));
     level.fabs.push_back(std::move(f));
   }

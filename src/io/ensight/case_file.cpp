@@ -2,6 +2,7 @@
 #include "io/ensight/case_file.h"
 
 #include "base/file.h"
+#include "base/file_fence.h"
 #include "base/text.h"
 
 namespace sg::ensight {
@@ -167,7 +168,7 @@ class Parser {
   }
 
   void read_list(const std::string& name, std::vector<double>& out) const {
-    const MappedFile f(path_beside(case_.path, name));
+    const MappedFile f(named_file(case_.path, name));
     for (std::string_view w : words(f.text())) out.push_back(number(w));
   }
 
@@ -330,7 +331,7 @@ FileStep file_at(const CaseFile& c, const FileRef& ref, std::optional<double> ti
                 "'filename start number:' and 'filename increment:', or 'filename numbers:'");
     name = with_number(name, set->file_numbers[step]);
   }
-  r.path = path_beside(c.path, name);
+  r.path = named_file(c.path, name);
   return r;
 }
 

@@ -2,6 +2,7 @@
 #include "io/gltf/gltf_bytes.h"
 
 #include "base/bytes.h"
+#include "base/file_fence.h"
 #include "io/formats.h"
 
 namespace sg {
@@ -80,7 +81,7 @@ GltfBuffer gltf_uri(const std::string& uri, const std::string& path, const std::
   const std::string name = without_percents(uri);
   if (name.empty() || name[0] == '/' || name.find(':') != std::string::npos)
     fail_data(fmt::format("{}: '{}' is not read", where, uri), path, "buffers lie in files beside it, or in the file itself");
-  const MappedFile file(path_beside(path, name));
+  const MappedFile file(named_file(path, name));
   return {file.owner(), file.text()};
 }
 

@@ -2,6 +2,7 @@
 // PLOT3D: a grid file, and beside it a solution (q) and a function file. Layout: see layout.h.
 #include <nlohmann/json.hpp>
 
+#include "base/file_fence.h"
 #include "base/text.h"
 #include "io/blanking.h"
 #include "io/formats.h"
@@ -196,7 +197,7 @@ std::vector<MetaStep> read_meta(const std::string& path) {
   for (const Json& e : j["filenames"]) {
     MetaStep s;
     auto name = [&](const char* key) {
-      return e.contains(key) && e[key].is_string() ? path_beside(path, e[key].get<std::string>()) : std::string();
+      return e.contains(key) && e[key].is_string() ? named_file(path, e[key].get<std::string>()) : std::string();
     };
     if (!e.is_object() || name("xyz").empty()) fail_data(fmt::format("entry {} of \"filenames\" names no \"xyz\"", steps.size()), path);
     if (e.contains("time") && e["time"].is_number()) s.time = e["time"].get<double>();

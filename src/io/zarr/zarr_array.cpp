@@ -10,6 +10,7 @@
 
 #include "base/bytes.h"
 #include "base/file.h"
+#include "base/file_fence.h"
 #include "io/zarr/zarr_json.h"
 
 namespace sg::zarr {
@@ -149,7 +150,8 @@ ZarrArray parse_v3(const Json& json, const std::string& folder, const std::strin
 
 // The whole of a small file; false when there is none. Mapping costs more than reading here.
 bool read_all(const std::string& path, std::vector<std::byte>& out) {
-  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  check_may_read(path);
+  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (fd < 0) {
     if (errno == ENOENT || errno == ENOTDIR) return false;
     fail_data(std::string("cannot be opened: ") + std::strerror(errno), path);

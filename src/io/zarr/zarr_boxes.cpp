@@ -223,7 +223,7 @@ BrickedPtr bricked(std::shared_ptr<const Image> image, size_t step, size_t chann
     LatticePart part;
     part.dims = image->dims(used[level]), part.lo = lo, part.count = count;
     for_each_chunk(box_of(*image, used[level], step, channel), part, [](const ZarrArray& array, const std::vector<size_t>& at) {
-      const int fd = ::open(array.chunk_path(at).c_str(), O_RDONLY | O_CLOEXEC);
+      const int fd = ::open(array.chunk_path(at).c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
       if (fd < 0) return;
       ::posix_fadvise(fd, 0, 0, POSIX_FADV_WILLNEED);
       ::close(fd);

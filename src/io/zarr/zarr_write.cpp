@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/parallel.h"
+#include "base/partial_file.h"
 #include "base/text.h"
 #include "data/bricked.h"
 #include "io/formats.h"
@@ -29,11 +30,7 @@ class AtomicFolder {
     while (path_.size() > 1 && path_.back() == '/') path_.pop_back();
     if (file_exists(path_) && !(is_folder(path_) && sniff_zarr_folder(path_)))
       fail_usage("is there already and is no Zarr folder", path_, "remove it first, or choose another name");
-    partial_ = fmt::format("{}.partial-{}", path_, ::getpid());
-    if (::mkdir(partial_.c_str(), 0777) != 0)
-      fail_data(errno == ENOENT ? "cannot be written: the folder around it does not exist"
-                                : std::string("cannot be written: ") + std::strerror(errno),
-                path_);
+    partial_ = make_partial_folder(path_, false);
   }
   ~AtomicFolder() {
     std::error_code ignored;
@@ -67,7 +64,7 @@ void make_folder(const std::string& path) {
 
 // The folder around it becomes whole by its rename; its files need none.
 void put_file(const std::string& path, std::span<const std::byte> bytes) {
-  const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0666);
   int error = fd < 0 ? errno : 0;
   for (size_t at = 0; fd >= 0 && at < bytes.size() && !error;) {
     const ssize_t n = ::write(fd, bytes.data() + at, bytes.size() - at);

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/text.h"
+#include "base/utf8.h"
 
 namespace sg {
 namespace {
@@ -64,9 +65,8 @@ struct Overlay::Parts {
     pango_font_description_set_absolute_size(font, style.size * PANGO_SCALE);
     pango_layout_set_font_description(layout.get(), font);
     pango_font_description_free(font);
-    char* valid = g_utf8_make_valid(text.data(), gssize(text.size()));
-    pango_layout_set_text(layout.get(), valid, -1);
-    g_free(valid);
+    const std::string shown = printable(text, true);  // names of fields may hold anything
+    pango_layout_set_text(layout.get(), shown.data(), int(shown.size()));
     PangoAttrList* attributes = pango_attr_list_new();
     pango_attr_list_insert(attributes, pango_attr_insert_hyphens_new(FALSE));  // a broken field name must not gain a letter
     pango_layout_set_attributes(layout.get(), attributes);

@@ -4,6 +4,7 @@
 #include "base/bytes.h"
 #include "base/error.h"
 #include "base/file.h"
+#include "base/file_fence.h"
 #include "base/parallel.h"
 #include "base/text.h"
 #include "io/lattice_part.h"
@@ -200,7 +201,7 @@ std::vector<DicomPicture> headers_of(const std::string& path, Context& context) 
   size_t others = 0;
   for (const std::string& name : folder_entries(path)) {
     const std::string file = path + "/" + name;
-    if (is_folder(file)) continue;
+    if (!is_plain_file(file)) continue;
     {
       const MappedFile m(file);
       const bool magic = m.size() >= 132 && std::memcmp(m.data() + 128, "DICM", 4) == 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // ENZO output: grids of the hierarchy as an AMR grid, their fields from the HDF5 files beside it, in CGS units where the parameter
 // file gives factors.
+#include "base/file_fence.h"
 #include "base/text.h"
 #include "io/amr_cover.h"
 #include "io/io.h"
@@ -52,7 +53,7 @@ class GridFiles {
  public:
   explicit GridFiles(const std::string& hierarchy) : hierarchy_(hierarchy) {}
   const h5::File& file_of(const EnzoGrid& g) {
-    const std::string path = path_beside(hierarchy_, g.file);
+    const std::string path = named_file(hierarchy_, g.file);
     if (!open_ || open_->path() != path) open_.emplace(path);
     return *open_;
   }

@@ -3,13 +3,20 @@
 
 #include "base/bytes.h"
 #include "base/error.h"
+#include "base/file_fence.h"
 #include "base/text.h"
 #include "io/plugins/hdf5/guarded.h"
 #include "io/plugins/hdf5/h5_probe.h"
 
 namespace sg::h5 {
 
-void silence() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+void silence() {
+  // At the end of the program the library would try once more to write what a full disk did not take, and fall over it. All files are
+  // closed where they are opened; there is nothing left to do.
+  static const bool first = H5dont_atexit() >= 0;
+  (void)first;
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
 
 std::recursive_mutex& Turn::mutex() {
   static std::recursive_mutex m;
@@ -44,8 +51,34 @@ constexpr size_t most_children = 1000000;
 
 }  // namespace
 
+namespace {
+
+// Of an external link: the file has to lie where files may name others, and to be one.
+herr_t check_link(const char* parent, const char*, const char* child, const char*, unsigned*, hid_t, void*) {
+  try {
+    const std::string beside = named_file(parent, child);
+    for (const std::string& path : {beside, std::string(child)})  // the library looks in the working folder too
+      if (file_exists(path) && !is_plain_file(path)) return -1;
+    return 0;
+  } catch (const Error&) {
+    return -1;
+  }
+}
+
+// Every call of the library that is given no list of its own takes these.
+void guard_links() {
+  static const bool done = [] {
+    for (const hid_t list : {H5P_LINK_ACCESS_DEFAULT, H5P_DATASET_ACCESS_DEFAULT, H5P_GROUP_ACCESS_DEFAULT})
+      if (H5Pset_elink_cb(list, check_link, nullptr) < 0) fail_internal("HDF5 takes no guard of external links");
+    return true;
+  }();
+  (void)done;
+}
+
+}  // namespace
+
 static const std::string& probed(const std::string& path) {
-  if (!file_exists(path) || is_folder(path)) MappedFile missing(path);  // says why it cannot be read
+  if (!is_plain_file(path)) MappedFile missing(path);  // says why it cannot be read
   probe(path);
   return path;
 }
@@ -54,6 +87,7 @@ File::File(const std::string& path) : File(probed(path), unprobed) {}
 
 File::File(const std::string& path, Unprobed) : path_(path) {
   silence();
+  guard_links();
   const Handle access(H5Pcreate(H5P_FILE_ACCESS));
   H5Pset_file_locking(access, false, true);  // reading needs no lock, and some shared folders have none
   H5Pset_fclose_degree(access, H5F_CLOSE_SEMI);

@@ -30,6 +30,8 @@ class Handle {
   }
   operator hid_t() const { return id_; }
   bool good() const { return id_ >= 0; }
+  /// False when that failed: of a file, what was still to be written could not be.
+  bool close() { return id_ < 0 || H5Idec_ref(std::exchange(id_, -1)) >= 0; }
 
  private:
   hid_t id_ = -1;

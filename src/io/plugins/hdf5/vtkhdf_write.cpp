@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <cstdio>
 
+#include "base/partial_file.h"
 #include "base/text.h"
 #include "data/lattice.h"
 #include "io/plugins/hdf5/h5_pack.h"
@@ -19,29 +20,25 @@ namespace {
 
 using h5::Handle;
 
-/// The file under its temporary name; renamed by commit(), else removed.
+/// The file in its temporary place; moved by commit(), else removed.
 class Writer {
  public:
-  Writer(const std::string& path, bool compress, Context& context)
-      : path_(path), partial_(fmt::format("{}.partial-{}", path, ::getpid())), compress_(compress), context_(context) {
+  Writer(const std::string& path, bool compress, Context& context) : path_(path), partial_(path), compress_(compress), context_(context) {
     h5::silence();
     const Handle access(H5Pcreate(H5P_FILE_ACCESS));
     H5Pset_file_locking(access, false, true);
-    file_ = Handle(H5Fcreate(partial_.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access));
+    file_ = Handle(H5Fcreate(partial_.name().c_str(), H5F_ACC_EXCL, H5P_DEFAULT, access));
     if (!file_.good()) fail("cannot be written");
   }
-  ~Writer() {
-    file_ = Handle();
-    if (!partial_.empty()) ::unlink(partial_.c_str());
-  }
+  ~Writer() { file_ = Handle(); }  // before its place goes
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
 
   void commit() {
     const bool flushed = H5Fflush(file_, H5F_SCOPE_GLOBAL) >= 0;
-    file_ = Handle();
-    if (!flushed || ::rename(partial_.c_str(), path_.c_str()) != 0) fail("cannot be written");
-    partial_.clear();
+    const bool closed = file_.close();
+    if (!flushed || !closed) fail("cannot be written");
+    partial_.commit();
   }
 
   void group(const std::string& path) {
@@ -109,7 +106,8 @@ class Writer {
     }
     return dims;
   }
-  std::string path_, partial_;
+  std::string path_;
+  PartialFile partial_;
   bool compress_;
   Context& context_;
   Handle file_;

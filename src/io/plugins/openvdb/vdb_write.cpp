@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <openvdb/tools/Dense.h>
 
-#include <cstdio>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
 
 #include "base/error.h"
-#include "base/file.h"
+#include "base/partial_file.h"
 #include "io/lattice_part.h"
 #include "io/plugins/openvdb/vdb.h"
 
@@ -31,6 +33,24 @@ openvdb::GridBase::Ptr sparse(const Array& values, const openvdb::CoordBBox& box
   }
   return grid;
 }
+
+// io::File::write does not look whether its stream took all of it; here a disk that is full is an error.
+class Archive : openvdb::io::Archive {
+ public:
+  explicit Archive(const openvdb::GridPtrVec& grids) : grids_(grids.begin(), grids.end()) {}
+  void write_to(const std::string& file, const std::string& path) const {
+    errno = 0;
+    std::ofstream stream(file, std::ios::binary | std::ios::trunc);
+    if (stream) write(stream, grids_, true);
+    stream.flush();
+    const bool whole = stream.good();
+    stream.close();
+    if (!whole || !stream.good()) fail_data(std::string("write failed: ") + std::strerror(errno ? errno : EIO), path);
+  }
+
+ private:
+  openvdb::GridCPtrVec grids_;
+};
 
 }  // namespace
 
@@ -70,19 +90,9 @@ void write_vdb(const std::string& path, const Data& data, const WriteOptions&, C
     }
     if (grids.empty()) fail_usage("there is no point field of 1 or 3 components to write", path);
     // Written beside and renamed: never half a file.
-    const std::string partial = path + ".partial";
-    try {
-      openvdb::io::File file(partial);
-      file.write(grids);
-      file.close();
-    } catch (...) {
-      std::remove(partial.c_str());
-      throw;
-    }
-    if (std::rename(partial.c_str(), path.c_str()) != 0) {
-      std::remove(partial.c_str());
-      fail_data("cannot be written", path);
-    }
+    PartialFile partial(path);
+    Archive(grids).write_to(partial.name(), path);
+    partial.commit();
   } catch (const Error&) {
     throw;
   } catch (const std::exception& e) {

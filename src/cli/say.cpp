@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/say.h"
+
+#include <cstdio>
+
+#include "base/utf8.h"
+
+namespace sg {
+
+void say(const std::string& text) {
+  const std::string shown = printable(text, true);
+  std::fwrite(shown.data(), 1, shown.size(), stdout);
+}
+
+void say_error(const std::string& text) {
+  std::string line = text;
+  for (char& c : line)
+    if (c == '\n' || c == '\r') c = ' ';
+  line = printable(line) + "\n";
+  std::fwrite(line.data(), 1, line.size(), stderr);
+}
+
+}  // namespace sg

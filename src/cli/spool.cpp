@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/spool.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <deque>
+#include <vector>
+
+#include "base/error.h"
+#include "base/partial_file.h"
+#include "base/text.h"
+
+namespace sg {
+
+namespace {
+
+bool names_stream(const std::string& path) {
+  if (path != "/dev/stdin" && !path.starts_with("/dev/fd/") && !path.starts_with("/proc/self/fd/")) return false;
+  struct stat st {};
+  return ::stat(path.c_str(), &st) == 0 && (S_ISFIFO(st.st_mode) || S_ISSOCK(st.st_mode) || S_ISCHR(st.st_mode));
+}
+
+void write_all(int fd, const char* bytes, size_t n, const std::string& path) {
+  while (n > 0) {
+    const ssize_t done = ::write(fd, bytes, n);
+    if (done < 0 && errno == EINTR) continue;
+    if (done <= 0)
+      fail_data(std::string("what comes out of the pipe cannot be kept in $TMPDIR: ") + std::strerror(errno), path,
+                "save it in a file first");
+    bytes += done, n -= size_t(done);
+  }
+}
+
+}  // namespace
+
+std::string spooled(const std::string& path, size_t most, const Context& context) {
+  if (!names_stream(path)) return path;
+  const int from = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+  if (from < 0) fail_data(std::string("cannot be opened: ") + std::strerror(errno), path);
+  if (::isatty(from)) {
+    ::close(from);
+    fail_data("is a terminal, not a file", path);
+  }
+  // In a folder of its own: what comes out of the pipe may name no file beside it.
+  static std::deque<PartialFile> kept;  // removed at the end
+  const char* chosen = std::getenv("TMPDIR");
+  const std::string name = kept.emplace_back((chosen && *chosen ? std::string(chosen) : std::string("/tmp")) + "/sightglass-pipe").name();
+  const int to = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600);
+  if (to < 0) fail_data(std::string("what comes out of the pipe cannot be kept in $TMPDIR: ") + std::strerror(errno), path);
+  std::vector<char> part(size_t(1) << 20);
+  size_t all = 0;
+  for (;;) {
+    context.check();
+    struct pollfd wait {
+      from, POLLIN, 0
+    };
+    ::poll(&wait, 1, 200);
+    const ssize_t n = wait.revents ? ::read(from, part.data(), part.size()) : -2;
+    if (n == 0) break;
+    if (n == -2 || (n < 0 && (errno == EINTR || errno == EAGAIN))) continue;
+    if (n < 0) fail_data(std::string("cannot be read: ") + std::strerror(errno), path);
+    if ((all += size_t(n)) > most)
+      fail_data(fmt::format("more than {} come out of the pipe", human_bytes(most)), path,
+                "save it in a file first, or allow more with --memory");
+    write_all(to, part.data(), size_t(n), path);
+  }
+  ::close(from), ::close(to);
+  return name;
+}
+
+}  // namespace sg
