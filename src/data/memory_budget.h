@@ -2,6 +2,7 @@
 // A limit on the memory of arrays, kept while the work runs.
 #pragma once
 #include <cstddef>
+#include <string>
 
 namespace sg {
 
@@ -12,6 +13,12 @@ void set_memory_limit(size_t bytes);
 size_t memory_limit();
 /// Bytes that arrays hold now.
 size_t array_memory();
+
+/// What may be taken together: set_memory_limit(), else half of this machine's memory.
+size_t allowed_memory();
+/// To be asked before work whose size follows from a few words: throws Error(usage) when `bytes` more than what arrays hold now are beyond
+/// allowed_memory(). `what` says what would be made ("1000000000 seeds"), `hint` what else would do; --memory is told besides.
+void need_memory(double bytes, const std::string& what, const std::string& where, const std::string& hint);
 
 namespace detail {
 /// Told of every array that its thread allocates while it lives, unless another one was made since: the innermost counts.

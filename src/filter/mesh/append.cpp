@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "data/field_ops.h"
+#include "data/memory_budget.h"
 #include "filter/mesh/extract.h"
 #include "filter/mesh/to_unstructured.h"
 
@@ -195,6 +196,21 @@ void join_fields(const std::vector<DatasetPtr>& parts, Association on, const std
   }
 }
 
+// Before anything is made: points, cells and fields of all parts together.
+void check_memory(const std::vector<DatasetPtr>& parts) {
+  double bytes = 0;
+  for (const DatasetPtr& d : parts) {
+    bytes += 12 * double(d->point_count()) + 17 * double(d->cell_count());
+    for (const Field& f : d->fields()) bytes += double(f.array.bytes());
+    if (const auto* u = d->as<UnstructuredMesh>()) bytes += 8 * double(u->cells.connectivity.count() + u->faces.connectivity.count());
+    else if (const auto* s = d->as<SurfaceMesh>())
+      for (const CellArray* c : {&s->vertices, &s->lines, &s->polygons, &s->strips}) bytes += 8 * double(c->connectivity.count());
+    else if (!d->as<PointCloud>()) bytes += 64 * double(d->cell_count());  // of a lattice
+  }
+  constexpr double growing = 2.5;  // lists of cells grow by doubling
+  need_memory(growing * bytes, fmt::format("{} meshes as one", parts.size()), "append", "append fewer or smaller parts");
+}
+
 Array joined_ghosts(const std::vector<DatasetPtr>& parts, bool of_points) {
   bool any = false;
   std::vector<uint8_t> out;
@@ -213,6 +229,7 @@ DatasetPtr append(const std::vector<Data>& inputs, const AppendParams& p, Contex
   std::vector<DatasetPtr> parts;
   for (const Data& d : inputs) for_each_dataset(d, [&](const std::string&, const DatasetPtr& one) { parts.push_back(one); });
   if (parts.empty()) fail_usage("there is no mesh among the inputs", "append");
+  check_memory(parts);
   bool surfaces = true, clouds = true;
   for (const DatasetPtr& d : parts) surfaces = surfaces && d->as<SurfaceMesh>(), clouds = clouds && d->as<PointCloud>();
   if (!surfaces && !clouds)
