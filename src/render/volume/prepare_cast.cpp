@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "data/field_component.h"
 #include "render/volume/cells/cell_source.h"
 #include "render/volume/cells/cell_volume.h"
 #include "render/volume/large/bricked_source.h"
@@ -107,8 +108,7 @@ const Field& field_of(const VolumeItem& item) {
   if (!f) f = &fields.require(item.field, item.association);
   if (f->association == Association::whole)
     fail_usage(fmt::format("field '{}' belongs to the whole dataset", f->name), "volume", "a volume needs a point or cell field");
-  if (item.component >= f->components())
-    fail_usage(fmt::format("field '{}' has {} components, not component {}", f->name, f->components(), item.component), "volume");
+  check_component(*f, item.component, "volume");
   return *f;
 }
 
