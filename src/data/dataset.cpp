@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data/dataset.h"
 
+#include "data/field_component.h"
+
 #include "base/error.h"
 #include "data/bricked.h"
 #include "data/lattice.h"
@@ -82,11 +84,10 @@ const FieldStats& Dataset::stats(const Field& field) const {
 }
 
 Range Dataset::range(const Field& field, int component) const {
+  check_component(field, component, "component");
   const FieldStats& s = stats(field);
   if (field.components() == 1) return s.range[0];
   if (component < 0) return s.magnitude;
-  if (component >= field.components())
-    fail_usage(fmt::format("field '{}' has {} components, not component {}", field.name, field.components(), component));
   return s.range[size_t(component)];
 }
 
