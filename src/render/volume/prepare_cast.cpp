@@ -174,7 +174,8 @@ CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<con
       break;
     default: break;
   }
-  if (!knobs.skip_empty) source.invisible = {};
+  // A fixed step counts with the length on which there is a volume, whether that draws anything or not.
+  if (!knobs.skip_empty || (v.step > 0 && item.mode == RayFunction::composite && !v.detail)) source.invisible = {};
   return v;
 }
 
