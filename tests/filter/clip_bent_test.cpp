@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Clipped cells with bent faces: both parts make up the cell, whatever cuts it, and their faces have partners.
 #include "data/cell_map.h"
+#include "filter/every_mesh.h"
 #include "filter/mesh/clip.h"
 #include "filter/mesh/faces.h"
 #include "support/property.h"
@@ -153,4 +154,24 @@ TEST_CASE("property: clip parts add up, for cells of all kinds with bent faces")
       CHECK(area < 6.0 * n * n * 3 + 100);
     }
   }
+}
+
+TEST_CASE("clip: parts of curved cells come as near to the whole as the tolerance says, and converge") {
+  // A box [-1,1]^3 of triquadratic hexahedra, bent; the cells' own volume is exact by quadrature.
+  const auto bent = [](Vec3 p) { return Vec3(p.x * (1 - 0.3 * p.y * p.y), p.y * (1 - 0.2 * p.z * p.z), p.z); };
+  const DatasetPtr curved = test::flow::moved(test::solid_cells(CellType::triquadratic_hexahedron, 27, 2, 1), bent);
+  const double whole = volume(curved);
+  Context ctx;
+  double last = 1;
+  for (const double tolerance : {1e-1, 1e-2, 1e-3, 1e-4}) {
+    CAPTURE(tolerance);
+    ClipParams p;
+    p.normal = {1, 0.3, 0.2}, p.keep = "both", p.tolerance = tolerance;
+    const Data both = clip(curved, p, ctx);
+    const double error = std::fabs(volume(part(both, 0)) + volume(part(both, 1)) - whole) / whole;
+    CHECK(error < 4 * tolerance);
+    CHECK(error <= last);
+    last = error;
+  }
+  CHECK(last < 1e-4);
 }
