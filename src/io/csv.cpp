@@ -5,6 +5,7 @@
 #include "data/point_positions.h"
 #include "io/formats.h"
 #include "io/table_columns.h"
+#include "io/write_losses.h"
 
 namespace sg {
 
@@ -176,7 +177,15 @@ Data read_csv(const std::string& path, const ReadOptions&, Context& context) {
   return builder.build();
 }
 
-void write_csv(const std::string& path, const Data& data, const WriteOptions&, Context&) {
+void write_csv(const std::string& path, const Data& data, const WriteOptions&, Context& context) {
+  if (!std::holds_alternative<TablePtr>(data)) {
+    const DatasetPtr d = single_dataset(data, "writing a table");
+    WriteLosses losses(path, "a table");
+    losses.leaves_out(*d, Association::cell), losses.leaves_out(*d, Association::whole);
+    for (const Field& f : d->fields())
+      if (f.association == Association::point) losses.drops_unit(f);
+    losses.tell(context);
+  }
   const TablePtr table = table_of(data);
   const char delimiter = extension_of(path) == "tsv" ? '\t' : ',';
   AtomicFile file(path);

@@ -5,22 +5,19 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "io/formats.h"
+#include "io/write_losses.h"
 
 namespace sg {
 
 namespace {
 
-const Field& field_to_write(const Dataset& d, const std::string& path, Context& context) {
+const Field& field_to_write(const Dataset& d, const std::string& path, WriteLosses& losses) {
   const Field* chosen = nullptr;
-  size_t n = 0;
   for (const Field& f : d.fields())
-    if (f.association == Association::point) {
-      ++n;
-      if (!chosen || (f.role == Role::scalars && chosen->role != Role::scalars)) chosen = &f;
-    }
+    if (f.association == Association::point && (!chosen || (f.role == Role::scalars && chosen->role != Role::scalars))) chosen = &f;
   if (!chosen)
     fail_usage("there is no point field to write", path, "a MetaImage file holds one array of numbers at the points of a uniform grid");
-  if (n > 1) context.warn(fmt::format("{}: of {} point fields only '{}' is written; a MetaImage file holds one", path, n, chosen->name));
+  losses.keeps_only(d, *chosen, false);
   return *chosen;
 }
 
@@ -62,7 +59,8 @@ void write_metaimage(const std::string& path, const Data& data, const WriteOptio
                "sample it on a grid first: -f 'resample'");
   if (options.compression != "none" && options.compression != "zlib")
     fail_usage(fmt::format("MetaImage cannot be compressed with '{}'", options.compression), path, "none or zlib");
-  const Field& f = field_to_write(*d, path, context);
+  WriteLosses losses(path, "MetaImage");
+  const Field& f = field_to_write(*d, path, losses);
   const Array a = f.array.made_packed();
   std::span<const std::byte> bytes(a.raw(), a.bytes());
   std::vector<std::byte> packed;
@@ -83,6 +81,7 @@ void write_metaimage(const std::string& path, const Data& data, const WriteOptio
     file.write(bytes.data(), bytes.size());
   }
   file.commit();
+  losses.tell(context);
 }
 
 }  // namespace sg

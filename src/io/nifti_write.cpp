@@ -5,6 +5,7 @@
 #include "base/text.h"
 #include "io/formats.h"
 #include "io/inflate.h"
+#include "io/write_losses.h"
 
 namespace sg {
 
@@ -15,17 +16,13 @@ void put(std::byte* header, size_t byte, T v) {
   std::memcpy(header + byte, &v, sizeof v);
 }
 
-const Field& field_to_write(const Dataset& d, const std::string& path, Context& context) {
+const Field& field_to_write(const Dataset& d, const std::string& path, WriteLosses& losses) {
   const Field* chosen = nullptr;
-  size_t n = 0;
   for (const Field& f : d.fields())
-    if (f.association == Association::point) {
-      ++n;
-      if (!chosen || (f.role == Role::scalars && chosen->role != Role::scalars)) chosen = &f;
-    }
+    if (f.association == Association::point && (!chosen || (f.role == Role::scalars && chosen->role != Role::scalars))) chosen = &f;
   if (!chosen)
     fail_usage("there is no point field to write", path, "a NIfTI file holds one array of numbers at the points of a uniform grid");
-  if (n > 1) context.warn(fmt::format("{}: of {} point fields only '{}' is written; a NIfTI file holds one", path, n, chosen->name));
+  losses.keeps_only(d, *chosen, false);
   return *chosen;
 }
 
@@ -86,9 +83,18 @@ void write_nifti(const std::string& path, const Data& data, const WriteOptions&,
   const std::string lower = to_lower(path);
   if (lower.ends_with(".hdr") || lower.ends_with(".img") || lower.ends_with(".hdr.gz") || lower.ends_with(".img.gz"))
     fail_usage("pairs of .hdr and .img are read but not written", path, "name it .nii or .nii.gz");
-  const Field& f = field_to_write(*d, path, context);
+  WriteLosses losses(path, "NIfTI");
+  const Field& f = field_to_write(*d, path, losses);
   for (const size_t n : {grid->dims[0], grid->dims[1], grid->dims[2], size_t(f.components())})
     if (n > 32767) fail_usage(fmt::format("NIfTI-1 cannot hold {} entries along an axis, 32767 at most", n), path, "write NRRD instead");
+
+  losses.renames(f, "NIFTI");
+  bool exact = true;
+  for (int a = 0; a < 3; ++a) {
+    const Vec3 step = grid->direction.column(a) * grid->spacing[a];
+    for (const double x : {step.x, step.y, step.z, grid->origin[a]}) exact = exact && double(float(x)) == x;
+  }
+  if (!exact) losses.rounds("positions", ElementType::f64, ElementType::f32);
 
   std::byte header[header_bytes]{};
   fill_header(header, *d, *grid, f);
@@ -108,6 +114,7 @@ void write_nifti(const std::string& path, const Data& data, const WriteOptions&,
     for (const Array& a : blocks) file.write(a.raw(), a.bytes());
   }
   file.commit();
+  losses.tell(context);
 }
 
 }  // namespace sg

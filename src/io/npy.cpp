@@ -8,6 +8,7 @@
 #include "io/brick.h"
 #include "io/formats.h"
 #include "io/lattice_part.h"
+#include "io/write_losses.h"
 
 namespace sg {
 
@@ -187,14 +188,16 @@ Data read_npy(const std::string& path, const ReadOptions& options, Context& cont
 void write_npy(const std::string& path, const Data& data, const WriteOptions&, Context& context) {
   const DatasetPtr d = single_dataset(data, "writing .npy");
   const Field* f = nullptr;
-  size_t count = 0;
   for (const Field& g : d->fields())
-    if (g.association == Association::point) {
-      ++count;
-      if (!f || (g.role == Role::scalars && f->role != Role::scalars)) f = &g;
-    }
+    if (g.association == Association::point && (!f || (g.role == Role::scalars && f->role != Role::scalars))) f = &g;
   if (!f) fail_usage("there is no point field to write", path, "a .npy file holds one array of numbers");
-  if (count > 1) context.warn(fmt::format("{}: of {} point fields only '{}' is written; a .npy file holds one", path, count, f->name));
+  WriteLosses losses(path, ".npy");
+  losses.keeps_only(*d, *f, false);
+  losses.renames(*f, "values");
+  const auto* placed = d->as<UniformGrid>();
+  if (!placed) losses.also("leaves out the mesh and its positions");
+  else if (!(placed->origin == Vec3() && placed->spacing == Vec3(1, 1, 1) && placed->direction == Mat3()))
+    losses.also("leaves out the positions (origin, spacing and directions of the grid)");
   const Array a = f->array.made_packed();
   constexpr std::string_view types[] = {"|u1", "|i1", "<u2", "<i2", "<u4",
                                         "<i4", "<u8", "<i8", "<f4", "<f8"};  // in the order of ElementType
@@ -217,6 +220,7 @@ void write_npy(const std::string& path, const Data& data, const WriteOptions&, C
   file.write(dict);
   file.write(a.raw(), a.bytes());
   file.commit();
+  losses.tell(context);
 }
 
 }  // namespace sg

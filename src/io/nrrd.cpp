@@ -13,6 +13,7 @@
 #include "io/lattice_part.h"
 #include "io/nrrd_header.h"
 #include "io/text_scan.h"
+#include "io/write_losses.h"
 
 namespace sg {
 
@@ -195,17 +196,13 @@ Data read_nrrd(const std::string& path, const ReadOptions& options, Context& con
 namespace {
 
 // The one field that the file can hold.
-const Field& field_to_write(const Dataset& d, const std::string& path, Context& context) {
+const Field& field_to_write(const Dataset& d, const std::string& path, WriteLosses& losses) {
   const Field* chosen = nullptr;
-  size_t n = 0;
   for (const Field& f : d.fields())
-    if (f.association == Association::point) {
-      ++n;
-      if (!chosen || (f.role == Role::scalars && chosen->role != Role::scalars)) chosen = &f;
-    }
+    if (f.association == Association::point && (!chosen || (f.role == Role::scalars && chosen->role != Role::scalars))) chosen = &f;
   if (!chosen)
     fail_usage("there is no point field to write", path, "a NRRD file holds one array of numbers at the points of a uniform grid");
-  if (n > 1) context.warn(fmt::format("{}: of {} point fields only '{}' is written; a NRRD file holds one", path, n, chosen->name));
+  losses.keeps_only(d, *chosen, true);
   return *chosen;
 }
 
@@ -263,7 +260,8 @@ void write_nrrd(const std::string& path, const Data& data, const WriteOptions& o
     fail_usage(fmt::format("NRRD cannot be compressed with '{}'", options.compression), path, "none or gzip");
   if (extension_of(path) == "nhdr") fail_usage("detached NRRD headers are read but not written", path, "name it .nrrd");
   const UniformGrid placed = with_long_axes(*grid);
-  const Field& f = field_to_write(*d, path, context);
+  WriteLosses losses(path, "NRRD");
+  const Field& f = field_to_write(*d, path, losses);
   const Array a = f.array.made_packed();
   const std::span<const std::byte> bytes(a.raw(), a.bytes());
   const bool gzip = options.compression == "gzip";
@@ -283,6 +281,7 @@ void write_nrrd(const std::string& path, const Data& data, const WriteOptions& o
     file.write(bytes.data(), bytes.size());
   }
   file.commit();
+  losses.tell(context);
 }
 
 }  // namespace sg

@@ -10,6 +10,7 @@
 #include "io/obj_parse.h"
 #include "io/surface_parts.h"
 #include "io/text_scan.h"
+#include "io/write_losses.h"
 
 namespace sg {
 
@@ -378,16 +379,49 @@ Data read_obj(const std::string& path, const ReadOptions& options, Context& cont
   return make_dataset(std::move(parts));
 }
 
-void write_obj(const std::string& path, const Data& data, const WriteOptions&, Context&) {
+namespace {
+
+// What of the fields becomes part of the vertices and groups; null: nothing.
+struct ObjFields {
+  const Field *normals = nullptr, *tcoords = nullptr, *colors = nullptr, *group = nullptr;
+};
+
+ObjFields fields_to_write(const Dataset& d, const std::string& path, Context& context) {
+  ObjFields r;
+  for (const Field& f : d.fields()) {
+    if (f.association != Association::point) continue;
+    if (f.role == Role::normals && f.components() == 3) r.normals = &f;
+    if (f.role == Role::tcoords && f.components() == 2) r.tcoords = &f;
+    if (f.role == Role::colors && f.components() >= 3 && f.array.type() == ElementType::u8) r.colors = &f;
+  }
+  r.group = d.fields().find("GroupIds", Association::cell);
+  if (r.group && r.group->components() != 1) r.group = nullptr;
+  WriteLosses losses(path, "OBJ");
+  for (const Field& f : d.fields()) {
+    const char* name = &f == r.normals   ? "Normals"
+                       : &f == r.tcoords ? "TCoords"
+                       : &f == r.colors  ? "RGB"
+                       : &f == r.group   ? "GroupIds"
+                                         : nullptr;
+    if (!name) {
+      losses.leaves_out(f);
+      continue;
+    }
+    losses.renames(f, name);
+    losses.drops_unit(f);
+    if (&f == r.normals || &f == r.tcoords) losses.rounds(f, ElementType::f32);
+    if (&f == r.colors && f.components() > 3) losses.also(fmt::format("drops the opacity of '{}'", f.name));
+  }
+  losses.tell(context);
+  return r;
+}
+
+}  // namespace
+
+void write_obj(const std::string& path, const Data& data, const WriteOptions&, Context& context) {
   const DatasetPtr d = single_dataset(data, "writing OBJ");
   const SurfaceMesh& mesh = surface_to_write(*d, "OBJ", path);
-  const Field *normals = nullptr, *tcoords = nullptr, *colors = nullptr;
-  for (const Field& f : d->fields()) {
-    if (f.association != Association::point) continue;
-    if (f.role == Role::normals && f.components() == 3) normals = &f;
-    if (f.role == Role::tcoords && f.components() == 2) tcoords = &f;
-    if (f.role == Role::colors && f.components() >= 3 && f.array.type() == ElementType::u8) colors = &f;
-  }
+  const auto [normals, tcoords, colors, group] = fields_to_write(*d, path, context);
   AtomicFile file(path);
   std::string text = "# written by sightglass\n";
   auto flush = [&](size_t limit) {
@@ -409,8 +443,6 @@ void write_obj(const std::string& path, const Data& data, const WriteOptions&, C
           fmt::format("vn {} {} {}\n", float(normals->array.get(i, 0)), float(normals->array.get(i, 1)), float(normals->array.get(i, 2)));
     flush(1 << 20);
   }
-  const Field* group = d->fields().find("GroupIds", Association::cell);
-  if (group && group->components() != 1) group = nullptr;
   double in_group = std::nan("");
   auto cell = [&](const char* word, const int64_t* ids, size_t n, bool corners, size_t number) {
     if (group && group->array.get(number) != in_group)

@@ -9,6 +9,7 @@
 #include "io/formats.h"
 #include "io/ply_body.h"
 #include "io/surface_parts.h"
+#include "io/write_losses.h"
 
 namespace sg {
 
@@ -235,7 +236,7 @@ struct Column {
 };
 
 // `comments` gets the names of the fields that their properties do not tell.
-std::vector<Column> columns_of(const Dataset& d, Association association, std::string& comments) {
+std::vector<Column> columns_of(const Dataset& d, Association association, std::string& comments, WriteLosses& losses) {
   std::vector<Column> r;
   for (const Field& f : d.fields()) {
     if (f.association != association) continue;
@@ -244,6 +245,8 @@ std::vector<Column> columns_of(const Dataset& d, Association association, std::s
     for (char& c : name)
       if (c == ' ' || c == '\t' || c == '\n' || c == '\r') c = '_';
     const bool wide = element_size(f.array.type()) == 8;
+    if (wide) losses.rounds(f, ElementType::f64);
+    losses.drops_unit(f);
     const Array a = wide ? f.array.converted(ElementType::f64) : f.array;
     const size_t first = r.size();
     for (int c = 0; c < n; ++c) {
@@ -258,6 +261,8 @@ std::vector<Column> columns_of(const Dataset& d, Association association, std::s
     if (n > 0 && (n > 1 || r[first].name != f.name) && f.name.find_first_of("\r\n") == std::string::npos && trim(f.name) == f.name)
       comments += fmt::format("comment {} {} {} {} {}\n", field_comment, association == Association::point ? "vertex" : "face",
                               r[first].name, n, f.name);
+    else if (n > 1) losses.splits(f);
+    else if (n > 0) losses.renames(f, r[first].name);
   }
   return r;
 }
@@ -279,8 +284,11 @@ void write_ply(const std::string& path, const Data& data, const WriteOptions& op
   if (mesh.lines.size() || mesh.vertices.size()) context.warn(path + ": lines and vertices are not written; PLY holds faces");
   const PolygonList faces = surface_polygons(mesh);
   std::string comments;
-  const std::vector<Column> of_points = columns_of(*d, Association::point, comments),
-                            of_faces = columns_of(*d, Association::cell, comments);
+  WriteLosses losses(path, "PLY");
+  const std::vector<Column> of_points = columns_of(*d, Association::point, comments, losses),
+                            of_faces = columns_of(*d, Association::cell, comments, losses);
+  losses.leaves_out(*d, Association::whole);
+  losses.tell(context);
   const Vec3 o = mesh.points.origin;
   const bool wide = mesh.points.xyz.type() == ElementType::f64 || o.x != 0 || o.y != 0 || o.z != 0;
   size_t longest = 0;

@@ -8,6 +8,7 @@
 #include "io/formats.h"
 #include "io/surface_parts.h"
 #include "io/text_scan.h"
+#include "io/write_losses.h"
 
 namespace sg {
 
@@ -142,7 +143,10 @@ void write_stl(const std::string& path, const Data& data, const WriteOptions& op
   if (n > UINT32_MAX) fail_usage(fmt::format("{} triangles are more than an STL file can count", n), path);
   if (!mesh.lines.connectivity.empty() || !mesh.vertices.connectivity.empty())
     context.warn(path + ": lines and vertices are not written; STL holds triangles only");
-  if (!d->fields().empty()) context.warn(path + ": STL holds no fields; they are left out");
+  WriteLosses losses(path, "STL");
+  for (const Field& f : d->fields()) losses.leaves_out(f);
+  if (!survives_f32(mesh.points)) losses.rounds("positions", ElementType::f64, ElementType::f32);
+  losses.tell(context);
   AtomicFile file(path);
   auto triangle = [&](size_t t, float v[12]) {
     Vec3 p[3];

@@ -170,7 +170,7 @@ void write_fields(XmlWriter& xml, const Dataset& d, Association association, con
   XmlAttributes attributes;
   for (const auto& [role, attribute] : roles)
     for (const Field& f : d.fields())
-      if (f.association == association && f.role == role) {
+      if (f.association == association && f.role == role && (association == Association::point || !d.as<PointCloud>())) {
         attributes.emplace_back(attribute, f.name);
         break;
       }
@@ -182,7 +182,8 @@ void write_fields(XmlWriter& xml, const Dataset& d, Association association, con
   if (!shape.empty()) attributes.emplace_back(shaping, std::string(shaping));
   xml.begin(point ? "PointData" : "CellData", attributes);
   for (const Field& f : d.fields())
-    if (f.association == association) xml.array(f.name, f.array, false, f.unit);
+    if (f.association == association && (point || !d.as<PointCloud>()))  // clouds get a vertex each, and have no values on cells
+      xml.array(f.name, f.array, false, f.unit);
   if (!shape.empty() && !d.fields().find(shaping, association)) xml.array(shaping, shape.converted(ElementType::f64));
   if (!ghost.empty()) xml.array("vtkGhostType", ghost);
   xml.end();

@@ -217,7 +217,7 @@ TEST_CASE("nrrd: what cannot be written is said") {
   std::string warning;
   context.on_log = [&](LogLevel, std::string_view s) { warning += s; };
   write_data(temp_folder() + "x.nrrd", make_dataset(p), {}, context);
-  CHECK(contains(warning, "only 'b' is written"));
+  CHECK(contains(warning, "leaves out 'a' (points)"));
   CHECK(read_file(temp_folder() + "x.nrrd")->fields()[0].array.get(0) == 2);
 }
 

@@ -8,6 +8,7 @@
 #include "io/formats.h"
 #include "io/gltf/gltf_bytes.h"
 #include "io/surface_parts.h"
+#include "io/write_losses.h"
 
 namespace sg {
 
@@ -27,17 +28,22 @@ int component_type(ElementType t) {
 }
 
 // Attributes are 8 and 16 bit integers or f32.
-Array as_attribute(const Array& a) {
-  const bool kept = is_float(a.type()) ? a.type() == ElementType::f32 : element_size(a.type()) <= 2;
-  return (kept ? a : a.converted(ElementType::f32)).made_packed();
+ElementType as_attribute_type(ElementType t) { return !is_float(t) && element_size(t) <= 2 ? t : ElementType::f32; }
+
+Array as_attribute(const Array& a) { return a.converted(as_attribute_type(a.type())).made_packed(); }
+
+// Another field may have been given the name already: a component of 'T' that of 'T_0'.
+std::string free_key(const Json& attributes, std::string key) {
+  while (attributes.contains(key)) key += '_';
+  return key;
 }
 
 struct Writer {
   const std::string& path;
   Context& context;
+  WriteLosses& losses;
   Json root;
   std::string bytes{};
-  bool cells_left = false;
 
   // Elements padded to multiples of four bytes; returns the accessor.
   int put(const Array& a, int target, bool normalized = false, bool with_range = false) {
@@ -73,23 +79,35 @@ struct Writer {
 
   Json attributes(const Dataset& d, const Points& points) {
     Json r;
+    if (!survives(points.xyz, ElementType::f32)) losses.rounds("positions", points.xyz.type(), ElementType::f32);
     r["POSITION"] = put(points.xyz.converted(ElementType::f32), 34962, false, true);
     int tcoords = 0, colors = 0;
     for (const Field& f : d.fields()) {
-      cells_left = cells_left || f.association == Association::cell;
-      if (f.association != Association::point) continue;
+      if (f.association != Association::point) {
+        losses.leaves_out(f);
+        continue;
+      }
+      losses.drops_unit(f);
       const int n = f.components();
       const bool byte = f.array.type() == ElementType::u8;
       if (f.role == Role::normals && n == 3 && !r.contains("NORMAL")) {
+        losses.renames(f, "NORMAL"), losses.rounds(f, ElementType::f32);
         r["NORMAL"] = put(f.array.converted(ElementType::f32), 34962);
       } else if (f.role == Role::tcoords && n == 2) {
+        losses.renames(f, fmt::format("TEXCOORD_{}", tcoords)), losses.rounds(f, ElementType::f32);
         r[fmt::format("TEXCOORD_{}", tcoords++)] = put(f.array.converted(ElementType::f32), 34962);
       } else if (f.role == Role::colors && (n == 3 || n == 4) && (byte || is_float(f.array.type()))) {
+        losses.renames(f, fmt::format("COLOR_{}", colors));
+        if (!byte) losses.rounds(f, ElementType::f32);
         r[fmt::format("COLOR_{}", colors++)] = put(byte ? f.array.made_packed() : f.array.converted(ElementType::f32), 34962, byte);
       } else if (n <= 4) {
-        r["_" + f.name] = put(as_attribute(f.array), 34962);
+        losses.rounds(f, as_attribute_type(f.array.type()));
+        const std::string key = free_key(r, "_" + f.name);
+        losses.renames(f, key.substr(1));
+        r[key] = put(as_attribute(f.array), 34962);
       } else {
-        for (int c = 0; c < n; ++c) r[fmt::format("_{}_{}", f.name, c)] = put(as_attribute(f.array.component(c)), 34962);
+        losses.splits(f), losses.rounds(f, as_attribute_type(f.array.type()));
+        for (int c = 0; c < n; ++c) r[free_key(r, fmt::format("_{}_{}", f.name, c))] = put(as_attribute(f.array.component(c)), 34962);
       }
     }
     return r;
@@ -134,10 +152,11 @@ void append_word(std::string& s, uint32_t v) { s.append(reinterpret_cast<const c
 }  // namespace
 
 void write_gltf(const std::string& path, const Data& data, const WriteOptions&, Context& context) {
-  Writer w{path, context, {{"asset", {{"version", "2.0"}, {"generator", "sightglass"}}}, {"scene", 0}}};
+  WriteLosses losses(path, "glTF");
+  Writer w{path, context, losses, {{"asset", {{"version", "2.0"}, {"generator", "sightglass"}}}, {"scene", 0}}};
   for_each_dataset(data, [&](const std::string& name, const DatasetPtr& d) { w.add(name, *d); });
   if (w.root["meshes"].empty()) fail_usage("there is no surface to write", path);
-  if (w.cells_left) context.warn(path + ": cell fields are not written; glTF has values at points (filter cell_to_point first)");
+  losses.tell(context);
   while (w.bytes.size() % 4) w.bytes += '\0';
   Json buffer = {{"byteLength", w.bytes.size()}};
   const bool binary = extension_of(path) == "glb";

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "io/formats.h"
+#include "io/write_losses.h"
 #include "io/zarr/zarr.h"
 
 namespace sg {
@@ -13,16 +14,16 @@ const Field& chosen_field(const Dataset& d, const ReadOptions& options, const st
   if (!d.as<UniformGrid>())
     fail_usage(fmt::format("a {} mesh cannot be written as Zarr", d.kind()), path,
                "a Zarr image holds a uniform grid; resample it first: -f 'resample ...'");
-  const Field* chosen = options.fields.size() == 1 ? d.fields().find(options.fields[0], Association::point) : d.fields().active(0);
-  size_t count = 0;
+  const bool named = options.fields.size() == 1;
+  const Field* chosen = named ? d.fields().find(options.fields[0], Association::point) : d.fields().active(0);
+  if (chosen && chosen->association != Association::point) chosen = nullptr;
   for (const Field& f : d.fields())
-    if (f.association == Association::point) {
-      ++count;
-      if (!chosen) chosen = &f;
-    }
-  if (!chosen || chosen->association != Association::point)
+    if (f.association == Association::point && !chosen) chosen = &f;
+  if (!chosen)
     fail_usage("there is no point field to write", path, "a Zarr image holds numbers at the points of a grid; -f cell_to_point makes them");
-  if (count > 1) context.warn(fmt::format("of {} point fields only '{}' is written; --fields chooses another", count, chosen->name));
+  WriteLosses losses(path, "one Zarr image (--fields chooses a field)");
+  if (!named) losses.keeps_only(d, *chosen, true);
+  losses.tell(context);
   return *chosen;
 }
 

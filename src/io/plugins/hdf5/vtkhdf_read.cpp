@@ -86,7 +86,7 @@ void read_whole_fields(const Group& g, DatasetParts& parts) {
     const uint64_t from = g.step_entry("FieldDataOffsets/" + name, 0);
     // FieldDataSizes holds components and tuples of each step; without it, a step has one row.
     const uint64_t n = in_time ? g.step_entry("FieldDataSizes/" + name, 1, 1) : d.rows();
-    parts.fields.add({name, Association::whole, d.read_rows(from, n), {}, Role::none});
+    parts.fields.add({name, Association::whole, d.read_rows(from, n), g.file.text_attribute(path, "units").value_or(""), Role::none});
   }
 }
 

@@ -11,6 +11,7 @@
 #include "data/lattice.h"
 #include "io/plugins/hdf5/h5_pack.h"
 #include "io/plugins/hdf5/vtkhdf.h"
+#include "io/write_losses.h"
 
 namespace sg {
 
@@ -117,6 +118,7 @@ struct Out {
   Writer& w;
   const Dataset& d;
   std::string at;  ///< the group
+  WriteLosses& losses;
 
   std::string operator()(const std::string& name) const { return at + "/" + name; }
 };
@@ -152,6 +154,7 @@ void write_fields(const Out& o, const std::string& group, Association associatio
     std::string name = safe_name(f.name);
     while (std::find(used.begin(), used.end(), name) != used.end()) name += "_";
     used.push_back(name);
+    o.losses.renames(f, name);
     put(name, f.array);
     if (!f.unit.empty()) o.w.text(o(group + "/" + name), "units", f.unit);
     for (const auto& [role, attribute] : roles)
@@ -294,6 +297,7 @@ void write(const Out& o, const AmrGrid& g) {
       for (const Field& f : o.d.fields())
         if (f.association == association) {
           const std::string name = at + "/" + data + "/" + safe_name(f.name);
+          o.losses.renames(f, safe_name(f.name));
           o.w.list(name, f.array.slice(from, to));
           if (!f.unit.empty()) o.w.text(name, "units", f.unit);
         }
@@ -328,8 +332,10 @@ void write_vtkhdf(const std::string& path, const Data& data, const WriteOptions&
   const h5::Turn turn;
   errno = 0;
   vtkhdf::Writer writer(path, options.compression == "zlib", context);
-  vtkhdf::write_kind({writer, *d, "/VTKHDF"});
+  WriteLosses losses(path, "VTKHDF");
+  vtkhdf::write_kind({writer, *d, "/VTKHDF", losses});
   writer.commit();
+  losses.tell(context);
 }
 
 }  // namespace sg

@@ -9,6 +9,7 @@
 #include "base/partial_file.h"
 #include "io/lattice_part.h"
 #include "io/plugins/openvdb/vdb.h"
+#include "io/write_losses.h"
 
 namespace sg {
 
@@ -52,6 +53,25 @@ class Archive : openvdb::io::Archive {
   openvdb::GridCPtrVec grids_;
 };
 
+// Floats stay what they are; whole numbers become f32, which every program reads, where that changes none of them, else the integers
+// that OpenVDB has. Null: neither 1 nor 3 components.
+openvdb::GridBase::Ptr grid_of(const Field& f, const openvdb::CoordBBox& box, WriteLosses& losses) {
+  const Array& a = f.array;
+  const bool f32 = a.type() == ElementType::f32 || (a.type() != ElementType::f64 && survives(a, ElementType::f32));
+  if (a.components() == 1) {
+    if (f32) return sparse<openvdb::FloatGrid, float, 1>(a, box);
+    if (a.type() == ElementType::f64) return sparse<openvdb::DoubleGrid, double, 1>(a, box);
+    if (a.type() == ElementType::i32) return sparse<openvdb::Int32Grid, int32_t, 1>(a, box);
+    if (survives(a, ElementType::i64)) return sparse<openvdb::Int64Grid, int64_t, 1>(a, box);
+    losses.rounds(f, ElementType::f64);
+    return sparse<openvdb::DoubleGrid, double, 1>(a, box);
+  }
+  if (a.components() != 3) return nullptr;
+  if (f32) return sparse<openvdb::Vec3SGrid, float, 3>(a, box);
+  losses.rounds(f, ElementType::f64);
+  return sparse<openvdb::Vec3DGrid, double, 3>(a, box);
+}
+
 }  // namespace
 
 void write_vdb(const std::string& path, const Data& data, const WriteOptions&, Context& context) {
@@ -67,21 +87,19 @@ void write_vdb(const std::string& path, const Data& data, const WriteOptions&, C
   const openvdb::Coord last(int(g->dims[0]) - 1, int(g->dims[1]) - 1, int(g->dims[2]) - 1);
   const openvdb::CoordBBox box(openvdb::Coord(0), last);
   openvdb::GridPtrVec grids;
+  WriteLosses losses(path, "OpenVDB");
   try {
     // OpenVDB multiplies from the left: the rows are the steps, the last one the origin.
     openvdb::Mat4R map = openvdb::Mat4R::identity();
     for (int a = 0; a < 3; ++a)
       for (int c = 0; c < 3; ++c) map[a][c] = g->direction.m[c][a] * g->spacing[a], map[3][c] = g->origin[c];
     for (const Field& f : d->fields()) {
-      if (f.association != Association::point) continue;
-      openvdb::GridBase::Ptr grid;
-      if (f.components() == 1 && f.array.type() == ElementType::f64) grid = sparse<openvdb::DoubleGrid, double, 1>(f.array, box);
-      else if (f.components() == 1) grid = sparse<openvdb::FloatGrid, float, 1>(f.array, box);
-      else if (f.components() == 3) grid = sparse<openvdb::Vec3SGrid, float, 3>(f.array, box);
-      else {
-        context.warn(fmt::format("{}: '{}' with {} components is left out; OpenVDB holds 1 or 3", path, f.name, f.components()));
+      const openvdb::GridBase::Ptr grid = f.association == Association::point ? grid_of(f, box, losses) : nullptr;
+      if (!grid) {
+        losses.leaves_out(f);
         continue;
       }
+      losses.drops_unit(f);
       grid->setName(f.name);
       grid->setTransform(openvdb::math::Transform::createLinearTransform(map));
       grid->insertMeta(vdb_box_lo, openvdb::Vec3IMetadata(openvdb::Vec3i(0, 0, 0)));
@@ -93,6 +111,7 @@ void write_vdb(const std::string& path, const Data& data, const WriteOptions&, C
     PartialFile partial(path);
     Archive(grids).write_to(partial.name(), path);
     partial.commit();
+    losses.tell(context);
   } catch (const Error&) {
     throw;
   } catch (const std::exception& e) {
