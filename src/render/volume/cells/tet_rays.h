@@ -26,8 +26,9 @@ struct TetMedium {
   std::vector<int32_t> seen;   ///< slices before this one in which tau is not zero
   float slice_lo = 0, per_slice = 0;
 
-  /// `range`: of the values there are. Straight lines are right to `accuracy` (of colours, and of tau relative to itself or to `faint`).
-  TetMedium(const Medium& medium, const Range& range, float accuracy = 1.0f / 2048, float faint = 0.05f);
+  /// `range`: of the values there are. Straight lines are right to `accuracy` (of colours, and of tau relative to itself or to a fifth of
+  /// what makes no difference to the medium).
+  TetMedium(const Medium& medium, const Range& range, float accuracy = 1.0f / 2048);
 };
 
 /// 16 rays: what they have gathered, and where each of them is.
