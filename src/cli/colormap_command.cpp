@@ -126,7 +126,7 @@ int run_colormap(const Options& o, Context&) {
     } else {
       std::printf("%s (%s): %s\n", printable(map.name).c_str(), std::string(kind_name(map.kind)).c_str(), printable(map.about).c_str());
       if (file) std::printf("  %s\n", printable(file_facts(*file, false)).c_str());
-      const bool hinge_only = map.kind == MapKind::diverging && kind_of_colors(map.colors) != MapKind::diverging;
+      const bool hinge_only = map.kind == MapKind::diverging && kind_of_colors(map) != MapKind::diverging;
       std::printf("  %s\n",
                   hinge_only ? "two sides that meet at a value; lightness does not tell how far from it" : verdict(map, r).c_str());
       std::printf("  lightness L* from %s to %s (CIELAB, D65)\n", short_number(r.lowest, 4).c_str(), short_number(r.highest, 4).c_str());

@@ -66,7 +66,10 @@ double ColorScale::position(double v) const {
   if (lo == hi) return flat_position(v, lo);
   double t;
   if (kind == ScaleKind::log) {
-    t = linear_position(std::log(v), std::log(lo), std::log(hi));
+    // Of ratios: the same for all powers of two of a field.
+    const double at = v / lo, all = hi / lo;
+    const bool exact = at > 0 && all > 0 && std::isfinite(at) && std::isfinite(all) && all != 1;
+    t = exact ? std::log(at) / std::log(all) : linear_position(std::log(v), std::log(lo), std::log(hi));
   } else if (kind == ScaleKind::symlog) {
     const double c = threshold_of(*this);
     t = linear_position(symlog(v, c), symlog(lo, c), symlog(hi, c));
@@ -88,7 +91,8 @@ double ColorScale::value_at(double t) const {
   if (t == 1) return hi;
   if (kind == ScaleKind::log) {
     if (!(lo > 0 && hi > 0)) return no_value;
-    return std::exp(std::log(lo) * (1 - t) + std::log(hi) * t);
+    const double all = hi / lo;
+    return all > 0 && std::isfinite(all) ? lo * std::pow(all, t) : std::exp(std::log(lo) * (1 - t) + std::log(hi) * t);
   }
   if (kind == ScaleKind::symlog) {
     const double c = threshold_of(*this);
@@ -124,6 +128,40 @@ ColorTable color_table(const ColorScale& scale, int size) {
   table.above = to_linear(scale.color_at(2));
   table.nan = to_linear(scale.color_at(no_value));
   return table;
+}
+
+std::vector<double> color_knots(const ColorScale& scale) {
+  if (!scale.labels.empty()) return {};
+  constexpr size_t most = 4096;
+  constexpr double narrow = 1.0 / 64;  // of the map: wider ramps are smooth enough for samples
+  constexpr int pieces = 16;           // of a narrow one: then sRGB is as good as linear light on each
+  const std::vector<Vec3f>& c = scale.map.colors;
+  const size_t n = c.size();
+  std::vector<double> places{0, 1};  // on the map
+  const auto change = [&](size_t i) {
+    const Vec4f a = to_linear(opaque(c[i])), b = to_linear(opaque(c[i + 1]));
+    return std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)});
+  };
+  if (scale.map.categorical()) {
+    for (size_t i = 1; i < n && n <= most; ++i) places.push_back(double(i) / double(n));
+  } else {
+    const bool even = scale.map.positions.size() != n;
+    const auto at = [&](size_t i) { return even ? double(i) / double(n - 1) : scale.map.positions[i]; };
+    for (size_t i = 0; i + 1 < n && places.size() < most; ++i) {
+      const double width = at(i + 1) - at(i);
+      const bool sharp = width < narrow && change(i) > (even ? 0.05f : 0.02f);
+      if (!even && n <= 256) places.push_back(at(i));
+      if (!sharp) continue;
+      for (int k = 0; k <= pieces; ++k) places.push_back(k == pieces ? at(i + 1) : at(i) + width * k / pieces);
+    }
+  }
+  std::vector<double> values;
+  for (double t : places) values.push_back(scale.value_at(t));
+  if (scale.kind == ScaleKind::log) values.push_back(0);
+  std::erase_if(values, [](double v) { return !std::isfinite(v); });
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+  return values;
 }
 
 double OpacityCurve::at(double v) const {

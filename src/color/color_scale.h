@@ -51,6 +51,10 @@ struct ColorTable {
 /// At least `size` samples (more when labels need them). Throws Error(usage) for a log scale whose range is not positive.
 ColorTable color_table(const ColorScale& scale, int size = 4096);
 
+/// Values, ascending, at which the colour, or whether there is one, jumps, or bends so sharply that even samples would not tell: stops,
+/// borders of bands, the ends of the scale. Narrow ramps between stops have some more on their way. None for labels.
+std::vector<double> color_knots(const ColorScale& scale);
+
 /// Piecewise-linear opacity over values: sorted (value, opacity) points; constant beyond the ends.
 /// Opacity is per `unit` of length: a segment of length h has alpha = 1 - (1 - opacity)^(h/unit).
 struct OpacityCurve {

@@ -127,6 +127,13 @@ const Colormap& built(size_t i) {
 Vec3f Colormap::at(double t) const {
   const size_t n = colors.size();
   if (n == 0) return {0, 0, 0};
+  if (positions.size() == n && !categorical()) {
+    const size_t after = size_t(std::upper_bound(positions.begin(), positions.end(), t) - positions.begin());
+    if (after == 0 || t != t) return colors.front();
+    if (after == n) return colors.back();
+    const double from = positions[after - 1], width = positions[after] - from;
+    return lerp(colors[after - 1], colors[after], float((t - from) / width));
+  }
   if (!(t > 0)) return colors.front();
   if (t >= 1) return colors.back();
   if (categorical()) return colors[std::min(n - 1, size_t(t * double(n)))];
@@ -134,6 +141,12 @@ Vec3f Colormap::at(double t) const {
   const size_t i = std::min(size_t(x), n - 1);
   if (i + 1 == n) return colors.back();
   return lerp(colors[i], colors[i + 1], float(x - double(i)));
+}
+
+void reverse(Colormap& map) {
+  std::reverse(map.colors.begin(), map.colors.end());
+  std::reverse(map.positions.begin(), map.positions.end());
+  for (double& p : map.positions) p = 1 - p;
 }
 
 const std::vector<Colormap>& colormaps() {
@@ -154,7 +167,7 @@ Colormap find_colormap(std::string_view name) {
       Colormap map = built(i);
       map.name = name;
       map.about += " Reversed.";
-      std::reverse(map.colors.begin(), map.colors.end());
+      reverse(map);
       return map;
     }
   if (names_colormap_file(name)) return find_file_colormap(name).map;

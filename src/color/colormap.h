@@ -16,11 +16,16 @@ struct Colormap {
   MapKind kind = MapKind::sequential;
   std::string about;          ///< one sentence: what it is for, source
   std::vector<Vec3f> colors;  ///< sRGB-encoded 0..1; sequential maps: samples at i/(n-1), categorical: one colour per label
+  /// Where the colours lie when that is not evenly: ascending from 0 to 1; of two at one place the first holds below it. Not categorical.
+  std::vector<double> positions;
 
   /// sRGB colour at t (clamped); linear between samples, so control points are hit exactly. Categorical: colour floor(t*n).
   Vec3f at(double t) const;
   bool categorical() const { return kind == MapKind::categorical; }
 };
+
+/// The same colours from the other end.
+void reverse(Colormap& map);
 
 /// All built-in maps, in the order `sightglass colormap` lists them.
 const std::vector<Colormap>& colormaps();

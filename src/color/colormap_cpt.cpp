@@ -207,8 +207,8 @@ FileColormap parse_cpt(std::string_view text, const std::string& path) {
     for (ColorNode& n : flat) n.position = f.lo + (n.position - f.lo) * scale;
     nodes = std::move(flat);
   }
-  f.map.colors = sample_nodes(nodes, p.model == Model::hsv ? NodeSpace::hsv : NodeSpace::rgb);
-  if (f.map.kind != MapKind::cyclic) f.map.kind = f.hinge ? MapKind::diverging : kind_of_colors(f.map.colors);
+  set_nodes(f.map, nodes, p.model == Model::hsv ? NodeSpace::hsv : NodeSpace::rgb);
+  if (f.map.kind != MapKind::cyclic) f.map.kind = f.hinge ? MapKind::diverging : kind_of_colors(f.map);
   return f;
 }
 

@@ -5,6 +5,7 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "color/colormap_formats.h"
+#include "color/colormap_nodes.h"
 
 namespace sg {
 
@@ -102,7 +103,7 @@ std::vector<FileColormap> parse_css_maps(std::string_view text, const std::strin
     if (f.map.colors.size() != f.entries) fail_data(fmt::format("'{}' has {} colours", f.map.name, f.map.colors.size()), path);
     const std::string name = f.map.name.substr(0, f.map.name.rfind('-'));
     f.hi = double(f.entries - 1);
-    f.map.kind = is_qualitative(name) ? MapKind::categorical : kind_of_colors(f.map.colors);
+    f.map.kind = is_qualitative(name) ? MapKind::categorical : kind_of_colors(f.map);
     all.push_back(f);
     const bool last = i + 1 == r.size() || !r[i + 1].map.name.starts_with(name + "-");
     if (last) {  // the lists of a name get longer
@@ -166,7 +167,7 @@ FileColormap find_file_colormap(std::string_view name) {
   FileColormap r = std::move(*found);
   r.map.name = name;
   if (reversed) {
-    std::reverse(r.map.colors.begin(), r.map.colors.end());
+    reverse(r.map);
     std::swap(r.below, r.above);
     if (r.hinge) r.hinge = r.lo + r.hi - *r.hinge;
     r.map.about += " Reversed.";
@@ -177,16 +178,28 @@ FileColormap find_file_colormap(std::string_view name) {
 Colormap hinged(const FileColormap& f, double lo, double hi) {
   if (!f.hinge || !(f.hi > f.lo) || !(hi > lo) || f.map.categorical()) return f.map;
   const double h = std::clamp((*f.hinge - f.lo) / (f.hi - f.lo), 0.0, 1.0);
-  Colormap r = f.map;
-  const size_t n = std::max<size_t>(2049, r.colors.size());
-  r.colors.clear();
-  for (size_t i = 0; i < n; ++i) {
-    const double v = lo + (hi - lo) * double(i) / double(n - 1);
-    // Colours on the two sides of a hard hinge differ: samples stay off the place itself.
-    const double side = v < 0 ? (lo < 0 ? 1 - (v - std::min(hi, 0.0)) / (lo - std::min(hi, 0.0)) : 1)
-                              : (hi > 0 ? (v - std::max(lo, 0.0)) / (hi - std::max(lo, 0.0)) : 0);
-    r.colors.push_back(f.map.at(v < 0 ? h * side : h + (1 - h) * side));
+  const std::vector<Vec3f>& colors = f.map.colors;
+  const size_t n = colors.size();
+  const auto place = [&](size_t i) {
+    return f.map.positions.empty() ? double(i) / double(std::max<size_t>(n, 2) - 1) : f.map.positions[i];
+  };
+  // Below the hinge and above it the colours keep their places within that side; of a hard hinge each side has its own colour.
+  std::vector<ColorNode> nodes;
+  if (lo < 0) {
+    const double end = std::min(hi, 0.0);
+    if (!(h > 0)) nodes = {{lo, colors.front()}, {end, colors.front()}};
+    for (size_t i = 0; i < n && h > 0 && (i == 0 || place(i - 1) < h); ++i)
+      nodes.push_back(place(i) > h ? ColorNode{end, f.map.at(h)} : ColorNode{end + (lo - end) * (1 - place(i) / h), colors[i]});
   }
+  if (hi > 0) {
+    const double begin = std::max(lo, 0.0);
+    if (!(h < 1)) nodes.push_back({begin, colors.back()}), nodes.push_back({hi, colors.back()});
+    else nodes.push_back({begin, f.map.at(h)});
+    for (size_t i = 0; i < n && h < 1; ++i)
+      if (place(i) > h) nodes.push_back({begin + (hi - begin) * ((place(i) - h) / (1 - h)), colors[i]});
+  }
+  Colormap r = f.map;
+  set_nodes(r, nodes, NodeSpace::rgb);
   return r;
 }
 

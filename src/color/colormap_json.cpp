@@ -79,8 +79,8 @@ struct JsonMaps {
       }
       f.entries = nodes.size();
       f.lo = nodes.front().position, f.hi = nodes.back().position;
-      f.map.colors = sample_nodes(nodes, space_of(f.space));
-      f.map.kind = f.space == "Diverging" && nodes.size() <= 3 ? MapKind::diverging : kind_of_colors(f.map.colors);
+      set_nodes(f.map, nodes, space_of(f.space));
+      f.map.kind = f.space == "Diverging" && nodes.size() <= 3 ? MapKind::diverging : kind_of_colors(f.map);
       return f;
     }
     const auto indexed = numbers(o, "IndexedColors", name);
@@ -135,8 +135,8 @@ struct JsonMaps {
       }
       return f;
     }
-    f.map.colors = sample_nodes(nodes, NodeSpace::rgb);
-    f.map.kind = kind_of_colors(f.map.colors);
+    set_nodes(f.map, nodes, NodeSpace::rgb);
+    f.map.kind = kind_of_colors(f.map);
     return f;
   }
 };

@@ -9,7 +9,7 @@ namespace sg {
 
 namespace {
 
-constexpr size_t fine = 1025;
+constexpr double fine = 1024;  ///< samples of a path that is no straight line in RGB
 
 struct Hsv {
   double h, s, v;  ///< hue in turns
@@ -83,40 +83,49 @@ Vec3f between(Vec3f a, Vec3f b, double t, NodeSpace space) {
   return lerp(a, b, float(t));
 }
 
-std::vector<Vec3f> sample_nodes(std::span<const ColorNode> nodes, NodeSpace space) {
-  std::vector<Vec3f> r;
-  if (nodes.empty()) return r;
+void set_nodes(Colormap& map, std::span<const ColorNode> given, NodeSpace space) {
+  map.colors.clear(), map.positions.clear();
+  // Of more than two nodes at one place only the outer ones are seen.
+  std::vector<ColorNode> nodes;
+  for (const ColorNode& n : given) {
+    const size_t k = nodes.size();
+    if (k > 0 && nodes[k - 1].position == n.position && nodes[k - 1].color == n.color) continue;
+    if (k > 1 && nodes[k - 1].position == n.position && nodes[k - 2].position == n.position) nodes.pop_back();
+    nodes.push_back(n);
+  }
+  if (nodes.empty()) return;
   const double lo = nodes.front().position, width = nodes.back().position - lo;
-  bool even = space == NodeSpace::rgb && nodes.size() > 1;
-  const double step = width / double(nodes.size() - 1);
-  for (size_t i = 0; i < nodes.size() && even; ++i) even = std::abs(nodes[i].position - lo - double(i) * step) < 0.02 * step;
-  if (even || !(width > 0)) {
-    for (const ColorNode& n : nodes) r.push_back(n.color);
-    if (r.size() == 1) r.push_back(r[0]);
-    return r;
+  if (!(width > 0)) {
+    for (const ColorNode& n : nodes) map.colors.push_back(n.color);
+    if (map.colors.size() == 1) map.colors.push_back(map.colors[0]);
+    return;
   }
-  const size_t n = std::max(fine, 4 * nodes.size() + 1);
-  size_t k = 0;
-  for (size_t i = 0; i < n; ++i) {
-    const double x = lo + width * double(i) / double(n - 1);
-    while (k + 2 < nodes.size() && nodes[k + 1].position <= x) ++k;
-    const double d = nodes[k + 1].position - nodes[k].position;
-    r.push_back(between(nodes[k].color, nodes[k + 1].color, d > 0 ? (x - nodes[k].position) / d : 1, space));
+  const auto add = [&](double position, Vec3f color) { map.positions.push_back((position - lo) / width), map.colors.push_back(color); };
+  for (size_t k = 0; k < nodes.size(); ++k) {
+    add(nodes[k].position, nodes[k].color);
+    if (space == NodeSpace::rgb || k + 1 == nodes.size()) continue;
+    const ColorNode &from = nodes[k], &to = nodes[k + 1];
+    const double length = to.position - from.position;
+    const int pieces = length > 0 ? int(std::clamp(std::ceil(fine * length / width), 16.0, fine)) : 1;
+    for (int i = 1; i < pieces; ++i) {
+      const double f = double(i) / pieces;
+      add(from.position + f * length, between(from.color, to.color, f, space));
+    }
   }
-  r.back() = nodes.back().color;
-  return r;
+  map.positions.back() = 1;
+  // What lies evenly, but for rounding, need not say so.
+  const size_t n = map.positions.size();
+  for (size_t i = 0; i < n; ++i)
+    if (std::abs(map.positions[i] * double(n - 1) - double(i)) > 1e-9) return;
+  map.positions.clear();
 }
 
-MapKind kind_of_colors(std::span<const Vec3f> colors) {
-  if (colors.size() < 2) return MapKind::sequential;
+MapKind kind_of_colors(const Colormap& map) {
+  if (map.colors.size() < 2) return MapKind::sequential;
   constexpr int n = 65;
   constexpr double slack = 2;  ///< L* that an 8-bit table may go the wrong way
   double l[n];
-  for (int i = 0; i < n; ++i) {
-    const double x = double(i) / (n - 1) * double(colors.size() - 1);
-    const size_t k = std::min(size_t(x), colors.size() - 2);
-    l[i] = srgb_to_lab(Vec3(lerp(colors[k], colors[k + 1], float(x - double(k))))).x;
-  }
+  for (int i = 0; i < n; ++i) l[i] = srgb_to_lab(Vec3(map.at(double(i) / (n - 1)))).x;
   // Whether l goes up (sign 1) or down (-1) between two samples, but for the slack.
   auto runs = [&](int begin, int end, double sign) {
     double most = -1e9;
@@ -127,7 +136,7 @@ MapKind kind_of_colors(std::span<const Vec3f> colors) {
     return true;
   };
   if (runs(0, n - 1, 1) || runs(0, n - 1, -1)) return MapKind::sequential;
-  if (ciede2000(srgb_to_lab(Vec3(colors.front())), srgb_to_lab(Vec3(colors.back()))) < 3) return MapKind::cyclic;
+  if (ciede2000(srgb_to_lab(Vec3(map.colors.front())), srgb_to_lab(Vec3(map.colors.back()))) < 3) return MapKind::cyclic;
   for (const double sign : {1.0, -1.0}) {
     int top = 0;
     for (int i = 1; i < n; ++i)

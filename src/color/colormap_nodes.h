@@ -22,11 +22,11 @@ Vec3f between(Vec3f a, Vec3f b, double t, NodeSpace space);
 /// Hue in degrees, saturation and value in [0,1].
 Vec3f hsv_to_rgb(double hue, double saturation, double value);
 
-/// Even samples from the first to the last node, which are sorted; two nodes at one place make a step. Evenly spaced nodes without
-/// steps in RGB are taken as they are, others are sampled finely.
-std::vector<Vec3f> sample_nodes(std::span<const ColorNode> nodes, NodeSpace space);
+/// Gives a map the colours of sorted nodes, from the first to the last, each at its place; two nodes at one place make a step. Between
+/// them the path in other spaces than RGB is sampled finely.
+void set_nodes(Colormap& map, std::span<const ColorNode> nodes, NodeSpace space);
 
 /// What the lightness says: rising or falling, with one extremum near the middle, closed, or none of these (unsafe).
-MapKind kind_of_colors(std::span<const Vec3f> colors);
+MapKind kind_of_colors(const Colormap& map);
 
 }  // namespace sg

@@ -11,6 +11,7 @@ namespace sg {
 namespace {
 
 constexpr int table_size = 4096;
+constexpr float not_even = -1;  ///< alpha of an entry of a table on which the colour jumps or is steep: it is asked of the scale
 
 // log2 with straight lines between the powers of two: monotone, continuous, exactly invertible. 0 for 1.
 float bit_log(float v) { return float(std::bit_cast<int32_t>(v) - 0x3F800000) * 0x1p-23f; }
@@ -107,6 +108,12 @@ TransferFunction::Colors::Colors(const ColorScale& s, double b) : scale(s), base
   for (int i = 0; i < table_size; ++i)
     table.push_back(
         to_linear(s.color(std::clamp(value_on_axis(lo + (hi - lo) * (i + 0.5) / table_size), std::min(s.lo, s.hi), std::max(s.lo, s.hi)))));
+  const auto mark = [&](int i) { table[size_t(std::clamp(i, 0, table_size - 1))].w = not_even; };
+  const std::vector<Vec4f> plain = table;
+  for (size_t i = 0; i + 1 < plain.size(); ++i)
+    if (std::max({std::abs(plain[i].x - plain[i + 1].x), std::abs(plain[i].y - plain[i + 1].y), std::abs(plain[i].z - plain[i + 1].z)}) >
+        0.01f)
+      mark(int(i)), mark(int(i) + 1);
 }
 
 float TransferFunction::Colors::axis(float v) const {
@@ -127,7 +134,12 @@ Vec4f TransferFunction::Colors::at(float v) const {
   if (v != v) return nan;
   if (!scale.labels.empty()) return to_linear(scale.color(double(v) + base));
   const float place = (axis(v) - first) * per_axis;
-  if (place >= 0 && place <= float(table_size)) return table[size_t(std::min(int(place), table_size - 1))];
+  if (place >= 0 && place <= float(table_size)) {
+    const Vec4f& c = table[size_t(std::min(int(place), table_size - 1))];
+    return c.w == not_even
+               ? to_linear(scale.color(std::clamp(double(v) + base, std::min(scale.lo, scale.hi), std::max(scale.lo, scale.hi))))
+               : c;
+  }
   return place < 0 ? below : above;
 }
 

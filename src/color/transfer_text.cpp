@@ -146,7 +146,7 @@ void parse_color_stops(const std::string& text, ColorScale& scale, bool keep_ran
     const double lo = value_of(first, scale), hi = value_of(last, scale);
     scale.lo = lo, scale.hi = hi;
   }
-  map.colors = sample_nodes(nodes, NodeSpace::rgb);
+  set_nodes(map, nodes, NodeSpace::rgb);
   scale.map = std::move(map);
   scale.labels.clear(), scale.label_names.clear(), scale.limits.clear();
 }
@@ -160,6 +160,10 @@ std::string color_stops_text(const ColorScale& scale) {
   const size_t n = c.size();
   if (scale.map.categorical()) {
     for (size_t i = 0; i < n; ++i) add(double(i) / double(n), c[i]), add(double(i + 1) / double(n), c[i]);
+    return r;
+  }
+  if (!scale.map.positions.empty()) {
+    for (size_t i = 0; i < n; ++i) add(scale.map.positions[i], c[i]);
     return r;
   }
   // Greedy: the farthest sample to which a straight line misses no colour between by half a step of 8 bits.

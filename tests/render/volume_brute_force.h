@@ -139,7 +139,7 @@ inline Vec4 brute_force(const Case& c, const Projection& view, int px, int py, c
   for (int i = 0; i < n && out.w > 1e-7; ++i) {
     const Vec3 p = o + d * (from + (i + 0.5) * h);
     const double value = c.lattice.at(p);
-    double opacity = c.opacity.at(value);
+    double opacity = c.opacity.at(value) * double(c.color.color(value).w);
     if (opacity > 0 && !c.factor.points.empty()) opacity *= c.factor.at(length(c.lattice.gradient(p)));
     if (opacity <= 0) continue;
     const double alpha = 1 - std::pow(1 - std::min(opacity, 1 - 1e-12), h / c.unit);

@@ -137,13 +137,14 @@ CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<con
   if (item.mode == RayFunction::sum || item.mode == RayFunction::distance || item.mode == RayFunction::accumulate) {
     // These have values of their own, which need not be those of the field.
     const double span = std::abs(item.color.hi - item.color.lo);
-    plan.lo = std::min(item.color.lo, item.color.hi) - span, plan.hi = std::max(item.color.lo, item.color.hi) + span;
+    plan.lo = std::min(item.color.lo, item.color.hi) - span, plan.hi = std::max(item.color.lo, item.color.hi) + span, plan.base = 0;
   }
   plan.accuracy = 0.25 * item.sampling.tolerance, plan.faint = 0.5 / diagonal, plan.most_tau = 1000 / source.edge;
   v.medium = std::make_unique<Medium>(item.color, item.opacity, plan);
   if (!item.detail.plain() || item.light.ink > 0) {
     v.transfer = std::make_unique<TransferFunction>(item.color, item.opacity, item.detail, base);
-    v.detail = std::make_unique<Detail>(Detail{*v.transfer, item.detail.second, plan.unit, float(plan.most_tau)});
+    const double most_tau = std::max(plan.most_tau, minus_log_one_minus(1 - 0x1p-53) / plan.unit);  // opacities below 1 keep their own
+    v.detail = std::make_unique<Detail>(Detail{*v.transfer, item.detail.second, plan.unit, float(most_tau)});
     if (item.light.ink > 0 && item.mode == RayFunction::composite)
       v.detail->ink = std::min(float(minus_log_one_minus(item.light.ink) / plan.unit), float(plan.most_tau));
   }

@@ -16,6 +16,7 @@
 #include "render/volume/lattice/packets.h"
 #include "render/volume/lattice/reconstructed_ray.h"
 #include "render/volume/light/effects.h"
+#include "render/volume/natural_units.h"
 #include "render/volume/prepare_cast.h"
 #include "render/volume/split_rays.h"
 
@@ -386,12 +387,10 @@ void cast_volumes(const Scene& scene, const Projection& projection, const Fragme
 
 }  // namespace
 
-void composite_volumes(const Scene& scene, const Projection& projection, const FragmentLists& fragments, Frame& frame, Context& context,
+namespace {
+
+void composite_natural(const Scene& scene, const Projection& projection, const FragmentLists& fragments, Frame& frame, Context& context,
                        const Knobs& knobs) {
-  if (frame.width != projection.width || frame.height != projection.height)
-    fail_internal(
-        fmt::format("a frame of {} x {} for a projection of {} x {}", frame.width, frame.height, projection.width, projection.height));
-  check_fragments(fragments, frame);
   draw_layers(scene, projection, frame, context);
   // A draft has no rays to spare.
   const std::vector<RaySlab> slabs = knobs.coarser > 1 ? std::vector<RaySlab>() : ray_slabs(scene, projection);
@@ -401,6 +400,24 @@ void composite_volumes(const Scene& scene, const Projection& projection, const F
                   context.check();
                   cast_volumes(s, p, among, f, context, k);
                 });
+}
+
+}  // namespace
+
+void composite_volumes(const Scene& scene, const Projection& projection, const FragmentLists& fragments, Frame& frame, Context& context,
+                       const Knobs& knobs) {
+  if (frame.width != projection.width || frame.height != projection.height)
+    fail_internal(
+        fmt::format("a frame of {} x {} for a projection of {} x {}", frame.width, frame.height, projection.width, projection.height));
+  check_fragments(fragments, frame);
+  const auto natural = natural_scene(scene);
+  if (!natural) return composite_natural(scene, projection, fragments, frame, context, knobs);
+  const auto depths_times = [&](double factor) {
+    for (float& d : frame.depth) d = float(double(d) * factor);
+  };
+  depths_times(natural->length);
+  composite_natural(natural->scene, natural->projection(projection), natural->fragments(fragments), frame, context, knobs);
+  depths_times(1 / natural->length);
 }
 
 }  // namespace sg::volume

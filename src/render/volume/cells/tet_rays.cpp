@@ -21,11 +21,15 @@ struct Sample {
   Optics at;
 };
 
-/// Appends the ends of pieces after a, up to and with b, on which the medium is straight.
-void refine(const Medium& medium, const Sample& a, const Sample& b, float accuracy, float faint, int depth, std::vector<Sample>& out) {
+/// On a line of the medium, its ends included.
+Sample sample_on(const Medium& medium, int line, float v) { return {v, {medium.lines()[size_t(line)](v), medium.color(v, line)}}; }
+
+/// Appends the ends of pieces after a, up to and with b, on which a line of the medium is straight.
+void refine(const Medium& medium, int line, const Sample& a, const Sample& b, float accuracy, float faint, int depth,
+            std::vector<Sample>& out) {
   const auto straight = [&](float share) {
     const float v = a.value + share * (b.value - a.value);
-    const Optics m = medium.at(v);
+    const Optics m = sample_on(medium, line, v).at;
     const auto off = [&](float x, float y, float z) { return std::abs(x + share * (y - x) - z); };
     if (off(a.at.tau, b.at.tau, m.tau) > accuracy * std::max(m.tau, faint)) return false;
     if (a.at.tau == 0 && b.at.tau == 0 && m.tau == 0) return true;
@@ -35,9 +39,9 @@ void refine(const Medium& medium, const Sample& a, const Sample& b, float accura
   };
   const float middle = a.value + 0.5f * (b.value - a.value);
   if (depth > 0 && middle > a.value && middle < b.value && !(straight(0.5f) && straight(0.2f) && straight(0.8f))) {
-    const Sample m{middle, medium.at(middle)};
-    refine(medium, a, m, accuracy, faint, depth - 1, out);
-    return refine(medium, m, b, accuracy, faint, depth - 1, out);
+    const Sample m = sample_on(medium, line, middle);
+    refine(medium, line, a, m, accuracy, faint, depth - 1, out);
+    return refine(medium, line, m, b, accuracy, faint, depth - 1, out);
   }
   out.push_back(b);
 }
@@ -46,7 +50,7 @@ void refine(const Medium& medium, const Sample& a, const Sample& b, float accura
 
 TetMedium::TetMedium(const Medium& medium, const Range& range, float tolerance) {
   // (D / n)^2 / 12 of a change of colour is a sixth of the tolerance for n = D sqrt(change / 2 / tolerance).
-  const float accuracy = 0.25f * tolerance, faint = medium.faint();
+  const float accuracy = 0.25f * tolerance, faint = 0.2f * medium.faint();
   fine = std::sqrt(0.5f / tolerance);
   const auto add = [&](const Sample& a, const Sample& b) {
     Interval i{a.value, b.value, {a.at.tau, a.at.color.x, a.at.color.y, a.at.color.z}, {}, {}, {}};
@@ -58,14 +62,14 @@ TetMedium::TetMedium(const Medium& medium, const Range& range, float tolerance) 
   const Sample bottom{lo, medium.at(lo)}, top{hi, medium.at(hi)};
   add({-1e30f, bottom.at}, bottom);
   std::vector<Sample> samples;
-  for (const Medium::Line& l : medium.lines()) {
+  for (size_t number = 0; number < medium.lines().size(); ++number) {
+    const Medium::Line& l = medium.lines()[number];
     const float from = std::max(l.lo, lo), to = std::min(l.hi, hi);
     if (!(from < to)) continue;
     // A knot may be a jump: each line has its own ends.
-    const Sample a{from, {l(from), medium.color(from)}};
-    const Sample b{to, {l(to), medium.color(to < hi ? std::nextafter(to, from) : to)}};
+    const Sample a = sample_on(medium, int(number), from), b = sample_on(medium, int(number), to);
     samples.assign(1, a);
-    refine(medium, a, b, accuracy, faint, 9, samples);
+    refine(medium, int(number), a, b, accuracy, faint, 9, samples);
     for (size_t k = 0; k + 1 < samples.size(); ++k) add(samples[k], samples[k + 1]);
   }
   add(top, {1e30f, top.at});

@@ -29,7 +29,7 @@ struct TetMedium {
 
   float fine = 16;  ///< parts of a segment: this times its optical depth times the root of its change of colour
   /// `range`: of the values there are. Straight lines are right to a quarter of `tolerance` (of colours, and of tau relative to itself or
-  /// to Medium::faint()), parts of deep segments to a sixth of it.
+  /// to a fifth of what makes no difference to the medium), parts of deep segments to a sixth of it.
   TetMedium(const Medium& medium, const Range& range, float tolerance = 1.0f / 512);
 };
 

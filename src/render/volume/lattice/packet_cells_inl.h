@@ -78,7 +78,8 @@ class PacketCells : public RayLanes<D, T, Axes> {
   /// tolerance.
   HWY_INLINE void may_hide(F range, F lightening) {
     const D d;
-    const F change = mul_add(range, hn::Set(d, medium.medium.color_slope()), lightening);
+    F change = mul_add(range, hn::Set(d, medium.medium.color_slope()), lightening);
+    if (medium.medium.pieced()) change = hn::Max(change, hn::Set(d, 1.0f));
     most_hidden_ = hn::Mul(change, hn::Set(d, 1 / (0.2f * float(plan.budget.tolerance))));
   }
 
@@ -122,6 +123,7 @@ class PacketCells : public RayLanes<D, T, Axes> {
     const F mean = hn::Add(mul_add(half, f.b, f.a), mul_add(hn::Set(d, 0.25f), f.e, hn::Mul(hn::Set(d, 1.0f / 3), f.c)));
     F tau_mean = line.tau(mean), most = hn::Max(hn::Max(line.tau(lo), line.tau(hi)), tau_mean);
     F slope = hn::Max(line.slope_at(lo), line.slope_at(hi));
+    M abrupt = hn::MaskFromVec(zero);  // lanes in which the medium jumps between the values
     if (!hn::AllFalse(d, hn::AndNot(same, look))) {
       const I first = medium.line_of(lo), last = medium.line_of(hi);
       most = hn::IfThenElse(same, most, medium.most(medium.columns.most_tau, first, last));
@@ -129,6 +131,7 @@ class PacketCells : public RayLanes<D, T, Axes> {
       tau_mean = hn::IfThenElse(same, tau_mean, medium.line(medium.line_of(mean)).tau(mean));
       look = hn::And(look, hn::Gt(most, zero));
       if (hn::AllFalse(d, look)) return;
+      if (m.any_abrupt()) abrupt = hn::AndNot(same, medium.abrupt(first, last));
     }
     // The errors of optics/integrate.cpp, Pieces::whole.
     const F pass = sum.pass, taken = hn::Min(one, hn::Mul(length, most)), range = hn::Sub(hi, lo);
@@ -137,13 +140,13 @@ class PacketCells : public RayLanes<D, T, Axes> {
     const F deep = hn::Mul(hn::Mul(hn::Mul(length, length), hn::Mul(most, slope)), hn::Mul(range, hn::Set(d, 0.05f)));
     F error = hn::Mul(hn::Mul(taken, hn::Set(d, 0.25f * tolerance)), hn::Mul(widths, widths));
     error = mul_add(change, hn::Min(one, deep), error);
-    error = hn::Add(error, hn::IfThenElseZero(hn::Not(same), hn::Mul(beyond, hn::Mul(length, slope))));
+    error = hn::Add(error, hn::IfThenElseZero(hn::Not(hn::Or(same, abrupt)), hn::Mul(beyond, hn::Mul(length, slope))));
     error = hn::Mul(error, pass);
     const F share = hn::Mul(pass, hn::Min(one, hn::Mul(length, tau_mean)));
     const F allowed =
         hn::Mul(hn::Set(d, tolerance), mul_add(share, hn::Set(d, 0.4f), hn::Mul(length, hn::Set(d, float(0.3 / plan.budget.length)))));
     constexpr int most_kinks = CellLight<D, T, Axes>::most_jumps;
-    F kinks[most_kinks];  // where the light jumps
+    F kinks[most_kinks + 2];  // where the light jumps, or, where the medium does, the value turns
     bool any_kink = false;
     if constexpr (shaded) {
       const auto lit = light.error(source, inside, from, way);
@@ -151,6 +154,14 @@ class PacketCells : public RayLanes<D, T, Axes> {
       error = hn::Max(error, hn::Mul(weight, lit.bend));
       const M jumping = hn::And(look, hn::Gt(hn::Mul(weight, lit.jump), allowed));
       if (any_kink = !hn::AllFalse(d, jumping); any_kink) light.jumps(from, way, lit, jumping, kinks);
+    }
+    const bool exact_knots = !hn::AllFalse(d, hn::And(look, abrupt));
+    if (exact_knots) {
+      for (int i = 0; i < most_kinks && !any_kink; ++i) kinks[i] = hn::Set(d, 2.0f);
+      f.turns(kinks[most_kinks], kinks[most_kinks + 1]);
+      for (int i : {0, 1}) kinks[most_kinks + i] = hn::IfThenElse(abrupt, kinks[most_kinks + i], hn::Set(d, 2.0f));
+    } else if (any_kink) {
+      kinks[most_kinks] = kinks[most_kinks + 1] = hn::Set(d, 2.0f);
     }
     F count = one, per_count = one;
     if (!hn::AllFalse(d, hn::And(look, hn::Gt(error, allowed)))) {
@@ -169,7 +180,7 @@ class PacketCells : public RayLanes<D, T, Axes> {
       const M final_piece = hn::Ge(after, count);
       end = hn::IfThenElse(final_piece, one, hn::Mul(after, per_count));
       at_kink = hn::MaskFromVec(zero);
-      if (shaded && any_kink) {
+      if (any_kink || exact_knots) {
         for (const F& kink : kinks) {
           const M nearer = hn::And(hn::Gt(kink, s), hn::Lt(kink, end));
           at_kink = hn::Or(at_kink, nearer), end = hn::IfThenElse(nearer, kink, end);
@@ -190,6 +201,7 @@ class PacketCells : public RayLanes<D, T, Axes> {
         const F run = hn::Div(hn::Sub(end, s), hn::IfThenElse(hn::Eq(rise, zero), one, rise));
         F meet = mul_add(hn::Sub(knot, v), run, s);
         for (int i = 0; i < 2; ++i) meet = hn::Max(s, hn::Min(neg_mul_add(hn::Sub(f.at(meet), knot), run, meet), end));
+        if (exact_knots) meet = hn::IfThenElse(abrupt, enclosed(f, s, end, hn::Sub(v, knot), hn::Sub(target, knot), knot), meet);
         to = hn::IfThenElse(cut, meet, to), next = hn::IfThenElse(cut, knot, next);
       }
       const F middle = f.at(hn::Mul(half, hn::Add(s, to))), part = hn::Mul(length, hn::Sub(to, s));
@@ -199,7 +211,7 @@ class PacketCells : public RayLanes<D, T, Axes> {
       const F weight = hn::Mul(mul_add(half, tm, t1), per_all);
       const F taus[3] = {t0, hn::Mul(tm, hn::Set(d, 0.25f)), t1};
       segment(look, mul_add(length, s, t), part, hn::Mul(part, hn::Mul(all, hn::Set(d, 1.0f / 6))), taus, v, next, by_emission, weight,
-              [&](F at, F share, F& red, F& green, F& blue) HWY_ATTR {
+              &at_, [&](F at, F share, F& red, F& green, F& blue) HWY_ATTR {
                 if constexpr (shaded) {
                   const auto on = light.at(from, way, mul_add(hn::Sub(to, s), at, s));
                   const F flash = hn::Mul(on.specular, share);
@@ -220,6 +232,29 @@ class PacketCells : public RayLanes<D, T, Axes> {
     }
   }
 
+  /// Where a cubic that goes one way from s to end, `at0` and `at1` away from a value, has that value: as Pieces::meets of
+  /// optics/integrate.cpp.
+  static HWY_NOINLINE F enclosed(const Cubic<D>& f, F s, F end, F at0, F at1, F value) {
+    const D d;
+    const F zero = hn::Zero(d), half = hn::Set(d, 0.5f);
+    F meet = s, side = zero;
+    M going = hn::Not(hn::IsNaN(hn::Add(at0, at1)));
+    for (int i = 0; i < 40 && !hn::AllFalse(d, going); ++i) {
+      const F apart = hn::Sub(at0, at1);
+      const F next = hn::Div(hn::Sub(hn::Mul(at0, end), hn::Mul(at1, s)), hn::IfThenElse(hn::Eq(apart, zero), hn::Set(d, 1.0f), apart));
+      meet = hn::IfThenElse(going, hn::Max(s, hn::Min(next, end)), meet);
+      const F here = hn::Sub(f.at(meet), value);
+      const M inside = hn::And(hn::Gt(meet, s), hn::Lt(meet, end)), wide = hn::Ge(hn::Sub(end, s), hn::Set(d, 1e-6f));
+      going = hn::And(going, hn::And(hn::Ne(here, zero), hn::And(inside, wide)));
+      const M later = hn::AndNot(hn::Xor(hn::Gt(here, zero), hn::Gt(at1, zero)), going), earlier = hn::AndNot(later, going);
+      at0 = hn::IfThenElse(hn::And(later, hn::Gt(side, zero)), hn::Mul(half, at0), hn::IfThenElse(earlier, here, at0));
+      at1 = hn::IfThenElse(hn::And(earlier, hn::Lt(side, zero)), hn::Mul(half, at1), hn::IfThenElse(later, here, at1));
+      end = hn::IfThenElse(later, meet, end), s = hn::IfThenElse(earlier, meet, s);
+      side = hn::IfThenElse(later, hn::Set(d, 1.0f), hn::IfThenElse(earlier, hn::Set(d, -1.0f), side));
+    }
+    return meet;
+  }
+
   /// The share of the way after which the share q of its depth is passed; tau at the begin, the middle and the end.
   static HWY_INLINE F way_of_depth(const F tau[3], F q) {
     const D d;
@@ -236,10 +271,10 @@ class PacketCells : public RayLanes<D, T, Axes> {
                    hn::IfThenElse(in_front, zero, half));
   }
 
-  /// Pieces::segment of optics/integrate.cpp. `lit(at, share, r, g, b)` lights the colours and the share of what is mirrored, at the
-  /// share `at` of the part.
+  /// Pieces::segment of optics/integrate.cpp. `line`: of the medium on which the part lies; null: that of each value. `lit(at, share, r, g,
+  /// b)` lights the colours and the share of what is mirrored, at the share `at` of the part.
   template <class Lit>
-  HWY_INLINE void segment(M look, F here, F part, F depth, const F tau[3], F a, F b, F middle, F weight, const Lit& lit) {
+  HWY_INLINE void segment(M look, F here, F part, F depth, const F tau[3], F a, F b, F middle, F weight, const I* line, const Lit& lit) {
     const D d;
     const F zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
     const M drawn = hn::And(look, hn::Gt(depth, zero));
@@ -248,7 +283,7 @@ class PacketCells : public RayLanes<D, T, Axes> {
     const F pass = exp_minus_of(d, depth);
     const F thin = hn::Mul(depth, neg_mul_add(depth, neg_mul_add(depth, hn::Set(d, 1.0f / 6), half), one));
     const F alpha = hn::IfThenElse(hn::Lt(depth, hn::Set(d, 0.02f)), thin, hn::Sub(one, pass));
-    auto color = medium.color(middle);
+    auto color = line ? medium.color(middle, *line) : medium.color(middle);
     F r = hn::Mul(color.r, alpha), g = hn::Mul(color.g, alpha), bl = hn::Mul(color.b, alpha);
     M deep = hn::And(drawn, hn::Gt(depth, hn::Set(d, 0.1f)));
     deep = hn::And(deep, hn::Gt(hn::Mul(hn::Min(depth, hn::Set(d, 6.0f)), most_hidden_), hn::Set(d, 12.0f)));
@@ -257,7 +292,7 @@ class PacketCells : public RayLanes<D, T, Axes> {
       const F series = hn::Mul(hn::Mul(depth, depth),
                                neg_mul_add(depth, neg_mul_add(depth, hn::Set(d, 1.0f / 80), hn::Set(d, 1.0f / 24)), hn::Set(d, 1.0f / 12)));
       hidden = hn::IfThenElseZero(deep, hn::IfThenElse(hn::Lt(depth, hn::Set(d, 0.2f)), series, hidden));
-      const auto front = medium.color(a), back = medium.color(b);
+      const auto front = line ? medium.color(a, *line) : medium.color(a), back = line ? medium.color(b, *line) : medium.color(b);
       r = neg_mul_add(hn::Sub(back.r, front.r), hidden, r), g = neg_mul_add(hn::Sub(back.g, front.g), hidden, g);
       bl = neg_mul_add(hn::Sub(back.b, front.b), hidden, bl);
       weight = hn::Sub(weight, hn::IfThenElseZero(deep, hn::Div(hidden, hn::Max(alpha, hn::Set(d, 0.05f)))));

@@ -22,6 +22,16 @@ struct Cubic {
     const auto third = hn::Set(D(), 1.0f / 3), b1 = mul_add(b, third, a), b2 = mul_add(hn::Add(b, c), third, b1);
     lo = hn::Min(hn::Min(a, b1), hn::Min(b2, last)), hi = hn::Max(hn::Max(a, b1), hn::Max(b2, last));
   }
+  /// Where its derivative b + 2 c s + 3 e s^2 is zero; anything but a number in (0, 1) where it is not.
+  HWY_INLINE void turns(hn::Vec<D>& first, hn::Vec<D>& second) const {
+    const D d;
+    const auto triple = hn::Mul(hn::Set(d, 3.0f), e), square = neg_mul_add(triple, b, hn::Mul(c, c));
+    const auto root = hn::Sqrt(hn::Max(hn::Zero(d), square)), none = hn::Set(d, 2.0f);
+    const auto w = hn::Neg(hn::Add(c, hn::CopySign(root, c)));
+    const auto some = hn::Ge(square, hn::Zero(d));
+    first = hn::IfThenElse(hn::And(some, hn::Ne(w, hn::Zero(d))), hn::Div(b, w), none);
+    second = hn::IfThenElse(hn::And(some, hn::Ne(triple, hn::Zero(d))), hn::Div(w, triple), none);
+  }
 };
 
 /// The trilinear field of a cell along the way from + s * way, corners by rows (Source::corners).

@@ -110,11 +110,34 @@ struct MediumLanes {
     F r, g, b;
   };
   HWY_INLINE Color color(F v) const {
+    if (medium.pieced()) return color_on(v, line_of(v));
     const D d;
-    const IntTag<D> di;
     F at = mul_add(hn::Sub(v, hn::Set(d, medium.first_node())), hn::Set(d, medium.per_node()), hn::Set(d, 0.5f));
     at = hn::IfThenElseZero(hn::Ge(at, hn::Zero(d)), hn::Min(at, hn::Set(d, float(Medium::nodes))));
-    const Pair<D> words = gather_pair(d, reinterpret_cast<const float*>(medium.colors()), hn::ShiftLeft<1>(to_int(d, at)), loads);
+    return color_of_node(to_int(d, at));
+  }
+  /// On a line, its ends included: at a knot colours may jump.
+  HWY_INLINE Color color(F v, I line) const { return medium.pieced() ? color_on(v, line) : color(v); }
+  /// Do abrupt knots lie between two lines?
+  HWY_INLINE hn::Mask<D> abrupt(I first, I last) const {
+    const D d;
+    const auto* before = reinterpret_cast<const float*>(medium.abrupt_before());
+    const IntTag<D> di;
+    return hn::RebindMask(d, hn::Ne(hn::BitCast(di, hn::GatherIndex(d, before, first)), hn::BitCast(di, hn::GatherIndex(d, before, last))));
+  }
+
+ private:
+  HWY_NOINLINE Color color_on(F v, I line) const {
+    const D d;
+    const auto [lo_per, first_count] = gather_quad(d, reinterpret_cast<const float*>(medium.pieces()), hn::ShiftLeft<2>(line), loads);
+    F at = mul_add(hn::Sub(v, lo_per.a), lo_per.b, hn::Set(d, 0.5f));
+    at = hn::IfThenElseZero(hn::Ge(at, hn::Zero(d)), hn::Min(at, first_count.b));
+    return color_of_node(hn::Add(to_int(d, at), to_int(d, first_count.a)));
+  }
+  HWY_INLINE Color color_of_node(I node) const {
+    const D d;
+    const IntTag<D> di;
+    const Pair<D> words = gather_pair(d, reinterpret_cast<const float*>(medium.colors()), hn::ShiftLeft<1>(node), loads);
     const I rg = hn::BitCast(di, words.a), b = hn::BitCast(di, words.b);
     const F per = hn::Set(d, 1.0f / 65535);
     const I low = hn::Set(di, 0xFFFF);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/volume/optics/functions.h"
 #include "render/volume/optics/integrate.h"
 
 namespace sg::volume {
@@ -16,7 +17,7 @@ double reference(const Medium::Line& l) {
 }
 double primitive(const Medium::Line& l, double v) {
   const double d = v - double(l.origin);
-  return d * (double(l.at) + d * (0.5 * double(l.slope) + d * double(l.curve) / 3));
+  return d * (double(l.at) + d * (0.5 * double(l.slope) + d * (double(l.curve) / 3 + d * 0.25 * double(l.twist))));
 }
 
 }  // namespace
@@ -52,14 +53,46 @@ double DepthIntegral::over(const Stretch& s) const {
   const float bend = std::max(std::abs(s.b[0] - 2 * s.b[1] + s.b[2]), std::abs(s.b[1] - 2 * s.b[2] + s.b[3]));
   const double error = length * double(medium_.most_slope(lo, hi)) * 0.75 * double(bend);
   const int n = std::clamp(int(std::ceil(std::sqrt(std::min(1.0, error) * 1e4))), 1, 16);
-  double sum = 0;
+  // A value that turns beyond a jump of the medium may spend any share of its way there: parts end where it turns, and are cut at knots.
+  double turn[3] = {2, 2, 2};
+  const bool abrupt = medium_.any_abrupt() && medium_.abrupt(lo, hi);
+  if (abrupt) turn[turns(s.b, turn)] = 2;
+  double sum = 0, f = 0;
   float v = s.b[0];
-  for (int k = 1; k <= n; ++k) {
-    const float next = k == n ? s.b[3] : s.value(s.from + length * k / n);
-    sum += mean(v, next);
-    v = next;
+  const double* next_turn = turn;
+  for (int k = 1; k <= n;) {
+    double to = double(k) / n;
+    if (*next_turn < to) to = *next_turn++;
+    else ++k;
+    const float next = to == 1 ? s.b[3] : s.value(s.from + length * to);
+    sum += abrupt ? between_knots(s, f, to, v, next) : (to - f) * mean(v, next);
+    v = next, f = to;
   }
-  return sum * length / n;
+  return sum * length;
+}
+
+double DepthIntegral::between_knots(const Stretch& s, double from, double to, float a, float b) const {
+  const std::vector<Medium::Line>& lines = medium_.lines();
+  if (a != a || b != b) return 0;
+  const bool up = b >= a;
+  double sum = 0;
+  const auto part = [&](const Medium::Line& l, double f0, double f1, float v0, float v1) {
+    const float middle = float(bernstein(s.b, 0.5 * (f0 + f1)));
+    sum += (f1 - f0) * (double(l(v0)) + 4 * double(l(middle)) + double(l(v1))) * (1.0 / 6);
+  };
+  for (int i = medium_.line_of(a);; i += up ? 1 : -1) {
+    const Medium::Line& l = lines[size_t(i)];
+    if (up ? b <= l.hi : b >= l.lo) {
+      part(l, from, to, a, b);
+      return sum;
+    }
+    const float knot = up ? l.hi : l.lo;
+    double meets[3], at = up == (bernstein(s.b, 0.5 * (from + to)) > double(knot)) ? from : to;
+    for (int k = crossings(s.b, knot, meets) - 1; k >= 0; --k)
+      if (meets[k] >= from && meets[k] <= to) at = meets[k];
+    part(l, from, at, a, knot);
+    from = at, a = knot;
+  }
 }
 
 double DepthIntegral::over(const Stretch& s, RayField& walker) const { return detail_ ? optical_depth(*detail_, s, walker) : over(s); }

@@ -35,6 +35,8 @@ class DepthIntegral {
 
  private:
   double antiderivative(float v) const;
+  /// Of the shares [from, to] of a stretch, on which the value goes one way from a to b: cut where it meets knots.
+  double between_knots(const Stretch& s, double from, double to, float a, float b) const;
   const Medium& medium_;
   const Detail* detail_;
   std::vector<double> before_;  // per line: the integral up to its reference

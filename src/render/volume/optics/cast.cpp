@@ -192,9 +192,8 @@ void Caster::collect(Active& active, const CastRay& ray) {
     case RayFunction::sum: {
       const Sum s = integral(walker);
       if (!(s.length > 0)) break;
-      // The medium reads stored values: those of the average less the base, those of the sum as they are.
-      put_value(v.item->mode == RayFunction::average ? s.integral / s.length : s.integral + double(base) * s.length - double(base),
-                s.first);
+      // The medium reads stored values, those of a sum, a distance or a length as they are.
+      put_value(v.item->mode == RayFunction::average ? s.integral / s.length : s.integral + double(base) * s.length, s.first);
       break;
     }
     case RayFunction::first_hit:
@@ -202,7 +201,7 @@ void Caster::collect(Active& active, const CastRay& ray) {
       const Found f = first_at_least(walker, v.levels->front());
       if (!f.found) break;
       if (v.item->mode == RayFunction::distance) {
-        put_value(f.t - f.first - double(base), f.t);
+        put_value(f.t - f.first, f.t);
         break;
       }
       Stretch there{f.t, f.t + 1e-6, {}, f.cell};
@@ -211,7 +210,7 @@ void Caster::collect(Active& active, const CastRay& ray) {
     }
     case RayFunction::accumulate: {
       const Sum s = length_at_least(walker, v.levels->front());
-      if (s.length > 0) put_value(s.length - double(base), s.first);
+      if (s.length > 0) put_value(s.length, s.first);
       break;
     }
     case RayFunction::isosurface: {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "render/volume/light/effects.h"
+#include "render/volume/optics/functions.h"
 #include "render/volume/optics/joint.h"
 #include "render/volume/optics/transfer.h"
 
@@ -151,17 +152,17 @@ class Pieces {
 
   /// A part of optical depth D: the value goes from a to b, `mean` is its mean by emission, which lies `weight` of the way on. C = c(mean)
   /// A less what the front hides of the change of colour (exact for constant tau and a linear colour).
-  void segment(double t, float length, float depth, float a, float b, float mean, float weight) {
+  void segment(double t, float length, float depth, float a, float b, float mean, float weight, int line) {
     if (!(depth > 0)) return;
     if (styled_) depth *= lit->at(t + double(length) * double(weight)).opacity;
     const float pass = exp_minus(depth), alpha = depth < 0.02f ? depth * (1 - depth * (0.5f - depth * (1.0f / 6))) : 1 - pass;
     const Medium& medium = look_.medium;
-    Vec3f c = medium.color(mean) * alpha;
+    Vec3f c = medium.color(mean, line) * alpha;
     if (depth > deep) {
       // A/2 - A/D + exp(-D), by its series where that cancels.
       const float hidden =
           depth < 0.2f ? depth * depth * (1.0f / 12 - depth * (1.0f / 24 - depth * (1.0f / 80))) : 0.5f * alpha - alpha / depth + pass;
-      c -= (medium.color(b) - medium.color(a)) * hidden;
+      c -= (medium.color(b, line) - medium.color(a, line)) * hidden;
       weight -= hidden / alpha;
     }
     if (lit) {
@@ -181,13 +182,14 @@ class Pieces {
     }
   }
 
-  /// The shares [f0, f1] of a stretch of which `line` is the medium. Simpson's rule: exact for the optical depth of a cubic.
-  void piece(const Stretch& s, float f0, float f1, float a, float b, const Medium::Line& line) {
+  /// The shares [f0, f1] of a stretch of which line `i` is the medium. Simpson's rule: exact for the optical depth of a cubic.
+  void piece(const Stretch& s, float f0, float f1, float a, float b, int i) {
+    const Medium::Line& line = look_.medium.lines()[size_t(i)];
     const float middle = value(s, 0.5f * (f0 + f1)), length = float(s.to - s.from) * (f1 - f0);
     const float t0 = line(a), tm = 4 * line(middle), t1 = line(b), all = t0 + tm + t1;
     if (!(all > 0)) return;
     const float mean = (t0 * a + tm * middle + t1 * b) / all, weight = (0.5f * tm + t1) / all;
-    segment(s.from + (s.to - s.from) * double(f0), length, length * (all * (1.0f / 6)), a, b, mean, weight);
+    segment(s.from + (s.to - s.from) * double(f0), length, length * (all * (1.0f / 6)), a, b, mean, weight, i);
   }
 
   static float value(const Stretch& s, float f) {
@@ -206,20 +208,40 @@ class Pieces {
     for (float f = f0, v = a;;) {
       const Medium::Line& line = lines[size_t(i)];
       const bool last = up ? b <= line.hi : b >= line.lo;
-      if (last) return piece(s, f, f1, v, b, line);
+      if (last) return piece(s, f, f1, v, b, i);
       const float knot = up ? line.hi : line.lo;
       const float at = meets(s, f, f1, v, b, knot);
-      piece(s, f, at, v, knot, line);
+      piece(s, f, at, v, knot, i);
       f = at, v = knot, i += up ? 1 : -1;
     }
   }
 
-  /// Where the value meets a knot between f0 and f1: false position, twice corrected.
-  static float meets(const Stretch& s, float f0, float f1, float a, float b, float knot) {
+  /// Where the value meets a knot between f0 and f1: false position, twice corrected. Where the medium jumps the place itself counts: it is
+  /// enclosed then, by false position that halves the share of an end that stays (Illinois).
+  float meets(const Stretch& s, float f0, float f1, float a, float b, float knot) const {
     const float slope = (f1 - f0) / (b - a);
     float f = f0 + (knot - a) * slope;
-    for (int i = 0; i < 2; ++i) f = std::clamp(f - (value(s, f) - knot) * slope, f0, f1);
-    return f;
+    if (!exact_knots_) {
+      for (int i = 0; i < 2; ++i) f = std::clamp(f - (value(s, f) - knot) * slope, f0, f1);
+      return f;
+    }
+    float at0 = a - knot, at1 = b - knot;
+    for (int i = 0, side = 0; i < 40; ++i) {
+      f = std::clamp(f, f0, f1);
+      const float here = value(s, f) - knot;
+      if (here == 0 || !(f > f0 && f < f1) || f1 - f0 < 1e-6f) break;
+      if ((here > 0) == (at1 > 0)) {
+        f1 = f, at1 = here;
+        if (side == 1) at0 *= 0.5f;
+        side = 1;
+      } else {
+        f0 = f, at0 = here;
+        if (side == -1) at1 *= 0.5f;
+        side = -1;
+      }
+      f = (at0 * f1 - at1 * f0) / (at0 - at1);
+    }
+    return f == f ? std::clamp(f, f0, f1) : f0;
   }
 
   void whole(const Stretch& s, float lo, float hi) {
@@ -235,15 +257,24 @@ class Pieces {
     const float beyond = std::max(hi - std::max(a, b), std::min(a, b) - lo);
     float error = taken * (0.25f * tolerance) * widths * widths;
     error += change * std::min(1.0f, 0.05f * length * length * most * slope * (hi - lo));
-    error += beyond * length * slope;
+    // Turning beyond a jump of the medium a value may spend any share of its way there: then pieces end where the value turns, too.
+    double turn[3] = {2, 2, 2};
+    exact_knots_ = medium.any_abrupt() && medium.abrupt(lo, hi);
+    if (!exact_knots_) error += beyond * length * slope;
+    else if (beyond > 0) turn[turns(s.b, turn)] = 2;
     error *= pass;
     const float share = pass * std::min(1.0f, denser_ * length * medium.tau(0.25f * (s.b[0] + s.b[1] + s.b[2] + s.b[3])));
     const float allowed = tolerance * (float(0.3 / look_.budget.length) * length + 0.4f * share);
     const float n = std::clamp(std::ceil(std::sqrt(error / allowed)), 1.0f, 64.0f);
     float v = a, f = 0;
-    for (float k = 1; k <= n; ++k) {
-      const float to = k == n ? 1 : k / n, next = k == n ? b : value(s, to);
-      monotone(s, f, to, v, next);
+    const double* next_turn = turn;
+    for (float k = 1; k <= n;) {
+      float to = k == n ? 1 : k / n;
+      const bool turning = float(*next_turn) < to;
+      if (turning) to = float(*next_turn++);
+      else ++k;
+      const float next = to == 1 ? b : value(s, to);
+      if (to > f) monotone(s, f, to, v, next);
       if (state_.sum.transmittance < look_.budget.stop_below) return;
       v = next, f = to;
     }
@@ -254,6 +285,7 @@ class Pieces {
   RayState& state_;
   float denser_ = 1;     // largest factor of tau by the light
   bool styled_ = false;  // is there one at all?
+  bool exact_knots_ = false;
 };
 
 /// The light at a place of a ray, and the surface there.

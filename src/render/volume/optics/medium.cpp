@@ -12,7 +12,9 @@ namespace sg::volume {
 namespace {
 
 Vec3 linear_color(const ColorScale& scale, double v) {
-  const Vec4f c = scale.color(v);
+  Vec4f c = scale.color(v);
+  // What is not drawn has the colour beside it: that of a part's end counts for all of the part.
+  if (c.w == 0) c = scale.color_at(scale.position(v) < 0 ? 0 : 1);
   return {srgb_to_linear(double(c.x)), srgb_to_linear(double(c.y)), srgb_to_linear(double(c.z))};
 }
 
@@ -24,13 +26,28 @@ class Curve {
   struct Sample {
     double value, tau;
   };
-  Curve(const ColorScale& scale, const OpacityCurve& curve, const Medium::Plan& plan) : scale_(scale), curve_(curve), plan_(plan) {}
+  Curve(const ColorScale& scale, const OpacityCurve& curve, const Medium::Plan& plan) : scale_(scale), curve_(curve), plan_(plan) {
+    // Sums over all values have 30 bits or fewer: an opaque part of them may count for so much. A thin one is thin on rays, too.
+    double opaque = 0;
+    const auto add = [&](double from, double to) { opaque += std::max(0.0, std::min(to, plan.hi) - std::max(from, plan.lo)); };
+    const std::vector<Vec2>& p = curve.points;
+    for (size_t i = 0; i + 1 < p.size(); ++i)
+      if (p[i].y >= 1 && p[i + 1].y >= 1) add(p[i].x, p[i + 1].x);
+    if (!p.empty() && p.front().y >= 1) add(plan.lo, p.front().x);
+    if (!p.empty() && p.back().y >= 1) add(p.back().x, plan.hi);
+    most_ = plan.most_tau * (opaque > 0 ? std::clamp(0.3 * (plan.hi - plan.lo) / opaque, 1.0, 1e3) : 1.0);
+    most_ = std::max(most_, minus_log_one_minus(1 - 0x1p-53) / plan.unit);
+  }
   Sample at(double v) const {
     const double opacity = std::clamp(curve_.at(v), 0.0, 1.0) * double(scale_.color(v).w);
-    return {v, opacity < 1 ? std::min(minus_log_one_minus(opacity) / plan_.unit, plan_.most_tau) : plan_.most_tau};
+    return {v, opacity < 1 ? minus_log_one_minus(opacity) / plan_.unit : most_};
   }
-  /// The limit from one side.
-  Sample beside(double v, double towards) const { return {v, at(std::nextafter(v, towards)).tau}; }
+  /// The limit at one end of a part: that of a ramp that ends in opacity 1 is the largest of an opacity below 1.
+  Sample beside(double v, double end) const {
+    const double opaque = minus_log_one_minus(1 - 0x1p-53) / plan_.unit;
+    const Sample s{v, at(std::nextafter(v, end)).tau};
+    return {v, s.tau > opaque && at(0.5 * v + 0.5 * end).tau <= opaque ? opaque : s.tau};
+  }
   /// The cubic through four places at equal distances.
   struct Arc {
     double lo, hi, at, slope, curve, twist;
@@ -65,20 +82,26 @@ class Curve {
   const ColorScale& scale_;
   const OpacityCurve& curve_;
   const Medium::Plan& plan_;
+  double most_ = 0;
 };
+
+/// The knots of colours, without the ends of a scale whose colours go on.
+std::vector<double> inner_color_knots(const ColorScale& scale) {
+  std::vector<double> knots = color_knots(scale);
+  std::erase_if(knots, [&](double k) {
+    if (k != scale.lo && k != scale.hi) return false;
+    const Vec4f a = scale.color(std::nextafter(k, -HUGE_VAL)), b = scale.color(std::nextafter(k, HUGE_VAL));
+    return a.w == b.w && std::abs(a.x - b.x) + std::abs(a.y - b.y) + std::abs(a.z - b.z) < 1e-3f;
+  });
+  return knots;
+}
 
 /// Values in [lo, hi] at which tau may bend or jump, or colour may jump.
 std::vector<double> bends(const ColorScale& scale, const OpacityCurve& curve, double lo, double hi) {
   std::vector<double> v{lo, hi};
   for (const Vec2& p : curve.points) v.push_back(p.x);
-  std::vector<double> jumps{scale.lo, scale.hi};
-  if (scale.kind == ScaleKind::log) jumps.push_back(0);
-  if (const size_t n = scale.map.colors.size(); n <= 512 && scale.labels.empty())
-    for (size_t i = 1; i + 1 < n; ++i) jumps.push_back(scale.value_at(double(i) / double(n - 1)));
-  for (double j : jumps) {
-    const Vec4f a = scale.color(std::nextafter(j, -HUGE_VAL)), b = scale.color(std::nextafter(j, HUGE_VAL));
-    if (a.w != b.w || std::abs(a.x - b.x) + std::abs(a.y - b.y) + std::abs(a.z - b.z) > 1e-3f) v.push_back(j);
-  }
+  const std::vector<double> colors = inner_color_knots(scale);
+  v.insert(v.end(), colors.begin(), colors.end());
   for (double l : scale.labels)  // a label is a value with a little air around it
     for (double side : {-1e-3, 1e-3}) v.push_back(l + side);
   std::erase_if(v, [&](double x) { return !(x >= lo && x <= hi); });
@@ -91,16 +114,19 @@ std::vector<double> bends(const ColorScale& scale, const OpacityCurve& curve, do
 
 Medium::Medium(const ColorScale& scale, const OpacityCurve& curve, const Plan& plan)
     : kind_(scale.labels.empty() ? scale.kind : ScaleKind::linear), base_(plan.base) {
-  make_lines(scale, curve, plan);
+  if (kind_ == ScaleKind::log && scale.lo > 0) log_zero_ = std::ilogb(std::clamp(scale.lo, 1e-30, 1e30));
+  const Spans spans = make_lines(scale, curve, plan);
   make_colors(scale, plan);
+  find_abrupt(scale, spans);
 }
 
-void Medium::make_lines(const ColorScale& scale, const OpacityCurve& curve, const Plan& plan) {
+Medium::Spans Medium::make_lines(const ColorScale& scale, const OpacityCurve& curve, const Plan& plan) {
   const Curve tau(scale, curve, plan);
   const double lo = std::min(plan.lo, plan.hi), hi = plan.hi, base = double(plan.base);
   const std::vector<double> at = bends(scale, curve, lo, hi);
+  Spans spans;
   for (size_t i = 0; i + 1 < at.size(); ++i) {
-    Curve::Sample a = tau.beside(at[i], HUGE_VAL), b = tau.beside(at[i + 1], -HUGE_VAL);
+    Curve::Sample a = tau.beside(at[i], at[i + 1]), b = tau.beside(at[i + 1], at[i]);
     // The little interval around a label has the look of its middle.
     for (double l : scale.labels)
       if (at[i] < l && l < at[i + 1]) a.tau = b.tau = tau.at(l).tau;
@@ -109,25 +135,32 @@ void Medium::make_lines(const ColorScale& scale, const OpacityCurve& curve, cons
     else arcs.push_back(Curve::even(a, b));
     for (const Curve::Arc& arc : arcs) {
       const float from = float(arc.lo - base), to = float(arc.hi - base);
-      if (to > from) lines_.push_back({from, to, from, float(arc.at), float(arc.slope), float(arc.curve), float(arc.twist)});
+      if (!(to > from)) continue;
+      Line l{from, to, from, float(arc.at), float(arc.slope), float(arc.curve), float(arc.twist)};
+      // What is narrower than floats can tell is straight.
+      if (!(std::isfinite(l.slope) && std::isfinite(l.curve) && std::isfinite(l.twist)))
+        l.slope = float((arc(arc.hi) - arc.at) / (double(to) - double(from))), l.curve = l.twist = 0;
+      if (!std::isfinite(l.slope)) l.slope = 0;
+      lines_.push_back(l), spans.push_back({arc.lo, arc.hi});
     }
   }
-  if (lines_.empty()) lines_.push_back({0, 0, 0, float(tau.at(lo).tau), 0, 0, 0});
+  if (lines_.empty()) lines_.push_back({0, 0, 0, float(tau.at(lo).tau), 0, 0, 0}), spans.push_back({lo, hi});
   bound();
   top_ = lines_.back().hi, accuracy_ = float(plan.accuracy), faint_ = float(plan.faint);
   // Beyond the data nothing is asked, but for rounding errors.
   lines_.front().lo = -HUGE_VALF, lines_.back().hi = HUGE_VALF;
   for (const Line& l : lines_) columns_.hi.push_back(l.hi);
   slice();
+  return spans;
 }
 
 double Medium::value_on_axis(double a) const {
   if (kind_ == ScaleKind::linear) return a + double(base_);
-  const auto power = [](double axis) {
+  const auto power = [](double axis, int zero = 0) {
     const double e = std::floor(axis);
-    return std::ldexp(1 + (axis - e), int(e));
+    return std::ldexp(1 + (axis - e), int(e) + zero);
   };
-  if (kind_ == ScaleKind::log) return power(a);
+  if (kind_ == ScaleKind::log) return power(a, log_zero_);
   return std::copysign((power(std::abs(a)) - 1) / double(per_threshold_), a);
 }
 
@@ -157,12 +190,19 @@ void Medium::make_colors(const ColorScale& scale, const Plan& plan) {
     c[size_t(i)] = linear_color(scale, value);
     for (size_t k = 0; k < 3; ++k) colors_[4 * size_t(i) + k] = uint16_t(std::clamp(c[size_t(i)][int(k)], 0.0, 1.0) * 65535 + 0.5);
   }
+  abrupt_colors_ = false;
+  for (size_t i = 0; i < size_t(nodes) && scale.labels.empty(); ++i)
+    abrupt_colors_ = abrupt_colors_ || difference(c[i], c[i + 1]) > 1.0 / 64;
   // The widest change over which a straight line does, between jumps (which are knots).
   double steepest = 0;
+  std::vector<double> knots;  // on the axis
+  for (double k : inner_color_knots(scale)) knots.push_back(double(axis(float(k - double(base_)))));
   std::vector<size_t> stretches = {0};  // of the stretches without a jump: first and last node
   for (size_t i = 0; i < size_t(nodes); ++i) {
     const double change = difference(c[i], c[i + 1]);
-    if (change > 0.02) stretches.push_back(i), stretches.push_back(i + 1);
+    const double here = first_node_ + double(i) * per;
+    const bool knot = change > 1e-5 && std::any_of(knots.begin(), knots.end(), [&](double k) { return k >= here && k <= here + per; });
+    if (change > 0.02 || knot) stretches.push_back(i), stretches.push_back(i + 1);
     else steepest = std::max(steepest, change);
   }
   stretches.push_back(size_t(nodes));
@@ -182,6 +222,49 @@ void Medium::make_colors(const ColorScale& scale, const Plan& plan) {
     if (all) break;
   }
   color_width_ = per > 0 ? float(double(width) * per) : 1e30f, color_slope_ = float(steepest * double(per_node_));
+}
+
+/// Nodes for each line: colours are those of the line up to its very ends.
+void Medium::piece_colors(const ColorScale& scale, const Spans& spans) {
+  colors_.clear();
+  const double all = std::abs(double(axis(top_)) - double(axis(lines_.front().origin)));
+  for (size_t i = 0; i < lines_.size(); ++i) {
+    const double from = std::nextafter(spans[i].x, spans[i].y), to = std::nextafter(spans[i].y, spans[i].x);
+    const Vec3 a = linear_color(scale, from), m = linear_color(scale, 0.5 * from + 0.5 * to), b = linear_color(scale, to);
+    const float lo = axis(lines_[i].origin), hi = axis(std::min(lines_[i].hi, top_));
+    const double share = all > 0 ? std::clamp((double(hi) - double(lo)) / all, 0.0, 1.0) : 0, change = difference(a, m) + difference(m, b);
+    const bool even = change == 0 && difference(linear_color(scale, 0.75 * from + 0.25 * to), m) == 0;
+    const int count = even || !(hi > lo) ? 0 : int(std::ceil(std::max({8.0, 2 * share * nodes, std::min(change, 1.0) * 1024})));
+    pieces_.push_back({lo, count > 0 ? float(count) / (hi - lo) : 0, float(colors_.size() / 4), float(count)});
+    for (int k = 0; k <= count; ++k) {
+      const double at = double(lo) + (double(hi) - double(lo)) * k / std::max(count, 1);
+      const Vec3 c = linear_color(scale, std::clamp(count > 0 ? value_on_axis(at) : 0.5 * from + 0.5 * to, from, std::max(from, to)));
+      for (int q = 0; q < 3; ++q) colors_.push_back(uint16_t(std::clamp(c[q], 0.0, 1.0) * 65535 + 0.5));
+      colors_.push_back(0);
+    }
+  }
+  for (int k = 0; k < 4; ++k) colors_.push_back(0);  // vectors load two at once
+}
+
+void Medium::find_abrupt(const ColorScale& scale, const Spans& spans) {
+  if (abrupt_colors_) piece_colors(scale, spans);
+  const size_t n = lines_.size();
+  recolors_.assign(n, 0), abrupt_before_.assign(n, 0);
+  const float part = (top_ - lines_.front().origin) * (1.0f / 256);
+  std::vector<uint8_t> steep(n), recolored(n);  // within so small a part of the values
+  for (size_t i = 0; i < n; ++i) {
+    const float most = std::max({columns_.most_tau[i], i > 0 ? columns_.most_tau[i - 1] : 0, i + 1 < n ? columns_.most_tau[i + 1] : 0});
+    const bool narrow = std::min(lines_[i].hi, top_) - lines_[i].origin < part;
+    steep[i] = narrow && most > faint_ && columns_.most_slope[i] * part > most;
+    recolored[i] = narrow && pieced() && difference(Vec3(color(lines_[i].origin, int(i))), Vec3(color(lines_[i].hi, int(i)))) > 0.004;
+  }
+  for (size_t i = 1; i < n; ++i) {
+    const float before = lines_[i - 1](lines_[i - 1].hi), after = lines_[i](lines_[i].origin), most = std::max(before, after);
+    const bool jump = std::abs(after - before) > 1e-3f * most && most > faint_;
+    const bool recolor = pieced() && difference(Vec3(color(lines_[i].origin, int(i - 1))), Vec3(color(lines_[i].origin, int(i)))) > 0.002;
+    recolors_[i] = recolor || recolored[i] || recolored[i - 1];
+    abrupt_before_[i] = abrupt_before_[i - 1] + (jump || steep[i] || steep[i - 1] || recolors_[i]);
+  }
 }
 
 void Medium::bound() {
@@ -205,7 +288,8 @@ void Medium::bound() {
 
 std::vector<Medium::Straight> Medium::straight() const {
   std::vector<Straight> out;
-  for (const Line& l : lines_) {
+  for (size_t number = 0; number < lines_.size(); ++number) {
+    const Line& l = lines_[number];
     const float lo = l.origin, hi = std::min(l.hi, top_), width = hi - lo;
     // A parabola leaves its chord by curve width^2 / 4; a cubic's curve is steepest at an end.
     const float tau = std::max({l.at, l(hi), faint_}),
@@ -217,7 +301,7 @@ std::vector<Medium::Straight> Medium::straight() const {
       const float w = b - a;
       if (!(w > 0) && !(n == 1 && lines_.size() == 1)) continue;
       // Colours from just inside: at a knot they may jump.
-      const Vec3f ca = color(a + 1e-3f * w), cb = color(b - 1e-3f * w);
+      const Vec3f ca = color(a + 1e-3f * w, int(number)), cb = color(b - 1e-3f * w, int(number));
       const float ta = l(a), tb = l(b), per = w > 0 ? 1 / w : 0;
       out.push_back({a, b, {ta, ca}, {(tb - ta) * per, (cb - ca) * per}});
     }

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Medium: extinction as cubics over the value, on as few knots as their accuracy allows, and colour as a fine table.
+// Medium: extinction as cubics over the value, on as few knots as their accuracy allows, and colour as a fine table: one over all values,
+// or, where colours jump, one for each line between two knots.
 #pragma once
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -37,10 +39,11 @@ class Medium {
     float base = 0;            ///< value = stored + base
     double accuracy = 0.0005;  ///< of colours (absolute) and of tau (relative to itself, or to `faint` where it is smaller)
     double faint = 0.01;       ///< a tau that makes no difference
-    double most_tau = 1e6;     ///< stands for that of opacity 1, which has none
+    double most_tau = 1e6;     ///< stands for that of opacity 1, which has none; more of it where few values have it
   };
   /// Samples -log(1 - opacity)/unit until cubics between the knots are right to the accuracy. Every point of the curve is a
-  /// knot, and so is every jump of colour. Values that the scale does not draw have tau 0.
+  /// knot, and so are jumps of colour and stops that stand close. Values that the scale does not draw have tau 0. Opacities below 1
+  /// keep their own tau, at most 37 / unit.
   Medium(const ColorScale& scale, const OpacityCurve& curve, const Plan& plan);
 
   /// Lines by rising value; never empty. Line i ends where line i+1 begins.
@@ -62,11 +65,29 @@ class Medium {
   }
   float top() const { return top_; }      ///< largest value in the data
   float faint() const { return faint_; }  ///< a tau that makes no difference
-  Vec3f color(float v) const {
-    const uint16_t* c = &colors_[4 * size_t(node(v))];
-    return {float(c[0]) * (1.0f / 65535), float(c[1]) * (1.0f / 65535), float(c[2]) * (1.0f / 65535)};
+  Vec3f color(float v) const { return pieced() ? color(v, line_of(v)) : color_of_node(size_t(node(v))); }
+  /// On a line, its ends included: at a knot colours may jump.
+  Vec3f color(float v, int line) const {
+    if (!pieced()) return color_of_node(size_t(node(v)));
+    const ColorPiece& p = pieces_[size_t(line)];
+    const float at = (axis(v) - p.lo) * p.per + 0.5f;
+    return color_of_node(size_t(p.first + (at > 0 ? at < p.count ? std::floor(at) : p.count : 0)));
   }
-  Optics at(float v) const { return {tau(v), color(v)}; }
+  Optics at(float v) const {
+    const int i = line_of(v);
+    return {lines_[size_t(i)](v), color(v, i)};
+  }
+
+  /// Does tau or colour jump, or change within so small a part of the values that it is as good as a jump, between two lines that meet
+  /// in (lo, hi)? Then integrals have to know where a ray meets the knots.
+  bool abrupt(float lo, float hi) const {
+    return any_abrupt() && abrupt_before_[size_t(line_of(hi))] != abrupt_before_[size_t(line_of(lo))];
+  }
+  bool any_abrupt() const { return abrupt_before_.back() > 0; }
+  /// By lines: such knots at their lower ends and below.
+  const int32_t* abrupt_before() const { return abrupt_before_.data(); }
+  /// Is the lower end of a line such a knot of colour?
+  bool recolors(size_t line) const { return recolors_[line] != 0; }
 
   /// The whole of it in straight lines, over the values in the data: for those who integrate over the value itself.
   struct Straight {
@@ -86,7 +107,7 @@ class Medium {
   float axis(float v) const {
     if (kind_ == ScaleKind::linear) return v;
     v += base_;
-    if (kind_ == ScaleKind::log) return v > 0 ? bit_log(v) : -1e30f;
+    if (kind_ == ScaleKind::log) return v > 0 ? bit_log(v, log_zero_) : -1e30f;
     const float m = bit_log(1 + std::abs(v) * per_threshold_);
     return v < 0 ? -m : m;
   }
@@ -101,6 +122,12 @@ class Medium {
   const Columns& columns() const { return columns_; }
   // The colours themselves (r, g, b, 0 as u16 per node), their axis, and the slices of lines.
   static constexpr int nodes = 8192, slices = 2048;
+  /// Of a line: its nodes from number `first` on, `count` + 1 of them, the first at `lo` on the axis.
+  struct ColorPiece {
+    float lo, per, first, count;
+  };
+  bool pieced() const { return !pieces_.empty(); }  ///< does each line have nodes of its own?
+  const ColorPiece* pieces() const { return pieces_.data(); }
   bool linear() const { return kind_ == ScaleKind::linear; }
   const uint16_t* colors() const { return colors_.data(); }
   float first_node() const { return first_node_; }
@@ -114,11 +141,18 @@ class Medium {
     const float at = (axis(v) - first_node_) * per_node_ + 0.5f;
     return at >= 0 ? at < float(nodes) ? int(at) : nodes : 0;
   }
-  // log2 with straight lines between the powers of two: monotone, continuous, exactly invertible. 0 for 1.
-  static float bit_log(float v) { return float(std::bit_cast<int32_t>(v) - 0x3F800000) * 0x1p-23f; }
+  // log2 with straight lines between the powers of two: monotone, continuous, exactly invertible. 0 for the power of two 2^zero.
+  static float bit_log(float v, int zero = 0) { return float(std::bit_cast<int32_t>(v) - 0x3F800000 - (zero << 23)) * 0x1p-23f; }
+  Vec3f color_of_node(size_t n) const {
+    const uint16_t* c = &colors_[4 * n];
+    return {float(c[0]) * (1.0f / 65535), float(c[1]) * (1.0f / 65535), float(c[2]) * (1.0f / 65535)};
+  }
   double value_on_axis(double a) const;
-  void make_lines(const ColorScale& scale, const OpacityCurve& curve, const Plan& plan);
+  using Spans = std::vector<Vec2>;  // from, to: the lines in double
+  Spans make_lines(const ColorScale& scale, const OpacityCurve& curve, const Plan& plan);
   void make_colors(const ColorScale& scale, const Plan& plan);
+  void piece_colors(const ColorScale& scale, const Spans& spans);
+  void find_abrupt(const ColorScale& scale, const Spans& spans);
   void bound();
   void slice();
   float most(const std::vector<float>& table, float lo, float hi) const;
@@ -128,8 +162,13 @@ class Medium {
   float slice_lo_ = 0, per_slice_ = 0;
   float top_ = 0, accuracy_ = 0, faint_ = 0;  // largest value; of the plan
   Columns columns_;
+  std::vector<int32_t> abrupt_before_;
+  std::vector<uint8_t> recolors_;
+  std::vector<ColorPiece> pieces_;
+  bool abrupt_colors_ = false;
 
   ScaleKind kind_ = ScaleKind::linear;
+  int log_zero_ = 0;  // exponent of the low end of a log scale: fields scaled by powers of two have the same axis
   std::vector<uint16_t> colors_;
   float base_ = 0, per_threshold_ = 1, first_node_ = 0, per_node_ = 0, color_width_ = 1, color_slope_ = 0;
 };

@@ -68,7 +68,7 @@ MediumSums::MediumSums(const Medium& medium) {
     const double end = double(l.at) + length * (double(l.slope) + length * (double(l.curve) + length * double(l.twist)));
     const bool spike = !l.dark() && length < narrow * w && lines.size() > 1;
     if (spike)
-      for (size_t k = node_of(double(l.origin) - w); k <= node_of(to + w); ++k) nodes_[k].steep = untold;
+      for (size_t k = node_of(double(l.origin) - w); k <= node_of(to + w); ++k) nodes_[k].steep = std::max(nodes_[k].steep, untold);
     for (size_t k = node_of(double(l.origin)); k <= node_of(to); ++k)
       for (double f : {0.0, 1.0}) {
         const double x = std::clamp(double(lo_) + (double(k) + f) * w - double(l.origin), 0.0, std::max(length, 0.0));
@@ -76,8 +76,11 @@ MediumSums::MediumSums(const Medium& medium) {
       }
     if (i + 1 < lines.size()) {
       const double next = double(lines[i + 1].at), jump = std::abs(std::max(next, 0.0) - std::max(end, 0.0));
+      // No colour stands for a stride that meets several; one on which the value does not bend may not pass either, as it may the others.
+      if (medium.recolors(i + 1))
+        for (size_t k = node_of(to - w); k <= node_of(to + w); ++k) nodes_[k].steep = HUGE_VALF;
       if (jump > 1e-4 * std::max(std::abs(next), std::abs(end)) && jump > double(medium.faint()))
-        for (size_t k = node_of(to - w); k <= node_of(to + w); ++k) nodes_[k].steep = untold;
+        for (size_t k = node_of(to - w); k <= node_of(to + w); ++k) nodes_[k].steep = std::max(nodes_[k].steep, untold);
     }
   }
 

@@ -17,7 +17,8 @@ class MediumSums {
   struct Node {
     uint32_t sum;  ///< in units of per_sum, modulo 2^32: differences are exact
     float tau, slope;
-    float steep;  ///< largest |slope| in this node and the next; 1e30 where tau jumps, or has a spike narrower than some nodes
+    float steep;  ///< largest |slope| in this node and the next; 1e30 where tau jumps, or has a spike narrower than some nodes;
+                  ///< infinite where the colour jumps
   };
   explicit MediumSums(const Medium& medium);
 

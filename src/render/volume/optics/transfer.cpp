@@ -38,16 +38,17 @@ double minus_log_one_minus(double x) {
 
 float Transfer::value_on_axis(double a) const {
   if (kind_ == ScaleKind::linear) return float(a);
-  const auto power = [](double axis) {
+  const auto power = [](double axis, int zero = 0) {
     const double e = std::floor(axis);
-    return std::ldexp(1 + (axis - e), int(e));
+    return std::ldexp(1 + (axis - e), int(e) + zero);
   };
-  if (kind_ == ScaleKind::log) return float(power(a));
+  if (kind_ == ScaleKind::log) return float(power(a, log_zero_));
   return float(std::copysign((power(std::abs(a)) - 1) / double(per_threshold_), a));
 }
 
 Transfer::Transfer(const ColorScale& scale, const OpacityCurve& curve, double unit, double step, double lo, double hi, double base)
     : kind_(scale.labels.empty() ? scale.kind : ScaleKind::linear) {
+  if (kind_ == ScaleKind::log && scale.lo > 0) log_zero_ = std::ilogb(std::clamp(scale.lo, 1e-30, 1e30));
   // The part of the data's range in which colour or opacity can change.
   double first = std::min(scale.lo, scale.hi), last = std::max(scale.lo, scale.hi);
   for (const Vec2& p : curve.points)

@@ -60,16 +60,17 @@ class Transfer {
  private:
   float axis(float v) const {
     if (kind_ == ScaleKind::linear) return v;
-    if (kind_ == ScaleKind::log) return v > 0 ? bit_log(v) : -1e30f;
+    if (kind_ == ScaleKind::log) return v > 0 ? bit_log(v, log_zero_) : -1e30f;
     const float m = bit_log(1 + std::abs(v) * per_threshold_);
     return v < 0 ? -m : m;
   }
   float value_on_axis(double a) const;
-  // log2 with straight lines between the powers of two: monotone, continuous, exactly invertible. 0 for 1.
-  static float bit_log(float v) { return float(std::bit_cast<int32_t>(v) - 0x3F800000) * 0x1p-23f; }
+  // log2 with straight lines between the powers of two: monotone, continuous, exactly invertible. 0 for the power of two 2^zero.
+  static float bit_log(float v, int zero = 0) { return float(std::bit_cast<int32_t>(v) - 0x3F800000 - (zero << 23)) * 0x1p-23f; }
 
   ScaleKind kind_ = ScaleKind::linear;
   int count_ = 4096;
+  int log_zero_ = 0;  // exponent of the low end of a log scale
   float first_ = 0, per_axis_ = 0, per_threshold_ = 1;
   std::vector<Step> steps_;
   std::vector<Medium> media_;

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Volumes whose values or lengths are far from 1, as densities in SI units or galaxies in centimetres are, drawn as the same ones in other
+// units: rays reckon in floats, whose squares and cubes have to be numbers.
+#pragma once
+#include <optional>
+
+#include "render/fragments.h"
+#include "scene/scene.h"
+
+namespace sg::volume {
+
+/// A scene in units in which values and lengths are near 1. Factors are powers of two, so that nothing is rounded, and a scene scaled by
+/// powers of two gives the same picture, byte for byte.
+struct NaturalScene {
+  Scene scene;
+  double length = 1;  ///< of a world length in these units
+
+  Projection projection(const Projection& world) const;
+  FragmentLists fragments(FragmentLists world) const;
+};
+
+/// Nothing when all volumes have values (largest magnitude between 2^-20 and 2^30), lengths (diagonal between 2^-20 and 2^20) and slopes
+/// near 1.
+/// Else each volume has a copy of its field, kept with its dataset, unless a field of integers needs none, and of its points. Opaque
+/// surfaces come along where they may cast shadows. Throws Error(usage) for items that are no volumes.
+std::optional<NaturalScene> natural_scene(const Scene& scene);
+
+}  // namespace sg::volume
