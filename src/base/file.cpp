@@ -12,6 +12,7 @@
 
 #include "base/error.h"
 #include "base/file_fence.h"
+#include "base/mapped_watch.h"
 #include "base/parallel.h"
 #include "base/partial_file.h"
 
@@ -34,7 +35,11 @@ MappedFile::MappedFile(const std::string& path) : path_(path) {
   });
   if (p == MAP_FAILED) fail_data(std::string("cannot be mapped: ") + std::strerror(error), path);
   const size_t n = size_;
-  owner_ = std::shared_ptr<const void>(p, [n](const void* q) { ::munmap(const_cast<void*>(q), n); });
+  mapped_watch().add(p, n, path, st);
+  owner_ = std::shared_ptr<const void>(p, [n](const void* q) {
+    mapped_watch().remove(q);
+    ::munmap(const_cast<void*>(q), n);
+  });
   data_ = static_cast<const std::byte*>(p);
 }
 
@@ -80,6 +85,7 @@ void AtomicFile::write(const void* data, size_t bytes) {
 }
 
 void AtomicFile::commit() {
+  check_files_unchanged();  // nothing is kept that was made of half a file
   errno = 0;
   if (std::fflush(file_) != 0) fail("write failed");
   const int closed = std::fclose(file_);

@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "base/context.h"
+#include "base/serial.h"
 
 #ifdef SG_PLAIN_THREADS  // ThreadSanitizer cannot see into an uninstrumented TBB
 #include <atomic>
@@ -25,6 +26,7 @@ int wanted_threads = 0;
 int all_cores() { return int(std::max(1u, std::thread::hardware_concurrency())); }
 }  // namespace
 
+void run_serially() noexcept { wanted_threads = 1; }
 int thread_count() { return wanted_threads > 0 ? wanted_threads : all_cores(); }
 
 #ifdef SG_PLAIN_THREADS

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/chain.h"
 
+#include <algorithm>
 #include <map>
 
 #include "base/error.h"
 #include "base/file.h"
 #include "base/text.h"
 #include "io/file_series.h"
+#include "pipeline/operation.h"
 #include "pipeline/read_params.h"
 
 namespace sg {
@@ -28,6 +30,24 @@ struct Words {
   std::string take(std::string_view key) {
     const std::string value = word_value(rest, key).value_or("");
     std::erase_if(rest, [&](const std::string& w) { return w.starts_with(key) && w.size() > key.size() && w[key.size()] == '='; });
+    return value;
+  }
+  /// The same for a word that the operation has too (calc on=cell): what is one of its choices and no step stays with it.
+  template <class IsStep>
+  std::string take_unless_own(std::string_view key, IsStep&& is_step) {
+    const ParamDecl* own = nullptr;
+    ParamSet params;
+    for (const Operation& o : operations())
+      if (o.name == first) params = o.make_params(), own = params.schema.find(key);
+    std::vector<std::string> kept;
+    if (own)
+      for (const std::string& w : rest)
+        if (const std::string value = word_value({w}, key).value_or("");
+            !is_step(value) && std::find(own->choices_.begin(), own->choices_.end(), value) != own->choices_.end())
+          kept.push_back(w);
+    std::erase_if(rest, [&](const std::string& w) { return std::find(kept.begin(), kept.end(), w) != kept.end(); });
+    const std::string value = take(key);
+    rest.insert(rest.end(), kept.begin(), kept.end());
     return value;
   }
 };
@@ -63,7 +83,8 @@ class Chains {
       step.operation = words.first;
       step.name = words.label.empty() ? fmt::format("{}_{}{}", base, words.first, i + 1) : fmt::format("{}_{}", base, words.label);
       if (!words.label.empty() && names_.count(words.label)) fail_usage(fmt::format("'{}' names two steps", words.label), "-f");
-      const std::string on = words.take("on"), with = words.take("with");
+      const std::string on = words.take_unless_own("on", [&](const std::string&name) { return names_.count(name) > 0; }),
+                        with = words.take("with");
       if (!on.empty() || !with.empty()) step.from.push_back(on.empty() ? before : step_named(on, "-f " + words.first + " on"));
       for (const std::string& name : inputs_in(with)) step.from.push_back(further_input(name, "-f " + words.first + " with"));
       step.words = std::move(words.rest);

@@ -10,6 +10,7 @@
 
 #include "base/error.h"
 #include "base/file_fence.h"
+#include "base/mapped_watch.h"
 #include "base/parallel.h"
 #include "base/partial_file.h"
 #include "base/utf8.h"
@@ -101,6 +102,7 @@ int cli_main(int argc, char** argv) {
     catch_signals();
     const int status = dispatch_command(with_streams(o, context), context);
     interruptible = nullptr;
+    check_files_unchanged();  // what was said on stdout
     if (std::fflush(stdout) != 0) fail_data("standard output cannot be written");
     return status;
   } catch (const Error& e) {

@@ -70,8 +70,8 @@ int run_ops(const Options& o, Context&) {
   }
   for (const std::string& name : o.inputs) {
     bool done = false;
-    auto print = [&](std::string_view sentence, const std::string& help, const std::string& json) {
-      if (o.json) std::printf("{\"name\":%s,\"params\":%s}\n", json_string(name).c_str(), json.c_str());
+    auto print = [&](std::string_view sentence, const std::string& help, const std::string& json, const std::string& more = {}) {
+      if (o.json) std::printf("{\"name\":%s,\"params\":%s%s}\n", json_string(name).c_str(), json.c_str(), more.c_str());
       else std::printf("%s: %s\n%s", name.c_str(), std::string(sentence).c_str(), help.c_str());
       done = true;
     };
@@ -82,7 +82,8 @@ int run_ops(const Options& o, Context&) {
     for (const Operation& op : operations())
       if (op.name == name) {
         const ParamSet params = op.make_params();
-        print(op.sentence, params_help(params.schema), params_json(params.schema));
+        print(op.sentence, params_help(params.schema) + (o.json ? std::string() : words_help(op)), params_json(params.schema),
+              op.words ? ",\"words\":" + words_json(op) : "");
       }
     if (done) continue;
     std::vector<std::string> names;

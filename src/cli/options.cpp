@@ -50,9 +50,8 @@ void add_pipeline(CLI::App& a, Options& o) {
   a.add_option(
        "-f,--filter", o.filters,
        "An operation and its parameters: 'contour field=T values=300,400'; may be repeated, they chain. with=FILE: a further input, or a "
-       "step "
-       "of the chain by its operation or by the name in front ('seeds: topology_seeds'); on=STEP: that one instead of the step before; "
-       "'input' is what is read")
+       "step of the chain by its operation or by the name in front ('seeds: topology_seeds'); on=STEP: that one instead of the step "
+       "before; 'input' is what is read (calc on=cell: on its cells, unless a step has that name)")
       ->allow_extra_args(false);
   a.add_option("-s,--source", o.source, "Compute the data instead of reading a file: 'gyroid size=128'");
   a.add_flag("--explain", o.explain, "Print the plan and what it will cost, run nothing");

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data/dataset.h"
 
+#include "data/field_component.h"
+
 #include "base/error.h"
 #include "data/bricked.h"
 #include "data/lattice.h"
 #include "data/memo.h"
+#include "data/own_indices.h"
+#include "data/trusted.h"
 
 namespace sg {
 
@@ -14,8 +18,25 @@ Dataset::Dataset(DatasetParts parts)
       cells_(sg::cell_count(parts_.mesh)),
       memo_(std::make_shared<Memo>()) {}
 
+namespace {
+
+// A mesh without points has an empty list of 3-vectors, not of nothing in particular: what copies it may rely on that.
+void shape_empty_points(Mesh& mesh) {
+  std::visit(
+      [](auto& m) {
+        if constexpr (requires { m.points.xyz; }) {
+          if (m.points.xyz.empty() && m.points.xyz.components() != 3) m.points.xyz = Array(Buffer{}, ElementType::f32, 0, 3);
+        }
+      },
+      mesh);
+}
+
+}  // namespace
+
 DatasetPtr make_dataset(DatasetParts parts) {
+  if (!detail::mesh_is_trusted()) own_indices(parts.mesh);
   validate(parts.mesh);
+  shape_empty_points(parts.mesh);
   const size_t points = point_count(parts.mesh), cells = cell_count(parts.mesh);
   for (const Field& f : parts.fields) {
     if (f.association == Association::whole) continue;
@@ -63,11 +84,10 @@ const FieldStats& Dataset::stats(const Field& field) const {
 }
 
 Range Dataset::range(const Field& field, int component) const {
+  check_component(field, component, "component");
   const FieldStats& s = stats(field);
   if (field.components() == 1) return s.range[0];
   if (component < 0) return s.magnitude;
-  if (component >= field.components())
-    fail_usage(fmt::format("field '{}' has {} components, not component {}", field.name, field.components(), component));
   return s.range[size_t(component)];
 }
 

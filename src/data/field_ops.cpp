@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data/field_ops.h"
 
+#include "data/field_component.h"
+
 #include <cmath>
 #include <type_traits>
 
@@ -139,8 +141,7 @@ void carry_whole(FieldSet& out, const FieldSet& in) {
 
 Array scalar_of(const Field& field, int component, ElementType type) {
   const Array& a = field.array;
-  if (component >= a.components())
-    fail_usage(fmt::format("field '{}' has {} components, not component {}", field.name, a.components(), component));
+  check_component(field, component, "component");
   if (component >= 0 || a.components() == 1) return a.component(std::max(component, 0)).converted(type);
   std::byte* out = nullptr;
   Array r = Array::make_raw(type, a.count(), 1, &out);

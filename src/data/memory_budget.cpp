@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data/memory_budget.h"
 
+#include <unistd.h>
+
 #include <atomic>
 
 #include "base/error.h"
@@ -11,15 +13,35 @@ namespace sg {
 
 namespace {
 std::atomic<size_t> limit{0}, in_use{0};
+thread_local detail::ClaimWatch* innermost = nullptr;
 }  // namespace
 
 void set_memory_limit(size_t bytes) {
   limit = bytes;
   if (bytes) keep_freed_blocks(0);  // what is kept for later counts for the system
 }
+size_t memory_limit() { return limit; }
+size_t allowed_memory() {
+  if (limit) return limit;
+  const long pages = ::sysconf(_SC_PHYS_PAGES), page = ::sysconf(_SC_PAGESIZE);
+  return pages > 0 && page > 0 ? size_t(pages) * size_t(page) / 2 : SIZE_MAX;
+}
+
+void need_memory(double bytes, const std::string& what, const std::string& where, const std::string& hint) {
+  const size_t most = allowed_memory(), used = in_use;
+  if (bytes <= double(most) - double(std::min(used, most))) return;
+  const std::string need = human_bytes(uint64_t(std::clamp(bytes, 0.0, 1e18)));
+  fail_usage(fmt::format("{} need {}, {} of the {} allowed are in use", what, need, human_bytes(used), human_bytes(most)), where,
+             hint + (hint.empty() ? "" : ", or ") + "allow more with --memory; --explain shows the steps");
+}
+
 size_t array_memory() { return in_use; }
 
+detail::ClaimWatch::ClaimWatch() : outer_(std::exchange(innermost, this)) {}
+detail::ClaimWatch::~ClaimWatch() { innermost = outer_; }
+
 void detail::claim_memory(size_t bytes) {
+  if (innermost) innermost->on_claim(bytes);
   const size_t before = in_use.fetch_add(bytes);
   const size_t most = limit;
   if (most == 0 || before + bytes <= most) return;

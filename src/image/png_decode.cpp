@@ -11,6 +11,8 @@
 namespace sg {
 namespace {
 
+constexpr size_t text_bytes = size_t(64) << 20, most_texts = 1000;
+
 struct Source {
   std::span<const std::byte> bytes;
   size_t at = 0;
@@ -41,12 +43,26 @@ struct Reader {
 
   ~Reader() { png_destroy_read_struct(&png, &info, nullptr); }
 
+  /// Chunks of text in the file: each may unpack to a thousand times its size.
+  size_t texts() const {
+    size_t n = 0;
+    for (size_t at = 8; at + 12 <= source.bytes.size();) {
+      const auto* p = reinterpret_cast<const unsigned char*>(source.bytes.data()) + at;
+      const std::string_view type(reinterpret_cast<const char*>(p) + 4, 4);
+      n += type == "tEXt" || type == "zTXt" || type == "iTXt";
+      at += 12 + (size_t(p[0]) << 24 | size_t(p[1]) << 16 | size_t(p[2]) << 8 | size_t(p[3]));
+    }
+    return n;
+  }
+
   /// False after an error; its text is in source.problem.
   bool read_head() {
     if (setjmp(png_jmpbuf(png))) return false;
     png_set_read_fn(png, &source, read_bytes);
     png_set_user_limits(png, 1 << 20, 1 << 20);
-    png_set_chunk_malloc_max(png, 256u << 20);
+    const size_t n = texts();
+    png_set_chunk_cache_max(png, most_texts);
+    png_set_chunk_malloc_max(png, text_bytes / std::clamp<size_t>(n, 1, most_texts));
     png_read_info(png, info);
     if (png_get_bit_depth(png, info) == 16) png_set_scale_16(png);
     png_set_expand(png);  // palettes, fewer bits, transparent colours
@@ -92,6 +108,10 @@ Image decode_png(std::span<const std::byte> bytes, const std::string& name) {
   uint64_t size = 0, packed = 0;
   if (!multiply(row, uint64_t(r.image.height), size) || !multiply(bytes.size(), 8 * 1040, packed) || size > packed)
     fail_data(fmt::format("damaged PNG: {} x {} pixels cannot be in {} bytes", r.image.width, r.image.height, bytes.size()), name);
+  if (size > (uint64_t(256) << 20) + 100 * uint64_t(bytes.size()))
+    fail_data(
+        fmt::format("{} x {} pixels of a file of {} bytes would fill {} MiB", r.image.width, r.image.height, bytes.size(), size >> 20),
+        name);
   r.image.pixels.resize(size_t(size));
   for (int y = 0; y < r.image.height; ++y) r.rows.push_back(r.image.pixels.data() + size_t(y) * row);
   if (!r.read_pixels()) fail_data("damaged PNG: " + r.source.problem, name);

@@ -6,11 +6,13 @@
 
 #include "base/file.h"
 #include "base/file_fence.h"
+#include "base/mapped_watch.h"
 #include "base/text.h"
 #include "data/lattice.h"
 #include "data/lattice_crop.h"
 #include "io/file_series.h"
 #include "io/plugin.h"
+#include "io/reading_budget.h"
 
 namespace sg {
 
@@ -96,12 +98,36 @@ auto with_format(std::string path, const ReadOptions& options, F&& f) {
   }
 }
 
+// Formats whose files name others, or that are folders.
+bool names_others(const Format& f) {
+  if (f.sniff_folder) return true;
+  for (const char* name : {"NRRD", "MetaImage", "EnSight Gold", "nek5000", "PLOT3D", "PLOT3D meta file", "BOV", "OpenFOAM controlDict",
+                           "parallel VTK XML", "VTK multiblock", "ParaView collection", "VTK AMR", "XDMF", "glTF", "MFEM grid function"})
+    if (f.name == name) return true;
+  return false;
+}
+
+// What was read of a file that was written meanwhile is neither its old nor its new state, whether it was understood or not.
+Data read_unchanged(const Format& f, const std::string& path, const ReadOptions& options, Context& context) {
+  const uint64_t begin = mapped_watch().now();
+  ReadingBudget budget(path, names_others(f));
+  Data data;
+  try {
+    data = f.read(path, options, context);
+  } catch (const Error& e) {
+    if (e.kind() == ErrorKind::data) check_files_unchanged(begin);
+    throw;
+  }
+  check_files_unchanged(begin);
+  return data;
+}
+
 }  // namespace
 
 Data read_data(const std::string& path, const ReadOptions& options, Context& context) {
   if (names_series(path)) return read_of_series(path, options, context);
   return with_format(path, options, [&](const Format& f, const std::string& at) {
-    Data data = f.read(at, options, context);
+    Data data = read_unchanged(f, at, options, context);
     if (options.region.whole() || (f.honours & honours_region)) return data;
     return map_datasets(data, [&](const DatasetPtr& d) {
       return is_lattice(d->mesh()) ? crop_lattice(*d, options.region.lo, options.region.hi, options.region.stride) : d;

@@ -324,6 +324,18 @@ Array fit(const Array& a, size_t count) {
   return r;
 }
 
+// What write_obj() makes of a surface without points; any other text without a vertex is no OBJ file.
+bool only_comments(std::string_view text) {
+  bool comment = false;
+  while (!text.empty()) {
+    const std::string_view line = trim(text.substr(0, text.find('\n')));
+    if (!line.empty() && line[0] != '#') return false;
+    comment = comment || !line.empty();
+    text.remove_prefix(std::min(text.size(), text.find('\n') == std::string_view::npos ? text.size() : text.find('\n') + 1));
+  }
+  return comment;
+}
+
 }  // namespace
 
 Data read_obj(const std::string& path, const ReadOptions& options, Context& context) {
@@ -331,7 +343,7 @@ Data read_obj(const std::string& path, const ReadOptions& options, Context& cont
   ObjFile o;
   parse(file, o, context);
   resolve_all(o, context);
-  if (o.v == 0) fail_data("there is no vertex", path, "an OBJ file has lines like 'v 1 2 3' and 'f 1 2 3'");
+  if (o.v == 0 && !only_comments(o.text)) fail_data("there is no vertex", path, "an OBJ file has lines like 'v 1 2 3' and 'f 1 2 3'");
 
   DatasetParts parts;
   SurfaceMesh mesh;

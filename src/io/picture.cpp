@@ -44,6 +44,7 @@ struct Png {
     png_set_read_fn(png, this, read);
     png_set_user_limits(png, 1 << 20, 1 << 20);
     png_set_chunk_malloc_max(png, 64u << 20);
+    png_set_keep_unknown_chunks(png, PNG_HANDLE_CHUNK_NEVER, reinterpret_cast<png_const_bytep>("tEXt\0zTXt\0iTXt"), 3);
     png_read_info(png, info);
     png_set_expand(png);
     if (png_get_bit_depth(png, info) == 16) png_set_swap(png);

@@ -9,6 +9,7 @@
 #pragma once
 #include <algorithm>
 
+#include "base/mapped_watch.h"
 #include "base/parallel.h"
 #include "data/memory_budget.h"
 #include "io/io.h"
@@ -64,8 +65,9 @@ std::vector<double> plugin_times(const std::string& path, const ReadOptions& opt
 }  // namespace sg
 
 /// In one file of a plug-in: what it offers. It has its own copies of base and data, which take the host's cap on threads (0 = all) and
-/// on the memory of arrays (0 = none).
+/// on the memory of arrays (0 = none), and its watch over mapped files.
 #define SG_PLUGIN_FORMATS(...)                                                                                                             \
+  extern "C" __attribute__((visibility("default"))) void sightglass_watch(sg::MappedWatch* watch) { sg::share_mapped_watch(watch); }       \
   extern "C" __attribute__((visibility("default"))) const sg::PluginFormat* sightglass_plugin(size_t* count, int threads, size_t memory) { \
     static const sg::PluginFormat table[] = {__VA_ARGS__};                                                                                 \
     sg::set_thread_count(threads);                                                                                                         \

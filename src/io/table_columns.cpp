@@ -24,8 +24,16 @@ void TableBuilder::name_columns(const std::vector<std::string_view>& names) {
     else (void)column(i);
 }
 
+// Every row with columns of its own would make a table of nothing but holes, a thousand times the size of the file.
+void TableBuilder::check_holes(uint64_t columns, uint64_t per_cell) const {
+  if (columns * rows_ > per_cell * given_ + (uint64_t(1) << 20))
+    fail_data(fmt::format("more than {} columns in {} rows, with hardly a value in them", columns, rows_), "table");
+}
+
 void TableBuilder::add_row(const std::vector<std::string_view>& cells) {
   begin_row();
+  given_ += cells.size();
+  check_holes(std::max(columns_.size(), cells.size()), 16);
   for (size_t i = 0; i < cells.size(); ++i) {
     Column& c = column(i);
     c.cells.resize(rows_);
@@ -36,9 +44,8 @@ void TableBuilder::add_row(const std::vector<std::string_view>& cells) {
 void TableBuilder::set(const std::string& name, std::string value) {
   size_t i = 0;
   while (i < columns_.size() && columns_[i].name != name) ++i;
-  // Every row with a name of its own would make a table of nothing but holes.
-  if (++given_, i == columns_.size() && uint64_t(i) * rows_ > 64 * given_ + (uint64_t(1) << 20))
-    fail_data(fmt::format("more than {} columns in {} rows, with hardly a value in them", i, rows_), "table");
+  ++given_;
+  if (i == columns_.size()) check_holes(i, 64);
   Column& c = column(i);
   c.name = name;
   c.cells.resize(rows_);
@@ -102,6 +109,7 @@ TablePtr TableBuilder::build() {
     if (a.empty() && rows_ > 0) a = words_column(c.cells, labels);
     if (labels.empty() && a.type() == ElementType::i32 && a.count() > 0 && a.get(0) == -1 && number_column(c.cells).empty())
       labels.push_back("");  // a column without any cell is one of words
+    c.cells = {};
     table->columns.push_back({c.name, Association::whole, std::move(a), "", Role::none});
     table->labels.push_back(std::move(labels));
   }

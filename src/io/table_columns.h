@@ -12,7 +12,8 @@ namespace sg {
 /// Collects cells column by column. Missing ones are "".
 class TableBuilder {
  public:
-  /// Cells of one row, in the order of the columns; more cells than columns make new columns.
+  /// Cells of one row, in the order of the columns; more cells than columns make new columns. Throws Error(data) when most of the table
+  /// would be empty.
   void add_row(const std::vector<std::string_view>& cells);
   /// Sets a cell of the current last row of a named column (made when it is new). Throws Error(data) when the columns get so many
   /// that most of the table would be empty.
@@ -31,9 +32,10 @@ class TableBuilder {
     std::vector<std::string> cells;
   };
   Column& column(size_t i);
+  void check_holes(uint64_t columns, uint64_t per_cell) const;
   std::vector<Column> columns_;
   size_t rows_ = 0;
-  uint64_t given_ = 0;  ///< cells that set() was given
+  uint64_t given_ = 0;  ///< cells that were given
 };
 
 /// A cell that says that there is no value.

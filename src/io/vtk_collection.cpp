@@ -14,7 +14,8 @@ namespace vtk {
 namespace {
 
 constexpr size_t most_depth = 32;
-constexpr size_t most_parts = size_t(1) << 20;
+// However often small files name each other: as many parts as their texts could name one by one.
+constexpr size_t parts_always = 1000, bytes_a_part = 16;
 
 std::string_view type_in(std::span<const std::byte> head) { return xml_type({reinterpret_cast<const char*>(head.data()), head.size()}); }
 
@@ -89,12 +90,15 @@ class TreeReader {
 
   void count(size_t parts) {
     parts_ += parts;
-    if (parts_ > most_parts)
-      fail_data(fmt::format("has more than {} parts, counting files that are named again and again", most_parts), stack_[0]);
+    const size_t most = parts_always + bytes_ / bytes_a_part;
+    if (parts_ > most)
+      fail_data(fmt::format("has more than {} parts, counting files that are named again and again", most), stack_[0],
+                "name each part once");
   }
 
   Data read_new(const std::string& path) {
     const MappedFile head(path);
+    bytes_ += head.size();
     const std::string_view type = type_in({head.data(), std::min<size_t>(head.size(), 4096)});
     if (type != "Collection" && !is_multiblock(type)) {
       count(1);
@@ -219,7 +223,7 @@ class TreeReader {
   pugi::xml_document counting_;
   std::vector<std::string> stack_;
   std::map<std::string, Done> done_;
-  size_t parts_ = 0, leaf_ = 0, share_depth_ = 0, share_begin_ = 0, share_end_ = SIZE_MAX;
+  size_t parts_ = 0, bytes_ = 0, leaf_ = 0, share_depth_ = 0, share_begin_ = 0, share_end_ = SIZE_MAX;
 };
 
 }  // namespace

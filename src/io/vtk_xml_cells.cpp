@@ -173,6 +173,8 @@ void read_unstructured(const XmlRead& read, DatasetParts& parts) {
     meshes.push_back(unstructured_piece(piece, n, m));
     pieces.push_back(piece), points.push_back(n), cells.push_back(m);
   }
+  if (pieces.empty() && !read.pieces.empty())  // nothing at all: the first piece still names the fields
+    meshes.emplace_back(), pieces.push_back(read.pieces[0]), points.push_back(0), cells.push_back(0);
   UnstructuredMesh mesh = meshes.empty() ? UnstructuredMesh{} : joined(std::move(meshes));
   for (const XmlField& f : list_fields(read, pieces, "PointData", Association::point)) {
     Field field = f.field;
@@ -269,6 +271,7 @@ void read_polydata(const XmlRead& read, DatasetParts& parts) {
     if (n == 0 && mesh.cell_count() == 0) continue;
     meshes.push_back(std::move(mesh)), pieces.push_back(piece), points.push_back(n);
   }
+  if (pieces.empty() && !read.pieces.empty()) meshes.emplace_back(), pieces.push_back(read.pieces[0]), points.push_back(0);
   for (const XmlField& f : list_fields(read, pieces, "PointData", Association::point)) {
     Field field = f.field;
     field.array = joined_field(read, pieces, f, points);

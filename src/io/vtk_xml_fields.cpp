@@ -141,6 +141,10 @@ Array joined_field(const XmlRead& read, const std::vector<XmlPiece>& pieces, con
   read.context.check();
   size_t n = 0;
   for (const size_t t : tuples) n += t;
+  if (n == 0) {
+    std::byte* none = nullptr;
+    return Array::make_raw(f.type, 0, f.components, &none);
+  }
   if (header_only(read, f)) return check_backed(pieces, f, n), hollow(f.type, n, f.components);
   if (pieces.size() == 1) return pieces[0].file->array(f.nodes[0], tuples[0]);
   check_backed(pieces, f, n);

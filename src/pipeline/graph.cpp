@@ -13,7 +13,8 @@ namespace sg {
 
 namespace {
 constexpr int deepest_chain = 1000;  // evaluation recurses along it
-}
+constexpr double most_copies = 1 << 20;
+}  // namespace
 
 Graph::Graph(GraphOptions options) : state_(std::make_unique<State>()) {
   state_->options = std::move(options);
@@ -29,6 +30,7 @@ Cache& Graph::cache() const { return *state_->cache; }
 NodeId Graph::add_read(std::string path, ReadOptions options, std::string name) {
   state_->nodes.push_back({std::move(name), ReadNode{std::move(path), std::move(options)}, {}, {}});
   state_->depth.push_back(1);
+  state_->copies.push_back(1);
   return NodeId(state_->nodes.size() - 1);
 }
 
@@ -39,6 +41,7 @@ NodeId Graph::add_data(Data data, std::string content, std::string name) {
   if (content.empty()) key.add(count++);  // an address would come back after its data has died
   state_->nodes.push_back({std::move(name), DataNode{std::move(data), key.key()}, {}, {}});
   state_->depth.push_back(1);
+  state_->copies.push_back(1);
   return NodeId(state_->nodes.size() - 1);
 }
 
@@ -54,11 +57,19 @@ NodeId Graph::add_operation(std::string operation, std::vector<std::string> word
     mistake(e.what());
   }
   int depth = 1;
+  double copies = 0;
+  const bool joins = op.found && op.found->max_inputs < 0;
   for (const NodeId in : inputs) {
     if (in < 0 || in >= id) mistake(fmt::format("{}: input {} is no earlier step", op.operation, in + 1));
-    else node.inputs.push_back(in), depth = std::max(depth, state_->depth[size_t(in)] + 1);
+    else {
+      node.inputs.push_back(in), depth = std::max(depth, state_->depth[size_t(in)] + 1);
+      const double of = state_->copies[size_t(in)];
+      copies = joins ? copies + of : std::max(copies, of);
+    }
   }
   if (depth > deepest_chain) mistake(fmt::format("the chain of steps is longer than {}", deepest_chain));
+  if (copies > most_copies)
+    mistake(fmt::format("{}: steps that join their inputs, one upon the other, would join {:.3g} meshes", op.operation, copies));
   if (op.found && node.inputs.size() == inputs.size()) {
     const int n = int(inputs.size()), lo = op.found->min_inputs, hi = op.found->max_inputs;
     if (lo == 0 && hi == 0 && n > 0) mistake(fmt::format("{}: is a source and takes no input", op.operation));
@@ -74,6 +85,7 @@ NodeId Graph::add_operation(std::string operation, std::vector<std::string> word
   node.what = std::move(op);
   state_->nodes.push_back(std::move(node));
   state_->depth.push_back(depth);
+  state_->copies.push_back(std::max(copies, 1.0));
   return id;
 }
 

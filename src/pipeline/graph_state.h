@@ -35,7 +35,8 @@ struct Graph::State {
   GraphOptions options;
   std::shared_ptr<Cache> cache;
   std::vector<Node> nodes;
-  std::vector<int> depth;  ///< longest chain above each node
+  std::vector<int> depth;      ///< longest chain above each node
+  std::vector<double> copies;  ///< how often one and the same input may stand in each node's result: steps that join several add up
 };
 
 /// "step 2" or "step 'bone'".

@@ -80,7 +80,7 @@ std::string ops_help(std::string_view name, std::span<const Operation> table) {
     if (o.min_inputs > 1) r += fmt::format("  Takes {} inputs.\n", o.min_inputs);
     else if (o.max_inputs < 0) r += "  Takes any number of inputs.\n";
     const std::string help = params_help(params.schema);
-    return r + (help.empty() ? "\nIt has no parameters.\n" : "\nParameters (key=value):\n" + help);
+    return r + (help.empty() ? "\nIt has no parameters.\n" : "\nParameters (key=value):\n" + help) + words_help(o);
   }
   std::vector<std::string_view> families;
   size_t width = 0;
@@ -97,13 +97,37 @@ std::string ops_help(std::string_view name, std::span<const Operation> table) {
   return r;
 }
 
+std::string words_help(const Operation& operation) {
+  if (!operation.words) return {};
+  const std::vector<HelpWord> words = operation.words();
+  size_t width = 0;
+  for (const HelpWord& w : words) width = std::max(width, w.form.size());
+  std::string r;
+  std::string_view group;
+  for (const HelpWord& w : words) {
+    if (w.group != group) r += fmt::format("\n{}s\n", w.group), group = w.group;
+    r += fmt::format("  {:<{}}  {}\n", w.form, width, w.sentence);
+  }
+  return r;
+}
+
+std::string words_json(const Operation& operation) {
+  std::string r;
+  if (operation.words)
+    for (const HelpWord& w : operation.words())
+      r += fmt::format("{}{{\"group\":{},\"form\":{},\"sentence\":{}}}", r.empty() ? "" : ",", json_string(w.group), json_string(w.form),
+                       json_string(w.sentence));
+  return "[" + r + "]";
+}
+
 std::string ops_json(std::span<const Operation> table) {
   std::string r = "{\"operations\":[";
   for (size_t i = 0; i < table.size(); ++i) {
     const Operation& o = table[i];
-    r += fmt::format("{}{{\"name\":{},\"kind\":\"{}\",\"family\":{},\"sentence\":{},\"version\":{},\"inputs\":[{},{}],\"params\":{}}}",
+    r += fmt::format("{}{{\"name\":{},\"kind\":\"{}\",\"family\":{},\"sentence\":{},\"version\":{},\"inputs\":[{},{}],\"params\":{}{}}}",
                      i ? ",\n" : "\n", json_string(o.name), o.kind == OperationKind::source ? "source" : "filter", json_string(o.family),
-                     json_string(o.sentence), o.version, o.min_inputs, o.max_inputs, params_json(o.make_params().schema));
+                     json_string(o.sentence), o.version, o.min_inputs, o.max_inputs, params_json(o.make_params().schema),
+                     o.words ? ",\"words\":" + words_json(o) : "");
   }
   return r + "\n]}\n";
 }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "base/context.h"
+#include "base/help_word.h"
 #include "base/schema.h"
 #include "data/dataset.h"
 #include "pipeline/request.h"
@@ -46,6 +47,8 @@ struct Operation {
   Request (*request)(const ParamSet& params, const Request& wanted) = nullptr;
   /// From the bytes of the inputs; null = each byte is touched once at 2 GB/s and the result is as large as the largest input.
   Estimate (*estimate)(const ParamSet& params, std::span<const uint64_t> input_bytes) = nullptr;
+  /// The language of its parameters, for help: operators and functions of expressions; null: none.
+  std::vector<HelpWord> (*words)() = nullptr;
 };
 
 /// All operations of this build, in the order of operations.def.
@@ -62,7 +65,12 @@ Request upstream_request(const Operation& operation, const ParamSet& params, con
 
 /// One operation for people: sentence and parameters. "" = all operations by family.
 std::string ops_help(std::string_view name = {}, std::span<const Operation> table = operations());
-/// {"operations":[{"name","kind","family","sentence","version","inputs":[min,max],"params":<JSON schema>}]}.
+/// Its words, each with its sentence, by group; "" when it has none.
+std::string words_help(const Operation& operation);
+/// [{"group","form","sentence"}].
+std::string words_json(const Operation& operation);
+/// {"operations":[{"name","kind","family","sentence","version","inputs":[min,max],"params":<JSON schema>}]}; those that have words:
+/// "words" too.
 std::string ops_json(std::span<const Operation> table = operations());
 
 /// Same tree with f applied to every dataset; an Error that leaves f names the part. Null results are dropped. A lone table

@@ -98,6 +98,15 @@ namespace sg {
 
 namespace {
 
+// Beside the fields wanted, those that its lists name.
+Request request_of_transform(const ParamSet& params, const Request& wanted) {
+  Request r = detail::request_carried(params, wanted);
+  const FieldLawParams& p = detail::values_of<TransformParams>(params).fields;
+  for (const auto* names : {&p.turn, &p.keep, &p.gradients, &p.axial})
+    for (const std::string& name : *names) add_field(r, name);
+  return r;
+}
+
 // A plane across an axis at a known place needs the cells around it alone.
 Request request_of_slice(const ParamSet& params, const Request& wanted) {
   Request r = detail::request_carried(params, wanted);

@@ -73,6 +73,8 @@ Image draw_picture(const Scene& scene, const Camera& camera, const StatedPicture
   RenderOptions options;
   options.width = width_beside_legends(annotation, s), options.height = s.height, options.samples = s.picture.samples;
   options.adaptive = s.picture.adaptive, options.coarser = coarser;
+  // The frame, one of single samples, and one of all columns where a legend stands beside it.
+  check_picture_memory(s.width, s.height, 1 + (options.width < s.width || options.adaptive > 0 ? 1 : 0));
   Frame frame = render(scene, camera, options, context);
   const Projection projection = make_projection(camera, options.width, options.height);
   Annotation with_texts = annotation;

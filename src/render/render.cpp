@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "data/memory_budget.h"
 #include "render/composite/background.h"
 #include "render/raster/raster.h"
 #include "render/volume/volume.h"
@@ -76,6 +77,13 @@ constexpr size_t band_pixels = size_t(1) << 21;
 
 }  // namespace
 
+void check_picture_memory(int width, int height, int frames) {
+  const double pixels = double(width) * double(height);
+  constexpr double bytes_of_frame = 24, bytes_of_image = 8;  // of a pixel: rgba, depth, id; the image, and what is packed of it
+  need_memory(pixels * (bytes_of_frame * frames + bytes_of_image), fmt::format("{}x{} pixels", width, height), "render",
+              "make a smaller picture: --size");
+}
+
 Frame render(const Scene& scene, const Camera& camera, const RenderOptions& options, Context& context) {
   if (options.width < 1 || options.height < 1 || options.width > 32768 || options.height > 32768)
     fail_usage(fmt::format("picture size {}x{} is out of range", options.width, options.height), "render",
@@ -84,6 +92,8 @@ Frame render(const Scene& scene, const Camera& camera, const RenderOptions& opti
     fail_usage(fmt::format("{} samples per pixel and axis", options.samples), "render", "give 1 to 8, or 0 for the default");
   const int n = chosen_samples(scene, options.samples);
   const Projection whole = make_projection(camera, options.width * n, options.height * n);
+  const bool adaptive = options.adaptive > 0 && n > 1;
+  check_picture_memory(options.width, options.height, adaptive ? 2 : 1);
   const auto prepared = prepare_scene(scene, context);
   const auto textures = n > 1 ? texture_scene(*prepared, make_projection(camera, options.width, options.height), context) : nullptr;
   Frame frame(options.width, options.height);
@@ -92,7 +102,6 @@ Frame render(const Scene& scene, const Camera& camera, const RenderOptions& opti
     context.check();
     composite_volumes(scene, projection, fragments, into, context, wanted, options.coarser);
   };
-  const bool adaptive = options.adaptive > 0 && n > 1;
   if (n == 1) {
     draw(whole, 1, nullptr, frame);
   } else {

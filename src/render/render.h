@@ -18,6 +18,10 @@ struct RenderOptions {
   double coarser = 1;
 };
 
+/// Throws Error(usage) when the frames of a picture of that size, and the image that is made of them, are more than may be taken
+/// (data/memory_budget.h).
+void check_picture_memory(int width, int height, int frames);
+
 /// Surfaces, lines, points and volumes in one picture: opaque ones by depth, translucent ones and volumes in depth order,
 /// over the background. The same bytes for any number of threads and any SIMD target.
 Frame render(const Scene& scene, const Camera& camera, const RenderOptions& options, Context& context);

@@ -188,7 +188,7 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
   s.title = field.name;
   if (field.components() > 1) s.title += p.component < 0 ? " magnitude" : fmt::format(" [{}]", p.component);
   s.unit = field.unit;
-  Range r = data.range(field, field.components() > 1 ? p.component : 0);
+  Range r = data.range(field, p.component);
   if (r.empty()) {
     context.warn(fmt::format("field '{}' has no finite value; it is drawn in the colour of NaN", field.name));
     r = {0, 1};

@@ -37,8 +37,9 @@ std::vector<double> samples_of(std::span<const FieldOf> fields, int component) {
   for (const FieldOf& f : fields)
     dispatch(f.field->array, [&](auto view) {
       const bool magnitude = component < 0 && view.components > 1;
+      const int one = view.components > 1 ? std::max(component, 0) : 0;
       for (size_t i = 0; i < view.count; i += step) {
-        double x = double(view(i, std::max(component, 0)));
+        double x = double(view(i, one));
         if (magnitude) {
           x = 0;
           for (int c = 0; c < view.components; ++c) x += double(view(i, c)) * double(view(i, c));

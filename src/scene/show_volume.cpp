@@ -4,6 +4,7 @@
 #include "base/text.h"
 #include "color/parse_color.h"
 #include "color/transfer_text.h"
+#include "data/field_component.h"
 #include "data/lattice.h"
 #include "scene/volume_boundaries.h"
 #include "scene/volume_extent.h"
@@ -71,6 +72,12 @@ Fields fields_of(const Dataset& d, const VolumeShow& p) {
   if (!p.opacity_by.empty()) f.opacity = &mesh_field(d, p.opacity_by.name, "opacity_by");
   if (!p.color_by.empty()) f.color = &mesh_field(d, p.color_by.name, "color_by");
   return f;
+}
+
+/// A component counts for the fields that have several; where both have one, for none.
+int component_of(const VolumeShow& p, const Fields& all, const Field& f) {
+  const Field& other = &f == all.color ? *all.opacity : *all.color;
+  return f.components() == 1 && other.components() > 1 ? -1 : p.coloring.component;
 }
 
 void check_second_field(const Field& value, const Field& second) {
@@ -211,8 +218,11 @@ Legend legend_of(const VolumeItem& item) {
 std::vector<std::string> with_preset(const std::vector<std::string>& words, const VolumeShow& p, const Dataset& d, Context& context) {
   if (p.preset.empty()) return words;
   std::string reason;
-  const Field* field = fields_of(d, p).opacity;
-  std::vector<std::string> all = words_of_preset(p.preset, d, *field, p.coloring.component, reason);
+  const Fields fields = fields_of(d, p);
+  const Field* field = fields.opacity;
+  const int component = component_of(p, fields, *field);
+  check_component(*field, component, "component");
+  std::vector<std::string> all = words_of_preset(p.preset, d, *field, component, reason);
   context.info(reason);
   std::erase_if(all, [&](const std::string& w) {
     if (w.starts_with("colors=")) return states(words, "map") || states(words, "colors") || states(words, "color");
@@ -241,7 +251,8 @@ std::optional<Legend> add_volume(Scene& scene, const DatasetPtr& input, const st
   item.data = input;
   item.field = fields.opacity->name;
   item.association = fields.opacity->association;
-  item.component = p.coloring.component;
+  item.component = component_of(p, fields, *fields.opacity);
+  check_component(*fields.opacity, item.component, "component");
   item.method = volume_method(p.method);
   item.mode = ray_function(p.mode);
   item.levels = p.levels;
@@ -252,14 +263,16 @@ std::optional<Legend> add_volume(Scene& scene, const DatasetPtr& input, const st
   if (!p.clip.empty()) item.clip = parse_clip(p.clip);
 
   // Colours as asked for, over the field that they belong to.
-  ColorScale colors = choose_scale(*input, *fields.color, p.coloring, context);
+  ColoringParams coloring = p.coloring;
+  coloring.component = component_of(p, fields, *fields.color);
+  ColorScale colors = choose_scale(*input, *fields.color, coloring, context);
   const ColorScale whole = colors;
   if (!p.coloring.color.empty()) take_one_colour(colors, p.coloring.color);
   if (!p.colors.empty()) parse_color_stops(p.colors, colors, !p.coloring.range.empty());
   if (fields.color == fields.opacity) item.color = whole;
   else {
     ColoringParams plain;
-    plain.component = p.coloring.component;
+    plain.component = item.component;
     item.color = choose_scale(*input, *fields.opacity, plain, context);
   }
   if (needs_level(item.mode) && item.levels.empty()) choose_level(*fields.opacity, item, context);

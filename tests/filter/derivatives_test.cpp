@@ -197,16 +197,18 @@ TEST_CASE("hessian: second order inside a grid, symmetric, with the unit of a se
   CHECK(order(h, e) == doctest::Approx(2).epsilon(0.1));
 }
 
-TEST_CASE("quadratic fit: too few neighbours give a plane and no Hessian; a surface its tangential part") {
+TEST_CASE("quadratic fit: too few neighbours keep linear functions exact and say so; a surface gets its tangential part") {
   QuadraticFit fit;
   const std::vector<Vec3> star = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}};
   fit.place(star, 3, {});
   Vec3 g;
   double h[6];
   fit.solve(std::vector<double>{2, -3, 4, -2}, g, h);
+  CHECK(fit.linear());
   CHECK_FALSE(fit.quadratic());
+  CHECK(fit.determined() == 0);
   CHECK(length(g - Vec3{2, -3, 4}) < 1e-14);
-  CHECK(std::isnan(h[0]));
+  for (const double second : h) CHECK(std::abs(second) < 1e-14);
   std::vector<Vec3> ring;
   std::vector<double> df;
   for (int i = 0; i < 12; ++i) {

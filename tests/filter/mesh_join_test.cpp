@@ -133,3 +133,38 @@ TEST_CASE("append: far apart origins keep their places") {
   CHECK(r->as<PointCloud>()->points.at(0) == Vec3{1e7 + 1, 2, 3});
   CHECK(r->as<PointCloud>()->points.at(1) == Vec3{1, 2, 3});
 }
+
+TEST_CASE("append: inputs without points add nothing and take nothing away, wherever they stand") {
+  Context ctx;
+  const DatasetPtr plain = soup(4), far = [] {
+    DatasetParts p = soup(4)->parts();
+    std::get<SurfaceMesh>(p.mesh).points.origin = {1e7, 0, 0};
+    return make_dataset(std::move(p));
+  }();
+  FieldSet narrow;  // the same names, other components, no tuples
+  narrow.add({"v", Association::point, Array(Buffer{}, ElementType::i32, 0, 2), "", Role::none});
+  narrow.add({"id", Association::cell, Array(Buffer{}, ElementType::u8, 0, 1), "", Role::none});
+  const DatasetPtr nothing[] = {make_dataset(SurfaceMesh{}), make_dataset(UnstructuredMesh{}), make_dataset(PointCloud{}),
+                                make_dataset(SurfaceMesh{}, narrow)};
+  for (const DatasetPtr& none : nothing)
+    for (const DatasetPtr& some : {plain, far})
+      for (const std::vector<Data>& inputs : {std::vector<Data>{none, some}, {some, none}, {none, none, some, none}}) {
+        const DatasetPtr both = append(inputs, {}, ctx);
+        REQUIRE(both->point_count() == some->point_count());
+        CHECK(both->cell_count() == some->cell_count());
+        const bool solid = none->as<UnstructuredMesh>() || none->as<PointCloud>();
+        CHECK(bool(both->as<UnstructuredMesh>()) == solid);
+        const DatasetPtr whole = to_unstructured(both), alone = to_unstructured(some);
+        for (size_t i = 0; i < some->point_count(); ++i)
+          REQUIRE(whole->as<UnstructuredMesh>()->points.at(i) == alone->as<UnstructuredMesh>()->points.at(i));
+        for (const Field& f : some->fields()) {
+          const Field* g = both->fields().find(f.name, f.association);
+          REQUIRE(g);
+          CHECK(g->array.type() == f.array.type());
+          for (size_t i = 0; i < f.array.count(); ++i) CHECK(g->array.get(i) == f.array.get(i));
+        }
+      }
+  const DatasetPtr none = append({make_dataset(SurfaceMesh{}, narrow), make_dataset(SurfaceMesh{})}, {}, ctx);
+  CHECK(none->point_count() == 0);
+  CHECK(none->fields().find("v", Association::point));
+}

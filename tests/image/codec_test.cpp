@@ -3,6 +3,7 @@
 
 #include <signal.h>
 #include <sys/resource.h>
+#include <zlib.h>
 
 #include <cstring>
 
@@ -41,7 +42,7 @@ uint32_t crc_of(const uint8_t* p, size_t n) {
 }
 
 /// signature + chunks with right CRCs
-std::vector<uint8_t> png_of(std::initializer_list<std::pair<const char*, std::vector<uint8_t>>> chunks) {
+std::vector<uint8_t> png_of(const std::vector<std::pair<std::string, std::vector<uint8_t>>>& chunks) {
   std::vector<uint8_t> out{0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'};
   const auto put = [&](uint32_t v) {
     for (int s = 24; s >= 0; s -= 8) out.push_back(uint8_t(v >> s));
@@ -49,7 +50,7 @@ std::vector<uint8_t> png_of(std::initializer_list<std::pair<const char*, std::ve
   for (const auto& [type, body] : chunks) {
     put(uint32_t(body.size()));
     const size_t at = out.size();
-    out.insert(out.end(), type, type + 4);
+    out.insert(out.end(), type.begin(), type.end());
     out.insert(out.end(), body.begin(), body.end());
     put(crc_of(out.data() + at, out.size() - at));
   }
@@ -167,6 +168,37 @@ TEST_CASE("png: damaged files are errors, wherever they are cut or changed") {
 TEST_CASE("png: a tiny file that claims a huge picture is refused before memory is taken") {
   const auto bytes = png_of({{"IHDR", {0, 0, 0x80, 0, 0, 0, 0x80, 0, 8, 6, 0, 0, 0}}, {"IDAT", {0x78, 1}}, {"IEND", {}}});
   CHECK(test::error_of([&] { decode_png(view(bytes), "bomb"); }).find("cannot be in") != std::string::npos);
+}
+
+TEST_CASE("png: texts of one file unpack to 64 MiB together at most") {
+  const auto packed = [](const std::string& key, size_t bytes) {
+    const std::string text(bytes, 'a');
+    std::vector<uint8_t> z(compressBound(text.size()));
+    uLongf n = z.size();
+    REQUIRE(compress(z.data(), &n, reinterpret_cast<const Bytef*>(text.data()), text.size()) == Z_OK);
+    std::vector<uint8_t> chunk(key.begin(), key.end());
+    chunk.push_back(0), chunk.push_back(0);
+    chunk.insert(chunk.end(), z.begin(), z.begin() + long(n));
+    return chunk;
+  };
+  const auto bytes_of_texts = [&](int count, size_t each) {
+    std::vector<std::pair<std::string, std::vector<uint8_t>>> chunks{{"IHDR", {0, 0, 0, 1, 0, 0, 0, 1, 8, 0, 0, 0, 0}}};
+    const std::vector<uint8_t> text = packed("key", each);
+    for (int i = 0; i < count; ++i) chunks.emplace_back("zTXt", text);
+    std::vector<uint8_t> pixel(compressBound(2));
+    uLongf n = pixel.size();
+    const Bytef raw[2] = {0, 9};
+    REQUIRE(compress(pixel.data(), &n, raw, 2) == Z_OK);
+    pixel.resize(n);
+    chunks.emplace_back("IDAT", pixel), chunks.emplace_back("IEND", std::vector<uint8_t>{});
+    const Image image = decode_png(view(png_of(chunks)), "texts");
+    CHECK(image.pixels[0] == 9);
+    size_t sum = 0;
+    for (const auto& [key, text] : image.text) sum += text.size();
+    return sum;
+  };
+  CHECK(bytes_of_texts(2, size_t(1) << 20) == size_t(2) << 20);
+  CHECK(bytes_of_texts(20, size_t(8) << 20) <= size_t(64) << 20);
 }
 
 TEST_CASE("codec: the extension chooses; files begin with their format's mark") {

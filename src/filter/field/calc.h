@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Arithmetic on fields: calc 'expr=mag(velocity)*rho'.
 #pragma once
+#include <vector>
+
 #include "base/context.h"
+#include "base/help_word.h"
 #include "base/schema.h"
 #include "data/dataset.h"
 
@@ -15,7 +18,9 @@ struct CalcParams {
 
 inline void describe(Schema& s, CalcParams& p) {
   s("expr", p.expr,
-    "What to compute, like mag(velocity)*rho; names of fields as they are, or in \"quotes\"; also x, y, z, position, time, pi.");
+    "What to compute, like mag(velocity)*rho; names of fields as they are, or in \"quotes\"; also x, y, z, position, time, pi. Operators "
+    "and "
+    "functions are listed below.");
   s("name", p.name, "Name of the new field.");
   s("on", p.on, "Where: auto follows the fields of the expression (points when it has none).").choices({"auto", "point", "cell"});
 }
@@ -33,5 +38,8 @@ inline void describe(Schema& s, CalcParams& p) {
 /// Units are carried: products and powers combine them, sums need equal ones (else the result has none, and a note says so).
 /// Throws Error(usage) with the place in the expression, and for point fields mixed with cell fields.
 DatasetPtr calc(const DatasetPtr& in, const CalcParams& p, Context& ctx);
+
+/// Operators, names and functions of expressions, for help.
+std::vector<HelpWord> calc_words();
 
 }  // namespace sg

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "filter/field/calc.h"
 #include "filter/field/calc_program.h"
 
 namespace sg::calc_detail {
@@ -17,44 +18,88 @@ double sign_of(double x) { return x > 0 ? 1 : x < 0 ? -1 : x; }
 double is_nan(double x) { return std::isnan(x) ? 1 : 0; }
 
 struct Function1 {
-  std::string_view name;
+  std::string_view name, form, sentence;
   double (*f)(double);
   enum { keeps_unit, drops_unit, square_root, cube_root } unit;
 };
 constexpr Function1 functions1[] = {
-    {"sin", [](double x) { return std::sin(x); }, Function1::drops_unit},
-    {"cos", [](double x) { return std::cos(x); }, Function1::drops_unit},
-    {"tan", [](double x) { return std::tan(x); }, Function1::drops_unit},
-    {"asin", [](double x) { return std::asin(x); }, Function1::drops_unit},
-    {"acos", [](double x) { return std::acos(x); }, Function1::drops_unit},
-    {"atan", [](double x) { return std::atan(x); }, Function1::drops_unit},
-    {"sinh", [](double x) { return std::sinh(x); }, Function1::drops_unit},
-    {"cosh", [](double x) { return std::cosh(x); }, Function1::drops_unit},
-    {"tanh", [](double x) { return std::tanh(x); }, Function1::drops_unit},
-    {"exp", [](double x) { return std::exp(x); }, Function1::drops_unit},
-    {"log", [](double x) { return std::log(x); }, Function1::drops_unit},
-    {"log10", [](double x) { return std::log10(x); }, Function1::drops_unit},
-    {"log2", [](double x) { return std::log2(x); }, Function1::drops_unit},
-    {"sqrt", [](double x) { return std::sqrt(x); }, Function1::square_root},
-    {"cbrt", [](double x) { return std::cbrt(x); }, Function1::cube_root},
-    {"abs", [](double x) { return std::fabs(x); }, Function1::keeps_unit},
-    {"sign", sign_of, Function1::drops_unit},
-    {"floor", [](double x) { return std::floor(x); }, Function1::keeps_unit},
-    {"ceil", [](double x) { return std::ceil(x); }, Function1::keeps_unit},
-    {"round", [](double x) { return std::round(x); }, Function1::keeps_unit},
-    {"isnan", is_nan, Function1::drops_unit},
+    {"sin", "sin(a)", "Sine of an angle in radians.", [](double x) { return std::sin(x); }, Function1::drops_unit},
+    {"cos", "cos(a)", "Cosine of an angle in radians.", [](double x) { return std::cos(x); }, Function1::drops_unit},
+    {"tan", "tan(a)", "Tangent of an angle in radians.", [](double x) { return std::tan(x); }, Function1::drops_unit},
+    {"asin", "asin(a)", "Angle in radians, -pi/2 to pi/2, whose sine is a.", [](double x) { return std::asin(x); }, Function1::drops_unit},
+    {"acos", "acos(a)", "Angle in radians, 0 to pi, whose cosine is a.", [](double x) { return std::acos(x); }, Function1::drops_unit},
+    {"atan", "atan(a)", "Angle in radians, -pi/2 to pi/2, whose tangent is a.", [](double x) { return std::atan(x); },
+     Function1::drops_unit},
+    {"sinh", "sinh(a)", "Hyperbolic sine.", [](double x) { return std::sinh(x); }, Function1::drops_unit},
+    {"cosh", "cosh(a)", "Hyperbolic cosine.", [](double x) { return std::cosh(x); }, Function1::drops_unit},
+    {"tanh", "tanh(a)", "Hyperbolic tangent.", [](double x) { return std::tanh(x); }, Function1::drops_unit},
+    {"exp", "exp(a)", "e to the power a.", [](double x) { return std::exp(x); }, Function1::drops_unit},
+    {"log", "log(a)", "Natural logarithm.", [](double x) { return std::log(x); }, Function1::drops_unit},
+    {"log10", "log10(a)", "Logarithm to base 10.", [](double x) { return std::log10(x); }, Function1::drops_unit},
+    {"log2", "log2(a)", "Logarithm to base 2.", [](double x) { return std::log2(x); }, Function1::drops_unit},
+    {"sqrt", "sqrt(a)", "Square root.", [](double x) { return std::sqrt(x); }, Function1::square_root},
+    {"cbrt", "cbrt(a)", "Cube root, also of negative numbers.", [](double x) { return std::cbrt(x); }, Function1::cube_root},
+    {"abs", "abs(a)", "Absolute value.", [](double x) { return std::fabs(x); }, Function1::keeps_unit},
+    {"sign", "sign(a)", "1, -1 or 0 as a is positive, negative or zero.", sign_of, Function1::drops_unit},
+    {"floor", "floor(a)", "Largest whole number not above a.", [](double x) { return std::floor(x); }, Function1::keeps_unit},
+    {"ceil", "ceil(a)", "Smallest whole number not below a.", [](double x) { return std::ceil(x); }, Function1::keeps_unit},
+    {"round", "round(a)", "Nearest whole number, halves away from zero.", [](double x) { return std::round(x); }, Function1::keeps_unit},
+    {"isnan", "isnan(a)", "1 where a is NaN, else 0.", is_nan, Function1::drops_unit},
 };
 
 struct FunctionN {
-  std::string_view name;
+  std::string_view name, form, sentence;
   Op op;
   int arguments;
 };
 constexpr FunctionN functions_n[] = {
-    {"atan2", Op::atan2, 2}, {"pow", Op::power, 2},   {"mod", Op::modulo, 2},  {"min", Op::minimum, 2},
-    {"max", Op::maximum, 2}, {"hypot", Op::hypot, 2}, {"clamp", Op::clamp, 3}, {"if", Op::choose, 3},
-    {"mag", Op::mag, 1},     {"norm", Op::norm, 1},   {"dot", Op::dot, 2},     {"cross", Op::cross, 2},
-    {"vec", Op::vec, 3},     {"sum", Op::sum, 1},     {"trace", Op::trace, 1}, {"det", Op::det, 1},
+    {"atan2", "atan2(a, b)", "Angle in radians, -pi to pi, of the point (b, a).", Op::atan2, 2},
+    {"pow", "pow(a, b)", "a to the power b, as a ^ b.", Op::power, 2},
+    {"mod", "mod(a, b)", "Remainder of a / b, as a % b.", Op::modulo, 2},
+    {"min", "min(a, b)", "The smaller of two numbers.", Op::minimum, 2},
+    {"max", "max(a, b)", "The larger of two numbers.", Op::maximum, 2},
+    {"hypot", "hypot(a, b)", "Square root of a^2 + b^2.", Op::hypot, 2},
+    {"clamp", "clamp(a, b, c)", "a, but not below b and not above c.", Op::clamp, 3},
+    {"if", "if(a, b, c)", "b where a is not 0, else c; as a ? b : c.", Op::choose, 3},
+    {"mag", "mag(u)", "Length of a vector: square root of the sum of squares.", Op::mag, 1},
+    {"norm", "norm(u)", "The vector divided by its length.", Op::norm, 1},
+    {"dot", "dot(u, v)", "Scalar product of two vectors of the same size.", Op::dot, 2},
+    {"cross", "cross(u, v)", "Vector product of two vectors of three numbers.", Op::cross, 2},
+    {"vec", "vec(a, b, c)", "A vector of three numbers.", Op::vec, 3},
+    {"sum", "sum(u)", "Sum of the components.", Op::sum, 1},
+    {"trace", "trace(t)", "Sum of the diagonal of a 3x3 tensor.", Op::trace, 1},
+    {"det", "det(t)", "Determinant of a 3x3 tensor.", Op::det, 1},
+};
+
+// Besides functions. In all forms a, b, c are numbers or fields of any size, u and v vectors, t a tensor of nine numbers, rows first.
+constexpr HelpWord other_words[] = {
+    {"operator", "a + b", "Sum; a number meets each component of a vector."},
+    {"operator", "a - b", "Difference."},
+    {"operator", "a * b", "Product, component by component."},
+    {"operator", "a / b", "Quotient, component by component."},
+    {"operator", "a % b", "Remainder of a / b, with the sign of a."},
+    {"operator", "a ^ b", "Power; right to left: a ^ b ^ c is a ^ (b ^ c), and -a ^ b is -(a ^ b)."},
+    {"operator", "-a", "Negative."},
+    {"operator", "a < b", "1 where it holds, else 0."},
+    {"operator", "a <= b", "1 where it holds, else 0."},
+    {"operator", "a > b", "1 where it holds, else 0."},
+    {"operator", "a >= b", "1 where it holds, else 0."},
+    {"operator", "a == b", "1 where it holds, else 0."},
+    {"operator", "a != b", "1 where it holds, else 0."},
+    {"operator", "a && b", "1 where both are not 0, else 0."},
+    {"operator", "a || b", "1 where one of them is not 0, else 0."},
+    {"operator", "!a", "1 where a is 0, else 0."},
+    {"operator", "a ? b : c", "b where a is not 0, else c."},
+    {"operator", "u.x", "First component; also .y and .z."},
+    {"operator", "u[1]", "Component by number, counted from 0."},
+    {"operator", "(a)", "What stands in parentheses comes first."},
+    {"name", "\"a\"", "A field by its name in quotes: for names with blanks or signs."},
+    {"name", "x", "Position along x where no field has that name, of points or of middles of cells; also y and z."},
+    {"name", "position", "The three coordinates as a vector."},
+    {"name", "time", "The time of the data."},
+    {"name", "pi", "3.14159..."},
+    {"name", "e", "2.71828..."},
+    {"name", "nan", "Not a number: no value."},
 };
 
 class Parser {
@@ -398,4 +443,17 @@ Program parse(std::string_view text, const std::function<Symbol(std::string_view
   return Parser(text, lookup, names, time).run();
 }
 
+std::vector<HelpWord> words() {
+  std::vector<HelpWord> all(std::begin(other_words), std::end(other_words));
+  for (const Function1& f : functions1) all.push_back({"function", f.form, f.sentence});
+  for (const FunctionN& f : functions_n) all.push_back({"function", f.form, f.sentence});
+  return all;
+}
+
 }  // namespace sg::calc_detail
+
+namespace sg {
+
+std::vector<HelpWord> calc_words() { return calc_detail::words(); }
+
+}  // namespace sg

@@ -4,7 +4,9 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "data/lattice.h"
+#include "filter/field/center_lattice.h"
 #include "filter/field/fitted_derivatives.h"
+#include "filter/field/lattice_frame.h"
 
 namespace sg {
 
@@ -39,7 +41,7 @@ DatasetPtr from_derivatives(const DatasetPtr& in, const Field& field, std::strin
     using T = std::remove_cvref_t<decltype(v[0])>;
     T* to = reinterpret_cast<T*>(bytes);
     parallel_for(v.count, grain, [&](size_t begin, size_t end) {
-      double d[9], r[9];
+      double d[9], r[9] = {};
       for (size_t i = begin; i < end; ++i) {
         for (int k = 0; k < v.components; ++k) d[k] = double(v(i, k));
         combine(d, r);
@@ -50,6 +52,38 @@ DatasetPtr from_derivatives(const DatasetPtr& in, const Field& field, std::strin
   DatasetParts parts = in->parts();
   parts.fields.add({std::move(name), field.association, std::move(out), g.unit, role});
   return make_dataset(std::move(parts));
+}
+
+// Curvilinear sheets and lines: what second derivatives have across them comes from the turning of the tangent, not from the field.
+Array tangential_parts(const Mesh& mesh, bool of_cells, const Array& tensors) {
+  if (!std::holds_alternative<CurvilinearGrid>(mesh)) return tensors;
+  const Lattice lattice(of_cells ? center_lattice(mesh) : mesh);
+  const LatticeFrame frame(lattice.view());
+  if (frame.axes == 0 || frame.axes == 3) return tensors;
+  std::byte* bytes = nullptr;
+  Array out = Array::make_raw(tensors.type(), tensors.count(), 9, &bytes);
+  dispatch(tensors, [&](const auto& v) {
+    using T = std::remove_cvref_t<decltype(v[0])>;
+    T* to = reinterpret_cast<T*>(bytes);
+    parallel_for(v.count, grain, [&](size_t begin, size_t end) {
+      for (size_t p = begin; p < end; ++p) {
+        const size_t at[3] = {p % frame.dims[0], p / frame.dims[0] % frame.dims[1], p / frame.dims[0] / frame.dims[1]};
+        const Mat3 m = frame.metric(p, at);  // its first columns span the tangents
+        Vec3 e[2] = {normalize(Vec3(m.m[0][0], m.m[1][0], m.m[2][0])), {}};
+        if (frame.axes == 2) {
+          const Vec3 b(m.m[0][1], m.m[1][1], m.m[2][1]);
+          e[1] = normalize(b - e[0] * dot(b, e[0]));
+        }
+        Mat3 tangential, full;
+        for (int i = 0; i < 3; ++i)
+          for (int j = 0; j < 3; ++j) tangential.m[i][j] = e[0][i] * e[0][j] + e[1][i] * e[1][j], full.m[i][j] = double(v(p, 3 * i + j));
+        full = tangential * full * tangential;
+        for (int i = 0; i < 3; ++i)
+          for (int j = 0; j < 3; ++j) to[9 * p + size_t(3 * i + j)] = T(full.m[i][j]);
+      }
+    });
+  });
+  return out;
 }
 
 std::string name_of(const std::string& as, const char* what, const Field& f) {
@@ -88,13 +122,14 @@ DatasetPtr hessian(const DatasetPtr& in, const HessianParams& p, Context& ctx) {
     parts.fields.remove(g.name, g.association);
     Field h = *parts.fields.find(name, f.association);
     h.unit = f.unit.empty() ? "" : f.unit + "/length^2";
+    h.array = tangential_parts(in->mesh(), f.association == Association::cell, h.array);
     parts.fields.add(std::move(h));
     return make_dataset(std::move(parts));
   }
   if (in->as<PointCloud>()) fail_usage("nothing connects the points of a cloud", "hessian");
   const Array values = f.array.converted(ElementType::f64).made_packed();
   std::vector<double> g(values.count() * 3), h(values.count() * 6), full(values.count() * 9);
-  fitted_derivatives(in, f.association, values, g.data(), h.data(), ctx);
+  warn_of_gaps(fitted_derivatives(in, f.association, values, g.data(), h.data(), ctx), f.association, "hessian", ctx);
   constexpr int place[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
   for (size_t i = 0; i < values.count(); ++i)
     for (size_t k = 0; k < 9; ++k) full[9 * i + k] = h[6 * i + size_t(place[k])];

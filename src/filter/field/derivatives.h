@@ -35,8 +35,10 @@ inline void describe(Schema& s, HessianParams& p) {
   s("field", p.field, "Scalar field; default: the active scalar.");
   s("as", p.as, "Name of the result; default: hessian(FIELD).");
 }
-/// The symmetric matrix of second derivatives of a scalar field, 9 numbers. Grids: the gradient of the gradient (second order inside,
-/// first at borders); other meshes: of the fitted parabola (first order; exact for quadratic fields), NaN where none fits.
+/// The symmetric matrix of second derivatives of a scalar field, 9 numbers. Grids: the gradient of the gradient; other meshes: of the
+/// fitted parabola, exact for quadratic fields. Second order where neighbours lie on both sides alike (inside grids and smooth meshes of
+/// hexahedra, wedges, tetrahedra), first elsewhere, up to the border. Along lines and surfaces: the covariant one. What too few
+/// neighbours do not determine is 0, and a warning says at how many places.
 DatasetPtr hessian(const DatasetPtr& in, const HessianParams& p, Context& ctx);
 
 }  // namespace sg

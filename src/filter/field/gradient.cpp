@@ -101,7 +101,8 @@ Array grid_gradient(const Dataset& input, bool of_cells, const Array& values, Co
 Array fitted_gradient(const DatasetPtr& input, Association on, const Array& values, ElementType type, Context& context) {
   double* out = nullptr;
   Array result = Array::make<double>(values.count(), values.components() * 3, &out);
-  fitted_derivatives(input, on, values.converted(ElementType::f64).made_packed(), out, nullptr, context);
+  const FittedGaps gaps = fitted_derivatives(input, on, values.converted(ElementType::f64).made_packed(), out, nullptr, context);
+  warn_of_gaps(gaps, on, "gradient", context);
   return result.converted(type);
 }
 

@@ -5,6 +5,7 @@
 
 #include "base/random.h"
 #include "data/lattice.h"
+#include "data/memory_budget.h"
 #include "data/mesh_dimension.h"
 #include "data/point_positions.h"
 #include "filter/flow/random_places.h"
@@ -215,6 +216,11 @@ std::vector<Vec3> make_seeds(const SeedParams& given, const std::vector<DatasetP
   for (const DatasetPtr& d : parts) box.add(d->bounds());
   if (kind == "mesh") return of_mesh(mesh);
   if (kind == "points") return listed(p);
+  double count = double(p.count);
+  if (!p.counts.empty() && (kind == "plane" || kind == "grid"))
+    count = std::accumulate(p.counts.begin(), p.counts.end(), 1.0, [](double a, int64_t b) { return a * double(b); });
+  constexpr double bytes_a_seed = 100;  // its place, where that lies in the mesh, the point that is made of it
+  need_memory(count * bytes_a_seed, fmt::format("{:.0f} seeds", count), "seeds", "take fewer: count, counts");
   if (kind == "line") return on_line(p);
   if (kind == "plane") return on_plane(p, box);
   if (kind == "pixels") return of_pixels(p, box, mesh);

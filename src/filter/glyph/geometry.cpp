@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "data/field_ops.h"
+#include "data/memory_budget.h"
 #include "filter/mesh/surface.h"
 
 namespace sg {
@@ -57,6 +58,10 @@ DatasetPtr glyph_geometry(const DatasetPtr& data, const GlyphRule& rule, const s
         points[begin / grain] += s->points(), lines[begin / grain] += s->lines.size(), triangles[begin / grain] += s->triangles.size();
   });
   const size_t all_points = exclusive_scan(points), all_lines = exclusive_scan(lines), all_triangles = exclusive_scan(triangles);
+  double bytes = 12;
+  for (const Field& f : data->fields()) bytes += double(f.components()) * double(element_size(f.array.type()));
+  need_memory(double(all_points) * bytes + 4 * double(all_lines + all_triangles), fmt::format("{} glyphs", instances->standing), "glyphs",
+              "take fewer points (glyph_points) or a simpler shape");
   if (all_points >= size_t(INT32_MAX) || all_triangles / 3 + all_lines / 2 >= size_t(INT32_MAX))
     fail_usage(fmt::format("{} glyphs make {} points", instances->standing, all_points), "glyphs",
                "take fewer points (glyph_points) or a simpler shape; pictures draw glyphs without their geometry");

@@ -12,6 +12,7 @@
 #include "base/random.h"
 #include "data/cell_reader.h"
 #include "data/field_ops.h"
+#include "data/memory_budget.h"
 #include "data/point_positions.h"
 #include "filter/field/point_cell.h"
 #include "filter/glyph/points_along.h"
@@ -71,6 +72,13 @@ bool fills_its_box(const Dataset& d, const Box3& box) {
   return most >= axes;
 }
 
+// Before `n` places are made and probed for the fields of the data.
+void check_places(const Dataset& d, double n) {
+  double bytes = 100;
+  for (const Field& f : d.fields()) bytes += 8 * double(f.components());
+  need_memory(n * bytes, fmt::format("{:.0f} places", n), "glyph_points", "take fewer: count, spacing");
+}
+
 // Those of the places that lie in the mesh, with its fields.
 DatasetPtr inside(const DatasetPtr& data, const std::vector<Vec3>& places, size_t most, Context& context) {
   const Vec3 origin = middle_of(*data);
@@ -93,11 +101,12 @@ DatasetPtr inside(const DatasetPtr& data, const std::vector<Vec3>& places, size_
   return make_dataset(std::move(parts));
 }
 
-std::vector<Vec3> grid_places(const Box3& box, double h, size_t limit) {
+std::vector<Vec3> grid_places(const Dataset& data, const Box3& box, double h, size_t limit) {
   size_t n[3];
   for (int a = 0; a < 3; ++a) n[a] = size_t(std::clamp(std::round(box.size()[a] / h), 1.0, 1e6));
   if (n[0] * n[1] > limit || n[0] * n[1] * n[2] > limit)
     fail_usage(fmt::format("a grid of {} x {} x {} places is too fine", n[0], n[1], n[2]), "glyph_points", "take a larger spacing");
+  check_places(data, double(n[0] * n[1] * n[2]));
   std::vector<Vec3> places;
   for (size_t k = 0; k < n[2]; ++k)
     for (size_t j = 0; j < n[1]; ++j)
@@ -114,14 +123,14 @@ DatasetPtr even_inside(const DatasetPtr& data, const GlyphPointsParams& p, const
     if (box.size()[a] > 1e-6 * box.diagonal()) measure *= box.size()[a];
   double h = p.spacing > 0 ? p.spacing : std::pow(measure / double(p.count), 1.0 / axes);
   const size_t limit = std::max<size_t>(size_t(p.count) * 64, 20'000'000);
-  DatasetPtr out = inside(data, grid_places(box, h, limit), SIZE_MAX, context);
+  DatasetPtr out = inside(data, grid_places(*data, box, h, limit), SIZE_MAX, context);
   // The mesh may fill a part of its box only.
   for (int round = 0; round < 2 && p.spacing == 0 && double(out->point_count()) < 0.75 * double(p.count) && out->point_count() > 0;
        ++round) {
     h *= std::pow(double(out->point_count()) / double(p.count), 1.0 / axes);
     const double boxes = measure / std::pow(h, axes);
     if (boxes > double(limit)) break;
-    out = inside(data, grid_places(box, h, limit), SIZE_MAX, context);
+    out = inside(data, grid_places(*data, box, h, limit), SIZE_MAX, context);
   }
   return out;
 }
@@ -214,6 +223,7 @@ DatasetPtr random_on_surface(const DatasetPtr& data, const GlyphPointsParams& p)
     sum[i] = area += std::isfinite(own) ? own : 0;
   }
   if (!(area > 0)) fail_usage("the surface has no area", "glyph_points", "mode=all takes its points");
+  check_places(*data, double(p.count));
   std::vector<Vec3> places;
   std::vector<int64_t> ids, cells;
   std::vector<double> weights;
@@ -245,6 +255,7 @@ DatasetPtr random_places(const DatasetPtr& data, const GlyphPointsParams& p, con
     // Random places of the box until enough of them lie in the mesh.
     size_t tried = size_t(p.count);
     for (int round = 0;; ++round) {
+      check_places(*data, double(tried));
       std::vector<Vec3> places;
       for (uint64_t k = 0; k < tried; ++k)
         places.push_back(box.lo + box.size() * Vec3(random_unit(seed, 3 * k), random_unit(seed, 3 * k + 1), random_unit(seed, 3 * k + 2)));

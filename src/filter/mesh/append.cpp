@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "data/field_ops.h"
+#include "data/memory_budget.h"
 #include "filter/mesh/extract.h"
 #include "filter/mesh/to_unstructured.h"
 
@@ -16,17 +17,20 @@ std::vector<int64_t> all_cells(const DatasetPtr& d) {
   return ids;
 }
 
-// One array after the other; `have[i]` may be null (filled with NaN or 0).
+// One array after the other; `have[i]` may be null (filled with NaN or 0). Empty arrays have no say in the type and the components
+// unless all are empty: an input without points need not name either.
 Array joined(const std::vector<const Array*>& have, const std::vector<size_t>& counts) {
-  const Array* first = nullptr;
+  const Array *first = nullptr, *empty = nullptr;
   bool one_type = true, whole = true;
   size_t n = 0;
   for (size_t i = 0; i < have.size(); ++i) {
     n += counts[i];
-    if (!have[i]) whole = false;
+    if (counts[i] == 0) empty = empty ? empty : have[i];
+    else if (!have[i]) whole = false;
     else if (!first) first = have[i];
     else one_type = one_type && have[i]->type() == first->type();
   }
+  if (!first) first = empty;
   const ElementType type = one_type ? first->type() : ElementType::f64;
   std::byte* out = nullptr;
   Array result = Array::make_raw(type, n, first->components(), &out);
@@ -40,9 +44,10 @@ Array joined(const std::vector<const Array*>& have, const std::vector<size_t>& c
       if (type == ElementType::f64) std::memcpy(missing.data() + 8 * size_t(c), &d, 8);
     }
   for (size_t i = 0; i < have.size(); ++i) {
+    if (counts[i] == 0) continue;
     if (have[i]) {
       const Array a = have[i]->converted(type).made_packed();
-      if (a.bytes()) std::memcpy(out, a.raw(), a.bytes());
+      std::memcpy(out, a.raw(), a.bytes());
       out += a.bytes();
     } else {
       for (size_t k = 0; k < counts[i]; ++k, out += tuple) std::memcpy(out, missing.data(), tuple);
@@ -69,12 +74,14 @@ const Points& points_of(const DatasetPtr& d) {
   return d->as<PointCloud>()->points;
 }
 
-// f32 offsets of one origin stay so; else f64 about the first origin.
+// f32 offsets of one origin stay so; else f64 about the first origin. Inputs without points have no say.
 Points joined_points(const std::vector<DatasetPtr>& parts) {
   Points out;
   out.origin = points_of(parts[0]).origin;
   bool plain = true;
-  for (const DatasetPtr& d : parts) plain = plain && points_of(d).origin == out.origin;
+  for (size_t i = parts.size(); i-- > 0;)
+    if (parts[i]->point_count() > 0) out.origin = points_of(parts[i]).origin;
+  for (const DatasetPtr& d : parts) plain = plain && (d->point_count() == 0 || points_of(d).origin == out.origin);
   std::vector<Array> kept;
   std::vector<const Array*> arrays;
   std::vector<size_t> counts;
@@ -164,15 +171,20 @@ void join_fields(const std::vector<DatasetPtr>& parts, Association on, const std
   for (const DatasetPtr& d : parts) counts.push_back(on == Association::point ? d->point_count() : d->cell_count());
   for (const std::string& name : names) {
     std::vector<const Array*> have;
-    const Field* first = nullptr;
+    const Field *first = nullptr, *empty = nullptr;
     bool everywhere = true, fits = true;
-    for (const DatasetPtr& d : parts) {
-      const Field* f = d->fields().find(name, on);
+    for (size_t i = 0; i < parts.size(); ++i) {
+      const Field* f = parts[i]->fields().find(name, on);
+      have.push_back(f ? &f->array : nullptr);
+      if (counts[i] == 0) {  // without tuples nothing is missing, and nothing can disagree
+        if (f && !empty) empty = f;
+        continue;
+      }
       everywhere = everywhere && f;
       if (f && !first) first = f;
       fits = fits && (!f || f->components() == first->components());
-      have.push_back(f ? &f->array : nullptr);
     }
+    if (!first) first = empty;
     if (!fits || (!everywhere && !all)) {
       ctx.info(fmt::format("append: field '{}' was dropped: {}", name, fits ? "not every input has it" : "its components differ"));
       continue;
@@ -182,6 +194,21 @@ void join_fields(const std::vector<DatasetPtr>& parts, Association on, const std
     if (on == Association::cell && !order.empty()) f.array = gather(f.array, order);
     out.add(std::move(f));
   }
+}
+
+// Before anything is made: points, cells and fields of all parts together.
+void check_memory(const std::vector<DatasetPtr>& parts) {
+  double bytes = 0;
+  for (const DatasetPtr& d : parts) {
+    bytes += 12 * double(d->point_count()) + 17 * double(d->cell_count());
+    for (const Field& f : d->fields()) bytes += double(f.array.bytes());
+    if (const auto* u = d->as<UnstructuredMesh>()) bytes += 8 * double(u->cells.connectivity.count() + u->faces.connectivity.count());
+    else if (const auto* s = d->as<SurfaceMesh>())
+      for (const CellArray* c : {&s->vertices, &s->lines, &s->polygons, &s->strips}) bytes += 8 * double(c->connectivity.count());
+    else if (!d->as<PointCloud>()) bytes += 64 * double(d->cell_count());  // of a lattice
+  }
+  constexpr double growing = 2.5;  // lists of cells grow by doubling
+  need_memory(growing * bytes, fmt::format("{} meshes as one", parts.size()), "append", "append fewer or smaller parts");
 }
 
 Array joined_ghosts(const std::vector<DatasetPtr>& parts, bool of_points) {
@@ -202,6 +229,7 @@ DatasetPtr append(const std::vector<Data>& inputs, const AppendParams& p, Contex
   std::vector<DatasetPtr> parts;
   for (const Data& d : inputs) for_each_dataset(d, [&](const std::string&, const DatasetPtr& one) { parts.push_back(one); });
   if (parts.empty()) fail_usage("there is no mesh among the inputs", "append");
+  check_memory(parts);
   bool surfaces = true, clouds = true;
   for (const DatasetPtr& d : parts) surfaces = surfaces && d->as<SurfaceMesh>(), clouds = clouds && d->as<PointCloud>();
   if (!surfaces && !clouds)

@@ -30,14 +30,14 @@ bool has_curved_cells(const UnstructuredMesh& m) {
 }
 
 // The input as clip takes it: lattices of three axes, unstructured meshes of linear cells, and clouds stay; others become unstructured.
-DatasetPtr prepared(const DatasetPtr& in, std::string_view who, Context& ctx) {
+DatasetPtr prepared(const DatasetPtr& in, double tolerance, std::string_view who, Context& ctx) {
   if (in->as<PointCloud>()) return in;
   const auto d = lattice_dims(in->mesh());
   if (is_lattice(in->mesh()) && d[0] > 1 && d[1] > 1 && d[2] > 1) return in;
   if (auto* m = in->as<UnstructuredMesh>()) {
     if (!has_curved_cells(*m)) return in;
     ctx.info(fmt::format("{}: curved cells are made linear first", who));
-    return tessellate(in, {}, ctx);
+    return tessellate(in, {.tolerance = tolerance, .max_level = 7}, ctx);
   }
   if (in->as<AmrGrid>()) {
     const std::vector<uint8_t> states = cell_states(*in);
@@ -168,7 +168,7 @@ Job job_of(const DatasetPtr& mesh, const ImplicitFunction& f, Context& ctx) {
 
 Data clip(const DatasetPtr& in, const DatasetPtr& surface, const ClipParams& p, Context& ctx) {
   const bool flat = in->as<SurfaceMesh>() != nullptr;
-  const DatasetPtr mesh = prepared(in, "clip", ctx);
+  const DatasetPtr mesh = prepared(in, p.tolerance, "clip", ctx);
   if (!p.field.empty() || p.value) {
     const bool shape = surface || p.origin || p.position || (p.axis != "none" && !p.axis.empty()) || !p.sphere.empty() ||
                        !p.cylinder.empty() || !p.box.empty() || !p.quadric.empty() || !p.function.empty();
@@ -197,7 +197,7 @@ DatasetPtr isovolume(const DatasetPtr& in, const IsovolumeParams& p, Context& ct
     fail_usage(fmt::format("min {} is above max {}", short_number(*p.min), short_number(*p.max)), "isovolume", "swap them");
   if ((p.min && std::isnan(*p.min)) || (p.max && std::isnan(*p.max)))
     fail_usage("a limit is not a number", "isovolume", "give min, max, or both");
-  const DatasetPtr mesh = prepared(in, "isovolume", ctx);
+  const DatasetPtr mesh = prepared(in, p.tolerance, "isovolume", ctx);
   const Field* field = nullptr;
   Job job{mesh, numbers_of(*mesh, p.field, p.component, "isovolume", &field), {}, {}, ctx};
   const Range range = mesh->range(*field, p.component);

@@ -59,7 +59,9 @@ uint16_t CellClipper::cut(uint16_t a, uint16_t b, int level) {
     const auto& of = out_.inner[k].of;
     if (out_.inner[k].t >= 0 && ((of[0] == a && of[1] == b) || (of[0] == b && of[1] == a))) return out_.vertex(CellPieces::inner_name + k);
   }
-  out_.inner.push_back({{a, b}, ha / (ha - hb)});
+  // From the lower value to the higher one: the same for all cells that have the edge.
+  if (value_[a] <= value_[b]) out_.inner.push_back({{a, b}, ha / (ha - hb)});
+  else out_.inner.push_back({{b, a}, hb / (hb - ha)});
   return add(CellPieces::inner_name + out_.inner.size() - 1, value);
 }
 
@@ -138,6 +140,12 @@ void CellClipper::add_region(const ClipTable& table, const uint16_t* corners, in
 const CellPieces& CellClipper::solid(const ClipTable& table, const int64_t* ids, const double* values, int folded) {
   const auto n = size_t(table.topology().corners);
   begin({ids, n}, {values, n});
+  split_ = false;
+  if (position_ && n > 4) {
+    Vec3 places[8];
+    for (size_t c = 0; c < n; ++c) places[c] = position_(size_t(ids[c]));
+    if (const uint32_t bent = bent_faces(table, ids, values, places, keep_, rounding_)) return split_solid(table, bent), out_;
+  }
   const uint16_t corners[8] = {0, 1, 2, 3, 4, 5, 6, 7};
   if (!keep_.between) return add_region(table, corners, 0, true, folded), out_;
   waiting_.clear();
@@ -410,7 +418,7 @@ const CellPieces& CellClipper::polyhedron(std::span<const int64_t> ids, std::spa
       }
     }
   }
-  std::vector<Ring> kept = clip_faces(faces, 0);
+  std::vector<Ring> kept = clip_faces(flat_faces(std::move(faces)), 0);
   if (keep_.between) kept = clip_faces(kept, 1);
   if (kept.size() < 4) return out_;
   Ring distinct;

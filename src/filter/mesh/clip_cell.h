@@ -66,12 +66,20 @@ inline double share_of(uint64_t name, const Values& values, const Keep& keep) {
 class CellClipper {
  public:
   /// `position` is asked for polygons that a level crosses more than twice, and for cells with pieces that could be inside out; without
-  /// it the latter are taken for regular ones, as those of grids along the axes are.
-  CellClipper(const Keep& keep, std::function<Vec3(size_t)> position) : keep_(keep), position_(std::move(position)) {}
+  /// it the latter are taken for regular ones, as those of grids along the axes are. `rounding`: of coordinates; faces that are flat but
+  /// for it count as flat.
+  CellClipper(const Keep& keep, std::function<Vec3(size_t)> position, double rounding = 0)
+      : keep_(keep), position_(std::move(position)), rounding_(rounding) {}
   /// A tetrahedron, pyramid, wedge, voxel or hexahedron. Values in the order of the ids.
   /// `folded`: what folded() said of this cell before, or -1; it costs a look at each piece.
   const CellPieces& solid(const ClipTable& table, const int64_t* ids, const double* values, int folded = -1);
   bool folded() const { return folded_; }
+  /// Was the last solid split because a level crosses a face that is not flat? Then its inner vertices may lie on faces, and its
+  /// neighbours have the same ones (merge_shared).
+  bool split() const { return split_; }
+  /// Bit per face of four corners that a level crosses and that is not flat.
+  static uint32_t bent_faces(const ClipTable& table, const int64_t* ids, const double* values, const Vec3* places, const Keep& keep,
+                             double rounding);
   /// Points in order around.
   const CellPieces& polygon(std::span<const int64_t> ids, std::span<const double> values);
   /// Lines between consecutive points.
@@ -99,6 +107,10 @@ class CellClipper {
   std::vector<Ring> cut_rings(const std::vector<Ring>& in, const std::vector<Ring>& out) const;
   std::vector<Ring> clip_faces(const std::vector<Ring>& faces, int level);
 
+  void split_solid(const ClipTable& table, uint32_t bent);
+  uint16_t mean_of(std::vector<uint16_t> of);
+  std::vector<Ring> flat_faces(std::vector<Ring> faces) const;
+
   struct Waiting {
     CellType type;
     uint16_t v[8];
@@ -110,7 +122,8 @@ class CellClipper {
   std::vector<Waiting> waiting_;
   Sides own_;
   std::map<const ClipTable*, std::unordered_map<uint32_t, Sides>> zeros_;  // by pattern, corners that are zero, and joined faces
-  bool folded_ = false;
+  bool folded_ = false, split_ = false;
+  double rounding_ = 0;
 };
 
 }  // namespace sg::clipping

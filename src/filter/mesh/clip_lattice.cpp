@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Clips lattices: sides of points, whole and cut cells, kept points and cut edges are bits of rows, 64 at a time; a number is a count of
 // bits. Only cut cells are looked at one by one: once to find their case and count its pieces, once to write them by that case.
+#include <atomic>
+
 #include "base/error.h"
 #include "base/parallel.h"
 #include "data/lattice.h"
@@ -41,6 +43,7 @@ class LatticeClip {
   }
 
   Build run() {
+    if (const auto* grid = job_.in->as<CurvilinearGrid>()) rounding_ = rounding_of(grid->points, *job_.in);
     classify();
     find_cells();
     job_.context.check();
@@ -151,7 +154,7 @@ class LatticeClip {
   }
   CellClipper clipper() const {
     if (!bent_) return {job_.keep, {}};
-    return {job_.keep, [this](size_t id) { return position(id); }};
+    return {job_.keep, [this](size_t id) { return position(id); }, rounding_};
   }
 
   const CellPieces& pieces(CellClipper& clipper, size_t i, size_t j, size_t k, int folded) const {
@@ -207,6 +210,7 @@ class LatticeClip {
         } else {
           count_pieces(clipper, pieces(clipper, i, j, k, found == folded ? 1 : -1), n, nullptr, [](uint64_t) {});
           found = clipper.folded() ? folded : listed;
+          if (clipper.split()) split_.store(true, std::memory_order_relaxed);
         }
         cases.push_back(found);
       }
@@ -224,6 +228,17 @@ class LatticeClip {
     }
   }
 
+  // Are faces that the level crosses not flat? Fills in the places of the corners in the order of the table.
+  bool has_bent_faces(size_t i, size_t j, size_t k, Vec3* places) const {
+    int64_t ids[8];
+    double v[8];
+    for (size_t c = 0; c < 8; ++c) {
+      const size_t q = kind_.corner[c], id = i + (q & 1) + g_.nx * (j + (q >> 1 & 1) + g_.ny * (k + (q >> 2)));
+      ids[c] = int64_t(id), v[c] = values_(id), places[c] = position(id);
+    }
+    return CellClipper::bent_faces(table_, ids, v, places, job_.keep, rounding_) != 0;
+  }
+
   uint16_t find_case(uint32_t pattern, size_t i, size_t j, size_t k) const {
     double h[8];
     uint32_t joined = 0;
@@ -235,13 +250,10 @@ class LatticeClip {
       joined |= uint32_t(joined_across(h[face[0]], h[face[1]], h[face[2]], h[face[3]])) << f;
     }
     const uint32_t found = table_.variant(pattern, joined);
+    Vec3 places[8];
+    if (bent_ && has_bent_faces(i, j, k, places)) return listed;
     if (job_.keep.flat || table_.at(found).cones.empty()) return uint16_t(found);
     if (!ambiguous) heights(i, j, k, h);
-    Vec3 places[8];
-    for (size_t c = 0; bent_ && c < 8; ++c) {
-      const size_t q = kind_.corner[c];
-      places[c] = position(i + (q & 1) + g_.nx * (j + (q >> 1 & 1) + g_.ny * (k + (q >> 2))));
-    }
     return table_.folded(table_.at(found), h, bent_ ? places : nullptr) ? folded : uint16_t(found);
   }
 
@@ -366,6 +378,8 @@ class LatticeClip {
           });
         },
         &job_.context);
+    const std::span<int32_t> ids(connectivity, b.connectivity.count());
+    if (split_) merge_shared(b, points_.total + cuts, {&ids, 1});
     b.kept = points_.total;
     b.rows = rows_;
     b.cuts.resize(cuts);
@@ -389,7 +403,9 @@ class LatticeClip {
   LatticeCellKind kind_;
   const ClipTable& table_;
   Lattice lattice_;
-  bool bent_;           // cells have shapes of their own
+  bool bent_;            // cells have shapes of their own
+  double rounding_ = 0;  // of coordinates, where bent_
+  mutable std::atomic<bool> split_{false};
   bool holes_ = false;  // values that are missing or cells that are hidden
   struct Edge {
     uint8_t axis, corner;

@@ -36,7 +36,7 @@ struct Chunk {
   PieceCounts pieces;
   std::vector<uint32_t> face_counts, face_sizes;  // of polyhedra among the pieces; zeros for other pieces
   std::vector<int32_t> face_ids;
-  bool polyhedra = false;
+  bool polyhedra = false, split = false;
 };
 
 class ListClip {
@@ -57,6 +57,7 @@ class ListClip {
                   : nullptr) {}
 
   Build run() {
+    rounding_ = rounding_of(mesh_.points, *job_.in);
     classify_points();
     const std::vector<uint8_t> states = cell_states(*job_.in);
     parallel_for(
@@ -110,7 +111,7 @@ class ListClip {
   }
 
   CellClipper clipper() const {
-    return {job_.keep, [this](size_t i) { return reader_[i]; }};
+    return {job_.keep, [this](size_t i) { return reader_[i]; }, rounding_};
   }
 
   void find(size_t begin, size_t end, const std::vector<uint8_t>& states) {
@@ -138,6 +139,7 @@ class ListClip {
       chunk.cut_cells.push_back(uint32_t(c));
       count_pieces(clip, p, chunk.pieces, &cuts, [&](uint64_t id) { used_.add(size_t(id)); });
       chunk.polyhedra = chunk.polyhedra || !p.face_sizes.empty();
+      chunk.split = chunk.split || clip.split();
     }
   }
 
@@ -292,6 +294,10 @@ class ListClip {
           }
         },
         &job_.context);
+    if (!std::any_of(chunks_.begin(), chunks_.end(), [](const Chunk& c) { return c.split; })) return;
+    std::vector<std::span<int32_t>> ids{{connectivity, b.connectivity.count()}};
+    for (Chunk& c : chunks_) ids.emplace_back(c.face_ids);
+    merge_shared(b, members.size() + b.cuts.size(), ids);
   }
 
   // Faces of polyhedra, whole ones first.
@@ -341,6 +347,7 @@ class ListClip {
   Plane<uint32_t> rank_;   // of kept points
   bool polyhedra_ = false;
   size_t whole_count_ = 0;
+  double rounding_ = 0;
 };
 
 }  // namespace

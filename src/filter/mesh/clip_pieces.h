@@ -84,4 +84,11 @@ struct PieceWriter {
 void allocate(Build& b, size_t whole_cells, size_t whole_ids, const PieceCounts& pieces, int32_t** connectivity, int32_t** offsets,
               uint8_t** types);
 
+/// Inner vertices with the same shares of the same four points become one: those of a bent face, which both of its cells have made.
+/// Lists of `ids` of the pieces: from first_inner on they are inner vertices.
+void merge_shared(Build& b, size_t first_inner, std::span<const std::span<int32_t>> ids);
+
+/// Of coordinates, so that faces that are flat but for it can be told.
+double rounding_of(const Points& points, const Dataset& mesh);
+
 }  // namespace sg::clipping

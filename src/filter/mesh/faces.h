@@ -23,7 +23,8 @@ inline void describe(Schema& s, FacesParams& p) {
     "Adds the number of the input point to every point as point field 'original_point' (-1: a new point on a curved cell).");
 }
 
-/// External faces of any mesh as a SurfaceMesh. A face that two solid cells share disappears; 2D cells pass as polygons, curves
+/// External faces of any mesh as a SurfaceMesh. A face that two solid cells share disappears, also a large one with several small
+/// ones against it (non-conforming meshes; points shared by number); 2D cells pass as polygons, curves
 /// as lines, points as vertices. Faces point outward whatever the orientation of their cell. Curved faces and curves of
 /// high-order cells are split by their own shape functions: edges into their order (1 to 10) times a power of two segments, at most
 /// 32, as the tolerance asks (pieces shorter than four tolerances are not split), the same from both sides of a shared edge;

@@ -4,8 +4,10 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "data/cell_topology.h"
+#include "data/mean_value.h"
 #include "filter/mesh/face_matching.h"
 #include "filter/mesh/faces_impl.h"
+#include "filter/mesh/hanging_faces.h"
 
 namespace sg::detail {
 
@@ -23,10 +25,8 @@ class ChunkWalk {
     reader_.open(cell);
     const bool polyhedron = mesh_.type(cell) == CellType::polyhedron;
     bool mirrored = false;
-    Vec3 middle;
     if (polyhedron) {
-      for (size_t i = cells_.begin(cell); i < cells_.end(cell); ++i) middle += at_[size_t(cells_.connectivity[i])];
-      middle = middle / double(std::max<size_t>(cells_.size(cell), 1));
+      turn_polyhedron(n);
     } else {
       mirrored = volume(cell, *linear_topology(linear_type(mesh_.type(cell)))) < 0;
     }
@@ -34,10 +34,7 @@ class ChunkWalk {
       if (!external[f]) continue;
       const auto nodes = reader_.nodes(f);
       ids_.assign(nodes.begin(), nodes.end());
-      if (polyhedron) {
-        load(ids_);
-        mirrored = dot(polygon_vector_area(corner_), corner_.empty() ? Vec3() : corner_[0] - middle) < 0;
-      }
+      if (polyhedron) mirrored = turned_[f];
       add_face(reader_.face_type(f), cell, mirrored, reader_.face_orders(f));
     }
   }
@@ -79,6 +76,30 @@ class ChunkWalk {
   void load(const std::vector<int64_t>& ids) {
     corner_.clear();
     for (int64_t id : ids) corner_.push_back(at_[size_t(id)]);
+  }
+
+  // Which faces of a polyhedron look inward as they are listed: told by their edges and the volume, as it need not be convex.
+  void turn_polyhedron(size_t n) {
+    numbers_.clear(), triangles_.clear(), face_of_.clear(), corner_.clear();
+    std::vector<size_t> first(n);
+    for (size_t f = 0; f < n; ++f)
+      for (const int64_t id : reader_.corners(f)) numbers_.push_back(id);
+    std::sort(numbers_.begin(), numbers_.end());
+    numbers_.erase(std::unique(numbers_.begin(), numbers_.end()), numbers_.end());
+    load(numbers_);
+    const auto number = [&](int64_t id) { return uint32_t(std::lower_bound(numbers_.begin(), numbers_.end(), id) - numbers_.begin()); };
+    for (size_t f = 0; f < n; ++f) {
+      first[f] = triangles_.size();
+      const auto c = reader_.corners(f);
+      for (size_t k = 1; k + 1 < c.size(); ++k) {
+        triangles_.insert(triangles_.end(), {number(c[0]), number(c[k]), number(c[k + 1])});
+        face_of_.push_back(uint32_t(f));
+      }
+    }
+    const std::vector<uint32_t> before = triangles_;
+    if (!triangles_.empty()) orient_outward(corner_, triangles_, face_of_);
+    turned_.assign(n, 0);
+    for (size_t f = 0; f < n; ++f) turned_[f] = first[f] + 1 < triangles_.size() && triangles_[first[f] + 1] != before[first[f] + 1];
   }
 
   // Six times the signed volume that the linear faces enclose, from the first corner.
@@ -126,16 +147,18 @@ class ChunkWalk {
   CellFaceReader reader_;
   SurfaceChunk& out_;
   CurvedChunk& curved_;
-  std::vector<int64_t> ids_, line_;
+  std::vector<int64_t> ids_, line_, numbers_;
   std::vector<Vec3> corner_;
-  std::vector<uint32_t> local_;
+  std::vector<uint32_t> local_, triangles_, face_of_;
+  std::vector<uint8_t> turned_;  // of the faces of a polyhedron
 };
 
 }  // namespace
 
 std::vector<SurfaceChunk> unstructured_faces(const UnstructuredMesh& mesh, const std::vector<uint8_t>& states,
                                              std::vector<CurvedChunk>& curved, const Context& ctx) {
-  const FaceMarks marks = match_faces(mesh, states, ctx);
+  FaceMarks marks = match_faces(mesh, states, ctx);
+  unmark_hanging_faces(mesh, marks, ctx);
   const PointReader at(mesh.points);
   const size_t cells = mesh.cells.size();
   std::array<int, 256> dimension{};  // looked up once per type, not per cell

@@ -21,7 +21,15 @@ struct ImplicitParams {
   // Several planes at once: slice only.
   std::string planes = "none";
   std::vector<double> positions = {};
+  double tolerance = 1e-3;  // slice and clip
 };
+
+inline void describe_curved_tolerance(Schema& s, double& tolerance) {
+  s("tolerance", tolerance,
+    "Curved cells: largest distance between them and the straight ones that are cut in their place, as a share of the mesh's size, and of "
+    "a field's range. Lengths, areas and volumes come as near.")
+      .positive();
+}
 
 inline void describe_implicit(Schema& s, ImplicitParams& p) {
   s("origin", p.origin, "A point of the plane; default: the middle of the mesh.");

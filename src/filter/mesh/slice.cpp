@@ -331,7 +331,7 @@ bool has_curved_cells(const Dataset& in) {
 }
 
 // The curved cells that a plane may cut, and all others, made linear: what lies away from it costs nothing.
-DatasetPtr straight_near(const DatasetPtr& in, const SlicePlane& plane, Context& ctx) {
+DatasetPtr straight_near(const DatasetPtr& in, const SlicePlane& plane, double tolerance, Context& ctx) {
   const std::vector<uint8_t> states = cell_states(*in);
   std::vector<int64_t> cells;
   CellReader reader(in);
@@ -344,21 +344,23 @@ DatasetPtr straight_near(const DatasetPtr& in, const SlicePlane& plane, Context&
     const double reach = std::abs(plane.normal.x) * half.x + std::abs(plane.normal.y) * half.y + std::abs(plane.normal.z) * half.z;
     if (!(std::abs(dot(plane.normal, box.center() - plane.origin)) > reach * (1 + 1e-9) + plane.snap)) cells.push_back(int64_t(c));
   }
-  if (cells.size() == in->cell_count()) return tessellate(in, {}, ctx);
+  if (cells.size() == in->cell_count()) return tessellate(in, {.tolerance = tolerance, .max_level = 7}, ctx);
   DatasetParts part = extract_cells(in, cells, "slice")->parts();
   if (!part.fields.find("original_cell", Association::cell))
     part.fields.add(id_field("original_cell", Association::cell, std::move(cells)));
   part.cell_ghost = {};
-  return tessellate(make_dataset(std::move(part)), {}, ctx);
+  return tessellate(make_dataset(std::move(part)), {.tolerance = tolerance, .max_level = 7}, ctx);
 }
 
 DatasetPtr slice_one(const DatasetPtr& in, const DatasetPtr& surface, const ImplicitParams& p, Context& ctx) {
   const bool curved = has_curved_cells(*in);
   if (curved) ctx.info("slice: curved cells are made linear first");
   if (surface || !p.function.empty() || !p.sphere.empty() || !p.cylinder.empty() || !p.quadric.empty())
-    return slice_shape(curved ? tessellate(in, {}, ctx) : in, p, surface, ctx);
+    return slice_shape(curved ? tessellate(in, {.tolerance = p.tolerance, .max_level = 7}, ctx) : in, p, surface, ctx);
   const ImplicitFunction f = implicit_function(p, in, nullptr, "slice", ctx);
-  const auto along = [&](const SlicePlane& plane) { return slice_with(curved ? straight_near(in, plane, ctx) : in, plane, ctx); };
+  const auto along = [&](const SlicePlane& plane) {
+    return slice_with(curved ? straight_near(in, plane, p.tolerance, ctx) : in, plane, ctx);
+  };
   if (p.box.empty()) return along({f.origin, f.normal, f.snap, 1});
   return slice_box(in, {Vec3(p.box[0], p.box[2], p.box[4]), Vec3(p.box[1], p.box[3], p.box[5])}, along, ctx);
 }

@@ -12,6 +12,7 @@ inline void describe(Schema& s, SliceParams& p) {
   s("planes", p.planes, "Several planes at once through the origin (the middle): xyz is the view of three planes.")
       .choices({"none", "xyz", "xy", "xz", "yz", "x", "y", "z"});
   s("positions", p.positions, "With axis: several parallel planes at these coordinates.");
+  describe_curved_tolerance(s, p.tolerance);
 }
 
 /// The cut of a plane through any mesh as a SurfaceMesh in f64: one polygon per solid cell (several where the plane leaves and

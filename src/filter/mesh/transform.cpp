@@ -4,6 +4,8 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "data/lattice.h"
+#include "filter/mesh/mirror_cells.h"
+#include "filter/mesh/mirror_lattice.h"
 
 namespace sg {
 
@@ -189,50 +191,6 @@ struct Mover {
   }
 };
 
-bool turns(const Field& f) {
-  return f.components() == 3 && (f.role == Role::vectors || f.role == Role::normals) && is_float(f.array.type()) &&
-         f.association != Association::whole;
-}
-
-Array turned(const Field& f, const Affine& t) {
-  const bool normals = f.role == Role::normals;
-  // Mirroring turns normals computed from the orientation of cells inside out; the inverse transpose keeps them on their side.
-  const Mat3 m = normals ? transpose(inverse(t.linear)) : t.linear;
-  std::byte* out = nullptr;
-  Array r = Array::make_raw(f.array.type(), f.array.count(), 3, &out);
-  dispatch(f.array, [&](auto v) {
-    using T = std::remove_cvref_t<decltype(v[0])>;
-    if constexpr (std::is_floating_point_v<T>) {
-      T* to = reinterpret_cast<T*>(out);
-      parallel_for(v.count, grain, [&](size_t begin, size_t end) {
-        for (size_t i = begin; i < end; ++i) {
-          Vec3 x = m * Vec3(double(v(i, 0)), double(v(i, 1)), double(v(i, 2)));
-          if (normals) x = normalize(x);
-          for (int c = 0; c < 3; ++c) to[3 * i + size_t(c)] = T(x[c]);
-        }
-      });
-    }
-  });
-  return r;
-}
-
-// A mirrored surface would show its back: its polygons go around the other way.
-CellArray reversed(const CellArray& a) {
-  const CellsView v = cells_view(a);
-  CellArray r = a;
-  std::byte* out = nullptr;
-  r.connectivity = Array::make_raw(a.connectivity.type(), a.connectivity.count(), 1, &out);
-  parallel_for(v.count, grain, [&](size_t begin, size_t end) {
-    for (size_t c = begin; c < end; ++c)
-      for (size_t i = v.begin(c), j = v.end(c); i < v.end(c); ++i) {
-        const int64_t id = v.connectivity[--j];
-        if (v.connectivity.wide) reinterpret_cast<int64_t*>(out)[i] = id;
-        else reinterpret_cast<int32_t*>(out)[i] = int32_t(id);
-      }
-  });
-  return r;
-}
-
 }  // namespace
 
 DatasetPtr transform(const DatasetPtr& in, const TransformParams& p, Context& ctx) {
@@ -240,11 +198,9 @@ DatasetPtr transform(const DatasetPtr& in, const TransformParams& p, Context& ct
   DatasetParts out = in->parts();
   out.mesh = std::visit(Mover{t, in->mesh()}, in->mesh());
   if (out.mesh.index() != in->mesh().index()) ctx.info(fmt::format("transform: the {} grid becomes {}", in->kind(), mesh_kind(out.mesh)));
-  if (auto* s = std::get_if<SurfaceMesh>(&out.mesh); s && determinant(t.linear) < 0 && s->polygons.size() > 0)
-    s->polygons = reversed(s->polygons);
-  if (p.vectors)
-    for (const Field& f : in->fields())
-      if (turns(f)) out.fields.add({f.name, f.association, turned(f, t), f.unit, f.role});
+  if (p.vectors) transform_fields(*in, t.linear, p.fields, out.fields, ctx);
+  if (determinant(t.linear) < 0) turn_mirrored_cells(out, ctx);
+  else ascend_amr(out);
   return make_dataset(std::move(out));
 }
 

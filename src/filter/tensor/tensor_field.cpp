@@ -12,7 +12,7 @@ namespace {
 struct Order {
   std::string_view name;
   int components;
-  int place[9];  // of xx yy zz xy yz xz, then yx zy zx; -1: zero (the first six) or symmetric (the last three)
+  TensorPlaces place;
 };
 constexpr Order orders[] = {
     {"rows", 9, {0, 4, 8, 1, 5, 2, 3, 7, 6}},        {"vtk", 6, {0, 1, 2, 3, 4, 5, -1, -1, -1}},
@@ -42,6 +42,8 @@ void describe_tensors(Schema& s, TensorSource& p) {
     "xx yy zz yz xz xy; abaqus: xx yy zz xy xz yz; masked: a confidence, then upper; plane: xx yy xy. auto: rows, or vtk for 6.")
       .choices({"auto", "rows", "vtk", "upper", "lower", "voigt", "abaqus", "masked", "plane"});
 }
+
+TensorPlaces tensor_places(const Field& f, const std::string& order, std::string_view who) { return order_of(f, order, who).place; }
 
 const Field* find_tensors(const Dataset& d, const FieldName& name) {
   if (!name.empty()) return &d.fields().require(name.name);
@@ -75,8 +77,8 @@ TensorField read_tensors(const Dataset& data, const TensorSource& source, std::s
           for (size_t i = begin; i < end; ++i) {
             auto get = [&](int place, double other) { return place < 0 ? other : double(v(i, place)); };
             double a[9];
-            for (int k = 0; k < 6; ++k) a[k] = get(o.place[k], 0);
-            for (int k = 0; k < 3; ++k) a[6 + k] = get(o.place[6 + k], a[3 + k]);
+            for (int k = 0; k < 6; ++k) a[k] = get(o.place[size_t(k)], 0);
+            for (int k = 0; k < 3; ++k) a[6 + k] = get(o.place[size_t(6 + k)], a[3 + k]);
             const double apart = std::max({std::abs(a[3] - a[6]), std::abs(a[4] - a[7]), std::abs(a[5] - a[8])});
             SymTensor d{a[0], a[1], a[2], (a[3] + a[6]) / 2, (a[4] + a[7]) / 2, (a[5] + a[8]) / 2};
             n += apart > 1e-4 * std::max(d.norm(), apart);

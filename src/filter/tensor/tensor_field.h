@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // TensorField: the symmetric tensors of a field in one form, however they were stored.
 #pragma once
+#include <array>
 #include <vector>
 
 #include "base/context.h"
@@ -43,6 +44,11 @@ TensorField read_tensors(const Dataset& d, const TensorSource& source, std::stri
 
 /// The same on the points: a cell field is averaged to them first (cell_to_point), with a note.
 TensorField read_point_tensors(const DatasetPtr& d, const TensorSource& source, std::string_view who, Context& ctx);
+
+/// Where a tuple of the field holds xx yy zz xy yz xz, then yx zy zx; -1: zero (the first six) or symmetric (the last three).
+using TensorPlaces = std::array<int, 9>;
+/// By the table above. Throws Error(usage) naming `who` when the number of components fits no tensor or not the order.
+TensorPlaces tensor_places(const Field& f, const std::string& order, std::string_view who);
 
 /// The field that read_tensors takes; null when there is none.
 const Field* find_tensors(const Dataset& d, const FieldName& name);

@@ -242,6 +242,8 @@ NodeMatrix node_matrix(Geometry g, const FeCollection& c, int q, const std::stri
   if (c.family == Family::h1 || c.listed_as_h1)
     for (const LocalNode& n : local_nodes(g, p)) places.push_back(n.place);
   else places = rows(g, p);
+  if (c.inside_around && g == Geometry::cube)
+    for (const size_t layer : {places.size() - 8, places.size() - 4}) std::swap(places[layer + 2], places[layer + 3]);
 
   auto sample = [&](size_t k) {
     std::array<double, 3> x{};

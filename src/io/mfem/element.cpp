@@ -134,6 +134,7 @@ bool parse_fixed(std::string_view name, FeCollection& c) {
       c.order = f.order;
       c.basis = name == "QuadraticPos" ? Basis::bernstein : Basis::closed_uniform;
       c.listed_as_h1 = f.family == Family::l2 && f.order > 0;
+      c.inside_around = name == "Cubic";
       return true;
     }
   return false;

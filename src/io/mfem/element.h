@@ -42,7 +42,8 @@ struct FeCollection {
   Family family = Family::h1;
   Basis basis = Basis::gauss_lobatto;
   int order = 1;
-  bool listed_as_h1 = false;  ///< discontinuous, but an element lists its nodes corners first
+  bool listed_as_h1 = false;   ///< discontinuous, but an element lists its nodes corners first
+  bool inside_around = false;  ///< "Cubic": the nodes inside a cube go around each layer as corners do, not row by row
 };
 /// Throws Error(data) naming `where` for a collection that is not read, or an order above 10.
 FeCollection parse_collection(std::string_view name, const std::string& where);

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "data/field_component.h"
 #include "data/field_ops.h"
 #include "data/lattice.h"
 #include "filter/mesh/faces.h"
@@ -75,6 +76,7 @@ struct Scalars {
 
 /// f32 numbers without losing the small differences of f64 ones far from zero.
 Scalars scalars_of(const Field& f, int component) {
+  check_component(f, component, "color");
   const bool single = f.components() == 1 || component >= 0;
   if (single && f.array.type() == ElementType::f32) return {f.array.component(f.components() == 1 ? 0 : component).made_packed(), 0};
   if (!(f.array.type() == ElementType::f64 || element_size(f.array.type()) >= 4)) return {scalar_of(f, component), 0};

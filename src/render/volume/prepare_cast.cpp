@@ -6,7 +6,9 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "data/field_component.h"
 #include "render/volume/cells/cell_source.h"
+#include "render/volume/cells/cell_volume.h"
 #include "render/volume/large/bricked_source.h"
 #include "render/volume/large/mip_source.h"
 #include "render/volume/lattice/lattice_ray.h"
@@ -38,7 +40,11 @@ std::unique_ptr<RaySource> source_of(const VolumeItem& item, std::shared_ptr<con
                "volume", "leave kernel=linear, or resample to a grid first");
   if (sampling.antialias == "mip")
     if (auto means = mip_source(item, lattice.get(), projection, context)) return means;
-  if (!lattice) return cell_source(item, context);
+  if (!lattice) {
+    auto cells = cell_source(item, context);
+    reach = cell_volume_of(*cells).range;  // planes through the middles of AMR cells go on to the corners
+    return cells;
+  }
   if (wants_reconstruction(sampling) && !lattice->nearest) {
     if (item.detail.second == SecondAxis::field)
       fail_usage("a second field is read with the linear kernel and central gradients only", "volume",
@@ -102,8 +108,7 @@ const Field& field_of(const VolumeItem& item) {
   if (!f) f = &fields.require(item.field, item.association);
   if (f->association == Association::whole)
     fail_usage(fmt::format("field '{}' belongs to the whole dataset", f->name), "volume", "a volume needs a point or cell field");
-  if (item.component >= f->components())
-    fail_usage(fmt::format("field '{}' has {} components, not component {}", f->name, f->components(), item.component), "volume");
+  check_component(*f, item.component, "volume");
   return *f;
 }
 
@@ -111,7 +116,7 @@ CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<con
                         const Knobs& knobs, Context& context) {
   CastVolume v;
   v.item = &item, v.id = id;
-  Range reach;  // of a kernel that goes beyond the data
+  Range reach;  // stored values, where they go beyond those of the data: of a kernel, at corners of AMR cells
   const bool on_lattice = lattice != nullptr;
   v.source = source_of(item, std::move(lattice), projection, std::max(1.0, knobs.coarser), context, reach);
   RaySource& source = *v.source;
@@ -169,7 +174,8 @@ CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<con
       break;
     default: break;
   }
-  if (!knobs.skip_empty) source.invisible = {};
+  // A fixed step counts with the length on which there is a volume, whether that draws anything or not.
+  if (!knobs.skip_empty || (v.step > 0 && item.mode == RayFunction::composite && !v.detail)) source.invisible = {};
   return v;
 }
 

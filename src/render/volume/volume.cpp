@@ -166,7 +166,7 @@ class Alone {
       if ((by_tolerance || post) && picture.knobs.bricks_in_packets && BrickPackets::fits(*bricks, item, *plan_, !by_tolerance))
         bricks_.emplace(*bricks, stage_, *plan_, !by_tolerance, context);
     } else if (by_tolerance && !bricked_of(*item.data) && TetRays::fits(cell_volume_of(*v.source))) {
-      tets_.emplace(cell_volume_of(*v.source), picture.projection, *v.medium, context, v.budget.stop_below);
+      tets_.emplace(cell_volume_of(*v.source), picture.projection, *v.medium, context, v.budget.stop_below, float(v.budget.tolerance));
       std::vector<TetLight::Lamp> lamps;
       for (const Picture::Lamp& l : picture.lamps) lamps.push_back({Vec3f(l.direction), l.intensity});
       if (item.shaded) tets_->light(std::move(lamps), item.light, v.per_scale);

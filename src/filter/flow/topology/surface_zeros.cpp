@@ -122,10 +122,16 @@ class Surface {
     for (size_t k = 0; k < 3; ++k) {
       const auto i = size_t(t.id[k]), j = size_t(t.id[(k + 1) % 3]);
       n[k] = normal_[i];
-      const Vec3 from = turned(v_[i], normal_[i], normal_[j]), to = v_[j];
-      sum += std::atan2(dot(normal_[j], cross(from, to)), dot(from, to));
+      sum += i < j ? turning(i, j) : -turning(j, i);
     }
     return int(std::lround((sum + sphere_area(n[0], n[1], n[2])) / (2 * M_PI)));
+  }
+
+  // Of the velocity along an edge, always from the smaller number: velocities that are exactly opposite, about a zero on the edge or at
+  // one of its ends, turn by half a circle to the left in one of its triangles and then to the right in the other.
+  double turning(size_t i, size_t j) const {
+    const Vec3 from = turned(v_[i], normal_[i], normal_[j]), to = v_[j];
+    return std::atan2(dot(normal_[j], cross(from, to)), dot(from, to));
   }
 
   // The velocity of a corner in the plane of the triangle.

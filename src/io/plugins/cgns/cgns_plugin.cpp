@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // The CGNS plug-in: bases, their zones and time steps.
-#include <mutex>
-
 #include "base/parallel.h"
 #include "io/isolated.h"
 #include "io/plugin.h"
@@ -10,8 +8,6 @@
 namespace sg::cg {
 
 namespace {
-
-std::mutex library_lock;  // the library is not safe for threads
 
 double version_of(const CgFile& file) {
   for (const Node& n : file.children(file.root(), "CGNSLibraryVersion_t"))
@@ -70,7 +66,6 @@ void add_notes(const CgFile& file, const std::vector<Node>& parts, Base& base) {
 }
 
 Data read(const std::string& path, const ReadOptions& options, Context& context) {
-  std::lock_guard lock(library_lock);
   const CgFile file(path);
   const double version = version_of(file);
   Collection all;
@@ -107,7 +102,6 @@ Data read(const std::string& path, const ReadOptions& options, Context& context)
 }
 
 std::vector<double> times(const std::string& path, const ReadOptions&, Context&) {
-  std::lock_guard lock(library_lock);
   const CgFile file(path);
   for (const Node& node : bases_of(file))
     if (std::vector<double> t = times_of(file, file.children(node)); !t.empty()) return t;
@@ -118,25 +112,19 @@ std::vector<double> times(const std::string& path, const ReadOptions&, Context&)
 
 namespace {
 
-// Debian's library checks with assert(): a damaged file ends the program. Each file is tried in a child process first.
-Data read_tried(const std::string& path, const ReadOptions& options, Context& context) {
-  try_in_child(path, "CGNS", [&] {
-    Context quiet;
-    read(path, options, quiet);
-  });
-  return read(path, options, context);
+// Debian's library checks with assert(): a damaged file ends the program. It works in a process of its own.
+Data read_apart(const std::string& path, const ReadOptions& options, Context& context) {
+  return read_isolated(
+      path, [&](Context& c) { return read(path, options, c); }, context);
 }
 
-std::vector<double> times_tried(const std::string& path, const ReadOptions& options, Context& context) {
-  try_in_child(path, "CGNS", [&] {
-    Context quiet;
-    times(path, options, quiet);
-  });
-  return times(path, options, context);
+std::vector<double> times_apart(const std::string& path, const ReadOptions& options, Context& context) {
+  return times_isolated(
+      path, [&](Context& c) { return times(path, options, c); }, context);
 }
 
 }  // namespace
 
 }  // namespace sg::cg
 
-SG_PLUGIN_FORMATS({"cgns", sg::cg::read_tried, nullptr, sg::cg::times_tried})
+SG_PLUGIN_FORMATS({"cgns", sg::cg::read_apart, nullptr, sg::cg::times_apart})

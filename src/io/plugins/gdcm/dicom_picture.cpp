@@ -1,24 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/plugins/gdcm/dicom_picture.h"
 
-#include <fcntl.h>
 #include <gdcmImageApplyLookupTable.h>
 #include <gdcmImageChangePhotometricInterpretation.h>
 #include <gdcmImageChangePlanarConfiguration.h>
 #include <gdcmImageReader.h>
 #include <sys/mman.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cerrno>
-#include <csignal>
 #include <sstream>
 
 #include "base/bytes.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/text.h"
+#include "io/child.h"
+#include "io/plausible.h"
 #include "io/plugins/gdcm/dicom_elements.h"
 
 namespace sg {
@@ -132,6 +130,7 @@ Decoded decode(const DicomPicture& p) {
   const DicomElements d = walk_dicom({file.data(), file.size()}, p.path);
   const std::string minimal = minimal_file(d);
   const size_t room = p.numbers_per_frame() * p.frames * (p.photometric == "PALETTE COLOR" ? 2 : size_t(p.bits_allocated / 8));
+  check_plausible(room, file.size(), p.path);
   const size_t total = sizeof(Result) + room;
   void* shared = ::mmap(nullptr, total, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (shared == MAP_FAILED) fail_data(fmt::format("not enough memory for {} bytes of pixels", room), p.path);
@@ -139,13 +138,11 @@ Decoded decode(const DicomPicture& p) {
   auto* r = new (shared) Result;
   char* out = static_cast<char*>(shared) + sizeof(Result);
 
+  const ChildLimits limits = reading_limits(room);  // unpacking goes through a few copies of the pixels
   const pid_t child = ::fork();
   if (child < 0) fail_data("no process for decoding can be started", p.path);
   if (child == 0) {
-    for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL}) ::signal(signal, SIG_DFL);
-    const rlimit no_core{0, 0};
-    ::setrlimit(RLIMIT_CORE, &no_core);
-    if (const int nowhere = ::open("/dev/null", O_WRONLY); nowhere >= 0) ::dup2(nowhere, 1), ::dup2(nowhere, 2);
+    become_child(limits);
     try {
       decode_here(minimal, p, *r, out, room);
     } catch (const std::exception& e) {
@@ -154,9 +151,7 @@ Decoded decode(const DicomPicture& p) {
     }
     ::_exit(0);
   }
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
+  wait_for_child(child, limits, p.path, Context());
   if (r->state != 1)
     fail_data(fmt::format("its pixels (transfer syntax {}) cannot be decoded: {}", d.transfer_syntax,
                           r->state == 2 ? r->message : "they are damaged"),

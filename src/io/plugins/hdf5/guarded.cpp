@@ -3,7 +3,6 @@
 
 #include <fcntl.h>
 #include <poll.h>
-#include <sys/resource.h>
 #include <sys/time.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -12,24 +11,23 @@
 #include <chrono>
 #include <csignal>
 
+#include "io/child.h"
+
 namespace sg::h5 {
 
 namespace {
 
 constexpr size_t most_bytes = 1 << 20;
 constexpr int most_milliseconds = 10000;
+constexpr size_t most_memory = size_t(256) << 20;
 constexpr int most_computing = 300000;  // microseconds; reading a text takes a few
 
 // In the child: the answer with a '+' before it. Nothing of the parent's state may be flushed or destroyed.
 [[noreturn]] void answer(int to, const std::function<std::string()>& f) {
-  for (const int s : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL}) std::signal(s, SIG_DFL);
-  const rlimit no_core{0, 0};
-  ::setrlimit(RLIMIT_CORE, &no_core);
+  become_child({most_memory, 1, most_milliseconds / 1000});
   std::signal(SIGPROF, SIG_DFL);
   const itimerval spinning{{0, 0}, {0, most_computing}};
   ::setitimer(ITIMER_PROF, &spinning, nullptr);
-  if (const int quiet = ::open("/dev/null", O_WRONLY); quiet >= 0) ::dup2(quiet, 2);  // "stack smashing detected"
-  ::alarm(most_milliseconds / 1000 + 1);
   try {
     const std::string text = "+" + f();
     for (size_t at = 0; at < text.size();) {

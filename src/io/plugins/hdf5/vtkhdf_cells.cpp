@@ -214,7 +214,6 @@ void read_polydata(const Group& g, DatasetParts& parts) {
   else parts.mesh = std::move(mesh);
   add_point_fields(g, p, parts);
   for (const std::string& name : field_names(g, "CellData")) {
-    if (cell_count == 0) break;
     Array a = read_field(g, "CellData", name, cell_offset, 0, cell_count);
     if (p.size() > 1) {  // the file goes partition by partition, the mesh kind by kind
       std::vector<Array> slices[4];

@@ -35,7 +35,7 @@ struct Variable {
 /// variable must lie in the file. Other files pass. Throws Error(data) that says which variable is cut.
 void check_classic(const std::string& path);
 
-/// An open file; read only. Only the root group of a netCDF-4 file. Not thread-safe: one reader at a time (see library_lock).
+/// An open file; read only. Only the root group of a netCDF-4 file. Not thread-safe; opened in child processes alone (io/isolated.h).
 class NcFile {
  public:
   /// Throws Error(data) naming the file.

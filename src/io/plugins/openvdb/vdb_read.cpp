@@ -238,9 +238,10 @@ Data read_all(const std::string& path, const ReadOptions& options, Context& cont
 
 Data read_vdb(const std::string& path, const ReadOptions& options, Context& context) {
   const size_t budget = budget_for(path, context);
-  // The tree, the dense numbers, and room for the library itself.
+  ChildLimits limits = reading_limits(bytes_at(path));
+  limits.memory = 2 * budget + (size_t(256) << 20);  // the tree, the dense numbers, and room for the library itself
   return read_isolated(
-      path, [&](Context& c) { return read_all(path, options, c); }, 2 * budget + (size_t(256) << 20), context);
+      path, limits, [&](Context& c) { return read_all(path, options, c); }, context);
 }
 
 }  // namespace sg

@@ -7,7 +7,9 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/parallel.h"
+#include "io/isolated.h"
 #include "io/lattice_part.h"
+#include "io/plausible.h"
 #include "io/plugin.h"
 
 namespace sg {
@@ -30,9 +32,9 @@ struct Tiff {
   std::string path, problem;
   TIFF* t = nullptr;
 
-  explicit Tiff(const std::string& p) : path(p) {
+  Tiff(const std::string& p, size_t file_size) : path(p) {
     TIFFOpenOptions* o = TIFFOpenOptionsAlloc();
-    TIFFOpenOptionsSetMaxSingleMemAlloc(o, tmsize_t(1) << 31);
+    TIFFOpenOptionsSetMaxSingleMemAlloc(o, tmsize_t(std::min<uint64_t>(plausible_memory(file_size), uint64_t(1) << 31)));
     TIFFOpenOptionsSetErrorHandlerExtR(o, note, this);
     TIFFOpenOptionsSetWarningHandlerExtR(
         o, [](TIFF*, void*, const char*, const char*, va_list) { return 1; }, nullptr);
@@ -102,13 +104,14 @@ std::vector<tdir_t> pages_like(Tiff& f, Page& first, size_t file_size, Context& 
 }
 
 // One page, rows upwards.
-void read_page(Tiff& f, tdir_t number, const Page& first, std::byte* out) {
+void read_page(Tiff& f, tdir_t number, const Page& first, size_t file_size, std::byte* out) {
   if (!TIFFSetDirectory(f.t, number)) f.fail(fmt::format("page {} cannot be found", number + 1));
   const Page p = read_head(f);
   if (!p.like(first)) f.fail(fmt::format("page {} has changed", number + 1));
   const size_t row = p.row(), size = element_size(p.type);
   auto fail = [&] { f.fail(fmt::format("page {} cannot be unpacked", number + 1)); };
   if (p.as_rgb) {
+    check_plausible(uint64_t(p.width) * p.height, 4, file_size, f.path);
     std::vector<uint32_t> raster(size_t(p.width) * p.height);
     if (!TIFFReadRGBAImageOriented(f.t, p.width, p.height, raster.data(), ORIENTATION_BOTLEFT, 1)) fail();
     for (size_t i = 0; i < raster.size(); ++i)
@@ -135,6 +138,7 @@ void read_page(Tiff& f, tdir_t number, const Page& first, std::byte* out) {
     TIFFGetField(f.t, TIFFTAG_TILELENGTH, &h);
     const tmsize_t bytes = TIFFTileSize(f.t);
     if (w == 0 || h == 0 || bytes <= 0 || size_t(bytes) < size_t(w) * h * pixel || bytes > (tmsize_t(1) << 31)) fail();
+    check_plausible(uint64_t(bytes), file_size, f.path);
     std::vector<std::byte> tile(static_cast<size_t>(bytes));
     for (int s = 0; s < planes; ++s)
       for (uint32_t y = 0; y < p.height; y += std::min(h, p.height - y))
@@ -147,6 +151,7 @@ void read_page(Tiff& f, tdir_t number, const Page& first, std::byte* out) {
   }
   const tmsize_t bytes = TIFFScanlineSize(f.t);
   if (bytes <= 0 || size_t(bytes) < p.width * pixel || bytes > (tmsize_t(1) << 31)) fail();
+  check_plausible(uint64_t(bytes), file_size, f.path);
   std::vector<std::byte> line(static_cast<size_t>(bytes));
   for (int s = 0; s < planes; ++s)
     for (uint32_t y = 0; y < p.height; ++y) {
@@ -155,9 +160,8 @@ void read_page(Tiff& f, tdir_t number, const Page& first, std::byte* out) {
     }
 }
 
-Data read_tiff(const std::string& path, const ReadOptions& options, Context& context) {
-  Tiff f(path);
-  const size_t file_size = MappedFile(path).size();
+Data read_here(const std::string& path, size_t file_size, const ReadOptions& options, Context& context) {
+  Tiff f(path, file_size);
   Page first;
   const std::vector<tdir_t> pages = pages_like(f, first, file_size, context);
   uint64_t bytes = 0;
@@ -173,22 +177,31 @@ Data read_tiff(const std::string& path, const ReadOptions& options, Context& con
   DatasetParts out;
   out.mesh = grid;
   if (options.header_only) return make_dataset(std::move(out));
+  check_plausible(part.points(), element_size(first.type) * size_t(first.components()), file_size, path);
   std::byte* to = nullptr;
   Array a = Array::make_raw(first.type, part.points(), first.components(), &to);
   const LatticePart layer{
       {part.dims[0], part.dims[1], 1}, {part.lo[0], part.lo[1], 0}, {part.count[0], part.count[1], 1}, {part.stride[0], part.stride[1], 1}};
   const size_t tuple = element_size(first.type) * size_t(first.components());
+  if (!layer.whole()) check_plausible(bytes, file_size, path);
   std::vector<std::byte> whole(layer.whole() ? 0 : size_t(bytes));
   for (size_t k = 0; k < part.count[2]; ++k) {
     context.check();
     const tdir_t page = pages[part.lo[2] + k * part.stride[2]];
     std::byte* place = to + k * layer.points() * tuple;
-    read_page(f, page, first, layer.whole() ? place : whole.data());
+    read_page(f, page, first, file_size, layer.whole() ? place : whole.data());
     if (!layer.whole()) copy_part(whole.data(), tuple, layer, place);
   }
   const Role role = first.components() >= 3 && first.type == ElementType::u8 ? Role::colors : Role::scalars;
   out.fields.add({"Tiff Scalars", Association::point, std::move(a), "", role});
   return make_dataset(std::move(out));
+}
+
+// What the library does with damaged files, it does in a process of its own.
+Data read_tiff(const std::string& path, const ReadOptions& options, Context& context) {
+  const size_t file_size = MappedFile(path).size();
+  return read_isolated(
+      path, [&](Context& c) { return read_here(path, file_size, options, c); }, context);
 }
 
 }  // namespace

@@ -26,6 +26,47 @@ struct Part {
   bool all_tets = true;
 };
 
+constexpr double thin = 1e-4, flat = 1e-9;
+constexpr size_t most_ring = 64;
+
+/// Twice the area by the square of the longest side; negative when it is seen from behind. NaN counts as the worst.
+double roundness(Vec3 a, Vec3 b, Vec3 c, Vec3 normal) {
+  const Vec3 n = cross(b - a, c - a);
+  const double side = std::max({dot(b - a, b - a), dot(c - b, c - b), dot(a - c, a - c)});
+  const double q = side > 0 ? length(n) / side : 0;
+  return !(q == q) ? -1 : dot(n, normal) < 0 ? -q : q;
+}
+
+/// Cuts a polygon so that its worst triangle is as good as can be (Klincsek 1980). Corners amid straight sides, where smaller neighbours
+/// hang, then make no flat triangle: all cells around such a side would make the same one, and nothing told which of them belong together.
+void best_triangles(const std::vector<Vec3>& p, std::vector<uint32_t>& out) {
+  const size_t n = p.size();
+  Vec3 normal;
+  for (size_t k = 1; k + 1 < n; ++k) normal += cross(p[k] - p[0], p[k + 1] - p[0]);
+  // Of the polygon from corner i to j: its worst triangle, and the third corner of the one at the side i j.
+  std::vector<double> worst(n * n, HUGE_VAL);
+  std::vector<uint32_t> third(n * n);
+  for (size_t span = 2; span < n; ++span)
+    for (size_t i = 0; i + span < n; ++i) {
+      const size_t j = i + span;
+      double best = -HUGE_VAL;
+      for (size_t k = i + 1; k < j; ++k) {
+        const double q = std::min({roundness(p[i], p[k], p[j], normal), worst[i * n + k], worst[k * n + j]});
+        if (q > best) best = q, third[i * n + j] = uint32_t(k);
+      }
+      worst[i * n + j] = best;
+    }
+  std::vector<std::pair<uint32_t, uint32_t>> open{{0, uint32_t(n - 1)}};
+  while (!open.empty()) {
+    const auto [i, j] = open.back();
+    open.pop_back();
+    if (j - i < 2) continue;
+    const uint32_t k = third[i * n + j];
+    out.insert(out.end(), {i, k, j});
+    open.push_back({i, k}), open.push_back({k, j});
+  }
+}
+
 class Cutter {
  public:
   Cutter(CellReader& reader, Part& part) : reader_(reader), part_(part) {}
@@ -74,20 +115,27 @@ class Cutter {
     std::rotate(ring_.begin(), std::min_element(ring_.begin(), ring_.end(), [&](uint32_t a, uint32_t b) { return ids[a] < ids[b]; }),
                 ring_.end());
     if (ids[ring_.back()] < ids[ring_[1]]) std::reverse(ring_.begin() + 1, ring_.end());
+    const bool fixed_shape = linear_topology(reader_.type()) != nullptr;
     bool fits = true;
-    if (ring_.size() > 4) {
+    if (ring_.size() > 4 || (ring_.size() == 4 && !fixed_shape)) {
       Vec3 normal;
       for (size_t k = 1; k + 1 < ring_.size(); ++k) normal += cross(at[ring_[k]] - at[ring_[0]], at[ring_[k + 1]] - at[ring_[0]]);
-      for (size_t k = 1; k + 1 < ring_.size(); ++k)
-        fits = fits && !(dot(cross(at[ring_[k]] - at[ring_[0]], at[ring_[k + 1]] - at[ring_[0]]), normal) < 0);
+      points_.clear();
+      for (uint32_t k : ring_) points_.push_back(at[k]);
+      // Quadrangles may be those of cells of fixed shape: they keep the fan as long as it has no flat triangle.
+      const double least = ring_.size() > 4 ? thin : -HUGE_VAL;
+      for (size_t k = 1; k + 1 < ring_.size(); ++k) {
+        const double q = roundness(points_[0], points_[k], points_[k + 1], normal);
+        fits = fits && q >= least && std::abs(q) >= flat;
+      }
     }
     if (fits) {
       for (size_t k = 1; k + 1 < ring_.size(); ++k) add(apex, id(0), id(k), id(k + 1));
       return;
     }
-    points_.clear(), local_.clear();
-    for (uint32_t k : ring_) points_.push_back(at[k]);
-    triangulate_polygon(points_, local_);
+    local_.clear();
+    if (points_.size() <= most_ring) best_triangles(points_, local_);
+    else triangulate_polygon(points_, local_);
     for (size_t k = 0; k + 2 < local_.size(); k += 3) add(apex, id(local_[k]), id(local_[k + 1]), id(local_[k + 2]));
   }
 

@@ -2,7 +2,8 @@
 // TetMesh: the solid cells of any mesh as tetrahedra that know their neighbours; what rays walk through.
 //
 // Faces of more than three corners are cut by fans from their lowest point id, so that both cells of a face cut it alike: there are
-// neither gaps nor overlaps. Cells of fixed shape become tetrahedra from their lowest corner to the faces that do not have it (a
+// neither gaps nor overlaps. Where a fan is folded or has flat triangles (corners amid a straight side) faces of polyhedra are cut so that
+// their worst triangle is best. Cells of fixed shape become tetrahedra from their lowest corner to the faces that do not have it (a
 // hexahedron 6, a wedge 3, a pyramid 2); a polyhedron those from the middle of its points to all faces.
 #pragma once
 #include <array>

@@ -44,7 +44,10 @@ void refine(const Medium& medium, const Sample& a, const Sample& b, float accura
 
 }  // namespace
 
-TetMedium::TetMedium(const Medium& medium, const Range& range, float accuracy, float faint) {
+TetMedium::TetMedium(const Medium& medium, const Range& range, float tolerance) {
+  // (D / n)^2 / 12 of a change of colour is a sixth of the tolerance for n = D sqrt(change / 2 / tolerance).
+  const float accuracy = 0.25f * tolerance, faint = medium.faint();
+  fine = std::sqrt(0.5f / tolerance);
   const auto add = [&](const Sample& a, const Sample& b) {
     Interval i{a.value, b.value, {a.at.tau, a.at.color.x, a.at.color.y, a.at.color.z}, {}, {}, {}};
     const float to[4] = {b.at.tau, b.at.color.x, b.at.color.y, b.at.color.z}, width = b.value - a.value;
@@ -112,8 +115,13 @@ bool TetRays::fits(const CellVolume& volume) {
   return true;
 }
 
-TetRays::TetRays(const CellVolume& volume, const Projection& projection, const Medium& medium, Context& context, float stop_below)
-    : volume_(volume), projection_(projection), medium_(medium, volume.range), stop_below_(stop_below), eye_(volume, projection, context) {
+TetRays::TetRays(const CellVolume& volume, const Projection& projection, const Medium& medium, Context& context, float stop_below,
+                 float tolerance)
+    : volume_(volume),
+      projection_(projection),
+      medium_(medium, volume.range, tolerance),
+      stop_below_(stop_below),
+      eye_(volume, projection, context) {
   across_ = (projection_.width + tile - 1) / tile, down_ = (projection_.height + tile - 1) / tile;
   const auto& faces = volume.mesh->boundary;
   std::vector<TileBox> boxes(faces.size());

@@ -4,7 +4,8 @@
 // All pixels of a block walk at the same time, one lane each, as TetWalk does it, in floats relative to the eye and the middle depth of
 // the mesh. In a tetrahedron the value is linear; its optical depth D and its light without attenuation come exactly from integrals of
 // the medium over the value, in constant time. Attenuation within a segment is exact for colours that change evenly with the depth;
-// segments are cut into parts (16 at most) until what else there may be is below D^2/12 of the change of colour = 1/3000.
+// segments are cut into parts (64 at most) until what else there may be, D^2/12 of the change of colour, is below a sixth of the
+// tolerance.
 #pragma once
 #include <vector>
 
@@ -20,14 +21,16 @@ struct TetMedium {
   struct alignas(64) Interval {
     float lo, hi, at[4], slope[4], before[4], unused[2];
   };
-  static constexpr int most_parts = 16;
+  static constexpr int most_parts = 64;
   std::vector<Interval> intervals;
   std::vector<int32_t> first;  ///< per slice of the value: the interval of the slice before
   std::vector<int32_t> seen;   ///< slices before this one in which tau is not zero
   float slice_lo = 0, per_slice = 0;
 
-  /// `range`: of the values there are. Straight lines are right to `accuracy` (of colours, and of tau relative to itself or to `faint`).
-  TetMedium(const Medium& medium, const Range& range, float accuracy = 1.0f / 2048, float faint = 0.05f);
+  float fine = 16;  ///< parts of a segment: this times its optical depth times the root of its change of colour
+  /// `range`: of the values there are. Straight lines are right to a quarter of `tolerance` (of colours, and of tau relative to itself or
+  /// to Medium::faint()), parts of deep segments to a sixth of it.
+  TetMedium(const Medium& medium, const Range& range, float tolerance = 1.0f / 512);
 };
 
 /// 16 rays: what they have gathered, and where each of them is.
@@ -81,7 +84,8 @@ class TetRays {
   /// Is this picture that of the field, and not only one of straight pieces in its place?
   static bool fits(const CellVolume& volume);
   /// Values are stored ones. Keeps references to `volume`.
-  TetRays(const CellVolume& volume, const Projection& projection, const Medium& medium, Context& context, float stop_below = 1.0f / 4096);
+  TetRays(const CellVolume& volume, const Projection& projection, const Medium& medium, Context& context, float stop_below = 1.0f / 4096,
+          float tolerance = 1.0f / 512);
   /// Lights the field from now on; the lamps of the scene, in world directions. `per_scale` as in Look. Powers of highlights count as
   /// whole numbers.
   void light(std::vector<TetLight::Lamp> lamps, const VolumeLight& light, float per_scale);

@@ -181,10 +181,10 @@ HWY_ATTR inline void gather(const TetMedium& m, F f0, F f1, F length, I slice0, 
                             Colors& sum) {
   const D d;
   const LinePart all = means(m, f0, f1, slice0, slice1, on);
-  // Deep segments in parts, so that the order of colours within them counts: (D / n)^2 / 12 of the change stays below 1/3000.
+  // Deep segments in parts, so that the order of colours within them counts.
   F bend = hn::Set(d, 1.0f / 256);
   for (int k = 0; k < 3; ++k) bend = hn::Max(bend, hn::Abs(hn::Sub(all.back[k], all.front[k])));
-  const F fine = hn::Mul(hn::Set(d, 16.0f), hn::Sqrt(bend));
+  const F fine = hn::Mul(hn::Set(d, m.fine), hn::Sqrt(bend));
   const F parts = hn::Min(hn::Ceil(hn::Mul(hn::Mul(all.tau, length), fine)), hn::Set(d, float(TetMedium::most_parts)));
   const M deep = hn::And(on, hn::And(hn::Gt(parts, hn::Set(d, 1.0f)), hn::Ne(f0, f1)));
   behind(all, length, hn::AndNot(deep, on), shine, sum);

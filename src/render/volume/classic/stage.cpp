@@ -42,9 +42,14 @@ void check(const LayerInput& input, const Limits& limits) {
     fail_usage(fmt::format("method={} cannot draw mode={}", limits.method, name_of(item.mode)), "volume",
                fmt::format("it draws {}; method=ray draws all", can));
   }
+  if (item.data && !item.data->as<UniformGrid>() && !item.data->as<RectilinearGrid>())
+    fail_usage(fmt::format("method={} draws uniform{} grids, not this {} mesh", limits.method, limits.rectilinear ? " and rectilinear" : "",
+                           item.data->kind()),
+               "volume", "method=ray and method=cells draw every mesh of solid cells; or make a grid of it: -f resample");
   if (!limits.rectilinear && item.data && item.data->as<RectilinearGrid>()) refuse(limits, "rectilinear grids");
   if (!limits.perspective && !input.projection.parallel)
-    fail_usage(fmt::format("method={} has parallel projections only", limits.method), "camera", "parallel=true, or method=ray");
+    fail_usage(fmt::format("method={} has parallel projections only", limits.method), "camera",
+               "--camera projection=parallel, or method=ray");
   if (!limits.clip && !item.clip.empty()) refuse(limits, "clipped volumes");
   if (!item.detail.plain()) refuse(limits, "transfer functions of two dimensions");
   if (item.sampling.kernel != "linear") refuse(limits, fmt::format("with kernel={}", item.sampling.kernel));

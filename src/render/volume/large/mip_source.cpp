@@ -136,7 +136,7 @@ bool is_mip_source(const RaySource& source) { return dynamic_cast<const MipSourc
 
 std::unique_ptr<RaySource> mip_source(const VolumeItem& item, const Volume* lattice, const Projection& projection, Context& context) {
   const auto* g = item.data->as<UniformGrid>();
-  const char* instead = "leave antialias=none; --samples takes more rays a pixel for any mesh";
+  const char* instead = "leave antialias=none; --picture samples=4 takes more rays a pixel for any mesh";
   if (!g || !lattice)
     fail_usage(fmt::format("antialias=mip is for uniform grids; this is a {} mesh", item.data->kind()), "volume", instead);
   if (lattice->dual) fail_usage("antialias=mip needs a point field", "volume", "-f cell_to_point makes one");

@@ -11,15 +11,20 @@
 namespace sg::volume {
 
 /// Fixed steps over whatever stretches come: each step has one sample, taken in its middle (or its two ends, pre-integrated), and counts
-/// with the length on which there is a volume.
+/// with the length on which there is a volume. Of a step that is cut short the sample lies in the middle of what there is.
 struct Caster::Steps {
   double origin = 0;  // where step 0 begins
   double covered = 0, from = 0;
   long step = 0;
-  bool open = false, sampled = false;
+  bool open = false;
   float value = 0, first = 0, last = 0;
   Optics optics;  // classified before
   Lit lit;
+  struct Part {
+    Stretch stretch;
+    double from, to;
+  };
+  std::vector<Part> parts;  // of this step
 };
 
 struct Caster::Active {
@@ -68,6 +73,14 @@ struct Caster::Active {
     if (!steps.open) return;
     steps.open = false;
     if (!(steps.covered > 0)) return;
+    double rest = 0.5 * steps.covered;
+    for (const Steps::Part& p : steps.parts) {
+      if (rest <= p.to - p.from || &p == &steps.parts.back()) {
+        take_sample(p.stretch, std::min(p.from + rest, p.to));
+        break;
+      }
+      rest -= p.to - p.from;
+    }
     const Lit* lit = look.lit ? &steps.lit : nullptr;
     if (volume->table)
       composite_segment(look, steps.from, steps.covered, volume->table->at(steps.first, steps.last, float(steps.covered)), lit, state);
@@ -93,25 +106,27 @@ struct Caster::Active {
     return {float(opacity < 1 ? minus_log_one_minus(opacity) / volume->unit : 1e6), Vec3f(glow / opacity)};
   }
 
+  void take_sample(const Stretch& s, double t) {
+    steps.value = s.value(t);
+    const bool before = volume->item->sampling.classify == "pre";
+    if (before) steps.optics = classified_before(s, t, steps.value);
+    if (look.lit && (before || volume->table || !look.medium.clear(steps.value, steps.value))) steps.lit = light_on(look, *walker, s, t);
+  }
+
   /// Draws a stretch in fixed steps; what belongs to a step that goes on is kept.
   void step_through(const Stretch& s, RayState& state) {
     const double h = volume->step;
     for (double t = s.from; t < s.to;) {
       long k = long(std::floor((t - steps.origin) / h + 1e-9));
       if (steps.open && k != steps.step) flush(state);
-      const double end = std::min(s.to, steps.origin + double(k + 1) * h), middle = steps.origin + (double(k) + 0.5) * h;
-      if (!steps.open) steps = {steps.origin, 0, t, k, true, false, 0, s.value(t), 0, {}, {}};
+      const double end = std::min(s.to, steps.origin + double(k + 1) * h);
+      if (!steps.open) {
+        steps.covered = 0, steps.from = t, steps.step = k, steps.open = true, steps.first = s.value(t);
+        steps.parts.clear(), steps.lit = {}, steps.optics = {};
+      }
       steps.covered += end - t;
       steps.last = s.value(end);
-      if (!steps.sampled) {
-        steps.sampled = middle >= t && middle < end;
-        const double at = std::clamp(middle, t, end);
-        steps.value = s.value(at);
-        const bool before = volume->item->sampling.classify == "pre";
-        if (before && (steps.sampled || middle >= end)) steps.optics = classified_before(s, at, steps.value);
-        if (look.lit && (steps.sampled || middle >= end) && (before || volume->table || !look.medium.clear(steps.value, steps.value)))
-          steps.lit = light_on(look, *walker, s, at);
-      }
+      steps.parts.push_back({s, t, end});
       if (!(end > t)) break;
       t = end;
     }

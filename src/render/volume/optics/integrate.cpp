@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "render/volume/light/effects.h"
+#include "render/volume/optics/joint.h"
 #include "render/volume/optics/transfer.h"
 
 namespace sg::volume {
@@ -91,7 +92,8 @@ struct AxisSamples {
   }
 };
 
-/// May these places, such a length apart from the first to the last, have missed something that is drawn between them?
+}  // namespace
+
 bool overlooks(const Detail& detail, double length, const DetailPlace& a, const DetailPlace& m, const DetailPlace& b) {
   const TransferFunction& f = detail.transfer;
   const AxisSamples value{a.value, m.value, b.value, f.narrow(), f.edges()};
@@ -103,6 +105,8 @@ bool overlooks(const Detail& detail, double length, const DetailPlace& a, const 
   const auto [lo, hi] = std::minmax({a.value, m.value, b.value});
   return !f.clear(lo - value.beyond(), hi + value.beyond());
 }
+
+namespace {
 
 double depth_between(const Detail& detail, const Stretch& s, RayField& walker, double from, double to, const DetailPlace& a,
                      const DetailPlace& b, int cuts) {
@@ -357,10 +361,7 @@ class LitStretch {
   RayState& state_;
 };
 
-/// A place of a medium that depends on more than the value, lit.
-struct Place : DetailPlace {
-  Vec3f glow;  // tau times colour
-};
+}  // namespace
 
 Place place_at(const Look& look, const Stretch& s, double t, RayField& walker) {
   const Detail& detail = *look.detail;
@@ -378,6 +379,8 @@ Place place_at(const Look& look, const Stretch& s, double t, RayField& walker) {
   }
   return p;
 }
+
+namespace {
 
 void composite_detailed(const Look& look, const Stretch& s, double from, double to, const Place& a, const Place& b, RayField& walker,
                         int cuts, RayState& state) {
@@ -450,59 +453,6 @@ void composite_segment(const Look& look, double from, double length, const Prein
   const Vec3f c = l.color(segment.color * (1 / plain)) * alpha;
   state.sum.behind(c.x, c.y, c.z, alpha);
   if (state.surface < 0 && state.sum.transmittance < 0.5f) state.surface = from + 0.5 * length, state.surface_id = look.id;
-}
-
-void composite_joint(const std::vector<Joint>& joint, RayState& state, int cuts) {
-  const double from = joint[0].stretch.from, to = joint[0].stretch.to;
-  double depth = 0, densest = 0;
-  Vec3 glow{0, 0, 0};
-  bool simple = true;
-  uint32_t id = 0;
-  float stop = 0, tolerance = 1;
-  for (const Joint& j : joint) {
-    const Stretch& s = j.stretch;
-    const Medium& medium = j.look->medium;
-    stop = std::max(stop, j.look->budget.stop_below), tolerance = std::min(tolerance, float(j.look->budget.tolerance));
-    const float lo = s.lowest(), hi = s.highest();
-    if (j.look->detail) {
-      if (!(lo <= hi) || (!(j.look->detail->ink > 0) && j.look->detail->transfer.clear(lo, hi))) continue;
-      const auto at = [&](double t) { return place_at(*j.look, s, t, *j.walker); };
-      const Place a = at(from), m = at(0.5 * (from + to)), b = at(to);
-      const double sixth = (to - from) / 6, d = sixth * double(a.tau + 4 * m.tau + b.tau);
-      const double off = std::abs(d - 1.5 * sixth * double(a.tau + 2 * m.tau + b.tau));  // from the trapezoid rule
-      const double allowed = double(tolerance) * (0.3 * (to - from) / j.look->budget.length + 0.15 * std::min(d, 1.0));
-      simple = simple && cuts >= 2 && off <= allowed && !overlooks(*j.look->detail, to - from, a, m, b);
-      depth += d, glow += Vec3(a.glow + m.glow * 4 + b.glow) * sixth;
-      if (d > densest) densest = d, id = j.look->id;
-      continue;
-    }
-    if (!(lo <= hi) || medium.clear(lo, hi)) continue;
-    simple = simple && medium.line_of(lo) == medium.line_of(hi);
-    const float mean = 0.25f * (s.b[0] + s.b[1] + s.b[2] + s.b[3]);
-    const Optics o = medium.at(mean);
-    double d = (to - from) * std::max(0.0, double(o.tau));
-    if (!(d > 0)) continue;
-    Lit lit;
-    if (j.look->lit) lit = light_on(*j.look, *j.walker, s, 0.5 * (from + to)), d *= double(lit.opacity);
-    depth += d;
-    glow += Vec3(lit.color(o.color)) * d;
-    if (d > densest) densest = d, id = j.look->id;
-  }
-  if (depth == 0 && simple) return;
-  if (cuts < 10 && (!simple || double(state.sum.transmittance) * std::min(depth * depth, 1.0) > double(tolerance))) {
-    const double middle = 0.5 * (from + to);
-    std::vector<Joint> half = joint;
-    for (Joint& j : half) j.stretch = part_of(j.stretch, from, middle);
-    composite_joint(half, state, cuts + 1);
-    if (state.sum.transmittance < stop) return;
-    for (size_t i = 0; i < half.size(); ++i) half[i].stretch = part_of(joint[i].stretch, middle, to);
-    return composite_joint(half, state, cuts + 1);
-  }
-  if (depth == 0) return;
-  glow = glow / depth;
-  const float alpha = 1 - exp_minus(float(depth));
-  state.sum.behind(float(glow.x) * alpha, float(glow.y) * alpha, float(glow.z) * alpha, alpha);
-  if (state.surface < 0 && state.sum.transmittance < 0.5f) state.surface = 0.5 * (from + to), state.surface_id = id;
 }
 
 }  // namespace sg::volume

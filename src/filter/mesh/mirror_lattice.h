@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lattices and AMR grids numbered the other way along some axes.
+#pragma once
+#include "data/dataset.h"
+
+namespace sg {
+
+/// turn_mirrored_cells() for lattices and AMR grids; other meshes stay.
+void turn_mirrored_lattice(DatasetParts& parts);
+
+/// An AMR grid with negative spacing along some axes is numbered anew, with its fields, so that all are positive; indices of cells of
+/// level 0 begin at 0 or above where they did. Other meshes stay.
+void ascend_amr(DatasetParts& parts);
+
+}  // namespace sg

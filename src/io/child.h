@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// Child processes for libraries that a damaged file may kill, send round and round, or make ask for all memory: what they may take, and
+// how they ended.
+#pragma once
+#include <sys/types.h>
+
+#include <string>
+#include <string_view>
+
+#include "base/context.h"
+
+namespace sg {
+
+/// What a child may take.
+struct ChildLimits {
+  size_t memory = 0;     ///< bytes of address space beyond what this process has
+  double processor = 0;  ///< seconds of its processor
+  double wall = 0;       ///< seconds from its start, also when it waits for what never comes
+};
+
+/// For reading a file of that size: twice what its numbers may fill (plausible_memory(); what the user states with --memory stands instead,
+/// where it is more), 256 MiB for the library; 20 s of the processor, one for each 512 MiB of that memory and one for each MiB of the file,
+/// or $SIGHTGLASS_READ_SECONDS where that is more; ten times as long by the clock.
+ChildLimits reading_limits(size_t file_bytes);
+/// The size of a file, or of all files in a folder; 0 when there is none.
+size_t bytes_at(const std::string& path);
+
+/// In the child, first of all: one thread, the system's answers to signals, no core, no output, and the limits.
+void become_child(const ChildLimits& limits);
+
+/// Waits until `child` ends, and kills it when the context is cancelled or when it has outlived its time; then throws Error(cancelled), or
+/// Error(data) naming `path` and what was exceeded. Returns waitpid()'s status otherwise.
+int wait_for_child(pid_t child, const ChildLimits& limits, const std::string& path, const Context& context);
+
+/// What is thrown for a child that ran out of its memory.
+[[noreturn]] void fail_child_memory(const ChildLimits& limits, const std::string& path);
+
+}  // namespace sg
