@@ -5,6 +5,7 @@
 #include <xxhash.h>
 
 #include "base/file.h"
+#include "base/file_fence.h"
 #include "base/text.h"
 #include "io/file_series.h"
 
@@ -75,7 +76,7 @@ std::vector<FileState> file_and_parts(const std::string& path) {
     if (word.size() < 3 || word.size() > 1024 || word.find('.') == word.npos || parse_double(word) || word.find('\0') != word.npos)
       continue;
     FileState part = file_state(path_beside(path, word));
-    if (part.exists) files.push_back(std::move(part));
+    if (part.exists && is_plain_file(part.path)) files.push_back(std::move(part));
   }
   return files;
 }

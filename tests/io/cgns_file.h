@@ -19,6 +19,7 @@ struct CgnsLibrary {
   int (*label)(int file, double id, const char* label) = nullptr;
   int (*dimensions)(int file, double id, const char* type, int n, const int* dims) = nullptr;
   int (*write)(int file, double id, const void* data) = nullptr;
+  int (*link)(int file, double parent, const char* name, const char* other, const char* there, double* id) = nullptr;
   bool good = false;
 
   static const CgnsLibrary& get() {
@@ -33,8 +34,8 @@ struct CgnsLibrary {
       };
       find("cgio_open_file", l.open), find("cgio_close_file", l.close), find("cgio_get_root_id", l.root);
       find("cgio_create_node", l.create), find("cgio_set_label", l.label), find("cgio_set_dimensions", l.dimensions);
-      find("cgio_write_all_data", l.write);
-      l.good = l.open && l.close && l.root && l.create && l.label && l.dimensions && l.write;
+      find("cgio_write_all_data", l.write), find("cgio_create_link", l.link);
+      l.good = l.open && l.close && l.root && l.create && l.label && l.dimensions && l.write && l.link;
       return l;
     }();
     return library;
@@ -91,6 +92,10 @@ class CgnsFile {
     add(s, "ElementRange", "IndexRange_t", std::vector<int>{first, last});
     add(s, "ElementConnectivity", "DataArray_t", ids);
     if (!starts.empty()) add(s, "ElementStartOffset", "DataArray_t", starts);
+  }
+  void link(double parent, const std::string& name, const std::string& file, const std::string& there) {
+    double id = 0;
+    REQUIRE(lib_.link(file_, parent, name.c_str(), file.c_str(), there.c_str(), &id) == 0);
   }
   /// Coordinates k, 10k, 100k of n vertices.
   void line_of_points(double zone, int n) {

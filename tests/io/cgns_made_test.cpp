@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // CGNS files of our own: element types, polyhedra, rind planes, time steps.
+#include <sys/stat.h>
+
+#include <filesystem>
+
 #include "cgns_file.h"
 #include "io_files.h"
 
@@ -206,4 +210,37 @@ TEST_CASE("cgns: wrong connectivity is told with its node" * doctest::skip(no_cg
   CHECK(contains(message(20, {10, 1, 2, 3, 4}, {0, 9}), "ElementStartOffset"));
   CHECK(contains(message(22, {5, 1, 2}, {}), "list ends"));
   CHECK(contains(message(23, {1, 2, 3, 4}, {0, 4}), "no polygon"));
+}
+
+TEST_CASE("cgns: links lead below the folder of the file or the working folder, to files, and nowhere else" * doctest::skip(no_cgns())) {
+  const std::string inside = temp_folder() + "cgns_links/";
+  std::filesystem::create_directories(inside);
+  for (const bool hdf5 : {false, true}) {
+    INFO(hdf5);
+    for (const std::string& at : {inside + "mesh.cgns", temp_folder() + "cgns_outside.cgns"}) {
+      std::filesystem::remove(at);
+      CgnsFile f(at, hdf5);
+      const double zone = f.zone(f.base("Base", 1, 3), "Zone", "Unstructured", {3, 2, 0}, 1);
+      f.line_of_points(zone, 3);
+      f.section(zone, "Lines", 3, 1, 2, {1, 2, 2, 3});
+    }
+    const auto said = [&](const std::string& to) {
+      std::filesystem::remove(inside + "here.cgns");
+      CgnsFile f(inside + "here.cgns", hdf5);
+      f.link(f.base("Base", 1, 3), "Zone", to, "/Base/Zone");
+      f.close();
+      try {
+        read_any(inside + "here.cgns");
+        return std::string();
+      } catch (const Error& e) {
+        return std::string(e.what());
+      }
+    };
+    CHECK(said("mesh.cgns") == "");
+    CHECK(said("../cgns_outside.cgns").find("--read-anywhere") != std::string::npos);
+    CHECK(said(temp_folder() + "cgns_outside.cgns").find("--read-anywhere") != std::string::npos);
+    if (hdf5) REQUIRE(::mkfifo((inside + "pipe").c_str(), 0600) == 0);
+    else std::filesystem::remove(inside + "pipe");
+    CHECK(said("pipe") != "");
+  }
 }

@@ -79,7 +79,7 @@ GltfBuffer gltf_uri(const std::string& uri, const std::string& path, const std::
     return {bytes, view};
   }
   const std::string name = without_percents(uri);
-  if (name.empty() || name[0] == '/' || name.find(':') != std::string::npos)
+  if (name.empty() || name.find(':') != std::string::npos)
     fail_data(fmt::format("{}: '{}' is not read", where, uri), path, "buffers lie in files beside it, or in the file itself");
   const MappedFile file(named_file(path, name));
   return {file.owner(), file.text()};

@@ -3,8 +3,11 @@
 
 #include <cgns_io.h>
 
+#include <cstring>
+
 #include "base/bytes.h"
 #include "base/file.h"
+#include "base/file_fence.h"
 #include "base/text.h"
 
 namespace sg::cg {
@@ -87,6 +90,21 @@ Node CgFile::node_of(double id, const std::string& parent) const {
   return n;
 }
 
+// Before the library follows it: the file has to lie where files may name others, and to be one.
+void CgFile::check_link(const Node& node, double id) const {
+  int file_length = 0, name_length = 0;
+  if (cgio_link_size(file_, id, &file_length, &name_length) != CGIO_ERR_NONE || file_length > 4096 || name_length > 4096)
+    fail(fmt::format("a link that cannot be read: {}", message()), node);
+  std::string file(8192, '\0'), name(8192, '\0');
+  if (cgio_get_link(file_, id, file.data(), name.data()) != CGIO_ERR_NONE)
+    fail(fmt::format("a link that cannot be read: {}", message()), node);
+  file.resize(std::strlen(file.c_str()));
+  if (file.empty()) return;  // within this file
+  const std::string beside = named_file(path_, file);
+  for (const std::string& path : {beside, file})
+    if (file_exists(path) && !is_plain_file(path)) fail(fmt::format("links to '{}', which is no file", file), node);
+}
+
 std::vector<Node> CgFile::children(const Node& node) const {
   int n = 0;
   if (cgio_number_children(file_, node.id, &n) != CGIO_ERR_NONE) fail(fmt::format("its parts cannot be counted: {}", message()), node);
@@ -99,7 +117,7 @@ std::vector<Node> CgFile::children(const Node& node) const {
   std::vector<Node> nodes;
   for (int i = 0; i < std::min(got, n); ++i) {
     int length = 0;
-    if (cgio_is_link(file_, ids[size_t(i)], &length) == CGIO_ERR_NONE && length > 0) links_ = true;
+    if (cgio_is_link(file_, ids[size_t(i)], &length) == CGIO_ERR_NONE && length > 0) links_ = true, check_link(node, ids[size_t(i)]);
     nodes.push_back(node_of(ids[size_t(i)], node.path));
   }
   return nodes;
