@@ -65,7 +65,10 @@ struct Overlay::Parts {
     pango_layout_set_font_description(layout.get(), font);
     pango_font_description_free(font);
     char* valid = g_utf8_make_valid(text.data(), gssize(text.size()));
-    pango_layout_set_text(layout.get(), valid, -1);
+    // Breaking a text into lines takes the square of its length: what no picture has room for is left out.
+    constexpr long most_characters = 2000;
+    const bool cut = g_utf8_strlen(valid, -1) > most_characters;
+    pango_layout_set_text(layout.get(), valid, cut ? int(g_utf8_offset_to_pointer(valid, most_characters) - valid) : -1);
     g_free(valid);
     PangoAttrList* attributes = pango_attr_list_new();
     pango_attr_list_insert(attributes, pango_attr_insert_hyphens_new(FALSE));  // a broken field name must not gain a letter
