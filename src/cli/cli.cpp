@@ -77,6 +77,13 @@ int cli_main(int argc, char** argv) {
     return status;
   } catch (const Error& e) {
     interruptible = nullptr;
+    // What an operation said of numbers that changed under it misleads.
+    const std::string changed = e.kind() == ErrorKind::cancelled ? "" : mapped_watch().changed(1);
+    if (!changed.empty()) {
+      std::fprintf(stderr, "sightglass: %s: the file changed while it was read; read it again when it is written completely\n",
+                   one_line(changed).c_str());
+      return 3;
+    }
     std::fprintf(stderr, "sightglass: %s\n", one_line(e.what()).c_str());
     return e.exit_code();
   } catch (const std::bad_alloc&) {
