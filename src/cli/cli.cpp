@@ -107,6 +107,12 @@ int cli_main(int argc, char** argv) {
     return status;
   } catch (const Error& e) {
     interruptible = nullptr;
+    // What an operation said of numbers that changed under it misleads.
+    const std::string changed = e.kind() == ErrorKind::cancelled ? "" : mapped_watch().changed(1);
+    if (!changed.empty()) {
+      say_error("sightglass: " + changed + ": the file changed while it was read; read it again when it is written completely");
+      return 3;
+    }
     say_error(std::string("sightglass: ") + e.what());
     return e.kind() == ErrorKind::cancelled && stopped_by ? 128 + stopped_by : e.exit_code();
   } catch (const std::bad_alloc&) {

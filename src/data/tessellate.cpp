@@ -26,19 +26,83 @@ struct Ear {
 };
 double turn(Ear a, Ear b, Ear c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
 
-// The corner at b sticks out and no other corner lies inside the triangle a b c.
-bool is_ear(const std::vector<Ear>& p, const std::vector<uint32_t>& ring, size_t i) {
-  const size_t n = ring.size(), before = (i + n - 1) % n, after = (i + 1) % n;
-  const Ear a = p[ring[before]], b = p[ring[i]], c = p[ring[after]];
-  if (turn(a, b, c) <= 0) return false;
-  for (size_t k = 0; k < n; ++k) {
-    if (k == before || k == i || k == after) continue;
-    const Ear q = p[ring[k]];
-    if ((q.x == a.x && q.y == a.y) || (q.x == b.x && q.y == b.y) || (q.x == c.x && q.y == c.y)) continue;
-    if (turn(a, b, q) >= 0 && turn(b, c, q) >= 0 && turn(c, a, q) >= 0) return false;
+// The corners of an outline from which ears are cut, as a ring. Those near a triangle are found by a grid of about one corner a cell, so
+// that an outline of many corners takes about as long as its corners are many, not their square.
+constexpr uint32_t many_corners = 64;
+
+class Outline {
+ public:
+  explicit Outline(const std::vector<Ear>& p) : p_(p), next_(p.size()), before_(p.size()), size_(p.size()) {
+    const auto n = uint32_t(p.size());
+    for (uint32_t i = 0; i < n; ++i) next_[i] = (i + 1) % n, before_[i] = (i + n - 1) % n;
+    if (n >= many_corners) make_grid();
   }
-  return true;
-}
+
+  size_t size() const { return size_; }
+  uint32_t next(uint32_t i) const { return next_[i]; }
+  uint32_t before(uint32_t i) const { return before_[i]; }
+
+  void remove(uint32_t i) {
+    next_[before_[i]] = next_[i], before_[next_[i]] = before_[i];
+    --size_;
+    if (!grid_.empty()) std::erase(grid_[cell(p_[i])], i);
+  }
+
+  // The corner sticks out and no other corner lies inside the triangle that it makes with its neighbours.
+  bool is_ear(uint32_t i) const {
+    const Ear a = p_[before_[i]], b = p_[i], c = p_[next_[i]];
+    if (turn(a, b, c) <= 0) return false;
+    const auto blocks = [&](uint32_t k) {
+      if (k == before_[i] || k == i || k == next_[i]) return false;
+      const Ear q = p_[k];
+      if ((q.x == a.x && q.y == a.y) || (q.x == b.x && q.y == b.y) || (q.x == c.x && q.y == c.y)) return false;
+      return turn(a, b, q) >= 0 && turn(b, c, q) >= 0 && turn(c, a, q) >= 0;
+    };
+    if (grid_.empty()) {
+      for (uint32_t k = next_[next_[i]]; k != before_[i]; k = next_[k])
+        if (blocks(k)) return false;
+      return true;
+    }
+    // Large triangles have one in their middle, more often than not.
+    const auto& middle = grid_[cell({(a.x + b.x + c.x) / 3, (a.y + b.y + c.y) / 3})];
+    if (std::any_of(middle.begin(), middle.end(), blocks)) return false;
+    // What is inside by rounding lies next to the triangle: one more cell on each side.
+    const auto [x0, x1] = std::minmax({a.x, b.x, c.x});
+    const auto [y0, y1] = std::minmax({a.y, b.y, c.y});
+    const size_t i1 = std::min(column(x1) + 1, columns_ - 1), j1 = std::min(row(y1) + 1, rows_ - 1);
+    for (size_t j = std::max<size_t>(row(y0), 1) - 1; j <= j1; ++j)
+      for (size_t k = std::max<size_t>(column(x0), 1) - 1; k <= i1; ++k)
+        if (std::any_of(grid_[j * columns_ + k].begin(), grid_[j * columns_ + k].end(), blocks)) return false;
+    return true;
+  }
+
+ private:
+  void make_grid() {
+    lo_ = {HUGE_VAL, HUGE_VAL};
+    Ear hi{-HUGE_VAL, -HUGE_VAL};
+    for (const Ear& e : p_) {
+      if (!std::isfinite(e.x) || !std::isfinite(e.y)) return;
+      lo_ = {std::min(lo_.x, e.x), std::min(lo_.y, e.y)}, hi = {std::max(hi.x, e.x), std::max(hi.y, e.y)};
+    }
+    const double w = hi.x - lo_.x, h = hi.y - lo_.y, n = double(p_.size());
+    if (!(w > 0) || !(h > 0) || !std::isfinite(w) || !std::isfinite(h)) return;
+    columns_ = size_t(std::clamp(std::sqrt(n * (w / h)), 1.0, n)), rows_ = std::max<size_t>(p_.size() / columns_, 1);
+    per_x_ = double(columns_) / w, per_y_ = double(rows_) / h;
+    if (!std::isfinite(per_x_) || !std::isfinite(per_y_)) return;
+    grid_.resize(columns_ * rows_);
+    for (uint32_t i = 0; i < p_.size(); ++i) grid_[cell(p_[i])].push_back(i);
+  }
+  size_t column(double x) const { return std::min(size_t(std::max((x - lo_.x) * per_x_, 0.0)), columns_ - 1); }
+  size_t row(double y) const { return std::min(size_t(std::max((y - lo_.y) * per_y_, 0.0)), rows_ - 1); }
+  size_t cell(Ear e) const { return row(e.y) * columns_ + column(e.x); }
+
+  const std::vector<Ear>& p_;
+  std::vector<uint32_t> next_, before_;
+  size_t size_, columns_ = 1, rows_ = 1;
+  Ear lo_{0, 0};
+  double per_x_ = 0, per_y_ = 0;
+  std::vector<std::vector<uint32_t>> grid_;  // empty: all corners are looked at
+};
 
 }  // namespace
 
@@ -62,21 +126,28 @@ void triangulate_polygon(std::span<const Vec3> at, std::vector<uint32_t>& triang
     for (uint32_t i = 1; i + 1 < n; ++i) add(triangles, 0, i, i + 1);
     return;
   }
-  std::vector<uint32_t> ring(n);
-  for (uint32_t i = 0; i < n; ++i) ring[i] = i;
-  size_t i = 0, misses = 0;
+  Outline ring(flat);
+  uint32_t i = 0;
+  size_t misses = 0, forced = 0;
   while (ring.size() > 3) {
-    i %= ring.size();
-    // Folded or self-crossing outlines have no ear: cut anyway, so that every corner is used.
-    if (is_ear(flat, ring, i) || misses > ring.size()) {
-      add(triangles, ring[(i + ring.size() - 1) % ring.size()], ring[i], ring[(i + 1) % ring.size()]);
-      ring.erase(ring.begin() + ptrdiff_t(i));
+    const uint32_t after = ring.next(i);
+    // Folded or self-crossing outlines have no ear: cut anyway, so that every corner is used. With many corners a round for each such cut
+    // would take the square of their number.
+    const bool ear = ring.is_ear(i);
+    if (ear || misses > (n < many_corners ? ring.size() : ring.size() / (1 + forced))) {
+      forced += !ear;
+      add(triangles, ring.before(i), i, after);
+      ring.remove(i);
       misses = 0;
     } else {
-      ++i, ++misses;
+      ++misses;
     }
+    i = after;
   }
-  add(triangles, ring[0], ring[1], ring[2]);
+  // From the first corner that is left, as they were numbered.
+  const std::array<uint32_t, 3> rest{i, ring.next(i), ring.before(i)};
+  const auto first = size_t(std::min_element(rest.begin(), rest.end()) - rest.begin());
+  add(triangles, rest[first], rest[(first + 1) % 3], rest[(first + 2) % 3]);
 }
 
 namespace {

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data/cell_topology.h"
 
+#include <chrono>
 #include <map>
 #include <set>
 
+#include "base/random.h"
+#include "support/property.h"
 #include "support/test.h"
 
 using namespace sg;
@@ -265,6 +268,72 @@ TEST_CASE("cell topology: non-convex polygons are cut into ears") {
   t.clear();
   triangulate_polygon(std::vector<Vec3>(6, Vec3(1, 1, 1)), t);
   CHECK(t.size() == 12);
+}
+
+TEST_CASE("cell topology: outlines of tens of thousands of corners are cut in less than the square of their time, and add up") {
+  const auto begin = std::chrono::steady_clock::now();
+  constexpr size_t n = 30000;
+  std::vector<Vec3> star, comb, tangle;
+  for (size_t i = 0; i < n; ++i) {
+    const double a = 2 * M_PI * double(i) / double(n), r = 0.5 + 0.5 * random_unit(1, i);
+    star.push_back({r * std::cos(a), r * std::sin(a), 0});
+    tangle.push_back({random_unit(2, i), random_unit(3, i), 0});
+    const size_t half = n / 2;
+    comb.push_back(i < half ? Vec3(double(i), -1, 0) : Vec3(double(n - 1 - i), i % 2 ? 1000 : 0, 0));
+  }
+  for (const auto* outline : {&star, &comb}) {
+    std::vector<uint32_t> t;
+    triangulate_polygon(*outline, t);
+    CHECK(t.size() == 3 * (n - 2));
+    double sum = 0;
+    bool turned = false;
+    for (size_t i = 0; i < t.size(); i += 3) {
+      const double z = cross((*outline)[t[i + 1]] - (*outline)[t[i]], (*outline)[t[i + 2]] - (*outline)[t[i]]).z;
+      turned = turned || z < 0;
+      sum += z;
+    }
+    CHECK(!turned);
+    CHECK(sum == doctest::Approx(polygon_vector_area(*outline).z).epsilon(1e-9));
+  }
+  std::vector<uint32_t> t;
+  triangulate_polygon(tangle, t);
+  CHECK(t.size() == 3 * (n - 2));
+  CHECK(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() < 20);
+}
+
+TEST_CASE("property: cutting ears with a grid of corners gives the triangles of looking at all of them") {
+  for (const uint64_t seed : test::property_seeds(20)) {
+    CAPTURE(seed);
+    test::Random random(seed);
+    const int n = random.whole(64, 400);
+    const double stretch = random.magnitude(1e-4, 1e4);
+    std::vector<Vec3> p;
+    for (int i = 0; i < n; ++i) {
+      const double a = 2 * M_PI * i / n, r = random.in(0.2, 1);
+      p.push_back({stretch * r * std::cos(a), r * std::sin(a), 0});
+    }
+    std::vector<uint32_t> got, want, ring(static_cast<size_t>(n));
+    triangulate_polygon(p, got);
+    std::iota(ring.begin(), ring.end(), 0u);
+    const auto turn = [&](uint32_t a, uint32_t b, uint32_t c) {
+      return (p[b].x - p[a].x) * (p[c].y - p[a].y) - (p[b].y - p[a].y) * (p[c].x - p[a].x);
+    };
+    for (size_t i = 0; ring.size() > 3;) {
+      i %= ring.size();
+      const uint32_t a = ring[(i + ring.size() - 1) % ring.size()], b = ring[i], c = ring[(i + 1) % ring.size()];
+      const bool ear = turn(a, b, c) > 0 && std::none_of(ring.begin(), ring.end(), [&](uint32_t q) {
+                         return q != a && q != b && q != c && turn(a, b, q) >= 0 && turn(b, c, q) >= 0 && turn(c, a, q) >= 0;
+                       });
+      if (!ear) {
+        ++i;
+        continue;
+      }
+      want.insert(want.end(), {a, b, c});
+      ring.erase(ring.begin() + ptrdiff_t(i));
+    }
+    want.insert(want.end(), ring.begin(), ring.end());
+    CHECK(got == want);
+  }
 }
 
 TEST_CASE("cell topology: outlines and curves run through all their nodes in order") {

@@ -388,3 +388,33 @@ TEST_CASE("zarr: what cannot be written says why") {
   parts.mesh = UniformGrid{};
   CHECK(error_of([&] { write(folder("bad.zarr"), make_dataset(parts)); }).find("point field") != std::string::npos);
 }
+
+TEST_CASE("zarr: every level but the first is coarser than the one before, whatever the size of a chunk") {
+  for (const int chunk : {8, 16, 24, 32, 64}) {
+    CAPTURE(chunk);
+    DatasetParts parts;
+    UniformGrid g;
+    g.dims = {100, 40, 20};
+    parts.mesh = g;
+    parts.fields.add({"f", Association::point, Array::from_vector(std::vector<float>(100 * 40 * 20, 1.f)), "", Role::scalars});
+    const std::string path = test::temp_folder() + fmt::format("levels{}.zarr", chunk);
+    WriteOptions options;
+    options.chunk = chunk;
+    Context context;
+    write_data(path, make_dataset(std::move(parts)), options, context);
+    size_t levels = 0;
+    uint64_t before = UINT64_MAX;
+    for (; file_exists(fmt::format("{}/{}/.zarray", path, levels)); ++levels) {
+      const std::string text(MappedFile(fmt::format("{}/{}/.zarray", path, levels)).text());
+      unsigned long n[3] = {};
+      const size_t at = text.find("\"shape\"");
+      REQUIRE(at != std::string::npos);
+      REQUIRE(std::sscanf(text.c_str() + at, "\"shape\": [%lu, %lu, %lu]", &n[0], &n[1], &n[2]) == 3);
+      CHECK(uint64_t(n[0]) * n[1] * n[2] < before);
+      before = uint64_t(n[0]) * n[1] * n[2];
+      if (!file_exists(fmt::format("{}/{}/.zarray", path, levels + 1)))
+        for (const unsigned long m : n) CHECK(m <= unsigned(chunk));  // the last is one chunk
+    }
+    CHECK(levels <= 6);
+  }
+}

@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdlib>
 
 #include "base/file.h"
@@ -432,4 +433,20 @@ TEST_CASE("legend: a glyph of a round value stands above the bar, as long as it 
   Legend none(scale);
   none.glyph = GlyphLegend{1, false, true, 12, "m/s", 0};
   CHECK(layout_legends(overlay, {none}, {0, 0, 600, 500}, 15, false)[0].glyph.width == 0);
+}
+
+TEST_CASE("annotate: names of any length are laid out in no time, with their beginning and their end") {
+  Image image(640, 400, 3);
+  Annotation a;
+  Legend l;
+  l.title = std::string(20000, 'x') + "end";
+  a.legends.push_back(l);
+  TextStyle wrapped;
+  wrapped.size = 12, wrapped.wrap = 300;
+  const auto begin = std::chrono::steady_clock::now();
+  const int width = legend_width(a, image.width, image.height);
+  CHECK(width > 0);
+  CHECK(width < image.width / 2);
+  CHECK(Overlay(640, 400, false).measure(std::string(20000, 'y'), wrapped).lines > 10);
+  CHECK(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() < 4);
 }

@@ -18,15 +18,26 @@ constexpr double triangle = 1.0;
 constexpr double widest_title = 10, widest_name = 12;
 constexpr double panel_gap = 0.3, panel_foot = 2.1;  // foot: two lines of small letters
 
+// A name that no legend has room for keeps its beginning and its end; laying it out takes the square of its length.
+std::string shortened(const std::string& text) {
+  constexpr size_t most = 200, kept = 90;  // bytes
+  if (text.size() <= most) return text;
+  const auto inside = [&](size_t i) { return (uint8_t(text[i]) & 0xc0) == 0x80; };  // of a character of several bytes
+  size_t head = kept, tail = text.size() - kept;
+  while (head > 0 && inside(head)) --head;
+  while (tail < text.size() && inside(tail)) ++tail;
+  return text.substr(0, head) + "\u2026" + text.substr(tail);
+}
+
 std::string title_of(const ColorScale& s) {
   std::string title;
-  for (char c : s.title) title += c == '_' ? std::string("_\u200b") : std::string(1, c);  // names may break after an underscore
+  for (char c : shortened(s.title)) title += c == '_' ? std::string("_\u200b") : std::string(1, c);  // names may break after an underscore
   if (s.unit.empty()) return title;
   return title.empty() ? "[" + s.unit + "]" : title + " [" + s.unit + "]";
 }
 
 std::string name_of_label(const ColorScale& s, size_t i) {
-  return i < s.label_names.size() && !s.label_names[i].empty() ? s.label_names[i] : short_number(s.labels[i], 8);
+  return i < s.label_names.size() && !s.label_names[i].empty() ? shortened(s.label_names[i]) : short_number(s.labels[i], 8);
 }
 
 /// Round numbers that have room, then the ends of the range where they have room too.

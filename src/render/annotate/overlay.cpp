@@ -66,7 +66,11 @@ struct Overlay::Parts {
     pango_layout_set_font_description(layout.get(), font);
     pango_font_description_free(font);
     const std::string shown = printable(text, true);  // names of fields may hold anything
-    pango_layout_set_text(layout.get(), shown.data(), int(shown.size()));
+    // Breaking a text into lines takes the square of its length: what no picture has room for is left out.
+    constexpr long most_characters = 2000;
+    const bool cut = g_utf8_strlen(shown.data(), gssize(shown.size())) > most_characters;
+    const auto bytes = cut ? g_utf8_offset_to_pointer(shown.data(), most_characters) - shown.data() : ptrdiff_t(shown.size());
+    pango_layout_set_text(layout.get(), shown.data(), int(bytes));
     PangoAttrList* attributes = pango_attr_list_new();
     pango_attr_list_insert(attributes, pango_attr_insert_hyphens_new(FALSE));  // a broken field name must not gain a letter
     pango_layout_set_attributes(layout.get(), attributes);
