@@ -207,6 +207,29 @@ TEST_CASE("fourier: a Gaussian ball is its projection, and the average is the su
   CHECK(std::abs(means[21 * 10 + 10] - sums[21 * 10 + 10] / 3.6) < 1e-3);
 }
 
+TEST_CASE("fourier: averages hold up to the outline") {
+  // The mean is one over places a voxel around, at most.
+  for (const bool even : {true, false}) {
+    const DatasetPtr data = grid(cube(17, -1, 1), [&](Vec3 p) { return even ? 0.5 : 0.5 + 0.3 * p.x; });
+    VolumeItem v = item(data, ruler(0, 1), constant_opacity(1));
+    v.mode = RayFunction::average, v.opacity.points = {{0, 1}};
+    for (const Vec3 forward : {Vec3(0, 0, -1), Vec3(0.5, -0.4, -1), Vec3(1, 0.2, 0.7)}) {
+      const Projection p = parallel_view(40, 40, 14, forward);
+      const auto means = values(v, p), sums = integrals(v, p, [](double) { return 1; });
+      size_t seen = 0;
+      for (int i = 0; i < p.width * p.height; ++i) {
+        const auto ray = p.ray(i % p.width + 0.5, i / p.width + 0.5);
+        const volume::Course c = volume::course(volume::prepare(v, 1, {}), ray.origin, ray.direction, 0, 1e9);
+        CHECK((means[size_t(i)] == means[size_t(i)]) == (c.leave > c.enter));
+        if (!(c.leave > c.enter)) continue;
+        ++seen;
+        CHECK(std::abs(means[size_t(i)] - sums[size_t(i)] / (c.leave - c.enter)) < (even ? 1e-3 : 0.3 * 0.125 * std::sqrt(3.0)));
+      }
+      CHECK(seen > 500);
+    }
+  }
+}
+
 TEST_CASE("fourier: the depth cue weighs the field by a straight line from 1 at the near end to 1 - cue at the far end") {
   VolumeItem v = xray(smooth_item(41), 3);
   v.light.depth_cue = 0.8;

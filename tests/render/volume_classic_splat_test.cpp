@@ -66,9 +66,31 @@ TEST_CASE("splat: a flat field stays flat to 1e-3, from any side, near and far, 
     }
 }
 
+TEST_CASE("splat: a flat field reaches to the border of the box and not beyond, on points and cells") {
+  const DatasetPtr points = grid(cube(9, -1, 1), [](Vec3) { return 0.5; });
+  DatasetParts parts = points->parts();
+  parts.fields = {};
+  parts.fields.add({"f", Association::cell, Array::from_vector(std::vector<float>(512, 0.5f)), "", Role::scalars});
+  const DatasetPtr cells = make_dataset(parts);
+  using volume::SplatOptions;
+  for (const DatasetPtr& data : {points, cells})
+    for (const auto classify : {SplatOptions::Classify::before, SplatOptions::Classify::after})
+      for (const Projection& p : {parallel_view(48, 40, 17), parallel_view(48, 40, 15, {0.5, -0.4, -1}),
+                                  perspective_view(48, 40, 60, {2.0, 1.5, 3.4}, {0, 0, 0})})
+        for (const RayFunction mode : {RayFunction::composite, RayFunction::sum, RayFunction::average}) {
+          VolumeItem v = item(data, mode == RayFunction::composite ? one_color({1, 0.5f, 0.25f}) : grey(0, 2), constant_opacity(0.5));
+          v.association = data->fields()[0].association, v.mode = mode;
+          const auto layer = draw_layer(v, p, splats(SplatOptions::Order::sheets, classify));
+          const Frame want = ray_cast(v, p, 0.01);
+          CAPTURE(int(mode));
+          CAPTURE(int(classify));
+          CHECK(distance(layer.rgba, want.rgba).most < 0.015);
+        }
+}
+
 TEST_CASE("splat: one voxel is a projected Gaussian") {
   const double sigma = volume::kernel_sigma * 0.25;
-  UniformGrid g = cube(9, -1, 1);
+  UniformGrid g = cube(17, -2, 2);  // farther from the border than kernels reach
   for (const Variant& variant : {variants[1], variants[2]}) {
     const double density = 0.01;
     OpacityCurve curve;

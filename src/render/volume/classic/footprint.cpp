@@ -37,6 +37,8 @@ Footprints::Footprints(const Stage& s) : projection_(s.projection) {
   // The depth of the kernel's ellipsoid: its support function.
   reach_ = kernel_sigma * kernel_reach * length(depth_);
   if (p.parallel) shape({0, 0, 1}, same_);
+  const double middle = depth((s.volume.lo + s.volume.hi) * 0.5), pixel = (p.parallel ? 1 : std::abs(middle)) / p.scale;
+  for (Vec3 c : columns_) resolved_ = resolved_ && length(c) * kernel_sigma >= std::sqrt(least_variance) * pixel;
 }
 
 Vec3 Footprints::q_at(double x, double y, double depth) const {

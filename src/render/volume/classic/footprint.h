@@ -57,6 +57,8 @@ class Footprints {
   double depth(Vec3 q) const { return origin_.z + dot(depth_, q); }
   /// Largest reach of any kernel in depth.
   double reach() const { return reach_; }
+  /// Are voxels in the middle of the box larger than pixels, so that splats are not widened?
+  bool resolved() const { return resolved_; }
   /// q of the place at a depth on the ray through (x, y) in pixels.
   Vec3 q_at(double x, double y, double depth) const;
 
@@ -68,6 +70,7 @@ class Footprints {
   Vec3 right_, up_, forward_;  // q per world length along the camera's axes
   Vec3 eye_;                   // q of the eye
   double reach_ = 0;
+  bool resolved_ = true;
   Footprint same_;  // parallel: all but the place
 };
 

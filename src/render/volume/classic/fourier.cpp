@@ -77,7 +77,7 @@ Fade fade_of(const Stage& s, Vec3 centre) {
 /// The slice of the spectrum across the view: points (a, b) turns per world length along right and up, a in rows.
 class Slice {
  public:
-  Slice(const Stage& s, const Spectrum& spectrum, Vec3 centre) : spectrum_(spectrum), fade_(fade_of(s, centre)) {
+  Slice(const Stage& s, const Spectrum& spectrum, Fade fade) : spectrum_(spectrum), fade_(fade) {
     const Projection& p = s.projection;
     for (int a = 0; a < 3; ++a) {
       const Vec3 edge = s.to_world.column(a);
@@ -132,7 +132,7 @@ void inverse_2d(std::vector<float>& re, std::vector<float>& im, size_t n, const 
 }
 
 /// Two points per smallest edge of a voxel; wide enough for the volume from any side.
-XRay project(const Stage& s, const Spectrum& spectrum) {
+XRay project(const Stage& s, const Spectrum& spectrum, bool fades) {
   XRay x;
   x.centre = s.world(spectrum.centre());
   double edge = HUGE_VAL, reach = 0;
@@ -153,7 +153,7 @@ XRay project(const Stage& s, const Spectrum& spectrum) {
   const size_t n = x.size;
   std::vector<float> re(n * n), im(n * n);
   const double per = 1 / (double(n) * x.pitch);
-  const Slice slice(s, spectrum, x.centre);
+  const Slice slice(s, spectrum, fades ? fade_of(s, x.centre) : Fade{});
   // The picture is real: the other half of the slice mirrors this one.
   parallel_for(
       n / 2 + 1, 4,
@@ -185,7 +185,13 @@ Layer fourier(const LayerInput& input) {
   Layer layer;
   layer.rgba.assign(4 * stage.pixels(), 0.0f);
   if (stage.empty) return layer;
-  const XRay xray = project(stage, *Spectrum::of(stage));
+  const XRay xray = project(stage, *Spectrum::of(stage), true);
+  // Outlines are as soft as the samples lie apart: an average over what the ray crosses of the box would be that of nothing there. So the
+  // samples are counted as they are summed.
+  XRay count;
+  const bool mean = input.item.mode == RayFunction::average;
+  if (mean) count = project(stage, *Spectrum::of(stage, Spectrum::Of::ones), false);
+  const double least = stage.volume.samples->lo + double(stage.volume.base), most = stage.volume.samples->hi + double(stage.volume.base);
   const Projection& p = input.projection;
   const Ink ink(input.item);
   const double centre_x = dot(xray.centre - p.eye, p.right), centre_y = dot(xray.centre - p.eye, p.up);
@@ -201,9 +207,16 @@ Layer fourier(const LayerInput& input) {
             const Course whole = course(stage.volume, ray.origin, ray.direction, -HUGE_VAL, HUGE_VAL);
             const double chord = whole.leave - whole.enter;
             if (!(chord > 0) || cut.enter > whole.enter || cut.leave < whole.leave) continue;
-            const double value =
-                xray.at((x + 0.5 - p.middle_x()) / p.scale - centre_x, (p.middle_y() - double(y) - 0.5) / p.scale - centre_y);
-            ink.draw(input.item.mode == RayFunction::sum ? value : value / chord, &layer.rgba[4 * pixel]);
+            const double at_x = (x + 0.5 - p.middle_x()) / p.scale - centre_x, at_y = (p.middle_y() - double(y) - 0.5) / p.scale - centre_y;
+            double value = xray.at(at_x, at_y);
+            if (mean) {
+              const double crossed = count.at(at_x, at_y);
+              if (!(crossed > 0) || !(least <= most)) continue;
+              // No mean lies beyond the samples; a depth cue makes less of them.
+              value = std::clamp(value / crossed, input.item.light.depth_cue > 0 ? std::min(least, 0.0) : least,
+                                 input.item.light.depth_cue > 0 ? std::max(most, 0.0) : most);
+            }
+            ink.draw(value, &layer.rgba[4 * pixel]);
           }
       },
       &input.context);

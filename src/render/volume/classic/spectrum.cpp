@@ -74,24 +74,25 @@ size_t Spectrum::bytes_of(const Stage& stage) {
   return (n[0] / 2 + 1) * n[1] * n[2] * sizeof(Value);
 }
 
-std::shared_ptr<const Spectrum> Spectrum::of(const Stage& s) {
+std::shared_ptr<const Spectrum> Spectrum::of(const Stage& s, Of what) {
   Memo& memo = s.item.data->memo();
-  const std::string key = fmt::format("fourier {} {} {}", s.item.field, int(s.item.association), s.item.component);
+  const std::string key =
+      fmt::format("fourier{} {} {} {}", what == Of::ones ? " ones" : "", s.item.field, int(s.item.association), s.item.component);
   if (auto kept = memo.find<Spectrum>(key)) return kept;
   const size_t bytes = bytes_of(s), limit = s.context.memory_limit;
   if (limit > 0 && bytes > limit)
     fail_usage(fmt::format("the padded spectrum needs {} MB, more than the memory limit of {} MB", bytes >> 20, limit >> 20), "volume",
                "method=ray needs no more than the volume");
-  if (limit > 0 && bytes > limit / 2) return std::make_shared<const Spectrum>(s);
-  return memo.keep(key, Spectrum(s), bytes);
+  if (limit > 0 && bytes > limit / 2) return std::make_shared<const Spectrum>(s, what);
+  return memo.keep(key, Spectrum(s, what), bytes);
 }
 
-Spectrum::Spectrum(const Stage& s) {
+Spectrum::Spectrum(const Stage& s, Of what) {
   dims_ = s.volume.voxels.dims;
   for (size_t a = 0; a < 3; ++a) size_[a] = fft_size(2 * dims_[a]), centre_[a] = dims_[a] / 2;
   half_ = size_[0] / 2 + 1;
   points_.resize(half_ * size_[1] * size_[2]);
-  transform_x(s);
+  transform_x(s, what);
   s.context.check();
   transform_y();
   s.context.check();
@@ -99,7 +100,7 @@ Spectrum::Spectrum(const Stage& s) {
 }
 
 /// Rows of samples, eight at a time: four in the real parts, four in the imaginary ones, told apart by their symmetry.
-void Spectrum::transform_x(const Stage& s) {
+void Spectrum::transform_x(const Stage& s, Of what) {
   const Volume& v = s.volume;
   std::vector<float> weight[3];
   for (int a = 0; a < 3; ++a)
@@ -120,7 +121,7 @@ void Spectrum::transform_x(const Stage& s) {
         std::vector<Lanes>& to = row - first < lanes ? t.re : t.im;
         for (size_t i = 0; i < dims_[0]; ++i) {
           const float value = value_at(v, i, j, k) + v.base;
-          to[shifted(0, i)][lane] = value == value ? value * w * weight[0][i] : 0;
+          to[shifted(0, i)][lane] = value == value ? (what == Of::ones ? 1 : value) * w * weight[0][i] : 0;
         }
       }
       fft.transform(t.re.data(), t.im.data(), t.work_re.data(), t.work_im.data());

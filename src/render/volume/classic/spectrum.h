@@ -32,9 +32,10 @@ class Spectrum {
  public:
   /// F(k) = sum of w f exp(-2 pi i k . (n - centre)), k in turns per voxel; w the voxel's share of the box; voxels without a value add
   /// nothing. Values are those of the field.
-  explicit Spectrum(const Stage& stage);
+  enum class Of { values, ones };  ///< ones: 1 in place of each value, to count the samples
+  explicit Spectrum(const Stage& stage, Of what = Of::values);
   /// Kept with the dataset; throws Error(usage) when it would not fit into the context's memory limit.
-  static std::shared_ptr<const Spectrum> of(const Stage& stage);
+  static std::shared_ptr<const Spectrum> of(const Stage& stage, Of what = Of::values);
   static size_t bytes_of(const Stage& stage);
 
   struct Value {
@@ -52,7 +53,7 @@ class Spectrum {
  private:
   template <bool slopes>
   std::array<Value, 4> read(Vec3 k) const;
-  void transform_x(const Stage& stage);
+  void transform_x(const Stage& stage, Of what);
   void transform_y();
   void transform_z(const Context& context);
   size_t shifted(int axis, size_t n) const { return (n + size_[size_t(axis)] - centre_[axis]) % size_[size_t(axis)]; }

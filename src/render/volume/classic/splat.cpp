@@ -20,13 +20,67 @@ using Four = float __attribute__((vector_size(16)));
 /// Deviations of depth by which a kernel may lean from its middle to its edge (4.3 deviations away) and still be set upright.
 constexpr float upright_below = 1.6f;
 
+/// How much of a field that is 1 in the box the kernels of its voxels make of it: along each axis, between 3 voxels outside and the same on
+/// the other side. Within the border of the box less arrives than there is, beyond it there is something left.
+class Arriving {
+ public:
+  explicit Arriving(const Volume& v) {
+    const double per = 1 / (kernel_sigma * 2.5066282746310002);
+    for (int a = 0; a < 3; ++a) {
+      lo_[a] = v.lo[a] - fringe, hi_[a] = v.hi[a] + fringe;
+      inner_lo_[a] = v.lo[a] + fringe, inner_hi_[a] = v.hi[a] - fringe;
+      const size_t n = v.voxels.dims[size_t(a)], count = size_t((hi_[a] - lo_[a]) * steps) + 2;
+      std::vector<float>& axis = at_[a];
+      for (size_t k = 0; k < count; ++k) {
+        const double q = lo_[a] + double(k) / steps;
+        double sum = 0;
+        for (size_t i = size_t(std::max(0.0, q - fringe)); i < n && double(i) < q + fringe; ++i) {
+          const double share = std::min(v.hi[a], double(i) + 0.5) - std::max(v.lo[a], double(i) - 0.5), d = (q - double(i)) / kernel_sigma;
+          sum += std::max(0.0, share) * per * exp_negative(0.5 * d * d);
+        }
+        axis.push_back(std::abs(sum - 1) < 1e-3 ? 1.0f : float(sum));  // ripples of the kernel are not the border's
+      }
+    }
+  }
+
+  /// The mean over the way from a to b.
+  double between(Vec3 a, Vec3 b) const {
+    bool inner = true;
+    for (int i = 0; i < 3; ++i) inner = inner && std::min(a[i], b[i]) > inner_lo_[i] && std::max(a[i], b[i]) < inner_hi_[i];
+    if (inner) return 1;
+    // Simpson's rule, four parts a voxel.
+    const Vec3 d = b - a;
+    const int parts = 2 * std::clamp(int(2 * std::max({std::abs(d.x), std::abs(d.y), std::abs(d.z)})) + 1, 1, 64);
+    double sum = at(a) + at(b);
+    for (int i = 1; i < parts; ++i) sum += (i % 2 ? 4 : 2) * at(a + d * (double(i) / parts));
+    return sum / (3 * parts);
+  }
+
+ private:
+  static constexpr double fringe = kernel_reach * kernel_sigma;
+  static constexpr int steps = 32;  // in a voxel
+  double at(Vec3 q) const {
+    double product = 1;
+    for (int a = 0; a < 3; ++a) {
+      if (!(q[a] > lo_[a] && q[a] < hi_[a])) return 0;
+      const double u = (q[a] - lo_[a]) * steps;
+      const auto i = std::min(size_t(u), at_[a].size() - 2);
+      product *= double(at_[a][i]) + (u - double(i)) * (double(at_[a][i + 1]) - double(at_[a][i]));
+    }
+    return product;
+  }
+  Vec3 lo_, hi_, inner_lo_, inner_hi_;
+  std::vector<float> at_[3];
+};
+
 struct Job {
   const Stage& stage;
   const Footprints& footprints;
   const SplatList& list;
   const KernelTable& table;
-  bool after;    // classify the sheets' pixels
-  double sheet;  // depth of a sheet
+  const Arriving* arriving;  // null: voxels are smaller than pixels, which soften the border as they do all else
+  bool after;                // classify the sheets' pixels
+  double sheet;              // depth of a sheet
   double nearest, farthest;
   std::vector<Shade> shades;  // of the listed voxels, when they are classified and shaded before
 };
@@ -41,6 +95,12 @@ class Band {
     composite_ = s_.item.mode == RayFunction::composite;
     if (!composite_) best_.assign(n, NAN), totals_.assign(n, {0, 0});
     lit_ = s_.lit(s_.projection.forward);
+    if (!j_.arriving) return;
+    for (int y = y0_; y < y1_; ++y)
+      for (int x = 0; x < width_; ++x) {
+        const PixelRay ray = s_.ray(x, y);
+        inside_.push_back({ray.first_depth + ray.enter * ray.per_length, ray.first_depth + ray.leave * ray.per_length});
+      }
   }
 
   /// Voxels come by depth: a sheet is done when the next kernel begins behind it. As many are open as a kernel is deep.
@@ -174,11 +234,19 @@ class Band {
     });
   }
 
-  /// Share of a sheet that lies in front of a pixel's surface and between near and far.
-  float seen(size_t pixel, double z0, double z1) const {
+  /// Share of a sheet that lies in the box, in front of a pixel's surface and between near and far, and what it has to be multiplied by as
+  /// the kernels of the border lie partly outside.
+  std::pair<float, float> seen(size_t pixel, int x, int y, double z0, double z1) const {
+    if (j_.arriving) {
+      const auto [enter, leave] = inside_[pixel];
+      const double from = std::max(z0, enter), to = std::min(z1, leave);
+      if (!(to > from)) return {0, 1};
+      const double mean = j_.arriving->between(j_.footprints.q_at(x + 0.5, y + 0.5, z0), j_.footprints.q_at(x + 0.5, y + 0.5, z1));
+      return {float((to - from) / (z1 - z0)), float(1 / std::max(mean, 0.01))};
+    }
     const double far = std::min(s_.projection.far_plane, double(s_.opaque.depth[size_t(y0_) * size_t(width_) + pixel]));
     const double from = std::max(z0, s_.projection.near_plane), to = std::min(z1, far);
-    return to > from ? float((to - from) / (z1 - z0)) : 0;
+    return {to > from ? float((to - from) / (z1 - z0)) : 0, 1};
   }
 
   void composite_sheet(size_t number) {
@@ -193,10 +261,11 @@ class Band {
         for (size_t c = 0; c < channels(); ++c) s[c] = sheet.sums[c * n + at], sheet.sums[c * n + at] = 0;
         const float amount = s[channels() - 1];
         if (!(amount > 0) || sums_[at].transmittance < opaque_below) continue;
-        const float share = seen(at, z0, z1);
-        if (share == 0) continue;
+        const auto [in_sight, whole] = seen(at, x, y, z0, z1);
+        if (in_sight == 0) continue;
+        const float share = in_sight * whole;
         if (!composite_) {
-          collect(at, s[0], amount, share);
+          collect(at, s[0] * whole, amount * whole, in_sight);
         } else if (!j_.after) {
           const float alpha = alpha_of(amount * share), color = alpha / amount;
           blend(at, s[0] * color, s[1] * color, s[2] * color, alpha);
@@ -262,6 +331,7 @@ class Band {
   bool composite_ = true;
   std::vector<Gathered> sums_;
   std::vector<Sheet> ring_;
+  std::vector<std::pair<double, double>> inside_;  // depths between which a pixel's ray is in the box and in sight
   std::vector<float> weights_, shares_;
   std::vector<float> best_;                        // modes other than composite
   std::vector<std::pair<double, double>> totals_;  // value times length, length
@@ -306,9 +376,19 @@ Layer splat(const LayerInput& input, const SplatOptions& options) {
   const Footprints footprints(stage);
   const SplatList list(stage, footprints, composite && !after);
   const KernelTable table;
+  std::optional<Arriving> arriving;
+  if (footprints.resolved()) arriving.emplace(stage.volume);
   // A sheet is one voxel's smallest edge deep.
-  Job job{stage,    footprints, list, table, after, input.item.sampling.step > 0 ? input.item.sampling.step : 2 * stage.volume.step,
-          HUGE_VAL, -HUGE_VAL,  {}};
+  Job job{stage,
+          footprints,
+          list,
+          table,
+          arriving ? &*arriving : nullptr,
+          after,
+          input.item.sampling.step > 0 ? input.item.sampling.step : 2 * stage.volume.step,
+          HUGE_VAL,
+          -HUGE_VAL,
+          {}};
   const Vec3 lo = stage.volume.lo, hi = stage.volume.hi;
   if (!(footprints.reach() / job.sheet < 100))
     fail_usage(fmt::format("sheets of {} are too thin for kernels that reach {:.4g}", job.sheet, footprints.reach()), "volume",
