@@ -82,12 +82,6 @@ bool may_vanish(size_t n, double least, At&& at) {
   }
   return false;
 }
-bool may_vanish(std::span<const Corner> c, double nothing) {
-  double la = 0, lb = 0;
-  for (const Corner& k : c) la = std::max(la, k.most_a), lb = std::max(lb, k.most_b);
-  return may_vanish(c.size(), nothing * la * lb, [&](size_t i) { return std::pair<Vec3, Vec3>(c[i].a, c[i].b); });
-}
-
 bool are_parallel(Vec3 a, Vec3 b, double most_a, double most_b, double nothing) {
   const Vec3 c = cross(a, b);
   return dot(c, c) <= nothing * nothing * (most_a * most_a) * (most_b * most_b);
@@ -262,9 +256,28 @@ struct TetraPoints {
   double nothing;
   Found here[most_points];
   int n = 0;
+  Vec3 product[4][4];    // of the corners' fields, both ways
   bool line[4][4] = {};  // edges on which the fields are parallel all along
 
-  TetraPoints(const Corner (&corners)[4], double least) : c(corners), nothing(least) {}
+  TetraPoints(const Corner (&corners)[4], double least) : c(corners), nothing(least) {
+    for (int i = 0; i < 4; ++i)
+      for (int j = i; j < 4; ++j) product[i][j] = cross(c[i].a, c[j].b) + cross(c[j].a, c[i].b);
+  }
+  // See may_vanish(): between these corners, in bits.
+  bool may_hold(unsigned corners) const {
+    double la = 0, lb = 0;
+    for (int i = 0; i < 4; ++i)
+      if (corners >> i & 1) la = std::max(la, c[i].most_a), lb = std::max(lb, c[i].most_b);
+    const double least = nothing * la * lb;
+    bool plus[3] = {true, true, true}, minus[3] = {true, true, true};
+    for (int i = 0; i < 4; ++i)
+      for (int j = i; j < 4; ++j) {
+        if (~corners & (1u << i | 1u << j)) continue;
+        const Vec3 w = product[i][j];
+        for (int k = 0; k < 3; ++k) plus[k] &= w[k] > least, minus[k] &= w[k] < -least;
+      }
+    return !(plus[0] | minus[0] | plus[1] | minus[1] | plus[2] | minus[2]);
+  }
 
   void add(unsigned corners, const double* x, int place) {
     Found& f = here[n++];
@@ -294,13 +307,12 @@ struct TetraPoints {
     for (int skip = 0; skip < 4; ++skip) solve_on_face(skip);
   }
   void solve_on_edge(int i, int j) {
-    const Corner two[2] = {c[i], c[j]};
     if (c[i].parallel && c[j].parallel) {
       line[i][j] = are_parallel(c[i].a + c[j].a, c[i].b + c[j].b, 2 * std::max(c[i].most_a, c[j].most_a),
                                 2 * std::max(c[i].most_b, c[j].most_b), nothing);
       if (line[i][j]) return;
     }
-    if (!may_vanish(two, nothing)) return;
+    if (!may_hold(1u << i | 1u << j)) return;
     double t[2];
     const int places = solve_edge(c[i], c[j], nothing, t);
     for (int k = 0; k < places; ++k) {
@@ -314,10 +326,9 @@ struct TetraPoints {
     int t[3];
     for (int k = 0, m = 0; k < 4; ++k)
       if (k != skip) t[m++] = k;
-    const Corner three[3] = {c[t[0]], c[t[1]], c[t[2]]};
-    if (line[t[0]][t[1]] || line[t[0]][t[2]] || line[t[1]][t[2]] || !may_vanish(three, nothing)) return;
-    const int before = n;
     const unsigned face = 15u & ~(1u << skip);
+    if (line[t[0]][t[1]] || line[t[0]][t[2]] || line[t[1]][t[2]] || !may_hold(face)) return;
+    const int before = n;
     for (int i = 0; i < before; ++i)
       for (int j = i + 1; j < before; ++j)
         if (!((here[i].corners | here[j].corners) & ~face) && straight(i, j)) return;
@@ -388,8 +399,8 @@ struct Work {
     const Corner all[4] = {*c[0], *c[1], *c[2], *c[3]};
     for (const Corner& k : all)
       if (!std::isfinite(dot(k.a, k.b))) return;
-    if (!may_vanish(all, nothing)) return;
     TetraPoints t(all, nothing);
+    if (!t.may_hold(15)) return;
     t.solve();
     if (t.n < 2) return;
     double la = 0, lb = 0;
