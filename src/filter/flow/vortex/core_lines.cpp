@@ -47,6 +47,7 @@ double angle_between(Vec3 a, Vec3 b) {
 
 DatasetPtr of_mesh(const DatasetPtr& in, const VortexCoresParams& p, Context& context) {
   Field velocity = flow_field_of(*in, p.field.name, "vortex_cores");
+  const double nothing = parallel_within(velocity.array.type());
   const std::vector<Vec3> u = point_vectors(in, velocity, context);
   DatasetPtr data = in;
   if (velocity.association == Association::cell) {  // its gradient is wanted at the points too
@@ -69,7 +70,7 @@ DatasetPtr of_mesh(const DatasetPtr& in, const VortexCoresParams& p, Context& co
       w[i] = levy ? Vec3(j.m[2][1] - j.m[1][2], j.m[0][2] - j.m[2][0], j.m[1][0] - j.m[0][1]) : j * u[i];
     }
   });
-  ParallelLines lines = parallel_lines(data, u, w, context);
+  ParallelLines lines = parallel_lines(data, u, w, context, nothing);
 
   std::vector<double> swirl(lines.points.size()), angle(lines.points.size(), 0);
   std::vector<AtPoint> at(lines.points.size());

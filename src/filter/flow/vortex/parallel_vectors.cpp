@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <numeric>
 
 #include "base/parallel.h"
 #include "data/cell_reader.h"
+#include "data/cell_topology.h"
 #include "filter/field/point_cell.h"
 #include "filter/flow/eigen_general.h"
 #include "filter/flow/flow_parts.h"
@@ -23,10 +26,14 @@ constexpr double pi = 3.14159265358979323846;
 struct Corner {
   int64_t id;
   Vec3 at, a, b;
+  double most_a, most_b;  // lengths of a and b in the cells around: what counts as nothing
+  bool parallel;          // here
 };
 
+// A point of the lines belongs to a corner, to an edge between two or to a triangle between three; smaller ids first, none = -1. So what
+// lies exactly on an edge is the same point for all triangles there.
 struct Key {
-  std::array<int64_t, 3> triangle;
+  std::array<int64_t, 3> corners;
   int place;  // which of up to three solutions
   friend auto operator<=>(const Key&, const Key&) = default;
 };
@@ -35,6 +42,8 @@ struct Found {
   Key key;
   Vec3 at;
   double s[3];          // barycentric, in the order of the key
+  double x[4];          // in the tetrahedron
+  unsigned corners;     // of the tetrahedron, those that the key names, in bits
   double ratio, angle;  // a cos(angle) = b sin(angle), in units of the tetrahedron's largest values; (-pi/2, pi/2]
   int64_t cell;
 };
@@ -58,15 +67,50 @@ double largest(const Mat3& m) {
 }
 
 // Can the cross product of the two fields vanish between these corners? Its components are quadratic forms in the barycentric
-// coordinates: no, when all coefficients of one have the same sign.
-bool may_vanish(std::span<const Corner> c) {
+// coordinates: no, when all coefficients of one have the same sign. `at(i)`: the fields of corner i; `least`: what counts as nothing.
+template <class At>
+bool may_vanish(size_t n, double least, At&& at) {
   bool plus[3] = {true, true, true}, minus[3] = {true, true, true};
-  for (size_t i = 0; i < c.size(); ++i)
-    for (size_t j = i; j < c.size(); ++j) {
-      const Vec3 w = cross(c[i].a, c[j].b) + cross(c[j].a, c[i].b);
-      for (int k = 0; k < 3; ++k) plus[k] &= w[k] > 0, minus[k] &= w[k] < 0;
+  for (size_t i = 0; i < n; ++i) {
+    const auto [a, b] = at(i);
+    for (size_t j = i; j < n; ++j) {
+      const auto [c, d] = at(j);
+      const Vec3 w = cross(a, d) + cross(c, b);
+      for (int k = 0; k < 3; ++k) plus[k] &= w[k] > least, minus[k] &= w[k] < -least;
     }
-  return !(plus[0] | minus[0] | plus[1] | minus[1] | plus[2] | minus[2]);
+    if (!(plus[0] | minus[0] | plus[1] | minus[1] | plus[2] | minus[2])) return true;
+  }
+  return false;
+}
+bool are_parallel(Vec3 a, Vec3 b, double most_a, double most_b, double nothing) {
+  const Vec3 c = cross(a, b);
+  return dot(c, c) <= nothing * nothing * (most_a * most_a) * (most_b * most_b);
+}
+
+// Places t in (0, 1) of an edge where the fields are parallel. Each component of their cross product is a quadratic polynomial, whose
+// roots are tried; one may have a double root where another has a simple one, which is exact. Places beside a corner that is one itself
+// do not count.
+int solve_edge(const Corner& p, const Corner& q, double nothing, double out[2]) {
+  const Vec3 c00 = cross(p.a, p.b), c0 = cross(p.a, q.b) + cross(q.a, p.b), c11 = cross(q.a, q.b);
+  const double most_a = std::max(p.most_a, q.most_a), most_b = std::max(p.most_b, q.most_b), near = 1e3 * nothing;
+  std::pair<double, double> tried[6];  // what is left of the cross product, place
+  int count = 0;
+  for (int k = 0; k < 3; ++k) {  // c00 (1-t)^2 + c0 t (1-t) + c11 t^2 = e t^2 + f t + g
+    const double e = c00[k] - c0[k] + c11[k], f = c0[k] - 2 * c00[k], g = c00[k], most = std::max({std::abs(e), std::abs(f), std::abs(g)});
+    const double d = f * f - 4 * e * g;
+    if (!(most > 0) || d < -1e-12 * most * most) continue;
+    const double h = -0.5 * (f + (f < 0 ? -1 : 1) * std::sqrt(std::max(d, 0.0)));
+    for (const double t : {e != 0 ? h / e : -1, h != 0 ? g / h : -1}) {
+      if (!(t >= (p.parallel ? near : 0) && t <= (q.parallel ? 1 - near : 1))) continue;
+      const Vec3 a = p.a * (1 - t) + q.a * t, b = p.b * (1 - t) + q.b * t;
+      if (are_parallel(a, b, most_a, most_b, nothing)) tried[count++] = {length(cross(a, b)), t};
+    }
+  }
+  std::sort(tried, tried + count);
+  int n = 0;
+  for (int k = 0; k < count && n < 2; ++k)
+    if (n == 0 || std::abs(tried[k].second - out[0]) > std::max(near, 1e-6)) out[n++] = tried[k].second;
+  return n;
 }
 
 // All s >= 0 with sum 1 and A s parallel to B s. The ratio is infinite where B s = 0.
@@ -106,7 +150,245 @@ bool inside_at(const Corner* c[4], double la, double lb, double angle) {
   return plus != minus;
 }
 
+// The corners of a face of the open cell: of curved cells without the nodes of its edges and inside.
+std::span<const uint32_t> face_corners(CellReader& reader, size_t f) {
+  const auto nodes = reader.face(f);
+  if (!is_high_order(reader.type())) return nodes;
+  return nodes.first(cell_faces(reader.type(), reader.ids().size(), reader.orders()).corners[f]);
+}
+
+// Corners come first in the nodes of a cell.
+size_t corner_count(const CellReader& reader) {
+  if (!is_high_order(reader.type())) return reader.ids().size();
+  const CellType t = linear_type(reader.type());
+  return t == CellType::tetra ? 4 : t == CellType::pyramid ? 5 : t == CellType::wedge ? 6 : 8;
+}
+
+// The solid cells in which the fields may be parallel. Of their points: the largest lengths of both fields in those cells around, and
+// where the fields are parallel. Points of faces on which they are parallel everywhere (walls, where nothing moves) are none.
+struct Around {
+  std::vector<size_t> cells;
+  bool solid = false;
+  std::vector<double> most_a, most_b;
+  std::vector<uint8_t> parallel;
+
+  Around(const CellReader& proto, std::span<const Vec3> a, std::span<const Vec3> b, double nothing, Context& context)
+      : most_a(a.size(), 0), most_b(a.size(), 0), parallel(a.size(), 0) {
+    find_cells(proto, a, b, nothing, context);
+    std::atomic<size_t> count{0};
+    parallel_for(a.size(), 1 << 14, [&](size_t begin, size_t end) {
+      size_t here = 0;
+      for (size_t i = begin; i < end; ++i) {
+        most_a[i] = std::sqrt(most_a[i]), most_b[i] = std::sqrt(most_b[i]);
+        here += parallel[i] = most_a[i] > 0 && most_b[i] > 0 && are_parallel(a[i], b[i], most_a[i], most_b[i], nothing);
+      }
+      count += here;
+    });
+    if (count > 2) leave_out_areas(proto, a, b, nothing, context);
+  }
+
+ private:
+  void find_cells(const CellReader& proto, std::span<const Vec3> a, std::span<const Vec3> b, double nothing, Context& context) {
+    constexpr size_t grain = 1 << 12;
+    std::vector<std::vector<size_t>> found((proto.count() + grain - 1) / grain);
+    std::vector<uint8_t> some(found.size(), 0);
+    parallel_for(
+        proto.count(), grain,
+        [&](size_t begin, size_t end) {
+          CellReader reader(proto);
+          for (size_t c = begin; c < end; ++c) {
+            if (reader.hidden(c)) continue;
+            reader.open(c);
+            if (reader.dimension() != 3) continue;
+            some[begin / grain] = 1;
+            const auto ids = reader.ids().first(corner_count(reader));
+            double la = 0, lb = 0;
+            for (const int64_t id : ids) {
+              la = std::fmax(la, dot(a[size_t(id)], a[size_t(id)]));
+              lb = std::fmax(lb, dot(b[size_t(id)], b[size_t(id)]));
+            }
+            const auto at = [&](size_t i) { return std::pair<Vec3, Vec3>(a[size_t(ids[i])], b[size_t(ids[i])]); };
+            if (!may_vanish(ids.size(), nothing * std::sqrt(la * lb), at)) continue;
+            found[begin / grain].push_back(c);
+            for (const int64_t id : ids) raise(most_a[size_t(id)], la), raise(most_b[size_t(id)], lb);
+          }
+        },
+        &context);
+    for (const auto& f : found) cells.insert(cells.end(), f.begin(), f.end());
+    solid = std::find(some.begin(), some.end(), 1) != some.end();
+  }
+  static void raise(double& most, double to) {
+    std::atomic_ref<double> m(most);
+    double before = m.load(std::memory_order_relaxed);
+    while (before < to && !m.compare_exchange_weak(before, to, std::memory_order_relaxed)) {
+    }
+  }
+  void leave_out_areas(const CellReader& proto, std::span<const Vec3> a, std::span<const Vec3> b, double nothing, Context& context) {
+    std::vector<uint8_t> area(parallel.size(), 0);
+    CellReader reader(proto);
+    for (const size_t c : cells) {
+      context.check();
+      reader.open(c);
+      const auto ids = reader.ids();
+      if (std::count_if(ids.begin(), ids.end(), [&](int64_t id) { return parallel[size_t(id)] != 0; }) < 3) continue;
+      for (size_t f = 0; f < reader.face_count(); ++f) {
+        const auto face = face_corners(reader, f);
+        Vec3 u, w;
+        double la = 0, lb = 0;
+        bool all = true;
+        for (const uint32_t k : face) {
+          const auto i = size_t(ids[k]);
+          u += a[i], w += b[i], la += most_a[i], lb += most_b[i], all &= parallel[i] != 0;
+        }
+        if (!all || !are_parallel(u, w, la, lb, nothing)) continue;
+        for (const uint32_t k : face) area[size_t(ids[k])] = 1;
+      }
+    }
+    for (size_t i = 0; i < area.size(); ++i) parallel[i] &= uint8_t(!area[i]);
+  }
+};
+
+constexpr int most_points = 28;  // corners, two on each edge, three on each face
+
+// The points of the lines on the border of a tetrahedron, each once.
+struct TetraPoints {
+  const Corner (&c)[4];
+  double nothing;
+  Found here[most_points];
+  int n = 0;
+  Vec3 product[4][4];    // of the corners' fields, both ways
+  bool line[4][4] = {};  // edges on which the fields are parallel all along
+
+  TetraPoints(const Corner (&corners)[4], double least) : c(corners), nothing(least) {
+    for (int i = 0; i < 4; ++i)
+      for (int j = i; j < 4; ++j) product[i][j] = cross(c[i].a, c[j].b) + cross(c[j].a, c[i].b);
+  }
+  // See may_vanish(): between these corners, in bits.
+  bool may_hold(unsigned corners) const {
+    double la = 0, lb = 0;
+    for (int i = 0; i < 4; ++i)
+      if (corners >> i & 1) la = std::max(la, c[i].most_a), lb = std::max(lb, c[i].most_b);
+    const double least = nothing * la * lb;
+    bool plus[3] = {true, true, true}, minus[3] = {true, true, true};
+    for (int i = 0; i < 4; ++i)
+      for (int j = i; j < 4; ++j) {
+        if (~corners & (1u << i | 1u << j)) continue;
+        const Vec3 w = product[i][j];
+        for (int k = 0; k < 3; ++k) plus[k] &= w[k] > least, minus[k] &= w[k] < -least;
+      }
+    return !(plus[0] | minus[0] | plus[1] | minus[1] | plus[2] | minus[2]);
+  }
+
+  void add(unsigned corners, const double* x, int place) {
+    Found& f = here[n++];
+    f.corners = corners;
+    f.key = {{-1, -1, -1}, place};
+    f.at = {};
+    Vec3 a, b;
+    int m = 0;
+    for (int k = 0; k < 4; ++k) {
+      f.x[k] = corners >> k & 1 ? x[k] : 0;
+      if (!(corners >> k & 1)) continue;
+      f.key.corners[size_t(m)] = c[k].id, f.s[m++] = x[k];
+      f.at += c[k].at * x[k], a += c[k].a * x[k], b += c[k].b * x[k];
+    }
+    f.ratio = dot(a, b) / dot(b, b);
+    if (!std::isfinite(f.ratio)) f.ratio = HUGE_VAL;
+  }
+
+  void solve() {
+    for (int i = 0; i < 4; ++i) {
+      double x[4] = {};
+      x[i] = 1;
+      if (c[i].parallel) add(1u << i, x, 0);
+    }
+    for (int i = 0; i < 4; ++i)
+      for (int j = i + 1; j < 4; ++j) solve_on_edge(i, j);
+    for (int skip = 0; skip < 4; ++skip) solve_on_face(skip);
+  }
+  void solve_on_edge(int i, int j) {
+    if (c[i].parallel && c[j].parallel) {
+      line[i][j] = are_parallel(c[i].a + c[j].a, c[i].b + c[j].b, 2 * std::max(c[i].most_a, c[j].most_a),
+                                2 * std::max(c[i].most_b, c[j].most_b), nothing);
+      if (line[i][j]) return;
+    }
+    if (!may_hold(1u << i | 1u << j)) return;
+    double t[2];
+    const int places = solve_edge(c[i], c[j], nothing, t);
+    for (int k = 0; k < places; ++k) {
+      double x[4] = {};
+      x[i] = 1 - t[k], x[j] = t[k];
+      add(1u << i | 1u << j, x, k);
+    }
+  }
+  // Inside of the face: not beside points on its edges, and not where a line lies in it, of which those are the ends.
+  void solve_on_face(int skip) {
+    int t[3];
+    for (int k = 0, m = 0; k < 4; ++k)
+      if (k != skip) t[m++] = k;
+    const unsigned face = 15u & ~(1u << skip);
+    if (line[t[0]][t[1]] || line[t[0]][t[2]] || line[t[1]][t[2]] || !may_hold(face)) return;
+    const int before = n;
+    for (int i = 0; i < before; ++i)
+      for (int j = i + 1; j < before; ++j)
+        if (!((here[i].corners | here[j].corners) & ~face) && straight(i, j)) return;
+    const Corner* corners[3] = {&c[t[0]], &c[t[1]], &c[t[2]]};
+    Found solved[3];
+    const int more = solve_triangle(corners, solved);
+    for (int k = 0; k < more; ++k) {
+      double x[4] = {};
+      for (int m = 0; m < 3; ++m) x[t[m]] = solved[k].s[m];
+      bool beside = false;
+      for (int i = 0; i < before && !beside; ++i) {
+        double off = here[i].corners & ~face ? 1 : 0;
+        for (int m = 0; m < 4; ++m) off = std::max(off, std::abs(here[i].x[m] - x[m]));
+        beside = off <= 1e3 * nothing;
+      }
+      if (beside) continue;
+      add(face, x, k);
+      here[n - 1].ratio = solved[k].ratio, here[n - 1].at = solved[k].at;
+    }
+  }
+
+  // Are the fields parallel half way between two points, and no third point there?
+  bool straight(int i, int j) const {
+    Vec3 a, b;
+    double most_a = 0, most_b = 0, along = 0;
+    for (int k = 0; k < 4; ++k) {
+      const double x = 0.5 * (here[i].x[k] + here[j].x[k]);
+      a += c[k].a * x, b += c[k].b * x;
+      along += (here[j].x[k] - here[i].x[k]) * (here[j].x[k] - here[i].x[k]);
+      if (((here[i].corners | here[j].corners) >> k) & 1) most_a = std::max(most_a, c[k].most_a), most_b = std::max(most_b, c[k].most_b);
+    }
+    if (!are_parallel(a, b, most_a, most_b, nothing)) return false;
+    for (int m = 0; m < n; ++m) {
+      if (m == i || m == j) continue;
+      double t = 0, off = 0;
+      for (int k = 0; k < 4; ++k) t += (here[m].x[k] - here[i].x[k]) * (here[j].x[k] - here[i].x[k]) / along;
+      for (int k = 0; k < 4; ++k) off = std::max(off, std::abs(here[i].x[k] + t * (here[j].x[k] - here[i].x[k]) - here[m].x[k]));
+      if (t > 0 && t < 1 && off <= 1e3 * nothing) return false;
+    }
+    return true;
+  }
+  // Both on the border of one face: a line between them may as well belong to the tetrahedron on its other side.
+  bool on_one_face(int i, int j) const {
+    const unsigned both = here[i].corners | here[j].corners;
+    return both != 15u && here[i].corners != here[j].corners;
+  }
+  // False where one field vanishes and the other too: their angle is any.
+  bool has_angle(int i) const {
+    Vec3 a, b;
+    double most_a = 0, most_b = 0;
+    for (int k = 0; k < 4; ++k) {
+      a += c[k].a * here[i].x[k], b += c[k].b * here[i].x[k];
+      most_a = std::max(most_a, c[k].most_a), most_b = std::max(most_b, c[k].most_b);
+    }
+    return length(a) > nothing * most_a || length(b) > nothing * most_b;
+  }
+};
+
 struct Work {
+  double nothing = 0;  // what counts as parallel: |a x b| of the product of the largest around
   std::vector<Found> found;
   std::vector<Segment> segments;
   std::vector<Corner> corners, ring;
@@ -117,44 +399,46 @@ struct Work {
     const Corner all[4] = {*c[0], *c[1], *c[2], *c[3]};
     for (const Corner& k : all)
       if (!std::isfinite(dot(k.a, k.b))) return;
-    if (!may_vanish(all)) return;
-    Found here[12];
-    int n = 0;
-    for (int skip = 0; skip < 4; ++skip) {
-      const Corner* t[3];
-      for (int k = 0, m = 0; k < 4; ++k)
-        if (k != skip) t[m++] = c[k];
-      const Corner three[3] = {*t[0], *t[1], *t[2]};
-      if (!may_vanish(three)) continue;
-      const int more = solve_triangle(t, here + n);
-      for (int k = 0; k < more; ++k) here[n + k].key = {{t[0]->id, t[1]->id, t[2]->id}, k}, here[n + k].cell = cell;
-      n += more;
-    }
-    if (n < 2) return;
+    TetraPoints t(all, nothing);
+    if (!t.may_hold(15)) return;
+    t.solve();
+    if (t.n < 2) return;
     double la = 0, lb = 0;
     for (const Corner& k : all) la = std::max(la, length(k.a)), lb = std::max(lb, length(k.b));
-    for (int k = 0; k < n; ++k) here[k].angle = std::atan(here[k].ratio * lb / la);
+    for (int k = 0; k < t.n; ++k) t.here[k].angle = std::atan(t.here[k].ratio * lb / la), t.here[k].cell = cell;
+    Found* const here = t.here;
+    const int n = t.n;
     std::sort(here, here + n, [](const Found& l, const Found& m) { return l.angle != m.angle ? l.angle < m.angle : l.key < m.key; });
-    bool used[12] = {};
+    bool used[most_points] = {}, joined[most_points][most_points] = {};
     const auto join = [&](int i, int j) {
-      segments.push_back({here[i].key, here[j].key, cell});
+      if (joined[i][j]) return;
+      joined[i][j] = joined[j][i] = true;
+      const bool turn = here[j].key < here[i].key;
+      segments.push_back({here[turn ? j : i].key, here[turn ? i : j].key, cell});
       used[i] = used[j] = true;
     };
-    if (n == 2) {
+    const auto between = [&](int i, int j, double angle) { return t.has_angle(i) && t.has_angle(j) && inside_at(c, la, lb, angle); };
+    if (n == 2 && !t.on_one_face(0, 1)) {
       join(0, 1);  // in and out; the angle may well be the same all along
     } else {
+      for (int i = 0; i < n; ++i)
+        for (int j = i + 1; j < n; ++j)
+          if (t.straight(i, j)) join(i, j);
       for (int i = 0; i + 1 < n; ++i)
-        if (inside_at(c, la, lb, (here[i].angle + here[i + 1].angle) / 2)) join(i, i + 1);
-      if (inside_at(c, la, lb, (here[n - 1].angle + here[0].angle + pi) / 2)) join(n - 1, 0);
+        if (between(i, i + 1, (here[i].angle + here[i + 1].angle) / 2)) join(i, i + 1);
+      if (n > 2 && between(n - 1, 0, (here[n - 1].angle + here[0].angle + pi) / 2)) join(n - 1, 0);
     }
     for (int i = 0; i < n; ++i)
       if (used[i]) found.push_back(here[i]);
   }
 
-  void cell(CellReader& reader, std::span<const Vec3> a, std::span<const Vec3> b, int64_t points) {
+  void cell(CellReader& reader, std::span<const Vec3> a, std::span<const Vec3> b, const Around& around, int64_t points) {
     const auto ids = reader.ids();
     const auto at = reader.at();
-    const auto corner = [&](uint32_t k) { return Corner{ids[k], at[k], a[size_t(ids[k])], b[size_t(ids[k])]}; };
+    const auto corner = [&](uint32_t k) {
+      const auto i = size_t(ids[k]);
+      return Corner{ids[k], at[k], a[i], b[i], around.most_a[i], around.most_b[i], around.parallel[i] != 0};
+    };
     const size_t faces = reader.face_count();
     corners.clear();
     if (linear_type(reader.type()) == CellType::tetra) {
@@ -162,19 +446,18 @@ struct Work {
       tetra(corners[0], corners[1], corners[2], corners[3], int64_t(reader.cell()));
       return;
     }
-    uint32_t used = 0;
-    std::vector<uint8_t> seen(ids.size(), 0);
-    Corner middle{points + int64_t(reader.cell()), {}, {}, {}};
-    for (size_t f = 0; f < faces; ++f)
-      for (const uint32_t k : reader.face(f))
-        if (!seen[k])
-          seen[k] = 1, corners.push_back(corner(k)), middle.at += corners.back().at, middle.a += corners.back().a,
-          middle.b += corners.back().b, ++used;
-    if (used == 0 || !may_vanish(corners)) return;
+    const size_t used = corner_count(reader);
+    Corner middle{points + int64_t(reader.cell()), {}, {}, {}, 0, 0, false};
+    for (uint32_t k = 0; k < used; ++k) {
+      corners.push_back(corner(k));
+      middle.at += at[k], middle.a += corners.back().a, middle.b += corners.back().b;
+    }
     middle.at = middle.at / double(used), middle.a = middle.a / double(used), middle.b = middle.b / double(used);
+    for (const Corner& k : corners) middle.most_a = std::max(middle.most_a, k.most_a), middle.most_b = std::max(middle.most_b, k.most_b);
+    middle.parallel = are_parallel(middle.a, middle.b, middle.most_a, middle.most_b, nothing);
     for (size_t f = 0; f < faces; ++f) {
       ring.clear();
-      for (const uint32_t k : reader.face(f)) ring.push_back(corner(k));
+      for (const uint32_t k : face_corners(reader, f)) ring.push_back(corner(k));
       if (ring.size() < 3) continue;
       std::rotate(ring.begin(), std::min_element(ring.begin(), ring.end(), [](const Corner& l, const Corner& m) { return l.id < m.id; }),
                   ring.end());
@@ -206,29 +489,27 @@ std::vector<Vec3> point_vectors(const DatasetPtr& in, const Field& given, Contex
   return out;
 }
 
-ParallelLines parallel_lines(const DatasetPtr& data, std::span<const Vec3> a, std::span<const Vec3> b, Context& context) {
+ParallelLines parallel_lines(const DatasetPtr& data, std::span<const Vec3> a, std::span<const Vec3> b, Context& context, double nothing) {
   const CellReader proto(data);
-  constexpr size_t grain = 1 << 12;
-  std::vector<Work> parts((proto.count() + grain - 1) / grain);
-  std::vector<uint8_t> solid(parts.size(), 0);
+  const Around around(proto, a, b, nothing, context);
+  if (!around.solid)
+    fail_usage("lines where two vector fields are parallel need cells with a volume", "parallel_vectors",
+               "in a plane the counterpart is a point: critical_points");
+  constexpr size_t grain = 1 << 10;
+  std::vector<Work> parts((around.cells.size() + grain - 1) / grain);
   const auto points = int64_t(data->point_count());
   parallel_for(
-      proto.count(), grain,
+      around.cells.size(), grain,
       [&](size_t begin, size_t end) {
         CellReader reader(proto);
         Work& work = parts[begin / grain];
-        for (size_t c = begin; c < end; ++c) {
-          if (reader.hidden(c)) continue;
-          reader.open(c);
-          if (reader.dimension() != 3) continue;
-          solid[begin / grain] = 1;
-          work.cell(reader, a, b, points);
+        work.nothing = nothing;
+        for (size_t k = begin; k < end; ++k) {
+          reader.open(around.cells[k]);
+          work.cell(reader, a, b, around, points);
         }
       },
       &context);
-  if (std::none_of(solid.begin(), solid.end(), [](uint8_t s) { return s; }))
-    fail_usage("lines where two vector fields are parallel need cells with a volume", "parallel_vectors",
-               "in a plane the counterpart is a point: critical_points");
 
   // Each point once: those of shared faces were found by both cells, in the same bits.
   std::vector<Found> all;
@@ -237,20 +518,17 @@ ParallelLines parallel_lines(const DatasetPtr& data, std::span<const Vec3> a, st
   all.erase(std::unique(all.begin(), all.end(), [](const Found& l, const Found& r) { return l.key == r.key; }), all.end());
   ParallelLines out;
   CellReader reader(proto);
-  std::vector<int64_t> middle;
   for (const Found& f : all) {
     ParallelPoint p{f.at, uint32_t(out.ids.size()), 0, f.cell, f.ratio};
     for (int k = 0; k < 3; ++k) {
-      const int64_t id = f.key.triangle[size_t(k)];
+      const int64_t id = f.key.corners[size_t(k)];
+      if (id < 0) break;
       if (id < points) {
         out.ids.push_back(id), out.weights.push_back(f.s[k]);
         continue;
       }
       reader.open(size_t(id - points));
-      middle.clear();
-      for (size_t face = 0; face < reader.face_count(); ++face)
-        for (const uint32_t n : reader.face(face))
-          if (std::find(middle.begin(), middle.end(), reader.ids()[n]) == middle.end()) middle.push_back(reader.ids()[n]);
+      const auto middle = reader.ids().first(corner_count(reader));
       for (const int64_t m : middle) out.ids.push_back(m), out.weights.push_back(f.s[k] / double(middle.size()));
     }
     p.count = uint32_t(out.ids.size()) - p.first;
@@ -259,11 +537,20 @@ ParallelLines parallel_lines(const DatasetPtr& data, std::span<const Vec3> a, st
   const auto number = [&](const Key& key) {
     return uint32_t(std::lower_bound(all.begin(), all.end(), key, [](const Found& l, const Key& r) { return l.key < r; }) - all.begin());
   };
+  // Those in a face or along an edge were found by all tetrahedra there; the first counts.
+  std::vector<std::array<uint32_t, 2>> ends;
+  std::vector<int64_t> cells;
   for (const Work& w : parts)
-    for (const Segment& s : w.segments) {
-      out.segments.push_back(number(s.from)), out.segments.push_back(number(s.to));
-      out.cells.push_back(s.cell);
-    }
+    for (const Segment& s : w.segments) ends.push_back({number(s.from), number(s.to)}), cells.push_back(s.cell);
+  std::vector<uint32_t> order(ends.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(), [&](uint32_t l, uint32_t r) { return std::pair(ends[l], l) < std::pair(ends[r], r); });
+  order.erase(std::unique(order.begin(), order.end(), [&](uint32_t l, uint32_t r) { return ends[l] == ends[r]; }), order.end());
+  std::sort(order.begin(), order.end());
+  for (const uint32_t k : order) {
+    out.segments.insert(out.segments.end(), ends[k].begin(), ends[k].end());
+    out.cells.push_back(cells[k]);
+  }
   return out;
 }
 
@@ -304,9 +591,10 @@ namespace {
 DatasetPtr of_mesh(const DatasetPtr& in, const ParallelVectorsParams& p, Context& context) {
   if (p.b.empty())
     fail_usage("there is no second vector field", "parallel_vectors", "b=FIELD names it; a=FIELD the first (default: the active vectors)");
-  const std::vector<Vec3> a = point_vectors(in, flow_field_of(*in, p.a.name, "parallel_vectors"), context);
-  const std::vector<Vec3> b = point_vectors(in, flow_field_of(*in, p.b.name, "parallel_vectors"), context);
-  return parallel_lines_mesh(in, parallel_lines(in, a, b, context), context);
+  const Field first = flow_field_of(*in, p.a.name, "parallel_vectors"), second = flow_field_of(*in, p.b.name, "parallel_vectors");
+  const std::vector<Vec3> a = point_vectors(in, first, context), b = point_vectors(in, second, context);
+  const double nothing = std::max(parallel_within(first.array.type()), parallel_within(second.array.type()));
+  return parallel_lines_mesh(in, parallel_lines(in, a, b, context, nothing), context);
 }
 
 }  // namespace

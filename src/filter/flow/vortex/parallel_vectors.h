@@ -30,9 +30,15 @@ struct ParallelLines {
 
 /// `a` and `b`: one vector per point of the mesh. Points lie on the faces of the tetrahedra, where a s = ratio b s is an eigenproblem of
 /// 3x3; within a tetrahedron the line is one curve over the ratio, so points that follow each other in it are joined when the place
-/// half way is inside. Hidden cells are left out; so are tetrahedra with NaN, and faces on which the fields are parallel everywhere.
-/// The same for any number of threads. Throws Error(usage) for a mesh without solid cells.
-ParallelLines parallel_lines(const DatasetPtr& data, std::span<const Vec3> a, std::span<const Vec3> b, Context& context);
+/// half way is inside. What lies on an edge or a corner, |a x b| being at most `nothing` of the product of the largest a and b in the
+/// cells around, is one point of all cells there, and lines may run in faces and along edges. Hidden cells are left out; so are tetrahedra
+/// with NaN, and faces on which the fields are parallel everywhere. The same for any number of threads. Throws Error(usage) for a mesh
+/// without solid cells.
+ParallelLines parallel_lines(const DatasetPtr& data, std::span<const Vec3> a, std::span<const Vec3> b, Context& context,
+                             double nothing = 1e-9);
+
+/// For numbers of this type: rounding puts a line this far beside an edge that it runs along.
+inline double parallel_within(ElementType t) { return t == ElementType::f64 ? 1e-9 : 1e-5; }
 
 /// As a SurfaceMesh of poly-lines; the fields of `data` at the points, cell fields as point fields, and `more`: one number a point.
 struct PointNumbers {
