@@ -132,7 +132,8 @@ TEST_CASE("films by ffmpeg: the name that it gets is neither an option nor a pro
   const std::string folder = fresh("films"), bin = folder + "bin/";
   fs::create_directories(bin);
   write_file(bin + "ffmpeg", "#!/bin/sh\nfor last; do :; done\necho \"$last\" > '" + folder +
-                                 "asked'\nls -ld -- \"$(dirname -- \"${last#file:}\")\" >> '" + folder + "asked'\ncat > \"${last#file:}\"\n");
+                                 "asked'\nls -ld -- \"$(dirname -- \"${last#file:}\")\" >> '" + folder +
+                                 "asked'\ncat > \"${last#file:}\"\n");
   fs::permissions(bin + "ffmpeg", fs::perms::owner_all);
   const std::string path = std::getenv("PATH");
   ::setenv("PATH", (bin + ":" + path).c_str(), 1);
@@ -150,6 +151,24 @@ TEST_CASE("films by ffmpeg: the name that it gets is neither an option nor a pro
     fs::remove(folder + name), fs::remove(folder + "asked");
   }
   ::setenv("PATH", path.c_str(), 1);
+  CHECK(test::files_in(folder) == std::vector<std::string>{"bin"});
+}
+
+TEST_CASE("signals: work that does not ask is ended after a few seconds, and leaves nothing") {
+  const std::string folder = fresh("stuck"), bin = folder + "bin/";
+  fs::create_directories(bin);
+  write_file(bin + "ffmpeg", "#!/bin/sh\nexec sleep 20\n");  // takes no picture: the program waits for it
+  fs::permissions(bin + "ffmpeg", fs::perms::owner_all);
+  const std::string path = std::getenv("PATH");
+  ::setenv("PATH", (bin + ":" + path).c_str(), 1);
+  const pid_t child =
+      start({"render", "--source", "hydrogen size=6", "-f", "contour values={t}", "--times", "0:1:9", "--size", "600x600", "-o", "a.mp4"},
+            folder);
+  ::setenv("PATH", path.c_str(), 1);
+  REQUIRE(wait_until([&] { return test::files_in(folder).size() > 1; }, 30));
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  ::kill(child, SIGTERM);
+  CHECK(status_of(child, 15) == 128 + SIGTERM);
   CHECK(test::files_in(folder) == std::vector<std::string>{"bin"});
 }
 

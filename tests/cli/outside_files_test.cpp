@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <filesystem>
 
 #include "base/file.h"
@@ -257,4 +258,29 @@ TEST_CASE("names of odd bytes: files are read, shown and written, and no byte of
   }
   const std::string xml(MappedFile(here + odd).text().substr(0, 2000));
   CHECK(harmless(xml.substr(0, xml.find("<AppendedData"))));
+}
+
+TEST_CASE("plug-ins: from beside the program or the variable alone, never from a place that others may write") {
+  const std::string here = test::temp_folder() + "program/", program = here + "sightglass", built = std::string(test::build_folder()) + "/";
+  fs::create_directories(here + "plugins");
+  std::error_code other_disk;
+  fs::create_hard_link(built + "sightglass", program, other_disk);
+  if (other_disk) fs::copy_file(built + "sightglass", program);
+  write_file(here + "a.h5", "\x89HDF\r\n\x1a\n and no more");
+  const auto said = [&](const std::string& before = "") {
+    const int status = std::system((before + " '" + program + "' info '" + here + "a.h5' 2>'" + here + "said' >&2").c_str());
+    CHECK(status != 0);
+    return std::string(MappedFile(here + "said").text());
+  };
+  CHECK(says(said(), "is not installed"));
+  CHECK(says(said(), here + "plugins/"));
+  CHECK_FALSE(says(said(), built));
+  write_file(here + "plugins/sightglass_hdf5.so", "no library");
+  CHECK(says(said(), "cannot be loaded"));
+  fs::permissions(here + "plugins/sightglass_hdf5.so", fs::perms::others_write, fs::perm_options::add);
+  CHECK(says(said(), "passed over"));
+  fs::permissions(here + "plugins/sightglass_hdf5.so", fs::perms::others_write, fs::perm_options::remove);
+  fs::permissions(here + "plugins", fs::perms::others_write, fs::perm_options::add);
+  CHECK(says(said(), "passed over"));
+  CHECK_FALSE(says(said("SIGHTGLASS_PLUGINS='" + here + "other'"), here + "plugins/"));
 }
