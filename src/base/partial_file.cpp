@@ -16,6 +16,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/file_fence.h"
+#include "base/mapped_watch.h"
 
 namespace sg {
 
@@ -36,6 +37,7 @@ struct Slot {
   char name[4096];
 };
 std::array<Slot, 64> slots;
+std::atomic<int> cleaning{0};
 
 }  // namespace
 
@@ -98,6 +100,10 @@ void remove_partials_at_exit() noexcept {
       if (s.state == 2 && s.owner == ::getpid()) folders ? ::rmdir(s.name) : ::unlink(s.name);
 }
 
+CleaningUp::CleaningUp() noexcept { ++cleaning; }
+CleaningUp::~CleaningUp() { --cleaning; }
+bool CleaningUp::any() noexcept { return cleaning > 0; }
+
 PartialFile::PartialFile(const std::string& path) : path_(path) {
   struct stat st {};
   if (::stat(path.c_str(), &st) == 0) {
@@ -113,12 +119,14 @@ PartialFile::PartialFile(const std::string& path) : path_(path) {
 }
 
 PartialFile::~PartialFile() {
+  const CleaningUp busy;
   std::error_code ignored;
   forget_partial(name_), forget_partial(folder_.substr(0, folder_.size() - 1));
   std::filesystem::remove_all(folder_, ignored);
 }
 
 void PartialFile::commit() {
+  check_files_unchanged();  // nothing is kept that was made of half a file
   struct stat st {};
   if (::stat(name_.c_str(), &st) != 0) fail_data("cannot be written: nothing was written", path_);
   if (::rename(name_.c_str(), path_.c_str()) != 0) fail_data(std::string("cannot be written: ") + std::strerror(errno), path_);

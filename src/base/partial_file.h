@@ -19,6 +19,16 @@ void remove_partials_at_exit() noexcept;  ///< safe in a signal handler
 void forget_partial(const std::string& partial) noexcept;
 void remember_partial(const std::string& partial) noexcept;
 
+/// While one lives, what is under way is being removed: who would end the program waits. For folders, which take their time.
+class CleaningUp {
+ public:
+  CleaningUp() noexcept;
+  ~CleaningUp();
+  CleaningUp(const CleaningUp&) = delete;
+  CleaningUp& operator=(const CleaningUp&) = delete;
+  static bool any() noexcept;  ///< safe in a signal handler
+};
+
 /// For libraries and programs that open files by name: a place in a new folder of the user's alone; commit() moves what was written there
 /// to `path`. Without it all is removed. Throws Error(data) naming `path`.
 class PartialFile {

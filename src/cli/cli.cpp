@@ -27,16 +27,25 @@ namespace {
 Context* interruptible = nullptr;
 volatile std::sig_atomic_t stopped_by = 0;
 
-// The first signal lets the work stop and clean up after itself, the second ends the program at once.
+constexpr unsigned grace = 3;  // seconds for work to stop by itself
+
+// The first signal lets the work stop and clean up after itself; the second ends the program at once, and so does the alarm when the work
+// is somewhere that does not ask (a library that lays out text, parses or packs).
 void on_signal(int signal) {
-  if (interruptible && !interruptible->cancelled()) {
+  if (signal != SIGALRM && interruptible && !interruptible->cancelled()) {
     stopped_by = signal;
     interruptible->cancel();
+    ::alarm(grace);
     return;
   }
+  if (signal == SIGALRM && CleaningUp::any()) {
+    ::alarm(grace);
+    return;
+  }
+  const int by = signal == SIGALRM ? int(stopped_by) : signal;
   remove_partials_at_exit();
-  ::signal(signal, SIG_DFL);
-  ::raise(signal);
+  ::signal(by, SIG_DFL);
+  ::raise(by);
 }
 
 void catch_signals() {
@@ -49,6 +58,11 @@ void catch_signals() {
     ::sigemptyset(&ours.sa_mask);
     ::sigaction(signal, &ours, nullptr);
   }
+  struct sigaction timer {};
+  timer.sa_handler = on_signal;
+  ::sigfillset(&timer.sa_mask);
+  ::sigdelset(&timer.sa_mask, SIGINT), ::sigdelset(&timer.sa_mask, SIGTERM), ::sigdelset(&timer.sa_mask, SIGHUP);
+  ::sigaction(SIGALRM, &timer, nullptr);
   ::signal(SIGPIPE, SIG_IGN);
 }
 

@@ -81,11 +81,13 @@ FfmpegPipe::FfmpegPipe(std::string path, int width, int height, double fps)
               "apt-get install ffmpeg, or write a .webm, which needs no other program");
   }
   child_ = child;
+  remember_partial(log_);
 }
 
 FfmpegPipe::~FfmpegPipe() {
   if (child_ < 0) return;
   ::close(socket_);
+  forget_partial(log_);
   ::kill(child_, SIGTERM);
   ::waitpid(child_, nullptr, 0);
 }
@@ -122,6 +124,7 @@ void FfmpegPipe::finish() {
   while (::waitpid(child_, &status, 0) < 0 && errno == EINTR) {
   }
   child_ = -1;
+  forget_partial(log_);
   if (status == 0) return partial_.commit();
   const std::string said = last_words();
   fail_data(fmt::format("ffmpeg did not write the film: {}", said.empty() ? "it says nothing" : said), path_);

@@ -39,6 +39,7 @@ PartsFolder::PartsFolder(const std::string& path) {
 }
 
 PartsFolder::~PartsFolder() {
+  const CleaningUp busy;
   if (!done_) remove_folder(partial_);
 }
 

@@ -132,7 +132,8 @@ TEST_CASE("films by ffmpeg: the name that it gets is neither an option nor a pro
   const std::string folder = fresh("films"), bin = folder + "bin/";
   fs::create_directories(bin);
   write_file(bin + "ffmpeg", "#!/bin/sh\nfor last; do :; done\necho \"$last\" > '" + folder +
-                                 "asked'\nls -ld -- \"$(dirname -- \"${last#file:}\")\" >> '" + folder + "asked'\ncat > \"${last#file:}\"\n");
+                                 "asked'\nls -ld -- \"$(dirname -- \"${last#file:}\")\" >> '" + folder +
+                                 "asked'\ncat > \"${last#file:}\"\n");
   fs::permissions(bin + "ffmpeg", fs::perms::owner_all);
   const std::string path = std::getenv("PATH");
   ::setenv("PATH", (bin + ":" + path).c_str(), 1);
@@ -153,13 +154,31 @@ TEST_CASE("films by ffmpeg: the name that it gets is neither an option nor a pro
   CHECK(test::files_in(folder) == std::vector<std::string>{"bin"});
 }
 
+TEST_CASE("signals: work that does not ask is ended after a few seconds, and leaves nothing") {
+  const std::string folder = fresh("stuck"), bin = folder + "bin/";
+  fs::create_directories(bin);
+  write_file(bin + "ffmpeg", "#!/bin/sh\nexec sleep 20\n");  // takes no picture: the program waits for it
+  fs::permissions(bin + "ffmpeg", fs::perms::owner_all);
+  const std::string path = std::getenv("PATH");
+  ::setenv("PATH", (bin + ":" + path).c_str(), 1);
+  const pid_t child =
+      start({"render", "--source", "hydrogen size=6", "-f", "contour values={t}", "--times", "0:1:9", "--size", "600x600", "-o", "a.mp4"},
+            folder);
+  ::setenv("PATH", path.c_str(), 1);
+  REQUIRE(wait_until([&] { return test::files_in(folder).size() > 1; }, 30));
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  ::kill(child, SIGTERM);
+  CHECK(status_of(child, 15) == 128 + SIGTERM);
+  CHECK(test::files_in(folder) == std::vector<std::string>{"bin"});
+}
+
 TEST_CASE("signals: hang-up and the polite end clean up as Ctrl-C does; a second one ends the program at once") {
   for (const int signal : {SIGINT, SIGTERM, SIGHUP})
     for (const bool twice : {false, true}) {
-      if (twice && signal == SIGHUP) continue;
+      if (twice && signal != SIGINT) continue;
       INFO(signal << (twice ? " twice" : " once"));
       const std::string folder = fresh("signals");
-      const pid_t child = start({"convert", "--source", "hydrogen size=100", "--compression", "lzma", "-o", "out.vti"}, folder);
+      const pid_t child = start({"convert", "--source", "hydrogen size=80", "--compression", "lzma", "-o", "out.vti"}, folder);
       REQUIRE(wait_until([&] { return !fs::is_empty(folder); }, 60));  // it writes
       ::kill(child, signal);
       if (twice) ::kill(child, signal);
@@ -169,7 +188,7 @@ TEST_CASE("signals: hang-up and the polite end clean up as Ctrl-C does; a second
   // nohup stays nohup
   const std::string folder = fresh("signals");
   const auto before = ::signal(SIGHUP, SIG_IGN);
-  const pid_t child = start({"convert", "--source", "hydrogen size=60", "--compression", "lzma", "-o", "out.vti"}, folder);
+  const pid_t child = start({"convert", "--source", "hydrogen size=40", "--compression", "lzma", "-o", "out.vti"}, folder);
   ::signal(SIGHUP, before);
   REQUIRE(wait_until([&] { return !fs::is_empty(folder); }, 60));
   ::kill(child, SIGHUP);

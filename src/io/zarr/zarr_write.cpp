@@ -33,6 +33,7 @@ class AtomicFolder {
     partial_ = make_partial_folder(path_, false);
   }
   ~AtomicFolder() {
+    const CleaningUp busy;
     std::error_code ignored;
     if (!partial_.empty()) fs::remove_all(partial_, ignored);
   }
