@@ -20,7 +20,12 @@ NearestPlace LocatorCursor::nearest(Vec3 x, double radius) {
     Vec3 at = index.grid->nearest(x, cell);
     take(cell, at, dot(x - at, x - at));
   } else {
-    index.tree().nearest(x, limit2, [&](uint32_t c) {
+    if (s.cell >= 0 && index.kind == CellLocator::Index::Kind::tree) {  // the last answer is often near: a bound for the search
+      Vec3 at;
+      const double d2 = s.probe.nearest(size_t(s.cell), x, at);
+      take(s.cell, at, d2);
+    }
+    index.tree().nearest(x, std::min(limit2, best.distance2), [&](uint32_t c) {
       Vec3 at;
       const double d2 = s.probe.nearest(c, x, at);
       take(int64_t(c), at, d2);

@@ -21,6 +21,7 @@ struct FlowCursor::State {
   std::optional<CellReader> reader;      // with hidden cells
   int64_t cell = -1, sized = -1, framed = -1;
   double length = 0;
+  bool beside = false;  // the last place was the nearest of a surface or curve that x did not lie on
   Vec3 normal;  // of the surface at the last place
   int64_t corner[8];
   double weight[8];
@@ -73,18 +74,35 @@ struct FlowCursor::State {
   }
   // On surfaces, whose lines leave them by rounding and curvature: the nearest place within a cell, if that is not at their border, where
   // x lies beside the surface and not above it.
+  // Curves likewise: x may lie beside them, but not beyond their end.
   bool find_by_tree(Vec3 x) {
     LocatorCursor& l = by_tree();
-    cell = l.find_any(x);
-    if (cell >= 0) return true;
+    if (!beside) {  // else the last place was not on the surface, and this one will hardly be
+      cell = l.find_any(x);
+      if (cell >= 0) return true;
+    }
+    beside = false;
     if (field->dimension() == 3 || sized < 0) return false;
     const NearestPlace near = l.nearest(x, length);
     if (near.cell < 0) return false;
     cell = l.find_any(near.at);
     if (cell < 0) return false;
+    beside = true;
     const Vec3 off = x - near.at;
     const double d = sg::length(off);
-    return d <= 1e-6 * length || field->dimension() != 2 || std::abs(dot(off, surface_normal())) >= 0.5 * d;
+    if (d <= 1e-6 * length) return true;
+    return field->dimension() == 2 ? std::abs(dot(off, surface_normal())) >= 0.5 * d : std::abs(dot(off, curve_tangent())) <= 0.9 * d;
+  }
+  // Of the curve at the last place; zero where it has none.
+  Vec3 curve_tangent() {
+    CellMap& map = open_map();
+    const auto at = map.reader().at();
+    const CellType type = map.reader().type();
+    if (map.dimension() != 1 || at.size() < 2) return {};
+    if (type == CellType::line) return normalize(at[1] - at[0]);
+    if (type != CellType::poly_line) return normalize(map.jacobian(by_tree().place().rst).column(0));
+    const size_t piece = std::min(size_t(std::max(by_tree().place().rst.z, 0.0)), at.size() - 2);
+    return normalize(at[piece + 1] - at[piece]);
   }
   CellMap& open_map() {
     CellMap& map = by_tree().map();
@@ -133,6 +151,10 @@ struct FlowCursor::State {
     if (field->dimension() == 2) {
       const Vec3 n = surface_normal();
       v = v - n * dot(n, v);
+    }
+    if (field->dimension() == 1) {
+      const Vec3 t = curve_tangent();
+      v = t * dot(t, v);
     }
     return v;
   }

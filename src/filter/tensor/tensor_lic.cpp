@@ -13,7 +13,7 @@ void describe(Schema& s, TensorLicParams& p) {
       .range(1, 2);
   s("density", p.density,
     "Samples along the diagonal of the data's box: triangles are split until their edges are no longer than the diagonal divided by this; "
-    "0 keeps the triangles of the mesh.")
+    "0 keeps the triangles of the mesh. Default: 400, or fewer where that would make more than about 150 000 triangles.")
       .range(0, 100000);
   s("steps", p.steps, "Steps of each line each way.").range(1, 10000);
   s("step", p.step, "Length of a step; 0: half the mean edge of the split triangles.").unit("length").at_least(0);
@@ -70,7 +70,7 @@ DatasetPtr tensor_lic(const DatasetPtr& in, const TensorLicParams& p, Context& c
   if (mesh.polygons.size() + mesh.strips.size() == 0)
     fail_usage("the data has no faces to carry a texture", "tensor_lic", "take a surface first: faces, contour or slice");
   const double diagonal = in->bounds().diagonal();
-  const RefinedSurface r = refine_surface(surface, p.density > 0 ? diagonal / p.density : 0, most_textured_triangles, ctx);
+  const RefinedSurface r = refine_surface(surface, textured_edge(*surface, diagonal, p.density), most_textured_triangles, ctx);
   Context quiet;  // warnings of the tensors were given for the surface as it came
   TensorField t = read_tensors(*r.dataset, source, "tensor_lic", quiet);
   const bool per_triangle = t.field.association == Association::cell;

@@ -8,7 +8,7 @@ namespace sg {
 struct TensorLicParams {
   TensorSource tensors;
   int eigenvector = 1;
-  double density = 400;
+  std::optional<double> density = {};
   int steps = 40;
   double step = 0;
   std::string kernel = "hann";

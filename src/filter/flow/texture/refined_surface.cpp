@@ -165,6 +165,24 @@ Work start(const DatasetPtr& surface, Vec3 origin) {
 
 }  // namespace
 
+double textured_edge(const Dataset& surface, double diagonal, std::optional<double> density) {
+  if (density) return *density > 0 ? diagonal / *density : 0;
+  constexpr double samples = 400, triangles = 150'000;
+  const SurfaceMesh& mesh = *surface.as<SurfaceMesh>();
+  double area = 0;  // of the faces as fans, and of strips: near enough
+  for (const CellArray* list : {&mesh.polygons, &mesh.strips}) {
+    const CellsView cells = cells_view(*list);
+    for (size_t c = 0; c < cells.count; ++c)
+      for (size_t k = 1; k + 1 < cells.size(c); ++k) {
+        const size_t first = list == &mesh.strips ? k - 1 : 0;
+        const Vec3 o = mesh.points.at(size_t(cells.point(c, first)));
+        area += 0.5 * length(cross(mesh.points.at(size_t(cells.point(c, k))) - o, mesh.points.at(size_t(cells.point(c, k + 1))) - o));
+      }
+  }
+  const double longest = diagonal / samples, coarse = std::sqrt(area / (0.3 * triangles));
+  return std::isfinite(coarse) ? std::max(longest, coarse) : longest;
+}
+
 RefinedSurface refine_surface(const DatasetPtr& surface, double longest, size_t most, Context& context) {
   RefinedSurface r;
   r.origin = surface->as<SurfaceMesh>()->points.origin;

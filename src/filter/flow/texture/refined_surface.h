@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "base/context.h"
@@ -20,6 +21,10 @@ struct RefinedSurface {
   std::vector<std::array<int32_t, 3>> across;      ///< triangle beyond the edge opposite each corner; -1: none
   double edge_length = 0;                          ///< mean over the triangles' edges
 };
+
+/// The longest edge of a surface that gets a texture of `density` samples along a diagonal; 0: its own. By default 400, or what makes
+/// about 150 000 triangles of it: a skin of many faces need not take ten seconds.
+double textured_edge(const Dataset& surface, double diagonal, std::optional<double> density);
 
 /// Throws Error(usage) when that would make more than `most` triangles.
 RefinedSurface refine_surface(const DatasetPtr& surface, double longest, size_t most, Context& context);

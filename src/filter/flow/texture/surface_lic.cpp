@@ -30,7 +30,7 @@ DatasetPtr surface_lic(const DatasetPtr& in, const SurfaceLicParams& p, Context&
   if (mesh.polygons.size() + mesh.strips.size() == 0)
     fail_usage("the data has no faces to carry a texture", "surface_lic", "take a surface first: faces, contour or slice");
   const double diagonal = in->bounds().diagonal();
-  const RefinedSurface r = refine_surface(surface, p.density > 0 ? diagonal / p.density : 0, most_textured_triangles, context);
+  const RefinedSurface r = refine_surface(surface, textured_edge(*surface, diagonal, p.density), most_textured_triangles, context);
   const Field& f = flow_field_of(*r.dataset, p.field.name, "surface_lic");
   const std::vector<Vec3> vectors = vectors_of(f);
   const SurfaceWalk walk(r, vectors, f.association == Association::cell);

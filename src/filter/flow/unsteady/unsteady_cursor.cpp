@@ -60,8 +60,9 @@ bool finite(Vec3 v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::is
 
 struct UnsteadyCursor::State {
   const UnsteadyFlow& flow;
-  // One mesh of solids: one cursor, whose place serves all steps. Surfaces and changed meshes: a cursor a step.
+  // One mesh of solids: one cursor, whose place serves all steps. Surfaces and changed meshes: a cursor a step, but for a steady flow.
   std::vector<FlowCursor> cursors;
+  bool steady = false;  // a surface or curve, all steps the same numbers
   bool have[4] = {false, false, false, false};  // which cursors are at the last place
   std::optional<MeshPlace> moving;
   double w[4] = {0, 0, 0, 0};  // of the steps at the last time
@@ -73,6 +74,9 @@ struct UnsteadyCursor::State {
     if (f.meshes() == UnsteadyFlow::Meshes::moving) {
       moving.emplace(f.steps()[f.base()]);
     } else if (f.meshes() == UnsteadyFlow::Meshes::same && f.steps()[0].dimension() == 3) {
+      cursors.emplace_back(f.steps()[f.base()]);
+    } else if (f.meshes() == UnsteadyFlow::Meshes::same && same_numbers(f)) {
+      steady = true;
       cursors.emplace_back(f.steps()[f.base()]);
     } else {
       for (const FlowField& s : f.steps()) cursors.emplace_back(s);
@@ -86,8 +90,15 @@ struct UnsteadyCursor::State {
     return v;
   }
 
+  static bool same_numbers(const UnsteadyFlow& f) {
+    const FlowField& first = f.steps()[0];
+    return std::all_of(f.steps().begin(), f.steps().end(),
+                       [&](const FlowField& s) { return s.f32() == first.f32() && s.f64() == first.f64(); });
+  }
+
   bool mix_one(Vec3 x, Vec3& v) {
     FlowCursor& c = cursors[0];
+    if (steady) return c(x, v);
     Vec3 own;
     if (!c(x, own)) return false;
     const auto ids = c.ids();

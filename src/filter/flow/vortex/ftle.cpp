@@ -20,7 +20,9 @@ void describe(Schema& s, FtleParams& p) {
   s("times", p.times, "Times of a series that a source computes: FIRST:LAST:COUNT or a list; default: those of the file.");
   s("interpolation", p.interpolation, "Between the time steps.").choices({"linear", "cubic"});
   s("dims", p.dims, "Seeds along x, y and z; default: from size.").at_least(1);
-  s("size", p.size, "Seeds along the longest axis, the others in proportion; 0: 256, in space 64.").range(0, 1e6);
+  s("size", p.size,
+    "Seeds along the longest axis, the others in proportion; 0: 256, in space 64, in the space around a bent surface or curves 32.")
+      .range(0, 1e6);
   s("bounds", p.bounds, "Box of the seeds as xmin,xmax,ymin,ymax,zmin,zmax; default: that of the mesh.").unit("length");
   s("offset", p.offset, "Derivatives from four (3D: six) places this far beside each seed; default: from the neighbouring seeds.")
       .unit("length");
@@ -191,7 +193,7 @@ DatasetPtr ftle(const Series& given, const FtleParams& p, Context& context) {
   const Dataset& shape = *flow.steps()[flow.base()].dataset();
   UniformGrid grid = resample_grid(shape, r);
   if (p.size == 0 && p.dims.empty() && std::min({grid.dims[0], grid.dims[1], grid.dims[2]}) > 1) {
-    r.size = 64;
+    r.size = flow.steps()[flow.base()].dimension() < 3 ? 32 : 64;
     grid = resample_grid(shape, r);
   }
   size_t gone = 0, all = 0;
