@@ -38,6 +38,8 @@ void add_reading(CLI::App& a, Options& o, RawText& raw) {
   a.add_option("--region", raw.region, "Grids: read points i0,i1,j0,j1,k0,k1 only");
   a.add_option("--stride", raw.stride, "Grids: read every n-th point, like 2 or 2,2,1");
   a.add_option("--piece", raw.piece, "Read one piece of several, like 0/4, or 0/4/1 with a layer of ghost cells");
+  a.add_option("--csv-header", o.read.csv_header, "Delimited text: whether the first line names the columns; auto: by its cells")
+      ->check(CLI::IsMember({"auto", "yes", "no"}));
   a.add_option("--dims", raw.dims, "Raw brick: size, like 256,256,128");
   a.add_option("--type", raw.type, "Raw brick: element type: u8 i8 u16 i16 u32 i32 f32 f64");
   a.add_option("--spacing", raw.spacing, "Raw brick: distance of samples, like 1,1,2");

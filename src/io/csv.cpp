@@ -51,8 +51,10 @@ std::string text_of(std::string_view s) {
 }
 
 // One record: cells between delimiters; quoted ones may hold anything, "" is a quote in them. `scratch` owns unquoted copies.
-const char* next_record(const char* p, const char* end, char delimiter, std::vector<std::string>& cells) {
+const char* next_record(const char* p, const char* end, char delimiter, std::vector<std::string>& cells,
+                        std::vector<bool>* in_quotes = nullptr) {
   cells.clear();
+  if (in_quotes) in_quotes->clear();
   std::string cell;
   bool quoted = false, was_quoted = false;
   for (; p < end; ++p) {
@@ -70,13 +72,17 @@ const char* next_record(const char* p, const char* end, char delimiter, std::vec
     } else if (*p == delimiter || (delimiter == ' ' && *p == '\t')) {
       if (delimiter == ' ' && cell.empty() && !was_quoted) continue;  // blanks come in runs
       cells.push_back(std::move(cell));
+      if (in_quotes) in_quotes->push_back(was_quoted);
       cell.clear(), was_quoted = false;
     } else {
       cell += *p;
     }
   }
   if (quoted) fail_data("has a quote that does not close", "", "double a quote inside quotes");
-  if (!(delimiter == ' ' && cell.empty() && !was_quoted)) cells.push_back(std::move(cell));
+  if (!(delimiter == ' ' && cell.empty() && !was_quoted)) {
+    cells.push_back(std::move(cell));
+    if (in_quotes) in_quotes->push_back(was_quoted);
+  }
   return p;
 }
 
@@ -112,18 +118,38 @@ char find_delimiter(const std::string& text) {
 
 bool is_number(std::string_view s) { return parse_double(trim(s)).has_value(); }
 
-// A first record without numbers names the columns.
-bool is_header(const std::vector<std::string>& first) {
-  bool any = false;
-  for (const std::string& c : first) {
-    if (is_number(c)) return false;
-    any = any || !trim(c).empty();
+struct Record {
+  std::vector<std::string> cells;
+  std::vector<bool> in_quotes;
+};
+
+// Whether a first record names the columns: it has no numbers; or all of it stands in quotes and no number of the second does, as
+// write_csv has it; or a word stands above a number. Else its numbers are data.
+bool is_header(const Record& first, const Record* second) {
+  bool any = false, numbers = false, quotes = true;
+  for (size_t i = 0; i < first.cells.size(); ++i) {
+    const bool blank = trim(first.cells[i]).empty();
+    any = any || !blank;
+    numbers = numbers || is_number(first.cells[i]);
+    quotes = quotes && (blank || first.in_quotes[i]);
   }
-  return any;
+  if (!any || !numbers) return any;
+  bool quoted_numbers = false, above = false;
+  for (size_t i = 0; second && i < second->cells.size(); ++i) {
+    const bool number = is_number(second->cells[i]);
+    quoted_numbers = quoted_numbers || (number && second->in_quotes[i]);
+    above = above || (number && !is_missing(trim(second->cells[i])) && i < first.cells.size() && !is_number(first.cells[i]) &&
+                      !is_missing(trim(first.cells[i])));
+  }
+  return above || (quotes && !quoted_numbers);
 }
 
-std::string quoted(std::string_view s, char delimiter) {
-  if (s.find_first_of("\"\r\n") == s.npos && s.find(delimiter) == s.npos && (s.empty() || (s.front() != ' ' && s.back() != ' ')))
+// What a reader may take for a delimiter: those that it tries before ours, and all of them where ours is never written.
+std::string_view delimiters_to_quote(char delimiter, bool single) { return single ? ",\t;|: " : delimiter == '\t' ? ",\t" : ","; }
+
+std::string quoted(std::string_view s, std::string_view delimiters, bool always = false) {
+  if (!always && s.find_first_of("\"\r\n") == s.npos && s.find_first_of(delimiters) == s.npos &&
+      (s.empty() || (s.front() != ' ' && s.back() != ' ')))
     return std::string(s);
   std::string r = "\"";
   for (const char c : s) r += c == '"' ? std::string("\"\"") : std::string(1, c);
@@ -154,28 +180,71 @@ TablePtr table_of(const Data& data) {
 
 }  // namespace
 
-Data read_csv(const std::string& path, const ReadOptions&, Context& context) {
+Data read_csv(const std::string& path, const ReadOptions& options, Context& context) {
+  if (options.csv_header != "auto" && options.csv_header != "yes" && options.csv_header != "no")
+    fail_usage(fmt::format("'{}' does not say whether there is a header", options.csv_header), path, "yes, no or auto");
   const MappedFile file(path);
   const std::string text = text_of(file.text());
   if (text.find('\0') != text.npos) fail_data("holds bytes that are no text", path, "delimited text in UTF-8 or UTF-16");
   const char delimiter = find_delimiter(text);
   TableBuilder builder;
-  std::vector<std::string> cells;
-  bool first = true;
   const char *p = text.data(), *end = p + text.size();
-  while (p < end) {
-    const char* begin = p;
-    p = with_context(fmt::format("at byte {}", begin - text.data()), [&] { return next_record(p, end, delimiter, cells); });
-    if (is_blank_record(cells)) continue;
-    const std::vector<std::string_view> views(cells.begin(), cells.end());
-    if (first && is_header(cells)) builder.name_columns(views);
-    else builder.add_row(views);
-    first = false;
+  auto next = [&](Record& r) {
+    while (p < end) {
+      const char* begin = p;
+      p = with_context(fmt::format("at byte {}", begin - text.data()),
+                       [&] { return next_record(p, end, delimiter, r.cells, &r.in_quotes); });
+      if (!is_blank_record(r.cells)) return true;
+    }
+    return false;
+  };
+  auto add = [&](const Record& r) { builder.add_row({r.cells.begin(), r.cells.end()}); };
+  Record first, record;
+  if (!next(first)) fail_data("has no line that is not empty", path, "a table has at least one row");
+  bool more = next(record);
+  if (options.csv_header == "yes" || (options.csv_header == "auto" && is_header(first, more ? &record : nullptr))) {
+    std::vector<std::string_view> names;
+    for (size_t i = 0; i < first.cells.size(); ++i)
+      names.push_back(first.in_quotes[i] ? std::string_view(first.cells[i]) : trim(first.cells[i]));
+    builder.name_columns(names);
+  } else {
+    add(first);
+  }
+  for (; more; more = next(record)) {
+    add(record);
     if (builder.rows() % 65536 == 0) context.check();
   }
-  if (first) fail_data("has no line that is not empty", path, "a table has at least one row");
   return builder.build();
 }
+
+namespace {
+
+// The header; all in quotes where a name would be read as a number.
+std::string header_line(const Table& table, char delimiter, bool single) {
+  std::vector<std::string> names;
+  bool number = false;
+  for (const Field& f : table.columns)
+    for (int c = 0; c < f.components(); ++c) {
+      names.push_back(f.components() == 1 ? f.name : fmt::format("{}_{}", f.name, c));
+      number = number || is_number(names.back());
+    }
+  std::string line;
+  for (const std::string& name : names)
+    line += (line.empty() ? "" : std::string(1, delimiter)) + quoted(name, delimiters_to_quote(delimiter, single), number);
+  return line;
+}
+
+// Whether a column of numbers holds nothing but NaN: written so, or it would be read as one of words.
+bool all_nan(const Table& t, size_t column) {
+  const Array& a = t.columns[column].array;
+  if (!is_float(a.type()) || t.words(column) || a.empty()) return false;
+  for (size_t i = 0; i < a.count(); ++i)
+    for (int c = 0; c < a.components(); ++c)
+      if (!std::isnan(a.get(i, c))) return false;
+  return true;
+}
+
+}  // namespace
 
 void write_csv(const std::string& path, const Data& data, const WriteOptions&, Context& context) {
   if (!std::holds_alternative<TablePtr>(data)) {
@@ -188,16 +257,17 @@ void write_csv(const std::string& path, const Data& data, const WriteOptions&, C
   }
   const TablePtr table = table_of(data);
   const char delimiter = extension_of(path) == "tsv" ? '\t' : ',';
-  AtomicFile file(path);
-  std::string line;
-  size_t rows = 0;
-  for (const Field& f : table->columns) {
-    rows = std::max(rows, f.array.count());
-    for (int c = 0; c < f.components(); ++c)
-      line += (line.empty() ? "" : std::string(1, delimiter)) +
-              quoted(f.components() == 1 ? f.name : fmt::format("{}_{}", f.name, c), delimiter);
+  size_t rows = 0, cells = 0;
+  std::vector<bool> nan_columns;
+  for (size_t i = 0; i < table->columns.size(); ++i) {
+    rows = std::max(rows, table->columns[i].array.count());
+    cells += size_t(table->columns[i].components());
+    nan_columns.push_back(all_nan(*table, i));
   }
-  file.write(line + "\n");
+  const std::string_view special = delimiters_to_quote(delimiter, cells == 1);
+  AtomicFile file(path);
+  file.write(header_line(*table, delimiter, cells == 1) + "\n");
+  std::string line;
   for (size_t r = 0; r < rows; ++r) {
     line.clear();
     bool begun = false;
@@ -205,8 +275,12 @@ void write_csv(const std::string& path, const Data& data, const WriteOptions&, C
       for (int c = 0; c < table->columns[i].components(); ++c) {
         if (begun) line += delimiter;
         begun = true;
-        if (r < table->columns[i].array.count()) line += quoted(cell_text(*table, i, r, c), delimiter);
+        if (r >= table->columns[i].array.count()) continue;
+        const std::string text = cell_text(*table, i, r, c);
+        // A line of nothing but empty cells would be none.
+        line += text.empty() && (nan_columns[i] || cells == 1) && !table->words(i) ? "NaN" : quoted(text, special);
       }
+    if (line.size() + 1 == std::max<size_t>(cells, 1) && is_float(table->columns[0].array.type()) && !table->words(0)) line = "NaN" + line;
     file.write(line + "\n");
   }
   file.commit();

@@ -36,6 +36,7 @@ struct ReadOptions {
   size_t raw_header = 0;                    ///< ... bytes to skip,
   int raw_components = 1;                   ///< ... numbers per voxel,
   Vec3 raw_spacing{1, 1, 1};                ///< ... distance of voxels
+  std::string csv_header = "auto";          ///< delimited text: whether the first line names the columns: yes, no, auto (by its cells)
   std::string times;                        ///< several files as a series (io/file_series.h): START:STEP or a list; "" = what they say
 };
 

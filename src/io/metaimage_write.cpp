@@ -61,6 +61,7 @@ void write_metaimage(const std::string& path, const Data& data, const WriteOptio
     fail_usage(fmt::format("MetaImage cannot be compressed with '{}'", options.compression), path, "none or zlib");
   WriteLosses losses(path, "MetaImage");
   const Field& f = field_to_write(*d, path, losses);
+  losses.renames(f, f.name.empty() || f.name.find('\n') != std::string::npos ? "MetaImage" : trim(f.name));
   const Array a = f.array.made_packed();
   std::span<const std::byte> bytes(a.raw(), a.bytes());
   std::vector<std::byte> packed;

@@ -20,7 +20,7 @@ TableBuilder::Column& TableBuilder::column(size_t i) {
 
 void TableBuilder::name_columns(const std::vector<std::string_view>& names) {
   for (size_t i = 0; i < names.size(); ++i)
-    if (!trim(names[i]).empty()) column(i).name = std::string(trim(names[i]));
+    if (!trim(names[i]).empty()) column(i).name = std::string(names[i]);
     else (void)column(i);
 }
 
@@ -80,6 +80,7 @@ Array number_column(const std::vector<std::string>& cells) {
     const std::string_view word = trim(cell);
     if (is_missing(word)) {
       missing = true;
+      any = any || to_lower(word) == "nan";  // said to be a number that is none
       v.push_back(std::nan(""));
       continue;
     }

@@ -19,6 +19,7 @@ class TableBuilder {
   /// that most of the table would be empty.
   void set(const std::string& column, std::string value);
   void begin_row() { ++rows_; }
+  /// An empty name leaves that of its number.
   void name_columns(const std::vector<std::string_view>& names);
   size_t rows() const { return rows_; }
 

@@ -15,6 +15,8 @@ void describe(Schema& s, ReadParams& p) {
   s("header", p.header, "Raw bricks: bytes to skip before the numbers.").at_least(0);
   s("components", p.components, "Raw bricks: numbers per point.").at_least(1);
   s("spacing", p.spacing, "Raw bricks: distance of the points along x, y, z.").positive();
+  s("csv_header", p.csv_header, "Delimited text: whether the first line names the columns; auto: by its cells.")
+      .choices({"auto", "yes", "no"});
   s("time", p.time, "Of a series: the step nearest to this time.");
   s("step", p.step, "Of a series: this step, 0 is the first; -1: by time, else the format's default.").at_least(-1);
   s("times", p.times, "Of several files as a series: their times, START:STEP or a list; default: those in the files, else 0, 1, 2, ...")
@@ -68,6 +70,7 @@ ReadOptions read_options(const ReadParams& p) {
   o.time = p.time;
   o.step = p.step;
   o.times = p.times;
+  o.csv_header = p.csv_header;
   o.region = region_of(p);
   if (p.piece >= p.pieces) fail_usage(fmt::format("there is no piece {} of {}", p.piece, p.pieces), "read piece", "pieces count from 0");
   o.piece = p.piece, o.pieces = p.pieces, o.ghost_levels = p.ghost_levels;
@@ -83,6 +86,7 @@ std::vector<std::string> read_words(const std::string& path, const ReadOptions& 
   p.big_endian = o.raw_big_endian;
   p.header = int64_t(o.raw_header);
   p.components = o.raw_components;
+  p.csv_header = o.csv_header;
   p.spacing = o.raw_spacing;
   p.time = o.time;
   p.step = o.step;

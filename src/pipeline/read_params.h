@@ -17,6 +17,7 @@ struct ReadParams {
   Vec3 spacing{1, 1, 1};
   std::optional<double> time;
   int64_t step = -1;
+  std::string csv_header = "auto";
   std::string times;
   std::vector<int64_t> region, stride;
   int piece = 0, pieces = 1, ghost_levels = 0;

@@ -100,3 +100,72 @@ TEST_CASE("histogram: every value in one bin, upper end in the last, edges as pr
   p = {};
   CHECK(cell(histogram(with_values({4, 4, 4}), p, ctx), "count", 0) == 3);
 }
+
+TEST_CASE("statistics: infinities are counted and said, all else is of the finite values; histograms likewise") {
+  const double inf = HUGE_VAL;
+  FieldSet fields;
+  fields.add({"T", Association::point, Array::from_vector(std::vector<double>{1, inf, 2, -inf, 3, NAN, 4}), "", Role::scalars});
+  std::vector<double> xyz(21, 0.0);
+  const DatasetPtr in = make_dataset(PointCloud{{Array::from_vector(xyz, 3), {}}}, fields);
+  std::string said;
+  Context ctx;
+  ctx.on_log = [&](LogLevel level, std::string_view text) {
+    if (level == LogLevel::warning) said += text;
+  };
+  const TablePtr t = statistics(in, {}, ctx);
+  const auto cell = [](const TablePtr& table, const char* name, size_t row = 0) {
+    for (const Field& f : table->columns)
+      if (f.name == name) return f.array.get(row);
+    return -12345.0;
+  };
+  CHECK(cell(t, "count") == 4);
+  CHECK(cell(t, "missing") == 1);
+  CHECK(cell(t, "infinite") == 2);
+  CHECK(cell(t, "min") == 1);
+  CHECK(cell(t, "max") == 4);
+  CHECK(cell(t, "median") == 2.5);
+  CHECK(cell(t, "mean") == 2.5);
+  CHECK(cell(t, "sum") == 10);
+  CHECK(cell(t, "deviation") == doctest::Approx(std::sqrt(5.0 / 3)));
+  CHECK(said.find("'T' (2)") != std::string::npos);
+  said.clear();
+  HistogramParams p;
+  p.bins = 3;
+  const TablePtr h = histogram(in, p, ctx);
+  CHECK(cell(h, "lo") == 1);
+  CHECK(cell(h, "hi", 2) == 4);
+  CHECK(cell(h, "count", 0) + cell(h, "count", 1) + cell(h, "count", 2) == 4);
+  CHECK(cell(h, "fraction", 0) + cell(h, "fraction", 1) + cell(h, "fraction", 2) == doctest::Approx(1));
+  CHECK(said.find("2 infinite values of 'T'") != std::string::npos);
+}
+
+TEST_CASE("statistics: values of any scale have their deviation, and vectors their length") {
+  Context ctx;
+  for (const double s : {1e-300, 1e-200, 1.0, 1e200, 4e307}) {
+    CAPTURE(s);
+    FieldSet fields;
+    fields.add({"T", Association::point, Array::from_vector(std::vector<double>{1 * s, 2 * s, 3 * s, 4 * s}), "", Role::scalars});
+    fields.add({"v", Association::point, Array::from_vector(std::vector<double>{3 * s, 0, 0, 0, 4 * s, 0, s, s, s, 0, 0, 0}, 3), "",
+                Role::vectors});
+    const DatasetPtr in = make_dataset(PointCloud{{Array::from_vector(std::vector<double>(12, 0.0), 3), {}}}, fields);
+    const TablePtr t = statistics(in, {}, ctx);
+    const auto cell = [&](const char* name, size_t row) {
+      for (const Field& f : t->columns)
+        if (f.name == name) return f.array.get(row) / s;
+      return -12345.0;
+    };
+    CHECK(cell("mean", 0) == doctest::Approx(2.5));
+    CHECK(cell("deviation", 0) == doctest::Approx(std::sqrt(5.0 / 3)));
+    CHECK(cell("quartile1", 0) == doctest::Approx(1.75));
+    CHECK(cell("max", 4) == doctest::Approx(4));
+    CHECK(cell("median", 4) == doctest::Approx((std::sqrt(3.0) + 3) / 2));
+  }
+  // From one end of doubles to the other.
+  FieldSet fields;
+  fields.add({"T", Association::point, Array::from_vector(std::vector<double>{-1.7e308, 0, 1.7e308}), "", Role::scalars});
+  const DatasetPtr in = make_dataset(PointCloud{{Array::from_vector(std::vector<double>(9, 0.0), 3), {}}}, fields);
+  HistogramParams p;
+  p.bins = 3;
+  const TablePtr h = histogram(in, p, ctx);
+  for (size_t b = 0; b < 3; ++b) CHECK(h->columns[2].array.get(b) == 1);
+}

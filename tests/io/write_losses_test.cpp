@@ -17,8 +17,9 @@ constexpr ElementType types[] = {ElementType::u8,  ElementType::i8,  ElementType
                                  ElementType::i32, ElementType::u64, ElementType::i64, ElementType::f32, ElementType::f64};
 
 std::string random_name(Random& random, int number) {
-  static const char* const names[] = {"T",          "wind speed", "a/b",     "p'",  "größe", "x<y&z>", "id",   "rho.mean", "100%",
-                                      "press (Pa)", "c,d",        "quote\"", "::n", "a=b",   "T_0",    "温度", "back\\",   "semi;"};
+  static const char* const names[] = {"T",        "wind speed", "a/b",        "p'",    "größe",      "x<y&z>", "id",
+                                      "rho.mean", "100%",       "press (Pa)", "c,d",   "quote\"",    "::n",    "a=b",
+                                      "T_0",      "温度",       "back\\",     "semi;", "two\nlines", " lead"};
   const std::string name = names[random.whole(0, int(std::size(names)) - 1)];
   return random.chance(0.3) ? name + std::to_string(number) : name;
 }

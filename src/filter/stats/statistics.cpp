@@ -20,11 +20,15 @@ const Array& ghosts_of(const DatasetPtr& in, const Field& f) {
 
 bool left_out(const Array& ghost, size_t i) { return !ghost.empty() && ghost.view<uint8_t>()[i] != 0; }
 
-// The values that are numbers, in order, and how many are not.
-std::vector<double> numbers_of(const Array& a, int component, const Array& ghost, size_t& missing) {
-  std::vector<double> v;
-  v.reserve(a.count());
-  missing = 0;
+// The finite values, in order, and how many are none.
+struct Numbers {
+  std::vector<double> finite;
+  size_t missing = 0, infinite = 0;
+};
+
+Numbers numbers_of(const Array& a, int component, const Array& ghost) {
+  Numbers r;
+  r.finite.reserve(a.count());
   dispatch(a, [&](const auto& view) {
     for (size_t i = 0; i < view.count; ++i) {
       if (left_out(ghost, i)) continue;
@@ -32,13 +36,22 @@ std::vector<double> numbers_of(const Array& a, int component, const Array& ghost
       if (component >= 0) x = double(view(i, component));
       else {
         for (int c = 0; c < view.components; ++c) x += double(view(i, c)) * double(view(i, c));
-        x = std::sqrt(x);
+        // Squares reach beyond doubles sooner than lengths do.
+        if (!(x > 1e-290 && x < 1e290)) {
+          x = 0;
+          for (int c = 0; c < view.components; ++c) x = std::hypot(x, double(view(i, c)));
+        } else {
+          x = std::sqrt(x);
+        }
+        for (int c = 0; c < view.components; ++c)
+          if (double(view(i, c)) != double(view(i, c))) x = std::nan("");
       }
-      if (std::isnan(x)) ++missing;
-      else v.push_back(x);
+      if (std::isnan(x)) ++r.missing;
+      else if (std::isinf(x)) ++r.infinite;
+      else r.finite.push_back(x);
     }
   });
-  return v;
+  return r;
 }
 
 // The sum of f(v) in fixed chunks.
@@ -65,21 +78,29 @@ double quantile(std::vector<double>& v, double q) {
   std::nth_element(v.begin(), place, v.end());
   const double lo = *place;
   const double hi = i + 1 < v.size() ? *std::min_element(place + 1, v.end()) : lo;
-  return lo + (at - double(i)) * (hi - lo);
+  const double t = at - double(i), apart = hi - lo;
+  return std::isfinite(apart) ? lo + t * apart : lo * (1 - t) + hi * t;
+}
+
+// The power of two below the largest absolute value, with which squares stay within doubles; 1 where they do anyway.
+double scale_of(const std::vector<double>& v) {
+  double most = 0;
+  for (const double x : v) most = std::max(most, std::fabs(x));
+  return most > 1e140 || (most > 0 && most < 1e-140) ? std::ldexp(1.0, std::ilogb(most)) : 1;
 }
 
 // Columns that grow row by row.
 struct Rows {
   std::vector<std::string> fields;
   std::vector<int32_t> field, association, component;
-  std::vector<int64_t> count, missing;
+  std::vector<int64_t> count, missing, infinite;
   std::vector<double> number[9];
 };
 constexpr const char* number_names[9] = {"min", "quartile1", "median", "quartile3", "max", "mean", "deviation", "sum", "sum_of_squares"};
 
 void add_row(Rows& rows, const DatasetPtr& in, const Field& f, int component) {
-  size_t missing = 0;
-  std::vector<double> v = numbers_of(f.array, component, ghosts_of(in, f), missing);
+  Numbers numbers = numbers_of(f.array, component, ghosts_of(in, f));
+  std::vector<double>& v = numbers.finite;
   if (rows.fields.empty() || rows.fields.back() != f.name || rows.association.back() != int32_t(f.association)) {
     if (std::find(rows.fields.begin(), rows.fields.end(), f.name) == rows.fields.end()) rows.fields.push_back(f.name);
   }
@@ -87,16 +108,17 @@ void add_row(Rows& rows, const DatasetPtr& in, const Field& f, int component) {
   rows.association.push_back(int32_t(f.association));
   rows.component.push_back(component);
   rows.count.push_back(int64_t(v.size()));
-  rows.missing.push_back(int64_t(missing));
+  rows.missing.push_back(int64_t(numbers.missing));
+  rows.infinite.push_back(int64_t(numbers.infinite));
   double row[9];
   std::fill_n(row, 9, std::nan(""));
   if (!v.empty()) {
-    const double n = double(v.size());
-    row[7] = exact_sum(v, [](double x) { return x; });
-    row[5] = row[7] / n;
-    row[8] = exact_sum(v, [](double x) { return x * x; });
+    const double n = double(v.size()), s = scale_of(v), sum = exact_sum(v, [&](double x) { return x / s; }), mean = sum / n;
+    row[7] = sum * s;
+    row[5] = mean * s;
+    row[8] = exact_sum(v, [&](double x) { return (x / s) * (x / s); }) * s * s;
     // Two passes: the squares of differences from the mean do not cancel.
-    row[6] = v.size() > 1 ? std::sqrt(exact_sum(v, [&](double x) { return (x - row[5]) * (x - row[5]); }) / (n - 1)) : 0;
+    row[6] = v.size() > 1 ? s * std::sqrt(exact_sum(v, [&](double x) { return (x / s - mean) * (x / s - mean); }) / (n - 1)) : 0;
     row[0] = quantile(v, 0), row[1] = quantile(v, 0.25), row[2] = quantile(v, 0.5), row[3] = quantile(v, 0.75), row[4] = quantile(v, 1);
   }
   for (int i = 0; i < 9; ++i) rows.number[i].push_back(row[i]);
@@ -111,43 +133,53 @@ TablePtr statistics(const DatasetPtr& in, const StatisticsParams& p, Context& ct
     for (const Field& f : in->fields())
       if (f.association != Association::whole) fields.push_back(f);
   Rows rows;
+  std::string infinite;
   for (const Field& f : fields) {
     ctx.check();
-    for (int c = 0; c < f.components(); ++c) add_row(rows, in, f, c);
+    int64_t n = 0;
+    for (int c = 0; c < f.components(); ++c) add_row(rows, in, f, c), n += rows.infinite.back();
     if (f.components() > 1) add_row(rows, in, f, -1);
+    if (n > 0) infinite += fmt::format("{}'{}' ({})", infinite.empty() ? "" : ", ", f.name, n);
   }
+  if (!infinite.empty()) ctx.warn(fmt::format("statistics: infinite values are counted apart: {}", infinite));
   auto t = std::make_shared<Table>();
   add_column(*t, "field", std::move(rows.field), rows.fields);
   add_column(*t, "association", std::move(rows.association), {"point", "cell", "whole"});
   add_column(*t, "component", std::move(rows.component));
   add_column(*t, "count", std::move(rows.count));
   add_column(*t, "missing", std::move(rows.missing));
+  add_column(*t, "infinite", std::move(rows.infinite));
   for (int i = 0; i < 9; ++i) add_column(*t, number_names[i], std::move(rows.number[i]));
   return t;
 }
 
-TablePtr histogram(const DatasetPtr& in, const HistogramParams& p, Context&) {
+TablePtr histogram(const DatasetPtr& in, const HistogramParams& p, Context& ctx) {
   const Field* f = p.field.empty() ? in->fields().active() : &in->fields().require(p.field.name);
   if (!f) fail_usage("there is no scalar field", "histogram field", "name one");
   if (p.component >= f->components())
     fail_usage(fmt::format("asks for component {} of {}", p.component, f->components()), "histogram component", "components count from 0");
-  size_t missing = 0;
   const int component = f->components() == 1 ? 0 : p.component;
-  const std::vector<double> v = numbers_of(f->array, component, ghosts_of(in, *f), missing);
+  const Numbers numbers = numbers_of(f->array, component, ghosts_of(in, *f));
+  const std::vector<double>& v = numbers.finite;
+  if (numbers.infinite > 0) ctx.warn(fmt::format("histogram: {} infinite values of '{}' are in no bin", numbers.infinite, f->name));
   double lo = HUGE_VAL, hi = -HUGE_VAL;
-  for (const double x : v)
-    if (std::isfinite(x)) lo = std::min(lo, x), hi = std::max(hi, x);
+  for (const double x : v) lo = std::min(lo, x), hi = std::max(hi, x);
   lo = p.min.value_or(lo), hi = p.max.value_or(hi);
   if (!(lo <= hi))
-    fail_usage(v.empty() ? "has no numbers" : fmt::format("counts from {} to {}", lo, hi), "histogram", "min must not be above max");
+    fail_usage(v.empty() ? "has no finite numbers" : fmt::format("counts from {} to {}", lo, hi), "histogram", "min must not be above max");
   if (lo == hi) hi = std::nextafter(lo + std::max(std::fabs(lo), 1.0) * 1e-6, HUGE_VAL);  // one value: the first bin holds it
   const auto bins = size_t(p.bins);
   std::vector<double> edge(bins + 1);
-  for (size_t i = 0; i <= bins; ++i) edge[i] = i == bins ? hi : lo + (hi - lo) * (double(i) / double(bins));
+  const bool far = !std::isfinite(hi - lo);  // then halves: the difference is none
+  for (size_t i = 0; i <= bins; ++i) {
+    const double t = double(i) / double(bins);
+    edge[i] = i == bins ? hi : far ? lo * (1 - t) + hi * t : lo + (hi - lo) * t;
+  }
   std::vector<int64_t> count(bins, 0);
   for (const double x : v) {
     if (!(x >= lo && x <= hi)) continue;
-    auto b = std::min(size_t((x - lo) / (hi - lo) * double(bins)), bins - 1);
+    const double t = far ? (x / 2 - lo / 2) / (hi / 2 - lo / 2) : (x - lo) / (hi - lo);
+    auto b = std::min(size_t(t * double(bins)), bins - 1);
     while (b > 0 && x < edge[b]) --b;  // the edges decide, not the rounding of the division
     while (b + 1 < bins && x >= edge[b + 1]) ++b;
     ++count[b];

@@ -12,8 +12,9 @@ struct StatisticsParams {
 };
 inline void describe(Schema& s, StatisticsParams& p) { s("fields", p.fields, "Fields to describe; default: all on points and cells."); }
 
-/// One row per component of each field (and one for the length of a vector): field, association, component, count, missing (NaN),
-/// min, quartile1, median, quartile3, max, mean, deviation (of the sample: n-1), sum, sum_of_squares. Hidden and duplicate cells and points
+/// One row per component of each field (and one for the length of a vector): field, association, component, count, missing (NaN), infinite,
+/// min, quartile1, median, quartile3, max, mean, deviation (of the sample: n-1), sum, sum_of_squares: all but `missing` and
+/// `infinite` of the finite values; a warning names fields with infinities. Hidden and duplicate cells and points
 /// are left out. Quartiles by linear interpolation between order statistics (Hyndman and Fan 1996, type 7). Sums are exact to the last
 /// places for any number of threads (fixed chunks, each summed with Neumaier's compensation). O(n) memory for the order statistics.
 TablePtr statistics(const DatasetPtr& in, const StatisticsParams& p, Context& ctx);
@@ -32,7 +33,7 @@ inline void describe(Schema& s, HistogramParams& p) {
   s("max", p.max, "Where the last bin ends; default: the largest value.").unit("@field");
 }
 /// Columns lo, hi, count, fraction: a value v lies in the bin with lo <= v < hi, the last bin holds its upper end too. Values outside
-/// and NaN are in no bin; fractions are of all values that are numbers.
+/// and NaN are in no bin, nor are infinities, which a warning counts; fractions are of all finite values.
 TablePtr histogram(const DatasetPtr& in, const HistogramParams& p, Context& ctx);
 
 }  // namespace sg
