@@ -17,8 +17,10 @@ const std::vector<std::string>& ray_function_names() {
 }
 
 void describe(Schema& s, VolumeSampling& p) {
-  ParamDecl& tolerance =
-      s("tolerance", p.tolerance, "Largest error of a pixel, as a share of full scale; the rays are sampled as finely as that takes.");
+  ParamDecl& tolerance = s("tolerance", p.tolerance,
+                           "Largest error of a pixel in linear light, as a share of full scale; rays are sampled as finely as that takes. "
+                           "Opacity and colours of the value keep it; light by the gradient, second axes and volumes in one place are "
+                           "estimated, and single pixels of rough fields may be over it.");
   tolerance.positive().hi = 1;
   s("step", p.step, "Length of fixed steps along the rays instead of a tolerance; 0 is by the tolerance.").unit("world length").at_least(0);
   s("classify", p.classify,

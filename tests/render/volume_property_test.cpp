@@ -9,7 +9,7 @@ using namespace sg::test;
 
 namespace {
 
-/// What is not right yet stays out.
+/// What is not right yet stays out: turn on what is mended.
 constexpr Kinds kinds{.steps = false, .color_steps = false, .any_scale = false, .opaque = false, .refined = false, .lit_cells = false};
 
 struct Shot {
@@ -216,6 +216,9 @@ TEST_CASE("property: volumes show the largest, the smallest and the mean value o
         const float* p = &frame.rgba[4 * (size_t(y) * size_t(view.width) + size_t(x))];
         if (!(length > 1e-9 * v.box.diagonal())) continue;
         const double value = v.item.mode == RayFunction::maximum ? most : v.item.mode == RayFunction::minimum ? least : sum / length;
+        // Beside a knot the medium may be another one.
+        const std::vector<double> knots = v.transfer.knots();
+        if (std::any_of(knots.begin(), knots.end(), [&](double k) { return std::abs(k - value) < 1e-3 * (v.hi - v.lo); })) continue;
         // A smooth maximum lies a little above the largest of some samples.
         std::array<double, 4> best{};
         double nearest = HUGE_VAL;
@@ -243,7 +246,9 @@ TEST_CASE("property: volumes in fixed steps are the sum over the middles of the 
     CAPTURE(seed);
     Random r(seed);
     RandomVolume v = random_lattice(r, kinds, r.chance(0.3), r.magnitude(1e-3, 1e3));
-    random_transfer(r, kinds, v.lo, v.hi, v.cell, v, true);
+    Kinds smooth = kinds;
+    smooth.color_steps = false;  // samples read a table
+    random_transfer(r, smooth, v.lo, v.hi, v.cell, v, true);
     v.item.shaded = false;
     const double h = v.item.sampling.step = v.cell * r.magnitude(0.1, 2);
     const Shot shot = random_view(r, v.box, 8);
