@@ -99,7 +99,8 @@ TEST_CASE("property: the zero of a linear flow at a vertex, on an edge or a face
     const Mat3 turn = distorted::random_rotation(random);
     const bool turnable = mesh->as<UnstructuredMesh>() || mesh->as<SurfaceMesh>();
     const bool turns = turnable && random.chance(0.6);
-    const int where = random.whole(0, 3);
+    int where = random.whole(0, 3);
+    if (where == 1 && kind.name == "curved hexahedron") where = 2;  // half way between nodes may be outside
     CAPTURE(where);
     const Vec3 zero = random_place(mesh, random, where);
     Mat3 m;
@@ -131,7 +132,9 @@ TEST_CASE("property: the zero of a linear flow at a vertex, on an edge or a face
     }
     const CriticalPoints found = zeros_of(d);
     CHECK(found.points.size() == 1);
-    CHECK(found.spread == 0);
+    // At the apex of a pyramid of high order, where all of its upper face is one place, a whole face of zeros is seen.
+    const bool apex = kind.name.find("pyramid") != std::string::npos && kind.name != "pyramid" && where == 0;
+    if (!apex) CHECK(found.spread == 0);
     if (found.points.size() != 1) continue;
     CHECK(length(found.points[0].at - expected) < 1e-6 * found.points[0].size);
     CHECK(found.points[0].index == (det > 0 ? 1 : -1));
