@@ -1,29 +1,63 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data/field.h"
 
+#include <atomic>
+#include <unordered_map>
+#include <unordered_set>
+
 #include "base/error.h"
 
 namespace sg {
 
 std::string_view association_name(Association a) { return a == Association::point ? "point" : a == Association::cell ? "cell" : "whole"; }
 
+struct FieldSet::Index {
+  std::unordered_map<std::string, size_t> places[3];  // by association
+};
+
+namespace {
+constexpr size_t many = 32, nowhere = SIZE_MAX;
+}
+
+size_t FieldSet::place_of(std::string_view name, Association a) const {
+  if (index_) {
+    const auto& places = index_->places[size_t(a)];
+    const auto at = places.find(std::string(name));
+    return at == places.end() ? nowhere : at->second;
+  }
+  for (size_t i = 0; i < fields_.size(); ++i)
+    if (fields_[i].association == a && fields_[i].name == name) return i;
+  return nowhere;
+}
+
 void FieldSet::add(Field f) {
-  for (Field& have : fields_)
-    if (have.association == f.association && have.name == f.name) {
-      have = std::move(f);
-      return;
+  if (const size_t at = place_of(f.name, f.association); at != nowhere) {
+    fields_[at] = std::move(f);
+    return;
+  }
+  if (fields_.size() >= many) {
+    if (!index_) {
+      index_ = std::make_shared<Index>();
+      for (size_t i = 0; i < fields_.size(); ++i) index_->places[size_t(fields_[i].association)].emplace(fields_[i].name, i);
+    } else if (index_.use_count() > 1) {
+      index_ = std::make_shared<Index>(*index_);
     }
+    std::atomic_thread_fence(std::memory_order_acquire);  // a copy elsewhere may just have let go of it
+    index_->places[size_t(f.association)].emplace(f.name, fields_.size());
+  }
   fields_.push_back(std::move(f));
 }
 
 void FieldSet::remove(std::string_view name, Association a) {
-  std::erase_if(fields_, [&](const Field& f) { return f.association == a && f.name == name; });
+  const size_t at = place_of(name, a);
+  if (at == nowhere) return;
+  fields_.erase(fields_.begin() + ptrdiff_t(at));
+  index_.reset();  // made anew by the next add()
 }
 
 const Field* FieldSet::find(std::string_view name, Association a) const {
-  for (const Field& f : fields_)
-    if (f.association == a && f.name == name) return &f;
-  return nullptr;
+  const size_t at = place_of(name, a);
+  return at == nowhere ? nullptr : &fields_[at];
 }
 
 const Field* FieldSet::find(std::string_view name) const {
@@ -64,8 +98,9 @@ const Field* FieldSet::active(int components) const {
 
 std::vector<std::string> FieldSet::names() const {
   std::vector<std::string> r;
+  std::unordered_set<std::string_view> seen;
   for (const Field& f : fields_)
-    if (std::find(r.begin(), r.end(), f.name) == r.end()) r.push_back(f.name);
+    if (seen.insert(f.name).second) r.push_back(f.name);
   return r;
 }
 

@@ -2,6 +2,7 @@
 // Field: a named array on the points, the cells or the whole of a dataset.
 #pragma once
 #include <cmath>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -54,7 +55,10 @@ class FieldSet {
   const Field& operator[](size_t i) const { return fields_[i]; }
 
  private:
+  struct Index;
+  size_t place_of(std::string_view name, Association a) const;
   std::vector<Field> fields_;
+  std::shared_ptr<Index> index_;  ///< places by name, once there are many; copies share it until one of them changes
 };
 
 /// Range over the finite values of one component.

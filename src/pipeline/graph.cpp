@@ -3,6 +3,7 @@
 #include "pipeline/graph.h"
 
 #include <atomic>
+#include <unordered_set>
 
 #include "base/file.h"
 #include "base/text.h"
@@ -114,9 +115,10 @@ std::optional<std::vector<std::string>> known_fields(const Node& node, const Gra
   auto* given = std::get_if<DataNode>(&node.what);
   if (!given || std::holds_alternative<TablePtr>(given->data)) return std::nullopt;
   std::vector<std::string> names;
+  std::unordered_set<std::string> known;
   for_each_dataset(given->data, [&](const std::string&, const DatasetPtr& d) {
     for (std::string& n : d->fields().names())
-      if (std::find(names.begin(), names.end(), n) == names.end()) names.push_back(std::move(n));
+      if (known.insert(n).second) names.push_back(std::move(n));
   });
   return names;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/mesh/append.h"
 
+#include <unordered_set>
+
 #include "base/error.h"
 #include "data/field_ops.h"
 #include "data/memory_budget.h"
@@ -164,9 +166,10 @@ Mesh joined_surface(const std::vector<DatasetPtr>& parts, std::vector<int64_t>& 
 void join_fields(const std::vector<DatasetPtr>& parts, Association on, const std::vector<int64_t>& order, bool all, FieldSet& out,
                  Context& ctx) {
   std::vector<std::string> names;
+  std::unordered_set<std::string> known;
   for (const DatasetPtr& d : parts)
     for (const Field& f : d->fields())
-      if (f.association == on && std::find(names.begin(), names.end(), f.name) == names.end()) names.push_back(f.name);
+      if (f.association == on && known.insert(f.name).second) names.push_back(f.name);
   std::vector<size_t> counts;
   for (const DatasetPtr& d : parts) counts.push_back(on == Association::point ? d->point_count() : d->cell_count());
   for (const std::string& name : names) {
