@@ -105,6 +105,25 @@ TEST_CASE(
     }
 }
 
+TEST_CASE("derivative orders: a flow that is a gradient has no vorticity up to the border of a wavy box of any cells") {
+  Random random(5);
+  const Distortion d = Distortion::random(random, 0.12);
+  const Waves f = Waves::random(random, 3, 0.6, 1.6);
+  for (const std::string kind : {"hexahedron", "wedge", "polyhedron", "pyramid", "tetra", "mixed"}) {
+    CAPTURE(kind);
+    double worst[2] = {0, 0};
+    for (int level = 0; level < 2; ++level) {
+      const DatasetPtr straight = solid_mesh(kind, 7 << level, 1, [](Vec3) { return 0.0; });
+      const DatasetPtr mesh = flow::with_velocity(flow::moved(straight, d), [&](Vec3 p) { return f.gradient(p); });
+      Context context;
+      const Array w = curl(mesh, {{"u"}, "w"}, context)->fields().require("w").array;
+      for (size_t i = 0; i < w.count(); ++i) keep(worst[level], length(Vec3(w.get(i, 0), w.get(i, 1), w.get(i, 2))));
+    }
+    CHECK(worst[1] < 0.15);
+    CHECK(std::log2(worst[0] / worst[1]) > 1.3);
+  }
+}
+
 TEST_CASE("derivative orders: a polyline of many points is followed point by point") {
   // A helix: the gradient along it of z is its slope.
   for (const bool closed : {false, true}) {

@@ -72,6 +72,19 @@ void BernsteinBasis::set(std::span<const Vec3> v, std::span<const double> ration
   }
 }
 
+void BernsteinBasis::take_out_apex() {
+  // Division of sum b_k B_k^n by 1 - z gives b_k n / (n - k) of degree n - 1, here written in degree n again.
+  const int n = solver_.degree();
+  const auto layer = size_t(n + 1) * size_t(n + 1);
+  for (int c = 0; c < 3; ++c) {
+    const auto b = solver_.coefficients(c);
+    for (size_t i = 0; i < layer; ++i) {
+      b[i + size_t(n) * layer] = 0;
+      for (int k = n; k > 0; --k) b[i + size_t(k) * layer] += b[i + size_t(k - 1) * layer] * k / (n - k + 1);
+    }
+  }
+}
+
 bool BernsteinBasis::solve(std::vector<Vec3>& zeros, std::span<const std::array<Vec3, 2>> known) {
   return solver_.solve(domain_, zeros, known);
 }

@@ -16,6 +16,8 @@ class BernsteinBasis {
 
   /// The polynomials of these values at the nodes; `rational`: weights of the nodes, or empty.
   void set(std::span<const Vec3> at_nodes, std::span<const double> rational);
+  /// Of a pyramid whose apex is a zero, that zero's whole upper face: divides the polynomials by 1 - z.
+  void take_out_apex();
   /// As BernsteinZeros::solve; reference() turns the zeros into reference coordinates of the cell.
   bool solve(std::vector<Vec3>& zeros, std::span<const std::array<Vec3, 2>> known);
   /// A pyramid is a box whose upper face has shrunk to the apex; all others are as they are.

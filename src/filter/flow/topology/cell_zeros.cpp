@@ -190,13 +190,18 @@ CellZeros::Result CellZeros::find_polynomial(const CellShape& shape, std::vector
   BernsteinBasis& basis = basis_of(shape);
   basis.set(v_, map_.reader().weights());
   found_.clear();
-  // Of a pyramid whose apex is zero, all other zeros would lie on lines from there.
-  const bool apex = basis.pyramid() && !is_high_order(shape.type()) && zero_[4];
-  if (apex) found_.push_back({0.5, 0.5, 1});
-  const bool isolated = apex || basis.solve(found_, known_);
+  // Of a linear pyramid whose apex is zero, all other zeros would lie on lines from there.
+  const bool apex = basis.pyramid() && zero_[4];
+  if (apex) basis.take_out_apex();
+  const bool isolated = (apex && !is_high_order(shape.type())) || basis.solve(found_, known_);
   for (const Vec3 u : found_) {
-    const Vec3 rst = apex ? Vec3(0.5, 0.5, 1 - 1e-9) : basis.reference(u);
-    add(rst, std::max(shape.outside(rst), apex ? 0.0 : -HUGE_VAL), out);
+    const Vec3 rst = basis.reference(u);
+    add(rst, shape.outside(rst), out);
+  }
+  if (apex) {
+    found_.push_back({0.5, 0.5, 1});
+    const Vec3 rst(0.5, 0.5, 1 - 1e-9);
+    add(rst, std::max(shape.outside(rst), 0.0), out);
   }
   return !isolated || !known_.empty() ? Result::spread : found_.empty() ? Result::none : Result::isolated;
 }
