@@ -37,7 +37,7 @@ size_t plus(size_t a, size_t b) { return a > SIZE_MAX / 2 - std::min(b, SIZE_MAX
 void limit_to(int what, rlim_t value) {
   rlimit now{};
   if (::getrlimit(what, &now) != 0) return;
-  now.rlim_cur = now.rlim_max = std::min(value, now.rlim_max);
+  now.rlim_cur = now.rlim_max = std::min({value, now.rlim_cur, now.rlim_max});
   ::setrlimit(what, &now);
 }
 

@@ -3,6 +3,7 @@
 #include "base/bytes.h"
 #include "base/error.h"
 #include "base/text.h"
+#include "io/plausible.h"
 #include "io/plugins/hdf5/guarded.h"
 #include "io/plugins/hdf5/h5.h"
 
@@ -126,6 +127,7 @@ void Dataset::check_backed(uint64_t bytes) const {
   if (!numeric_) file_.fail("holds no numbers of a type that is read", path_, "integers and floats of 1, 2, 4 or 8 bytes");
   if (bytes > backed_)
     file_.fail(fmt::format("has {} bytes, more than what the file holds of it can give", bytes), path_, "the file is truncated or damaged");
+  check_plausible(bytes, std::max(file_.size(), file_size_), file_.path());
 }
 
 std::optional<Array> Dataset::mapped(uint64_t first, uint64_t n, int components) const {

@@ -5,6 +5,7 @@
 #include "base/parallel.h"
 #include "io/plugins/hdf5/enzo.h"
 #include "io/plugins/hdf5/vtkhdf.h"
+#include "io/reading_budget.h"
 
 namespace {
 
@@ -26,7 +27,17 @@ sg::PluginArray read_array(const std::string& path, const sg::PluginSelection& w
   return out;
 }
 
+// The program's own budget does not see the arrays of a plug-in.
+sg::Data read_vtkhdf(const std::string& path, const sg::ReadOptions& options, sg::Context& context) {
+  sg::ReadingBudget budget(path, true);
+  return sg::read_vtkhdf(path, options, context);
+}
+sg::Data read_enzo(const std::string& path, const sg::ReadOptions& options, sg::Context& context) {
+  sg::ReadingBudget budget(path, true);
+  return sg::read_enzo(path, options, context);
+}
+
 }  // namespace
 
-SG_PLUGIN_FORMATS({"vtkhdf", sg::read_vtkhdf, sg::write_vtkhdf, sg::times_of_vtkhdf}, {"enzo", sg::read_enzo, nullptr, sg::times_of_enzo},
+SG_PLUGIN_FORMATS({"vtkhdf", read_vtkhdf, sg::write_vtkhdf, sg::times_of_vtkhdf}, {"enzo", read_enzo, nullptr, sg::times_of_enzo},
                   {"array", nullptr, nullptr, nullptr, read_array})

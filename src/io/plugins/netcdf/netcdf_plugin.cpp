@@ -27,6 +27,7 @@ void warm_up() {
 // The library, and the HDF5 below it, follow numbers of a damaged file wherever they lead: it works in a process of its own, so that this
 // one has no state of it either.
 Data read(const std::string& path, const ReadOptions& options, Context& context) {
+  check_classic(path);  // ours, and without a process
   warm_up();
   return read_isolated(
       path,
@@ -40,6 +41,7 @@ Data read(const std::string& path, const ReadOptions& options, Context& context)
 }
 
 std::vector<double> times(const std::string& path, const ReadOptions&, Context& context) {
+  check_classic(path);  // ours, and without a process
   warm_up();
   return times_isolated(
       path,
