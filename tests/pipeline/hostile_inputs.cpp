@@ -55,6 +55,7 @@ double value(Values values, size_t i, int components) {
   switch (values) {
     case Values::nan: return NAN;
     case Values::zero: return 0;
+    case Values::infinite: return i % 7 == 3 ? HUGE_VAL : i % 11 == 5 ? -HUGE_VAL : std::sin(0.7 * double(i));
     case Values::huge: return i % 3 == 0 ? 1e300 : i % 3 == 1 ? -1e300 : 1;
     default: return std::sin(0.7 * double(i) + components) + 0.2;
   }
@@ -65,10 +66,45 @@ DatasetPtr plain(M mesh) {
   return with(make_dataset(Mesh(std::move(mesh))), Values::plain);
 }
 
+// Every place times a factor, in the type that the mesh has.
+template <class M>
+M scaled(M mesh, double factor) {
+  if constexpr (std::is_same_v<M, UniformGrid>) {
+    mesh.spacing *= factor;
+  } else {
+    std::vector<double> xyz;
+    for (size_t i = 0; i < mesh.points.count(); ++i)
+      for (int c = 0; c < 3; ++c) xyz.push_back(mesh.points.xyz.get(i, c) * factor);
+    mesh.points = points_of(std::move(xyz));
+  }
+  return mesh;
+}
+
+// A vertex, a line, a triangle, a quad, a tetrahedron, a pyramid and a polygon over the same eight points.
+UnstructuredMesh mixed_cells() {
+  UnstructuredMesh m;
+  m.points = points_of({0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0, 1, 1, 1, 1, 0, 1, 1});
+  m.cells.connectivity = Array::from_vector(std::vector<int32_t>{7, 6, 7, 4, 5, 6, 0, 1, 2, 3, 0, 1, 3, 4, 0, 1, 2, 3, 5, 2, 3, 7, 6, 5});
+  m.cells.offsets = Array::from_vector(std::vector<int32_t>{0, 1, 3, 6, 10, 14, 19, 24});
+  using enum CellType;
+  std::vector<uint8_t> types;
+  for (const CellType t : {vertex, line, triangle, quad, tetra, pyramid, polygon}) types.push_back(uint8_t(t));
+  m.types = Array::from_vector(std::move(types));
+  return m;
+}
+
+// Vertices, lines, polygons and a strip of one surface.
+SurfaceMesh mixed_surface() {
+  SurfaceMesh s = surface(corners, {0, 1, 2}, {3, 4});
+  s.vertices.connectivity = Array::from_vector(std::vector<int32_t>{4}), s.vertices.fixed = 1;
+  s.strips.connectivity = Array::from_vector(std::vector<int32_t>{0, 1, 3, 4}), s.strips.fixed = 4;
+  return s;
+}
+
 std::vector<Input> small_inputs() {
   std::vector<Input> r;
-  for (const Values v : {Values::none, Values::plain, Values::nan, Values::zero, Values::huge, Values::flat}) {
-    constexpr const char* titles[] = {"bare ", "", "NaN ", "zero ", "huge valued ", "2-component "};
+  for (const Values v : {Values::none, Values::plain, Values::nan, Values::zero, Values::huge, Values::flat, Values::infinite}) {
+    constexpr const char* titles[] = {"bare ", "", "NaN ", "zero ", "huge valued ", "2-component ", "", "infinite "};
     const std::string what = titles[int(v)];
     auto add = [&](const char* name, auto mesh) { r.push_back({what + name, with(make_dataset(Mesh(std::move(mesh))), v)}); };
     add("grid", box(4, 4, 4));
@@ -99,6 +135,17 @@ std::vector<Input> make_inputs() {
   auto add = [&](std::string name, auto mesh) { r.push_back({std::move(name), plain(std::move(mesh))}); };
   add("huge grid", curved(3, 1e300, 0));
   add("tiny grid", curved(3, 1e-300, 0));
+  for (const double factor : {1e30, 1e-30}) {
+    const std::string size = factor > 1 ? "vast " : "minute ";
+    add(size + "grid", scaled(box(4, 4, 4), factor));
+    add(size + "flat grid", scaled(box(5, 4, 1), factor));
+    add(size + "tetrahedra", scaled(tetrahedra(corners, {0, 1, 2, 3, 1, 2, 3, 4}), factor));
+    add(size + "surface", scaled(surface(corners, {0, 1, 2, 0, 1, 3, 1, 2, 4}), factor));
+    add(size + "lines", scaled(surface(corners, {}, {0, 1, 1, 2, 3, 4}), factor));
+    add(size + "cloud", scaled(PointCloud{points_of(corners)}, factor));
+  }
+  add("cells of every dimension", mixed_cells());
+  add("surface of all its parts", mixed_surface());
   add("grid with a NaN place", curved(3, 1, NAN));
   add("grid with an infinite place", curved(3, 1, HUGE_VAL));
   add("tetrahedra without volume", tetrahedra({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0}, {0, 1, 2, 3, 0, 0, 1, 2, 3, 3, 3, 3}));
@@ -163,6 +210,19 @@ DatasetPtr with(const DatasetPtr& mesh, Values values) {
 const std::vector<Input>& inputs() {
   static const std::vector<Input> all = make_inputs();
   return all;
+}
+
+const std::vector<Input>& unlike_inputs() {
+  static const std::vector<Input> few{{"grid", plain(box(4, 4, 4))},
+                                      {"bare surface", make_dataset(Mesh(surface(corners, {0, 1, 2, 0, 1, 3, 1, 2, 4})))},
+                                      {"cells of every dimension", plain(mixed_cells())},
+                                      {"lines", plain(surface(corners, {}, {0, 1, 1, 2, 3, 4}))},
+                                      {"point", plain(PointCloud{points_of({1, 2, 3})})},
+                                      {"empty cloud", plain(PointCloud{points_of({})})},
+                                      {"empty surface", plain(surface({}, {}))},
+                                      {"empty tetrahedra", make_dataset(Mesh(tetrahedra({}, {})))},
+                                      {"empty collection", CollectionPtr(std::make_shared<Collection>())}};
+  return few;
 }
 
 const std::vector<Input>& plain_inputs() {

@@ -9,7 +9,8 @@
 
 namespace sg::test::hostile {
 
-enum class Values { none, plain, nan, zero, huge, flat, smooth };  ///< plain: noise; flat: the same, with vectors of two components
+/// plain: noise; flat: the same, with vectors of two components; infinite: some of both signs.
+enum class Values { none, plain, nan, zero, huge, flat, smooth, infinite };
 
 struct Input {
   std::string name;
@@ -24,6 +25,9 @@ DatasetPtr with(const DatasetPtr& mesh, Values values);
 const std::vector<Input>& inputs();
 /// A grid, a flat grid and a surface: one of them suits most operations.
 const std::vector<Input>& plain_inputs();
+
+/// Those that operations of several inputs get in pairs: empty ones, bare ones, of all kinds of cells.
+const std::vector<Input>& unlike_inputs();
 
 /// NAME=VALUE for values that nobody means.
 std::vector<std::string> words(const ParamDecl& d);

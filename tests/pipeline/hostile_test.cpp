@@ -136,6 +136,22 @@ TEST_CASE("operations: none crashes, hangs or asks for gigabytes on meshes that 
   MESSAGE(answered << " answered, " << refused << " refused");
 }
 
+TEST_CASE("operations: none crashes, hangs or asks for gigabytes when its inputs are unlike, and some of them empty") {
+  hostile::unlike_inputs();
+  const MemoryFence fence;
+  refused = answered = 0;
+  for (const Operation& o : operations()) {
+    if (o.kind == OperationKind::source || !wanted(o) || o.max_inputs == 1) continue;
+    for (const hostile::Input& first : hostile::unlike_inputs())
+      for (const hostile::Input& second : hostile::unlike_inputs()) {
+        std::vector<Data> data{first.data, second.data};
+        while (int(data.size()) < o.min_inputs) data.push_back(first.data);
+        stays_calm(o, first.name + " and " + second.name, [&](Context& c) { return run_operation(o, data, words_for(o, {}), c); });
+      }
+  }
+  MESSAGE(answered << " answered, " << refused << " refused");
+}
+
 TEST_CASE("operations: none crashes, hangs or asks for gigabytes for numbers that are huge, negative or NaN, and words of any kind") {
   hostile::plain_inputs();
   const MemoryFence fence;
