@@ -37,6 +37,17 @@ double size_of(const Dataset& d, const Field& f, int component) {
   return size;
 }
 
+/// The values that matter: a few that lie far beyond all that colours, opacity and levels tell apart do not.
+double size_of(const VolumeItem& item, const Field& field) {
+  const double all = size_of(*item.data, field, item.component);
+  // The axis of these is not the values'.
+  if (item.mode == RayFunction::sum || item.mode == RayFunction::distance || item.mode == RayFunction::accumulate) return all;
+  double told = std::max(std::abs(item.color.lo), std::abs(item.color.hi));
+  for (const Vec2& p : item.opacity.points) told = std::max(told, std::abs(p.x));
+  for (double l : item.levels) told = std::max(told, std::abs(l));
+  return told > 0 ? std::min(all, told) : all;
+}
+
 /// In floats of the same width; what is a power of two larger or smaller is so exactly.
 Array scaled(const Array& a, double factor) {
   if (a.empty() || factor == 1) return a;
@@ -189,7 +200,7 @@ std::optional<NaturalScene> natural_scene(const Scene& scene) {
     const Box3& box = item->data->bounds();
     if (!box.empty()) bounds.add(box.lo), bounds.add(box.hi);
     // Labels are names, whatever numbers they have.
-    if (item->color.labels.empty()) sizes[i] = size_of(*item->data, field, item->component);
+    if (item->color.labels.empty()) sizes[i] = size_of(*item, field);
   }
   NaturalScene natural;
   const int length = bounds.empty() ? 0 : exponent(bounds.diagonal());

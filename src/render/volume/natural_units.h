@@ -19,10 +19,10 @@ struct NaturalScene {
   FragmentLists fragments(FragmentLists world) const;
 };
 
-/// Nothing when all volumes have values (largest magnitude between 2^-20 and 2^30), lengths (diagonal between 2^-20 and 2^20) and slopes
-/// near 1.
-/// Else each volume has a copy of its field, kept with its dataset, unless a field of integers needs none, and of its points. Opaque
-/// surfaces come along where they may cast shadows. Throws Error(usage) for items that are no volumes.
+/// Nothing when all volumes have values (the largest that colours and opacity tell apart, between 2^-20 and 2^30), lengths (diagonal
+/// between 2^-20 and 2^20) and slopes near 1. Else each volume has a copy of its field, kept with its dataset, unless a field of integers
+/// needs none, and of its points. Opaque surfaces come along where they may cast shadows. Throws Error(usage) for items that are no
+/// volumes.
 std::optional<NaturalScene> natural_scene(const Scene& scene);
 
 }  // namespace sg::volume
