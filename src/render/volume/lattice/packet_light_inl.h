@@ -293,11 +293,14 @@ class CellLight {
     const FieldSurface<D> s0 = lighting_.surface(g0), s1 = lighting_.surface(g1), sm = lighting_.surface(middle);
     Error e;
     const LitLanes<D> l0 = lighting_.on(s0, e.sides[0], nearest[0]), l1 = lighting_.on(s1, e.sides[1], nearest[1]);
-    const auto both = hn::Gt(hn::Min(s0.much, s1.much), zero);
+    const auto begins = hn::Gt(s0.much, zero), stops = hn::Gt(s1.much, zero), both = hn::And(begins, stops);
+    // Where an end has no surface (equal samples around it), there may be one on the way: then the border of that is a jump.
+    const auto some = hn::Gt(hn::Max(sm.much, hn::Max(s0.much, s1.much)), zero), border = hn::AndNot(both, some);
     // For an angle a the light bends by a^2 / 24 of its second derivative, with a^2 = 2 (1 - cos a). An even turn is twice those to and
     // from the middle; a rough field may turn there and back.
-    const F turn0 = turn_between(s0, sm), turn1 = turn_between(sm, s1), halves = hn::Add(turn0, turn1);
-    const F turn = hn::Max(turn_between(s0, s1), hn::Add(halves, halves));
+    const F turn0 = hn::IfThenElseZero(begins, turn_between(s0, sm)), turn1 = hn::IfThenElseZero(stops, turn_between(sm, s1));
+    const F halves = hn::Add(turn0, turn1), whole = hn::IfThenElse(both, turn_between(s0, s1), hn::Set(d, at_border));
+    const F turn = hn::Max(whole, hn::Add(halves, halves));
     const F faded =
         hn::Mul(hn::Mul(hn::Set(d, 0.5f), hn::Add(Fade<D>(s0, sm, turn0).hollow, Fade<D>(sm, s1, turn1).hollow)), lighting_.most_fade());
     const F bend = hn::Mul(turn, hn::Mul(lighting_.bend(hn::Max(nearest[0], nearest[1]), turn), hn::Set(d, 1.0f / 12)));
@@ -305,10 +308,11 @@ class CellLight {
     // The middle of an uneven turn is not its mean: by half the square of how uneven, never by more than a tenth.
     const F uneven = hn::Sub(hn::Set(d, 1.0f), hn::Mul(hn::Set(d, 2.0f), turned_half_way(s0, s1)));
     const F off = hn::Mul(apart(l0, l1), hn::Min(hn::Mul(hn::Mul(hn::Set(d, 0.5f), uneven), uneven), hn::Set(d, 0.1f)));
-    e.bend = hn::IfThenElseZero(both, hn::Add(hn::Add(bend, faded), off));
-    const auto unsure = hn::Or(hn::Or(grazing(s0, sm), grazing(sm, s1)), hn::Gt(turn, hn::Set(d, rough)));
-    const F over = hn::IfThenElseZero(unsure, turn);
-    e.jump = hn::IfThenElseZero(both, hn::IfThenElse(kinked, hn::Max(over, apart(l0, l1)), over));
+    e.bend = hn::IfThenElseZero(some, hn::Add(hn::Add(bend, faded), hn::IfThenElseZero(both, off)));
+    const auto over_edge = hn::Or(hn::And(begins, grazing(s0, sm)), hn::And(stops, grazing(sm, s1)));
+    const F over = hn::IfThenElseZero(hn::Or(over_edge, hn::Gt(turn, hn::Set(d, rough))), turn);
+    const F jump = hn::IfThenElse(kinked, apart(l0, l1), hn::IfThenElseZero(border, lighting_.most_fade()));
+    e.jump = hn::IfThenElseZero(some, hn::Max(over, jump));
     return e;
   }
 
@@ -367,7 +371,8 @@ class CellLight {
     return found;
   }
 
-  static constexpr float rough = 0.25f;  // 1 - cosine of a turn within a cell from which on jumps are looked for
+  static constexpr float rough = 0.25f;     // 1 - cosine of a turn within a cell from which on jumps are looked for
+  static constexpr float at_border = 0.1f;  // what a surface is thought to turn that begins or ends on the way
 
   const Lighting<D>& lighting_;
   const Axes& axes_;

@@ -77,13 +77,15 @@ void composite_optics(const Look& look, double from, double length, const Optics
 /// What a table says of a piece.
 void composite_segment(const Look& look, double from, double length, const Preintegrated::Segment& segment, const Lit* lit,
                        RayState& state);
-/// Several media at once on stretches with common ends; cuts them until order does not matter within the budget.
+/// Several media at once on stretches with common ends (joint.cpp): cut where a value turns or meets a knot of its medium, and these parts
+/// until Gauss's rule of three places on a part and on its halves differ by less than their share of the smallest tolerance, 14 times at
+/// most: an estimate, no bound.
 struct Joint {
   const Look* look;
   RayField* walker;
   Stretch stretch;
 };
-void composite_joint(const std::vector<Joint>& joint, RayState& state, int cuts = 0);
+void composite_joint(const std::vector<Joint>& joint, RayState& state);
 
 /// The part of a stretch between two places.
 Stretch part_of(const Stretch& stretch, double from, double to);

@@ -201,6 +201,6 @@ class JointPart {
 
 }  // namespace
 
-void composite_joint(const std::vector<Joint>& joint, RayState& state, int) { JointPart(joint, state).whole(); }
+void composite_joint(const std::vector<Joint>& joint, RayState& state) { JointPart(joint, state).whole(); }
 
 }  // namespace sg::volume
