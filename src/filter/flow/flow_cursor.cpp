@@ -22,7 +22,7 @@ struct FlowCursor::State {
   int64_t cell = -1, sized = -1, framed = -1;
   double length = 0;
   bool beside = false;  // the last place was the nearest of a surface or curve that x did not lie on
-  Vec3 normal;  // of the surface at the last place
+  Vec3 normal;          // of the surface at the last place
   int64_t corner[8];
   double weight[8];
   std::vector<Vec3> slopes;

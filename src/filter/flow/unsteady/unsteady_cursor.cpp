@@ -62,7 +62,7 @@ struct UnsteadyCursor::State {
   const UnsteadyFlow& flow;
   // One mesh of solids: one cursor, whose place serves all steps. Surfaces and changed meshes: a cursor a step, but for a steady flow.
   std::vector<FlowCursor> cursors;
-  bool steady = false;  // a surface or curve, all steps the same numbers
+  bool steady = false;                          // a surface or curve, all steps the same numbers
   bool have[4] = {false, false, false, false};  // which cursors are at the last place
   std::optional<MeshPlace> moving;
   double w[4] = {0, 0, 0, 0};  // of the steps at the last time

@@ -191,8 +191,8 @@ class TolerantPacket : CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>> {
       if constexpr (shaded) lightening = hn::Mul(hn::Set(d, 2.0f), hn::Add(hn::Abs(light.diffuse.b), hn::Abs(light.specular.b)));
       cells_.may_hide(s.change, lightening);
       const F taus[3] = {here_.tau, p1.tau, p2.tau};
-      cells_.segment(drawn, t, hn::Add(world, world), s.depth, taus, here_.value, p2.value, s.value, hn::Mul(half, hn::Add(one, s.middle)), nullptr,
-                     [&](F at, F share, F& red, F& green, F& blue) HWY_ATTR {
+      cells_.segment(drawn, t, hn::Add(world, world), s.depth, taus, here_.value, p2.value, s.value, hn::Mul(half, hn::Add(one, s.middle)),
+                     nullptr, [&](F at, F share, F& red, F& green, F& blue) HWY_ATTR {
                        if constexpr (shaded) {
                          const F x = hn::Sub(hn::Add(at, at), one);
                          const F factor = light.diffuse.mean(x, s.variance), flash = hn::Mul(light.specular.mean(x, s.variance), share);
