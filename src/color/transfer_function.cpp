@@ -79,6 +79,14 @@ float FastCurve::narrow() const {
   return least;
 }
 
+bool FastCurve::shorter_line(float lo, float hi, float length) const {
+  if (!(lo <= hi)) return true;  // NaN: nothing is known
+  size_t i = after(lo);
+  for (i = i > 0 ? i - 1 : 0; i + 1 < x_.size() && x_[i] <= hi; ++i)
+    if (x_[i + 1] > x_[i] && x_[i + 1] - x_[i] < length && x_[i + 1] >= lo) return true;
+  return false;
+}
+
 std::vector<FastCurve::Edge> FastCurve::edges() const {
   std::vector<Edge> all;
   for (size_t i = 0; i + 1 < x_.size(); ++i) {
@@ -181,6 +189,20 @@ TransferFunction::TransferFunction(const ColorScale& scale, const OpacityCurve& 
     for (const float at : {w.lo, w.hi}) edges_.push_back({at, w.triangle ? HUGE_VALF : w.opacity * w.per_half});
     for (const float at : {w.second_lo, w.second_hi}) second_edges_.push_back({at, HUGE_VALF});
   }
+}
+
+bool TransferFunction::misses(float lo, float hi, float apart) const {
+  if (!(apart > narrow_)) return false;
+  if (widgets_.empty()) return curve_.shorter_line(lo, hi, apart);
+  return std::any_of(widgets_.begin(), widgets_.end(),
+                     [&](const Widget& w) { return 0.5f * (w.hi - w.lo) < apart && w.lo <= hi && w.hi >= lo; });
+}
+
+bool TransferFunction::misses_second(float lo, float hi, float apart) const {
+  if (!(apart > narrow_second_)) return false;
+  if (widgets_.empty()) return factor_.shorter_line(lo, hi, apart);
+  return std::any_of(widgets_.begin(), widgets_.end(),
+                     [&](const Widget& w) { return w.second_hi - w.second_lo < apart && w.second_lo <= hi && w.second_hi >= lo; });
 }
 
 // The strongest decides the opacity; colours mix by opacity, so that they change smoothly where widgets overlap.

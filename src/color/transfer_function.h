@@ -84,6 +84,8 @@ class FastCurve {
   float most(float lo, float hi) const;
   /// Length of the shortest line; infinite when there is none.
   float narrow() const;
+  /// Does a line shorter than this reach into [lo, hi]?
+  bool shorter_line(float lo, float hi, float length) const;
   /// Where it jumps, or begins to be more than zero.
   struct Edge {
     float at, steep;  ///< change per x where it begins; infinite where it jumps
@@ -128,6 +130,9 @@ class TransferFunction {
   /// Samples nearer to each other than this, over the value and over the second axis, miss no line of a curve and no widget.
   float narrow() const { return narrow_; }
   float narrow_second() const { return narrow_second_; }
+  /// Can samples so far apart miss a line of the curve or a widget that reaches into [lo, hi]? Over the value, and over the second axis.
+  bool misses(float lo, float hi, float apart) const;
+  bool misses_second(float lo, float hi, float apart) const;
   /// Where opacity jumps or begins to be more than zero, over the (stored) value and over the second axis; by how much at most.
   using Edge = FastCurve::Edge;
   const std::vector<Edge>& edges() const { return edges_; }

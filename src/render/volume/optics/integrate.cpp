@@ -74,8 +74,10 @@ namespace {
 /// Samples of one axis of a transfer function at the begin, the middle and the end of a part.
 struct AxisSamples {
   using Edges = std::vector<TransferFunction::Edge>;
-  float a, m, b, narrow;
+  float a, m, b;
   const Edges& edges;
+  const TransferFunction& f;
+  bool (TransferFunction::*misses)(float lo, float hi, float apart) const;
 
   /// A parabola through them goes an eighth of its second difference beyond them at most; other curves somewhat more.
   float beyond() const { return 0.5f * std::abs(a - 2 * m + b); }
@@ -83,7 +85,9 @@ struct AxisSamples {
   bool overlook(float opacity) const {
     const auto [lo, hi] = std::minmax({a, m, b});
     const float far = beyond();
-    return std::max(std::abs(a - m), std::abs(m - b)) > narrow || std::any_of(edges.begin(), edges.end(), [&](const auto& e) {
+    // Lines are looked for as far beside the samples as these lie apart: the length of a gradient turns sharply where it is small.
+    const float apart = std::max(std::abs(a - m), std::abs(m - b)), reach = apart + far;
+    return (f.*misses)(lo - reach, hi + reach, apart) || std::any_of(edges.begin(), edges.end(), [&](const auto& e) {
              return e.steep * far > opacity && ((e.at > lo - far && e.at <= lo) || (e.at >= hi && e.at < hi + far));
            });
   }
@@ -97,8 +101,8 @@ struct AxisSamples {
 
 bool overlooks(const Detail& detail, double length, const DetailPlace& a, const DetailPlace& m, const DetailPlace& b) {
   const TransferFunction& f = detail.transfer;
-  const AxisSamples value{a.value, m.value, b.value, f.narrow(), f.edges()};
-  const AxisSamples second{a.second, m.second, b.second, f.narrow_second(), f.second_edges()};
+  const AxisSamples value{a.value, m.value, b.value, f.edges(), f, &TransferFunction::misses};
+  const AxisSamples second{a.second, m.second, b.second, f.second_edges(), f, &TransferFunction::misses_second};
   const auto faint = float(overlooked_depth * detail.unit / length);
   // What begins over one axis may end over the other.
   const bool both = value.cross_edge() && second.cross_edge();
