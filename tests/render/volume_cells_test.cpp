@@ -309,6 +309,28 @@ TEST_CASE("volume cells: gradients and a second field of linear fields are exact
   }
 }
 
+TEST_CASE("volume cells: gradients of quadratic fields are exact up to the border of bent meshes") {
+  const auto quadratic = [](Vec3 p) { return p.x * p.x - 2 * p.y * p.z + 0.5 * p.z * p.z + p.y; };
+  for (CellType kind : {CellType::tetra, CellType::hexahedron, CellType::wedge, CellType::pyramid, CellType::polyhedron}) {
+    CAPTURE(name_of(kind));
+    const VolumeItem item = item_of(with_field(cube(kind, 4, bent), quadratic));
+    Context context;
+    const auto source = volume::cell_source(item, context);
+    const auto walker = source->walker();
+    for (const TestRay& ray : some_rays(10)) {
+      walker->start(ray.o, ray.d, -100, 100);
+      volume::Stretch s[64];
+      while (const size_t n = walker->next(s))
+        for (size_t i = 0; i < n; ++i) {
+          if (s[i].to - s[i].from < 1e-6) continue;
+          const double t = 0.3 * s[i].from + 0.7 * s[i].to;
+          const Vec3 x = ray.o + ray.d * t;
+          CHECK(length(walker->gradient(s[i], t) - Vec3f(Vec3(2 * x.x, 1 - 2 * x.z, x.z - 2 * x.y))) < 5e-3f);
+        }
+    }
+  }
+}
+
 TEST_CASE("volume cells: stretches that cannot be seen are left out") {
   for (CellType kind : all_kinds()) {
     CAPTURE(name_of(kind));

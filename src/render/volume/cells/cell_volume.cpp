@@ -6,6 +6,7 @@
 #include "data/cell_reader.h"
 #include "data/field_ops.h"
 #include "data/memo.h"
+#include "filter/field/gradient.h"
 #include "filter/mesh/tessellate_cells.h"
 #include "filter/scalar/contour_amr.h"
 #include "render/volume/prepare_cast.h"
@@ -197,18 +198,13 @@ Plane<float> at_vertices(const CellVolume& v) {
   return sum;
 }
 
-}  // namespace
-
-std::shared_ptr<const Plane<Vec3f>> CellVolume::gradients() const {
-  const std::string name = "volume/gradients/" + key;
-  if (auto kept = data->memo().find<Plane<Vec3f>>(name)) return kept;
-  const Plane<float> means = by_cell ? at_vertices(*this) : Plane<float>();
-  const std::span<const float> f = by_cell ? std::span<const float>(means) : values;
-  std::vector<Vec3> sum(mesh->at.size());
-  std::vector<double> weight(mesh->at.size());
-  for (size_t t = 0; t < mesh->size(); ++t) {
-    const auto& v = mesh->corners[t];
-    const Vec3 a = mesh->at[v[0]], p = mesh->at[v[1]] - a, q = mesh->at[v[2]] - a, r = mesh->at[v[3]] - a;
+/// Of the mesh's vertices: the volume-weighted means of the gradients of the tetrahedra around.
+Plane<Vec3f> mean_gradients(const TetMesh& mesh, std::span<const float> f) {
+  std::vector<Vec3> sum(mesh.at.size());
+  std::vector<double> weight(mesh.at.size());
+  for (size_t t = 0; t < mesh.size(); ++t) {
+    const auto& v = mesh.corners[t];
+    const Vec3 a = mesh.at[v[0]], p = mesh.at[v[1]] - a, q = mesh.at[v[2]] - a, r = mesh.at[v[3]] - a;
     const Vec3 qr = cross(q, r), rp = cross(r, p), pq = cross(p, q);
     const double six = dot(p, qr);
     if (!(std::abs(six) > 0)) continue;
@@ -220,6 +216,48 @@ std::shared_ptr<const Plane<Vec3f>> CellVolume::gradients() const {
   Plane<Vec3f> out;
   out.resize(sum.size());
   for (size_t k = 0; k < sum.size(); ++k) out[k] = weight[k] > 0 ? Vec3f(sum[k] / weight[k]) : Vec3f();
+  return out;
+}
+
+/// Of the mesh's points by gradient(): of second order up to the border, where means over tetrahedra are of first. Middles of polyhedra
+/// have the means of their points, as their values are.
+Plane<Vec3f> gradients_at_points(const CellVolume& v) {
+  const TetMesh& mesh = *v.mesh;
+  DatasetParts parts = v.data->parts();
+  parts.fields = {};
+  float* values = nullptr;
+  Field field{"value", Association::point, Array::make<float>(mesh.points, 1, &values), "", Role::scalars};
+  std::copy_n(v.values.begin(), mesh.points, values);
+  parts.fields.add(std::move(field));
+  GradientParams params;
+  params.field.name = "value", params.as = "gradient";
+  Context context;
+  const DatasetPtr with_gradient = gradient(make_dataset(std::move(parts)), params, context);
+  const Array g = with_gradient->fields().require("gradient", Association::point).array.converted(ElementType::f32).made_packed();
+  const View<float> at = g.view<float>();
+
+  Plane<Vec3f> out;
+  out.resize(mesh.at.size());
+  for (size_t k = 0; k < mesh.points; ++k) {
+    const Vec3f x(at(k, 0), at(k, 1), at(k, 2));
+    out[k] = std::isfinite(x.x) && std::isfinite(x.y) && std::isfinite(x.z) ? x : Vec3f();
+  }
+  CellReader reader(v.data);
+  for (size_t k = 0; k < mesh.middle_of.size(); ++k) {
+    reader.open(mesh.middle_of[k]);
+    Vec3 sum;
+    for (int64_t id : reader.ids()) sum += Vec3(out[size_t(id)]);
+    out[mesh.points + k] = Vec3f(sum / double(std::max<size_t>(reader.ids().size(), 1)));
+  }
+  return out;
+}
+
+}  // namespace
+
+std::shared_ptr<const Plane<Vec3f>> CellVolume::gradients() const {
+  const std::string name = "volume/gradients/" + key;
+  if (auto kept = data->memo().find<Plane<Vec3f>>(name)) return kept;
+  Plane<Vec3f> out = by_cell ? mean_gradients(*mesh, at_vertices(*this)) : gradients_at_points(*this);
   const size_t bytes = out.size() * sizeof(Vec3f);
   return data->memo().keep<Plane<Vec3f>>(name, std::move(out), bytes);
 }

@@ -36,7 +36,8 @@ struct CellVolume {
     return (tet == 0 || c[tet - 1] != c[tet]) && (tet + 1 == c.size() || c[tet + 1] != c[tet]);
   }
 
-  /// Of the mesh's vertices: volume-weighted means of those of the tetrahedra around; of cell fields, from means of the cells around.
+  /// World, of the mesh's vertices: those of gradient(), of second order up to the border; of cell fields, means over the tetrahedra
+  /// around of what is linear between means of the cells.
   /// Made when first asked for, and kept with the dataset.
   std::shared_ptr<const Plane<Vec3f>> gradients() const;
 
