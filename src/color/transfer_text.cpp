@@ -125,7 +125,7 @@ void parse_color_stops(const std::string& text, ColorScale& scale, bool keep_ran
     nodes.push_back({*t, parse_color(what, "colors")});
     (nodes.size() == 1 ? first : last) = where;
   }
-  Colormap map{"stops", MapKind::sequential, "Colours as stated.", {}};
+  Colormap map{"stops", MapKind::sequential, "Colours as stated.", {}, {}};
   const bool flat = nodes.front().position == nodes.back().position;
   if (flat || keep_range) {
     // The end colours go on to the ends of the range; what lies beyond the range is cut off.

@@ -47,7 +47,7 @@ const Field& mesh_field(const Dataset& d, const std::string& name, std::string_v
 // One colour for all values.
 void take_one_colour(ColorScale& scale, const std::string& color) {
   const Vec3f c = parse_color(color, "color");
-  scale.map = Colormap{"one", MapKind::sequential, "One colour.", {c, c}};
+  scale.map = Colormap{"one", MapKind::sequential, "One colour.", {c, c}, {}};
   scale.labels.clear(), scale.label_names.clear();
 }
 

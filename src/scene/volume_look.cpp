@@ -119,7 +119,7 @@ void ct_look(const Range& r, double offset, bool choose_colors, VolumeItem& item
                         {160, {0.93f, 0.80f, 0.64f}},  {300, {0.96f, 0.93f, 0.86f}},  {1500, {1.0f, 1.0f, 0.97f}}};
   item.color.lo = std::max(-500 + offset, r.lo);
   item.color.hi = std::min(1500 + offset, r.hi);
-  item.color.map = Colormap{"ct", MapKind::sequential, "Flesh to bone over Hounsfield units.", {}};
+  item.color.map = Colormap{"ct", MapKind::sequential, "Flesh to bone over Hounsfield units.", {}, {}};
   for (int i = 0; i < 256; ++i) {
     const double hu = item.color.lo + (item.color.hi - item.color.lo) * i / 255.0 - offset;
     size_t k = 1;

@@ -109,7 +109,7 @@ TEST_CASE("full disk: every writer says so, keeps the old file and leaves nothin
 TEST_CASE("temporary files: links planted under the names that were used are not followed, and writers do not share one") {
   const std::string folder = fresh("planted"), victim = folder + "victim";
   write_file(victim, "precious");
-  for (const std::string& e : {"vdb", "vti", "vtkhdf", "mp4"})
+  for (const std::string e : {"vdb", "vti", "vtkhdf", "mp4"})
     for (const std::string& tail : {std::string(".partial"), ".partial." + e, ".partial." + e + ".log", std::string(".partial-1-0")})
       fs::create_symlink(victim, folder + "out." + e + tail);
   for (const std::string& e : {"vdb", "vti", "vtkhdf"}) {
@@ -137,7 +137,7 @@ TEST_CASE("films by ffmpeg: the name that it gets is neither an option nor a pro
   fs::permissions(bin + "ffmpeg", fs::perms::owner_all);
   const std::string path = std::getenv("PATH");
   ::setenv("PATH", (bin + ":" + path).c_str(), 1);
-  for (const std::string& name : {"-y.mp4", "http:x.mp4", "pipe:1.mp4", "a b.mp4"}) {
+  for (const std::string name : {"-y.mp4", "http:x.mp4", "pipe:1.mp4", "a b.mp4"}) {
     INFO(name);
     const auto r = sightglass({"render", "--source", "hydrogen size=6", "-f", "contour values={t}", "--times", "0.001,0.002", "--size",
                                "16x16", "--output=" + name},

@@ -156,7 +156,7 @@ TEST_CASE("pipes in the place of any file: refused at once, in words") {
   const std::string here = test::temp_folder() + "pipes/", pipe = here + "pipe";
   fs::create_directories(here);
   REQUIRE(sightglass({"convert", "--source", "hydrogen size=4", "-o", here + "in.vti"}).status == 0);
-  for (const std::string& extension :
+  for (const std::string extension :
        {"", ".mhd", ".pvd", ".h5", ".nc", ".dcm", ".vdb", ".tif", ".cgns", ".csv", ".yaml", ".png", ".cpt", ".json", ".hierarchy"})
     REQUIRE(::mkfifo((pipe + extension).c_str(), 0600) == 0);
   write_file(here + "p.yaml", "sightglass: 1\nsteps: {a: {read: pipe.vti}}\n");

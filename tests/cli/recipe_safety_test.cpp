@@ -48,7 +48,7 @@ test::Ran open(const Place& p, std::vector<std::string> more = {}) {
 TEST_CASE("recipes: one that would write a file is refused, whichever way it says so, and nothing is written") {
   const Place p("recipe_writes");
   const std::string read = "steps: {a: {read: ../in.vti}}\n";
-  for (const std::string& show : {
+  for (const std::string show : {
            "show: [{volume: {save: pwned.txt}}]",
            "show: [{volume: {save: ../pwned.txt}}]",
            "show: [{volume: {\" save\": pwned.txt}}]",

@@ -13,12 +13,6 @@ namespace sg {
 
 namespace {
 
-std::vector<int64_t> all_cells(const DatasetPtr& d) {
-  std::vector<int64_t> ids(d->as<PointCloud>() ? d->point_count() : d->cell_count());
-  std::iota(ids.begin(), ids.end(), 0);
-  return ids;
-}
-
 // One array after the other; `have[i]` may be null (filled with NaN or 0). Empty arrays have no say in the type and the components
 // unless all are empty: an input without points need not name either.
 Array joined(const std::vector<const Array*>& have, const std::vector<size_t>& counts) {

@@ -162,7 +162,7 @@ void scale(VolumeItem& item, double value, double length) {
   const Field& field = field_of(item);
   std::vector<ScaledField> fields{{&field, value}};
   double other = 1;
-  if (item.detail.second == SecondAxis::field)
+  if (item.detail.second == SecondAxis::field) {
     if (const Field* second = item.data->fields().find(item.detail.second_field); second && second != &field) {
       const int e = exponent(size_of(*item.data, *second, -1));
       other = values_near.holds(e) ? 1 : factor_of(e);
@@ -170,6 +170,7 @@ void scale(VolumeItem& item, double value, double length) {
     } else if (second) {
       other = value;
     }
+  }
   item.data = scaled(item.data, fields, length);
   // The axis of colours and opacity: values, values times lengths, or lengths.
   double shown = value;
