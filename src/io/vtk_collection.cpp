@@ -15,7 +15,7 @@ namespace {
 
 constexpr size_t most_depth = 32;
 // However often small files name each other: as many parts as their texts could name one by one.
-constexpr size_t parts_always = 1000, bytes_a_part = 16;
+constexpr size_t parts_always = 20'000, bytes_a_part = 16;
 
 std::string_view type_in(std::span<const std::byte> head) { return xml_type({reinterpret_cast<const char*>(head.data()), head.size()}); }
 
