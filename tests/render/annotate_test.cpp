@@ -10,6 +10,7 @@
 #include "image/codec.h"
 #include "render/annotate/axes.h"
 #include "render/annotate/legend.h"
+#include "render/annotate/overlay.h"
 #include "render/annotate/texts.h"
 #include "support/test.h"
 
@@ -95,6 +96,18 @@ Annotation full() {
 }
 
 }  // namespace
+
+TEST_CASE("overlay: a place where a line may break takes no room, controls are spelled out") {
+  const Overlay overlay(400, 100, false);
+  const TextStyle style;
+  const double plain = overlay.measure("velocity_magnitude", style).width;
+  CHECK(overlay.measure("velocity_\u200bmagnitude", style).width == doctest::Approx(plain));
+  CHECK(overlay.measure("velocity_\u202emagnitude", style).width ==
+        doctest::Approx(overlay.measure("velocity_\\u202emagnitude", style).width));
+  TextStyle narrow;
+  narrow.wrap = 0.7 * plain, narrow.break_words = false;
+  CHECK(overlay.measure("velocity_\u200bmagnitude", narrow).lines == 2);
+}
 
 TEST_CASE("annotate: the row of every number on a legend has exactly that number's colour") {
   for (ScaleKind kind : {ScaleKind::linear, ScaleKind::log, ScaleKind::symlog})

@@ -54,6 +54,22 @@ std::string typeset_number(const std::string& text) {
   return out;
 }
 
+namespace {
+
+constexpr std::string_view may_break = "\u200b";
+
+// Names of fields may hold anything; places where a line may break draw nothing.
+std::string shown_text(std::string_view text) {
+  std::string shown;
+  for (size_t at = text.find(may_break); at != text.npos; at = text.find(may_break)) {
+    shown.append(printable(text.substr(0, at), true)).append(may_break);
+    text.remove_prefix(at + may_break.size());
+  }
+  return shown += printable(text, true);
+}
+
+}  // namespace
+
 struct Overlay::Parts {
   Surface surface;
   Cairo cr;
@@ -65,7 +81,7 @@ struct Overlay::Parts {
     pango_font_description_set_absolute_size(font, style.size * PANGO_SCALE);
     pango_layout_set_font_description(layout.get(), font);
     pango_font_description_free(font);
-    const std::string shown = printable(text, true);  // names of fields may hold anything
+    const std::string shown = shown_text(text);
     // Breaking a text into lines takes the square of its length: what no picture has room for is left out.
     constexpr long most_characters = 2000;
     const bool cut = g_utf8_strlen(shown.data(), gssize(shown.size())) > most_characters;
