@@ -4,16 +4,17 @@
 #include <cstdio>
 
 #include "base/utf8.h"
+#include "cli/spool.h"
 
 namespace sg {
 
 void say(const std::string& text) {
-  const std::string shown = printable(text, true);
+  const std::string shown = printable(with_stream_names(text), true);
   std::fwrite(shown.data(), 1, shown.size(), stdout);
 }
 
 void say_error(const std::string& text) {
-  std::string line = text;
+  std::string line = with_stream_names(text);
   for (char& c : line)
     if (c == '\n' || c == '\r') c = ' ';
   line = printable(line) + "\n";

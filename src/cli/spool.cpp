@@ -37,7 +37,19 @@ void write_all(int fd, const char* bytes, size_t n, const std::string& path) {
   }
 }
 
+struct Spooled {
+  std::string file, stream;
+};
+std::deque<Spooled> spooled_files;
+
 }  // namespace
+
+std::string with_stream_names(std::string text) {
+  for (const Spooled& s : spooled_files)
+    for (size_t at = text.find(s.file); at != text.npos; at = text.find(s.file, at + s.stream.size()))
+      text.replace(at, s.file.size(), s.stream);
+  return text;
+}
 
 std::string spooled(const std::string& path, size_t most, const Context& context) {
   if (!names_stream(path)) return path;
@@ -71,6 +83,7 @@ std::string spooled(const std::string& path, size_t most, const Context& context
     write_all(to, part.data(), size_t(n), path);
   }
   ::close(from), ::close(to);
+  spooled_files.push_back({name, path});
   return name;
 }
 

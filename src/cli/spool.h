@@ -11,4 +11,7 @@ namespace sg {
 /// a file in $TMPDIR that is removed when the program ends, at most `most` bytes (Error(data) beyond); its path is returned.
 std::string spooled(const std::string& path, size_t most, const Context& context);
 
+/// The text with the names of streams where it names the files that they were read into.
+std::string with_stream_names(std::string text);
+
 }  // namespace sg
