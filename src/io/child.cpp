@@ -66,8 +66,8 @@ ChildLimits reading_limits(size_t file_bytes) {
   ChildLimits l;
   const size_t numbers = size_t(std::min<uint64_t>(plausible_memory(file_bytes), SIZE_MAX / 8));
   l.memory = plus(2 * numbers, library_memory);
-  l.processor = 20 + double(l.memory >> 29) + double(file_bytes >> 20);
-  if (const char* set = std::getenv(seconds_variable)) l.processor = std::max(l.processor, std::atof(set));
+  l.processor = 5 + double(l.memory >> 29) + double(file_bytes >> 20);
+  if (const char* set = std::getenv(seconds_variable)) l.processor = std::max(std::atof(set), 1.0);
   l.wall = 10 * l.processor;
   return l;
 }

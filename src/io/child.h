@@ -19,8 +19,8 @@ struct ChildLimits {
 };
 
 /// For reading a file of that size: twice what its numbers may fill (plausible_memory(); what the user states with --memory stands instead,
-/// where it is more), 256 MiB for the library; 20 s of the processor, one for each 512 MiB of that memory and one for each MiB of the file,
-/// or $SIGHTGLASS_READ_SECONDS where that is more; ten times as long by the clock.
+/// where it is more), 256 MiB for the library; 5 s of the processor, one for each 512 MiB of that memory and one for each MiB of the file,
+/// or $SIGHTGLASS_READ_SECONDS instead; ten times as long by the clock.
 ChildLimits reading_limits(size_t file_bytes);
 /// The size of a file, or of all files in a folder; 0 when there is none.
 size_t bytes_at(const std::string& path);
