@@ -285,7 +285,7 @@ NrrdHeader parse_nrrd_header(const MappedFile& file) {
     if (colon == std::string_view::npos || colon == 0)
       parser.fail(fmt::format("'{}' is neither 'field: value' nor 'key:=value'", line.substr(0, 60)));
     if (colon + 1 < line.size() && line[colon + 1] == '=') {
-      std::string key = unescaped(line.substr(0, colon)), text = unescaped(trim(line.substr(colon + 2)));
+      std::string key = unescaped(line.substr(0, colon)), text = unescaped(line.substr(colon + 2));  // blanks count
       if (key == nrrd_name_key) h.field_name = std::move(text);
       else h.notes.emplace_back(std::move(key), std::move(text));
       continue;

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rays through AMR grids: each leaf once, continuous across levels.
-#include "data/point_positions.h"
 #include "index/locator_meshes.h"
 #include "support/test.h"
-#include "volume_cells_support.h"
+#include "volume_amr_support.h"
 
 using namespace sg;
 using namespace sg::test;
@@ -12,20 +11,6 @@ namespace {
 
 double linear(Vec3 p) { return 1 + p.x + 2 * p.y + 3 * p.z; }
 double wavy(Vec3 p) { return std::sin(2 * p.x) * std::cos(p.y) + p.z * p.z; }
-
-DatasetPtr amr_with(const DatasetPtr& grid, const Function& f, Association a) {
-  std::vector<float> v;
-  if (a == Association::cell) {
-    CellMap map(grid);
-    for (size_t c = 0; c < grid->cell_count(); ++c) map.open(c), v.push_back(float(f(map.center())));
-  } else {
-    const Array xyz = point_positions(grid->mesh());
-    for (size_t i = 0; i < xyz.count(); ++i) v.push_back(float(f({xyz.get(i, 0), xyz.get(i, 1), xyz.get(i, 2)})));
-  }
-  DatasetParts parts = grid->parts();
-  parts.fields.add({"f", a, Array::from_vector(v), "", Role::scalars});
-  return make_dataset(std::move(parts));
-}
 
 /// Chord of [-1,1]^3.
 std::pair<double, double> box_chord(Vec3 o, Vec3 d) {
@@ -40,7 +25,7 @@ TEST_CASE("volume cells: AMR leaves fill their box once, linear fields are exact
     CAPTURE(int(a));
     for (const DatasetPtr& grid : {amr(), amr_small()})
       for (bool straight_field : {true, false}) {
-        const VolumeItem item = item_of(amr_with(grid, straight_field ? Function(linear) : Function(wavy), a), a);
+        const VolumeItem item = item_of(with_amr_field(grid, straight_field ? Function(linear) : Function(wavy), a), a);
         Context context;
         const auto source = volume::cell_source(item, context);
         const auto walker = source->walker();
@@ -71,6 +56,6 @@ TEST_CASE("volume cells: AMR leaves fill their box once, linear fields are exact
 }
 
 TEST_CASE("volume cells: a flat AMR grid has no volume") {
-  const VolumeItem item = item_of(amr_with(amr(2), linear, Association::cell), Association::cell);
+  const VolumeItem item = item_of(with_amr_field(amr(2), linear, Association::cell), Association::cell);
   CHECK(error_of([&] { gather(item, {}, {0, 0, 1}); }).find("two dimensions") != std::string::npos);
 }
