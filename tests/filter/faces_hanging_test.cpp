@@ -204,6 +204,45 @@ TEST_CASE("faces: cells that touch without sharing points stay apart, smaller on
   }
 }
 
+TEST_CASE("faces: finer cells in the notch of a polyhedron hide its ground, and are hidden by its walls") {
+  // A U of one cell, and two boxes on the ground between its arms. The mean of its corners lies above that ground.
+  std::vector<double> xyz;
+  const std::array<std::array<double, 2>, 8> outline{{{0, 0}, {3, 0}, {3, 3}, {2, 3}, {2, 1}, {1, 1}, {1, 3}, {0, 3}}};
+  for (const double z : {0.0, 1.0})
+    for (const auto& [x, y] : outline) xyz.insert(xyz.end(), {x, y, z});
+  // 16 to 23: half way along the ground, and the boxes' tops.
+  for (const double z : {0.0, 1.0}) xyz.insert(xyz.end(), {1.5, 1, z, 1, 2, z, 1.5, 2, z, 2, 2, z});
+  const std::vector<std::vector<int64_t>> boxes{{5, 16, 18, 17, 13, 20, 22, 21}, {16, 4, 19, 18, 20, 12, 23, 22}};
+  std::vector<int64_t> ids(16), face_ids, face_offsets{0};
+  for (size_t i = 0; i < 16; ++i) ids[i] = int64_t(i);
+  const auto face = [&](const std::vector<int64_t>& f) {
+    face_ids.insert(face_ids.end(), f.begin(), f.end());
+    face_offsets.push_back(int64_t(face_ids.size()));
+  };
+  face({7, 6, 5, 4, 3, 2, 1, 0}), face({8, 9, 10, 11, 12, 13, 14, 15});
+  for (int64_t k = 0; k < 8; ++k) face({k, (k + 1) % 8, (k + 1) % 8 + 8, k + 8});
+  const auto ends = int64_t(face_offsets.size()) - 1;
+  for (const auto& box : boxes) ids.insert(ids.end(), box.begin(), box.end());
+  UnstructuredMesh m;
+  m.points.xyz = Array::from_vector(xyz, 3);
+  m.cells = {Array::from_vector(ids), Array::from_vector(std::vector<int64_t>{0, 16, 24, 32}), 0};
+  m.types =
+      Array::from_vector(std::vector<uint8_t>{uint8_t(CellType::polyhedron), uint8_t(CellType::hexahedron), uint8_t(CellType::hexahedron)});
+  m.faces = {Array::from_vector(face_ids), Array::from_vector(face_offsets), 0};
+  m.polyhedron_faces = Array::from_vector(std::vector<int64_t>{0, ends, ends, ends});
+  Context ctx;
+  CHECK(faces_of_cells(faces(make_dataset(Mesh(m)), {}, ctx), 3) == std::vector<int>{9, 3, 3});
+}
+
+TEST_CASE("faces: a sliver that lies a little off a larger face is another cell's, and no finer part of it") {
+  for (const double gap : {5e-5, 0.0}) {
+    Solid s;
+    s.cell(CellType::tetra, {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0.3, 0.3, -1)});
+    s.cell(CellType::tetra, {Vec3(0, 0, 0), Vec3(0.5, 0.2, gap), Vec3(0.5, 0.2003, gap), Vec3(0.4, 0.2, 1)});
+    CHECK(skin_faces(s) == (gap > 0 ? 8 : 7));
+  }
+}
+
 TEST_CASE("property: faces of octrees of bent hexahedra are those behind which nothing is") {
   Context ctx;
   for (const uint64_t seed : test::property_seeds(24)) {

@@ -14,11 +14,12 @@ namespace {
 
 constexpr uint32_t none = UINT32_MAX;
 constexpr double off_surface = 1e-4;  // of the larger face's size
+constexpr double off_height = 0.1;    // of the smaller face's height: what lies farther off is another face beside the larger one
 constexpr double off_border = 1e-3;   // in its parameters
 
 struct OuterFace {
-  uint32_t mark, first;  // `first` of its corners in the pool
-  float normal[3];       // of unit length, out of the cell
+  uint32_t mark, cell, first;  // `first` of its corners in the pool
+  float normal[3];             // of unit length, out of the cell
   uint16_t corners;
 };
 
@@ -29,14 +30,14 @@ class Patch {
     a_ = corner[0], b_ = corner[1] - a_, c_ = corner.back() - a_;
     d_ = triangle_ ? Vec3() : corner[2] - corner[1] - c_;
     const double size = std::max(length(corner[2] - corner[0]), length(corner.back() - corner[1]));
-    tolerance_ = off_surface * size + rounding;
+    tolerance_ = off_surface * size + rounding, rounding_ = rounding;
     border_ = off_border + rounding / std::max(size, 1e-300);
   }
 
   double area() const { return triangle_ ? 0.5 : 1; }
 
-  /// Parameters of x by Gauss and Newton; false when x is not on the patch.
-  bool find(Vec3 x, double& u, double& v) const {
+  /// Parameters of x by Gauss and Newton; false when x is not on the patch, or farther off than `most`.
+  bool find(Vec3 x, double most, double& u, double& v) const {
     u = v = triangle_ ? 1.0 / 3 : 0.5;
     for (int k = 0; k < 20; ++k) {
       const Vec3 r = x - at(u, v), du = b_ + d_ * v, dv = c_ + d_ * u;
@@ -47,7 +48,7 @@ class Patch {
       if (!(std::fabs(u - 0.5) < 3 && std::fabs(v - 0.5) < 3)) return false;
       if (std::fabs(su) + std::fabs(sv) < 1e-9) break;
     }
-    if (!(length(x - at(u, v)) <= tolerance_)) return false;
+    if (!(length(x - at(u, v)) <= std::min(tolerance_, most + rounding_))) return false;
     return u >= -border_ && v >= -border_ && (triangle_ ? u + v <= 1 + border_ : u <= 1 + border_ && v <= 1 + border_);
   }
 
@@ -65,7 +66,7 @@ class Patch {
   bool triangle_;
   std::span<const Vec3> corner_;
   Vec3 a_, b_, c_, d_;
-  double tolerance_, border_;
+  double tolerance_, rounding_, border_;
 };
 
 class HangingFaces {
@@ -149,20 +150,40 @@ class HangingFaces {
   // The marked ones of the n faces of a cell.
   void add(CellFaceReader& reader, size_t cell, size_t mark, size_t n, std::vector<OuterFace>& found,
            std::vector<uint32_t>& corners) const {
-    Vec3 middle;
-    for (size_t i = cells_.begin(cell); i < cells_.end(cell); ++i) middle += at_[size_t(cells_.connectivity[i])];
-    middle = middle / double(std::max<size_t>(cells_.size(cell), 1));
+    if (cells_.size(cell) == 0) return;
+    const Vec3 origin = at_[size_t(cells_.connectivity[cells_.begin(cell)])];
+    const auto area_of = [&](std::span<const int64_t> ids, Vec3 o) {
+      Vec3 area;
+      for (size_t k = 1; k + 1 < ids.size(); ++k) area += cross(at_[size_t(ids[k])] - o, at_[size_t(ids[k + 1])] - o);
+      return area;
+    };
+    // Which way is out: faces that go round all alike sum to nothing, and the sign of their volume tells. Others by the middle of the cell,
+    // which need not lie behind each face of a cell that is not convex.
+    Vec3 middle, sum;
+    double volume = 0, total = 0;
+    for (size_t i = cells_.begin(cell); i < cells_.end(cell); ++i) middle += at_[size_t(cells_.connectivity[i])] - origin;
+    middle = origin + middle / double(cells_.size(cell));
+    for (size_t f = 0; f < n; ++f) {
+      const auto ids = reader.corners(f);
+      if (ids.size() < 3) continue;
+      const Vec3 o = at_[size_t(ids[0])], area = area_of(ids, o);
+      sum += area, total += length(area), volume += dot(area, o - origin);
+    }
+    const bool alike = length(sum) <= 1e-9 * total;
     for (size_t f = 0; f < n; ++f) {
       if (!marks_.external[mark + f]) continue;
       const auto ids = reader.corners(f);
       if (ids.size() < 3 || ids.size() > UINT16_MAX) continue;
       const Vec3 o = at_[size_t(ids[0])];
-      Vec3 area;
-      for (size_t k = 1; k + 1 < ids.size(); ++k) area += cross(at_[size_t(ids[k])] - o, at_[size_t(ids[k + 1])] - o);
+      Vec3 area = area_of(ids, o);
       const double size = length(area);
       if (!(size > 0)) continue;
-      area = area * ((dot(area, o - middle) < 0 ? -1 : 1) / size);
-      found.push_back({uint32_t(mark + f), uint32_t(corners.size()), {float(area.x), float(area.y), float(area.z)}, uint16_t(ids.size())});
+      area = area * (((alike ? volume : dot(area, o - middle)) < 0 ? -1 : 1) / size);
+      found.push_back({uint32_t(mark + f),
+                       uint32_t(cell),
+                       uint32_t(corners.size()),
+                       {float(area.x), float(area.y), float(area.z)},
+                       uint16_t(ids.size())});
       for (const int64_t id : ids) corners.push_back(uint32_t(id));
     }
   }
@@ -185,18 +206,33 @@ class HangingFaces {
     std::vector<uint32_t> seen, inside, points;
   };
 
+  // Of two cells, and facing each other?
   bool opposite(const OuterFace& a, const OuterFace& b) const {
-    return a.normal[0] * b.normal[0] + a.normal[1] * b.normal[1] + a.normal[2] * b.normal[2] < -0.5f;
+    return a.cell != b.cell && a.normal[0] * b.normal[0] + a.normal[1] * b.normal[1] + a.normal[2] * b.normal[2] < -0.5f;
+  }
+
+  // Twice its area by its longest side or diagonal.
+  double height_of(const OuterFace& f) const {
+    const auto corner = [&](uint32_t k) { return at_[pool_[f.first + k]]; };
+    const Vec3 o = corner(0);
+    Vec3 area;
+    double longest = 0;
+    for (uint32_t k = 1; k < f.corners; ++k) {
+      longest = std::max({longest, length(corner(k) - o), length(corner(k) - corner(k - 1))});
+      if (k > 1) area += cross(corner(k - 1) - o, corner(k) - o);
+    }
+    return longest > 0 ? length(area) / longest : 0;
   }
 
   // The share of `large` that `small` takes when it lies in it; negative when it does not.
   double share(const Patch& patch, const OuterFace& large, const OuterFace& small) const {
     double area = 0, u0 = 0, v0 = 0, u1 = 0, v1 = 0;
     bool all_corners = true;
+    const double height = height_of(small);
     for (uint32_t k = 0; k < small.corners; ++k) {
       const uint32_t id = pool_[small.first + k];
       double u = 0, v = 0;
-      if (!patch.find(at_[id], u, v)) return -1;
+      if (!patch.find(at_[id], off_height * height, u, v)) return -1;
       const int corner = patch.corner_at(u, v);
       if (corner >= 0 && pool_[large.first + uint32_t(corner)] != id) return -1;  // another point at the same place: they only touch
       all_corners = all_corners && corner >= 0;

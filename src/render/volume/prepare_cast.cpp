@@ -151,7 +151,7 @@ CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<con
   v.budget = {item.sampling.tolerance, diagonal, knobs.stop_below > 0 ? float(0.2 * item.sampling.tolerance) : 0};
   v.step = item.sampling.step, v.unit = plan.unit;
   if (v.step > 0 && diagonal / v.step > 1e7)
-    fail_usage(fmt::format("a step of {} takes {:.0f} samples through a volume of size {}", v.step, diagonal / v.step, diagonal), "volume",
+    fail_usage(fmt::format("a step of {} takes {:.3g} samples through a volume of size {}", v.step, diagonal / v.step, diagonal), "volume",
                "give a longer step");
   if (v.step > 0 && item.sampling.classify == "table" && item.mode == RayFunction::composite && !v.detail)
     v.table = std::make_unique<Preintegrated>(*v.medium, Preintegrated::Plan{float(plan.lo - base), float(plan.hi - base), float(v.step)},

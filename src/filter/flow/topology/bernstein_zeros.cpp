@@ -11,6 +11,7 @@ namespace {
 constexpr double border = 1e-9;        // zeros that far outside still count: the neighbour may miss them by rounding
 constexpr double same = 1e-8;          // zeros of one cell that are one
 constexpr double smallest_box = 1e-7;  // nothing is decided in a box of that size: a multiple zero
+constexpr double noise = 1e-14;        // rounding of coefficients, of the largest of them
 constexpr int highest_degree = 16;
 
 // Bernstein polynomials of degree n at x.
@@ -99,8 +100,8 @@ bool BernsteinZeros::one_sign() const {
   for (int c = 0; c < dimension_; ++c) {
     const double* p = part_.data() + size_t(c) * size_;
     const auto [lo, hi] = std::minmax_element(p, p + size_);
-    const double noise = 1e-14 * largest_[size_t(c)];
-    if (*lo > noise || *hi < -noise) return true;
+    const double zero = noise * largest_[size_t(c)];
+    if (*lo > zero || *hi < -zero) return true;
   }
   return false;
 }
@@ -123,7 +124,7 @@ int BernsteinZeros::examine(Box& box, Vec3& u) {
     }
   }
   if (!inverse_of(j, d, inv)) return 3;
-  Vec3 middle, reach;
+  Vec3 middle, reach, slack;
   bool regular = true;
   for (int r = 0; r < d; ++r) {
     // Component r of inv * f.
@@ -132,8 +133,11 @@ int BernsteinZeros::examine(Box& box, Vec3& u) {
       for (int c = 0; c < d; ++c) sum += inv[r * d + c] * part_[size_t(c) * size_ + i];
       work_[i] = sum;
     }
+    // Rounding of the coefficients, in sides of the box: what is on the border must not be lost to it.
+    slack[r] = 1e-12;
+    for (int c = 0; c < d; ++c) slack[r] += noise * std::abs(inv[r * d + c]) * largest_[size_t(c)];
     const auto [lo, hi] = std::minmax_element(work_.begin(), work_.end());
-    if (*lo > 1e-12 || *hi < -1e-12) return 0;
+    if (*lo > slack[r] || *hi < -slack[r]) return 0;
     // Its value in the middle, and how far its derivatives are from those of the identity.
     double weight[highest_degree + 1], q = 0;
     bernstein(n, 0.5, weight);
@@ -158,7 +162,7 @@ int BernsteinZeros::examine(Box& box, Vec3& u) {
   bool inside = true;
   const Vec3 size = box.hi - box.lo;
   for (int a = 0; a < d; ++a) {
-    const double slack = 1e-12 + 1e-15 / size[a], from = middle[a] - reach[a] - slack, to = middle[a] + reach[a] + slack;
+    const double from = middle[a] - reach[a] - slack[a], to = middle[a] + reach[a] + slack[a];
     if (to < 0 || from > 1) return 0;
     inside = inside && from > 0 && to < 1;
     k.lo[a] = box.lo[a] + size[a] * std::max(from, 0.0), k.hi[a] = box.lo[a] + size[a] * std::min(to, 1.0);
@@ -167,7 +171,7 @@ int BernsteinZeros::examine(Box& box, Vec3& u) {
   box = k;
   if (inside) return 2;
   for (int a = 0; a < d; ++a)
-    if (box.hi[a] - box.lo[a] > 1e-11) return 1;
+    if (box.hi[a] - box.lo[a] > 1e-11 + 100 * slack[a] * size[a]) return 1;
   return 2;
 }
 

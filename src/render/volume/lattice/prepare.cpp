@@ -282,7 +282,7 @@ Volume prepare(const VolumeItem& item, uint32_t id, const Knobs& knobs) {
   v.step = item.sampling.step > 0 ? item.sampling.step : 0.5 * smallest;
   const double unit = item.unit_distance > 0 ? item.unit_distance : 0.01 * diagonal;
   if (diagonal / v.step > 1e7)
-    fail_usage(fmt::format("a step of {} takes {:.0f} samples through a volume of size {}", v.step, diagonal / v.step, diagonal), "volume",
+    fail_usage(fmt::format("a step of {} takes {:.3g} samples through a volume of size {}", v.step, diagonal / v.step, diagonal), "volume",
                "give a longer step");
 
   const double lo = v.samples->lo, hi = v.samples->hi;

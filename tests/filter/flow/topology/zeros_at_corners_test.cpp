@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Critical points that lie exactly on a vertex, an edge or a face of the mesh are found, and once.
+#include "data/cell_topology.h"
 #include "filter/every_mesh.h"
 #include "filter/flow/topology/balls.h"
 #include "filter/smooth_distortion.h"
@@ -25,7 +26,13 @@ Vec3 random_place(const DatasetPtr& d, Random& random, int where) {
   cell.open(size_t(random.whole(0, int(cell.count()) - 1)));
   const auto at = cell.at();
   const size_t corners = cell.dimension() == 2 && at.size() > 4 ? 3 : at.size();
-  const size_t a = size_t(random.whole(0, int(corners) - 1)), b = (a + 1) % corners;
+  size_t a = size_t(random.whole(0, int(corners) - 1)), b = (a + 1) % corners;
+  // What lies between other corners of a solid, the ends of a bent face's diagonal say, may be outside.
+  const LinearTopology* solid = cell.dimension() == 3 ? linear_topology(linear_type(cell.type())) : nullptr;
+  if (where == 1 && solid) {
+    const auto& edge = solid->edges[size_t(random.whole(0, int(solid->edges.size()) - 1))];
+    a = edge[0], b = edge[1];
+  }
   if (where == 0) return at[a];
   if (where == 1) return 0.5 * (at[a] + at[b]);
   Vec3 sum;
