@@ -93,7 +93,8 @@ struct FloatBox {
 inline double box_distance2(const TreeNode& n, Vec3 x) {
   double sum = 0;
   for (int a = 0; a < 3; ++a) {
-    const double d = std::max({double(n.lo[a]) - x[a], x[a] - double(n.hi[a]), 0.0});
+    const double below = double(n.lo[a]) - x[a], above = x[a] - double(n.hi[a]);
+    const double d = 0.5 * ((below + std::abs(below)) + (above + std::abs(above)));  // the positive one: a branch would be guessed
     sum += d * d;
   }
   return sum * (1 - 1e-14);
@@ -185,8 +186,8 @@ void CellTree::nearest(Vec3 x, double limit2, F&& f) const {
     }
     const double a = detail::box_distance2(nodes_[n.first], y), b = detail::box_distance2(nodes_[n.first + 1], y);
     const bool first = a <= b;
-    stack[top++] = first ? Entry{b, n.first + 1} : Entry{a, n.first};
-    stack[top++] = first ? Entry{a, n.first} : Entry{b, n.first + 1};
+    if (std::max(a, b) <= limit2) stack[top++] = first ? Entry{b, n.first + 1} : Entry{a, n.first};
+    if (std::min(a, b) <= limit2) stack[top++] = first ? Entry{a, n.first} : Entry{b, n.first + 1};
   }
 }
 

@@ -160,7 +160,8 @@ Job job_of(const DatasetPtr& mesh, const ImplicitFunction& f, Context& ctx) {
   job.keep.sign = -1;
   job.keep.flat = f.plane;
   if (!f.plane && f.evaluate)
-    job.refine = [&f](std::span<const Vec3> from, std::span<const Vec3> to, std::span<double> t) { find_zeros(f, from, to, t); };
+    job.curved = {f.evaluate,
+                  [&f](std::span<const Vec3> from, std::span<const Vec3> to, std::span<double> t) { find_zeros(f, from, to, t); }};
   return job;
 }
 

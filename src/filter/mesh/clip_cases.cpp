@@ -360,9 +360,9 @@ void ClipTable::find_cones(uint32_t zero, Sides& s) const {
   }
 }
 
-bool ClipTable::folded(const Sides& sides, const double* h, const Vec3* places) const {
+bool ClipTable::folded(const Sides& sides, const double* h, const Vec3* places, const double* shares) const {
   if (sides.cones.empty()) return false;
-  double at[max_codes][3];
+  double at[max_codes][3], moved[max_codes][3];
   for (size_t c = 0; c < place_.size(); ++c)
     for (size_t a = 0; a < 3; ++a) at[c][a] = places ? places[c][int(a)] - places[0][int(a)] : place_[c][a];
   auto volume = [](const double* p, const double* q, const double* r, const double* s) {
@@ -377,7 +377,10 @@ bool ClipTable::folded(const Sides& sides, const double* h, const Vec3* places) 
     const auto e = size_t(std::countr_zero(left));
     const auto [a, b] = topology_->edges[e];
     const double t = h[a] / (h[a] - h[b]);
-    for (size_t k = 0; k < 3; ++k) at[first_cut + e][k] = at[a][k] + (at[b][k] - at[a][k]) * t;
+    for (size_t k = 0; k < 3; ++k) {
+      at[first_cut + e][k] = at[a][k] + (at[b][k] - at[a][k]) * t;
+      if (shares) moved[first_cut + e][k] = at[a][k] + (at[b][k] - at[a][k]) * shares[e];
+    }
   }
   uint8_t apex = 0;
   bool side = false;
@@ -392,7 +395,8 @@ bool ClipTable::folded(const Sides& sides, const double* h, const Vec3* places) 
       const double share = 1 / double(inner.of.size());
       for (size_t k = 0; k < 3; ++k) top[k] *= share;
     }
-    auto negative = [&](int i, int j, int k) { return turn * volume(at[c.v[i]], at[c.v[j]], at[c.v[k]], top) < nothing; };
+    const auto place = [&](int i) { return shares && c.v[i] >= first_cut && c.v[i] < first_inner ? moved[c.v[i]] : at[c.v[i]]; };
+    auto negative = [&](int i, int j, int k) { return turn * volume(place(i), place(j), place(k), top) < nothing; };
     if (negative(0, 1, 2)) return true;
     if (c.count == 4 && (negative(0, 2, 3) || negative(0, 1, 3) || negative(1, 2, 3))) return true;
   }

@@ -72,7 +72,8 @@ class ClipTable {
   void sides(uint32_t pattern, uint32_t joined, uint32_t zero, Sides& out) const;
   /// Can some piece over an inner point be inside out, for the values `h` of the corners? `places` are those of the corners; without them,
   /// those of the regular cell. Parts of the cell's own faces never are, as these are flat.
-  bool folded(const Sides& sides, const double* h, const Vec3* places = nullptr) const;
+  /// `shares`: for each edge where its cut is moved to, from its first corner on; without them where h is zero. Means over cuts stay.
+  bool folded(const Sides& sides, const double* h, const Vec3* places = nullptr, const double* shares = nullptr) const;
   /// Pieces that are never inside out: the faces' parts over the middle of the cell, cut along the rays to it. More of them.
   void star_sides(uint32_t pattern, uint32_t joined, uint32_t zero, const double* h, Sides& out) const;
   /// The cut surface of a pattern without ambiguous faces: cuts as codes, counter-clockwise seen from the inside corners.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 namespace sg::clipping {
 
@@ -65,6 +66,67 @@ uint16_t CellClipper::cut(uint16_t a, uint16_t b, int level) {
   return add(CellPieces::inner_name + out_.inner.size() - 1, value);
 }
 
+void CurvedFunction::shares(const LinearTopology& cell, uint32_t edges, const double* h, const Vec3* places, double* out) const {
+  Vec3 from[12], to[12], at[12];
+  double f[12], t[12], last_t[12], last_f[12];
+  size_t edge[12], n = 0;
+  for (; edges; edges &= edges - 1) {
+    const auto e = size_t(std::countr_zero(edges));
+    const auto [a, b] = cell.edges[e];
+    edge[n] = e, from[n] = places[a], to[n] = places[b], t[n] = h[a] / (h[a] - h[b]);
+    const bool first = t[n] < 0.5;
+    last_t[n] = first ? 0 : 1, last_f[n] = -h[first ? a : b], ++n;
+  }
+  // Some steps of the secant method, for all edges at once; where they do not settle, the search that cannot fail.
+  constexpr double settled = 1e-9;
+  for (int round = 0; round < 6; ++round) {
+    for (size_t k = 0; k < n; ++k) at[k] = lerp(from[k], to[k], t[k]);
+    evaluate({at, n}, {f, n});
+    bool near = true;
+    for (size_t k = 0; k < n; ++k) {
+      const double next = f[k] == 0 ? t[k] : t[k] - f[k] * (t[k] - last_t[k]) / (f[k] - last_f[k]);
+      near = near && std::abs(next - t[k]) < settled;
+      last_t[k] = t[k], last_f[k] = f[k];
+      out[edge[k]] = t[k] = std::isfinite(next) ? std::clamp(next, 0.0, 1.0) : 0.5;
+    }
+    if (near) return;
+  }
+  for (size_t k = 0; k < n; ++k) {
+    const auto [a, b] = cell.edges[edge[k]];
+    t[k] = h[a] / (h[a] - h[b]);
+  }
+  refine({from, n}, {to, n}, {t, n});
+  for (size_t k = 0; k < n; ++k) out[edge[k]] = t[k];
+}
+
+// Only cuts of the mesh's own edges are moved.
+bool CellClipper::folds_when_moved(const ClipTable& table, const Sides& sides, const uint16_t* corners, const double* h) const {
+  if (!curved_) return false;
+  const LinearTopology& topology = table.topology();
+  double shares[12];
+  uint32_t moved = 0;
+  for (uint32_t left = (sides.in.used | sides.out.used) >> first_cut; left; left &= left - 1) {
+    const auto e = size_t(std::countr_zero(left));
+    const auto [a, b] = topology.edges[e];
+    shares[e] = h[a] / (h[a] - h[b]);
+    if (corners[a] < out_.corners && corners[b] < out_.corners) moved |= 1u << e;
+  }
+  if (!moved) return false;
+  Vec3 places[8];
+  for (size_t c = 0; c < size_t(topology.corners); ++c) {
+    if (corners[c] < out_.corners) {
+      places[c] = mesh_place_(size_t(out_.names[corners[c]] >> 32));
+      continue;
+    }
+    std::vector<double> w;
+    weights(corners[c], w);
+    for (size_t k = 0; k < w.size(); ++k)
+      if (w[k] != 0) places[c] += mesh_place_(size_t(out_.names[k] >> 32)) * w[k];
+  }
+  curved_->shares(topology, moved, h, places, shares);
+  return table.folded(sides, h, places, shares);
+}
+
 void CellClipper::add_region(const ClipTable& table, const uint16_t* corners, int level, bool last, int folded) {
   const LinearTopology& topology = table.topology();
   double h[8];
@@ -90,7 +152,7 @@ void CellClipper::add_region(const ClipTable& table, const uint16_t* corners, in
   if (folded < 0 && !keep_.flat && !sides->cones.empty()) {
     Vec3 places[8];
     for (size_t c = 0; position_ && c < size_t(topology.corners); ++c) places[c] = place(corners[c]);
-    folded_ = table.folded(*sides, h, position_ ? places : nullptr);
+    folded_ = table.folded(*sides, h, position_ ? places : nullptr) || folds_when_moved(table, *sides, corners, h);
   }
   if (folded_) table.star_sides(pattern, joined, zero, h, own_), sides = &own_;
   const Region& region = kept_outside(level) ? sides->out : sides->in;

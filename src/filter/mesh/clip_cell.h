@@ -55,6 +55,17 @@ struct Values {
   double operator()(size_t i) const { return f32 ? double(f32[i]) : f64[i]; }
 };
 
+/// For functions that are not linear along edges: cuts are moved to where they are zero.
+struct CurvedFunction {
+  std::function<void(std::span<const Vec3>, std::span<double>)> evaluate;  ///< of places; safe from several threads
+  /// Moves shares of the way from the first places to the second ones.
+  std::function<void(std::span<const Vec3>, std::span<const Vec3>, std::span<double>)> refine;
+  explicit operator bool() const { return bool(refine); }
+  /// Where the cuts of the edges in `edges` (bits) of a cell will be, from the first corner of each on; `h`, as Keep has it: -1 times the
+  /// function at the corners.
+  void shares(const LinearTopology& cell, uint32_t edges, const double* h, const Vec3* places, double* out) const;
+};
+
 /// Where on the edge of a name a level crosses: the share of the way from the end with the smaller id.
 inline double share_of(uint64_t name, const Values& values, const Keep& keep) {
   const uint64_t a = name >> 32, b = name & 0xffffffffu;
@@ -70,6 +81,8 @@ class CellClipper {
   /// for it count as flat.
   CellClipper(const Keep& keep, std::function<Vec3(size_t)> position, double rounding = 0)
       : keep_(keep), position_(std::move(position)), rounding_(rounding) {}
+  /// Cuts will be moved along their edges: pieces must not be inside out there either.
+  void follow(const CurvedFunction& curved, std::function<Vec3(size_t)> position) { curved_ = &curved, mesh_place_ = std::move(position); }
   /// A tetrahedron, pyramid, wedge, voxel or hexahedron. Values in the order of the ids.
   /// `folded`: what folded() said of this cell before, or -1; it costs a look at each piece.
   const CellPieces& solid(const ClipTable& table, const int64_t* ids, const double* values, int folded = -1);
@@ -104,6 +117,7 @@ class CellClipper {
   Vec3 place(uint16_t v) const;
   void add_weights(uint16_t v, double share, double* out) const;
   void add_ring(const Ring& ring);
+  bool folds_when_moved(const ClipTable& table, const Sides& sides, const uint16_t* corners, const double* h) const;
   std::vector<Ring> cut_rings(const std::vector<Ring>& in, const std::vector<Ring>& out) const;
   std::vector<Ring> clip_faces(const std::vector<Ring>& faces, int level);
 
@@ -124,6 +138,8 @@ class CellClipper {
   std::map<const ClipTable*, std::unordered_map<uint32_t, Sides>> zeros_;  // by pattern, corners that are zero, and joined faces
   bool folded_ = false, split_ = false;
   double rounding_ = 0;
+  const CurvedFunction* curved_ = nullptr;
+  std::function<Vec3(size_t)> mesh_place_;
 };
 
 }  // namespace sg::clipping

@@ -108,7 +108,7 @@ Array places(const At& at, const Build& b, Plane<double>& t, const Job& job) {
       from[i - begin] = at(std::min(p, q)), to[i - begin] = at(std::max(p, q));
       t[i] = share_of(name, values, job.keep);
     }
-    if (job.refine) job.refine(from, to, std::span(t.data() + begin, end - begin));
+    if (job.curved) job.curved.refine(from, to, std::span(t.data() + begin, end - begin));
     for (size_t i = begin; i < end; ++i) put(kept + i, lerp(from[i - begin], to[i - begin], t[i]));
   });
   parallel_for(inner, grain, [&](size_t begin, size_t end) {

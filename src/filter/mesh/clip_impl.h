@@ -13,8 +13,7 @@ struct Job {
   DatasetPtr in;
   Array numbers;  ///< packed f32 or f64, one a point
   Keep keep;
-  /// For functions that are not linear along edges: moves shares of the way from one place to another to where the function is zero.
-  std::function<void(std::span<const Vec3>, std::span<const Vec3>, std::span<double>)> refine;
+  CurvedFunction curved;  ///< of shapes that are not flat
   Context& context;
   Values values() const {
     if (numbers.type() == ElementType::f32) return {numbers.view<float>().data, nullptr};

@@ -153,8 +153,10 @@ class LatticeClip {
     return lattice_.view().position(uint32_t(id % g_.nx), uint32_t(id / g_.nx % g_.ny), uint32_t(id / g_.nx / g_.ny));
   }
   CellClipper clipper() const {
-    if (!bent_) return {job_.keep, {}};
-    return {job_.keep, [this](size_t id) { return position(id); }, rounding_};
+    const auto place = [this](size_t id) { return position(id); };
+    CellClipper c = bent_ ? CellClipper(job_.keep, place, rounding_) : CellClipper(job_.keep, {});
+    if (job_.curved) c.follow(job_.curved, place);
+    return c;
   }
 
   const CellPieces& pieces(CellClipper& clipper, size_t i, size_t j, size_t k, int folded) const {
@@ -254,7 +256,19 @@ class LatticeClip {
     if (bent_ && has_bent_faces(i, j, k, places)) return listed;
     if (job_.keep.flat || table_.at(found).cones.empty()) return uint16_t(found);
     if (!ambiguous) heights(i, j, k, h);
-    return table_.folded(table_.at(found), h, bent_ ? places : nullptr) ? folded : uint16_t(found);
+    const Sides& sides = table_.at(found);
+    if (table_.folded(sides, h, bent_ ? places : nullptr)) return folded;
+    return job_.curved && folds_when_moved(sides, h, i, j, k) ? folded : uint16_t(found);
+  }
+  bool folds_when_moved(const Sides& sides, const double* h, size_t i, size_t j, size_t k) const {
+    Vec3 places[8];
+    for (size_t c = 0; c < 8; ++c) {
+      const size_t q = kind_.corner[c];
+      places[c] = position(i + (q & 1) + g_.nx * (j + (q >> 1 & 1) + g_.ny * (k + (q >> 2))));
+    }
+    double shares[12];
+    job_.curved.shares(table_.topology(), (sides.in.used | sides.out.used) >> first_cut, h, places, shares);
+    return table_.folded(sides, h, places, shares);
   }
 
   // Numbers of everything on a cell: its corners and the cuts of its edges, whether they are used or not.

@@ -111,7 +111,10 @@ class ListClip {
   }
 
   CellClipper clipper() const {
-    return {job_.keep, [this](size_t i) { return reader_[i]; }, rounding_};
+    const auto place = [this](size_t i) { return reader_[i]; };
+    CellClipper c(job_.keep, place, rounding_);
+    if (job_.curved) c.follow(job_.curved, place);
+    return c;
   }
 
   void find(size_t begin, size_t end, const std::vector<uint8_t>& states) {

@@ -27,7 +27,8 @@ struct ImplicitParams {
 inline void describe_curved_tolerance(Schema& s, double& tolerance) {
   s("tolerance", tolerance,
     "Curved cells: largest distance between them and the straight ones that are cut in their place, as a share of the mesh's size, and of "
-    "a field's range. Lengths, areas and volumes come as near.")
+    "a field's range. Lengths, areas and volumes come as near. Cells are halved 7 times at the most, many large ones 2 times: what is "
+    "left beyond the tolerance is said.")
       .positive();
 }
 

@@ -78,7 +78,7 @@ DatasetPtr tensor_lic(const DatasetPtr& in, const TensorLicParams& p, Context& c
   for (float& x : part) x = !(x >= 0) ? NAN : p.fade > 0 ? std::min(float(x / p.fade), 1.0f) : 1.0f;
   if (p.eigenvector == 2)
     for (SymTensor& d : t.d) d = d * -1.0;
-  const SurfaceAxisWalk walk(r, t.d, per_triangle);
+  const SurfaceAxisWalk walk(r, t.d, per_triangle, longest_piece(r, p.step));
   const SurfaceConvolution lines{p.steps, p.step, p.kernel, p.stretch, p.seed};
   const bool gray = p.isotropic == "gray";
   Array lic = convolve_surface(r, walk, lines, gray ? std::span<const float>() : std::span<const float>(part), ctx);

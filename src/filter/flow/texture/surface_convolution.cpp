@@ -46,7 +46,7 @@ class Kernel {
 template <class Walk>
 Array convolve_surface(const RefinedSurface& r, const Walk& walk, const SurfaceConvolution& p, std::span<const float> reach,
                        const Context& context) {
-  const double step = p.step > 0 ? p.step : 0.5 * r.edge_length;
+  const double step = step_length(r, p.step);
   if (step > most_edges_a_step * r.edge_length)
     fail_usage(fmt::format("step={:.4g} is {:.3g} edges of the split triangles long", step, step / r.edge_length), "step",
                fmt::format("at most {:.4g}, {:g} edges: lines see nothing of what lies between", most_edges_a_step * r.edge_length,
@@ -54,11 +54,14 @@ Array convolve_surface(const RefinedSurface& r, const Walk& walk, const SurfaceC
   const Kernel kernel(p.steps, p.kernel == "hann", r.edge_length / std::max(step, 1e-300));
   const double whole = kernel.whole();
 
-  // A triangle for each point to start from; points at one place share the number of the first.
+  // A triangle for each point to start from; points at one place share the number of the first. In the order of the triangles, as lines of
+  // neighbours pass the same ones.
   const size_t n = r.points.size();
-  std::vector<uint32_t> home(n, UINT32_MAX);
-  for (size_t t = r.triangles.size(); t-- > 0;)
-    for (const uint32_t q : r.triangles[t]) home[q] = uint32_t(t);
+  std::vector<uint32_t> home(n, UINT32_MAX), order;
+  order.reserve(n);
+  for (size_t t = 0; t < r.triangles.size(); ++t)
+    for (const uint32_t q : r.triangles[t])
+      if (home[q] == UINT32_MAX) home[q] = uint32_t(t), order.push_back(q);
   std::vector<double> noises(n);  // asked for often: each line passes many points
   parallel_for(n, 1 << 15, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) noises[i] = random_unit(uint64_t(p.seed), i);
@@ -70,23 +73,24 @@ Array convolve_surface(const RefinedSurface& r, const Walk& walk, const SurfaceC
   };
   float* lic = nullptr;
   Array result = Array::make<float>(n, 1, &lic);
+  std::fill_n(lic, n, 0.5f);
   parallel_for(
-      n, 1024,
+      order.size(), 1024,
       [&](size_t begin, size_t end) {
-        for (size_t i = begin; i < end; ++i) {
-          lic[i] = 0.5f;
-          if (home[i] == UINT32_MAX || (!reach.empty() && !(reach[i] >= 0))) continue;
+        for (const uint32_t i : std::span(order).subspan(begin, end - begin)) {
+          if (!reach.empty() && !(reach[i] >= 0)) continue;
           const int steps = reach.empty() ? p.steps : int(std::lround(std::min(reach[i], 1.0f) * float(p.steps)));
-          double sum = kernel.weight(0) * noise(uint32_t(i)), weights = kernel.weight(0);
+          double sum = kernel.weight(0) * noise(i), weights = kernel.weight(0);
           int reached[2] = {0, 0};
           bool any = !reach.empty();
-          for (int way = 0; way < 2; ++way) {
-            typename Walk::Place at = walk.start(home[i], uint32_t(i));
-            for (int k = 1; k <= steps; ++k) {
-              if (!walk.advance(at, step, way == 0 ? -1 : 1)) break;
-              sum += kernel.weight(k) * noise_at(at), weights += kernel.weight(k), reached[way] = k, any = true;
+          // Both ways in turn: each step waits for the one before, and so the processor has two to work on.
+          typename Walk::Place ends[2] = {walk.start(home[i], i), walk.start(home[i], i)};
+          bool goes[2] = {true, true};
+          for (int k = 1; k <= steps && (goes[0] || goes[1]); ++k)
+            for (int way = 0; way < 2; ++way) {
+              if (!goes[way] || !(goes[way] = walk.advance(ends[way], step, way == 0 ? -1 : 1))) continue;
+              sum += kernel.weight(k) * noise_at(ends[way]), weights += kernel.weight(k), reached[way] = k, any = true;
             }
-          }
           if (!any) continue;
           const double mean = sum / weights;
           const bool full = reached[0] == p.steps && reached[1] == p.steps;

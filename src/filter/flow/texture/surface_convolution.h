@@ -17,6 +17,9 @@ struct SurfaceConvolution {
   bool stretch = true;
   int64_t seed = 1;
 };
+inline double step_length(const RefinedSurface& surface, double step) { return step > 0 ? step : 0.5 * surface.edge_length; }
+/// Lines of textures are straight for no more than two steps.
+inline double longest_piece(const RefinedSurface& surface, double step) { return 2 * step_length(surface, step); }
 constexpr size_t most_textured_triangles = size_t(64) << 20;
 
 /// For each point the mean of the noise along its line, f32. `reach`: for each point the part of the steps that its line has; where that is

@@ -33,7 +33,7 @@ DatasetPtr surface_lic(const DatasetPtr& in, const SurfaceLicParams& p, Context&
   const RefinedSurface r = refine_surface(surface, textured_edge(*surface, diagonal, p.density), most_textured_triangles, context);
   const Field& f = flow_field_of(*r.dataset, p.field.name, "surface_lic");
   const std::vector<Vec3> vectors = vectors_of(f);
-  const SurfaceWalk walk(r, vectors, f.association == Association::cell);
+  const SurfaceWalk walk(r, vectors, f.association == Association::cell, longest_piece(r, p.step));
   const SurfaceConvolution lines{p.steps, p.step, p.kernel, p.stretch, p.seed};
   return textured_surface(r, {{"lic", Association::point, convolve_surface(r, walk, lines, {}, context), "", Role::none}});
 }

@@ -2,11 +2,13 @@
 #include "filter/flow/vortex/core_lines.h"
 
 #include "base/parallel.h"
+#include "data/cell_reader.h"
 #include "filter/flow/eigen_general.h"
 #include "filter/flow/flow_parts.h"
 #include "filter/flow/vortex/keep_large.h"
 #include "filter/flow/vortex/measures.h"
 #include "filter/flow/vortex/parallel_vectors.h"
+#include "filter/flow/vortex/whole_faces.h"
 
 namespace sg {
 
@@ -45,9 +47,11 @@ double angle_between(Vec3 a, Vec3 b) {
   return l > 0 ? std::acos(std::min(1.0, std::abs(dot(a, b)) / l)) * 180 / 3.14159265358979323846 : 0;
 }
 
-DatasetPtr of_mesh(const DatasetPtr& in, const VortexCoresParams& p, Context& context) {
-  Field velocity = flow_field_of(*in, p.field.name, "vortex_cores");
+DatasetPtr of_mesh(const DatasetPtr& given, const VortexCoresParams& p, Context& context) {
+  Field velocity = flow_field_of(*given, p.field.name, "vortex_cores");
   const double nothing = parallel_within(velocity.array.type());
+  const DatasetPtr in = with_whole_faces(given, {velocity}, context);
+  velocity = flow_field_of(*in, velocity.name, "vortex_cores");
   const std::vector<Vec3> u = point_vectors(in, velocity, context);
   DatasetPtr data = in;
   if (velocity.association == Association::cell) {  // its gradient is wanted at the points too
@@ -89,10 +93,14 @@ DatasetPtr of_mesh(const DatasetPtr& in, const VortexCoresParams& p, Context& co
   ParallelLines kept = lines;
   kept.segments.clear(), kept.cells.clear();
   const double least = std::max(p.min_swirl * strongest, 1e-300);
+  CellReader reader(data);
   for (size_t s = 0; s < lines.cells.size(); ++s) {
     const uint32_t a = lines.segments[2 * s], b = lines.segments[2 * s + 1];
     const Vec3 along = lines.points[b].at - lines.points[a].at;
-    const double turn = angle_between(along, at[a].u + at[b].u);
+    reader.open(size_t(lines.cells[s]));
+    // Between points that rounding alone parts, as beside a corner amid an edge, there is no direction.
+    const bool apart = length(along) > 1e3 * nothing * reader.box().diagonal();
+    const double turn = apart ? angle_between(along, at[a].u + at[b].u) : 0;
     if (swirl[a] < least || swirl[b] < least || turn > p.max_angle) continue;
     kept.segments.push_back(a), kept.segments.push_back(b), kept.cells.push_back(lines.cells[s]);
     angle[a] = std::max(angle[a], turn), angle[b] = std::max(angle[b], turn);
