@@ -34,7 +34,7 @@ struct GambitMesh {
   int64_t dimension = 3;
   std::vector<int64_t> node_ids, element_ids;
   std::vector<double> xyz;
-  CellList cells;
+  MixedCells cells;
   std::vector<int32_t> condition, material;
   std::vector<std::pair<std::string, std::string>> notes;
   int sets = 0;

@@ -91,13 +91,13 @@ void TextCursor::fail(const std::string& what, const std::string& hint) const {
             hint);
 }
 
-void CellList::add(CellType type, std::span<const int64_t> points) {
+void MixedCells::add(CellType type, std::span<const int64_t> points) {
   types_.push_back(uint8_t(type));
   ids_.insert(ids_.end(), points.begin(), points.end());
   offsets_.push_back(int64_t(ids_.size()));
 }
 
-void CellList::finish(UnstructuredMesh& mesh, const std::vector<int64_t>* number) {
+void MixedCells::finish(UnstructuredMesh& mesh, const std::vector<int64_t>* number) {
   const size_t n = types_.size();
   if (number)
     for (int64_t& id : ids_) id = (*number)[size_t(id)];

@@ -55,7 +55,7 @@ class TextCursor {
 };
 
 /// Cells of any type, one after the other.
-class CellList {
+class MixedCells {
  public:
   void add(CellType type, std::span<const int64_t> points);
   size_t size() const { return types_.size(); }

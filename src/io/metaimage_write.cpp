@@ -4,6 +4,7 @@
 
 #include "base/file.h"
 #include "base/text.h"
+#include "io/atomic_files.h"
 #include "io/formats.h"
 #include "io/write_losses.h"
 
@@ -70,18 +71,17 @@ void write_metaimage(const std::string& path, const Data& data, const WriteOptio
   const bool apart = extension_of(path) == "mhd";
   const std::string data_path = path.substr(0, path.size() - 3) + (packed.empty() ? "raw" : "zraw");
   const std::string header = header_text(*grid, f, packed.size(), apart ? file_name_of(data_path) : "LOCAL", *d);
-  // The header comes last: without it there is no file.
-  AtomicFile file(path);
   if (apart) {
-    AtomicFile numbers(data_path);
-    numbers.write(bytes.data(), bytes.size());
-    file.write(header);
-    numbers.commit();
+    AtomicFiles files({data_path, path});
+    files.write(0, bytes.data(), bytes.size());
+    files.write(1, header);
+    files.commit();
   } else {
+    AtomicFile file(path);
     file.write(header);
     file.write(bytes.data(), bytes.size());
+    file.commit();
   }
-  file.commit();
   losses.tell(context);
 }
 

@@ -30,7 +30,7 @@ const std::vector<UcdType>& ucd_types() {
 }
 
 struct UcdMesh {
-  CellList cells;
+  MixedCells cells;
   std::vector<int32_t> material;
   std::vector<float> xyz;
   FieldSet fields;

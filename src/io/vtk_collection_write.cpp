@@ -21,16 +21,14 @@ std::string attributes_text(const XmlAttributes& attributes) {
 class BlockWriter {
  public:
   BlockWriter(const std::string& path, const WriteOptions& options, Context& context)
-      : folder_(path), file_(path), path_(path), options_(options), context_(context) {}
+      : folder_(path), path_(path), options_(options), context_(context) {}
 
   void write(const Data& data) {
     text_ = "<VTKFile type=\"vtkMultiBlockDataSet\" version=\"1.0\" byte_order=\"LittleEndian\">\n  <vtkMultiBlockDataSet>\n";
     if (auto* c = std::get_if<CollectionPtr>(&data)) blocks(**c, "    ");
     else leaf(data, "", 0, "    ");
     text_ += "  </vtkMultiBlockDataSet>\n</VTKFile>\n";
-    file_.write(text_);
-    folder_.commit();
-    file_.commit();
+    folder_.commit(text_);
   }
 
  private:
@@ -64,7 +62,6 @@ class BlockWriter {
   }
 
   PartsFolder folder_;
-  AtomicFile file_;
   const std::string& path_;
   const WriteOptions& options_;
   Context& context_;
@@ -126,7 +123,6 @@ void write_vtk_amr(const std::string& path, const Data& data, const WriteOptions
     fail_usage(fmt::format("a mesh of kind {} cannot be written to .{}", d->kind(), extension_of(path)), path,
                fmt::format("name the file *.{}", vtk::extension_for(d->mesh())));
   vtk::PartsFolder folder(path);
-  AtomicFile file(path);
   const Array ghost = vtk::other_ghosts(d->cell_ghost());
   std::string text = fmt::format(
       "<VTKFile type=\"vtkOverlappingAMR\" version=\"1.1\" byte_order=\"LittleEndian\">\n"
@@ -147,9 +143,7 @@ void write_vtk_amr(const std::string& path, const Data& data, const WriteOptions
     text += "    </Block>\n";
   }
   text += "  </vtkOverlappingAMR>\n</VTKFile>\n";
-  file.write(text);
-  folder.commit();
-  file.commit();
+  folder.commit(text);
 }
 
 }  // namespace sg

@@ -310,7 +310,6 @@ void write_vtk_parallel(const std::string& path, const Data& data, const WriteOp
     attributes.insert(attributes.end(), {{"Origin", three(whole.zero)}, {"Spacing", three(g->spacing)}, {"Direction", direction}});
   }
   PartsFolder folder(path);
-  AtomicFile file(path);
   std::string text = fmt::format("<VTKFile type=\"{}\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n  <{}{}>\n",
                                  form.element, form.element, attributes_text(attributes));
   text += shared_arrays(pieces, Association::point, "PPointData") + shared_arrays(pieces, Association::cell, "PCellData");
@@ -323,9 +322,7 @@ void write_vtk_parallel(const std::string& path, const Data& data, const WriteOp
     of_piece.emplace_back("Source", folder.name(i, extension));
     text += fmt::format("    <Piece{}/>\n", attributes_text(of_piece));
   }
-  file.write(text + fmt::format("  </{}>\n</VTKFile>\n", form.element));
-  folder.commit();
-  file.commit();
+  folder.commit(text + fmt::format("  </{}>\n</VTKFile>\n", form.element));
 }
 
 }  // namespace sg

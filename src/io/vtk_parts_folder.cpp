@@ -35,6 +35,7 @@ PartsFolder::PartsFolder(const std::string& path) {
   } else if (file_exists(folder_)) {
     fail_usage("a file has the name that the folder of parts needs", folder_, "choose another name");
   }
+  header_.emplace(std::vector<std::string>{path});
   partial_ = make_partial_folder(folder_, false), old_ = partial_ + "-old";
 }
 
@@ -48,7 +49,9 @@ std::string PartsFolder::file(size_t i, std::string_view extension) const {
 }
 std::string PartsFolder::name(size_t i, std::string_view extension) const { return fmt::format("{}/{}_{}.{}", stem_, stem_, i, extension); }
 
-void PartsFolder::commit() {
+void PartsFolder::commit(std::string_view text) {
+  header_->write(0, text);
+  header_->finish();
   const bool replaces = is_folder(folder_);
   if (replaces && ::rename(folder_.c_str(), old_.c_str()) != 0)
     fail_data(std::string("cannot be replaced: ") + std::strerror(errno), folder_);
@@ -56,6 +59,12 @@ void PartsFolder::commit() {
     const int error = errno;
     if (replaces) ::rename(old_.c_str(), folder_.c_str());
     fail_data(std::string("cannot be written: ") + std::strerror(error), folder_);
+  }
+  try {
+    header_->commit();
+  } catch (...) {
+    if (::rename(folder_.c_str(), partial_.c_str()) == 0 && replaces) ::rename(old_.c_str(), folder_.c_str());
+    throw;
   }
   done_ = true;
   remove_folder(old_);

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // A folder of parts beside the file that names them, written so that nothing half is left.
 #pragma once
+#include <optional>
 #include <string>
+
+#include "io/atomic_files.h"
 
 namespace sg::vtk {
 
-/// For "a/x.vtm" the folder is "a/x" and its files are "x_0.vtu", ... Parts are written to a folder of another name, which
-/// commit() renames; without commit it is removed. A folder of that name from an earlier time is replaced when it holds only such
-/// parts; else the constructor throws Error(usage).
+/// For "a/x.vtm" the folder is "a/x" and its files are "x_0.vtu", ... Parts are written to a folder of another name. commit() brings the
+/// text of the file itself to the disk, puts the folder in its place and then the file; when anything fails, folder and file of an earlier
+/// time stay, both. Without commit nothing is left. A folder of that name is replaced when it holds only such parts; else the constructor
+/// throws Error(usage).
 class PartsFolder {
  public:
   explicit PartsFolder(const std::string& path);
@@ -18,10 +22,11 @@ class PartsFolder {
   /// Where to write part i for now, and how the file names it.
   std::string file(size_t i, std::string_view extension) const;
   std::string name(size_t i, std::string_view extension) const;
-  void commit();
+  void commit(std::string_view text);
 
  private:
   std::string stem_, folder_, partial_, old_;
+  std::optional<AtomicFiles> header_;
   bool done_ = false;
 };
 

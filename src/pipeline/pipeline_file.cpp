@@ -103,9 +103,9 @@ class FileParser {
   }
 
   // The one key of `body` that is not `other` ("from", "of"); null after a mistake.
-  const std::pair<YamlNode, YamlNode>* one_besides(const YamlNode& body, const std::string& other, const std::string& of,
+  const YamlPair* one_besides(const YamlNode& body, const std::string& other, const std::string& of,
                                                    const std::string& what) {
-    const std::pair<YamlNode, YamlNode>* found = nullptr;
+    const YamlPair* found = nullptr;
     for (const auto& pair : body.pairs) {
       if (pair.first.text == other) continue;
       if (found) {

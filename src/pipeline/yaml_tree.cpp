@@ -87,7 +87,7 @@ class TreeBuilder : public YAML::EventHandler {
       top.key = std::move(n);
       top.has_key = true;
     } else {
-      top.node.pairs.emplace_back(std::move(top.key), std::move(n));
+      top.node.pairs.push_back({std::move(top.key), std::move(n)});
       top.has_key = false;
     }
   }

@@ -3,18 +3,23 @@
 #pragma once
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace sg {
 
+struct YamlPair;
+
 struct YamlNode {
   enum class Kind { null, scalar, list, map };
   Kind kind = Kind::null;
-  std::string text;                                  ///< scalar
-  int line = 0;                                      ///< from 1
-  std::vector<YamlNode> items;                       ///< list
-  std::vector<std::pair<YamlNode, YamlNode>> pairs;  ///< map, in file order; keys are scalars
+  std::string text;             ///< scalar
+  int line = 0;                 ///< from 1
+  std::vector<YamlNode> items;  ///< list
+  std::vector<YamlPair> pairs;  ///< map, in file order; keys are scalars
+};
+
+struct YamlPair {
+  YamlNode first, second;
 };
 
 /// One document. Throws Error(usage) "origin:line: ..." for bad syntax, anchors, aliases, tags, keys that are no words, and sizes beyond

@@ -106,6 +106,29 @@ TEST_CASE("full disk: every writer says so, keeps the old file and leaves nothin
   }
 }
 
+TEST_CASE("full disk: files that belong together are replaced together or not at all") {
+  // The header is what does not fit any more, after the numbers.
+  const std::vector<std::string> small = {"convert", "--source", "sphere size=4", "-o"}, other = {"convert", "--source", "sphere size=5"};
+  const std::string name = std::string(6000, 'n');
+  for (const std::string out : {"out.mhd", "out.pvti"}) {
+    INFO(out);
+    const std::string folder = fresh("together");
+    std::vector<std::string> before = small, after = other;
+    before.push_back(out);
+    after.insert(after.end(), {"-f", "calc expr=x name=" + name, "-f", "select keep=" + name, "-o", out});
+    const auto first = sightglass(before, folder);
+    INFO(first.err);
+    REQUIRE(first.status == 0);
+    const auto was = bytes_below(folder);
+    const auto r = sightglass(after, folder, 5000);
+    INFO(r.err);
+    CHECK(r.status == 3);
+    CHECK(bytes_below(folder) == was);
+    CHECK(sightglass(after, folder).status == 0);  // with room enough it is written
+    CHECK(bytes_below(folder) != was);
+  }
+}
+
 TEST_CASE("temporary files: links planted under the names that were used are not followed, and writers do not share one") {
   const std::string folder = fresh("planted"), victim = folder + "victim";
   write_file(victim, "precious");

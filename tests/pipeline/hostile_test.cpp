@@ -5,44 +5,14 @@
 #include "pipeline/hostile_inputs.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 
-#include <ctime>
-#include <fstream>
-
+#include "pipeline/hostile_watch.h"
 #include "support/test.h"
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define SG_SHADOW_MEMORY 1
-#endif
 
 using namespace sg;
 using namespace sg::test;
 
 namespace {
-
-// Within its life the process may have one gigabyte more than before.
-class MemoryFence {
- public:
-  MemoryFence() {
-#ifndef SG_SHADOW_MEMORY
-    getrlimit(RLIMIT_AS, &before_);
-    size_t pages = 0;
-    std::ifstream("/proc/self/statm") >> pages;
-    rlimit fence = before_;
-    fence.rlim_cur = std::min<rlim_t>(before_.rlim_max, pages * 4096 + (size_t(1) << 30));
-    setrlimit(RLIMIT_AS, &fence);
-#endif
-  }
-  ~MemoryFence() {
-#ifndef SG_SHADOW_MEMORY
-    setrlimit(RLIMIT_AS, &before_);
-#endif
-  }
-
- private:
-  rlimit before_{};
-};
 
 const char* only() { return std::getenv("SG_HOSTILE_ONLY"); }
 bool all_asked() { return only() || std::getenv("SG_HOSTILE_ALL"); }
@@ -53,10 +23,8 @@ size_t refused, answered;
 
 // Runs it; what it does besides answering or throwing sg::Error is a failed check.
 void stays_calm(const Operation& o, const std::string& what, const std::function<Data(Context&)>& run) {
-#ifdef SG_SHADOW_MEMORY  // ten times as slow: every fourth case
-  static size_t turn = 0;
-  if (!all_asked() && turn++ % 4 != 0) return;
-#endif
+  static size_t turn = 0;  // slow: every fourth case
+  if (hostile::shadow_memory && !all_asked() && turn++ % 4 != 0) return;
   if (tells()) fmt::print(stderr, "{}: {}", o.name, what);  // where it fell
   const std::clock_t start = std::clock();                  // of the processor: other programs may be at work
   std::string failure;
@@ -73,9 +41,7 @@ void stays_calm(const Operation& o, const std::string& what, const std::function
   }
   const double took = double(std::clock() - start) / CLOCKS_PER_SEC;
   if (tells()) fmt::print(stderr, ": {:.2f} s\n", took);
-#ifndef SG_SHADOW_MEMORY
-  if (took > 5) failure += fmt::format(" took {:.1f} s", took);
-#endif
+  if (took > hostile::seconds(5)) failure += fmt::format(" took {:.1f} s", took);
   if (!failure.empty()) FAIL_CHECK(fmt::format("{}: {}: {}", o.name, what, failure));
 }
 
@@ -123,7 +89,7 @@ std::vector<std::string> words_of(const Operation& o) {
 
 TEST_CASE("operations: none crashes, hangs or asks for gigabytes on meshes that are empty, bare, of one cell, of NaN, huge or tiny") {
   hostile::inputs();
-  const MemoryFence fence;
+  const hostile::MemoryFence fence;
   refused = answered = 0;
   for (const Operation& o : operations()) {
     if (o.kind == OperationKind::source || !wanted(o)) continue;
@@ -138,7 +104,7 @@ TEST_CASE("operations: none crashes, hangs or asks for gigabytes on meshes that 
 
 TEST_CASE("operations: none crashes, hangs or asks for gigabytes when its inputs are unlike, and some of them empty") {
   hostile::unlike_inputs();
-  const MemoryFence fence;
+  const hostile::MemoryFence fence;
   refused = answered = 0;
   for (const Operation& o : operations()) {
     if (o.kind == OperationKind::source || !wanted(o) || o.max_inputs == 1) continue;
@@ -154,7 +120,7 @@ TEST_CASE("operations: none crashes, hangs or asks for gigabytes when its inputs
 
 TEST_CASE("operations: none crashes, hangs or asks for gigabytes for numbers that are huge, negative or NaN, and words of any kind") {
   hostile::plain_inputs();
-  const MemoryFence fence;
+  const hostile::MemoryFence fence;
   refused = answered = 0;
   for (const Operation& o : operations()) {
     if (!wanted(o)) continue;
@@ -169,7 +135,7 @@ TEST_CASE("operations: none crashes, hangs or asks for gigabytes for numbers tha
 TEST_CASE("operations: those that take a time series stand any number of steps, times that do not rise, and steps unlike each other") {
   const std::vector<hostile::Times> cases = hostile::series(all_asked());
   const Data grid = hostile::plain_inputs()[0].data;
-  const MemoryFence fence;
+  const hostile::MemoryFence fence;
   refused = answered = 0;
   for (const Operation& o : operations()) {
     if (!o.run_series || !wanted(o)) continue;
@@ -189,4 +155,37 @@ TEST_CASE("operations: those that take a time series stand any number of steps, 
       });
   }
   MESSAGE(answered << " answered, " << refused << " refused");
+}
+
+TEST_CASE("glyph_points: a cloud with fields on cells that it does not have has no middles of cells") {
+  DatasetParts parts;
+  parts.mesh = PointCloud{{Array::from_vector(std::vector<double>{0, 0, 0, 1, 0, 0, 0, 1, 0}, 3), {}}};
+  parts.fields.add({"v", Association::cell, Array::from_vector(std::vector<float>{}, 3), "", Role::vectors});
+  Context context;
+  const Data middles = run_operation(find_operation("glyph_points"), {make_dataset(std::move(parts))}, {"mode=cells"}, context);
+  CHECK(single_dataset(middles, "test")->point_count() == 0);
+}
+
+TEST_CASE("fronts: seeds so close together that there are millions of them are refused, with what would be right") {
+  const Data grid = hostile::plain_inputs()[0].data;
+  const struct {
+    const char* operation;
+    std::vector<std::string> words;
+  } cases[] = {{"path_surface", {"from=0,0,0", "to=1,0,0", "spacing=1e-9"}},
+               {"streak_surface", {"from=0,0,0", "to=1e9,0,0", "spacing=1"}},
+               {"time_surface", {"center=0,0,0", "size=1e9,1e9", "spacing=0.1"}},
+               {"time_surface", {"center=0,0,0", "size=1e9,1", "spacing=0.01"}}};
+  for (const auto& c : cases) {
+    CAPTURE(c.operation);
+    const Operation& o = find_operation(c.operation);
+    Context context;
+    std::string said;
+    try {
+      o.run_series({{0, 1}, [&](size_t) { return grid; }}, {}, make_params(o, c.words), context);
+    } catch (const Error& e) {
+      said = e.what();
+    }
+    CHECK(said.find("seeds are too many") != said.npos);
+    CHECK(said.find("a larger spacing") != said.npos);
+  }
 }

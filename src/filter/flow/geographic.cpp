@@ -5,6 +5,7 @@
 #include "base/text.h"
 #include "data/point_positions.h"
 #include "data/trusted.h"
+#include "filter/flow/line_mesh.h"
 
 namespace sg {
 
@@ -122,7 +123,7 @@ DatasetPtr in_metres(const DatasetPtr& traced, const std::string& field, double 
   now.array = changed(point_positions(traced->mesh()), f->array, [&](double latitude, Vec3 v) {
     return Vec3(v.x * scale * cosine(latitude), v.y * scale, v.z / seconds / (unit > 0 ? unit : 1));
   });
-  if (const Field* old = traced->fields().find("speed", Association::point)) {
+  if (const Field* old = traced->fields().find(own_value("speed", field), Association::point)) {
     const View<float> v = now.array.view<float>();
     const size_t m = size_t(now.components());
     float* out = nullptr;

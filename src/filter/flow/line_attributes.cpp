@@ -2,6 +2,7 @@
 #include "filter/flow/line_attributes.h"
 
 #include "base/parallel.h"
+#include "filter/flow/line_mesh.h"
 #include "filter/flow/streamlines.h"
 #include "filter/mesh/surface_builder.h"
 
@@ -154,7 +155,7 @@ FieldSet rotation_along(const FlowParts& parts, const Dataset& mesh, const std::
                         Context& context) {
   const LinePoints points(mesh);
   const size_t n = mesh.point_count();
-  const View<float> time = mesh.fields().require("time", Association::point).array.view<float>();
+  const View<float> time = mesh.fields().require(own_value("time", velocity), Association::point).array.view<float>();
   const View<float> u = mesh.fields().require(velocity, Association::point).array.view<float>();
   float *w = nullptr, *turn = nullptr, *sum = nullptr;
   FieldSet out;

@@ -16,10 +16,10 @@ struct LineArrays {
 
   LineArrays(size_t n, const std::string& velocity_name, const std::string& unit) {
     points.xyz = Array::make<float>(n, 3, &xyz);
-    fields.add({"speed", Association::point, Array::make<float>(n, 1, &speed), unit, Role::scalars});
+    fields.add({own_value("speed", velocity_name), Association::point, Array::make<float>(n, 1, &speed), unit, Role::scalars});
     fields.add({velocity_name, Association::point, Array::make<float>(n, 3, &v), unit, Role::vectors});
-    fields.add({"time", Association::point, Array::make<float>(n, 1, &time), "", Role::none});
-    fields.add({"length", Association::point, Array::make<float>(n, 1, &arc), "", Role::none});
+    fields.add({own_value("time", velocity_name), Association::point, Array::make<float>(n, 1, &time), "", Role::none});
+    fields.add({own_value("length", velocity_name), Association::point, Array::make<float>(n, 1, &arc), "", Role::none});
   }
   DatasetPtr finish(std::vector<int64_t> begin, std::vector<int64_t> seed, std::vector<uint8_t> stop) {
     SurfaceMesh mesh;
@@ -46,6 +46,8 @@ struct LineArrays {
 };
 
 }  // namespace
+
+std::string own_value(std::string_view value, std::string_view velocity) { return std::string(value) + (value == velocity ? "_2" : ""); }
 
 Vec3 near_origin(const Box3& box) { return !box.empty() && length(box.center()) > 8 * box.diagonal() ? box.center() : Vec3(); }
 

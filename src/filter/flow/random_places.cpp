@@ -123,6 +123,7 @@ std::vector<Vec3> random_places(const std::vector<DatasetPtr>& meshes, size_t co
   const auto unit = [&](size_t i, int k) { return random_unit(seed, 4 * i + uint64_t(k)); };
   if (solid)
     for (size_t i = 0; i < tries && out.size() < count; ++i) {
+      if (i % 16 == 0) context.check();
       const Vec3 x = box.lo + box.size() * Vec3(unit(i, 0), unit(i, 1), unit(i, 2));
       if (held(x)) out.push_back(x);
       if (i == tries / 5 && out.size() < count / 20) break;  // thin in its box
@@ -135,7 +136,10 @@ std::vector<Vec3> random_places(const std::vector<DatasetPtr>& meshes, size_t co
   if (!(total > 0)) return out;
   std::vector<CellMap> maps;
   for (const DatasetPtr& d : used) maps.emplace_back(d);
-  for (size_t i = 0; i < tries && out.size() < count; ++i) {
+  // Cells that are inside out may hold no place at all, and those of many nodes take long to say so.
+  size_t missed = 0, placed = 0;
+  for (size_t i = 0; i < tries && out.size() < count && (placed > 0 || missed < 256); ++i) {
+    context.check();
     const double target = random_unit(seed + 1, i) * total;
     const size_t c = size_t(std::upper_bound(sizes.before.begin() + 1, sizes.before.end() - 1, target) - sizes.before.begin()) - 1;
     const size_t m = size_t(std::upper_bound(sizes.begin.begin(), sizes.begin.end(), c) - sizes.begin.begin()) - 1;
@@ -147,6 +151,7 @@ std::vector<Vec3> random_places(const std::vector<DatasetPtr>& meshes, size_t co
       const size_t n = i * 64 + size_t(k);
       found = place_in_cell(map, unit(n, 0), unit(n, 1), unit(n, 2), x);
     }
+    found ? ++placed : missed += map.reader().ids().size() > 8 ? 16 : 1;
     if (found && (!inside || inside(x))) out.push_back(x);
   }
   return out;

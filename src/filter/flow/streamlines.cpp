@@ -39,12 +39,12 @@ std::string no_line_hint(const FlowParts& parts, std::span<const Vec3> seeds) {
 
 // How many of these lines can still be told apart, lines of a default picture drawn on the box that they fill: those that cover a good half
 // of its shadow in space, two fifths of it when flat.
-size_t most_apart(const Dataset& lines, const Box3& box) {
+size_t most_apart(const Dataset& lines, const std::string& velocity, const Box3& box) {
   const Vec3 e = box.size();
   const bool flat = std::min({e.x, e.y, e.z}) < 1e-6 * box.diagonal();
   const double shadow = (e.x * e.y + e.y * e.z + e.z * e.x) * (flat ? 0.4 : 0.3), width = box.diagonal() / 400;
   const auto& all = lines.as<SurfaceMesh>()->lines;
-  const View<float> arc = lines.fields().require("length").array.view<float>();
+  const View<float> arc = lines.fields().require(own_value("length", velocity), Association::point).array.view<float>();
   double sum = 0;
   size_t n = 0;
   while (n < all.size() && sum * width < shadow) {
@@ -106,7 +106,7 @@ Data streamlines(const std::vector<Data>& inputs, const StreamlinesParams& p, Co
   };
   DatasetPtr lines = trace(at);
   if (p.seeds.count == 0 && seed_kind(p.seeds, inputs.size() > 1) == "random")
-    if (const size_t most = most_apart(*lines, parts.bounds()); most < lines->cell_count()) {
+    if (const size_t most = most_apart(*lines, parts.name(), parts.bounds()); most < lines->cell_count()) {
       const int64_t last = lines->fields().require("seed", Association::cell).array.view<int64_t>()[most - 1];
       context.info(fmt::format("streamlines: {} of {}, as many as can be told apart; count= makes more", most, lines->cell_count()));
       at.resize(size_t(last) + 1);

@@ -185,6 +185,8 @@ DatasetPtr even_points(const DatasetPtr& data, const GlyphPointsParams& p, const
 }
 
 DatasetPtr cell_middles(const DatasetPtr& data, Context& context) {
+  // A cloud is read as vertices, but has no cells that could carry fields.
+  if (data->cell_count() == 0) return cloud({}, middle_of(*data), {});
   CellReader reader(data);
   std::vector<Vec3> places;
   std::vector<int64_t> ids;

@@ -94,6 +94,7 @@ class Tessellation {
   }
 
   DatasetPtr run(int level) {
+    for (auto& [key, s] : shaped_) s.at_middles = {};  // they have told the level
     for (size_t c = 0; c < mesh_.cells.size(); ++c) {
       if (c % 1024 == 0) ctx_.check();
       map_.open(c);

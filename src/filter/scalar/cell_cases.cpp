@@ -7,7 +7,7 @@
 
 namespace sg {
 
-void CellShape::find_edges() {
+void CaseShape::find_edges() {
   if (!edges.empty()) return;
   for (const auto& f : faces)
     for (size_t k = 0; k < f.size(); ++k) {
@@ -16,7 +16,7 @@ void CellShape::find_edges() {
     }
 }
 
-CaseTable::CaseTable(CellShape shape) : shape_(std::move(shape)) {
+CaseTable::CaseTable(CaseShape shape) : shape_(std::move(shape)) {
   shape_.find_edges();
   edge_faces_.resize(shape_.edges.size());
   for (size_t f = 0; f < shape_.faces.size(); ++f) {
@@ -131,7 +131,7 @@ void CaseTable::fill(const std::vector<uint8_t>& loop) {
 
 const CaseTable& lattice_cases() {
   static const CaseTable table([] {
-    CellShape s;
+    CaseShape s;
     s.corners = 8;
     s.faces = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
     for (uint8_t c : {0, 2, 4, 6}) s.edges.push_back({c, uint8_t(c + 1)});
@@ -146,8 +146,8 @@ const CaseTable& lattice_cases() {
 namespace {
 
 // An n-gon and its copy above: corners 0..n-1 below, n..2n-1 above; below is counterclockwise seen from above.
-CellShape prism(int n) {
-  CellShape s;
+CaseShape prism(int n) {
+  CaseShape s;
   s.corners = 2 * n;
   std::vector<uint8_t> below, above;
   for (int c = 0; c < n; ++c) {

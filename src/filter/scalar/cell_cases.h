@@ -22,7 +22,8 @@
 
 namespace sg {
 
-struct CellShape {
+/// What a table of cases is made from. (Not the CellShape of data/: one name for two classes is undefined behaviour.)
+struct CaseShape {
   int corners = 0;
   std::vector<std::vector<uint8_t>> faces;    ///< corners, counterclockwise seen from outside
   std::vector<std::array<uint8_t, 2>> edges;  ///< empty: in order of first appearance in the faces
@@ -34,9 +35,9 @@ struct CellShape {
 
 class CaseTable {
  public:
-  explicit CaseTable(CellShape shape);
+  explicit CaseTable(CaseShape shape);
 
-  const CellShape& shape() const { return shape_; }
+  const CaseShape& shape() const { return shape_; }
   /// Faces of this pattern that need a decider; bit = face number.
   uint32_t ambiguous(uint32_t pattern) const { return ambiguous_[pattern]; }
   /// Edges of the cell, three per triangle. `joined` has a bit per face; only those of ambiguous faces count.
@@ -62,7 +63,7 @@ class CaseTable {
   void fill(const std::vector<uint8_t>& loop);
   uint32_t shared_face(uint8_t a, uint8_t b) const { return edge_faces_[a] & edge_faces_[b]; }
 
-  CellShape shape_;
+  CaseShape shape_;
   std::vector<uint32_t> edge_faces_;
   std::vector<std::vector<uint8_t>> face_edges_;  ///< edge between corner k and k+1 of each face
   std::vector<uint32_t> ambiguous_, first_, begin_;

@@ -88,7 +88,7 @@ struct Finder {
   bool bad(int64_t p) const { return std::isnan(f(size_t(p))) || (point_ghost.count && (point_ghost[size_t(p)] & ghost_hidden_point)); }
 
   // Six times the volume when the faces, as listed, turn outwards; negative for a mirrored cell.
-  double volume(const CellShape& shape, const int64_t* p) const {
+  double volume(const CaseShape& shape, const int64_t* p) const {
     const Vec3 base = points.at(size_t(p[0]));
     auto at = [&](uint8_t c) { return points.at(size_t(p[c])) - base; };
     double v = 0;
@@ -107,7 +107,7 @@ struct Finder {
   }
 
   void solid(const CaseTable& table, std::array<int64_t, 16> p, size_t cell, Found& out) const {
-    const CellShape& shape = table.shape();
+    const CaseShape& shape = table.shape();
     // The rules for segments and diagonals look at cells from outside, so mirrored ones are turned into proper ones.
     if (volume(shape, p.data()) < 0) {
       const auto given = p;

@@ -84,7 +84,7 @@ struct Cutter {
   const bool places;
 
   Cutter(const double values[8], TrilinearCell& result, bool with_places) : f(values), out(result), places(with_places) {
-    const CellShape& shape = lattice_cases().shape();
+    const CaseShape& shape = lattice_cases().shape();
     for (uint32_t c = 0; c < 8; ++c) pattern |= uint32_t(f[c] >= 0) << c;
     for (uint32_t m = lattice_cases().ambiguous(pattern); m; m &= m - 1) {
       const auto& face = shape.faces[size_t(std::countr_zero(m))];

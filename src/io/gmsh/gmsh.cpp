@@ -188,7 +188,7 @@ DatasetPtr make(MshInput& in, const MshFile& f, const ReadOptions& options, cons
   const size_t points = source.empty() ? n : source.size();
 
   UnstructuredMesh mesh;
-  CellList list;
+  MixedCells list;
   for (size_t e = 0; e < f.element_tags.size(); ++e)
     list.add(element_type(f.element_types[e])->cell, std::span(cells.points).subspan(cells.begin[e], cells.begin[e + 1] - cells.begin[e]));
   list.finish(mesh);

@@ -138,8 +138,8 @@ std::vector<uint32_t> places_in_local_nodes(Geometry g, int q) {
 }
 
 // The first `dimension` values of each point are its position.
-UnstructuredMesh mesh_of(CellList& cells, const PointMerger& merger, const std::vector<int64_t>& number, const std::vector<int64_t>& source,
-                         size_t dimension) {
+UnstructuredMesh mesh_of(MixedCells& cells, const PointMerger& merger, const std::vector<int64_t>& number,
+                         const std::vector<int64_t>& source, size_t dimension) {
   UnstructuredMesh m;
   cells.finish(m, &number);
   double* xyz = nullptr;
@@ -188,7 +188,7 @@ DatasetPtr lagrange_dataset(const MeshFile& mesh, const std::vector<GridFunction
 
   Numbering slots(t, q, where);
   PointMerger merger(slots.size(), width, tolerance);
-  CellList cells;
+  MixedCells cells;
   std::vector<double> values;
   std::vector<int64_t> ids;
   for (size_t e = 0; e < t.size(); ++e) {

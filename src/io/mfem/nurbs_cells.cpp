@@ -276,7 +276,7 @@ std::vector<size_t> control_points(const std::vector<KnotVector>& knots) {
 struct BezierNet {
   size_t width = 4;         ///< x y z w and the fields, all but w times w
   std::vector<double> all;  ///< width numbers per point; NaN = a point of no patch
-  CellList cells;
+  MixedCells cells;
   std::vector<int32_t> attribute;
 };
 

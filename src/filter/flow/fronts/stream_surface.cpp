@@ -5,6 +5,7 @@
 #include "filter/flow/fronts/default_curve.h"
 #include "filter/flow/fronts/front.h"
 #include "filter/flow/line_attributes.h"
+#include "filter/flow/line_mesh.h"
 #include "filter/flow/noise_speed.h"
 #include "filter/flow/seeds.h"
 
@@ -372,12 +373,13 @@ Data stream_surface(const std::vector<Data>& inputs, const StreamSurfaceParams& 
   float *xyz = nullptr, *v = nullptr, *speed = nullptr, *time = nullptr, *arc = nullptr, *s = nullptr, *st = nullptr;
   mesh.points.xyz = Array::make<float>(n, 3, &xyz);
   FieldSet fields;
-  fields.add({"speed", Association::point, Array::make<float>(n, 1, &speed), parts.fields().front().field().unit, Role::scalars});
-  fields.add({"time", Association::point, Array::make<float>(n, 1, &time), "", Role::none});
-  fields.add({"length", Association::point, Array::make<float>(n, 1, &arc), "", Role::none});
+  fields.add({own_value("speed", parts.name()), Association::point, Array::make<float>(n, 1, &speed), parts.fields().front().field().unit,
+              Role::scalars});
+  fields.add({own_value("time", parts.name()), Association::point, Array::make<float>(n, 1, &time), "", Role::none});
+  fields.add({own_value("length", parts.name()), Association::point, Array::make<float>(n, 1, &arc), "", Role::none});
   fields.add({parts.name(), Association::point, Array::make<float>(n, 3, &v), "", Role::vectors});
-  fields.add({"seed parameter", Association::point, Array::make<float>(n, 1, &s), "", Role::none});
-  fields.add({"texture coordinates", Association::point, Array::make<float>(n, 2, &st), "", Role::tcoords});
+  fields.add({own_value("seed parameter", parts.name()), Association::point, Array::make<float>(n, 1, &s), "", Role::none});
+  fields.add({own_value("texture coordinates", parts.name()), Association::point, Array::make<float>(n, 2, &st), "", Role::tcoords});
   for (size_t i = 0; i < n; ++i) {
     const FrontPoint& f = g.places[i];
     for (int a = 0; a < 3; ++a) xyz[3 * i + size_t(a)] = float(f.x[a] - mesh.points.origin[a]), v[3 * i + size_t(a)] = float(f.v[a]);

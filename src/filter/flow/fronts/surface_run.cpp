@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "filter/flow/fronts/default_curve.h"
+#include "filter/flow/line_mesh.h"
 
 namespace sg {
 
@@ -10,7 +11,9 @@ namespace {
 
 // Seeds evenly along a curve, and their parameters.
 std::vector<double> even_parameters(const SeedCurve& curve, double spacing) {
-  const auto n = size_t(std::max(std::ceil(curve.whole() / spacing - 1e-9), curve.closed ? 3.0 : 1.0));
+  const double wanted = std::max(std::ceil(curve.whole() / spacing - 1e-9), curve.closed ? 3.0 : 1.0);
+  if (!(wanted <= 1e6)) fail_usage(fmt::format("{:.3g} seeds are too many", wanted), "surfaces", "a larger spacing or a shorter curve");
+  const auto n = size_t(wanted);
   std::vector<double> out;
   for (size_t i = 0; i < n + size_t(!curve.closed); ++i) out.push_back(double(i) / double(n));
   return out;
@@ -46,18 +49,19 @@ DatasetPtr surface_dataset(Collected c, const Field& velocity, double start, dou
   float *xyz = nullptr, *v = nullptr, *speed = nullptr, *s = nullptr, *st = nullptr, *age = nullptr;
   mesh.points.xyz = Array::make<float>(n, 3, &xyz);
   FieldSet fields;
-  fields.add({"speed", Association::point, Array::make<float>(n, 1, &speed), velocity.unit, Role::scalars});
+  fields.add({own_value("speed", velocity.name), Association::point, Array::make<float>(n, 1, &speed), velocity.unit, Role::scalars});
   fields.add({velocity.name, Association::point, Array::make<float>(n, 3, &v), velocity.unit, Role::vectors});
-  fields.add({"seed parameter", Association::point, Array::make<float>(n, 1, &s), "", Role::none});
-  fields.add({"age", Association::point, Array::make<float>(n, 1, &age), "", Role::none});
-  fields.add({"texture coordinates", Association::point, Array::make<float>(n, 2, &st), "", Role::tcoords});
+  fields.add({own_value("seed parameter", velocity.name), Association::point, Array::make<float>(n, 1, &s), "", Role::none});
+  fields.add({own_value("age", velocity.name), Association::point, Array::make<float>(n, 1, &age), "", Role::none});
+  fields.add({own_value("texture coordinates", velocity.name), Association::point, Array::make<float>(n, 2, &st), "", Role::tcoords});
   for (size_t i = 0; i < n; ++i) {
     for (int a = 0; a < 3; ++a) xyz[3 * i + size_t(a)] = float(c.x[i][a] - mesh.points.origin[a]), v[3 * i + size_t(a)] = float(c.v[i][a]);
     speed[i] = float(length(c.v[i])), s[i] = float(c.s[i]), age[i] = float(c.time[i] - c.born[i]);
     st[2 * i] = s[i], st[2 * i + 1] = end > start ? float((c.time[i] - c.born[i]) / (end - start)) : 0;
   }
-  fields.add({"time", Association::point, Array::from_vector(std::move(c.time)), "", Role::none});
-  if (releases) fields.add({"release time", Association::point, Array::from_vector(std::move(c.born)), "", Role::none});
+  fields.add({own_value("time", velocity.name), Association::point, Array::from_vector(std::move(c.time)), "", Role::none});
+  if (releases)
+    fields.add({own_value("release time", velocity.name), Association::point, Array::from_vector(std::move(c.born)), "", Role::none});
   mesh.polygons.fixed = 3;
   mesh.polygons.connectivity = Array::from_vector(std::move(c.triangles));
   DatasetParts parts{std::move(mesh), std::move(fields), {}, {}, {}, end};

@@ -57,7 +57,10 @@ void rectangle(TimeSurfaceParams p, const Series& series, double spacing, std::v
   if (!p.center || p.size.size() != 2)
     fail_usage("needs a surface to begin with", "time_surface", "a second input, or center=x,y,z normal=x,y,z size=a,b");
   const auto [u, w] = rectangle_sides(normalize(p.normal.value_or(Vec3(0, 0, 1))));
-  const size_t nu = size_t(std::max(1.0, std::ceil(p.size[0] / spacing))), nw = size_t(std::max(1.0, std::ceil(p.size[1] / spacing)));
+  const double along = std::max(1.0, std::ceil(p.size[0] / spacing)), across = std::max(1.0, std::ceil(p.size[1] / spacing));
+  if (!((along + 1) * (across + 1) <= 1e7))
+    fail_usage(fmt::format("{:.3g} seeds are too many", (along + 1) * (across + 1)), "time_surface", "a larger spacing or a smaller size");
+  const auto nu = size_t(along), nw = size_t(across);
   for (size_t j = 0; j <= nw; ++j)
     for (size_t i = 0; i <= nu; ++i)
       at.push_back(*p.center + u * (p.size[0] * (double(i) / double(nu) - 0.5)) + w * (p.size[1] * (double(j) / double(nw) - 0.5)));

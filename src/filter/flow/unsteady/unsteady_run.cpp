@@ -108,9 +108,9 @@ FieldSet point_fields(const LinePoints& lines, Field first, const Field& velocit
   const size_t n = lines.x.size();
   float *speed = nullptr, *v = nullptr;
   FieldSet fields;
-  if (!first.name.empty()) fields.add(std::move(first));
+  if (!first.name.empty()) first.name = own_value(first.name, velocity.name), fields.add(std::move(first));
   const Role role = fields.empty() ? Role::scalars : Role::none;
-  fields.add({"speed", Association::point, Array::make<float>(n, 1, &speed), velocity.unit, role});
+  fields.add({own_value("speed", velocity.name), Association::point, Array::make<float>(n, 1, &speed), velocity.unit, role});
   fields.add({velocity.name, Association::point, Array::make<float>(n, 3, &v), velocity.unit, Role::vectors});
   parallel_for(n, 1 << 14, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Several files that belong together, written whole or not at all: numbers and the header that names them.
+#pragma once
+#include <cstdio>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace sg {
+
+/// Each goes into a new file under a name of its own beside its place. commit() brings all to the disk first; then they are renamed in
+/// their order, the one that names the others last. When anything fails, what was there under these names stays, all of it, and nothing
+/// lies beside it. Throws Error(data) naming the path.
+class AtomicFiles {
+ public:
+  explicit AtomicFiles(const std::vector<std::string>& paths);
+  ~AtomicFiles();
+  AtomicFiles(const AtomicFiles&) = delete;
+  AtomicFiles& operator=(const AtomicFiles&) = delete;
+
+  void write(size_t file, const void* data, size_t bytes);
+  void write(size_t file, std::string_view text) { write(file, text.data(), text.size()); }
+  /// Brings all to the disk, as commit() does first: what cannot be written is known before anything is replaced.
+  void finish();
+  void commit();
+
+ private:
+  struct One {
+    std::string path, partial;
+    std::FILE* file = nullptr;
+    bool placed = false, exchanged = false;
+  };
+  [[noreturn]] void fail(const One& one) const;
+  void place(One& one);
+  void take_back() noexcept;
+  std::vector<One> files_;
+};
+
+}  // namespace sg
