@@ -6,6 +6,7 @@
 #include "filter/mesh/faces.h"
 #include "filter/mesh/slice.h"
 #include "filter/mesh/tessellate_cells.h"
+#include "filter/mesh_meshes.h"
 #include "filter/probe/probe.h"
 #include "filter/scalar/contour.h"
 #include "filter/smooth_distortion.h"
@@ -129,5 +130,47 @@ TEST_CASE(
     double worst = 0;
     for (size_t i = 0; i < g.count(); ++i) worst = std::max(worst, length(Vec3(g.get(i, 0), g.get(i, 1), g.get(i, 2)) * scale - slope));
     if (kind.name != "lagrange tetra" && d->cell_count() > 40) CHECK(worst < 1e-6);
+  }
+}
+
+// x + a y^2 and y + b z^2 keep volumes, and polynomial cells of order two and more hold this map exactly.
+TEST_CASE("property: curved cells of every order keep the volume of a box that slides in parabolas, and come to it when they are cut") {
+  for (const uint64_t seed : property_seeds(6)) {
+    CAPTURE(seed);
+    Random random(seed);
+    using enum CellType;
+    const CellType type = random.one_of({lagrange_tetra, lagrange_hexahedron, lagrange_wedge, quadratic_tetra, quadratic_hexahedron,
+                                         quadratic_wedge, triquadratic_hexahedron, biquadratic_quadratic_wedge});
+    const bool lattice = type == lagrange_tetra || type == lagrange_hexahedron || type == lagrange_wedge;
+    const int order = lattice ? random.whole(2, type == lagrange_hexahedron ? 4 : 5) : 2;
+    CAPTURE(int(type));
+    CAPTURE(order);
+    const double a = random.in(-0.6, 0.6), b = random.in(-0.6, 0.6);
+    const auto slide = [&](Vec3 q) {
+      const Vec3 p = 2 * q - Vec3(1, 1, 1);
+      return Vec3(p.x + a * p.y * p.y, p.y + b * p.z * p.z, p.z);
+    };
+    const DatasetPtr d = with_values(
+        flow::moved(meshes::solid_box(type, random.whole(1, 2), order), slide), "f", 1, [](Vec3 x, double* v) { *v = x.z; }, Role::scalars);
+    Context context;
+    CHECK(measure_of(d, 3) == doctest::Approx(8).epsilon(1e-10));
+    const TablePtr t = integrate(d, {{"f"}}, context);
+    for (const Field& c : t->columns)
+      if (c.name == "integral") CHECK(std::abs(c.array.get(1)) < 1e-10);
+    double before = 0;
+    for (const double tolerance : {1e-2, 1e-3}) {
+      TessellateParams p;
+      p.tolerance = tolerance;
+      const double off = std::abs(measure_of(tessellate(d, p, context), 3) - 8);
+      CHECK(off < 40 * tolerance);
+      if (before > 1e-2) CHECK(off < before);
+      before = off;
+    }
+    // z is as it was: every cut across it has area 4, what lies below has 4 times its height.
+    const double level = random.in(-0.9, 0.9);
+    CHECK(measure_of(contour(d, {{"f"}, {level}, true, 1e-4}, context), 2) == doctest::Approx(4).epsilon(1e-2));
+    ClipParams c;
+    c.field.name = "f", c.value = level, c.keep = "outside", c.tolerance = 1e-3;
+    CHECK(measure_of(single_dataset(clip(d, c, context), "test"), 3) == doctest::Approx(4 * (level + 1)).epsilon(2e-2));
   }
 }
