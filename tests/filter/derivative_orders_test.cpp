@@ -105,6 +105,21 @@ TEST_CASE(
     }
 }
 
+TEST_CASE("derivative orders: Hessians of grids with straight axes, turned ones and AMR too, are of second order up to every border") {
+  Random random(1);
+  const Waves f = Waves::random(random, 3, 0.6, 1.6);
+  for (const MeshKind& kind : every_mesh())
+    for (const char* name : {"uniform", "rotated", "rectilinear", "amr", "flat uniform", "flat rectilinear", "flat amr"})
+      for (const bool cells : {false, true}) {
+        if (kind.name != name) continue;
+        CAPTURE(kind.name);
+        CAPTURE(cells);
+        const Measured a = measure(kind.make(10, 1), kind.flat, cells, {}, f), b = measure(kind.make(20, 1), kind.flat, cells, {}, f);
+        CHECK(std::log2(a.all.hessian / b.all.hessian) > 1.5);
+        CHECK(b.all.hessian < 5 * b.inside.hessian);
+      }
+}
+
 TEST_CASE("derivative orders: a flow that is a gradient has no vorticity up to the border of a wavy box of any cells") {
   Random random(5);
   const Distortion d = Distortion::random(random, 0.12);

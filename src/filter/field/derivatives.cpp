@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "data/lattice.h"
+#include "filter/field/border_layers.h"
 #include "filter/field/center_lattice.h"
 #include "filter/field/fitted_derivatives.h"
 #include "filter/field/lattice_frame.h"
@@ -122,7 +123,8 @@ DatasetPtr hessian(const DatasetPtr& in, const HessianParams& p, Context& ctx) {
     parts.fields.remove(g.name, g.association);
     Field h = *parts.fields.find(name, f.association);
     h.unit = f.unit.empty() ? "" : f.unit + "/length^2";
-    h.array = tangential_parts(in->mesh(), f.association == Association::cell, h.array);
+    const bool of_cells = f.association == Association::cell;
+    h.array = with_border_derivatives(*in, of_cells, f.array, tangential_parts(in->mesh(), of_cells, h.array), ctx);
     parts.fields.add(std::move(h));
     return make_dataset(std::move(parts));
   }

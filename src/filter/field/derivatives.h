@@ -35,9 +35,10 @@ inline void describe(Schema& s, HessianParams& p) {
   s("field", p.field, "Scalar field; default: the active scalar.");
   s("as", p.as, "Name of the result; default: hessian(FIELD).");
 }
-/// The symmetric matrix of second derivatives of a scalar field, 9 numbers. Grids: the gradient of the gradient; other meshes: of the
-/// fitted parabola, exact for quadratic fields. Second order where neighbours lie on both sides alike (inside grids and smooth meshes of
-/// hexahedra, wedges, tetrahedra), first elsewhere, up to the border. Along lines and surfaces: the covariant one. What too few
+/// The symmetric matrix of second derivatives of a scalar field, 9 numbers. Grids: the gradient of the gradient, across their borders the
+/// bend of a cubic (with_border_derivatives), of second order; curvilinear ones of first order in the two outer layers. Other meshes: of
+/// the fitted parabola, exact for quadratic fields, of second order where neighbours lie on both sides alike (inside smooth meshes of
+/// hexahedra, wedges, tetrahedra), of first elsewhere, up to the border. Along lines and surfaces: the covariant one. What too few
 /// neighbours do not determine is 0, and a warning says at how many places.
 DatasetPtr hessian(const DatasetPtr& in, const HessianParams& p, Context& ctx);
 
