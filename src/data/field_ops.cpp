@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "base/parallel.h"
+#include "data/nearest_whole.h"
 
 namespace sg {
 
@@ -37,7 +38,7 @@ Array gather_any(const Array& a, std::span<const Id> ids) {
 template <class T>
 T blended(double v) {
   if constexpr (std::is_floating_point_v<T>) return T(v);
-  else return T(std::nearbyint(v));  // a blend of two values of T lies in the range of T
+  else return nearest_whole<T>(v);  // between two infinities there is no place
 }
 
 // Directions between those at two points, as long as the lengths there say: blended as numbers alone they would be shorter.

@@ -14,6 +14,15 @@ namespace sg {
 namespace {
 std::atomic<size_t> limit{0}, in_use{0};
 thread_local detail::ClaimWatch* innermost = nullptr;
+
+// Bytes of this machine's memory.
+size_t machine_memory() {
+  static const size_t bytes = [] {
+    const long pages = ::sysconf(_SC_PHYS_PAGES), page = ::sysconf(_SC_PAGESIZE);
+    return pages > 0 && page > 0 ? size_t(pages) * size_t(page) : SIZE_MAX;
+  }();
+  return bytes;
+}
 }  // namespace
 
 void set_memory_limit(size_t bytes) {
@@ -23,8 +32,8 @@ void set_memory_limit(size_t bytes) {
 size_t memory_limit() { return limit; }
 size_t allowed_memory() {
   if (limit) return limit;
-  const long pages = ::sysconf(_SC_PHYS_PAGES), page = ::sysconf(_SC_PAGESIZE);
-  return pages > 0 && page > 0 ? size_t(pages) * size_t(page) / 2 : SIZE_MAX;
+  const size_t all = machine_memory();
+  return all == SIZE_MAX ? all : all / 2;
 }
 
 void need_memory(double bytes, const std::string& what, const std::string& where, const std::string& hint) {
@@ -43,10 +52,13 @@ detail::ClaimWatch::~ClaimWatch() { innermost = outer_; }
 void detail::claim_memory(size_t bytes) {
   if (innermost) innermost->on_claim(bytes);
   const size_t before = in_use.fetch_add(bytes);
-  const size_t most = limit;
-  if (most == 0 || before + bytes <= most) return;
+  // Nobody said: all of the machine's. The system would promise more and end the program when it is used.
+  const bool stated = limit != 0;
+  const size_t most = stated ? limit.load() : machine_memory();
+  if (before <= most && bytes <= most - before) return;
   in_use -= bytes;
-  fail_usage(fmt::format("{} more are needed, {} of the {} allowed are in use", human_bytes(bytes), human_bytes(before), human_bytes(most)),
+  fail_usage(fmt::format("{} more are needed, {} of the {} {} are in use", human_bytes(bytes), human_bytes(before), human_bytes(most),
+                         stated ? "allowed" : "of this machine"),
              "--memory", "read a smaller part (--region, --stride, --fields, --piece), or allow more; --explain shows the steps");
 }
 

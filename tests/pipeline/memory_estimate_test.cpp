@@ -66,6 +66,12 @@ TEST_CASE("memory estimates: a thousand million seeds, places or glyphs are refu
   CHECK(has(error_of_steps({{"abc", {"size=9"}}, {"glyphs", {many}}}), {"places need", "--memory"}));
 }
 
+TEST_CASE("memory estimates: what a few words ask for is refused before the system promises more than the machine has") {
+  CHECK(has(error_of_steps({{"abc", {"size=9"}}, {"resample", {"size=5000"}}}), {"of this machine", "--memory"}));
+  CHECK(has(error_of_steps({{"abc", {"size=9"}}, {"resize", {"dims=5000,5000,5000"}}}), {"5000x5000x5000 points need", "--memory"}));
+  CHECK(has(error_of_steps({{"abc", {"size=9"}}, {"ftle", {"size=5000", "duration=1"}}}), {"5000x5000x5000 seeds need", "--memory"}));
+}
+
 TEST_CASE("memory estimates: the frames of a picture count") {
   Context context;
   RenderOptions options;

@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "data/field_ops.h"
 #include "data/lattice.h"
+#include "data/memory_budget.h"
 #include "filter/field/reconstruction.h"
 #include "filter/field/separable.h"
 #include "filter/segment/samples.h"
@@ -180,6 +181,10 @@ DatasetPtr resize(const DatasetPtr& in, const ResizeParams& p, Context& context)
     fail_usage(fmt::format("works on uniform and rectilinear grids, not on a {} mesh", in->kind()), "resize", "use resample");
   const Kernel kernel = kernel_of(p.kernel, "resize");
   const Dims from = lattice_dims(in->mesh()), to = wanted_dims(from, p.dims);
+  double bytes = 40;  // a point: where it comes from
+  for (const Field& f : in->fields()) bytes = std::max(bytes, 40 + double(f.components()) * 24);
+  need_memory(double(to[0]) * double(to[1]) * double(to[2]) * bytes, fmt::format("{}x{}x{} points", to[0], to[1], to[2]), "resize",
+              "smaller dims");
   DatasetParts out = in->parts();
   out.mesh = resized_mesh(in->mesh(), to);
   out.fields = {};

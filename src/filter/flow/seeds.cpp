@@ -77,7 +77,7 @@ std::array<size_t, 3> even_counts(Vec3 size, double count) {
   if (axes == 0) return n;
   const double h = std::pow(product / count, 1.0 / axes);
   for (int a = 0; a < 3; ++a)
-    if (size[a] > 1e-9 * largest) n[size_t(a)] = size_t(std::max(1.0, std::nearbyint(size[a] / h)));
+    if (size[a] > 1e-9 * largest) n[size_t(a)] = size_t(std::clamp(std::nearbyint(size[a] / h), 1.0, std::max(1.0, count)));
   return n;
 }
 

@@ -52,7 +52,7 @@ struct WalkStart {
     size_t at[3];
     for (int a = 0; a < 3; ++a) {
       const double s = box.hi[a] - box.lo[a], f = s > 0 ? (x[a] - box.lo[a]) / s * double(bins[size_t(a)]) : 0;
-      at[a] = size_t(std::min(std::max(f, 0.0), double(bins[size_t(a)] - 1)));
+      at[a] = size_t(std::min(std::max(0.0, f), double(bins[size_t(a)] - 1)));  // NaN: 0
     }
     return at[0] + bins[0] * (at[1] + bins[1] * at[2]);
   }

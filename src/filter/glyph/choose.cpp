@@ -76,7 +76,7 @@ GlyphPointsParams placement(const Dataset& d, const GlyphParams& p, const Field*
   if (step > 0) {
     double most = 1;
     for (int a = 0; a < 3; ++a) most *= std::max(size[a] / step, 1.0);
-    fitting = std::min(fitting, std::max<int64_t>(int64_t(most), 60));
+    if (most < double(fitting)) fitting = std::max<int64_t>(int64_t(most), 60);  // not for a box beyond doubles
   }
   q.count = p.count > 0 ? p.count : fitting;
   q.mode = p.place;

@@ -5,6 +5,7 @@
 #include "base/parallel.h"
 #include "data/field_ops.h"
 #include "data/lattice.h"
+#include "data/nearest_whole.h"
 #include "data/trusted.h"
 #include "filter/mesh/clip_impl.h"
 #include "filter/mesh/surface_builder.h"
@@ -23,7 +24,7 @@ struct Shares {
 template <class T>
 T rounded(double v) {
   if constexpr (std::is_floating_point_v<T>) return T(v);
-  else return T(std::nearbyint(v));
+  else return nearest_whole<T>(v);
 }
 
 bool is_direction(const Field& f) {

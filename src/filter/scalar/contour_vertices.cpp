@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "base/parallel.h"
+#include "data/nearest_whole.h"
 #include "filter/scalar/contour_vertices.h"
 
 namespace sg::contouring {
@@ -165,9 +166,7 @@ void interpolate_inner(const Array& a, const Piece& piece, std::byte* out) {
             sum += weight * double(v(size_t(p), int(c)));
           }
           if constexpr (std::is_floating_point_v<T>) to[i * n + c] = T(sum);
-          else
-            to[i * n + c] =
-                T(std::nearbyint(std::clamp(sum, double(std::numeric_limits<T>::lowest()), double(std::numeric_limits<T>::max()))));
+          else to[i * n + c] = nearest_whole<T>(sum);
         }
       }
     });

@@ -112,7 +112,7 @@ int64_t fitting(const DatasetPtr& in, const TensorGlyphsParams& p) {
   double most = 1;
   if (step > 0)
     for (int a = 0; a < 3; ++a) most *= std::max(size[a] / step, 1.0);
-  return std::clamp<int64_t>(step > 0 ? int64_t(most) : 600, 40, 600);
+  return step > 0 && most < 600 ? std::max<int64_t>(int64_t(most), 40) : 600;  // 600 for a box beyond doubles
 }
 
 // The usable place nearest to the middle of each cube; the cubes grow until there are few enough.

@@ -2,6 +2,7 @@
 #include "filter/flow/vortex/ftle.h"
 
 #include "base/parallel.h"
+#include "data/memory_budget.h"
 #include "filter/flow/flow_parts.h"
 #include "filter/flow/geographic.h"
 #include "filter/flow/unsteady/particles.h"
@@ -103,6 +104,9 @@ DatasetPtr ftle_of(const UniformGrid& grid, double duration, std::optional<doubl
   if (dimension == 0) fail_usage("one seed has no neighbours", "dims", "two or more along some axis");
   // The seeds, and behind each the places beside it.
   const size_t each = offset ? 1 + 2 * axes.size() : 1;
+  const double bytes_a_seed = 200 * double(each) + 60;  // with its neighbours: where they begin and end, particles; what is told of it
+  need_memory(double(n[0]) * double(n[1]) * double(n[2]) * bytes_a_seed, fmt::format("{}x{}x{} seeds", n[0], n[1], n[2]), "ftle",
+              "a smaller size");
   std::vector<Vec3> from(count * each), to;
   std::vector<uint8_t> known;
   parallel_for(count, 1 << 12, [&](size_t begin, size_t end) {
