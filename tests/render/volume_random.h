@@ -110,6 +110,7 @@ struct RandomVolume {
   double lo = 0, hi = 1;  ///< of the values
   double edge = 1;        ///< that surfaces are told by: Volume::edge
   double cell = 1;        ///< size of a cell, for cameras and units
+  bool opaque = false;    ///< may opacity be 1 itself?
   std::string words;      ///< what it is, for findings
 };
 
@@ -180,7 +181,9 @@ inline void random_transfer(Random& r, const Kinds& kinds, double lo, double hi,
   const int features = modest ? 1 : r.whole(1, 3);
   for (int i = 0; i < features; ++i) {
     const double from = double(i) / features, wide = 1.0 / features, at = from + wide * r.in(0.05, 0.6), rest = from + 0.98 * wide - at;
-    const double height = most * r.in(0.2, 1), before = points.back().y;
+    double height = most * r.in(0.2, 1);
+    const double before = points.back().y;
+    if (out.opaque && most == 1 && height > 0.7) height = 1;
     switch (modest ? 0 : r.whole(0, kinds.steps ? 4 : 3)) {
       case 0: out.words += "ramp ", points.push_back({at, before}), points.push_back({at + rest, r.chance(0.7) ? height : 0}); break;
       case 1: {
@@ -243,7 +246,7 @@ inline void random_transfer(Random& r, const Kinds& kinds, double lo, double hi,
 /// A lattice of samples over [-1, 1]^3 times `size`, uniform (turned, of uneven spacing) or rectilinear.
 inline RandomVolume random_lattice(Random& r, const Kinds& kinds, bool uneven, double size, Vec3 middle = {0, 0, 0}) {
   RandomVolume out;
-  out.words = uneven ? "rectilinear " : "uniform ";
+  out.words = uneven ? "rectilinear " : "uniform ", out.opaque = true;
   auto lattice = std::make_shared<TrueLattice>();
   TrueLattice& l = *lattice;
   l.n = {r.whole(5, 14), r.whole(5, 14), r.whole(5, 14)};

@@ -81,10 +81,12 @@ struct TrueTransfer {
         }
     return {srgb_decoded(c.x), srgb_decoded(c.y), srgb_decoded(c.z)};
   }
+  double opaque = 1e12;  ///< depth of opacity 1 over a unit
   /// Mean of tau while opacity goes straight from a to b: -(ln(1 - o)) has the integral (1 - o) ln(1 - o) + o.
   double mean_tau(double a, double b) const {
     const auto whole = [](double o) { return o < 1 ? (1 - o) * std::log1p(-o) + o : 1.0; };
     if (std::abs(b - a) > 1e-4) return (whole(b) - whole(a)) / (b - a) / unit;
+    if (a >= 1 && b >= 1) return opaque / unit;
     return -std::log1p(-std::min(0.5 * (a + b), 1 - 1e-16)) / unit;
   }
 };

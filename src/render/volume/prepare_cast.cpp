@@ -140,13 +140,16 @@ CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<con
     plan.lo = std::min(item.color.lo, item.color.hi) - span, plan.hi = std::max(item.color.lo, item.color.hi) + span, plan.base = 0;
   }
   plan.accuracy = 0.25 * item.sampling.tolerance, plan.faint = 0.5 / diagonal, plan.most_tau = 1000 / source.edge;
+  const double most_detail = plan.most_tau;
+  // Lattices sum up no opaque part: opacity 1 hides what lies behind the corner of a cell.
+  if (on_lattice) plan.most_tau *= 1000;
   v.medium = std::make_unique<Medium>(item.color, item.opacity, plan);
   if (!item.detail.plain() || item.light.ink > 0) {
     v.transfer = std::make_unique<TransferFunction>(item.color, item.opacity, item.detail, base);
-    const double most_tau = std::max(plan.most_tau, minus_log_one_minus(1 - 0x1p-53) / plan.unit);  // opacities below 1 keep their own
+    const double most_tau = std::max(most_detail, minus_log_one_minus(1 - 0x1p-53) / plan.unit);  // opacities below 1 keep their own
     v.detail = std::make_unique<Detail>(Detail{*v.transfer, item.detail.second, plan.unit, float(most_tau)});
     if (item.light.ink > 0 && item.mode == RayFunction::composite)
-      v.detail->ink = std::min(float(minus_log_one_minus(item.light.ink) / plan.unit), float(plan.most_tau));
+      v.detail->ink = std::min(float(minus_log_one_minus(item.light.ink) / plan.unit), float(most_detail));
   }
   v.budget = {item.sampling.tolerance, diagonal, knobs.stop_below > 0 ? float(0.2 * item.sampling.tolerance) : 0};
   v.step = item.sampling.step, v.unit = plan.unit;

@@ -134,18 +134,32 @@ class PacketCells : public RayLanes<D, T, Axes> {
       if (m.any_abrupt()) abrupt = hn::AndNot(same, medium.abrupt(first, last));
     }
     // The errors of optics/integrate.cpp, Pieces::whole.
-    const F pass = sum.pass, taken = hn::Min(one, hn::Mul(length, most)), range = hn::Sub(hi, lo);
-    const F widths = hn::Mul(range, hn::Set(d, 1 / m.color_width())), change = hn::Min(one, hn::Mul(range, hn::Set(d, m.color_slope())));
-    const F beyond = hn::Max(hn::Sub(hi, hn::Max(f.a, f.last)), hn::Sub(hn::Min(f.a, f.last), lo));
-    const F deep = hn::Mul(hn::Mul(hn::Mul(length, length), hn::Mul(most, slope)), hn::Mul(range, hn::Set(d, 0.05f)));
+    const F pass = sum.pass, depth = hn::Mul(length, most), taken = hn::Min(one, depth), range = hn::Sub(hi, lo);
+    const F color_slope = hn::Set(d, m.color_slope());
+    const F widths = hn::Mul(range, hn::Set(d, 1 / m.color_width())), change = hn::Min(one, hn::Mul(range, color_slope));
+    const F bend = hn::Max(hn::Abs(f.c), hn::Abs(mul_add(hn::Set(d, 3.0f), f.e, f.c)));
+    const F recolored = hn::Mul(taken, hn::Min(one, hn::Mul(bend, color_slope))), tilt = hn::Mul(length, slope);
+    const F deep = hn::Mul(hn::Mul(depth, tilt), hn::Mul(range, hn::Set(d, 0.05f)));
+    const F deeper = hn::Min(hn::Set(d, 1.0f / 6), hn::Mul(hn::Mul(depth, depth), hn::Set(d, 1.0f / 360)));
     F error = hn::Mul(hn::Mul(taken, hn::Set(d, 0.25f * tolerance)), hn::Mul(widths, widths));
     error = mul_add(change, hn::Min(one, deep), error);
-    error = hn::Add(error, hn::IfThenElseZero(hn::Not(hn::Or(same, abrupt)), hn::Mul(beyond, hn::Mul(length, slope))));
-    error = hn::Mul(error, pass);
+    error = hn::Mul(mul_add(recolored, deeper, error), pass);
+    const F fourth = mul_add(hn::Abs(f.e), hn::Add(range, range), hn::Mul(bend, bend));
+    const F uneven = hn::Mul(hn::Mul(pass, hn::Set(d, 1.0f / 120)), hn::Min(one, hn::Mul(fourth, hn::Mul(tilt, color_slope))));
     const F share = hn::Mul(pass, hn::Min(one, hn::Mul(length, tau_mean)));
     const F allowed =
         hn::Mul(hn::Set(d, tolerance), mul_add(share, hn::Set(d, 0.4f), hn::Mul(length, hn::Set(d, float(0.3 / plan.budget.length)))));
-    constexpr int most_kinks = CellLight<D, T, Axes>::most_jumps;
+    F close = zero;  // so near to a knot a value counts as that
+    M turning = abrupt;
+    bool any_turn = false;
+    if (!hn::AllFalse(d, hn::AndNot(same, look))) {
+      const F spoilt = hn::Mul(pass, mul_add(taken, color_slope, tilt));
+      close = hn::IfThenElseZero(hn::Not(abrupt), hn::Div(hn::Mul(allowed, hn::Set(d, 0.05f)), hn::Max(spoilt, hn::Set(d, 1e-30f))));
+      const F beyond = hn::Max(hn::Sub(hi, hn::Max(f.a, f.last)), hn::Sub(hn::Min(f.a, f.last), lo));
+      turning = hn::Or(abrupt, hn::AndNot(same, hn::Gt(hn::Mul(hn::Mul(pass, beyond), tilt), hn::Mul(allowed, hn::Set(d, 0.1f)))));
+      any_turn = !hn::AllFalse(d, hn::And(look, turning));
+    }
+    constexpr int most_kinks = shaded ? CellLight<D, T, Axes>::most_jumps : 0;
     F kinks[most_kinks + 2];  // where the light jumps, or, where the medium does, the value turns
     bool any_kink = false;
     if constexpr (shaded) {
@@ -155,18 +169,18 @@ class PacketCells : public RayLanes<D, T, Axes> {
       const M jumping = hn::And(look, hn::Gt(hn::Mul(weight, lit.jump), allowed));
       if (any_kink = !hn::AllFalse(d, jumping); any_kink) light.jumps(from, way, lit, jumping, kinks);
     }
-    const bool exact_knots = !hn::AllFalse(d, hn::And(look, abrupt));
-    if (exact_knots) {
+    if (any_turn) {
       for (int i = 0; i < most_kinks && !any_kink; ++i) kinks[i] = hn::Set(d, 2.0f);
       f.turns(kinks[most_kinks], kinks[most_kinks + 1]);
-      for (int i : {0, 1}) kinks[most_kinks + i] = hn::IfThenElse(abrupt, kinks[most_kinks + i], hn::Set(d, 2.0f));
+      for (int i : {0, 1}) kinks[most_kinks + i] = hn::IfThenElse(turning, kinks[most_kinks + i], hn::Set(d, 2.0f));
     } else if (any_kink) {
       kinks[most_kinks] = kinks[most_kinks + 1] = hn::Set(d, 2.0f);
     }
     F count = one, per_count = one;
-    if (!hn::AllFalse(d, hn::And(look, hn::Gt(error, allowed)))) {
-      const F parts = hn::Sqrt(hn::Div(error, hn::Max(allowed, hn::Set(d, 1e-30f))));
-      count = hn::Max(one, hn::Min(hn::Ceil(parts), hn::Set(d, 64.0f)));
+    if (!hn::AllFalse(d, hn::And(look, hn::Gt(hn::Max(error, uneven), allowed)))) {
+      const F least = hn::Max(allowed, hn::Set(d, 1e-30f));
+      const F parts = hn::Max(hn::Sqrt(hn::Div(error, least)), hn::Sqrt(hn::Sqrt(hn::Div(uneven, least))));
+      count = hn::Max(one, hn::Min(hn::Ceil(parts), hn::Set(d, 1024.0f)));
       per_count = hn::Div(one, count);
     }
     const F stop = hn::Set(d, plan.budget.stop_below);
@@ -180,7 +194,7 @@ class PacketCells : public RayLanes<D, T, Axes> {
       const M final_piece = hn::Ge(after, count);
       end = hn::IfThenElse(final_piece, one, hn::Mul(after, per_count));
       at_kink = hn::MaskFromVec(zero);
-      if (any_kink || exact_knots) {
+      if (any_kink || any_turn) {
         for (const F& kink : kinks) {
           const M nearer = hn::And(hn::Gt(kink, s), hn::Lt(kink, end));
           at_kink = hn::Or(at_kink, nearer), end = hn::IfThenElse(nearer, kink, end);
@@ -200,8 +214,13 @@ class PacketCells : public RayLanes<D, T, Axes> {
         const F rise = hn::Sub(target, v);
         const F run = hn::Div(hn::Sub(end, s), hn::IfThenElse(hn::Eq(rise, zero), one, rise));
         F meet = mul_add(hn::Sub(knot, v), run, s);
-        for (int i = 0; i < 2; ++i) meet = hn::Max(s, hn::Min(neg_mul_add(hn::Sub(f.at(meet), knot), run, meet), end));
-        if (exact_knots) meet = hn::IfThenElse(abrupt, enclosed(f, s, end, hn::Sub(v, knot), hn::Sub(target, knot), knot), meet);
+        F off = zero;
+        for (int i = 0; i < 2; ++i) {
+          off = hn::Sub(f.at(meet), knot);
+          meet = hn::Max(s, hn::Min(neg_mul_add(off, run, meet), end));
+        }
+        const M astray = hn::And(cut, hn::Gt(hn::Abs(off), close));
+        if (!hn::AllFalse(d, astray)) meet = hn::IfThenElse(astray, enclosed(f, s, end, v, target, knot, close, astray), meet);
         to = hn::IfThenElse(cut, meet, to), next = hn::IfThenElse(cut, knot, next);
       }
       const F middle = f.at(hn::Mul(half, hn::Add(s, to))), part = hn::Mul(length, hn::Sub(to, s));
@@ -232,20 +251,20 @@ class PacketCells : public RayLanes<D, T, Axes> {
     }
   }
 
-  /// Where a cubic that goes one way from s to end, `at0` and `at1` away from a value, has that value: as Pieces::meets of
+  /// Where a cubic that goes one way from s to end, and from a to b, has a value, to `close`, for the lanes that ask: as Pieces::meets of
   /// optics/integrate.cpp.
-  static HWY_NOINLINE F enclosed(const Cubic<D>& f, F s, F end, F at0, F at1, F value) {
+  static HWY_NOINLINE F enclosed(const Cubic<D>& f, F s, F end, F a, F b, F value, F close, M asking) {
     const D d;
     const F zero = hn::Zero(d), half = hn::Set(d, 0.5f);
-    F meet = s, side = zero;
-    M going = hn::Not(hn::IsNaN(hn::Add(at0, at1)));
+    F meet = s, side = zero, at0 = hn::Sub(a, value), at1 = hn::Sub(b, value);
+    M going = hn::AndNot(hn::IsNaN(hn::Add(at0, at1)), asking);
     for (int i = 0; i < 40 && !hn::AllFalse(d, going); ++i) {
       const F apart = hn::Sub(at0, at1);
       const F next = hn::Div(hn::Sub(hn::Mul(at0, end), hn::Mul(at1, s)), hn::IfThenElse(hn::Eq(apart, zero), hn::Set(d, 1.0f), apart));
       meet = hn::IfThenElse(going, hn::Max(s, hn::Min(next, end)), meet);
       const F here = hn::Sub(f.at(meet), value);
       const M inside = hn::And(hn::Gt(meet, s), hn::Lt(meet, end)), wide = hn::Ge(hn::Sub(end, s), hn::Set(d, 1e-6f));
-      going = hn::And(going, hn::And(hn::Ne(here, zero), hn::And(inside, wide)));
+      going = hn::And(going, hn::And(hn::Gt(hn::Abs(here), close), hn::And(inside, wide)));
       const M later = hn::AndNot(hn::Xor(hn::Gt(here, zero), hn::Gt(at1, zero)), going), earlier = hn::AndNot(later, going);
       at0 = hn::IfThenElse(hn::And(later, hn::Gt(side, zero)), hn::Mul(half, at0), hn::IfThenElse(earlier, here, at0));
       at1 = hn::IfThenElse(hn::And(earlier, hn::Lt(side, zero)), hn::Mul(half, at1), hn::IfThenElse(later, here, at1));

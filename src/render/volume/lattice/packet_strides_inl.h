@@ -25,7 +25,7 @@ struct SumLanes {
 
   /// The medium at a value: tau, and the integral of tau up to it in two parts.
   struct Place {
-    F value, tau, slope, beyond;
+    F value, tau, slope, beyond, kinks;
     I node, sum;
   };
   HWY_INLINE Place at(F value) const {
@@ -41,7 +41,7 @@ struct SumLanes {
     const auto [sum_tau, slope] = gather_quad(d, table, entry, loads);
     p.sum = hn::BitCast(di, sum_tau.a);
     const F x = neg_mul_add(hn::ConvertTo(d, p.node), hn::Set(d, sums->width()), hn::Sub(value, lo));
-    p.slope = slope.a;
+    p.slope = slope.a, p.kinks = slope.b;
     const F rise = hn::Mul(x, slope.a);
     p.beyond = hn::Mul(x, mul_add(hn::Set(d, 0.5f), rise, sum_tau.b));
     p.tau = hn::Max(zero, hn::Add(sum_tau.b, rise));
@@ -114,7 +114,8 @@ HWY_INLINE Strides<D> strides(const SumLanes<D>& medium, const Medium& colors, f
   const F lo = hn::Min(p0.value, hn::Min(p1.value, p2.value)), hi = hn::Max(p0.value, hn::Max(p1.value, p2.value)),
           change = hn::Sub(hi, lo);
   constexpr float share = shaded ? share_off_lit : share_off;
-  const F off = hn::Mul(bend, hn::Mul(cells, cells));  // a fourth of it at most, an eighth in the mean
+  // A fourth of it at most, an eighth in the mean. Short strides meet one face of cells at most, where all of a cell's bend may be.
+  const F off = hn::Mul(bend, hn::Mul(cells, hn::Max(cells, half)));
   const auto pad = medium.nodes_over(hn::Mul(hn::Set(d, 0.25f), off));
   const F steep_a = medium.steepest(p0, p1, pad), steep_b = medium.steepest(p1, p2, pad);
   // A parabola lies `arch` / 12 below its chord in the mean.
@@ -157,9 +158,17 @@ HWY_INLINE Strides<D> strides(const SumLanes<D>& medium, const Medium& colors, f
   s.ahead = hn::Mul(per_steep, hn::Sub(steep_b, steep_a));
   e = mul_add(hn::Mul(taken, hn::Set(d, 0.25f * tolerance)), hn::Mul(widths, widths), e);
   e = mul_add(recolored, hn::Add(hn::Min(one, deep), uneven), e);
+  // Where colours kink they leave the straight line to both ends by up to a fourth of what their slope changes by, an eighth in the mean;
+  // a deep pair shows its front alone.
+  if (medium.sums->kinked()) {
+    const F kinks = hn::Sub(hn::Max(p0.kinks, hn::Max(p1.kinks, p2.kinks)), hn::Min(p0.kinks, hn::Min(p1.kinks, p2.kinks)));
+    const F shown = mul_add(hn::Min(s.depth, hn::Set(d, 8.0f)), hn::Set(d, 1.0f / 64), hn::Set(d, 0.125f));
+    e = mul_add(hn::Mul(taken, shown), hn::Min(one, hn::Mul(kinks, change)), e);
+  }
   // A deep pair shows the ends of a parabola of colours more than its middle: for weights exp(-depth x / 2) the mean of x^2 is
-  // 1/3 + depth^2 / 90.
-  const F ends = hn::Mul(hn::Min(hn::Mul(s.depth, s.depth), hn::Set(d, 16.0f)), hn::Set(d, 1.0f / 90));
+  // 1/3 + depth^2 / 90, and below 1/3 + 4^2 / 90 + 3 (depth - 4) / 100 from 4 on, 1 at most.
+  const F deeper = hn::Min(hn::Max(hn::Sub(s.depth, hn::Set(d, 4.0f)), zero), hn::Set(d, 49.0f / 3));
+  const F ends = mul_add(deeper, hn::Set(d, 0.03f), hn::Mul(hn::Min(hn::Mul(s.depth, s.depth), hn::Set(d, 16.0f)), hn::Set(d, 1.0f / 90)));
   e = mul_add(taken, hn::Mul(hn::Mul(hn::Abs(arch), hn::Set(d, 0.5f * colors.color_slope())), ends), e);
   s.error = mul_add(taken, hn::Mul(counted, hn::Set(d, share * colors.color_slope())), e);
   return s;

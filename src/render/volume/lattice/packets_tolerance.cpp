@@ -113,7 +113,7 @@ class TolerantPacket : CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>> {
     const IntTag<D> di;
     here_.value = hn::IfThenElse(which, p.value, here_.value), here_.tau = hn::IfThenElse(which, p.tau, here_.tau);
     here_.slope = hn::IfThenElse(which, p.slope, here_.slope);
-    here_.beyond = hn::IfThenElse(which, p.beyond, here_.beyond);
+    here_.beyond = hn::IfThenElse(which, p.beyond, here_.beyond), here_.kinks = hn::IfThenElse(which, p.kinks, here_.kinks);
     const auto whole = hn::RebindMask(di, which);
     here_.node = hn::IfThenElse(whole, p.node, here_.node), here_.sum = hn::IfThenElse(whole, p.sum, here_.sum);
   }

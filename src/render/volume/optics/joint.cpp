@@ -182,7 +182,13 @@ class JointPart {
     if (!(both.depth > 0)) return;
     Gathered& sum = state_.sum;
     const double after = pass * std::exp(-both.depth);
-    sum.r += float(pass * both.color.x), sum.g += float(pass * both.color.y), sum.b += float(pass * both.color.z);
+    Vec3 color = both.color;
+    if (cuts == most_cuts && both.depth > 0.5) {
+      // Still dense, as opacity 1 is: nine places do not tell where the light goes, but all of it goes here.
+      const Sample s = sample(middle);
+      if (s.tau > 0) color = s.glow * (-std::expm1(-both.depth) / s.tau);
+    }
+    sum.r += float(pass * color.x), sum.g += float(pass * color.y), sum.b += float(pass * color.z);
     sum.transmittance = float(after);
     if (state_.surface < 0 && after < 0.5) {
       // As if the media were even.

@@ -17,8 +17,7 @@ class MediumSums {
   struct Node {
     uint32_t sum;  ///< in units of per_sum, modulo 2^32: differences are exact
     float tau, slope;
-    float steep;  ///< largest |slope| in this node and the next; 1e30 where tau jumps, or has a spike narrower than some nodes;
-                  ///< infinite where the colour jumps
+    float kinks;  ///< by how much the slope of the colours has changed at the knots up to here, all changes added up
   };
   explicit MediumSums(const Medium& medium);
 
@@ -27,11 +26,15 @@ class MediumSums {
   float width() const { return width_; }
   float per_width() const { return per_width_; }
   float per_sum() const { return per_sum_; }
-  /// Largest |slope| of 2 * 2^level nodes from the multiple of 2^level at or below a node on: [first_of(level) + (node >> level)].
+  bool kinked() const { return nodes_.back().kinks > 0; }
+  /// Largest |slope| of tau of 2 * 2^level nodes from the multiple of 2^level at or below a node on: [first_of(level) + (node >> level)].
+  /// 1e30 where tau jumps, or has a spike narrower than some nodes; infinite where the colour jumps.
   const float* steepest() const { return steepest_.data(); }
   static constexpr int first_of(int level) { return 2 * nodes - (2 * nodes >> level); }
 
  private:
+  void find_kinks(const Medium& medium);
+
   std::vector<Node> nodes_;
   std::vector<float> steepest_;
   float lo_ = 0, width_ = 1, per_width_ = 1, per_sum_ = 1;
