@@ -229,7 +229,9 @@ void Medium::piece_colors(const ColorScale& scale, const Spans& spans) {
   colors_.clear();
   const double all = std::abs(double(axis(top_)) - double(axis(lines_.front().origin)));
   for (size_t i = 0; i < lines_.size(); ++i) {
-    const double from = std::nextafter(spans[i].x, spans[i].y), to = std::nextafter(spans[i].y, spans[i].x);
+    // So far inside that rounding, on a scale that is not linear, does not take them for beyond a knot.
+    const double width = spans[i].y - spans[i].x, digits = 1e-14 * std::max(std::abs(spans[i].x), std::abs(spans[i].y));
+    const double inside = std::min(std::max(1e-7 * width, digits), 0.25 * width), from = spans[i].x + inside, to = spans[i].y - inside;
     const Vec3 a = linear_color(scale, from), m = linear_color(scale, 0.5 * from + 0.5 * to), b = linear_color(scale, to);
     const float lo = axis(lines_[i].origin), hi = axis(std::min(lines_[i].hi, top_));
     const double share = all > 0 ? std::clamp((double(hi) - double(lo)) / all, 0.0, 1.0) : 0, change = difference(a, m) + difference(m, b);
