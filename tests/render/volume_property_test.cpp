@@ -162,6 +162,21 @@ TEST_CASE("property: lit volumes of tetrahedra, hexahedra and other cells keep t
   for (uint64_t seed : property_seeds(120)) composited(seed, cells, true, 6);
 }
 
+TEST_CASE("property: projected tetrahedra keep the tolerance, lit or not") {
+  for (uint64_t seed : property_seeds(40)) {
+    CAPTURE(seed);
+    Random r(seed);
+    RandomVolume v = random_tets(r, kinds, r.magnitude(1e-3, 1e3));
+    random_transfer(r, kinds, v.lo, v.hi, v.cell, v);
+    v.item.method = VolumeMethod::cells, v.item.shaded = r.chance(0.5);
+    random_light(r, v.item.light);
+    const double tolerance = v.item.sampling.tolerance = r.one_of({1.0 / 64, 1.0 / 512, 1.0 / 4096});
+    const Shot shot = random_view(r, v.box, 6);
+    check(compare({v}, scene_of({v.item}), shot.view, false, tolerance + 1e-4, 1),
+          fmt::format("{}{}, {}, tolerance {:.5f}", v.words, shot.words, v.item.shaded ? "lit" : "not lit", tolerance), tolerance + 1e-4);
+  }
+}
+
 // Scenes of few grey values, smooth: equal samples have no gradient, beside them a surface begins within a cell.
 TEST_CASE("volume: beside equal samples lit surfaces stay within the tolerance") {
   const Kinds plain{.steps = false, .color_steps = false, .any_scale = false, .opaque = false, .refined = false};
