@@ -162,6 +162,63 @@ TEST_CASE("property: lit volumes of tetrahedra, hexahedra and other cells keep t
   for (uint64_t seed : property_seeds(120)) composited(seed, cells, true, 6);
 }
 
+namespace {
+
+/// Nothing, then as good as solid: a step, or a ramp of any width.
+void nearly_opaque(Random& r, RandomVolume& v) {
+  const double size = v.hi - v.lo, most = r.one_of({0.9, 0.99, 0.999, 0.9999, 1.0}), at = r.in(0.1, 0.8);
+  const double width = r.one_of({0.0, 1e-4, 1e-2, 0.1, 0.19});
+  v.transfer.opacity = {{v.lo, 0}, {v.lo + at * size, 0}, {v.lo + (at + width) * size, most}};
+  if (r.chance(0.3)) v.transfer.opacity.push_back({v.lo + (at + width + 0.01) * size, most}), v.transfer.opacity.push_back({v.hi, 0});
+  v.item.opacity.points = v.transfer.opacity;
+  v.transfer.unit = v.item.unit_distance = v.cell * r.one_of({0.02, 0.1, 0.5, 2.0});
+  v.transfer.solid = 1000 / v.edge;
+  v.words += fmt::format("opacity {} after {:.3g} of the range, unit {:.3g} cells ", most, width, v.transfer.unit / v.cell);
+}
+
+/// Rays in faces and along edges of the cells, through their corners, along layers, and as good as so.
+Shot along_cells(Random& r, const RandomVolume& v, int pixels) {
+  const Vec3 middle = v.box.lo + v.box.size() * 0.5;
+  Vec3 forward{0, 0, 0};
+  const int axis = r.whole(0, 2), other = (axis + r.whole(1, 2)) % 3;
+  forward[axis] = r.chance(0.5) ? 1 : -1;
+  if (r.chance(0.5)) forward[other] = r.one_of({1.0, -1.0}) * v.box.size()[other] / v.box.size()[axis];
+  if (r.chance(0.3)) forward[3 - axis - other] = v.box.size()[3 - axis - other] / v.box.size()[axis];
+  Shot s;
+  s.words = fmt::format("along {:.3g} {:.3g} {:.3g}", forward.x, forward.y, forward.z);
+  if (r.chance(0.5)) {
+    const double off = r.magnitude(1e-7, 1e-1);
+    forward += Vec3{r.in(-1, 1), r.in(-1, 1), r.in(-1, 1)} * off, s.words += fmt::format(" but for {:.2g}", off);
+  }
+  forward = normalize(forward);
+  const Vec3 up = std::abs(forward.y) > 0.8 ? Vec3{0, 0, 1} : Vec3{0, 1, 0};
+  const double size = v.box.diagonal();
+  // Pixels beside the middle lie half a pixel off it: a whole one through the corners of cells, or a sample's plane.
+  const Vec3 target = middle + v.box.size() * Vec3{r.one_of({0.0, 0.25, -0.4}), r.one_of({0.0, 0.25, 0.45}), r.one_of({0.0, -0.25, 0.4})};
+  s.view = parallel_view(pixels, pixels, pixels / (size * r.in(0.1, 0.7)), forward, up, target);
+  s.view.eye = target - forward * (2 * size), s.view.far_plane = 10 * size;
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("property: as good as opaque volumes keep the tolerance along faces, edges and layers, lit or not") {
+  for (uint64_t seed : property_seeds(80)) {
+    CAPTURE(seed);
+    Random r(seed);
+    RandomVolume v = random_volume(r, kinds, r.magnitude(1e-3, 1e3));
+    random_transfer(r, kinds, v.lo, v.hi, v.cell, v);
+    nearly_opaque(r, v);
+    v.item.shaded = r.chance(0.6);
+    random_light(r, v.item.light);
+    const Shot shot = r.chance(0.7) ? along_cells(r, v, 5) : random_view(r, v.box, 5);
+    const bool single = r.chance(0.3);
+    check(compare({v}, scene_of({v.item}), shot.view, single, 1.0 / 512 + 1e-4, 1),
+          fmt::format("{}{}, {}, {}", v.words, shot.words, v.item.shaded ? "lit" : "not lit", single ? "single" : "packets"),
+          1.0 / 512 + 1e-4);
+  }
+}
+
 TEST_CASE("property: projected tetrahedra keep the tolerance, lit or not") {
   for (uint64_t seed : property_seeds(40)) {
     CAPTURE(seed);
