@@ -152,6 +152,13 @@ TEST_CASE("property: volumes keep the tolerance, whatever the field, the transfe
   for (uint64_t seed : property_seeds(150)) composited(seed, kinds, false, 7);
 }
 
+// Found by other seeds, packets and single rays: ramps that bent values meet, thin volumes, dense cells, colours that kink within strides,
+// faces of cells in the middle of short strides.
+TEST_CASE("volume: knots, faint steps, kinks of colour and faces of cells within strides stay within the tolerance") {
+  for (uint64_t seed : {39308000032, 71000080019, 71000080121, 71000080059, 74000005005, 74000011118, 74000012004, 74000017234})
+    composited(seed, kinds, false, 7);
+}
+
 TEST_CASE("property: lit volumes keep the tolerance, whatever the field, the transfer function, the mesh and the view") {
   for (uint64_t seed : property_seeds(100)) composited(seed, kinds, true, 6);
 }
@@ -290,6 +297,8 @@ TEST_CASE("property: volumes show the largest, the smallest and the mean value o
           constexpr int n = 100;
           const double h = (ends[i + 1] - ends[i]) / n;
           if (!(h > 0)) continue;
+          // Beside the volume, a hair of it is still within the reach of rounding.
+          if (const double f = along.value(0.5 * (ends[i] + ends[i + 1])); f != f) continue;
           for (int k = 0; k <= n; ++k) {
             const double f = along.value(ends[i] + std::clamp(k / double(n), 1e-9, 1 - 1e-9) * (ends[i + 1] - ends[i]));
             if (f != f) continue;
@@ -356,14 +365,18 @@ TEST_CASE("property: volumes in fixed steps are the sum over the middles of the 
         enter = std::max(enter, near);
         Vec3 color{0, 0, 0};
         double pass = 1;
+        bool unsure = false;  // samples read a table of 4096 nodes: beside the end of a scale that is not drawn beyond they may be either
         for (double t = enter; t < leave && pass > 1e-7; t += h) {
           const double end = std::min(leave, t + h), f = along.value(0.5 * (t + end));
           if (f != f) continue;
+          const double beside = std::min(std::abs(f - v.transfer.lo), std::abs(f - v.transfer.hi));
+          unsure = unsure || (!v.transfer.clamp && beside < (v.hi - v.lo) / 4096);
           const double opacity = v.transfer.opacity_on(f, f);
           if (!(opacity > 0)) continue;
           const double alpha = -std::expm1(std::log1p(-opacity) * (end - t) / v.transfer.unit);
           color += v.transfer.color_on(f, f) * (pass * alpha), pass *= 1 - alpha;
         }
+        if (unsure) continue;
         worst.add(x, y, {color.x, color.y, color.z, 1 - pass}, &frame.rgba[4 * (size_t(y) * size_t(view.width) + size_t(x))], 0.004);
       }
     check(worst, fmt::format("{}{} step {:.3g} of a cell", v.words, shot.words, h / v.cell), 0.004);

@@ -220,20 +220,22 @@ class Pieces {
     }
   }
 
-  /// Where the value meets a knot between f0 and f1: false position, twice corrected. Where the medium jumps the place itself counts: it is
-  /// enclosed then, by false position that halves the share of an end that stays (Illinois).
+  /// Where the value meets a knot between f0 and f1, to `close_`: false position, twice corrected; where that does not do, false position
+  /// that encloses the place and halves the share of an end that stays (Illinois).
   float meets(const Stretch& s, float f0, float f1, float a, float b, float knot) const {
     const float slope = (f1 - f0) / (b - a);
-    float f = f0 + (knot - a) * slope;
-    if (!exact_knots_) {
-      for (int i = 0; i < 2; ++i) f = std::clamp(f - (value(s, f) - knot) * slope, f0, f1);
-      return f;
+    float f = f0 + (knot - a) * slope, off = 0;
+    for (int i = 0; i < 2; ++i) {
+      off = value(s, f) - knot;
+      f = std::clamp(f - off * slope, f0, f1);
     }
+    if (std::abs(off) <= close_) return f;
     float at0 = a - knot, at1 = b - knot;
+    f = (at0 * f1 - at1 * f0) / (at0 - at1);
     for (int i = 0, side = 0; i < 40; ++i) {
       f = std::clamp(f, f0, f1);
       const float here = value(s, f) - knot;
-      if (here == 0 || !(f > f0 && f < f1) || f1 - f0 < 1e-6f) break;
+      if (std::abs(here) <= close_ || !(f > f0 && f < f1) || f1 - f0 < 1e-6f) break;
       if ((here > 0) == (at1 > 0)) {
         f1 = f, at1 = here;
         if (side == 1) at0 *= 0.5f;
@@ -256,20 +258,31 @@ class Pieces {
                 taken = std::min(1.0f, length * most);
     const float widths = (medium.axis(hi) - medium.axis(lo)) / medium.color_width();
     const float change = std::min(1.0f, (medium.axis(hi) - medium.axis(lo)) * medium.color_slope());
-    // What one piece gets wrong: colours bend on a width; in a deep piece the front shows more of its own colour than a constant tau would
-    // have it; and the value may turn beyond its ends, where there may be knots. All fall with the square of the number of pieces.
-    const float beyond = std::max(hi - std::max(a, b), std::min(a, b) - lo);
+    // What one piece gets wrong: colours bend on a width, and at every octave of an axis that is no straight one; in a deep piece the front
+    // shows more of its own colour than a constant tau would have it, and than the mean of a value that bends. All fall with the square of
+    // the number of pieces.
+    const float first = a - 2 * s.b[1] + s.b[2], last = s.b[1] - 2 * s.b[2] + b;
+    const float bend = 3 * std::max(std::abs(first), std::abs(last));  // half of the largest second derivative, over the stretch
+    const float depth = length * most, recolored = std::min(1.0f, hi > lo ? bend / (hi - lo) * change : 0);
     float error = taken * (0.25f * tolerance) * widths * widths;
-    error += change * std::min(1.0f, 0.05f * length * length * most * slope * (hi - lo));
-    // Turning beyond a jump of the medium a value may spend any share of its way there: then pieces end where the value turns, too.
-    double turn[3] = {2, 2, 2};
-    exact_knots_ = medium.any_abrupt() && medium.abrupt(lo, hi);
-    if (!exact_knots_) error += beyond * length * slope;
-    else if (beyond > 0) turn[turns(s.b, turn)] = 2;
-    error *= pass;
+    if (!medium.linear() && std::floor(medium.axis(lo)) != std::floor(medium.axis(hi))) error += taken * change * (1.0f / 12);
+    error += change * std::min(1.0f, 0.05f * length * depth * slope * (hi - lo));
+    error += taken * recolored * std::min(1.0f / 6, depth * depth * (1.0f / 360));
+    // Where tau rises Simpson's rule has the mean colour of a value that bends wrong by a 120th of the fourth power's factor in their
+    // product, which falls with the fourth power.
+    const float fourth = slope * (bend + 2 * std::abs(last - first) * (hi - lo) / std::max(bend, 1e-30f));
+    const float uneven = pass * recolored * std::min(1.0f, length * fourth) * (1.0f / 120);
     const float share = pass * std::min(1.0f, denser_ * length * medium.tau(0.25f * (s.b[0] + s.b[1] + s.b[2] + s.b[3])));
     const float allowed = tolerance * (float(0.3 / look_.budget.length) * length + 0.4f * share);
-    const float n = std::clamp(std::ceil(std::sqrt(error / allowed)), 1.0f, 64.0f);
+    // And the value may turn beyond its ends, where there may be knots: then pieces end there, too.
+    const float beyond = std::max(hi - std::max(a, b), std::min(a, b) - lo);
+    const bool abrupt = medium.any_abrupt() && medium.abrupt(lo, hi);
+    double turn[3] = {2, 2, 2};
+    if (beyond > 0 && (abrupt || pass * beyond * length * slope > 0.1f * allowed)) turn[turns(s.b, turn)] = 2;
+    close_ = abrupt ? 0 : 0.05f * allowed / std::max(pass * (length * slope + taken * medium.color_slope()), 1e-30f);
+    error *= pass;
+    const float parts = std::max(std::sqrt(error / allowed), std::sqrt(std::sqrt(uneven / allowed)));
+    const float n = std::clamp(std::ceil(parts), 1.0f, 1024.0f);
     float v = a, f = 0;
     const double* next_turn = turn;
     for (float k = 1; k <= n;) {
@@ -289,7 +302,7 @@ class Pieces {
   RayState& state_;
   float denser_ = 1;     // largest factor of tau by the light
   bool styled_ = false;  // is there one at all?
-  bool exact_knots_ = false;
+  float close_ = 0;      // so near to a knot a value counts as that
 };
 
 /// The light at a place of a ray, and the surface there.

@@ -85,22 +85,17 @@ class Curve {
   double most_ = 0;
 };
 
-/// The knots of colours, without the ends of a scale whose colours go on.
-std::vector<double> inner_color_knots(const ColorScale& scale) {
-  std::vector<double> knots = color_knots(scale);
-  std::erase_if(knots, [&](double k) {
-    if (k != scale.lo && k != scale.hi) return false;
-    const Vec4f a = scale.color(std::nextafter(k, -HUGE_VAL)), b = scale.color(std::nextafter(k, HUGE_VAL));
-    return a.w == b.w && std::abs(a.x - b.x) + std::abs(a.y - b.y) + std::abs(a.z - b.z) < 1e-3f;
-  });
-  return knots;
+/// Just inside of a part that begins at `end`: so far that the place on the scale, which rounds, is inside, too.
+double just_inside(const ColorScale& scale, double end, double other) {
+  const double size = std::max({std::abs(end), std::abs(other), std::abs(scale.lo), std::abs(scale.hi)});
+  return end + std::copysign(std::min(1e-3 * std::abs(other - end), 1e-13 * size), other - end);
 }
 
 /// Values in [lo, hi] at which tau may bend or jump, or colour may jump.
 std::vector<double> bends(const ColorScale& scale, const OpacityCurve& curve, double lo, double hi) {
   std::vector<double> v{lo, hi};
   for (const Vec2& p : curve.points) v.push_back(p.x);
-  const std::vector<double> colors = inner_color_knots(scale);
+  const std::vector<double> colors = color_knots(scale);
   v.insert(v.end(), colors.begin(), colors.end());
   for (double l : scale.labels)  // a label is a value with a little air around it
     for (double side : {-1e-3, 1e-3}) v.push_back(l + side);
@@ -196,7 +191,7 @@ void Medium::make_colors(const ColorScale& scale, const Plan& plan) {
   // The widest change over which a straight line does, between jumps (which are knots).
   double steepest = 0;
   std::vector<double> knots;  // on the axis
-  for (double k : inner_color_knots(scale)) knots.push_back(double(axis(float(k - double(base_)))));
+  for (double k : color_knots(scale)) knots.push_back(double(axis(float(k - double(base_)))));
   std::vector<size_t> stretches = {0};  // of the stretches without a jump: first and last node
   for (size_t i = 0; i < size_t(nodes); ++i) {
     const double change = difference(c[i], c[i + 1]);
@@ -229,9 +224,7 @@ void Medium::piece_colors(const ColorScale& scale, const Spans& spans) {
   colors_.clear();
   const double all = std::abs(double(axis(top_)) - double(axis(lines_.front().origin)));
   for (size_t i = 0; i < lines_.size(); ++i) {
-    // So far inside that rounding, on a scale that is not linear, does not take them for beyond a knot.
-    const double width = spans[i].y - spans[i].x, digits = 1e-14 * std::max(std::abs(spans[i].x), std::abs(spans[i].y));
-    const double inside = std::min(std::max(1e-7 * width, digits), 0.25 * width), from = spans[i].x + inside, to = spans[i].y - inside;
+    const double from = just_inside(scale, spans[i].x, spans[i].y), to = just_inside(scale, spans[i].y, spans[i].x);
     const Vec3 a = linear_color(scale, from), m = linear_color(scale, 0.5 * from + 0.5 * to), b = linear_color(scale, to);
     const float lo = axis(lines_[i].origin), hi = axis(std::min(lines_[i].hi, top_));
     const double share = all > 0 ? std::clamp((double(hi) - double(lo)) / all, 0.0, 1.0) : 0, change = difference(a, m) + difference(m, b);
@@ -252,17 +245,17 @@ void Medium::find_abrupt(const ColorScale& scale, const Spans& spans) {
   if (abrupt_colors_) piece_colors(scale, spans);
   const size_t n = lines_.size();
   recolors_.assign(n, 0), abrupt_before_.assign(n, 0);
-  const float part = (top_ - lines_.front().origin) * (1.0f / 256);
+  const float part = (top_ - lines_.front().origin) * (1.0f / 256), unseen = accuracy_ * faint_;
   std::vector<uint8_t> steep(n), recolored(n);  // within so small a part of the values
   for (size_t i = 0; i < n; ++i) {
     const float most = std::max({columns_.most_tau[i], i > 0 ? columns_.most_tau[i - 1] : 0, i + 1 < n ? columns_.most_tau[i + 1] : 0});
     const bool narrow = std::min(lines_[i].hi, top_) - lines_[i].origin < part;
-    steep[i] = narrow && most > faint_ && columns_.most_slope[i] * part > most;
+    steep[i] = narrow && most > unseen && columns_.most_slope[i] * part > most;
     recolored[i] = narrow && pieced() && difference(Vec3(color(lines_[i].origin, int(i))), Vec3(color(lines_[i].hi, int(i)))) > 0.004;
   }
   for (size_t i = 1; i < n; ++i) {
     const float before = lines_[i - 1](lines_[i - 1].hi), after = lines_[i](lines_[i].origin), most = std::max(before, after);
-    const bool jump = std::abs(after - before) > 1e-3f * most && most > faint_;
+    const bool jump = std::abs(after - before) > std::max(unseen, std::max(accuracy_, 1e-5f) * most);
     const bool recolor = pieced() && difference(Vec3(color(lines_[i].origin, int(i - 1))), Vec3(color(lines_[i].origin, int(i)))) > 0.002;
     recolors_[i] = recolor || recolored[i] || recolored[i - 1];
     abrupt_before_[i] = abrupt_before_[i - 1] + (jump || steep[i] || steep[i - 1] || recolors_[i]);
