@@ -167,7 +167,9 @@ inline RandomVolume random_tets(Random& r, const Kinds& kinds, double size) {
   tets->slopes = point_gradients(out, tets->v);
   const double volume = 8 * stretch.x * stretch.y * stretch.z * size * size * size / double(mesh->cell_count());
   out.edge = std::cbrt(2 * volume), out.cell = std::cbrt(6 * volume);
-  out.along = [tets](const Vec3& o, const Vec3& d) {
+  out.along = [tets, hair = 1e-9 * out.edge](const Vec3& start, const Vec3& d) {
+    // A hair beside the ray: where that lies in a face rounding may take it from the cells on both sides.
+    const Vec3 o = start + Vec3{0.61, 0.83, -0.47} * hair;
     struct Part {
       double from, to, first, slope;  // value = first + slope t
       Vec3 gradient, bend;            // gradient = that + bend t

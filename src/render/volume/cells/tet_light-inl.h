@@ -215,7 +215,8 @@ struct Fair {
     const F allowed = hn::Mul(share, hn::Add(weight, hn::Mul(length, hn::Set(d, lighting.light.per_ray))));
     // Colour and light that both change have a product that is not straight; and the front hides what is behind, exactly so where tau is
     // even.
-    const F product = hn::Mul(change, differ), order = hn::Mul(hn::Mul(hn::Add(change, differ), p.uneven), hn::Min(depth, one));
+    const F product = hn::Mul(change, differ),
+            order = hn::Mul(hn::Mul(hn::Add(change, differ), p.uneven), hn::Min(depth, hn::Set(d, 6.0f)));
     const F wrong = hn::Add(off, hn::Mul(hn::Add(product, order), hn::Set(d, 1.0f / 12)));
     return hn::Le(hn::Mul(weight, wrong), allowed);
   }

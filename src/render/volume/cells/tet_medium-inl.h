@@ -198,13 +198,10 @@ HWY_ATTR inline F color_change(const LinePart& p) {
 HWY_ATTR inline void gather(const TetMedium& m, F f0, F f1, F length, I slice0, I slice1, const Slice& slice, M on, Colors& sum) {
   const D d;
   const LinePart all = means<false>(m, f0, f1, slice0, slice1, on);
-  // Deep segments in parts, so that the order of colours within them counts. It does where tau is not even: the formula has the rest.
-  const F one = hn::Set(d, 1.0f), fine = hn::Set(d, m.fine), enough = hn::Set(d, 2.4f / (m.fine * m.fine));
-  const auto deep = [&](const LinePart& p, F depth) HWY_ATTR {
-    const F change = hn::Max(color_change(p), hn::Set(d, 1.0f / 256));
-    return hn::Gt(hn::Mul(hn::Mul(depth, fine), hn::Sqrt(change)), one);
-  };
-  const M parts = hn::And(on, hn::And(deep(all, hn::Mul(all.tau, length)), hn::Ne(f0, f1)));
+  // Deep segments in parts, so that the order of colours within them counts.
+  const F one = hn::Set(d, 1.0f), enough = hn::Set(d, 5.4f / (m.fine * m.fine));
+  const F fine = hn::Mul(hn::Set(d, m.fine), hn::Sqrt(hn::Max(color_change(all), hn::Set(d, 1.0f / 256))));
+  const M parts = hn::And(on, hn::And(hn::Gt(hn::Mul(hn::Mul(all.tau, length), fine), one), hn::Ne(f0, f1)));
   behind(all, length, hn::AndNot(parts, on), sum);
   F at = hn::Zero(d), step = hn::Set(d, 0.5f);
   for (M more = parts; !hn::AllFalse(d, more);) {
@@ -213,8 +210,9 @@ HWY_ATTR inline void gather(const TetMedium& m, F f0, F f1, F length, I slice0, 
     const F to = hn::IfThenElse(hn::Ge(end, one), f1, hn::Add(f0, hn::Mul(hn::Sub(f1, f0), end)));
     const LinePart p = means<true>(m, from, to, slice(from), slice(to), more);
     const F depth = hn::Mul(p.tau, hn::Mul(length, share));
-    const M even = hn::Le(hn::Mul(hn::Mul(color_change(p), p.uneven), hn::Min(depth, one)), enough);
-    const M good = hn::Or(hn::Le(share, hn::Set(d, 1.0f / TetMedium::most_parts)), hn::Or(even, hn::Not(deep(p, depth))));
+    // What the formula does not have: of uneven tau, a 12th of the depth and half at most.
+    const M even = hn::Le(hn::Mul(hn::Mul(color_change(p), p.uneven), hn::Min(depth, hn::Set(d, 6.0f))), enough);
+    const M good = hn::Or(even, hn::Le(share, hn::Set(d, 1.0f / TetMedium::most_parts)));
     behind(p, hn::Mul(length, share), hn::And(more, good), sum);
     at = hn::IfThenElse(good, end, at), step = hn::IfThenElse(good, hn::Add(step, step), hn::Mul(hn::Set(d, 0.5f), share));
     more = hn::And(more, hn::And(hn::Lt(at, one), hn::Gt(sum.pass, hn::Set(d, 1e-5f))));

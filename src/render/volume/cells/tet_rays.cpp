@@ -49,9 +49,9 @@ void refine(const Medium& medium, int line, const Sample& a, const Sample& b, fl
 }  // namespace
 
 TetMedium::TetMedium(const Medium& medium, const Range& range, float tolerance) {
-  // (D / n)^2 / 12 of a change of colour is a sixth of the tolerance for n = D sqrt(change / 2 / tolerance).
+  // D^2 / 12 of a change of colour is a 14th of the tolerance for D = sqrt(tolerance / change) / 1.06.
   const float accuracy = 0.25f * tolerance, faint = 0.2f * medium.faint();
-  fine = std::sqrt(0.5f / tolerance);
+  fine = std::sqrt(1.125f / tolerance);
   const auto add = [&](const Sample& a, const Sample& b) {
     Interval i{a.value, b.value, {a.at.tau, a.at.color.x, a.at.color.y, a.at.color.z}, {}, {}, 0, 0};
     const float to[4] = {b.at.tau, b.at.color.x, b.at.color.y, b.at.color.z}, width = b.value - a.value;

@@ -4,9 +4,9 @@
 // All pixels of a block walk at the same time, one lane each, as TetWalk does it, in floats relative to the eye and the middle depth of
 // the mesh. In a tetrahedron the value is linear; its optical depth D and its light without attenuation come exactly from integrals of
 // the medium over the value, in constant time. Attenuation within a segment is exact for colours that change evenly with the depth;
-// segments are cut into parts (1024 at most) until what else there may be, D^2/12 of the change of colour, is below a sixth of the
-// tolerance, or tau is even. Light comes from gradients at the vertices, linear in each tetrahedron; segments are cut until it is as good
-// as a straight line within its parts, and where the surface turns over.
+// deep segments are cut into parts (1024 at most) until what else there may be, by the change of colour where tau is not even, is small
+// against the light that they take. Light comes from gradients at the vertices, linear in each tetrahedron; segments are cut until it is as
+// good as a straight line within its parts, and where the surface turns over.
 #pragma once
 #include <vector>
 
@@ -28,7 +28,7 @@ struct TetMedium {
   std::vector<int32_t> seen;   ///< slices before this one in which tau is not zero
   float slice_lo = 0, per_slice = 0;
 
-  float fine = 16;  ///< a part is as deep as 1 by this times the root of its change of colour
+  float fine = 24;  ///< segments deeper than 1 by this times the root of their change of colour are cut
   /// `range`: of the values there are. Straight lines are right to a quarter of `tolerance` (of colours, and of tau relative to itself or
   /// to a fifth of what makes no difference to the medium), parts of deep segments to a sixth of it.
   TetMedium(const Medium& medium, const Range& range, float tolerance = 1.0f / 512);
