@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a medium says about its own colours: integrators trust it.
+#include "color/transfer_text.h"
 #include "render/volume/optics/medium.h"
+#include "support/property.h"
 #include "volume_support.h"
 
 using namespace sg;
@@ -28,4 +30,29 @@ TEST_CASE("volume medium: over a change of the colour width a colour is a straig
     // Twice the accuracy, and the 16 bits of the table and its nodes to either side; a kink of 0.035 per value within the finest width.
     CHECK(worst < (width > 1.01f * least ? 2 * plan.accuracy + 0.0005 : 0.25 * 0.035 * double(least) + 0.0005));
   }
+}
+
+TEST_CASE("volume medium: beside a step of colour each line has its own colour to its very end, on any scale") {
+  for (const ScaleKind kind : {ScaleKind::linear, ScaleKind::log, ScaleKind::symlog})
+    for (uint64_t seed = 1; seed <= 100; ++seed) {
+      Random r(seed);
+      ColorScale scale;
+      parse_color_stops(fmt::format("0:red,{0}:red,{0}:blue,1:blue", r.in(0.05, 0.95)), scale, true);
+      scale.kind = kind, scale.lo = r.in(0.1, 0.5), scale.hi = r.in(0.9, 40), scale.linear_threshold = r.in(0.02, 0.4);
+      OpacityCurve curve;
+      curve.points = {{scale.lo, 0.1}, {scale.hi, 0.5}};
+      volume::Medium::Plan plan;
+      plan.unit = 0.1, plan.lo = scale.lo, plan.hi = scale.hi;
+      const volume::Medium medium(scale, curve, plan);
+      for (size_t i = 0; i < medium.lines().size(); ++i) {
+        const volume::Medium::Line& l = medium.lines()[i];
+        const float lo = std::max(l.lo, float(scale.lo)), hi = std::min(l.hi, float(scale.hi));
+        if (!(hi > lo)) continue;
+        const Vec3f own = medium.color(lo + 0.5f * (hi - lo), int(i)), first = medium.color(lo, int(i)), last = medium.color(hi, int(i));
+        CAPTURE(seed);
+        CAPTURE(int(kind));
+        CHECK(first.x == own.x);
+        CHECK(last.x == own.x);
+      }
+    }
 }

@@ -18,7 +18,7 @@ struct Kinds {
   bool any_scale = true;    ///< fields times 1e-30 to 1e30, meshes times 1e-20 to 1e20
   bool opaque = true;       ///< opacity of 1
   bool refined = true;      ///< AMR grids
-  bool lit_cells = true;    ///< lit tetrahedra and hexahedra of fields that are not linear
+  bool lattices = true;     ///< besides meshes of cells
 };
 
 /// Samples on a box in index space [0, n-1]^3: trilinear in between; derivatives of Lagrange's parabola through each sample and its

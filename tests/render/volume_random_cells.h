@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Random volumes on meshes of cells: parallelepipeds as hexahedra or a curvilinear grid with any field, tetrahedra with any field, and
 // every kind of mesh with a linear field, which is exact on all of them.
+//
+// What lights them is the gradient at the points (of quadratic functions their own; else that of the operation gradient, which has tests
+// of its own), linear in each tetrahedron; cells of fixed shape are cut into tetrahedra from their lowest point (render/volume/cells/
+// tet_mesh.h), which divides a box of a lattice by the order of the fractions of its axes (Kuhn 1960).
 #pragma once
+#include "filter/field/gradient.h"
 #include "volume_random.h"
 
 namespace sg::test {
@@ -11,6 +16,55 @@ inline void take_range(RandomVolume& out, const std::vector<double>& v) {
   out.lo = *lo, out.hi = *hi;
   out.item.field = "f";
   out.box = out.item.data->bounds();
+}
+
+/// World gradients of "f" at the points.
+inline std::vector<Vec3> point_gradients(const RandomVolume& volume, std::span<const double> values) {
+  DatasetParts parts = volume.item.data->parts();
+  parts.fields = {};
+  // The differences from the first value: offsets take no digits.
+  std::vector<double> from_first(values.begin(), values.end());
+  for (double& v : from_first) v -= values[0];
+  parts.fields.add({"f", Association::point, Array::from_vector(from_first), "", Role::scalars});
+  GradientParams p;
+  p.field.name = "f", p.as = "g";
+  Context context;
+  const DatasetPtr found = gradient(make_dataset(std::move(parts)), p, context);
+  const Array& g = found->fields().require("g", Association::point).array;
+  std::vector<Vec3> out;
+  for (size_t i = 0; i < g.count(); ++i) out.emplace_back(g.get(i, 0), g.get(i, 1), g.get(i, 2));
+  return out;
+}
+
+/// Linear in the six tetrahedra of each box of a lattice: `at` are those of its samples.
+inline Vec3 in_tetrahedra(const TrueLattice& l, const std::vector<Vec3>& at, const Vec3& world) {
+  std::array<int, 3> c;
+  Vec3 f;
+  if (!l.locate(l.local(world), c, f)) return {0, 0, 0};
+  int axis[3] = {0, 1, 2};
+  std::sort(axis, axis + 3, [&](int a, int b) { return f[a] > f[b]; });
+  Vec3 sum = at[l.id(c[0], c[1], c[2])] * (1 - f[axis[0]]);
+  for (int k = 0; k < 3; ++k) {
+    ++c[size_t(axis[k])];
+    sum += at[l.id(c[0], c[1], c[2])] * (f[axis[k]] - (k < 2 ? f[axis[k + 1]] : 0.0));
+  }
+  return sum;
+}
+/// Where a ray crosses them.
+inline std::vector<double> ends_in_tetrahedra(const TrueLattice& l, const Vec3& o, const Vec3& d) {
+  std::vector<double> ends = l.ends(o, d), all = ends;
+  std::sort(ends.begin(), ends.end());
+  for (size_t i = 0; i + 1 < ends.size(); ++i) {
+    const double a = ends[i] + 1e-6 * (ends[i + 1] - ends[i]), b = ends[i + 1] - 1e-6 * (ends[i + 1] - ends[i]);
+    std::array<int, 3> c;
+    Vec3 f, g;
+    if (!l.locate(l.local(o + d * a), c, f) || !l.locate(l.local(o + d * b), c, g)) continue;
+    for (int k = 0; k < 3; ++k) {
+      const double x = f[k] - f[(k + 1) % 3], y = g[k] - g[(k + 1) % 3];
+      if ((x < 0) != (y < 0)) all.push_back(a + (b - a) * (x / (x - y)));
+    }
+  }
+  return all;
 }
 
 /// A sheared box of bricks.
@@ -66,12 +120,13 @@ inline RandomVolume random_bricks(Random& r, const Kinds& kinds, double size, bo
   take_range(out, l.v);
   out.edge = std::cbrt(2 * volume), out.cell = std::cbrt(volume);
   // The lattice of the box before shearing: values at back * place.
-  out.along = [lattice, back](const Vec3& o, const Vec3& d) {
+  const auto slopes = std::make_shared<const std::vector<Vec3>>(point_gradients(out, l.v));
+  out.along = [lattice, slopes, back](const Vec3& o, const Vec3& d) {
     TrueVolume v;
     const Vec3 p = back * o, q = back * d;
     v.value = [lattice, p, q](double t) { return lattice->value(p + q * t); };
-    v.gradient = [lattice, p, q, back](double t) { return transpose(back) * lattice->gradient(p + q * t); };
-    v.ends = lattice->ends(p, q);
+    v.gradient = [lattice, slopes, p, q](double t) { return in_tetrahedra(*lattice, *slopes, p + q * t); };
+    v.ends = ends_in_tetrahedra(*lattice, p, q);
     return v;
   };
   return out;
@@ -82,6 +137,7 @@ inline RandomVolume random_tets(Random& r, const Kinds& kinds, double size) {
   struct Tets {
     std::vector<Vec3> at;
     std::vector<double> v;
+    std::vector<Vec3> slopes;
     std::vector<std::array<size_t, 4>> corners;
   };
   RandomVolume out;
@@ -108,11 +164,15 @@ inline RandomVolume random_tets(Random& r, const Kinds& kinds, double size) {
   parts.fields.add({"f", Association::point, Array::from_vector(tets->v).converted(type), "", Role::scalars});
   out.item.data = make_dataset(std::move(parts));
   take_range(out, tets->v);
+  tets->slopes = point_gradients(out, tets->v);
   const double volume = 8 * stretch.x * stretch.y * stretch.z * size * size * size / double(mesh->cell_count());
   out.edge = std::cbrt(2 * volume), out.cell = std::cbrt(6 * volume);
-  out.along = [tets](const Vec3& o, const Vec3& d) {
+  out.along = [tets, hair = 1e-9 * out.edge](const Vec3& start, const Vec3& d) {
+    // A hair beside the ray: where that lies in a face rounding may take it from the cells on both sides.
+    const Vec3 o = start + Vec3{0.61, 0.83, -0.47} * hair;
     struct Part {
       double from, to, first, slope;  // value = first + slope t
+      Vec3 gradient, bend;            // gradient = that + bend t
     };
     auto parts = std::make_shared<std::vector<Part>>();
     TrueVolume all;
@@ -126,8 +186,10 @@ inline RandomVolume random_tets(Random& r, const Kinds& kinds, double size) {
       for (int k = 0; k < 3; ++k)
         w0[k + 1] = dot(weights[k], o - a), w1[k + 1] = dot(weights[k], d), w0[0] -= w0[k + 1], w1[0] -= w1[k + 1];
       double first = 0, slope = 0;
+      Vec3 gradient, bend;
       for (int k = 0; k < 4; ++k) {
         first += w0[k] * tets->v[c[size_t(k)]], slope += w1[k] * tets->v[c[size_t(k)]];
+        gradient += tets->slopes[c[size_t(k)]] * w0[k], bend += tets->slopes[c[size_t(k)]] * w1[k];
         if (w1[k] == 0) {
           if (w0[k] < 0) from = HUGE_VAL;
           continue;
@@ -136,13 +198,20 @@ inline RandomVolume random_tets(Random& r, const Kinds& kinds, double size) {
         if (w1[k] > 0) from = std::max(from, t);
         else to = std::min(to, t);
       }
-      if (from < to) parts->push_back({from, to, first, slope}), all.ends.push_back(from), all.ends.push_back(to);
+      if (from < to) parts->push_back({from, to, first, slope, gradient, bend}), all.ends.push_back(from), all.ends.push_back(to);
     }
     std::sort(parts->begin(), parts->end(), [](const Part& x, const Part& y) { return x.from < y.from; });
-    all.value = [parts](double t) {
+    const auto at = [parts](double t) -> const Part* {
       auto after = std::upper_bound(parts->begin(), parts->end(), t, [](double x, const Part& p) { return x < p.from; });
-      if (after == parts->begin() || t > (after - 1)->to) return double(NAN);
-      return (after - 1)->first + (after - 1)->slope * t;
+      return after == parts->begin() || t > (after - 1)->to ? nullptr : &*(after - 1);
+    };
+    all.value = [at](double t) {
+      const Part* p = at(t);
+      return p ? p->first + p->slope * t : double(NAN);
+    };
+    all.gradient = [at](double t) {
+      const Part* p = at(t);
+      return p ? p->gradient + p->bend * t : Vec3{0, 0, 0};
     };
     return all;
   };

@@ -2,6 +2,9 @@
 // Physical units: a field in other units of value and of length gives the same picture.
 #include <cstring>
 
+#include "bricked_support.h"
+#include "index/locator_meshes.h"
+#include "volume_amr_support.h"
 #include "volume_support.h"
 
 using namespace sg;
@@ -11,8 +14,40 @@ namespace {
 
 double field_at(Vec3 p) { return 0.6 * std::sin(3 * p.x + 1) * std::cos(2.5 * p.y) + 0.4 * std::sin(4 * p.z + p.x * p.y); }
 
+/// AMR grids of points or of cells, tetrahedra with a field of cells, bricks of 32^3 samples and coarser ones.
+DatasetPtr other_dataset(const std::string& kind, double value, double length, ElementType type) {
+  if (kind == "bricked") {
+    const double h = 2.0 / 32;  // a power of two
+    const auto at = [&](double i, double j, double k) { return double(float(field_at(Vec3{i, j, k} * h - Vec3{1, 1, 1}))) * value; };
+    return make_volume({34, 33, 33}, 2, at, {}, Vec3{-1, -1, -1} * length, Vec3{h, h, h} * length).dataset;
+  }
+  const Association on = kind == "AMR" ? Association::point : Association::cell;
+  const bool amr = kind != "tetrahedra with a field of cells";
+  const auto field = [&](Vec3 p) { return field_at(p); };
+  const DatasetPtr near = amr ? with_amr_field(amr_small(), field, on) : with_field(cube(CellType::tetra, 4), field, true);
+  DatasetParts parts = near->parts();
+  const Array& narrow = near->fields().require("f", on).array;
+  std::vector<double> f;
+  for (size_t i = 0; i < narrow.count(); ++i) f.push_back(narrow.get(i) * value);
+  parts.fields = {};
+  parts.fields.add({"f", on, Array::from_vector(f).converted(type), "", Role::scalars});
+  if (auto* grid = std::get_if<AmrGrid>(&parts.mesh)) {
+    grid->origin = grid->origin * length;
+    for (AmrGrid::Level& l : grid->levels) l.spacing = l.spacing * length;
+  } else {
+    Points& points = std::get<UnstructuredMesh>(parts.mesh).points;
+    std::vector<double> xyz;
+    for (size_t i = 0; i < points.count(); ++i)
+      for (int a = 0; a < 3; ++a) xyz.push_back((2 * points.at(i)[a] - 1) * length);
+    points.xyz = Array::from_vector(xyz, 3);
+  }
+  return make_dataset(std::move(parts));
+}
+
 /// The field on 7^3 points over [-1, 1]^3, in units of so much.
 DatasetPtr dataset(const std::string& kind, double value, double length, ElementType type) {
+  if (kind != "uniform" && kind != "rectilinear" && kind != "curvilinear" && kind != "tetrahedra")
+    return other_dataset(kind, value, length, type);
   const size_t n = 7;
   std::vector<double> f, xyz, axis;
   for (size_t i = 0; i < n; ++i) axis.push_back((2 * double(i) / double(n - 1) - 1));
@@ -70,7 +105,13 @@ const Way ways[] = {
     {"lit, in fixed steps", [](VolumeItem& v) { v.shaded = true, v.sampling.step = 0.0625; }},
     {"in fixed steps", [](VolumeItem& v) { v.sampling.step = 0.0625; }},
     {"maximum", [](VolumeItem& v) { v.mode = RayFunction::maximum; }},
+    {"minimum", [](VolumeItem& v) { v.mode = RayFunction::minimum; }},
+    {"average", [](VolumeItem& v) { v.mode = RayFunction::average; }},
     {"sum", [](VolumeItem& v) { v.mode = RayFunction::sum; }},
+    {"length", [](VolumeItem& v) { v.mode = RayFunction::accumulate, v.levels = {0.25}; }},
+    {"fourier sum", [](VolumeItem& v) { v.method = VolumeMethod::fourier, v.mode = RayFunction::sum; }},
+    {"fourier average", [](VolumeItem& v) { v.method = VolumeMethod::fourier, v.mode = RayFunction::average; }},
+    {"two volumes", [](VolumeItem& v) { v.shaded = true; }},
     {"isosurface",
      [](VolumeItem& v) {
        v.mode = RayFunction::isosurface, v.levels = {0.125, 0.5}, v.shaded = true;
@@ -93,6 +134,10 @@ const Way ways[] = {
 bool can_draw(const std::string& kind, const Way& way) {
   VolumeItem v;
   way.set(v);
+  // A field of cells has no gradient where it is drawn; bricks are drawn by rays.
+  if (v.detail.second != SecondAxis::none && kind.find("cells") != std::string::npos) return false;
+  if (v.mode == RayFunction::isosurface && kind == "tetrahedra with a field of cells") return false;  // none
+  if (kind == "bricked") return v.method == VolumeMethod::ray;
   return kind == "uniform" || v.method == VolumeMethod::ray || v.method == VolumeMethod::cells;
 }
 
@@ -106,7 +151,8 @@ Frame picture(const std::string& kind, const Way& way, double value, double leng
   VolumeItem v = item(dataset(kind, value, length, type), color, OpacityCurve{{{-1, 0}, {-0.125, 0}, {0.75, 0.75}}});
   v.unit_distance = 0.25, v.sampling.step = 0;
   way.set(v);
-  const bool lengths = v.mode == RayFunction::distance;
+  if (kind.find("cells") != std::string::npos) v.association = Association::cell;
+  const bool lengths = v.mode == RayFunction::distance || v.mode == RayFunction::accumulate;
   const double shown = lengths ? length : v.mode == RayFunction::sum ? value * length : value;
   v.color.lo *= shown, v.color.hi *= shown;
   for (Vec2& p : v.opacity.points) p.x *= shown;
@@ -115,12 +161,24 @@ Frame picture(const std::string& kind, const Way& way, double value, double leng
     if (v.detail.second == SecondAxis::gradient) p.x *= value / length;
   v.unit_distance *= length, v.sampling.step *= length;
   const Projection view = [&] {
-    Projection p = perspective_view(12, 12, 14, {1.9, 1.4, 2.6}, {0, 0, 0});
+    const bool parallel = v.method == VolumeMethod::fourier;
+    Projection p = parallel ? parallel_view(8, 8, 4, {-1.9, -1.4, -2.6}) : perspective_view(8, 8, 9.3, {1.9, 1.4, 2.6}, {0, 0, 0});
     p.eye = p.eye * length, p.near_plane *= length, p.far_plane *= length;
+    if (parallel) p.scale /= length;
     return p;
   }();
-  return draw(scene_of({v}), view);
+  if (std::string(way.name) != "two volumes") return draw(scene_of({v}), view);
+  // The other one in units of its own.
+  VolumeItem other = v;
+  other.data = dataset(kind, 0.25, length, ElementType::f32);
+  other.color.lo = -0.25, other.color.hi = 0.25, other.opacity.points = {{-0.25, 0.5}, {-0.1875, 0.25}, {0, 0}};
+  return draw(scene_of({v, other}), view);
 }
+
+const char* const kinds[] = {"uniform", "rectilinear",       "curvilinear", "tetrahedra", "tetrahedra with a field of cells",
+                             "AMR",     "AMR grid of cells", "bricked"};
+/// Some are tried in every unit, the others in a few.
+bool often(const std::string& kind) { return kind == "uniform" || kind == "tetrahedra"; }
 
 bool same_colors(const Frame& a, const Frame& b) { return std::memcmp(a.rgba.data(), b.rgba.data(), a.rgba.size() * sizeof(float)) == 0; }
 double covered(const Frame& f) {
@@ -132,35 +190,36 @@ double covered(const Frame& f) {
 }  // namespace
 
 TEST_CASE("volume units: values and lengths times powers of two give the same bytes, on every mesh and in every way") {
-  for (const char* kind : {"uniform", "rectilinear", "curvilinear", "tetrahedra"})
+  for (const std::string kind : kinds)
     for (const Way& way : ways) {
       if (!can_draw(kind, way)) continue;
       const Frame truth = picture(kind, way, 1, 1, ElementType::f32);
-      INFO(std::string(kind), ", ", std::string(way.name));
+      INFO(kind, ", ", std::string(way.name));
       CHECK(covered(truth) > 0.05);
       // 2^-43 is about 1e-13, 2^70 a kiloparsec in centimetres.
-      for (const double value : {0x1p-43, 0x1p-10, 0x1p52, 0x1p-100, 0x1p100})
+      for (const double value : often(kind) ? std::vector{0x1p-43, 0x1p-10, 0x1p52, 0x1p-100, 0x1p100} : std::vector{0x1p-43, 0x1p100})
         CHECK_MESSAGE(same_colors(picture(kind, way, value, 1, ElementType::f32), truth), "values times ", value);
-      for (const double length : {0x1p70, 0x1p7, 0x1p-66})
+      for (const double length : often(kind) ? std::vector{0x1p70, 0x1p7, 0x1p-66} : std::vector{0x1p70, 0x1p-66})
         CHECK_MESSAGE(same_colors(picture(kind, way, 1, length, ElementType::f32), truth), "lengths times ", length);
       CHECK_MESSAGE(same_colors(picture(kind, way, 0x1p-30, 0x1p60, ElementType::f32), truth), "both");
+      if (kind == "bricked") continue;
       const Frame wide = picture(kind, way, 1, 1, ElementType::f64);
-      for (const double value : {0x1p-600, 0x1p500})
+      for (const double value : often(kind) ? std::vector{0x1p-600, 0x1p500} : std::vector{0x1p-600})
         CHECK_MESSAGE(same_colors(picture(kind, way, value, 1, ElementType::f64), wide), "wide values times ", value);
     }
 }
 
 TEST_CASE("volume units: a field in any unit looks the same") {
-  for (const char* kind : {"uniform", "rectilinear", "curvilinear", "tetrahedra"})
+  for (const std::string kind : kinds)
     for (const Way& way : ways) {
       if (!can_draw(kind, way)) continue;
-      INFO(std::string(kind), ", ", std::string(way.name));
-      const Frame truth = picture(kind, way, 1, 1, ElementType::f64);
-      for (const double unit : {1e-13, 1.602e-19, 1e-30, 1e15, 3.7e21}) {
-        CHECK_MESSAGE(largest_difference(picture(kind, way, unit, 1, ElementType::f64), truth) < 0.002f, "values times ", unit);
-        CHECK_MESSAGE(largest_difference(picture(kind, way, 1, unit, ElementType::f64), truth) < 0.002f, "lengths times ", unit);
-        CHECK_MESSAGE(largest_difference(picture(kind, way, unit, 1 / unit, ElementType::f64), truth) < 0.002f, "gradients times ",
-                      unit * unit);
+      INFO(kind, ", ", std::string(way.name));
+      const ElementType type = kind == "bricked" ? ElementType::f32 : ElementType::f64;
+      const Frame truth = picture(kind, way, 1, 1, type);
+      for (const double unit : often(kind) ? std::vector{1e-13, 1.602e-19, 1e-30, 1e15, 3.7e21} : std::vector{1e-13, 1e15}) {
+        CHECK_MESSAGE(largest_difference(picture(kind, way, unit, 1, type), truth) < 0.002f, "values times ", unit);
+        CHECK_MESSAGE(largest_difference(picture(kind, way, 1, unit, type), truth) < 0.002f, "lengths times ", unit);
+        CHECK_MESSAGE(largest_difference(picture(kind, way, unit, 1 / unit, type), truth) < 0.002f, "gradients times ", unit * unit);
       }
     }
 }

@@ -4,6 +4,7 @@
 #include "render/volume/cells/cell_value.h"
 #include "render/volume/cells/eye_space.h"
 #include "render/volume/cells/tet_walk.h"
+#include "render/volume/optics/integrate.h"
 
 namespace sg::volume {
 
@@ -11,6 +12,7 @@ namespace {
 
 struct CellSource : RaySource {
   CellVolume volume;
+  bool lit = false;  // gradients are asked for
   mutable std::once_flag once;
   mutable std::shared_ptr<const Plane<Vec3f>> gradients;
 
@@ -88,7 +90,8 @@ class CellField : public RayField {
       ready_.push_back({from, to, {f0, f0 + (f1 - f0) / 3, f1 - (f1 - f0) / 3, f1}, p.tet});
       return;
     }
-    if (!open_) open_ = true, cell_ = cell, cell_tet_ = p.tet, cell_from_ = from;
+    if (!open_) open_ = true, cell_ = cell, cell_tet_ = p.tet, cell_from_ = from, bends_.clear();
+    else if (source_.lit) bends_.push_back(from);
     cell_to_ = to;
   }
 
@@ -98,13 +101,26 @@ class CellField : public RayField {
     if (volume_.by_cell) {
       const float f = volume_.values[cell_];
       if (!source_.invisible(f, f)) ready_.push_back({cell_from_, cell_to_, {f, f, f, f}, cell_tet_});
-      return;
+    } else {
+      float lowest, highest;
+      curve_.open(cell_, lowest, highest);
+      if (source_.invisible(lowest, highest)) return;
+      curve_.add(walk_.origin(), walk_.direction(), cell_from_, cell_to_, cell_tet_, ready_);
+      std::erase_if(ready_, [&](const Stretch& s) { return source_.invisible(s.lowest(), s.highest()); });
     }
-    float lowest, highest;
-    curve_.open(cell_, lowest, highest);
-    if (source_.invisible(lowest, highest)) return;
-    curve_.add(walk_.origin(), walk_.direction(), cell_from_, cell_to_, cell_tet_, ready_);
-    std::erase_if(ready_, [&](const Stretch& s) { return source_.invisible(s.lowest(), s.highest()); });
+    if (!bends_.empty()) cut_where_light_bends();
+  }
+
+  /// Gradients are straight within the tetrahedra and bend sharply between them.
+  void cut_where_light_bends() {
+    whole_.swap(ready_), ready_.clear();
+    auto bend = bends_.begin();
+    for (const Stretch& s : whole_) {
+      double from = s.from;
+      for (; bend != bends_.end() && *bend < s.to; ++bend)
+        if (*bend > from) ready_.push_back(part_of(s, from, *bend)), from = *bend;
+      ready_.push_back(from == s.from ? s : part_of(s, from, s.to));
+    }
   }
 
   /// The tetrahedron of the stretch's cell that holds the place, and its weights there.
@@ -142,7 +158,8 @@ class CellField : public RayField {
   TetWalk walk_;
   CellCurve curve_;
   double from_ = 0, done_ = 0, to_ = 0;
-  std::vector<Stretch> ready_;
+  std::vector<Stretch> ready_, whole_;
+  std::vector<double> bends_;  // lit: where the ray goes from one of the cell's tetrahedra to another
   size_t taken_ = 0;
   std::vector<std::pair<double, uint64_t>> given_;  // where the stretches of this ray began, and their tetrahedra
   bool open_ = false;
@@ -157,6 +174,7 @@ std::unique_ptr<RayField> CellSource::walker() const { return std::make_unique<C
 std::unique_ptr<RaySource> cell_source(const VolumeItem& item, Context& context) {
   auto source = std::make_unique<CellSource>();
   source->volume = make_cell_volume(item, context);
+  source->lit = item.shaded || item.light.shadows > 0 || item.light.occlusion > 0 || item.light.style != "none";
   source->base = source->volume.base;
   source->bounds = source->volume.mesh->bounds;
   source->edge = source->volume.mesh->edge > 0 ? source->volume.mesh->edge : 1;

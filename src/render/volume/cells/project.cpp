@@ -23,13 +23,34 @@ struct Segment {
   uint8_t pixel;
 };
 
+/// The gradients at the vertices, along a ray.
+class ProjectedLight : public RayField {
+ public:
+  ProjectedLight(const CellVolume& volume, const Plane<Vec3f>& gradients) : mesh_(*volume.mesh), gradients_(gradients) {}
+  void start(Vec3 origin, Vec3 direction, double, double) override { origin_ = origin - mesh_.origin, direction_ = direction; }
+  size_t next(std::span<Stretch>) override { return 0; }
+  double entry() const override { return 0; }
+  Vec3f gradient(const Stretch& stretch, double t) override {
+    double w[4];
+    tet_weights(mesh_, stretch.cell, origin_ + direction_ * t, w);
+    Vec3f sum;
+    for (size_t k = 0; k < 4; ++k) sum += gradients_[mesh_.corners[stretch.cell][k]] * float(std::clamp(w[k], 0.0, 1.0));
+    return sum;
+  }
+
+ private:
+  const TetMesh& mesh_;
+  const Plane<Vec3f>& gradients_;
+  Vec3 origin_, direction_;
+};
+
 class Projector {
  public:
   explicit Projector(const LayerInput& input)
       : input_(input),
         volume_(make_cell_volume(input.item, input.context)),
         medium_(make_medium(input.item, volume_)),
-        table_(medium_, volume_.range),
+        table_(medium_, volume_.range, float(input.item.sampling.tolerance)),
         eye_(volume_, input.projection, input.context) {}
 
   Layer draw() {
@@ -228,7 +249,10 @@ class Projector {
     const VolumeLight& light = input_.item.light;
     s.lit.material = {float(light.ambient), float(light.diffuse), float(light.specular), float(light.power), true};
     const float edge = float(volume_.mesh->edge), per_scale = float(1 / std::max(0.002 * (volume_.range.hi - volume_.range.lo), 1e-30));
-    const Look look{medium_, {}, 0, &s.lit, per_scale, edge};
+    const double tolerance = input_.item.sampling.tolerance;
+    const Look look{medium_, {tolerance, std::max(volume_.mesh->bounds.diagonal(), 1e-30), 0}, 0, &s.lit, per_scale, edge};
+    ProjectedLight field(volume_, *gradients_);
+    field.start(ray.origin, ray.direction, 0, 0);
     RayState state;
     float from, to;
     limits(x, y, from, to);
@@ -238,20 +262,11 @@ class Projector {
       from = g.leave;
       const auto t_of = [&](float z) { return (double(z) + eye_.middle_depth() - first) * per_depth; };
       const double t0 = t_of(g.enter), t1 = t_of(g.leave);
-      const Vec3 at = ray.origin + ray.direction * (0.5 * (t0 + t1)) - volume_.mesh->origin;
-      const Lit lit = light_at(s.lit, gradient(g.tet, at), edge, per_scale);
-      composite_straight(look, t0, t1, g.front, g.back, &lit, state);
+      const float third = (g.back - g.front) / 3;
+      if (t1 > t0) composite(look, {t0, t1, {g.front, g.front + third, g.back - third, g.back}, g.tet}, field, state);
     }
     float* out = &layer.rgba[4 * (size_t(y) * size_t(p.width) + size_t(x))];
     out[0] = state.sum.r, out[1] = state.sum.g, out[2] = state.sum.b, out[3] = 1 - state.sum.transmittance;
-  }
-
-  Vec3f gradient(uint32_t tet, Vec3 at) const {
-    double w[4];
-    tet_weights(*volume_.mesh, tet, at, w);
-    Vec3f sum;
-    for (size_t k = 0; k < 4; ++k) sum += (*gradients_)[volume_.mesh->corners[tet][k]] * float(std::clamp(w[k], 0.0, 1.0));
-    return sum;
   }
 
   const LayerInput& input_;

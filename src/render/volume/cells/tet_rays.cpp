@@ -49,11 +49,11 @@ void refine(const Medium& medium, int line, const Sample& a, const Sample& b, fl
 }  // namespace
 
 TetMedium::TetMedium(const Medium& medium, const Range& range, float tolerance) {
-  // (D / n)^2 / 12 of a change of colour is a sixth of the tolerance for n = D sqrt(change / 2 / tolerance).
+  // D^2 / 12 of a change of colour is a 14th of the tolerance for D = sqrt(tolerance / change) / 1.06.
   const float accuracy = 0.25f * tolerance, faint = 0.2f * medium.faint();
-  fine = std::sqrt(0.5f / tolerance);
+  fine = std::sqrt(1.125f / tolerance);
   const auto add = [&](const Sample& a, const Sample& b) {
-    Interval i{a.value, b.value, {a.at.tau, a.at.color.x, a.at.color.y, a.at.color.z}, {}, {}, {}};
+    Interval i{a.value, b.value, {a.at.tau, a.at.color.x, a.at.color.y, a.at.color.z}, {}, {}, 0, 0};
     const float to[4] = {b.at.tau, b.at.color.x, b.at.color.y, b.at.color.z}, width = b.value - a.value;
     for (int k = 0; k < 4 && width < 1e30f; ++k) i.slope[k] = (to[k] - i.at[k]) / width;
     intervals.push_back(i);
@@ -74,13 +74,15 @@ TetMedium::TetMedium(const Medium& medium, const Range& range, float tolerance) 
   }
   add(top, {1e30f, top.at});
 
-  double sum[4] = {};
+  double sum[4] = {}, moment = 0;
   for (size_t i = 1; i < intervals.size(); ++i) {
     Interval& v = intervals[i];
     for (int k = 0; k < 4; ++k) v.before[k] = float(sum[k]);
+    v.moment = float(moment);
     if (v.hi >= 1e30f) break;
     const double w = double(v.hi) - double(v.lo), tau = double(v.at[0]) + 0.5 * w * double(v.slope[0]);
     sum[0] += w * tau;
+    moment += w * (tau * (double(v.lo) + 0.5 * w - double(lo)) + w * w / 12 * double(v.slope[0]));
     for (int k = 1; k < 4; ++k)
       sum[k] += w * (tau * (double(v.at[k]) + 0.5 * w * double(v.slope[k])) + w * w / 12 * double(v.slope[k]) * double(v.slope[0]));
   }
@@ -125,6 +127,7 @@ TetRays::TetRays(const CellVolume& volume, const Projection& projection, const M
       projection_(projection),
       medium_(medium, volume.range, tolerance),
       stop_below_(stop_below),
+      tolerance_(tolerance),
       eye_(volume, projection, context) {
   across_ = (projection_.width + tile - 1) / tile, down_ = (projection_.height + tile - 1) / tile;
   const auto& faces = volume.mesh->boundary;
@@ -143,6 +146,8 @@ void TetRays::light(std::vector<TetLight::Lamp> lamps, const VolumeLight& light,
                     float(light.specular),
                     int(std::lround(std::clamp(light.power, 0.0, 4096.0))),
                     float(volume_.mesh->edge) * per_scale,
+                    tolerance_,
+                    float(1 / std::max(volume_.mesh->bounds.diagonal(), 1e-30)),
                     reinterpret_cast<const float*>(gradients_->data())};
 }
 

@@ -4,8 +4,9 @@
 // All pixels of a block walk at the same time, one lane each, as TetWalk does it, in floats relative to the eye and the middle depth of
 // the mesh. In a tetrahedron the value is linear; its optical depth D and its light without attenuation come exactly from integrals of
 // the medium over the value, in constant time. Attenuation within a segment is exact for colours that change evenly with the depth;
-// segments are cut into parts (64 at most) until what else there may be, D^2/12 of the change of colour, is below a sixth of the
-// tolerance.
+// deep segments are cut into parts (1024 at most) until what else there may be, by the change of colour where tau is not even, is small
+// against the light that they take. Light comes from gradients at the vertices, linear in each tetrahedron; segments are cut until it is as
+// good as a straight line within its parts, and where the surface turns over.
 #pragma once
 #include <vector>
 
@@ -17,17 +18,17 @@ namespace sg::volume {
 /// A medium as the kernel reads it: pieces on which tau and colour are straight.
 struct TetMedium {
   /// One line: values from lo to hi; tau, r, g, b at lo and their slopes; the integrals of tau and of tau times colour over the value
-  /// up to lo. Constant beyond the ends.
+  /// up to lo, and of tau times the value beyond slice_lo. Constant beyond the ends.
   struct alignas(64) Interval {
-    float lo, hi, at[4], slope[4], before[4], unused[2];
+    float lo, hi, at[4], slope[4], before[4], moment, unused;
   };
-  static constexpr int most_parts = 64;
+  static constexpr int most_parts = 1024;
   std::vector<Interval> intervals;
   std::vector<int32_t> first;  ///< per slice of the value: the interval of the slice before
   std::vector<int32_t> seen;   ///< slices before this one in which tau is not zero
   float slice_lo = 0, per_slice = 0;
 
-  float fine = 16;  ///< parts of a segment: this times its optical depth times the root of its change of colour
+  float fine = 24;  ///< segments deeper than 1 by this times the root of their change of colour are cut
   /// `range`: of the values there are. Straight lines are right to a quarter of `tolerance` (of colours, and of tau relative to itself or
   /// to a fifth of what makes no difference to the medium), parts of deep segments to a sixth of it.
   TetMedium(const Medium& medium, const Range& range, float tolerance = 1.0f / 512);
@@ -56,6 +57,8 @@ struct TetLight {
   float ambient = 0.12f, diffuse = 0.88f, specular = 0.18f;
   int power = 32;
   float edge_per_scale = 1;          ///< see light_at
+  float tolerance = 1.0f / 512;      ///< of a ray
+  float per_ray = 1;                 ///< 1 / length of the longest one
   const float* gradients = nullptr;  ///< world, three numbers a vertex
 };
 
@@ -105,7 +108,7 @@ class TetRays {
   const CellVolume& volume_;
   const Projection projection_;
   TetMedium medium_;
-  float stop_below_;
+  float stop_below_, tolerance_;
   EyeSpace eye_;
   int across_ = 0, down_ = 0;
   std::optional<TetLight> light_;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The walk of 16 rays through tetrahedra, and what they gather (no fused multiply-add: the same bits everywhere).
+#include <optional>
+
 #include "render/volume/cells/project.h"
 #include "render/volume/cells/tet_walk.h"
 
@@ -8,226 +10,10 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "render/volume/cells/tet_light-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
-
-using D = hn::CappedTag<float, TetPacket::lanes>;
-using DI = hn::RebindToSigned<D>;
-using F = hn::Vec<D>;
-using I = hn::Vec<DI>;
-using M = hn::Mask<D>;
-
-HWY_ATTR inline F turn(F ax, F ay, F bx, F by) { return hn::Sub(hn::Mul(ax, by), hn::Mul(ay, bx)); }
-HWY_ATTR inline M to_float(hn::Mask<DI> m) { return hn::RebindMask(D(), m); }
-HWY_ATTR inline hn::Mask<DI> to_int(M m) { return hn::RebindMask(DI(), m); }
-
-struct Faded {
-  F alpha, ratio, hidden;
-};
-
-/// Of an optical depth x >= 0: alpha = 1 - exp(-x), alpha / x, and hidden = alpha / 2 - alpha / x + exp(-x).
-HWY_ATTR inline Faded fade(F x) {
-  const D d;
-  // Below 1/2 by their series, which lose nothing for small x; else exp by powers of two.
-  const auto term = [&](F sum, float c) HWY_ATTR { return hn::Sub(hn::Set(d, c), hn::Mul(sum, x)); };
-  F ratio = hn::Set(d, 1.0f / 5040);
-  ratio = term(ratio, 1.0f / 720), ratio = term(ratio, 1.0f / 120), ratio = term(ratio, 1.0f / 24), ratio = term(ratio, 1.0f / 6);
-  ratio = term(ratio, 0.5f), ratio = term(ratio, 1.0f);
-  F hidden = hn::Set(d, 1.0f / 80);
-  hidden = term(hidden, 1.0f / 24), hidden = hn::Mul(hn::Mul(term(hidden, 1.0f / 12), x), x);
-  Faded r{hn::Mul(ratio, x), ratio, hidden};
-  const M large = hn::Gt(x, hn::Set(d, 0.5f));
-  if (hn::AllFalse(d, large)) return r;
-  const DI di;
-  const F one = hn::Set(d, 1.0f), y = hn::Mul(hn::Min(x, hn::Set(d, 87.0f)), hn::Set(d, 1.44269504f));
-  const I whole = hn::ConvertTo(di, y);
-  const F f = hn::Mul(hn::Sub(y, hn::ConvertTo(d, whole)), hn::Set(d, 0.69314718f));  // exp(-x) = 2^-whole exp(-f), 0 <= f < 0.7
-  F e = hn::Set(d, 1.0f / 5040);
-  for (float c : {1.0f / 720, 1.0f / 120, 1.0f / 24, 1.0f / 6, 0.5f, 1.0f, 1.0f}) e = hn::Sub(hn::Set(d, c), hn::Mul(e, f));
-  const F pass = hn::Mul(e, hn::BitCast(d, hn::ShiftLeft<23>(hn::Sub(hn::Set(di, 127), whole))));
-  const F alpha = hn::Sub(one, pass), share = hn::Div(alpha, hn::IfThenElse(large, x, one));
-  r.alpha = hn::IfThenElse(large, alpha, r.alpha), r.ratio = hn::IfThenElse(large, share, r.ratio);
-  r.hidden = hn::IfThenElse(large, hn::Add(hn::Sub(hn::Mul(alpha, hn::Set(d, 0.5f)), share), pass), r.hidden);
-  return r;
-}
-
-struct Colors {
-  F r, g, b, pass;
-};
-
-/// The means of tau and of tau times colour over part of one line of the medium, and the colours at its ends.
-struct LinePart {
-  F tau, r, g, b, front[3], back[3];
-};
-
-HWY_ATTR inline F column(const TetMedium& m, I line, int k) {
-  constexpr int stride = int(sizeof(TetMedium::Interval) / 4);
-  static_assert(stride == 16);
-  return hn::GatherIndex(D(), reinterpret_cast<const float*>(m.intervals.data()) + k, hn::ShiftLeft<4>(line));
-}
-
-HWY_ATTR inline LinePart part_of_line(const TetMedium& m, I line, F lo, F from, F to) {
-  const D d;
-  const F x0 = hn::Sub(from, lo), x1 = hn::Sub(to, lo), middle = hn::Mul(hn::Set(d, 0.5f), hn::Add(x0, x1)), width = hn::Sub(to, from);
-  const F per_tau = column(m, line, 6), bend = hn::Mul(hn::Mul(hn::Mul(width, width), per_tau), hn::Set(d, 1.0f / 12));
-  LinePart p;
-  p.tau = hn::Max(hn::Add(column(m, line, 2), hn::Mul(per_tau, middle)), hn::Zero(d));
-  F* const mean[3] = {&p.r, &p.g, &p.b};
-  for (int k = 0; k < 3; ++k) {
-    const F c = column(m, line, 3 + k), slope = column(m, line, 7 + k);
-    p.front[k] = hn::Add(c, hn::Mul(slope, x0)), p.back[k] = hn::Add(c, hn::Mul(slope, x1));
-    *mean[k] = hn::Add(hn::Mul(p.tau, hn::Add(c, hn::Mul(slope, middle))), hn::Mul(slope, bend));
-  }
-  return p;
-}
-
-/// Slices of the value.
-struct Slice {
-  const TetMedium& m;
-  HWY_ATTR I operator()(F f) const {
-    const D d;
-    const DI di;
-    const F at = hn::Mul(hn::Sub(f, hn::Set(d, m.slice_lo)), hn::Set(d, m.per_slice)), most = hn::Set(d, 1e6f);
-    const I s = hn::Add(hn::ConvertTo(di, hn::Min(hn::Max(at, hn::Set(d, -1.0f)), most)), hn::Set(di, 1));
-    const I last = hn::Set(di, int32_t(m.first.size()) - 1);
-    return hn::Min(hn::IfThenElse(to_int(hn::Lt(at, hn::Zero(d))), hn::Zero(di), s), last);
-  }
-  /// Is there anything to see between two slices?
-  HWY_ATTR M lit(I a, I b) const {
-    const DI di;
-    const I seen = hn::Sub(hn::GatherIndex(di, m.seen.data() + 1, hn::Max(a, b)), hn::GatherIndex(di, m.seen.data(), hn::Min(a, b)));
-    return to_float(hn::Gt(seen, hn::Zero(di)));
-  }
-};
-
-/// The line that a value belongs to when the field comes from (or goes to) higher values: a knot belongs to the side of the field.
-HWY_ATTR inline I line_of(const TetMedium& m, F f, I slice, M above, M on, F& lo, F& hi) {
-  const DI di;
-  I at = hn::GatherIndex(di, m.first.data(), slice);
-  for (;;) {
-    hi = column(m, at, 1);
-    const M past = hn::And(on, hn::Or(hn::Gt(f, hi), hn::And(above, hn::Eq(f, hi))));
-    if (hn::AllFalse(D(), past)) break;
-    at = hn::IfThenElse(to_int(past), hn::Add(at, hn::Set(di, 1)), at);
-  }
-  lo = column(m, at, 0);
-  return at;
-}
-
-/// Means over the field from f0 to f1.
-HWY_ATTR inline LinePart means(const TetMedium& m, F f0, F f1, I slice0, I slice1, M on) {
-  const D d;
-  const DI di;
-  const F zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-  const F change = hn::Sub(f1, f0);
-  const M down = hn::Lt(change, zero), up = hn::Gt(change, zero);
-  F lo0, hi0, lo1, hi1;
-  const I line0 = line_of(m, f0, slice0, hn::Not(down), on, lo0, hi0);
-  const I line1 = line_of(m, f1, slice1, hn::Not(up), on, lo1, hi1);
-  const M same = hn::Or(hn::Or(hn::Not(on), hn::Not(hn::Or(up, down))), to_float(hn::Eq(line0, line1)));
-  if (hn::AllTrue(d, same)) return part_of_line(m, line0, lo0, f0, f1);
-
-  // To the end of the first line, over whole lines, and from the beginning of the last one.
-  const F leave = hn::IfThenElse(same, f1, hn::IfThenElse(up, hi0, lo0)), enter = hn::IfThenElse(up, lo1, hi1);
-  LinePart a = part_of_line(m, line0, lo0, f0, leave);
-  const LinePart b = part_of_line(m, line1, lo1, enter, f1);
-  const F per = hn::Div(one, hn::IfThenElse(same, one, change));
-  const F share0 = hn::IfThenElse(same, one, hn::Mul(hn::Sub(leave, f0), per));
-  const F share1 = hn::IfThenElseZero(hn::Not(same), hn::Mul(hn::Sub(f1, enter), per));
-  // Sums stand for the lines before a line: up they are those before line1 less those before line0 + 1, down the other way round.
-  const I first = hn::IfThenElse(to_int(up), hn::Add(line0, hn::Set(di, 1)), line0);
-  const I last = hn::IfThenElse(to_int(up), line1, hn::Add(line1, hn::Set(di, 1)));
-  const M more = hn::AndNot(same, to_float(hn::Ne(first, last)));
-  const bool any = !hn::AllFalse(d, more);
-  const auto total = [&](F x, F y, int k) HWY_ATTR {
-    F sum = hn::Add(hn::Mul(share0, x), hn::IfThenElseZero(hn::Not(same), hn::Mul(share1, y)));
-    if (any) {
-      const F whole = hn::Sub(column(m, last, k), column(m, first, k));
-      sum = hn::Add(sum, hn::IfThenElseZero(more, hn::Mul(whole, per)));
-    }
-    return sum;
-  };
-  LinePart r;
-  r.tau = total(a.tau, b.tau, 10), r.r = total(a.r, b.r, 11), r.g = total(a.g, b.g, 12), r.b = total(a.b, b.b, 13);
-  for (int k = 0; k < 3; ++k) r.front[k] = a.front[k], r.back[k] = hn::IfThenElse(same, a.back[k], b.back[k]);
-  return r;
-}
-
-/// Light on a segment: a factor of its colour, and white on top of it.
-struct Shine {
-  F diffuse, specular;
-};
-
-/// Puts one segment behind what is there: C = mean alpha - change hidden, exact for constant tau.
-HWY_ATTR inline void behind(const LinePart& p, F length, M on, const Shine* shine, Colors& sum) {
-  const D d;
-  const F depth = hn::Mul(p.tau, length);
-  const M lit = hn::And(on, hn::Gt(depth, hn::Zero(d)));
-  const Faded f = fade(hn::IfThenElseZero(lit, depth));
-  const F share = hn::IfThenElseZero(lit, sum.pass), gain = hn::Mul(hn::Mul(share, f.ratio), length), loss = hn::Mul(share, f.hidden);
-  F* const to[3] = {&sum.r, &sum.g, &sum.b};
-  const F* const mean[3] = {&p.r, &p.g, &p.b};
-  for (int k = 0; k < 3; ++k) {
-    F c = hn::Sub(hn::Mul(gain, *mean[k]), hn::Mul(loss, hn::Sub(p.back[k], p.front[k])));
-    if (shine) c = hn::Add(hn::Mul(c, shine->diffuse), hn::Mul(hn::Mul(share, f.alpha), shine->specular));
-    *to[k] = hn::Add(*to[k], c);
-  }
-  sum.pass = hn::Sub(sum.pass, hn::Mul(share, f.alpha));
-}
-
-/// The field goes from f0 to f1 over `length` in the lanes of `on`.
-HWY_ATTR inline void gather(const TetMedium& m, F f0, F f1, F length, I slice0, I slice1, const Slice& slice, M on, const Shine* shine,
-                            Colors& sum) {
-  const D d;
-  const LinePart all = means(m, f0, f1, slice0, slice1, on);
-  // Deep segments in parts, so that the order of colours within them counts.
-  F bend = hn::Set(d, 1.0f / 256);
-  for (int k = 0; k < 3; ++k) bend = hn::Max(bend, hn::Abs(hn::Sub(all.back[k], all.front[k])));
-  const F fine = hn::Mul(hn::Set(d, m.fine), hn::Sqrt(bend));
-  const F parts = hn::Min(hn::Ceil(hn::Mul(hn::Mul(all.tau, length), fine)), hn::Set(d, float(TetMedium::most_parts)));
-  const M deep = hn::And(on, hn::And(hn::Gt(parts, hn::Set(d, 1.0f)), hn::Ne(f0, f1)));
-  behind(all, length, hn::AndNot(deep, on), shine, sum);
-  if (hn::AllFalse(d, deep)) return;
-  const F per = hn::Div(hn::Set(d, 1.0f), hn::Max(parts, hn::Set(d, 1.0f))), step = hn::Mul(hn::Sub(f1, f0), per);
-  F from = f0, number = hn::Set(d, 1.0f);
-  for (M more = deep; !hn::AllFalse(d, more);) {
-    const M last = hn::Ge(number, parts);
-    const F to = hn::IfThenElse(last, f1, hn::Add(f0, hn::Mul(step, number)));
-    behind(means(m, from, to, slice(from), slice(to), more), hn::Mul(length, per), more, shine, sum);
-    more = hn::AndNot(last, more), from = to, number = hn::Add(number, hn::Set(d, 1.0f));
-  }
-}
-
-/// light_at for the lanes of `on`; the light falls on both sides of the gradient.
-HWY_ATTR inline Shine shine_at(const TetLight& light, const F g[3], const F direction[3], M on) {
-  const D d;
-  const F zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-  const auto dot = [](const F a[3], const F b[3])
-                       HWY_ATTR { return hn::Add(hn::Add(hn::Mul(a[0], b[0]), hn::Mul(a[1], b[1])), hn::Mul(a[2], b[2])); };
-  const F square = dot(g, g);
-  const M bent = hn::And(on, hn::And(hn::Gt(square, zero), hn::Lt(square, hn::Set(d, 1e30f))));
-  const F size = hn::Sqrt(hn::IfThenElse(bent, square, one));
-  const F surface = hn::Min(one, hn::Mul(size, hn::Set(d, light.edge_per_scale)));
-  const F side = hn::Div(hn::IfThenElse(hn::Gt(dot(g, direction), zero), hn::Set(d, -1.0f), one), size);
-  F diffuse = zero, specular = zero;
-  for (const TetLight::Lamp& l : light.lamps) {
-    const F to[3] = {hn::Set(d, l.direction.x), hn::Set(d, l.direction.y), hn::Set(d, l.direction.z)};
-    const F c = hn::Mul(side, dot(g, to)), intensity = hn::Set(d, l.intensity);
-    const M faces = hn::Gt(c, zero);
-    diffuse = hn::Add(diffuse, hn::IfThenElseZero(faces, hn::Mul(intensity, c)));
-    const F half[3] = {hn::Sub(to[0], direction[0]), hn::Sub(to[1], direction[1]), hn::Sub(to[2], direction[2])};
-    const F half2 = dot(half, half);
-    const F h = hn::Div(hn::Mul(side, dot(g, half)), hn::Sqrt(hn::IfThenElse(hn::Gt(half2, zero), half2, one)));
-    F base = hn::Max(h, zero), power = one;
-    for (int n = light.power; n > 0; n >>= 1, base = hn::Mul(base, base))
-      if (n & 1) power = hn::Mul(power, base);
-    specular = hn::Add(specular, hn::IfThenElseZero(faces, hn::Mul(intensity, power)));
-  }
-  const F factor = hn::Sub(hn::Add(hn::Set(d, light.ambient), hn::Mul(hn::Set(d, light.diffuse), diffuse)), one);
-  return {hn::IfThenElse(bent, hn::Add(one, hn::Mul(surface, factor)), one),
-          hn::IfThenElseZero(bent, hn::Mul(surface, hn::Mul(hn::Set(d, light.specular), specular)))};
-}
 
 struct Corner {
   F x, y, z, f;
@@ -292,16 +78,19 @@ HWY_ATTR void walk_lanes(const TetTables& tables, TetPacket& p, size_t lane) {
     return hn::Add(hn::Add(hn::Mul(u, a.z), hn::Mul(v, b.z)), hn::Mul(w, c.z));
   };
   const Slice slice{medium};
-  // The light at the face behind, in the lanes that have asked for it.
+  // The surface at the face in front, in the lanes that have asked for it.
   const TetLight* light = tables.light;
-  const F direction[3] = {hn::Load(d, p.direction[0] + lane), hn::Load(d, p.direction[1] + lane), hn::Load(d, p.direction[2] + lane)};
-  Shine before{one, zero};
+  std::optional<Lighting> lighting;
+  if (light) lighting.emplace(*light, p, lane);
+  Surface before;
   M known_before = hn::Lt(one, zero);
 
   Corner a = corner(hn::Load(di, p.id[0] + lane)), b = corner(hn::Load(di, p.id[1] + lane)), c = corner(hn::Load(di, p.id[2] + lane));
   F f, z = cross_at(a, b, c, f);
   M on = hn::Not(to_float(hn::Lt(tet, hn::Zero(di))));
   while (!hn::AllFalse(d, on)) {
+    const I entered[3] = {a.id, b.id, c.id};
+    const F enter_weight[3] = {weight[0], weight[1], weight[2]}, enter = z;
     // The fourth corner, and the one that is left behind for it.
     const I link = hn::IfThenElseZero(to_int(on), hn::Add(hn::ShiftLeft<2>(tet), tet));
     const I known = hn::Xor(hn::Xor(a.id, b.id), c.id);
@@ -333,23 +122,24 @@ HWY_ATTR void walk_lanes(const TetTables& tables, TetPacket& p, size_t lane) {
     const I slice0 = slice(g0), slice1 = slice(g1);
     const M lit = hn::And(some, slice.lit(slice0, slice1));
     if (!hn::AllFalse(d, lit)) {
-      Shine shine{one, zero};
       if (light) {
-        // The mean of the light on the two faces; in front of the first segment of a row there is none yet.
-        F g[3];
-        const I of[3] = {hn::Add(hn::ShiftLeft<1>(a.id), a.id), hn::Add(hn::ShiftLeft<1>(b.id), b.id),
-                         hn::Add(hn::ShiftLeft<1>(c.id), c.id)};
-        for (int k = 0; k < 3; ++k) {
-          g[k] = zero;
-          for (int v = 0; v < 3; ++v) g[k] = hn::Add(g[k], hn::Mul(weight[v], hn::GatherIndex(d, light->gradients + k, of[v])));
+        // In front of the first segment of a row it is not known yet.
+        if (!hn::AllTrue(d, hn::Or(known_before, hn::Not(lit))))
+          before = chosen(known_before, before, lighting->on_face(entered, enter_weight));
+        const I leaving[3] = {a.id, b.id, c.id};
+        const Surface back = lighting->on_face(leaving, weight);
+        LitWay way{before, back, g0, g1, hn::Mul(hn::Sub(to, from), length)};
+        const M cut = hn::And(lit, hn::Or(hn::Ne(from, enter), hn::Ne(to, z1)));
+        if (!hn::AllFalse(d, cut)) {
+          const F per = hn::Div(one, hn::IfThenElse(some, hn::Sub(z1, enter), one));
+          way.first = chosen(cut, lighting->between(before, back, hn::Mul(hn::Sub(from, enter), per)), before);
+          way.last = chosen(cut, lighting->between(before, back, hn::Mul(hn::Sub(to, enter), per)), back);
         }
-        const Shine here = shine_at(*light, g, direction, lit);
-        const F half_of = hn::Set(d, 0.5f);
-        shine.diffuse = hn::IfThenElse(known_before, hn::Mul(half_of, hn::Add(before.diffuse, here.diffuse)), here.diffuse);
-        shine.specular = hn::IfThenElse(known_before, hn::Mul(half_of, hn::Add(before.specular, here.specular)), here.specular);
-        before = here;
+        gather_lit(medium, *lighting, way, slice, lit, tables.stop_below, sum);
+        before = back;
+      } else {
+        gather(medium, g0, g1, hn::Mul(hn::Sub(to, from), length), slice0, slice1, slice, lit, sum);
       }
-      gather(medium, g0, g1, hn::Mul(hn::Sub(to, from), length), slice0, slice1, slice, lit, light ? &shine : nullptr, sum);
       const M now = hn::And(hn::And(lit, hn::Lt(sum.pass, hn::Set(d, 0.5f))), hn::IsNaN(half));
       half = hn::IfThenElse(now, to, half);
     }
@@ -380,7 +170,7 @@ HWY_ATTR void put(const TetMedium& medium, SegmentPacket& p) {
     const M lit = hn::And(hn::Gt(length, hn::Zero(d)), slice.lit(slice0, slice1));
     if (hn::AllFalse(d, lit)) continue;
     Colors sum{hn::Load(d, p.r + lane), hn::Load(d, p.g + lane), hn::Load(d, p.b + lane), hn::Load(d, p.pass + lane)};
-    gather(medium, f0, f1, length, slice0, slice1, slice, lit, nullptr, sum);
+    gather(medium, f0, f1, length, slice0, slice1, slice, lit, sum);
     hn::Store(sum.r, d, p.r + lane), hn::Store(sum.g, d, p.g + lane), hn::Store(sum.b, d, p.b + lane),
         hn::Store(sum.pass, d, p.pass + lane);
   }

@@ -312,6 +312,7 @@ struct LitPlace {
   Vec3f normal{0, 0, 0};  // unit, along the gradient; zero where there is none
   float along = 0;        // of the normal and the ray: the cosine
   float nearest = 0;      // the cosine to the nearest middle of a highlight
+  uint32_t facing = 0;    // which lamps it faces
 };
 
 LitPlace lit_place(const Look& look, RayField& walker, const Stretch& s, double t) {
@@ -322,8 +323,9 @@ LitPlace lit_place(const Look& look, RayField& walker, const Stretch& s, double 
   if (!(square > 0 && square < 1e30f)) return p;
   p.normal = gradient * (1 / std::sqrt(square)), p.along = dot(p.normal, look.lit->direction);
   const float side = p.along > 0 ? -1.0f : 1.0f;
-  for (const LitRay::One& l : look.lit->lights)
-    if (side * dot(p.normal, l.light) > 0) p.nearest = std::max(p.nearest, side * dot(p.normal, l.half));
+  for (size_t i = 0; i < look.lit->lights.size(); ++i)
+    if (const LitRay::One& l = look.lit->lights[i]; side * dot(p.normal, l.light) > 0)
+      p.nearest = std::max(p.nearest, side * dot(p.normal, l.half)), p.facing |= 1u << (i % 32);
   return p;
 }
 
@@ -340,7 +342,9 @@ float may_bend(const LitRay& lit, const LitPlace& a, const LitPlace& b) {
   float all = 0;
   for (const LitRay::One& l : lit.lights) all += l.intensity;
   const float bend = all * (lit.material.diffuse + lit.material.specular * power * lobe);
-  return std::max(over, turn * bend * (1.0f / 12));
+  // Light bends sharply where a lamp begins to shine, or stops.
+  const float kink = a.facing != b.facing ? 0.5f * difference(a.light, b.light) : 0;
+  return std::max(over, turn * bend * (1.0f / 12)) + kink;
 }
 
 /// Integrates a stretch with light.

@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: Apache-2.0
+// Light in the tetrahedra that the lanes of a packet cross: the gradient is linear in each, so that the normal turns in one plane and one
+// way, and where the surface turns over is known.
+#if defined(SG_TET_LIGHT_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef SG_TET_LIGHT_INL
+#undef SG_TET_LIGHT_INL
+#else
+#define SG_TET_LIGHT_INL
+#endif
+#include "render/volume/cells/tet_medium-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sg::volume::HWY_NAMESPACE {
+
+/// A factor of the colour, and white on top of it.
+struct Shine {
+  F diffuse, specular;
+};
+HWY_ATTR inline F apart(const Shine& a, const Shine& b) {
+  return hn::Add(hn::Abs(hn::Sub(a.diffuse, b.diffuse)), hn::Abs(hn::Sub(a.specular, b.specular)));
+}
+HWY_ATTR inline Shine chosen(M yes, const Shine& a, const Shine& b) {
+  return {hn::IfThenElse(yes, a.diffuse, b.diffuse), hn::IfThenElse(yes, a.specular, b.specular)};
+}
+
+/// The gradient at a place, and the light on it seen from the side of the viewer.
+struct Surface {
+  F gradient[3], along;  ///< world; its product with the ray's direction
+  F per_size, much;      ///< 1 / its length; how much of a surface there is, 0 to 1
+  F nearest;             ///< the cosine to the nearest middle of a highlight
+  F facing;              ///< which lamps it faces, as a sum of powers of two
+  Shine shine;
+};
+HWY_ATTR inline Surface chosen(M yes, const Surface& a, const Surface& b) {
+  Surface r;
+  for (int k = 0; k < 3; ++k) r.gradient[k] = hn::IfThenElse(yes, a.gradient[k], b.gradient[k]);
+  r.along = hn::IfThenElse(yes, a.along, b.along), r.per_size = hn::IfThenElse(yes, a.per_size, b.per_size);
+  r.much = hn::IfThenElse(yes, a.much, b.much), r.nearest = hn::IfThenElse(yes, a.nearest, b.nearest);
+  r.facing = hn::IfThenElse(yes, a.facing, b.facing);
+  r.shine = chosen(yes, a.shine, b.shine);
+  return r;
+}
+
+HWY_ATTR inline F dot(const F a[3], const F b[3]) {
+  return hn::Add(hn::Add(hn::Mul(a[0], b[0]), hn::Mul(a[1], b[1])), hn::Mul(a[2], b[2]));
+}
+
+/// The lamps, and the rays of the lanes.
+class Lighting {
+ public:
+  const TetLight& light;
+
+  HWY_ATTR Lighting(const TetLight& from, const TetPacket& packet, size_t lane) : light(from) {
+    for (int k = 0; k < 3; ++k) direction_[k] = hn::Load(D(), packet.direction[k] + lane);
+    for (const TetLight::Lamp& l : from.lamps) all_ += l.intensity;
+  }
+
+  /// Where the line crosses the face of these vertices.
+  HWY_ATTR Surface on_face(const I id[3], const F weight[3]) const {
+    Surface s;
+    for (int k = 0; k < 3; ++k) s.gradient[k] = hn::Zero(D());
+    for (int v = 0; v < 3; ++v) {
+      const I of = hn::Add(hn::ShiftLeft<1>(id[v]), id[v]);
+      for (int k = 0; k < 3; ++k) s.gradient[k] = hn::Add(s.gradient[k], hn::Mul(weight[v], hn::GatherIndex(D(), light.gradients + k, of)));
+    }
+    s.along = dot(s.gradient, direction_);
+    shine(s, s.along);
+    return s;
+  }
+  /// At a share of the way.
+  HWY_ATTR Surface between(const Surface& a, const Surface& b, F share) const {
+    Surface s = straight(a, b, share);
+    shine(s, s.along);
+    return s;
+  }
+  /// The same without light, which shine() adds.
+  HWY_ATTR Surface straight(const Surface& a, const Surface& b, F share) const {
+    Surface s;
+    for (int k = 0; k < 3; ++k) s.gradient[k] = mixed(a.gradient[k], b.gradient[k], share);
+    s.along = mixed(a.along, b.along, share);
+    return s;
+  }
+
+  /// light_at, on the side of the surface that is seen where the product with the direction is `along`.
+  HWY_ATTR void shine(Surface& s, F along) const {
+    const D d;
+    const F zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+    const F square = dot(s.gradient, s.gradient);
+    const M bent = hn::And(hn::Gt(square, zero), hn::Lt(square, hn::Set(d, 1e30f)));
+    const F size = hn::Sqrt(hn::IfThenElse(bent, square, one));
+    s.much = hn::IfThenElseZero(bent, hn::Min(one, hn::Mul(size, hn::Set(d, light.edge_per_scale))));
+    s.per_size = hn::IfThenElseZero(bent, hn::Div(one, size));
+    const F side = hn::IfThenElse(hn::Gt(along, zero), hn::Neg(s.per_size), s.per_size);
+    F diffuse = zero, specular = zero;
+    s.nearest = s.facing = zero;
+    float number = 1;
+    for (const TetLight::Lamp& l : light.lamps) {
+      const F to[3] = {hn::Set(d, l.direction.x), hn::Set(d, l.direction.y), hn::Set(d, l.direction.z)};
+      const F c = hn::Mul(side, dot(s.gradient, to)), intensity = hn::Set(d, l.intensity);
+      const M faces = hn::Gt(c, zero);
+      s.facing = hn::Add(s.facing, hn::IfThenElseZero(faces, hn::Set(d, number)));
+      number *= 2;
+      diffuse = hn::Add(diffuse, hn::IfThenElseZero(faces, hn::Mul(intensity, c)));
+      const F half[3] = {hn::Sub(to[0], direction_[0]), hn::Sub(to[1], direction_[1]), hn::Sub(to[2], direction_[2])};
+      const F half2 = dot(half, half);
+      const F h = hn::Div(hn::Mul(side, dot(s.gradient, half)), hn::Sqrt(hn::IfThenElse(hn::Gt(half2, zero), half2, one)));
+      F base = hn::Max(h, zero), power = one;
+      s.nearest = hn::Max(s.nearest, base);
+      for (int n = light.power; n > 0; n >>= 1, base = hn::Mul(base, base))
+        if (n & 1) power = hn::Mul(power, base);
+      specular = hn::Add(specular, hn::IfThenElseZero(faces, hn::Mul(intensity, power)));
+    }
+    const F factor = hn::Sub(hn::Add(hn::Set(d, light.ambient), hn::Mul(hn::Set(d, light.diffuse), diffuse)), one);
+    s.shine = {hn::Add(one, hn::Mul(s.much, factor)), hn::Mul(s.much, hn::Mul(hn::Set(d, light.specular), specular))};
+  }
+
+  /// What a straight line between the light at two places may have wrong in between, no lamp beginning or ceasing to shine and the surface
+  /// not turning over; and what a parabola through the middle may. Estimates.
+  struct Bend {
+    F line, parabola;
+  };
+  HWY_ATTR Bend may_bend(const Surface& a, const Surface& b) const {
+    const D d;
+    const F zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+    const F cosine = hn::Mul(hn::Mul(dot(a.gradient, b.gradient), a.per_size), b.per_size);
+    // None at one end: there all of it counts.
+    const F turn = hn::IfThenElseZero(hn::Gt(hn::Max(a.per_size, b.per_size), zero), hn::Max(zero, hn::Sub(one, cosine)));
+    // The second derivative of a highlight at this angle beside its middle (see integrate.cpp), from above without an exponential.
+    const F away = hn::Sqrt(hn::Max(zero, hn::Sub(one, hn::Max(a.nearest, b.nearest))));
+    const F closest = hn::Max(zero, hn::Sub(away, hn::Mul(hn::Set(d, 0.5f), hn::Sqrt(turn))));
+    const F power = hn::Set(d, float(light.power)), x = hn::Mul(power, hn::Mul(closest, closest));
+    const F lobe = hn::Mul(power, hn::Div(hn::Set(d, 1.5f), hn::Add(one, hn::Mul(hn::Set(d, 0.25f), hn::Mul(x, x)))));
+    const F second = hn::Add(hn::Set(d, light.diffuse), hn::Mul(hn::Set(d, light.specular), lobe));
+    const F bend = hn::Mul(hn::Mul(turn, second), hn::Set(d, all_ / 12));
+    // The amount of surface turns sharply where it becomes whole.
+    const F fades = hn::Mul(hn::Set(d, 0.25f), hn::Abs(hn::Sub(a.much, b.much)));
+    return {hn::Add(bend, fades), hn::Add(hn::Mul(hn::Mul(bend, turn), hn::Mul(hn::Set(d, 0.1f), hn::Add(one, lobe))), fades)};
+  }
+
+  /// The next place beyond `at` where the surface turns over, or a lamp begins or ceases to shine on it; 2 when there is none.
+  HWY_ATTR F next_kink(const Surface& a, const Surface& b, F at) const {
+    const D d;
+    F next = hn::Set(d, 2.0f);
+    const auto look = [&](F x, F y) HWY_ATTR {
+      const F fall = hn::Sub(x, y);
+      const M some = hn::And(hn::Le(hn::Mul(x, y), hn::Zero(d)), hn::Ne(fall, hn::Zero(d)));
+      const F place = hn::Div(x, hn::IfThenElse(some, fall, hn::Set(d, 1.0f)));
+      next = hn::IfThenElse(hn::And(some, hn::Gt(place, at)), hn::Min(next, place), next);
+    };
+    look(a.along, b.along);
+    for (const TetLight::Lamp& l : light.lamps) {
+      const F to[3] = {hn::Set(d, l.direction.x), hn::Set(d, l.direction.y), hn::Set(d, l.direction.z)};
+      look(dot(a.gradient, to), dot(b.gradient, to));
+    }
+    return next;
+  }
+
+  static HWY_ATTR F mixed(F a, F b, F share) { return hn::Add(a, hn::Mul(share, hn::Sub(b, a))); }
+
+ private:
+  F direction_[3];
+  float all_ = 0;
+};
+
+/// A segment: what it is lit by at its ends, the value there, and its length.
+struct LitWay {
+  Surface first, last;
+  F front, back, length;
+};
+
+/// The same for a part on which the light is as good as a parabola through a, m (in the middle) and b.
+HWY_ATTR inline void behind_lit(const LinePart& p, F length, M on, const Shine& a, const Shine& m, const Shine& b, Colors& sum) {
+  const D d;
+  const F zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+  const F depth = hn::Mul(p.tau, length);
+  const M lit = hn::And(on, hn::Gt(depth, zero));
+  const Faded f = fade(hn::IfThenElseZero(lit, depth));
+  // Where the light that is seen comes from, on the way: its mean place (the front hides what is behind), and how far it spreads where tau
+  // is even (near 1/12 - 1/240 D^2 for thin parts, 1 / D^2 for deep ones).
+  const F alpha = hn::IfThenElse(lit, f.alpha, one);
+  const F centre = hn::Sub(hn::Div(p.moment, hn::IfThenElse(lit, p.tau, one)), hn::Div(f.hidden, alpha));
+  const F spread = hn::Div(hn::Sub(one, p.uneven), hn::Add(hn::Set(d, 12.0f), hn::Mul(hn::Set(d, 0.65f), hn::Mul(depth, depth))));
+  const F w = hn::Min(hn::Max(centre, zero), one), v = hn::Sub(one, w), two = hn::Set(d, 2.0f);
+  const F wa = hn::Add(hn::Mul(v, hn::Sub(v, w)), hn::Mul(two, spread)), wb = hn::Add(hn::Mul(w, hn::Sub(w, v)), hn::Mul(two, spread));
+  const F wm = hn::Sub(hn::Sub(one, wa), wb);
+  const auto there = [&](F x, F y, F z) HWY_ATTR { return hn::Add(hn::Add(hn::Mul(wa, x), hn::Mul(wm, y)), hn::Mul(wb, z)); };
+  const F diffuse = there(a.diffuse, m.diffuse, b.diffuse), specular = there(a.specular, m.specular, b.specular);
+  const F share = hn::IfThenElseZero(lit, sum.pass), gain = hn::Mul(hn::Mul(share, f.ratio), length), loss = hn::Mul(share, f.hidden);
+  const F white = hn::Mul(hn::Mul(share, f.alpha), specular);
+  F* const to[3] = {&sum.r, &sum.g, &sum.b};
+  const F* const mean[3] = {&p.r, &p.g, &p.b};
+  for (int k = 0; k < 3; ++k) {
+    const F c = hn::Sub(hn::Mul(gain, *mean[k]), hn::Mul(loss, hn::Sub(p.back[k], p.front[k])));
+    *to[k] = hn::Add(*to[k], hn::Add(hn::Mul(c, diffuse), white));
+  }
+  sum.pass = hn::Sub(sum.pass, hn::Mul(share, f.alpha));
+}
+
+HWY_ATTR inline Shine half_way(const Shine& a, const Shine& b) {
+  const F half = hn::Set(D(), 0.5f);
+  return {hn::Mul(half, hn::Add(a.diffuse, b.diffuse)), hn::Mul(half, hn::Add(a.specular, b.specular))};
+}
+
+/// May a part be drawn as one?
+struct Fair {
+  const TetMedium& medium;
+  const Lighting& lighting;
+
+  /// With light that is so far off at most.
+  HWY_ATTR M operator()(const LinePart& p, F length, F pass, F off, F differ) const {
+    const D d;
+    const F one = hn::Set(d, 1.0f);
+    const F depth = hn::Mul(p.tau, length), change = color_change(p), weight = hn::Mul(pass, hn::Min(depth, one));
+    const F share = hn::Set(d, 0.4f * lighting.light.tolerance);
+    const F allowed = hn::Mul(share, hn::Add(weight, hn::Mul(length, hn::Set(d, lighting.light.per_ray))));
+    // Colour and light that both change have a product that is not straight; and the front hides what is behind, exactly so where tau is
+    // even.
+    const F product = hn::Mul(change, differ),
+            order = hn::Mul(hn::Mul(hn::Add(change, differ), p.uneven), hn::Min(depth, hn::Set(d, 6.0f)));
+    const F wrong = hn::Add(off, hn::Mul(hn::Add(product, order), hn::Set(d, 1.0f / 12)));
+    return hn::Le(hn::Mul(weight, wrong), allowed);
+  }
+  /// With the parabola through the middle.
+  HWY_ATTR M operator()(const LinePart& p, F length, F pass, const Surface& a, const Surface& m, const Surface& b) const {
+    const D d;
+    const F bulge = apart(m.shine, half_way(a.shine, b.shine));
+    const F unsure = hn::Add(hn::Set(d, 0.05f), hn::Mul(hn::Set(d, 1.0f / 3), p.uneven));
+    return (*this)(p, length, pass, hn::Add(hn::Mul(bulge, unsure), lighting.may_bend(a, b).parabola), apart(a.shine, b.shine));
+  }
+};
+
+/// Puts a lit segment behind what is there: in parts, each as long as it may be.
+HWY_ATTR inline void gather_lit(const TetMedium& medium, const Lighting& lighting, const LitWay& way, const Slice& slice, M on,
+                                float stop_below, Colors& sum) {
+  const D d;
+  const F zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
+  const Fair fair{medium, lighting};
+  const LinePart all = means<true>(medium, way.front, way.back, slice(way.front), slice(way.back), on);
+  on = hn::And(on, hn::Gt(hn::Mul(all.tau, way.length), zero));
+  const Surface &first = way.first, &last = way.last;
+  // Where it turns over, at an end too, or meets another lamp, its ends do not tell.
+  const M smooth = hn::And(hn::Eq(first.facing, last.facing), hn::Gt(hn::Mul(first.along, last.along), zero));
+  const M straight = fair(all, way.length, sum.pass, lighting.may_bend(first, last).line, apart(first.shine, last.shine));
+  M as_one = hn::And(on, hn::And(smooth, straight));
+  Shine middle = half_way(first.shine, last.shine);
+  if (!hn::AllFalse(d, hn::AndNot(straight, hn::And(on, smooth)))) {
+    const Surface m = lighting.between(first, last, half);
+    as_one = hn::Or(as_one, hn::And(hn::And(on, smooth), fair(all, way.length, sum.pass, first, m, last)));
+    middle = m.shine;
+  }
+  behind_lit(all, way.length, as_one, first.shine, middle, last.shine, sum);
+  M more = hn::AndNot(as_one, on);
+  if (hn::AllFalse(d, more)) return;
+
+  F at = zero, step = hn::IfThenElse(smooth, half, one);
+  while (!hn::AllFalse(d, more)) {
+    const F end = hn::Min(hn::Min(hn::Add(at, step), one), lighting.next_kink(first, last, at));
+    const Surface m = lighting.between(first, last, hn::Mul(half, hn::Add(at, end)));
+    Surface a = lighting.straight(first, last, at), b = lighting.straight(first, last, end);
+    lighting.shine(a, m.along), lighting.shine(b, m.along);
+    const F from = Lighting::mixed(way.front, way.back, at);
+    const F to = hn::IfThenElse(hn::Ge(end, one), way.back, Lighting::mixed(way.front, way.back, end));
+    const F length = hn::Mul(way.length, hn::Sub(end, at));
+    const LinePart p = means<true>(medium, from, to, slice(from), slice(to), more);
+    const M finest = hn::Le(hn::Sub(end, at), hn::Set(d, 1.0f / TetMedium::most_parts));
+    const M good = hn::Or(finest, fair(p, length, sum.pass, a, m, b));
+    behind_lit(p, length, hn::And(more, good), a.shine, m.shine, b.shine, sum);
+    at = hn::IfThenElse(good, end, at);
+    step = hn::IfThenElse(good, hn::Add(step, step), hn::Mul(half, hn::Sub(end, at)));
+    more = hn::And(more, hn::And(hn::Lt(at, one), hn::Ge(sum.pass, hn::Set(d, stop_below))));
+  }
+}
+
+}  // namespace sg::volume::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
