@@ -279,7 +279,7 @@ class Pieces {
     const bool abrupt = medium.any_abrupt() && medium.abrupt(lo, hi);
     double turn[3] = {2, 2, 2};
     if (beyond > 0 && (abrupt || pass * beyond * length * slope > 0.1f * allowed)) turn[turns(s.b, turn)] = 2;
-    close_ = abrupt ? 0 : 0.05f * allowed / std::max(pass * (length * slope + taken * medium.color_slope()), 1e-30f);
+    close_ = abrupt ? 0 : 0.05f * allowed / std::max(pass * (length * slope + taken * (hi > lo ? change / (hi - lo) : 0)), 1e-30f);
     error *= pass;
     const float parts = std::max(std::sqrt(error / allowed), std::sqrt(std::sqrt(uneven / allowed)));
     const float n = std::clamp(std::ceil(parts), 1.0f, 1024.0f);
