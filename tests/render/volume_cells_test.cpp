@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rays through cells of every kind, by what is known of cubes.
+#include "render/volume/cells/cell_volume.h"
 #include "support/test.h"
 #include "volume_cells_support.h"
 
@@ -369,4 +370,42 @@ TEST_CASE("volume cells: meshes without a volume are refused") {
   CHECK(error_of([&] { gather(item, {}, {0, 0, 1}); }).find("component") != std::string::npos);
   item.data = nullptr;
   CHECK(error_of([&] { gather(item, {}, {0, 0, 1}); }).find("no dataset") != std::string::npos);
+}
+
+TEST_CASE("volume cells: gradients of fields of points and of cells are of second order up to the border, on every linear kind") {
+  const auto f = [](Vec3 p) { return std::sin(2 * p.x + p.y) + p.z * p.z * p.y; };
+  const auto slope = [](Vec3 p) {
+    const double c = std::cos(2 * p.x + p.y);
+    return Vec3{2 * c, c + p.z * p.z, 2 * p.z * p.y};
+  };
+  for (const CellType kind : linear_kinds())
+    for (const bool by_cell : {false, true}) {
+      double worst[2] = {0, 0};
+      for (const int level : {0, 1}) {
+        const bool flat = kind == CellType::voxel || kind == CellType::polyhedron;
+        DatasetPtr data = with_field(cube(kind, level ? 12 : 6, flat ? Warp(straight) : Warp(bent)), f);
+        if (by_cell) {  // at the means of the points
+          std::vector<double> values;
+          CellReader reader(data);
+          for (size_t c = 0; c < data->cell_count(); ++c) {
+            reader.open(c);
+            Vec3 sum;
+            for (const Vec3& p : reader.at()) sum += p;
+            values.push_back(f(sum / double(reader.at().size())));
+          }
+          DatasetParts parts = data->parts();
+          parts.fields = {};
+          parts.fields.add({"f", Association::cell, Array::from_vector(values), "", Role::scalars});
+          data = make_dataset(std::move(parts));
+        }
+        Context context;
+        const volume::CellVolume v = volume::make_cell_volume(item_of(data, by_cell ? Association::cell : Association::point), context);
+        const auto gradients = v.gradients();
+        for (const auto& tet : v.mesh->corners)
+          for (uint32_t k : tet)
+            worst[level] = std::max(worst[level], length(Vec3((*gradients)[k]) - slope(v.mesh->at[k] + v.mesh->origin)));
+      }
+      INFO(std::string(cell_type_info(kind).name), by_cell ? std::string(", cells ") : std::string(", points "), worst[0], " ", worst[1]);
+      CHECK(std::log2(worst[0] / worst[1]) > 1.5);
+    }
 }

@@ -6,6 +6,7 @@
 #include "data/cell_reader.h"
 #include "data/field_ops.h"
 #include "data/memo.h"
+#include "filter/field/fitted_derivatives.h"
 #include "filter/field/gradient.h"
 #include "filter/mesh/tessellate_cells.h"
 #include "filter/scalar/contour_amr.h"
@@ -185,37 +186,53 @@ Range drawn_range(const CellVolume& v) {
       [](Range a, const Range& b) { return a.add(b), a; });
 }
 
-/// Cell values carried to the vertices: the mean of the tetrahedra around.
-Plane<float> at_vertices(const CellVolume& v) {
+/// Of a field of cells: at each vertex by the derivatives at the nearest middle of a cell around, second ones included, so of second order
+/// there, too.
+Plane<Vec3f> gradients_of_cells(const CellVolume& v) {
   const TetMesh& mesh = *v.mesh;
-  Plane<float> sum;
-  std::vector<uint32_t> count(mesh.at.size());
-  sum.assign(mesh.at.size(), 0.0f);
-  for (size_t t = 0; t < mesh.size(); ++t)
-    for (uint32_t k : mesh.corners[t]) sum[k] += v.values[mesh.cell(t)], ++count[k];
-  for (size_t k = 0; k < count.size(); ++k)
-    if (count[k]) sum[k] /= float(count[k]);
-  return sum;
-}
-
-/// Of the mesh's vertices: the volume-weighted means of the gradients of the tetrahedra around.
-Plane<Vec3f> mean_gradients(const TetMesh& mesh, std::span<const float> f) {
-  std::vector<Vec3> sum(mesh.at.size());
-  std::vector<double> weight(mesh.at.size());
+  constexpr uint32_t none = ~0u;
+  struct Nearest {
+    uint32_t cell = none;
+    double square = HUGE_VAL;
+    Vec3 offset;
+  };
+  std::vector<Nearest> nearest(mesh.at.size());
+  CellReader reader(v.data);
+  Vec3 middle;
+  uint32_t opened = none;
   for (size_t t = 0; t < mesh.size(); ++t) {
-    const auto& v = mesh.corners[t];
-    const Vec3 a = mesh.at[v[0]], p = mesh.at[v[1]] - a, q = mesh.at[v[2]] - a, r = mesh.at[v[3]] - a;
-    const Vec3 qr = cross(q, r), rp = cross(r, p), pq = cross(p, q);
-    const double six = dot(p, qr);
-    if (!(std::abs(six) > 0)) continue;
-    // The gradient times the signed volume; the sign makes it one times the volume.
-    const auto f0 = double(f[v[0]]);
-    const Vec3 g = qr * (double(f[v[1]]) - f0) + rp * (double(f[v[2]]) - f0) + pq * (double(f[v[3]]) - f0);
-    for (uint32_t k : v) sum[k] += six > 0 ? g : -g, weight[k] += std::abs(six);
+    if (const uint32_t cell = mesh.cell(t); cell != opened) {
+      reader.open(opened = cell);
+      middle = Vec3();
+      for (const Vec3& p : reader.at()) middle += p;
+      middle = middle / double(std::max<size_t>(reader.at().size(), 1)) - mesh.origin;
+    }
+    for (uint32_t k : mesh.corners[t]) {
+      const Vec3 offset = mesh.at[k] - middle;
+      if (const double square = dot(offset, offset); square < nearest[k].square) nearest[k] = {opened, square, offset};
+    }
   }
+  std::vector<uint32_t> cells;
+  for (const Nearest& n : nearest)
+    if (n.cell != none) cells.push_back(n.cell);
+  std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  const std::vector<double> values(v.values.begin(), v.values.end());
+  std::vector<double> g(3 * cells.size()), h(6 * cells.size());
+  Context context;
+  fitted_derivatives_at(v.data, Association::cell, cells, Array::from_vector(values), g.data(), h.data(), context);
   Plane<Vec3f> out;
-  out.resize(sum.size());
-  for (size_t k = 0; k < sum.size(); ++k) out[k] = weight[k] > 0 ? Vec3f(sum[k] / weight[k]) : Vec3f();
+  out.resize(mesh.at.size());
+  for (size_t k = 0; k < nearest.size(); ++k) {
+    out[k] = Vec3f();
+    if (nearest[k].cell == none) continue;
+    const size_t i = size_t(std::lower_bound(cells.begin(), cells.end(), nearest[k].cell) - cells.begin());
+    const Vec3 d = nearest[k].offset;
+    const double* b = &h[6 * i];
+    const Vec3 at = Vec3{g[3 * i], g[3 * i + 1], g[3 * i + 2]} +
+                    Vec3{b[0] * d.x + b[1] * d.y + b[2] * d.z, b[1] * d.x + b[3] * d.y + b[4] * d.z, b[2] * d.x + b[4] * d.y + b[5] * d.z};
+    if (std::isfinite(dot(at, at))) out[k] = Vec3f(at);
+  }
   return out;
 }
 
@@ -257,7 +274,7 @@ Plane<Vec3f> gradients_at_points(const CellVolume& v) {
 std::shared_ptr<const Plane<Vec3f>> CellVolume::gradients() const {
   const std::string name = "volume/gradients/" + key;
   if (auto kept = data->memo().find<Plane<Vec3f>>(name)) return kept;
-  Plane<Vec3f> out = by_cell ? mean_gradients(*mesh, at_vertices(*this)) : gradients_at_points(*this);
+  Plane<Vec3f> out = by_cell ? gradients_of_cells(*this) : gradients_at_points(*this);
   const size_t bytes = out.size() * sizeof(Vec3f);
   return data->memo().keep<Plane<Vec3f>>(name, std::move(out), bytes);
 }

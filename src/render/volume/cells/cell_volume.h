@@ -36,8 +36,8 @@ struct CellVolume {
     return (tet == 0 || c[tet - 1] != c[tet]) && (tet + 1 == c.size() || c[tet + 1] != c[tet]);
   }
 
-  /// World, of the mesh's vertices: those of gradient(), of second order up to the border; of cell fields, means over the tetrahedra
-  /// around of what is linear between means of the cells.
+  /// World, of the mesh's vertices: those of gradient(), of second order up to the border; of cell fields those of parabolas fitted to the
+  /// cells around the nearest one (fitted_derivatives.h).
   /// Made when first asked for, and kept with the dataset.
   std::shared_ptr<const Plane<Vec3f>> gradients() const;
 

@@ -246,7 +246,7 @@ HWY_ATTR inline void gather_lit(const TetMedium& medium, const Lighting& lightin
   if (!hn::AllFalse(d, hn::AndNot(straight, hn::And(on, smooth)))) {
     const Surface m = lighting.between(first, last, half);
     as_one = hn::Or(as_one, hn::And(hn::And(on, smooth), fair(all, way.length, sum.pass, first, m, last)));
-    middle = m.shine;
+    middle = chosen(straight, middle, m.shine);  // whatever the lanes beside ask for
   }
   behind_lit(all, way.length, as_one, first.shine, middle, last.shine, sum);
   M more = hn::AndNot(as_one, on);
