@@ -182,6 +182,10 @@ TEST_CASE("sampling: an interval with an end that is NaN holds no points of a gr
   CHECK(empty(8, HUGE_VAL));
   CHECK(empty(-HUGE_VAL, -1));
   CHECK(!empty(-HUGE_VAL, HUGE_VAL));
+  CHECK(GridScan::within(NAN, 1, 7) == 1);
+  CHECK(GridScan::within(9, 1, 7) == 7);
+  CHECK(GridScan::within(-9, 1, 7) == 1);
+  CHECK(GridScan::within(3, 1, 7) == 3);
 }
 
 TEST_CASE("fronts: seeds so close together that there are millions of them are refused, with what would be right") {

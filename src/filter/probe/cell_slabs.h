@@ -40,6 +40,8 @@ struct GridScan {
     lo = from <= 0 ? 0 : from <= double(n) ? ptrdiff_t(std::ceil(from)) : ptrdiff_t(n);
     hi = to >= double(n - 1) ? ptrdiff_t(n) - 1 : to >= 0 ? ptrdiff_t(to) : -1;
   }
+  /// As std::clamp, for an index: NaN, of which that makes an index anywhere, is `lo`.
+  static double within(double v, double lo, double hi) { return v > lo ? std::min(v, hi) : lo; }
   /// `cell_layers`: layers are those of cells (between two points), not of points.
   CellSlabs slabs(size_t thickness, bool cell_layers, Context& context) const;
 };
