@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "filter/probe/cell_slabs.h"
 #include "pipeline/hostile_watch.h"
 #include "support/test.h"
 
@@ -164,6 +165,27 @@ TEST_CASE("glyph_points: a cloud with fields on cells that it does not have has 
   Context context;
   const Data middles = run_operation(find_operation("glyph_points"), {make_dataset(std::move(parts))}, {"mode=cells"}, context);
   CHECK(single_dataset(middles, "test")->point_count() == 0);
+}
+
+TEST_CASE("sampling: an interval with an end that is NaN holds no points of a grid, nor does one beyond it") {
+  const auto empty = [](double from, double to) {
+    ptrdiff_t lo = 0, hi = 0;
+    GridScan::points_in(from, to, 8, lo, hi);
+    CHECK(lo >= 0);
+    CHECK(hi < 8);
+    return lo > hi;
+  };
+  CHECK(empty(NAN, 3));
+  CHECK(empty(2, NAN));
+  CHECK(empty(NAN, NAN));
+  CHECK(empty(NAN, HUGE_VAL));
+  CHECK(empty(8, HUGE_VAL));
+  CHECK(empty(-HUGE_VAL, -1));
+  CHECK(!empty(-HUGE_VAL, HUGE_VAL));
+  CHECK(GridScan::within(NAN, 1, 7) == 1);
+  CHECK(GridScan::within(9, 1, 7) == 7);
+  CHECK(GridScan::within(-9, 1, 7) == 1);
+  CHECK(GridScan::within(3, 1, 7) == 3);
 }
 
 TEST_CASE("fronts: seeds so close together that there are millions of them are refused, with what would be right") {

@@ -87,7 +87,7 @@ class RowSlice {
     size_t lo = 0, hi = nx;  // the turn lies in [lo, hi]
     if (v_.mode == LatticeView::Mode::affine) {
       const double guess = -d / rise_[0] * double(nx - 1);
-      const auto at = size_t(std::clamp(guess, 0.0, double(nx - 1)));
+      const auto at = size_t(guess > 0 ? std::min(guess, double(nx - 1)) : 0.0);
       lo = at > 0 ? at - 1 : 0, hi = std::min(nx, at + 2);
       if (lo > 0 && front(lo - 1, row) != front_first_) lo = 0;
       if (hi < nx && front(hi, row) == front_first_) hi = nx;

@@ -35,11 +35,13 @@ struct GridScan {
   CellProbe probe() const { return CellProbe(map, simplices, slack); }
   /// Box of a cell in grid coordinates, grown by its tolerance. `reader` is scratch.
   Box3 box(CellReader& reader, size_t cell) const;
-  /// Points [lo, hi] of axis a in an interval; lo > hi: none.
+  /// Points [lo, hi] of axis a in an interval; lo > hi: none, as for ends that are NaN.
   static void points_in(double from, double to, size_t n, ptrdiff_t& lo, ptrdiff_t& hi) {
-    lo = from <= 0 ? 0 : ptrdiff_t(std::ceil(std::min(from, double(n))));
-    hi = to >= double(n - 1) ? ptrdiff_t(n) - 1 : to < 0 ? -1 : ptrdiff_t(to);
+    lo = from <= 0 ? 0 : from <= double(n) ? ptrdiff_t(std::ceil(from)) : ptrdiff_t(n);
+    hi = to >= double(n - 1) ? ptrdiff_t(n) - 1 : to >= 0 ? ptrdiff_t(to) : -1;
   }
+  /// As std::clamp, for an index: NaN, of which that makes an index anywhere, is `lo`.
+  static double within(double v, double lo, double hi) { return v > lo ? std::min(v, hi) : lo; }
   /// `cell_layers`: layers are those of cells (between two points), not of points.
   CellSlabs slabs(size_t thickness, bool cell_layers, Context& context) const;
 };

@@ -59,8 +59,8 @@ class SlabSums {
     const Vec3 from = scan_.to_grid(box.lo), to = scan_.to_grid(box.hi);
     for (int a = 0; a < 3; ++a) {
       const double first = a == 2 ? double(k0_) : 0.0, last = a == 2 ? double(k1_) : double(cells_[size_t(a)]);
-      local_.lo[size_t(a)] = ptrdiff_t(std::clamp(std::floor(from[a]) - 1, first, last));
-      local_.hi[size_t(a)] = ptrdiff_t(std::clamp(std::ceil(to[a]) + 1, first, last));
+      local_.lo[size_t(a)] = ptrdiff_t(GridScan::within(std::floor(from[a]) - 1, first, last));
+      local_.hi[size_t(a)] = ptrdiff_t(GridScan::within(std::ceil(to[a]) + 1, first, last));
       if (local_.lo[size_t(a)] >= local_.hi[size_t(a)]) return;
     }
     local_.open(at.size());

@@ -179,7 +179,7 @@ class Claimer {
     size_t lo[3], hi[3];
     for (int a = 0; a < 3; ++a) {
       const double last = double(buckets_.dims[size_t(a)] - 1);
-      lo[a] = size_t(std::clamp(box.lo[a], 0.0, last)), hi[a] = size_t(std::clamp(box.hi[a], 0.0, last));
+      lo[a] = size_t(GridScan::within(box.lo[a], 0, last)), hi[a] = size_t(GridScan::within(box.hi[a], 0, last));
     }
     for (size_t k = std::max(lo[2], k0); k <= std::min(hi[2], k1 - 1); ++k)
       for (size_t j = lo[1]; j <= hi[1]; ++j) {
