@@ -95,6 +95,7 @@ struct Strides {
   hn::Vec<D> value;             ///< the mean by emission,
   hn::Vec<D> middle, variance;  ///< and where it lies
   hn::Vec<D> change;            ///< largest less smallest value
+  hn::Vec<D> uneven;            ///< of a change of colour or light, the share that is hidden otherwise, or lies elsewhere
 };
 
 /// From p0 by p1 to p2, each stride `world` long; the slope of the value changes by at most `bend` per cell length, of which a stride has
@@ -156,7 +157,8 @@ HWY_INLINE Strides<D> strides(const SumLanes<D>& medium, const Medium& colors, f
   F e = hn::Mul(per_steep, hn::Add(steep_a, steep_b));
   s.ahead = hn::Mul(per_steep, hn::Sub(steep_b, steep_a));
   e = mul_add(hn::Mul(taken, hn::Set(d, 0.25f * tolerance)), hn::Mul(widths, widths), e);
-  e = mul_add(recolored, hn::Add(hn::Min(one, deep), uneven), e);
+  s.uneven = hn::Add(hn::Min(one, deep), uneven);
+  e = mul_add(recolored, s.uneven, e);
   // A deep pair shows the ends of a parabola of colours more than its middle: for weights exp(-depth x / 2) the mean of x^2 is
   // 1/3 + depth^2 / 90.
   const F ends = hn::Mul(hn::Min(hn::Mul(s.depth, s.depth), hn::Set(d, 16.0f)), hn::Set(d, 1.0f / 90));
