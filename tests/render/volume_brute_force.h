@@ -69,8 +69,9 @@ struct Case {
   OpacityCurve opacity;
   double unit = 0.1;
   bool shaded = false;
-  int per_cell = 100;       // steps of the reference; more where the medium is thinner than those
-  OpacityCurve factor{{}};  // over the length of the gradient; no points: none
+  int per_cell = 100;                                            // steps of the reference; more where the medium is thinner than those
+  OpacityCurve factor{{}};                                       // over the length of the gradient; no points: none
+  std::function<double(double value, double gradient)> plane{};  // opacity over both; none: what the curves say
 };
 
 inline Lattice lattice_of(size_t n, const std::function<double(Vec3)>& f, bool uneven = false) {
@@ -139,7 +140,7 @@ inline Vec4 brute_force(const Case& c, const Projection& view, int px, int py, c
   for (int i = 0; i < n && out.w > 1e-7; ++i) {
     const Vec3 p = o + d * (from + (i + 0.5) * h);
     const double value = c.lattice.at(p);
-    double opacity = c.opacity.at(value) * double(c.color.color(value).w);
+    double opacity = c.plane ? c.plane(value, length(c.lattice.gradient(p))) : c.opacity.at(value) * double(c.color.color(value).w);
     if (opacity > 0 && !c.factor.points.empty()) opacity *= c.factor.at(length(c.lattice.gradient(p)));
     if (opacity <= 0) continue;
     const double alpha = 1 - std::pow(1 - std::min(opacity, 1 - 1e-12), h / c.unit);

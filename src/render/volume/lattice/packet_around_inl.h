@@ -7,7 +7,7 @@
 #define SG_PACKET_AROUND_INL_H
 #endif
 
-#include "render/volume/lattice/packets_inl.h"
+#include "render/volume/lattice/packet_cubic_inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {
@@ -114,6 +114,11 @@ class Around {
     return mixed(d, mixed(d, mixed(d, c[0], c[1], f[0]), mixed(d, c[2], c[3], f[0]), f[1]),
                  mixed(d, mixed(d, c[4], c[5], f[0]), mixed(d, c[6], c[7], f[0]), f[1]), f[2]);
   }
+  /// The same on the way from + s * way.
+  static HWY_INLINE Cubic<D> trilinear(const F c[8], const F from[3], const F way[3]) {
+    const Pair<D> rows[4] = {{c[0], c[1]}, {c[2], c[3]}, {c[4], c[5]}, {c[6], c[7]}};
+    return along_way(rows, from, way);
+  }
 
  private:
   static HWY_INLINE I step(hn::Mask<D> border, int there, int elsewhere) {
@@ -147,6 +152,8 @@ class CornerChanges {
   }
   /// Along axis a, between the corners.
   HWY_INLINE F at(int a, const F share[3]) const { return Around<D, T>::trilinear(change_[a], share); }
+  /// The same on the way from + s * way.
+  HWY_INLINE Cubic<D> on(int a, const F from[3], const F way[3]) const { return Around<D, T>::trilinear(change_[a], from, way); }
 
  private:
   template <class Change>

@@ -46,7 +46,8 @@ class EvenAxes {
     HWY_INLINE void find(const EvenAxes&, const Around<D, T>& around, const I[3]) { changes_.find(around); }
     /// The same; where a neighbour is no number, one-sided.
     HWY_INLINE void find_beside_holes(const EvenAxes&, const Around<D, T>& around, const I[3]) { changes_.find_beside_holes(around); }
-    HWY_INLINE F along(int a, const F share[3]) const { return hn::Mul(hn::Set(D(), 0.5f), changes_.at(a, share)); }
+    /// Along axis a, on the way from + s * way.
+    HWY_INLINE Cubic<D> along(int a, const F from[3], const F way[3]) const { return changes_.on(a, from, way).times(hn::Set(D(), 0.5f)); }
 
    private:
     CornerChanges<D, T> changes_;
@@ -126,7 +127,7 @@ class UnevenLanes {
         return hn::IfThenElseZero(hn::Not(hn::IsNaN(slope)), slope);
       });
     }
-    HWY_INLINE F along(int a, const F share[3]) const { return Around<D, T>::trilinear(slope_[a], share); }
+    HWY_INLINE Cubic<D> along(int a, const F from[3], const F way[3]) const { return Around<D, T>::trilinear(slope_[a], from, way); }
 
    private:
     template <class Slope>

@@ -75,12 +75,14 @@ class PacketCells : public RayLanes<D, T, Axes> {
   }
 
   /// What a change of the value by `range` and of its light by `lightening` may have of itself hidden by its front, in a fifth of the
-  /// tolerance.
-  HWY_INLINE void may_hide(F range, F lightening) {
+  /// tolerance. `covary`: by how much of that light the colours are lit as they change, 0 where they have one light each.
+  HWY_INLINE void may_hide(F range, F lightening, F covary) {
     const D d;
-    F change = mul_add(range, hn::Set(d, medium.medium.color_slope()), lightening);
+    const F per = hn::Set(d, 1 / (0.2f * float(plan.budget.tolerance))),
+            recolored = hn::Mul(range, hn::Set(d, medium.medium.color_slope()));
+    F change = hn::Add(recolored, lightening);
     if (medium.medium.pieced()) change = hn::Max(change, hn::Set(d, 1.0f));
-    most_hidden_ = hn::Mul(change, hn::Set(d, 1 / (0.2f * float(plan.budget.tolerance))));
+    most_hidden_ = hn::Mul(change, per), most_covary_ = hn::Mul(hn::Mul(recolored, covary), hn::Mul(per, hn::Set(d, 1.0f / 3)));
   }
 
   /// One cell per lane: its cubic, and what the medium makes of it.
@@ -166,8 +168,12 @@ class PacketCells : public RayLanes<D, T, Axes> {
       const auto lit = light.error(source, inside, from, way);
       const F weight = hn::Mul(pass, taken);
       error = hn::Max(error, hn::Mul(weight, lit.bend));
+      // A piece has one light for all of its colours: a twelfth of how much both change together. In a deep piece the front shows more of
+      // its own light, too.
+      error = mul_add(hn::Mul(weight, lit.change), hn::Mul(change, hn::Set(d, 1.0f / 12)), error);
+      error = mul_add(hn::Mul(pass, lit.change), hn::Min(one, deep), error);
       const M jumping = hn::And(look, hn::Gt(hn::Mul(weight, lit.jump), allowed));
-      if (any_kink = !hn::AllFalse(d, jumping); any_kink) light.jumps(from, way, lit, jumping, kinks);
+      if (any_kink = !hn::AllFalse(d, jumping); any_kink) light.jumps(lit, jumping, kinks);
     }
     if (any_turn) {
       for (int i = 0; i < most_kinks && !any_kink; ++i) kinks[i] = hn::Set(d, 2.0f);
@@ -184,7 +190,7 @@ class PacketCells : public RayLanes<D, T, Axes> {
       per_count = hn::Div(one, count);
     }
     const F stop = hn::Set(d, plan.budget.stop_below);
-    may_hide(range, shaded ? one : zero);
+    may_hide(range, shaded ? one : zero, zero);
 
     // Pieces, cut where the value meets the knots.
     F k = zero, v = f.a, s = zero, end, target;
@@ -230,9 +236,9 @@ class PacketCells : public RayLanes<D, T, Axes> {
       const F weight = hn::Mul(mul_add(half, tm, t1), per_all);
       const F taus[3] = {t0, hn::Mul(tm, hn::Set(d, 0.25f)), t1};
       segment(look, mul_add(length, s, t), part, hn::Mul(part, hn::Mul(all, hn::Set(d, 1.0f / 6))), taus, v, next, by_emission, weight,
-              &at_, [&](F at, F share, F& red, F& green, F& blue) HWY_ATTR {
+              &at_, [&](F at, F share, const Spread&, F& red, F& green, F& blue) HWY_ATTR {
                 if constexpr (shaded) {
-                  const auto on = light.at(from, way, mul_add(hn::Sub(to, s), at, s));
+                  const auto on = light.at(mul_add(hn::Sub(to, s), at, s));
                   const F flash = hn::Mul(on.specular, share);
                   for (F* c : {&red, &green, &blue}) *c = mul_add(*c, on.diffuse, flash);
                 }
@@ -290,8 +296,13 @@ class PacketCells : public RayLanes<D, T, Axes> {
                    hn::IfThenElse(in_front, zero, half));
   }
 
-  /// Pieces::segment of optics/integrate.cpp. `line`: of the medium on which the part lies; null: that of each value. `lit(at, share, r, g,
-  /// b)` lights the colours and the share of what is mirrored, at the share `at` of the part.
+  /// What of a part is seen: how much nearer together than what it sends (as the variance), and how its colours change, times its share.
+  struct Spread {
+    F narrower, change[3];
+    bool any_change;
+  };
+  /// Pieces::segment of optics/integrate.cpp. `line`: of the medium on which the part lies; null: that of each value. `lit(at, share,
+  /// spread, r, g, b)` lights the colours and the share of what is mirrored, at the share `at` of the part.
   template <class Lit>
   HWY_INLINE void segment(M look, F here, F part, F depth, const F tau[3], F a, F b, F middle, F weight, const I* line, const Lit& lit) {
     const D d;
@@ -306,7 +317,10 @@ class PacketCells : public RayLanes<D, T, Axes> {
     F r = hn::Mul(color.r, alpha), g = hn::Mul(color.g, alpha), bl = hn::Mul(color.b, alpha);
     M deep = hn::And(drawn, hn::Gt(depth, hn::Set(d, 0.1f)));
     deep = hn::And(deep, hn::Gt(hn::Mul(hn::Min(depth, hn::Set(d, 6.0f)), most_hidden_), hn::Set(d, 12.0f)));
-    if (!hn::AllFalse(d, deep)) {
+    Spread spread{one, {zero, zero, zero}, false};
+    M covaries = deep;
+    if constexpr (shaded) covaries = hn::Or(deep, hn::And(drawn, hn::Gt(hn::Mul(hn::Min(depth, one), most_covary_), one)));
+    if (!hn::AllFalse(d, covaries)) {
       F hidden = hn::Add(mul_sub(half, alpha, hn::Div(alpha, hn::Max(depth, hn::Set(d, 0.05f)))), pass);
       const F series = hn::Mul(hn::Mul(depth, depth),
                                neg_mul_add(depth, neg_mul_add(depth, hn::Set(d, 1.0f / 80), hn::Set(d, 1.0f / 24)), hn::Set(d, 1.0f / 12)));
@@ -314,10 +328,20 @@ class PacketCells : public RayLanes<D, T, Axes> {
       const auto front = line ? medium.color(a, *line) : medium.color(a), back = line ? medium.color(b, *line) : medium.color(b);
       r = neg_mul_add(hn::Sub(back.r, front.r), hidden, r), g = neg_mul_add(hn::Sub(back.g, front.g), hidden, g);
       bl = neg_mul_add(hn::Sub(back.b, front.b), hidden, bl);
-      weight = hn::Sub(weight, hn::IfThenElseZero(deep, hn::Div(hidden, hn::Max(alpha, hn::Set(d, 0.05f)))));
+      const F per_alpha = hn::Div(one, hn::Max(alpha, hn::Set(d, 0.05f)));
+      weight = hn::Sub(weight, hn::IfThenElseZero(deep, hn::Mul(hidden, per_alpha)));
+      if constexpr (shaded) {
+        // 12 / depth^2 - 12 exp(-depth) / alpha^2, by its series where that cancels.
+        const F square = hn::Mul(depth, depth), per = hn::Div(hn::Set(d, 12.0f), hn::Max(square, one));
+        const F closed = neg_mul_add(hn::Mul(hn::Set(d, 12.0f), pass), hn::Mul(per_alpha, per_alpha), per);
+        const F thin_spread = neg_mul_add(square, neg_mul_add(square, hn::Set(d, 1.0f / 504), hn::Set(d, 0.05f)), one);
+        spread.narrower = hn::IfThenElse(hn::Lt(depth, one), thin_spread, closed), spread.any_change = true;
+        spread.change[0] = hn::Mul(alpha, hn::Sub(back.r, front.r)), spread.change[1] = hn::Mul(alpha, hn::Sub(back.g, front.g));
+        spread.change[2] = hn::Mul(alpha, hn::Sub(back.b, front.b));
+      }
     }
     const F before = hn::IfThenElseZero(drawn, sum.pass);
-    lit(weight, alpha, r, g, bl);
+    lit(weight, alpha, spread, r, g, bl);
     // Lanes that draw nothing may have been lit beside a hole.
     if constexpr (shaded) r = hn::IfThenElseZero(drawn, r), g = hn::IfThenElseZero(drawn, g), bl = hn::IfThenElseZero(drawn, bl);
     sum.r = mul_add(before, r, sum.r), sum.g = mul_add(before, g, sum.g), sum.b = mul_add(before, bl, sum.b);
@@ -339,7 +363,7 @@ class PacketCells : public RayLanes<D, T, Axes> {
   // The line of the medium on which each lane's value was last: most often it is there still.
   I at_;
   typename MediumLanes<D>::Line line_;
-  F most_hidden_;
+  F most_hidden_, most_covary_;
 };
 
 }  // namespace sg::volume::HWY_NAMESPACE

@@ -17,10 +17,32 @@ template <class D>
 struct Cubic {
   hn::Vec<D> a, b, c, e, last;  // last: at s = 1
   HWY_INLINE hn::Vec<D> at(hn::Vec<D> s) const { return mul_add(s, mul_add(s, mul_add(s, e, c), b), a); }
+  HWY_INLINE Cubic times(hn::Vec<D> x) const { return {hn::Mul(a, x), hn::Mul(b, x), hn::Mul(c, x), hn::Mul(e, x), hn::Mul(last, x)}; }
+  HWY_INLINE Cubic plus(const Cubic& o, hn::Vec<D> x) const {
+    return {mul_add(o.a, x, a), mul_add(o.b, x, b), mul_add(o.c, x, c), mul_add(o.e, x, e), mul_add(o.last, x, last)};
+  }
   /// Bounds on [0, 1]: those of the Bernstein coefficients.
   HWY_INLINE void hull(hn::Vec<D>& lo, hn::Vec<D>& hi) const {
     const auto third = hn::Set(D(), 1.0f / 3), b1 = mul_add(b, third, a), b2 = mul_add(hn::Add(b, c), third, b1);
     lo = hn::Min(hn::Min(a, b1), hn::Min(b2, last)), hi = hn::Max(hn::Max(a, b1), hn::Max(b2, last));
+  }
+  /// Where it has its zero between s and end, at0 and at1 there of different signs: false position that halves what an end that stays has
+  /// (Illinois).
+  HWY_NOINLINE hn::Vec<D> zero_between(hn::Vec<D> s, hn::Vec<D> end, hn::Vec<D> at0, hn::Vec<D> at1) const {
+    using F = hn::Vec<D>;
+    const D d;
+    const F zero = hn::Zero(d), half = hn::Set(d, 0.5f);
+    F meet = s;
+    for (int i = 0; i < 16; ++i) {
+      const F apart = hn::Sub(at0, at1), wide = hn::Sub(end, s);
+      const F share = hn::IfThenElse(hn::Eq(apart, zero), half, hn::Div(at0, hn::IfThenElse(hn::Eq(apart, zero), half, apart)));
+      meet = mul_add(wide, share, s);
+      const F here = at(meet);
+      const auto later = hn::Xor(hn::Gt(here, zero), hn::Gt(at1, zero));
+      at0 = hn::IfThenElse(later, here, hn::Mul(half, at0)), at1 = hn::IfThenElse(later, hn::Mul(half, at1), here);
+      s = hn::IfThenElse(later, meet, s), end = hn::IfThenElse(later, end, meet);
+    }
+    return meet;
   }
   /// Where its derivative b + 2 c s + 3 e s^2 is zero; anything but a number in (0, 1) where it is not.
   HWY_INLINE void turns(hn::Vec<D>& first, hn::Vec<D>& second) const {

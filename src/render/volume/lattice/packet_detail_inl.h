@@ -94,7 +94,7 @@ class DetailCells : public RayLanes<D, T, Axes> {
     look = hn::And(look, hn::And(detail_.draw(lo, hi), hn::Eq(f.last, f.last)));  // no hole
     if (hn::AllFalse(d, look)) return;
     light_.find(source, inside, from, way);
-    integrate(f, from, way, t, hn::Sub(leave, t), look);
+    integrate(f, t, hn::Sub(leave, t), look);
   }
 
  private:
@@ -109,11 +109,11 @@ class DetailCells : public RayLanes<D, T, Axes> {
       if constexpr (shaded) surface.take(o.surface, which);
     }
   };
-  HWY_INLINE Spot spot(const Cubic<D>& f, const F from[3], const F way[3], F s) const {
+  HWY_INLINE Spot spot(const Cubic<D>& f, F s) const {
     Spot p;
     F g[3];
     p.value = f.at(s);
-    light_.gradient(from, way, s, g);
+    light_.gradient(s, g);
     p.gradient = hn::Sqrt(Lighting<D>::dot(g, g));
     p.tau = detail_.tau(p.value, p.gradient);
     const auto color = medium_.color(p.value);
@@ -158,18 +158,18 @@ class DetailCells : public RayLanes<D, T, Axes> {
     }
   };
 
-  HWY_INLINE void integrate(const Cubic<D>& f, const F from[3], const F way[3], F t, F length, M look) {
+  HWY_INLINE void integrate(const Cubic<D>& f, F t, F length, M look) {
     const D d;
     const F zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
     const F stop = hn::Set(d, plan.budget.stop_below), tolerance = hn::Set(d, float(plan.budget.tolerance));
     // Parts shorter than a cell have as much: kinks, of which there are few, would be cut down to nothing.
     const F by_cell = hn::Set(d, float(0.4 * double(plan.edge) / plan.budget.length));
     F s = zero, part = one;
-    Spot a = spot(f, from, way, zero);
+    Spot a = spot(f, zero);
     for (;;) {
       const F quarter = hn::Mul(part, hn::Set(d, 0.25f)), end = hn::Min(one, hn::Add(s, part));
-      const Spot p1 = spot(f, from, way, hn::Add(s, quarter)), m = spot(f, from, way, mul_add(half, part, s)),
-                 p3 = spot(f, from, way, mul_add(hn::Set(d, 3.0f), quarter, s)), b = spot(f, from, way, end);
+      const Spot p1 = spot(f, hn::Add(s, quarter)), m = spot(f, mul_add(half, part, s)),
+                 p3 = spot(f, mul_add(hn::Set(d, 3.0f), quarter, s)), b = spot(f, end);
       const F whole = hn::Mul(length, part), half_length = hn::Mul(half, whole);
       const Part once(whole, a, m, b), front(half_length, a, p1, m), back(half_length, m, p3, b);
       const F passes = hn::Mul(front.passes, back.passes);
@@ -191,9 +191,9 @@ class DetailCells : public RayLanes<D, T, Axes> {
       const F taken = hn::Mul(sum.pass, taken_here);
       const F allowed = hn::Mul(tolerance, mul_add(hn::Set(d, 0.4f), taken, by_cell));
       const DetailTable& table = detail_.table();
-      const AxisSamples values{{&a.value, &p1.value, &m.value, &p3.value, &b.value}, table.narrow, table.edges};
+      const AxisSamples values{{&a.value, &p1.value, &m.value, &p3.value, &b.value}, table.narrow, table.opacity, table.edges};
       const AxisSamples gradients{
-          {&a.gradient, &p1.gradient, &m.gradient, &p3.gradient, &b.gradient}, table.narrow_second, table.second_edges};
+          {&a.gradient, &p1.gradient, &m.gradient, &p3.gradient, &b.gradient}, table.narrow_second, table.factor, table.second_edges};
       F lo, hi;
       values.reach(lo, hi);
       const F faint = hn::Div(hn::Set(d, overlooked_depth / table.per_unit), hn::Max(whole, hn::Set(d, 1e-30f)));
@@ -228,6 +228,7 @@ class DetailCells : public RayLanes<D, T, Axes> {
   struct AxisSamples {
     const F* at[5];
     float narrow;
+    const DetailTable::Curve& curve;
     const std::vector<TransferFunction::Edge>& edges;
 
     HWY_INLINE void range(F& lo, F& hi) const {
@@ -248,16 +249,28 @@ class DetailCells : public RayLanes<D, T, Axes> {
       const D d;
       F most = hn::Zero(d), lo, hi;
       for (int i = 0; i < 4; ++i) most = hn::Max(most, hn::Abs(hn::Sub(*at[i], *at[i + 1])));
-      M missed = hn::Gt(most, hn::Set(d, narrow));
-      if (edges.empty()) return missed;
       range(lo, hi);
       const F far = beyond(), below = hn::Sub(lo, far), above = hn::Add(hi, far);
+      M missed = hn::Gt(most, hn::Set(d, narrow));
+      // Only lines nearby; as far beside the samples as these lie apart.
+      if (!hn::AllFalse(d, missed)) missed = shorter_line(hn::Sub(below, most), hn::Add(above, most), most);
       for (const TransferFunction::Edge& edge : edges) {
         const F e = hn::Set(d, edge.at);
         const M there = hn::Or(hn::And(hn::Gt(e, below), hn::Le(e, lo)), hn::And(hn::Ge(e, hi), hn::Lt(e, above)));
         missed = hn::Or(missed, hn::And(there, hn::Gt(hn::Mul(hn::Set(d, edge.steep), far), opacity)));
       }
       return missed;
+    }
+    HWY_INLINE M shorter_line(F lo, F hi, F length) const {
+      const D d;
+      M found = hn::MaskFromVec(hn::Zero(d));
+      for (size_t i = 0; i + 1 < curve.x.size(); ++i) {
+        const float begin = curve.x[i], end = curve.x[i + 1];
+        if (!(end > begin)) continue;
+        const M reaches = hn::And(hn::Le(hn::Set(d, begin), hi), hn::Ge(hn::Set(d, end), lo));
+        found = hn::Or(found, hn::And(reaches, hn::Gt(length, hn::Set(d, end - begin))));
+      }
+      return found;
     }
     HWY_INLINE M cross_edge() const {
       const D d;

@@ -184,7 +184,15 @@ class Lighting {
     return hn::Set(D(), std::max(flat, lit) + m.specular * intensity_);
   }
 
+  /// By how much light may differ where a surface turns over or a lamp begins to reach it.
+  HWY_INLINE F most_jump() const { return hn::Set(D(), intensity_ * (plan_->material.diffuse + plan_->material.specular)); }
+
   const Material& material() const { return plan_->material; }
+  size_t lamps() const { return plan_->lamps.size(); }
+  HWY_INLINE void towards(size_t lamp, F out[3]) const {
+    const Vec3f to(plan_->lamps[lamp].direction);
+    out[0] = hn::Set(D(), to.x), out[1] = hn::Set(D(), to.y), out[2] = hn::Set(D(), to.z);
+  }
 
   F ray[3];  ///< directions
 
@@ -267,116 +275,180 @@ class CellLight {
   HWY_INLINE CellLight(const Lighting<D>& lighting, const Axes& axes) : lighting_(lighting), axes_(axes) {}
 
   /// What one place on the way gets wrong of the light on all of it where the light bends; it falls with the square of the number of parts.
-  /// And by how much it jumps between the ends (a surface that turns over, a lamp that begins to reach it), or may jump forth and back.
+  /// By how much it changes on the way. And by how much it may jump (a surface turns over, a lamp begins to reach it).
   struct Error {
-    F bend, jump;
-    I sides[2];
+    F bend, change, jump;
+    bool over;                             ///< may it turn over in any lane?
+    bool reached[PacketPlan::most_lamps];  ///< may a lamp begin to reach it?
+    hn::Mask<D> begins;                    ///< the lanes in which it may become or cease to be as much of a surface as can be
   };
-  /// The slopes of this cell, of which those that follow speak.
+  /// The gradient on the way, of which those that follow speak.
   HWY_INLINE void find(const Source<D, T>& source, const I cell[3], const F from[3], const F way[3]) {
     const D d;
-    slopes_.find(axes_, Around<D, T>(source, cell), cell);
-    if constexpr (std::is_same_v<T, float>) {
-      F g[3];
-      gradient(from, way, hn::Zero(d), g);
-      if (!hn::AllFalse(d, hn::IsNaN(hn::Add(g[0], hn::Add(g[1], g[2])))))
-        slopes_.find_beside_holes(axes_, Around<D, T>(source, cell), cell);
-    }
+    typename Axes::template Slopes<T> slopes;
+    slopes.find(axes_, Around<D, T>(source, cell), cell);
+    take(slopes, from, way);
+    if constexpr (std::is_same_v<T, float>)
+      if (!hn::AllFalse(d, hn::IsNaN(hn::Add(gradient_[0].a, hn::Add(gradient_[1].a, gradient_[2].a))))) {
+        slopes.find_beside_holes(axes_, Around<D, T>(source, cell), cell);
+        take(slopes, from, way);
+      }
   }
   HWY_INLINE Error error(const Source<D, T>& source, const I cell[3], const F from[3], const F way[3]) {
     const D d;
-    const F zero = hn::Zero(d);
+    const F zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
     find(source, cell, from, way);
-    F g0[3], g1[3], middle[3], nearest[2];
-    gradient(from, way, zero, g0);
-    gradient(from, way, hn::Set(d, 1.0f), g1), gradient(from, way, hn::Set(d, 0.5f), middle);
+    F g0[3], g1[3], middle[3], nearest[3];
+    gradient(zero, g0), gradient(one, g1), gradient(half, middle);
     const FieldSurface<D> s0 = lighting_.surface(g0), s1 = lighting_.surface(g1), sm = lighting_.surface(middle);
-    Error e;
-    const LitLanes<D> l0 = lighting_.on(s0, e.sides[0], nearest[0]), l1 = lighting_.on(s1, e.sides[1], nearest[1]);
+    I sides[3];
+    const LitLanes<D> l0 = lighting_.on(s0, sides[0], nearest[0]), l1 = lighting_.on(s1, sides[1], nearest[1]),
+                      lm = lighting_.on(sm, sides[2], nearest[2]);
     const auto begins = hn::Gt(s0.much, zero), stops = hn::Gt(s1.much, zero), both = hn::And(begins, stops);
     // Where an end has no surface (equal samples around it), there may be one on the way: then the border of that is a jump.
     const auto some = hn::Gt(hn::Max(sm.much, hn::Max(s0.much, s1.much)), zero), border = hn::AndNot(both, some);
-    // For an angle a the light bends by a^2 / 24 of its second derivative, with a^2 = 2 (1 - cos a). An even turn is twice those to and
-    // from the middle; a rough field may turn there and back.
     const F turn0 = hn::IfThenElseZero(begins, turn_between(s0, sm)), turn1 = hn::IfThenElseZero(stops, turn_between(sm, s1));
-    const F halves = hn::Add(turn0, turn1), whole = hn::IfThenElse(both, turn_between(s0, s1), hn::Set(d, at_border));
-    const F turn = hn::Max(whole, hn::Add(halves, halves));
-    const F faded =
-        hn::Mul(hn::Mul(hn::Set(d, 0.5f), hn::Add(Fade<D>(s0, sm, turn0).hollow, Fade<D>(sm, s1, turn1).hollow)), lighting_.most_fade());
-    const F bend = hn::Mul(turn, hn::Mul(lighting_.bend(hn::Max(nearest[0], nearest[1]), turn), hn::Set(d, 1.0f / 12)));
-    const auto kinked = hn::RebindMask(d, hn::Ne(e.sides[0], e.sides[1]));
-    // The middle of an uneven turn is not its mean: by half the square of how uneven, never by more than a tenth.
-    const F uneven = hn::Sub(hn::Set(d, 1.0f), hn::Mul(hn::Set(d, 2.0f), turned_half_way(s0, s1)));
-    const F off = hn::Mul(apart(l0, l1), hn::Min(hn::Mul(hn::Mul(hn::Set(d, 0.5f), uneven), uneven), hn::Set(d, 0.1f)));
-    e.bend = hn::IfThenElseZero(some, hn::Add(hn::Add(bend, faded), hn::IfThenElseZero(both, off)));
-    const auto over_edge = hn::Or(hn::And(begins, grazing(s0, sm)), hn::And(stops, grazing(sm, s1)));
-    const F over = hn::IfThenElseZero(hn::Or(over_edge, hn::Gt(turn, hn::Set(d, rough))), turn);
-    const F jump = hn::IfThenElse(kinked, apart(l0, l1), hn::IfThenElseZero(border, lighting_.most_fade()));
-    e.jump = hn::IfThenElseZero(some, hn::Max(over, jump));
+    // For an angle a that is turned evenly the light bends by a^2 / 24 of its second derivative; a^2 = 2 (1 - cos a).
+    const F turned = hn::Add(hn::IfThenElse(begins, swept(g0, middle, turn0), hn::Set(d, at_border)),
+                             hn::IfThenElse(stops, swept(middle, g1, turn1), hn::Set(d, at_border)));
+    const F faded = hn::Mul(hn::Mul(half, hn::Add(Fade<D>(s0, sm, turn0).hollow, Fade<D>(sm, s1, turn1).hollow)), lighting_.most_fade());
+    const F turn = hn::Max(turn0, turn1), near = hn::Max(nearest[2], hn::Max(nearest[0], nearest[1]));
+    const F bend = hn::Mul(turned, hn::Mul(lighting_.bend(near, turn), hn::Set(d, 1.0f / 24)));
+    Error e;
+    e.change = hn::IfThenElseZero(some, hn::Add(apart(l0, lm), apart(lm, l1)));
+    const auto same = [&](F towards[3]) HWY_ATTR {
+      F lo, hi;
+      along(towards).hull(lo, hi);
+      return hn::Or(hn::Gt(lo, zero), hn::Lt(hi, zero));
+    };
+    F ray[3] = {lighting_.ray[0], lighting_.ray[1], lighting_.ray[2]};
+    const auto whole = hn::MaskFromVec(hn::BitCast(d, hn::Set(IntTag<D>(), -1)));
+    hn::Mask<D> kinked = hn::AndNot(same(ray), whole);
+    e.over = !hn::AllFalse(d, hn::And(some, kinked));
+    for (size_t l = 0; l < lighting_.lamps(); ++l) {
+      F lamp[3];
+      lighting_.towards(l, lamp);
+      const auto changes = hn::AndNot(same(lamp), whole);
+      e.reached[l] = !hn::AllFalse(d, hn::And(some, changes));
+      kinked = hn::Or(kinked, changes);
+    }
+    // Light on a turn that is not even bends by that, too: by a sixth of its second difference in the mean, twice that where it bends most.
+    const auto second = [&](F a, F b, F c) HWY_ATTR { return hn::Abs(hn::Sub(hn::Add(a, c), hn::Add(b, b))); };
+    const F bent =
+        hn::Mul(hn::Add(second(l0.diffuse, lm.diffuse, l1.diffuse), second(l0.specular, lm.specular, l1.specular)), hn::Set(d, 1.0f / 3));
+    const F uneven = hn::IfThenElse(kinked, hn::Mul(e.change, hn::Set(d, 0.1f)), bent);
+    e.bend = hn::IfThenElseZero(some, hn::Add(hn::Add(bend, faded), uneven));
+    const I differ = hn::Or(hn::Xor(sides[0], sides[2]), hn::Xor(sides[2], sides[1]));
+    e.begins = hn::And(some, hn::RebindMask(d, hn::Ne(hn::And(differ, hn::Set(IntTag<D>(), 2)), hn::Zero(IntTag<D>()))));
+    const F jump = hn::Max(hn::IfThenElseZero(kinked, lighting_.most_jump()),
+                           hn::Max(hn::IfThenElseZero(e.begins, e.change), hn::IfThenElseZero(border, lighting_.most_fade())));
+    e.jump = hn::IfThenElseZero(some, jump);
     return e;
   }
 
-  static constexpr int quarters = 4, most_jumps = 2 * quarters;
+  static constexpr int quarters = 4, most_jumps = 12;
 
-  /// Where the light of the lanes told jumps on the way, ascending; 2 where it does not. Two jumps are found in each quarter, where they
-  /// leave another side than the one before them.
-  HWY_NOINLINE void jumps(const F from[3], const F way[3], const Error& e, hn::Mask<D> which, F at[most_jumps]) const {
+  /// Where the light of the lanes told jumps on the way, as many as there is room for; 2 where it does not.
+  HWY_NOINLINE void jumps(const Error& e, hn::Mask<D> which, F at[most_jumps]) const {
     const D d;
-    const F half = hn::Set(d, 0.5f), none = hn::Set(d, 2.0f);
-    const auto other = [&](I a, I b) HWY_ATTR { return hn::And(which, hn::RebindMask(d, hn::Ne(a, b))); };
-    // Ever smaller parts that begin on one side and end on another.
-    const auto first = [&](F begin, F end, I side) HWY_ATTR {
-      for (int n = 0; n < 12; ++n) {
-        const F middle = hn::Mul(half, hn::Add(begin, end));
-        const auto later = hn::RebindMask(d, hn::Eq(sides(from, way, middle), side));
-        begin = hn::IfThenElse(later, middle, begin), end = hn::IfThenElse(later, end, middle);
-      }
-      return end;
+    int n = 0;
+    for (int i = 0; i < most_jumps; ++i) at[i] = hn::Set(d, 2.0f);
+    const F ray[3] = {lighting_.ray[0], lighting_.ray[1], lighting_.ray[2]};
+    if (e.over) roots(along(ray), which, at, n);
+    for (size_t l = 0; l < lighting_.lamps(); ++l) {
+      if (!e.reached[l]) continue;
+      F lamp[3];
+      lighting_.towards(l, lamp);
+      roots(along(lamp), which, at, n);
+    }
+    const auto begins = hn::And(which, e.begins);
+    if (hn::AllFalse(d, begins)) return;
+    // Ever smaller parts on whose ends there is as much of a surface as can be, or is not.
+    const F half = hn::Set(d, 0.5f), one = hn::Set(d, 1.0f);
+    const auto all = [&](F s) HWY_ATTR {
+      F g[3];
+      gradient(s, g);
+      return hn::Ge(lighting_.surface(g).much, one);
     };
-    I before = e.sides[0];
-    for (int q = 0; q < quarters; ++q) {
-      const F begin = hn::Set(d, float(q) / quarters), end = hn::Set(d, float(q + 1) / quarters);
-      const I after = q + 1 < quarters ? sides(from, way, end) : e.sides[1];
-      at[2 * q] = at[2 * q + 1] = none;
-      if (const auto jump = other(before, after); !hn::AllFalse(d, jump)) {
-        const F there = first(begin, end, before);
-        at[2 * q] = hn::IfThenElse(jump, there, none);
-        const I between = sides(from, way, there);
-        if (const auto again = hn::And(jump, other(between, after)); !hn::AllFalse(d, again))
-          at[2 * q + 1] = hn::IfThenElse(again, first(there, end, between), none);
+    auto before = all(hn::Zero(d));
+    for (int q = 0; q < quarters && n < most_jumps; ++q) {
+      F begin = hn::Set(d, float(q) / quarters), end = hn::Set(d, float(q + 1) / quarters);
+      const auto after = all(end), changes = hn::And(begins, hn::Xor(before, after));
+      if (!hn::AllFalse(d, changes)) {
+        for (int i = 0; i < 12; ++i) {
+          const F middle = hn::Mul(half, hn::Add(begin, end));
+          const auto earlier = hn::Xor(all(middle), before);
+          end = hn::IfThenElse(earlier, middle, end), begin = hn::IfThenElse(earlier, begin, middle);
+        }
+        at[n++] = hn::IfThenElse(changes, end, hn::Set(d, 2.0f));
       }
       before = after;
     }
   }
 
   /// World gradient at the share s of the way.
-  HWY_INLINE void gradient(const F from[3], const F way[3], F s, F out[3]) const {
-    F f[3], g[3];
-    for (int a = 0; a < 3; ++a) f[a] = mul_add(way[a], s, from[a]);
-    for (int a = 0; a < 3; ++a) g[a] = slopes_.along(a, f);
-    lighting_.to_world(g, out);
+  HWY_INLINE void gradient(F s, F out[3]) const {
+    for (int a = 0; a < 3; ++a) out[a] = gradient_[a].at(s);
   }
-  HWY_INLINE LitLanes<D> at(const F from[3], const F way[3], F s) const {
+  HWY_INLINE LitLanes<D> at(F s) const {
     F g[3];
-    gradient(from, way, s, g);
+    gradient(s, g);
     return lighting_.on(lighting_.surface(g));
   }
 
  private:
-  HWY_INLINE I sides(const F from[3], const F way[3], F s) const {
-    F g[3], nearest;
-    I found;
-    gradient(from, way, s, g);
-    (void)lighting_.on(lighting_.surface(g), found, nearest);
-    return found;
+  template <class Slopes>
+  HWY_INLINE void take(const Slopes& slopes, const F from[3], const F way[3]) {
+    const Cubic<D> c[3] = {slopes.along(0, from, way), slopes.along(1, from, way), slopes.along(2, from, way)};
+    const auto part = [&](F Cubic<D>::*of) HWY_ATTR {
+      const F cells[3] = {c[0].*of, c[1].*of, c[2].*of};
+      F world[3];
+      lighting_.to_world(cells, world);
+      for (int a = 0; a < 3; ++a) gradient_[a].*of = world[a];
+    };
+    part(&Cubic<D>::a), part(&Cubic<D>::b), part(&Cubic<D>::c), part(&Cubic<D>::e), part(&Cubic<D>::last);
+  }
+  /// The gradient's part along a direction.
+  HWY_INLINE Cubic<D> along(const F towards[3]) const {
+    return gradient_[0].times(towards[0]).plus(gradient_[1], towards[1]).plus(gradient_[2], towards[2]);
+  }
+  /// Appends where a cubic changes its sign: between the ends and where it turns.
+  static HWY_INLINE void roots(const Cubic<D>& h, hn::Mask<D> which, F at[most_jumps], int& n) {
+    const D d;
+    const F zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+    F turn[2];
+    h.turns(turn[0], turn[1]);
+    for (F& t : turn) t = hn::IfThenElseZero(hn::And(hn::Gt(t, zero), hn::Lt(t, one)), t);
+    const F ends[4] = {zero, hn::Min(turn[0], turn[1]), hn::Max(turn[0], turn[1]), one};
+    F before = h.a;
+    for (int i = 0; i < 3 && n < most_jumps; ++i) {
+      const F after = i < 2 ? h.at(ends[i + 1]) : h.last;
+      const auto changes = hn::And(which, hn::Xor(hn::Gt(before, zero), hn::Gt(after, zero)));
+      if (!hn::AllFalse(d, changes))
+        at[n++] = hn::IfThenElse(changes, h.zero_between(ends[i], ends[i + 1], before, after), hn::Set(d, 2.0f));
+      before = after;
+    }
+  }
+  /// The square of the angle that is turned over half of the way from one gradient to the next, as if it were turned evenly over all of it:
+  /// it is turned fastest where the gradient is smallest. `turn`: 1 - cosine.
+  static HWY_INLINE F swept(const F a[3], const F b[3], F turn) {
+    const D d;
+    const F zero = hn::Zero(d), one = hn::Set(d, 1.0f), two = hn::Set(d, 2.0f), least = hn::Set(d, 1e-30f);
+    const F c[3] = {hn::Sub(b[0], a[0]), hn::Sub(b[1], a[1]), hn::Sub(b[2], a[2])};
+    const F change = hn::Max(Lighting<D>::dot(c, c), least);
+    const F to = hn::Max(zero, hn::Min(hn::Div(hn::Neg(Lighting<D>::dot(a, c)), change), one));
+    const F near[3] = {mul_add(c[0], to, a[0]), mul_add(c[1], to, a[1]), mul_add(c[2], to, a[2])};
+    const F smallest = hn::Max(Lighting<D>::dot(near, near), hn::Mul(change, hn::Set(d, 1 / (most_rate * most_rate))));
+    const F even = hn::Add(turn, turn);  // the square of the angle
+    return hn::Mul(two, hn::Sqrt(hn::Mul(even, hn::Max(even, hn::Div(change, smallest)))));
   }
 
-  static constexpr float rough = 0.25f;     // 1 - cosine of a turn within a cell from which on jumps are looked for
   static constexpr float at_border = 0.1f;  // what a surface is thought to turn that begins or ends on the way
+  static constexpr float most_rate = 100;   // of a turn over half of the way, in radians
 
   const Lighting<D>& lighting_;
   const Axes& axes_;
-  typename Axes::template Slopes<T> slopes_;
+  Cubic<D> gradient_[3];  // world
 };
 
 }  // namespace sg::volume::HWY_NAMESPACE

@@ -77,7 +77,7 @@ class GradientPath {
     const F size = hn::Max(Lighting<D>::dot(change, change), hn::Set(d, 1e-30f));
     const F share = hn::Div(length, hn::Mul(hn::Set(d, 4.0f), hn::Add(length, length_)));
     const F off = hn::Mul(share, hn::Sqrt(hn::Div(Lighting<D>::dot(bend, bend), size)));
-    return hn::IfThenElse(hn::Gt(length_, hn::Zero(d)), hn::Min(off, hn::Set(d, 0.5f)), hn::Set(d, unknown));
+    return hn::IfThenElse(known(), off, hn::Set(d, unknown));
   }
   HWY_INLINE void go(const LitPlace<D>& here, const LitPlace<D>& p2, F length, hn::Mask<D> which) {
     F change[3];
@@ -86,6 +86,8 @@ class GradientPath {
     length_ = hn::IfThenElse(which, length, length_);
   }
   HWY_INLINE void forget(hn::Mask<D> which) { length_ = hn::IfThenZeroElse(which, length_); }
+  /// The lanes in which there is something to compare with.
+  HWY_INLINE hn::Mask<D> known() const { return hn::Gt(length_, hn::Zero(D())); }
 
  private:
   static constexpr float unknown = 1.0f / 16;
@@ -111,6 +113,7 @@ struct Parabola {
   HWY_INLINE hn::Vec<D> mean(hn::Vec<D> x, hn::Vec<D> variance) const {
     return hn::Add(a, mul_add(c, mul_add(x, x, variance), hn::Mul(b, x)));
   }
+  HWY_INLINE hn::Vec<D> slope(hn::Vec<D> x) const { return mul_add(hn::Add(c, c), x, b); }
 };
 
 /// Light along two strides, and what is wrong with it as a share of what they take.
@@ -137,12 +140,16 @@ struct StrideLight {
     l.error = hn::Mul(turn, hn::Mul(lighting.bend(hn::Max(p0.nearest, p2.nearest), turn), hn::Set(d, 1.0f / 6)));
     l.error = mul_add(hn::Mul(fade.hollow, hn::Set(d, share_hollow)), lighting.most_fade(), l.error);
     l.error = hn::Add(l.error, beside_parabola(p0, p2));
-    l.error = mul_add(apart(p0.light, p2.light), hn::Mul(hn::Set(d, 2.0f / 3), swerve), l.error);
+    // Where the light at both ends is alike it may have been another in between, by the angle.
+    const F angle = hn::Sqrt(hn::Max(zero, hn::Add(turn, turn)));
+    const F astray = hn::Max(apart(p0.light, p2.light), hn::Mul(hn::Set(d, share_angle), angle));
+    l.error = mul_add(astray, hn::Mul(hn::Set(d, 2.0f / 3), swerve), l.error);
     l.error = hn::IfThenElse(kinked(p0.sides, p2.sides), hn::Set(d, 1.0f), l.error);
     return l;
   }
-  /// A parabola through the ends and the middle.
-  static HWY_INLINE StrideLight curved(const Lighting<D>& lighting, const LitPlace<D>& p0, const LitPlace<D>& p1, const LitPlace<D>& p2) {
+  /// A parabola through the ends and the middle of strides of so much optical depth.
+  static HWY_INLINE StrideLight curved(const Lighting<D>& lighting, const LitPlace<D>& p0, const LitPlace<D>& p1, const LitPlace<D>& p2,
+                                       F depth) {
     const D d;
     StrideLight l{Parabola<D>::through(p0.light.diffuse, p1.light.diffuse, p2.light.diffuse),
                   Parabola<D>::through(p0.light.specular, p1.light.specular, p2.light.specular), hn::Zero(d)};
@@ -152,7 +159,9 @@ struct StrideLight {
     const F nearest = hn::Max(p1.nearest, hn::Max(p0.nearest, p2.nearest));
     const F lobe = hn::Mul(square, hn::Mul(hn::Set(d, lobe_share), lighting.bend(nearest, hn::Max(turn01, turn12))));
     const F bend = hn::Max(hn::Mul(hn::Set(d, 2.0f), hn::Add(hn::Abs(l.diffuse.c), hn::Abs(l.specular.c))), lobe);
-    const F share = mul_add(square, hn::Set(d, share_turned * lighting.material().power), hn::Set(d, share_least));
+    // What lies beside it before the middle and after cancels, but where the front hides the back.
+    const F hidden = mul_add(hn::Min(depth, hn::Set(d, 4.0f)), hn::Set(d, share_hidden_half), hn::Set(d, share_least));
+    const F share = mul_add(square, hn::Set(d, share_turned * lighting.material().power), hidden);
     // A jump may lie anywhere in its half, which has about half of what is taken.
     const auto jump = [&](const LitPlace<D>& a, const LitPlace<D>& b) HWY_ATTR {
       return hn::IfThenElseZero(kinked(a.sides, b.sides), hn::Mul(hn::Set(d, share_kinked), apart(a.light, b.light)));
@@ -209,7 +218,7 @@ struct StrideLight {
 
  private:
   static constexpr float lobe_share = 0.05f, share_least = 1.0f / 64, share_turned = 1.0f / 128, share_kinked = 1.0f / 4;
-  static constexpr float share_hollow = 1.0f / 3;
+  static constexpr float share_hollow = 1.0f / 3, share_hidden_half = 1.0f / 24, share_angle = 0.25f;
   static constexpr float share_uneven = 0.25f, share_hidden = 1.0f / 16;
   /// The mean of an uneven turn beside that of the parabola through its ends and its middle: a tenth of the cube of how uneven, by
   /// quadrature.

@@ -95,6 +95,7 @@ struct Strides {
   hn::Vec<D> value;             ///< the mean by emission,
   hn::Vec<D> middle, variance;  ///< and where it lies
   hn::Vec<D> change;            ///< largest less smallest value
+  hn::Vec<D> uneven;            ///< of a change of colour or light, the share that is hidden otherwise, or lies elsewhere
 };
 
 /// From p0 by p1 to p2, each stride `world` long; the slope of the value changes by at most `bend` per cell length, of which a stride has
@@ -157,7 +158,8 @@ HWY_INLINE Strides<D> strides(const SumLanes<D>& medium, const Medium& colors, f
   F e = hn::Mul(per_steep, hn::Add(steep_a, steep_b));
   s.ahead = hn::Mul(per_steep, hn::Sub(steep_b, steep_a));
   e = mul_add(hn::Mul(taken, hn::Set(d, 0.25f * tolerance)), hn::Mul(widths, widths), e);
-  e = mul_add(recolored, hn::Add(hn::Min(one, deep), uneven), e);
+  s.uneven = hn::Add(hn::Min(one, deep), uneven);
+  e = mul_add(recolored, s.uneven, e);
   // Where colours kink they leave the straight line to both ends by up to a fourth of what their slope changes by, an eighth in the mean;
   // a deep pair shows its front alone.
   if (medium.sums->kinked()) {

@@ -25,6 +25,12 @@ constexpr float half_brick = 2, longest_stride = 4, shortest_stride = 1.0f / 8;
 /// Shares of the tolerance: to start with, over the whole length, and over all light that is taken. The rest is for the end of the ray,
 /// the tables, and the cells that are crossed.
 constexpr float share_at_first = 0.2f, share_of_length = 0.2f, share_of_light = 0.5f;
+/// Below it lit volumes are crossed cell by cell: how light goes along a stride is estimated from three places, to some thousandths.
+constexpr double least_lit_tolerance = 1.0 / 1024;
+/// What the light between the ends of the first strides of a ray may be off, of which nothing else is known.
+constexpr float first_error = 0.005f;
+/// Radians by which the gradient may turn over two strides, told by Bends.
+constexpr float most_turned = 4;
 /// Of what is left so much may go for one stride.
 constexpr float share_at_once = 1.0f / 3;
 /// The next stride over this one is so much of what the error would allow, within these bounds. A stride that is refused costs a whole
@@ -51,6 +57,8 @@ class TolerantPacket : CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>> {
     if (plan.passages) here_ = sums_.at(hn::Zero(d));
     lit_ = hn::MaskFromVec(hn::Zero(d));
     here_lit_ = LitPlace<D>::none();
+    strides_ = !shaded || plan.budget.tolerance >= least_lit_tolerance;
+    per_scale_ = hn::Set(d, plan.volume.shade_plan.per_scale * (2 / most_turned));
   }
 
   HWY_INLINE void run(PacketResult& result) {
@@ -79,7 +87,7 @@ class TolerantPacket : CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>> {
         here = passage(cell);
         going = on(), going = hn::AndNot(here.empty(), going);
       }
-      const M cellwise = hn::Or(hn::Lt(stride_, hn::Set(d, shortest_stride)), here.bent());
+      const M cellwise = !strides_ ? hn::Eq(t, t) : hn::Or(hn::Lt(stride_, hn::Set(d, shortest_stride)), here.bent());
       const M crossing = hn::And(going, cellwise), striding = hn::AndNot(cellwise, going);
       if (!hn::AllFalse(d, striding)) {
         const M fresh = hn::AndNot(known, striding);
@@ -178,10 +186,20 @@ class TolerantPacket : CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>> {
           light.take(StrideLight<D>::turned_over(cells_.lighting, here_lit_, lit2, tau, s.depth), turned);
         }
         // The middle only where the ends do not do.
-        const M unsure = hn::Or(hn::Gt(mul_add(taken, light.error, error), allowed), grazing(here_lit_.surface, lit2.surface));
+        const F unknown = hn::IfThenElse(path_.known(), zero, hn::Set(d, first_error));
+        const M unsure =
+            hn::Or(hn::Gt(mul_add(taken, hn::Add(light.error, unknown), error), allowed), grazing(here_lit_.surface, lit2.surface));
         const M rough = hn::AndNot(turned, hn::And(seen, unsure));
-        if (!hn::AllFalse(d, rough)) light.take(StrideLight<D>::curved(cells_.lighting, here_lit_, lit_at(t1, rough), lit2), rough);
+        if (!hn::AllFalse(d, rough))
+          light.take(StrideLight<D>::curved(cells_.lighting, here_lit_, lit_at(t1, rough), lit2, s.depth), rough);
+        // Three places tell little where the gradient may turn right round in between.
+        const F gradient = hn::Max(here_lit_.surface.much, lit2.surface.much);
+        const M astray = hn::Gt(hn::Mul(hn::Mul(bend, cells), per_scale_), gradient);
+        light.error = hn::Max(light.error, hn::IfThenElseZero(astray, one));
         error = hn::Add(error, hn::IfThenElseZero(seen, hn::Mul(taken, light.error)));
+        // What the front of an uneven pair hides of the change of light.
+        const F uneven = hn::Mul(hn::Mul(pass, s.uneven), apart(here_lit_.light, lit2.light));
+        error = hn::Add(error, hn::IfThenElseZero(hn::AndNot(turned, seen), uneven));
       }
     const M good = hn::And(striding, hn::Le(error, allowed));
     reserve_ = hn::IfThenElse(good, hn::Sub(hn::Add(reserve_, own), error), reserve_);
@@ -189,14 +207,20 @@ class TolerantPacket : CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>> {
       const M drawn = hn::And(seen, good);
       F lightening = zero;
       if constexpr (shaded) lightening = hn::Mul(hn::Set(d, 2.0f), hn::Add(hn::Abs(light.diffuse.b), hn::Abs(light.specular.b)));
-      cells_.may_hide(s.change, lightening);
+      cells_.may_hide(s.change, lightening, lightening);
       const F taus[3] = {here_.tau, p1.tau, p2.tau};
       cells_.segment(drawn, t, hn::Add(world, world), s.depth, taus, here_.value, p2.value, s.value, hn::Mul(half, hn::Add(one, s.middle)),
-                     nullptr, [&](F at, F share, F& red, F& green, F& blue) HWY_ATTR {
+                     nullptr, [&](F at, F share, const auto& spread, F& red, F& green, F& blue) HWY_ATTR {
                        if constexpr (shaded) {
-                         const F x = hn::Sub(hn::Add(at, at), one);
-                         const F factor = light.diffuse.mean(x, s.variance), flash = hn::Mul(light.specular.mean(x, s.variance), share);
-                         for (F* c : {&red, &green, &blue}) *c = mul_add(*c, factor, flash);
+                         const F x = hn::Sub(hn::Add(at, at), one), variance = hn::Mul(s.variance, spread.narrower);
+                         const F factor = light.diffuse.mean(x, variance), flash = hn::Mul(light.specular.mean(x, variance), share);
+                         F* colors[3] = {&red, &green, &blue};
+                         for (F* c : colors) *c = mul_add(*c, factor, flash);
+                         // Colours and light that change together.
+                         if (spread.any_change) {
+                           const F both = hn::Mul(hn::Mul(half, variance), light.diffuse.slope(x));
+                           for (int c = 0; c < 3; ++c) *colors[c] = mul_add(spread.change[c], both, *colors[c]);
+                         }
                        }
                      });
       if constexpr (shaded) path_.go(here_lit_, lit2, hn::Sub(t2, t), drawn), here_lit_.take(lit2, drawn);
@@ -276,6 +300,8 @@ class TolerantPacket : CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>> {
   const SumLanes<D> sums_;
   F speed_, per_speed_;  // speed: in cell lengths per world length
   F stride_, reserve_;
+  bool strides_;
+  F per_scale_;  // by which gradients are told from how they change over a stride
   typename SumLanes<D>::Place here_;
   LitPlace<D> here_lit_;
   GradientPath<D> path_;

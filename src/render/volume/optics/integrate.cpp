@@ -8,6 +8,7 @@
 #include "render/volume/light/effects.h"
 #include "render/volume/optics/functions.h"
 #include "render/volume/optics/joint.h"
+#include "render/volume/optics/light_kinks.h"
 #include "render/volume/optics/transfer.h"
 
 namespace sg::volume {
@@ -140,11 +141,19 @@ struct LitPart {
   double from, to;
   Lit first, last;
   Lit at(double t) const { return lerp(first, last, to > from ? float((t - from) / (to - from)) : 0); }
+  /// What colours are multiplied by changes by so much over a length.
+  float brighter(float length) const { return to > from ? (last.diffuse - first.diffuse) * (length / float(to - from)) : 0; }
 };
+
+/// The variance of where in a part of so much depth light comes from that is seen: 1/D^2 - exp(-D)/A^2, by its series where that cancels.
+float spread(float depth, float alpha, float pass) {
+  const float square = depth * depth;
+  return depth < 1 ? (1 - square * (0.05f - square * (1.0f / 504))) * (1.0f / 12) : 1 / square - pass / (alpha * alpha);
+}
 
 class Pieces {
  public:
-  Pieces(const Look& look, RayState& state) : look_(look), state_(state) {}
+  Pieces(const Look& look, RayState& state) : look_(look), state_(state), covary_from_(float(0.2 * look.budget.tolerance)) {}
 
   const LitPart* lit = nullptr;
 
@@ -161,18 +170,22 @@ class Pieces {
     if (styled_) depth *= lit->at(t + double(length) * double(weight)).opacity;
     const float pass = exp_minus(depth), alpha = depth < 0.02f ? depth * (1 - depth * (0.5f - depth * (1.0f / 6))) : 1 - pass;
     const Medium& medium = look_.medium;
-    Vec3f c = medium.color(mean, line) * alpha;
-    if (depth > deep) {
+    Vec3f c = medium.color(mean, line) * alpha, both{0, 0, 0};
+    const float brighter = lit ? lit->brighter(length) : 0;
+    const bool together = lit && std::abs(brighter) * medium.color_slope() * std::abs(medium.axis(b) - medium.axis(a)) > covary_from_;
+    if (depth > deep || together) {
       // A/2 - A/D + exp(-D), by its series where that cancels.
       const float hidden =
           depth < 0.2f ? depth * depth * (1.0f / 12 - depth * (1.0f / 24 - depth * (1.0f / 80))) : 0.5f * alpha - alpha / depth + pass;
-      c -= (medium.color(b, line) - medium.color(a, line)) * hidden;
+      const Vec3f change = medium.color(b, line) - medium.color(a, line);
+      c -= change * hidden;
       weight -= hidden / alpha;
+      if (together) both = change * (alpha * brighter * spread(depth, alpha, pass));
     }
     if (lit) {
       const Lit l = lit->at(t + double(length) * double(weight));
       const float flash = l.specular * alpha;
-      c = c * l.diffuse + Vec3f{flash, flash, flash};
+      c = c * l.diffuse + Vec3f{flash, flash, flash} + both;
       if (look_.lit->effects) c += l.tint * alpha;
     }
     Gathered& sum = state_.sum;
@@ -196,9 +209,10 @@ class Pieces {
     segment(s.from + (s.to - s.from) * double(f0), length, length * (all * (1.0f / 6)), a, b, mean, weight, i);
   }
 
-  static float value(const Stretch& s, float f) {
+  static float value(const Stretch& s, float f) { return value(s.b, f); }
+  static float value(const float b[4], float f) {
     const float g = 1 - f;
-    const float b01 = g * s.b[0] + f * s.b[1], b12 = g * s.b[1] + f * s.b[2], b23 = g * s.b[2] + f * s.b[3];
+    const float b01 = g * b[0] + f * b[1], b12 = g * b[1] + f * b[2], b23 = g * b[2] + f * b[3];
     return g * (g * b01 + f * b12) + f * (g * b12 + f * b23);
   }
 
@@ -257,15 +271,16 @@ class Pieces {
     const float most = denser_ * medium.most_tau(lo, hi), slope = denser_ * medium.most_slope(lo, hi),
                 taken = std::min(1.0f, length * most);
     const float widths = (medium.axis(hi) - medium.axis(lo)) / medium.color_width();
-    const float change = std::min(1.0f, (medium.axis(hi) - medium.axis(lo)) * medium.color_slope());
+    const float recolor = std::min(1.0f, (medium.axis(hi) - medium.axis(lo)) * medium.color_slope());
+    const float change = recolor + (lit ? difference(lit->first, lit->last) : 0);
     // What one piece gets wrong: colours bend on a width, and at every octave of an axis that is no straight one; in a deep piece the front
     // shows more of its own colour than a constant tau would have it, and than the mean of a value that bends. All fall with the square of
     // the number of pieces.
     const float first = a - 2 * s.b[1] + s.b[2], last = s.b[1] - 2 * s.b[2] + b;
     const float bend = 3 * std::max(std::abs(first), std::abs(last));  // half of the largest second derivative, over the stretch
-    const float depth = length * most, recolored = std::min(1.0f, hi > lo ? bend / (hi - lo) * change : 0);
+    const float depth = length * most, recolored = std::min(1.0f, hi > lo ? bend / (hi - lo) * recolor : 0);
     float error = taken * (0.25f * tolerance) * widths * widths;
-    if (!medium.linear() && std::floor(medium.axis(lo)) != std::floor(medium.axis(hi))) error += taken * change * (1.0f / 12);
+    if (!medium.linear() && std::floor(medium.axis(lo)) != std::floor(medium.axis(hi))) error += taken * recolor * (1.0f / 12);
     error += change * std::min(1.0f, 0.05f * length * depth * slope * (hi - lo));
     error += taken * recolored * std::min(1.0f / 6, depth * depth * (1.0f / 360));
     // Where tau rises Simpson's rule has the mean colour of a value that bends wrong by a 120th of the fourth power's factor in their
@@ -279,7 +294,7 @@ class Pieces {
     const bool abrupt = medium.any_abrupt() && medium.abrupt(lo, hi);
     double turn[3] = {2, 2, 2};
     if (beyond > 0 && (abrupt || pass * beyond * length * slope > 0.1f * allowed)) turn[turns(s.b, turn)] = 2;
-    close_ = abrupt ? 0 : 0.05f * allowed / std::max(pass * (length * slope + taken * (hi > lo ? change / (hi - lo) : 0)), 1e-30f);
+    close_ = abrupt ? 0 : 0.05f * allowed / std::max(pass * (length * slope + taken * (hi > lo ? recolor / (hi - lo) : 0)), 1e-30f);
     error *= pass;
     const float parts = std::max(std::sqrt(error / allowed), std::sqrt(std::sqrt(uneven / allowed)));
     const float n = std::clamp(std::ceil(parts), 1.0f, 1024.0f);
@@ -300,15 +315,17 @@ class Pieces {
  private:
   const Look& look_;
   RayState& state_;
-  float denser_ = 1;     // largest factor of tau by the light
-  bool styled_ = false;  // is there one at all?
-  float close_ = 0;      // so near to a knot a value counts as that
+  const float covary_from_;  // products of changes of colour and light that count
+  float denser_ = 1;         // largest factor of tau by the light
+  bool styled_ = false;      // is there one at all?
+  float close_ = 0;          // so near to a knot a value counts as that
 };
 
 /// The light at a place of a ray, and the surface there.
 struct LitPlace {
   double t = 0;
   Lit light;
+  Vec3f gradient{0, 0, 0};
   Vec3f normal{0, 0, 0};  // unit, along the gradient; zero where there is none
   float along = 0;        // of the normal and the ray: the cosine
   float nearest = 0;      // the cosine to the nearest middle of a highlight
@@ -318,7 +335,7 @@ struct LitPlace {
 LitPlace lit_place(const Look& look, RayField& walker, const Stretch& s, double t) {
   LitPlace p;
   Vec3f gradient{0, 0, 0};
-  p.t = t, p.light = light_on(look, walker, s, t, gradient);
+  p.t = t, p.light = light_on(look, walker, s, t, gradient), p.gradient = gradient;
   const float square = dot(gradient, gradient);
   if (!(square > 0 && square < 1e30f)) return p;
   p.normal = gradient * (1 / std::sqrt(square)), p.along = dot(p.normal, look.lit->direction);
@@ -347,24 +364,54 @@ float may_bend(const LitRay& lit, const LitPlace& a, const LitPlace& b) {
   return std::max(over, turn * bend * (1.0f / 12)) + kink;
 }
 
+constexpr double hair = 1e-6;  // of a stretch: so far beside a kink light is that of one side of it
+
 /// Integrates a stretch with light.
 class LitStretch {
  public:
   LitStretch(const Look& look, RayField& walker, RayState& state) : look_(look), walker_(walker), state_(state) {}
 
   void whole(const Stretch& s, float lo, float hi) {
-    part(s, lo, hi, lit_place(look_, walker_, s, s.from), lit_place(look_, walker_, s, s.to), 0);
+    const LitPlace first = lit_place(look_, walker_, s, s.from), last = lit_place(look_, walker_, s, s.to);
+    const float depth = float(s.to - s.from) * look_.medium.most_tau(lo, hi), weight = state_.sum.transmittance * std::min(depth, 1.0f);
+    LightKinks kinks;
+    if (weight * most_jump() > allowed(s, weight)) kinks = light_kinks(*look_.lit, walker_, s, first.gradient, last.gradient);
+    if (kinks.count == 0) return part(s, lo, hi, first, last, 0);
+    LitPlace begin = first;
+    for (int i = 0; i <= kinks.count; ++i) {
+      // The light on both sides of a kink, which is the same place.
+      const double beside = hair * (s.to - s.from);
+      LitPlace end = last, next = last;
+      if (i < kinks.count) {
+        end = lit_place(look_, walker_, s, std::max(s.from, kinks.at[i] - beside)),
+        next = lit_place(look_, walker_, s, std::min(s.to, kinks.at[i] + beside));
+        end.t = next.t = kinks.at[i];
+      }
+      within(s, begin, end, 0);
+      if (state_.sum.transmittance < look_.budget.stop_below) return;
+      begin = next;
+    }
   }
 
  private:
   static constexpr int most_cuts = 10;
 
+  /// What may be wrong of a part: a share of the tolerance by the light that is taken, one by the length.
+  float allowed(const Stretch& s, float weight) const {
+    return float(look_.budget.tolerance) * (0.4f * weight + 0.4f * float((s.to - s.from) / look_.budget.length));
+  }
+  /// By how much light may jump where a surface turns over or a lamp begins to reach it.
+  float most_jump() const {
+    if (!has_kinks(*look_.lit)) return 0;
+    float all = 0;
+    for (const LitRay::One& l : look_.lit->lights) all += l.intensity;
+    return all * (look_.lit->material.diffuse + look_.lit->material.specular);
+  }
   /// Cuts the stretch until the light on its ends tells the light on its way.
   void part(const Stretch& s, float lo, float hi, const LitPlace& first, const LitPlace& last, int cuts) {
     const float depth = float(s.to - s.from) * look_.medium.most_tau(lo, hi);
     const float weight = state_.sum.transmittance * std::min(depth, 1.0f);
-    // What may be wrong of it: a share of the tolerance by the light that is taken, one by the length.
-    const float allowed = float(look_.budget.tolerance) * (0.4f * weight + 0.4f * float((s.to - s.from) / look_.budget.length));
+    const float allowed = this->allowed(s, weight);
     const float bend = may_bend(*look_.lit, first, last), differ = std::max(bend, difference(first.light, last.light));
     // The ends of a whole stretch tell little of it.
     if (cuts < most_cuts && weight * std::max(differ, cuts == 0 ? 0.1f : 0.0f) > allowed) {
@@ -469,7 +516,18 @@ void composite(const Look& look, const Stretch& s, RayField& walker, RayState& s
   const float lo = s.lowest(), hi = s.highest();
   if (look.detail) {
     if (!(lo <= hi) || (!(look.detail->ink > 0) && look.detail->transfer.clear(lo, hi))) return;
-    return composite_detailed(look, s, s.from, s.to, place_at(look, s, s.from, walker), place_at(look, s, s.to, walker), walker, 0, state);
+    LightKinks kinks;
+    if (look.lit && has_kinks(*look.lit)) kinks = light_kinks(*look.lit, walker, s, walker.gradient(s, s.from), walker.gradient(s, s.to));
+    double from = s.from;
+    for (int i = 0; i <= kinks.count; ++i) {
+      const double to = i < kinks.count ? kinks.at[i] : s.to, beside = hair * (to - from);
+      if (!(to > from)) continue;
+      const Place a = place_at(look, s, from + (i > 0 ? beside : 0), walker);
+      const Place b = place_at(look, s, to - (i < kinks.count ? beside : 0), walker);
+      composite_detailed(look, s, from, to, a, b, walker, 0, state);
+      from = to;
+    }
+    return;
   }
   if (!(lo <= hi) || look.medium.clear(lo, hi)) return;
   if (!look.lit) return Pieces(look, state).whole(s, lo, hi);

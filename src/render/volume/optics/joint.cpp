@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "render/volume/optics/joint.h"
+#include "render/volume/optics/light_kinks.h"
 
 namespace sg::volume {
 
@@ -56,8 +57,13 @@ class JointPart {
     if (media_.empty()) return;
     const double from = joint_[0].stretch.from, to = joint_[0].stretch.to;
     std::vector<double> ends{from, to};
-    for (const Joint* j : media_)
+    for (const Joint* j : media_) {
       if (!j->look->detail) knots(*j, ends);
+      if (!j->look->lit || !has_kinks(*j->look->lit)) continue;
+      const Stretch& s = j->stretch;
+      const LightKinks kinks = light_kinks(*j->look->lit, *j->walker, s, j->walker->gradient(s, s.from), j->walker->gradient(s, s.to));
+      ends.insert(ends.end(), kinks.at, kinks.at + kinks.count);
+    }
     std::sort(ends.begin(), ends.end());
     for (size_t i = 0; i + 1 < ends.size(); ++i) {
       if (!(ends[i + 1] > ends[i])) continue;
@@ -170,8 +176,8 @@ class JointPart {
     if (cuts < most_cuts) {
       const double taken = std::min(1.0, std::max(one.depth, both.depth));
       const double allowed = tolerance_ * (0.25 * (to - from) / joint_[0].look->budget.length + 0.25 * pass * taken);
-      // Nine places tell little of light, and of what hangs on more than the value.
-      const bool few = (detailed_ && cuts < 3) || (lit_ && cuts < 1 && pass * taken > 0.1 * tolerance_);
+      // Nine places tell little of what hangs on more than the value.
+      const bool few = detailed_ && cuts < 3;
       if (few || pass * difference(one, both) > (detailed_ ? 0.3 : 1.0) * allowed || pass * taken * both.depth > deep ||
           (detailed_ && overlook(from, to))) {
         part(from, middle, first, cuts + 1);
