@@ -113,7 +113,7 @@ struct Part {
 // Breadth first over the octree of the reference element: a part is tried and divided while its image may hold x.
 bool search(const CellGeometry& g, Vec3 x, double tolerance, InverseResult& best) {
   constexpr int deepest = 5;
-  constexpr size_t most_parts = 600;
+  constexpr size_t most_parts = 100;  // cells that fold over themselves would have thousands
   const CellType base = g.shape->base();
   std::vector<Part> parts{{{0, 0, 0}, 1, 0}};
   for (size_t at = 0; at < parts.size() && at < most_parts; ++at) {

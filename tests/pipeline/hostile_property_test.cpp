@@ -43,7 +43,7 @@ void stays_calm(const std::string& what, Count& count, const std::function<void(
   std::string failure;
   try {
     Context context;
-    const hostile::Watch watch(context, hostile::seconds(30), what);
+    const hostile::Watch watch(context, hostile::seconds(60), what);
     run(context);
     ++count.answered;
   } catch (const Error& e) {
@@ -55,8 +55,8 @@ void stays_calm(const std::string& what, Count& count, const std::function<void(
   }
   const double took = double(std::clock() - start) / CLOCKS_PER_SEC;
   if (tells) fmt::print(stderr, ": {:.2f} s\n", took);
-  // Curved cells of many nodes that are inside out take seconds.
-  if (took > hostile::seconds(10)) failure += fmt::format(" took {:.1f} s", took);
+  // A few curved cells with random places and values are cut into hundreds of thousands of straight ones, or searched part by part.
+  if (took > hostile::seconds(40)) failure += fmt::format(" took {:.1f} s", took);
   CHECK(failure == "");
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/tensor/degenerate_face.h"
 
+#include <algorithm>
+
 namespace sg {
 
 namespace {
@@ -69,28 +71,47 @@ bool converge(const SymTensor& a, const SymTensor& b, const SymTensor& c, Degene
   return false;
 }
 
-void search(const Corners& k, int depth, const Corners& whole, std::vector<DegeneratePlace>& out, size_t first) {
-  if (!may_vanish(k)) return;
-  if (depth >= 2) {
+// Divides the triangle until its parts have no places left, or one each.
+class Search {
+ public:
+  Search(const Corners& whole, std::vector<DegeneratePlace>& out) : whole_(whole), out_(out), first_(out.size()) {}
+
+  void run(const Corners& k, int depth = 0) {
+    if (fruitless_ >= most_fruitless || !may_vanish(k)) return;
+    if (depth >= 2) look_in(k);
+    if (depth >= 5 || out_.size() - first_ >= 12) return;
+    // Four triangles of half the size; the tensor stays linear on each.
+    const SymTensor ab = (k.a + k.b) * 0.5, bc = (k.b + k.c) * 0.5, ca = (k.c + k.a) * 0.5;
+    const double s[3] = {(k.s[0] + k.s[1]) / 2, (k.s[1] + k.s[2]) / 2, (k.s[2] + k.s[0]) / 2};
+    const double t[3] = {(k.t[0] + k.t[1]) / 2, (k.t[1] + k.t[2]) / 2, (k.t[2] + k.t[0]) / 2};
+    run({k.a, ab, ca, {k.s[0], s[0], s[2]}, {k.t[0], t[0], t[2]}}, depth + 1);
+    run({ab, k.b, bc, {s[0], k.s[1], s[1]}, {t[0], k.t[1], t[1]}}, depth + 1);
+    run({ca, bc, k.c, {s[2], s[1], k.s[2]}, {t[2], t[1], k.t[2]}}, depth + 1);
+    run({ab, bc, ca, {s[0], s[1], s[2]}, {t[0], t[1], t[2]}}, depth + 1);
+  }
+
+ private:
+  // A face that is degenerate all over, but for rounding, has parts without end in which nothing is found; others a few beside each place.
+  static constexpr int most_fruitless = 100;
+
+  void look_in(const Corners& k) {
     DegeneratePlace x;
     x.s = (k.s[0] + k.s[1] + k.s[2]) / 3, x.t = (k.t[0] + k.t[1] + k.t[2]) / 3;
     constexpr double slack = 1e-10;
-    if (converge(whole.a, whole.b, whole.c, x) && x.s >= -slack && x.t >= -slack && x.s + x.t <= 1 + slack) {
-      bool known = false;
-      for (size_t i = first; i < out.size(); ++i) known |= std::abs(out[i].s - x.s) + std::abs(out[i].t - x.t) < 1e-7;
-      if (!known) out.push_back(x);
+    if (!(converge(whole_.a, whole_.b, whole_.c, x) && x.s >= -slack && x.t >= -slack && x.s + x.t <= 1 + slack)) {
+      ++fruitless_;
+      return;
     }
+    const bool known = std::any_of(out_.begin() + ptrdiff_t(first_), out_.end(),
+                                   [&](const DegeneratePlace& o) { return std::abs(o.s - x.s) + std::abs(o.t - x.t) < 1e-7; });
+    if (!known) out_.push_back(x);
   }
-  if (depth >= 5 || out.size() - first >= 12) return;
-  // Four triangles of half the size; the tensor stays linear on each.
-  const SymTensor ab = (k.a + k.b) * 0.5, bc = (k.b + k.c) * 0.5, ca = (k.c + k.a) * 0.5;
-  const double s[3] = {(k.s[0] + k.s[1]) / 2, (k.s[1] + k.s[2]) / 2, (k.s[2] + k.s[0]) / 2};
-  const double t[3] = {(k.t[0] + k.t[1]) / 2, (k.t[1] + k.t[2]) / 2, (k.t[2] + k.t[0]) / 2};
-  search({k.a, ab, ca, {k.s[0], s[0], s[2]}, {k.t[0], t[0], t[2]}}, depth + 1, whole, out, first);
-  search({ab, k.b, bc, {s[0], k.s[1], s[1]}, {t[0], k.t[1], t[1]}}, depth + 1, whole, out, first);
-  search({ca, bc, k.c, {s[2], s[1], k.s[2]}, {t[2], t[1], k.t[2]}}, depth + 1, whole, out, first);
-  search({ab, bc, ca, {s[0], s[1], s[2]}, {t[0], t[1], t[2]}}, depth + 1, whole, out, first);
-}
+
+  const Corners& whole_;
+  std::vector<DegeneratePlace>& out_;
+  const size_t first_;
+  int fruitless_ = 0;
+};
 
 }  // namespace
 
@@ -112,7 +133,7 @@ void degenerate_places(const SymTensor& a, const SymTensor& b, const SymTensor& 
   if (!(size > 0)) return;
   const Corners whole{a.deviator() * (1 / size), b.deviator() * (1 / size), c.deviator() * (1 / size), {0, 1, 0}, {0, 0, 1}};
   const size_t first = out.size();
-  search(whole, 0, whole, out, first);
+  Search(whole, out).run(whole);
   for (size_t i = first; i < out.size(); ++i) {
     DegeneratePlace& x = out[i];
     const double mean = (a.trace() * (1 - x.s - x.t) + b.trace() * x.s + c.trace() * x.t) / 3;

@@ -23,7 +23,7 @@ struct RefinedSurface {
 };
 
 /// The longest edge of a surface that gets a texture of `density` samples along a diagonal; 0: its own. By default 400, or what makes
-/// about 150 000 triangles of it: a skin of many faces need not take ten seconds.
+/// 150 000 to 300 000 triangles of it: a skin of many faces need not take ten seconds.
 double textured_edge(const Dataset& surface, double diagonal, std::optional<double> density);
 
 /// Throws Error(usage) when that would make more than `most` triangles.

@@ -20,7 +20,7 @@ inline void describe(Schema& s, SurfaceLicParams& p) {
   s("field", p.field, "Vector field to follow, on points or cells; default: the active vectors.");
   s("density", p.density,
     "Samples along the diagonal of the data's box: triangles are split until their edges are no longer than the diagonal divided by this; "
-    "0 keeps the triangles of the mesh. Default: 400, or fewer where that would make more than about 150 000 triangles.")
+    "0 keeps the triangles of the mesh. Default: 400, or fewer where that would make more than 150 000 to 300 000 triangles.")
       .range(0, 100000);
   s("steps", p.steps, "Steps of each line each way.").range(1, 10000);
   s("step", p.step, "Length of a step; 0: half the mean edge of the split triangles.").unit("length").at_least(0);

@@ -209,7 +209,8 @@ Plane<Vec3f> gradients_of_cells(const CellVolume& v) {
     }
     for (uint32_t k : mesh.corners[t]) {
       const Vec3 offset = mesh.at[k] - middle;
-      if (const double square = dot(offset, offset); square < nearest[k].square) nearest[k] = {opened, square, offset};
+      // Of cells as near as each other the first, whatever the rounding.
+      if (const double square = dot(offset, offset); square < (1 - 1e-4) * nearest[k].square) nearest[k] = {opened, square, offset};
     }
   }
   std::vector<uint32_t> cells;

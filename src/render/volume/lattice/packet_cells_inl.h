@@ -162,8 +162,8 @@ class PacketCells : public RayLanes<D, T, Axes> {
       any_turn = !hn::AllFalse(d, hn::And(look, turning));
     }
     constexpr int most_kinks = shaded ? CellLight<D, T, Axes>::most_jumps : 0;
-    F kinks[most_kinks + 2];  // where the light jumps, or, where the medium does, the value turns
-    bool any_kink = false;
+    F kinks[most_kinks + 2];  // where the light jumps and where the value turns, in any order
+    int kink_count = 0;
     if constexpr (shaded) {
       const auto lit = light.error(source, inside, from, way);
       const F weight = hn::Mul(pass, taken);
@@ -173,14 +173,12 @@ class PacketCells : public RayLanes<D, T, Axes> {
       error = mul_add(hn::Mul(weight, lit.change), hn::Mul(change, hn::Set(d, 1.0f / 12)), error);
       error = mul_add(hn::Mul(pass, lit.change), hn::Min(one, deep), error);
       const M jumping = hn::And(look, hn::Gt(hn::Mul(weight, lit.jump), allowed));
-      if (any_kink = !hn::AllFalse(d, jumping); any_kink) light.jumps(lit, jumping, kinks);
+      if (!hn::AllFalse(d, jumping)) kink_count = light.jumps(lit, jumping, kinks);
     }
     if (any_turn) {
-      for (int i = 0; i < most_kinks && !any_kink; ++i) kinks[i] = hn::Set(d, 2.0f);
-      f.turns(kinks[most_kinks], kinks[most_kinks + 1]);
-      for (int i : {0, 1}) kinks[most_kinks + i] = hn::IfThenElse(turning, kinks[most_kinks + i], hn::Set(d, 2.0f));
-    } else if (any_kink) {
-      kinks[most_kinks] = kinks[most_kinks + 1] = hn::Set(d, 2.0f);
+      F turn[2];
+      f.turns(turn[0], turn[1]);
+      for (const F& t : turn) kinks[kink_count++] = hn::IfThenElse(turning, t, hn::Set(d, 2.0f));
     }
     F count = one, per_count = one;
     if (!hn::AllFalse(d, hn::And(look, hn::Gt(hn::Max(error, uneven), allowed)))) {
@@ -200,11 +198,9 @@ class PacketCells : public RayLanes<D, T, Axes> {
       const M final_piece = hn::Ge(after, count);
       end = hn::IfThenElse(final_piece, one, hn::Mul(after, per_count));
       at_kink = hn::MaskFromVec(zero);
-      if (any_kink || any_turn) {
-        for (const F& kink : kinks) {
-          const M nearer = hn::And(hn::Gt(kink, s), hn::Lt(kink, end));
-          at_kink = hn::Or(at_kink, nearer), end = hn::IfThenElse(nearer, kink, end);
-        }
+      for (int i = 0; i < kink_count; ++i) {
+        const M nearer = hn::And(hn::Gt(kinks[i], s), hn::Lt(kinks[i], end));
+        at_kink = hn::Or(at_kink, nearer), end = hn::IfThenElse(nearer, kinks[i], end);
       }
       target = hn::IfThenElse(hn::AndNot(at_kink, final_piece), f.last, f.at(end));
     };
@@ -335,9 +331,11 @@ class PacketCells : public RayLanes<D, T, Axes> {
         const F square = hn::Mul(depth, depth), per = hn::Div(hn::Set(d, 12.0f), hn::Max(square, one));
         const F closed = neg_mul_add(hn::Mul(hn::Set(d, 12.0f), pass), hn::Mul(per_alpha, per_alpha), per);
         const F thin_spread = neg_mul_add(square, neg_mul_add(square, hn::Set(d, 1.0f / 504), hn::Set(d, 0.05f)), one);
-        spread.narrower = hn::IfThenElse(hn::Lt(depth, one), thin_spread, closed), spread.any_change = true;
-        spread.change[0] = hn::Mul(alpha, hn::Sub(back.r, front.r)), spread.change[1] = hn::Mul(alpha, hn::Sub(back.g, front.g));
-        spread.change[2] = hn::Mul(alpha, hn::Sub(back.b, front.b));
+        // What lanes get must not depend on their neighbours.
+        spread.narrower = hn::IfThenElse(covaries, hn::IfThenElse(hn::Lt(depth, one), thin_spread, closed), one);
+        const F rise[3] = {hn::Sub(back.r, front.r), hn::Sub(back.g, front.g), hn::Sub(back.b, front.b)};
+        for (int c = 0; c < 3; ++c) spread.change[c] = hn::IfThenElseZero(covaries, hn::Mul(alpha, rise[c]));
+        spread.any_change = true;
       }
     }
     const F before = hn::IfThenElseZero(drawn, sum.pass);

@@ -346,13 +346,13 @@ class CellLight {
     return e;
   }
 
-  static constexpr int quarters = 4, most_jumps = 12;
+  /// Room for all of them, so that no lane goes short because of another: three for the face that is seen and for each lamp.
+  static constexpr int quarters = 4, most_jumps = 3 * (1 + int(PacketPlan::most_lamps)) + quarters;
 
-  /// Where the light of the lanes told jumps on the way, as many as there is room for; 2 where it does not.
-  HWY_NOINLINE void jumps(const Error& e, hn::Mask<D> which, F at[most_jumps]) const {
+  /// Where the light of the lanes told jumps on the way; 2 in lanes where it does not. Returns how many.
+  HWY_NOINLINE int jumps(const Error& e, hn::Mask<D> which, F at[most_jumps]) const {
     const D d;
     int n = 0;
-    for (int i = 0; i < most_jumps; ++i) at[i] = hn::Set(d, 2.0f);
     const F ray[3] = {lighting_.ray[0], lighting_.ray[1], lighting_.ray[2]};
     if (e.over) roots(along(ray), which, at, n);
     for (size_t l = 0; l < lighting_.lamps(); ++l) {
@@ -362,7 +362,7 @@ class CellLight {
       roots(along(lamp), which, at, n);
     }
     const auto begins = hn::And(which, e.begins);
-    if (hn::AllFalse(d, begins)) return;
+    if (hn::AllFalse(d, begins)) return n;
     // Ever smaller parts on whose ends there is as much of a surface as can be, or is not.
     const F half = hn::Set(d, 0.5f), one = hn::Set(d, 1.0f);
     const auto all = [&](F s) HWY_ATTR {
@@ -371,7 +371,7 @@ class CellLight {
       return hn::Ge(lighting_.surface(g).much, one);
     };
     auto before = all(hn::Zero(d));
-    for (int q = 0; q < quarters && n < most_jumps; ++q) {
+    for (int q = 0; q < quarters; ++q) {
       F begin = hn::Set(d, float(q) / quarters), end = hn::Set(d, float(q + 1) / quarters);
       const auto after = all(end), changes = hn::And(begins, hn::Xor(before, after));
       if (!hn::AllFalse(d, changes)) {
@@ -384,6 +384,7 @@ class CellLight {
       }
       before = after;
     }
+    return n;
   }
 
   /// World gradient at the share s of the way.
@@ -421,7 +422,7 @@ class CellLight {
     for (F& t : turn) t = hn::IfThenElseZero(hn::And(hn::Gt(t, zero), hn::Lt(t, one)), t);
     const F ends[4] = {zero, hn::Min(turn[0], turn[1]), hn::Max(turn[0], turn[1]), one};
     F before = h.a;
-    for (int i = 0; i < 3 && n < most_jumps; ++i) {
+    for (int i = 0; i < 3; ++i) {
       const F after = i < 2 ? h.at(ends[i + 1]) : h.last;
       const auto changes = hn::And(which, hn::Xor(hn::Gt(before, zero), hn::Gt(after, zero)));
       if (!hn::AllFalse(d, changes))

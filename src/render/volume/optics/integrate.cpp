@@ -364,7 +364,7 @@ float may_bend(const LitRay& lit, const LitPlace& a, const LitPlace& b) {
   return std::max(over, turn * bend * (1.0f / 12)) + kink;
 }
 
-constexpr double hair = 1e-6;  // of a stretch: so far beside a kink light is that of one side of it
+constexpr double hair = 1e-6;  // of a stretch: so far beside a kink, or a face of cells, light is that of one side of it
 
 /// Integrates a stretch with light.
 class LitStretch {
@@ -372,7 +372,9 @@ class LitStretch {
   LitStretch(const Look& look, RayField& walker, RayState& state) : look_(look), walker_(walker), state_(state) {}
 
   void whole(const Stretch& s, float lo, float hi) {
-    const LitPlace first = lit_place(look_, walker_, s, s.from), last = lit_place(look_, walker_, s, s.to);
+    const double beside = hair * (s.to - s.from);
+    LitPlace first = lit_place(look_, walker_, s, s.from + beside), last = lit_place(look_, walker_, s, s.to - beside);
+    first.t = s.from, last.t = s.to;
     const float depth = float(s.to - s.from) * look_.medium.most_tau(lo, hi), weight = state_.sum.transmittance * std::min(depth, 1.0f);
     LightKinks kinks;
     if (weight * most_jump() > allowed(s, weight)) kinks = light_kinks(*look_.lit, walker_, s, first.gradient, last.gradient);
@@ -380,7 +382,6 @@ class LitStretch {
     LitPlace begin = first;
     for (int i = 0; i <= kinks.count; ++i) {
       // The light on both sides of a kink, which is the same place.
-      const double beside = hair * (s.to - s.from);
       LitPlace end = last, next = last;
       if (i < kinks.count) {
         end = lit_place(look_, walker_, s, std::max(s.from, kinks.at[i] - beside)),
@@ -483,7 +484,7 @@ Place place_at(const Look& look, const Stretch& s, double t, RayField& walker) {
 namespace {
 
 void composite_detailed(const Look& look, const Stretch& s, double from, double to, const Place& a, const Place& b, RayField& walker,
-                        int cuts, RayState& state) {
+                        int cuts, float inherited, RayState& state) {
   if (state.sum.transmittance < look.budget.stop_below) return;
   const double middle = 0.5 * (from + to);
   const Place m = place_at(look, s, middle, walker);
@@ -492,8 +493,9 @@ void composite_detailed(const Look& look, const Stretch& s, double from, double 
   const float depth = simpson(a.tau, m.tau, b.tau), rough = 0.25f * length * (a.tau + 2 * m.tau + b.tau);
   const Vec3f glow{simpson(a.glow.x, m.glow.x, b.glow.x), simpson(a.glow.y, m.glow.y, b.glow.y), simpson(a.glow.z, m.glow.z, b.glow.z)};
   const Vec3f rough_glow = (a.glow + m.glow * 2 + b.glow) * (0.25f * length);
-  const float off = std::max(
-      {std::abs(depth - rough), std::abs(glow.x - rough_glow.x), std::abs(glow.y - rough_glow.y), std::abs(glow.z - rough_glow.z)});
+  // Three samples may lie on a line by chance: what is smooth is wrong by an eighth of what the whole was, so a part of that counts.
+  const float off = std::max({inherited * (1.0f / 64), std::abs(depth - rough), std::abs(glow.x - rough_glow.x),
+                              std::abs(glow.y - rough_glow.y), std::abs(glow.z - rough_glow.z)});
   const float pass = state.sum.transmittance, taken = std::min(1.0f, depth);
   const float allowed = float(look.budget.tolerance) * (0.3f * float(length / look.budget.length) + 0.15f * pass * taken);
   // The order of colours within a deep part, too.
@@ -501,8 +503,8 @@ void composite_detailed(const Look& look, const Stretch& s, double from, double 
   // Three samples tell little of what is light.
   const bool few = cuts == 0 && pass * taken > 0.1f * float(look.budget.tolerance);
   if (cuts < 10 && (pass * std::min(off, 1.0f) > allowed || order || few || overlooks(*look.detail, double(length), a, m, b))) {
-    composite_detailed(look, s, from, middle, a, m, walker, cuts + 1, state);
-    return composite_detailed(look, s, middle, to, m, b, walker, cuts + 1, state);
+    composite_detailed(look, s, from, middle, a, m, walker, cuts + 1, off, state);
+    return composite_detailed(look, s, middle, to, m, b, walker, cuts + 1, off, state);
   }
   if (!(depth > 0)) return;
   const float alpha = 1 - exp_minus(depth), per = alpha / depth;
@@ -517,14 +519,16 @@ void composite(const Look& look, const Stretch& s, RayField& walker, RayState& s
   if (look.detail) {
     if (!(lo <= hi) || (!(look.detail->ink > 0) && look.detail->transfer.clear(lo, hi))) return;
     LightKinks kinks;
-    if (look.lit && has_kinks(*look.lit)) kinks = light_kinks(*look.lit, walker, s, walker.gradient(s, s.from), walker.gradient(s, s.to));
+    if (look.lit && has_kinks(*look.lit)) {
+      const double beside = hair * (s.to - s.from);
+      kinks = light_kinks(*look.lit, walker, s, walker.gradient(s, s.from + beside), walker.gradient(s, s.to - beside));
+    }
     double from = s.from;
     for (int i = 0; i <= kinks.count; ++i) {
       const double to = i < kinks.count ? kinks.at[i] : s.to, beside = hair * (to - from);
       if (!(to > from)) continue;
-      const Place a = place_at(look, s, from + (i > 0 ? beside : 0), walker);
-      const Place b = place_at(look, s, to - (i < kinks.count ? beside : 0), walker);
-      composite_detailed(look, s, from, to, a, b, walker, 0, state);
+      const Place a = place_at(look, s, from + beside, walker), b = place_at(look, s, to - beside, walker);
+      composite_detailed(look, s, from, to, a, b, walker, 0, 0, state);
       from = to;
     }
     return;
