@@ -51,8 +51,12 @@ class Lighting {
   const TetLight& light;
 
   HWY_ATTR Lighting(const TetLight& from, const TetPacket& packet, size_t lane) : light(from) {
-    for (int k = 0; k < 3; ++k) direction_[k] = hn::Load(D(), packet.direction[k] + lane);
-    for (const TetLight::Lamp& l : from.lamps) all_ += l.intensity;
+    const D d;
+    for (int k = 0; k < 3; ++k) direction_[k] = hn::Load(d, packet.direction[k] + lane);
+    for (size_t l = 0; l < from.lamps.size(); ++l) {
+      all_ += from.lamps[l].intensity;
+      if (l < ready) half_way_to(l, half_[l]);
+    }
   }
 
   /// Where the line crosses the face of these vertices.
@@ -94,20 +98,20 @@ class Lighting {
     F diffuse = zero, specular = zero;
     s.nearest = s.facing = zero;
     float number = 1;
-    for (const TetLight::Lamp& l : light.lamps) {
+    for (size_t n = 0; n < light.lamps.size(); ++n) {
+      const TetLight::Lamp& l = light.lamps[n];
       const F to[3] = {hn::Set(d, l.direction.x), hn::Set(d, l.direction.y), hn::Set(d, l.direction.z)};
       const F c = hn::Mul(side, dot(s.gradient, to)), intensity = hn::Set(d, l.intensity);
       const M faces = hn::Gt(c, zero);
       s.facing = hn::Add(s.facing, hn::IfThenElseZero(faces, hn::Set(d, number)));
       number *= 2;
       diffuse = hn::Add(diffuse, hn::IfThenElseZero(faces, hn::Mul(intensity, c)));
-      const F half[3] = {hn::Sub(to[0], direction_[0]), hn::Sub(to[1], direction_[1]), hn::Sub(to[2], direction_[2])};
-      const F half2 = dot(half, half);
-      const F h = hn::Div(hn::Mul(side, dot(s.gradient, half)), hn::Sqrt(hn::IfThenElse(hn::Gt(half2, zero), half2, one)));
-      F base = hn::Max(h, zero), power = one;
+      F other[3];
+      if (n >= ready) half_way_to(n, other);
+      F base = hn::Max(hn::Mul(side, dot(s.gradient, n < ready ? half_[n] : other)), zero), power = one;
       s.nearest = hn::Max(s.nearest, base);
-      for (int n = light.power; n > 0; n >>= 1, base = hn::Mul(base, base))
-        if (n & 1) power = hn::Mul(power, base);
+      for (int p = light.power; p > 0; p >>= 1, base = hn::Mul(base, base))
+        if (p & 1) power = hn::Mul(power, base);
       specular = hn::Add(specular, hn::IfThenElseZero(faces, hn::Mul(intensity, power)));
     }
     const F factor = hn::Sub(hn::Add(hn::Set(d, light.ambient), hn::Mul(hn::Set(d, light.diffuse), diffuse)), one);
@@ -158,7 +162,19 @@ class Lighting {
   static HWY_ATTR F mixed(F a, F b, F share) { return hn::Add(a, hn::Mul(share, hn::Sub(b, a))); }
 
  private:
-  F direction_[3];
+  /// The direction half way between a lamp and the viewer; zero where there is none.
+  HWY_ATTR void half_way_to(size_t lamp, F half[3]) const {
+    const D d;
+    const Vec3f to(light.lamps[lamp].direction);
+    half[0] = hn::Sub(hn::Set(d, to.x), direction_[0]), half[1] = hn::Sub(hn::Set(d, to.y), direction_[1]);
+    half[2] = hn::Sub(hn::Set(d, to.z), direction_[2]);
+    const F square = dot(half, half), one = hn::Set(d, 1.0f);
+    const F per = hn::Div(one, hn::Sqrt(hn::IfThenElse(hn::Gt(square, hn::Zero(d)), square, one)));
+    for (int k = 0; k < 3; ++k) half[k] = hn::Mul(half[k], per);
+  }
+
+  static constexpr size_t ready = 4;  ///< lamps whose half_ is kept; others are asked for each time
+  F direction_[3], half_[ready][3];
   float all_ = 0;
 };
 
@@ -253,11 +269,19 @@ HWY_ATTR inline void gather_lit(const TetMedium& medium, const Lighting& lightin
   if (hn::AllFalse(d, more)) return;
 
   F at = zero, step = hn::IfThenElse(smooth, half, one);
+  Surface a = first;
+  M turned = hn::Gt(first.along, zero);  // the side on which `a` is lit
   while (!hn::AllFalse(d, more)) {
     const F end = hn::Min(hn::Min(hn::Add(at, step), one), lighting.next_kink(first, last, at));
     const Surface m = lighting.between(first, last, hn::Mul(half, hn::Add(at, end)));
-    Surface a = lighting.straight(first, last, at), b = lighting.straight(first, last, end);
-    lighting.shine(a, m.along), lighting.shine(b, m.along);
+    const M side = hn::Gt(m.along, zero);
+    if (!hn::AllFalse(d, hn::And(more, hn::Xor(side, turned)))) {
+      a = lighting.straight(first, last, at);
+      lighting.shine(a, m.along);
+      turned = side;
+    }
+    Surface b = lighting.straight(first, last, end);
+    lighting.shine(b, m.along);
     const F from = Lighting::mixed(way.front, way.back, at);
     const F to = hn::IfThenElse(hn::Ge(end, one), way.back, Lighting::mixed(way.front, way.back, end));
     const F length = hn::Mul(way.length, hn::Sub(end, at));
@@ -265,6 +289,7 @@ HWY_ATTR inline void gather_lit(const TetMedium& medium, const Lighting& lightin
     const M finest = hn::Le(hn::Sub(end, at), hn::Set(d, 1.0f / TetMedium::most_parts));
     const M good = hn::Or(finest, fair(p, length, sum.pass, a, m, b));
     behind_lit(p, length, hn::And(more, good), a.shine, m.shine, b.shine, sum);
+    a = chosen(good, b, a);
     at = hn::IfThenElse(good, end, at);
     step = hn::IfThenElse(good, hn::Add(step, step), hn::Mul(half, hn::Sub(end, at)));
     more = hn::And(more, hn::And(hn::Lt(at, one), hn::Ge(sum.pass, hn::Set(d, stop_below))));
