@@ -243,10 +243,15 @@ class TrueRay {
 
   /// The share [f, g] without a knot.
   void straight(const Place& a, const Place& m, const Place& b, double f, double g, bool lit) {
-    double all = 0;
-    for (size_t i = 0; i < v_.size(); ++i) all += depth_of(i, a, m, b, f, g);
-    if (!(all > 0)) return;
-    const int n = int(std::clamp(std::ceil(all / 0.02), 1.0, 400.0));
+    double all = 0, halves = 0;
+    for (size_t i = 0; i < v_.size(); ++i) {
+      all += depth_of(i, a, m, b, f, g);
+      halves += depth_of(i, a, m, b, f, 0.5 * (f + g)) + depth_of(i, a, m, b, 0.5 * (f + g), g);
+    }
+    if (!(std::max(all, halves) > 0)) return;
+    // As many parts as its depth asks for, and the arch of a value that turns.
+    const double parts = std::max(halves / 0.02, std::sqrt(sum_.pass * std::abs(halves - all) * 1e7));
+    const int n = int(std::clamp(std::ceil(parts), 1.0, 400.0));
     for (int k = 0; k < n; ++k) {
       const double f0 = f + (g - f) * k / n, f1 = f + (g - f) * (k + 1) / n, middle = 0.5 * (f0 + f1);
       double depth = 0;
