@@ -103,8 +103,7 @@ class FileParser {
   }
 
   // The one key of `body` that is not `other` ("from", "of"); null after a mistake.
-  const YamlPair* one_besides(const YamlNode& body, const std::string& other, const std::string& of,
-                                                   const std::string& what) {
+  const YamlPair* one_besides(const YamlNode& body, const std::string& other, const std::string& of, const std::string& what) {
     const YamlPair* found = nullptr;
     for (const auto& pair : body.pairs) {
       if (pair.first.text == other) continue;
