@@ -56,3 +56,23 @@ TEST_CASE("volume medium: beside a step of colour each line has its own colour t
       }
     }
 }
+
+TEST_CASE("volume medium: a spike up to opacity 1 keeps its integral, however few floats it is wide") {
+  for (const double width : {0.003, 3e-4, 3e-5}) {
+    constexpr double tip = 5.1281540402, unit = 0.0838913;
+    OpacityCurve curve;
+    curve.points = {{0, 0}, {tip - width, 0}, {tip, 1}, {tip + width, 0}};
+    ColorScale scale = one_color({1, 1, 1});
+    scale.lo = 0, scale.hi = 12.7;
+    const volume::Medium medium(scale, curve,
+                                {.unit = unit, .lo = 0, .hi = 12.7, .base = 0, .accuracy = 6e-5, .faint = 0.1, .most_tau = 3e6});
+    // -ln(1 - o) has the integral 1 over a ramp from 0 to 1.
+    double sum = 0;
+    for (const volume::Medium::Line& l : medium.lines()) {
+      const double a = std::max(double(l.lo), tip - 2 * width), b = std::min(double(l.hi), tip + 2 * width);
+      for (int i = 0; i < 16 && a < b; ++i) sum += double(l(float(a + (b - a) * (i + 0.5) / 16))) * (b - a) / 16;
+    }
+    INFO(width);
+    CHECK(sum == doctest::Approx(2 * width / unit).epsilon(1e-6 / width + 1e-3));  // floats are 5e-7 apart there
+  }
+}

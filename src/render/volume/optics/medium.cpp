@@ -61,6 +61,10 @@ class Curve {
       const double d = v - lo;
       return at + d * (slope + d * (curve + d * twist));
     }
+    double integral() const {
+      const double w = hi - lo;
+      return w * (at + w * (slope / 2 + w * (curve / 3 + w * twist / 4)));
+    }
   };
   /// Appends arcs from a to b.
   void refine(Sample a, Sample b, int depth, std::vector<Arc>& out) const {
@@ -128,10 +132,19 @@ Medium::Spans Medium::make_lines(const ColorScale& scale, const OpacityCurve& cu
     std::vector<Curve::Arc> arcs;
     if (scale.labels.empty()) tau.refine(a, b, 12, arcs);
     else arcs.push_back(Curve::even(a, b));
+    double left_over = 0;  // the integral of arcs that are nothing in floats
     for (const Curve::Arc& arc : arcs) {
-      const float from = float(arc.lo - base), to = float(arc.hi - base);
-      if (!(to > from)) continue;
+      const float from = float(arc.lo - base), to = float(arc.hi - base), far = std::max(std::abs(from), std::abs(to));
+      if (!(to > from)) {
+        left_over += arc.integral();
+        continue;
+      }
       Line l{from, to, from, float(arc.at), float(arc.slope), float(arc.curve), float(arc.twist)};
+      // Ends that are rounded lie beside a steep arc of a few floats: as beside opacity 1, where tau has no end. Its mean holds.
+      if (arcs.size() > 1 && to - from < 8 * (std::nextafter(far, HUGE_VALF) - far)) {
+        l.at = float((arc.integral() + left_over) / (double(to) - double(from))), l.slope = l.curve = l.twist = 0;
+        left_over = 0;
+      }
       // What is narrower than floats can tell is straight.
       if (!(std::isfinite(l.slope) && std::isfinite(l.curve) && std::isfinite(l.twist)))
         l.slope = float((arc(arc.hi) - arc.at) / (double(to) - double(from))), l.curve = l.twist = 0;
