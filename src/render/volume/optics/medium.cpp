@@ -76,9 +76,19 @@ class Curve {
       const Sample s = at(a.value + f * (b.value - a.value));
       good = good && std::abs(arc(s.value) - s.tau) <= plan_.accuracy * std::max(s.tau, plan_.faint);
     }
-    if (good || depth == 0 || out.size() > 4096) return out.push_back(arc);
+    if (good) return out.push_back(arc);
+    if (depth == 0 || out.size() > 4096) return out.push_back(as_deep(a, b));
     refine(a, at(middle), depth - 1, out);
     refine(at(middle), b, depth - 1, out);
+  }
+  /// The last arc before opacity 1, where tau = ln(1 / x) / unit has no end but an integral, ln(1 / x) + 1: the end that gives the cubic
+  /// through both thirds the same.
+  Arc as_deep(Sample a, Sample b) const {
+    const double third = (b.value - a.value) / 3, rise = (8 - 3 * std::log(4.5)) / plan_.unit;
+    const bool first = at(a.value).tau >= most_, last = at(b.value).tau >= most_;
+    if (first && !last) a.tau = b.tau + rise;
+    if (last && !first) b.tau = a.tau + rise;
+    return {a, at(a.value + third).tau, at(b.value - third).tau, b};
   }
   static Arc even(Sample a, Sample b) { return {a, a.tau + (b.tau - a.tau) / 3, b.tau - (b.tau - a.tau) / 3, b}; }
 
