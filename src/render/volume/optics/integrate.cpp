@@ -414,11 +414,12 @@ class LitStretch {
     const float weight = state_.sum.transmittance * std::min(depth, 1.0f);
     const float allowed = this->allowed(s, weight);
     const float bend = may_bend(*look_.lit, first, last), differ = std::max(bend, difference(first.light, last.light));
-    // The ends of a whole stretch tell little of it.
-    if (cuts < most_cuts && weight * std::max(differ, cuts == 0 ? 0.1f : 0.0f) > allowed) {
+    // The ends of a whole stretch tell little of it, and its middle little where a short way in it is all that is seen.
+    const bool dense = cuts == 0 && depth > 2;
+    if (cuts < most_cuts && weight * std::max(differ, cuts == 0 || (cuts == 1 && depth > 1) ? 0.1f : 0.0f) > allowed) {
       const LitPlace middle = lit_place(look_, walker_, s, 0.5 * (s.from + s.to));
       const float off = difference(middle.light, lerp(first.light, last.light, 0.5f));
-      if (weight * std::max(off, bend) > allowed) {
+      if (dense || weight * std::max(off, bend) > allowed) {
         LitPlace before = middle, after = middle;
         if (jumps(s, first, middle, last, before, after)) {
           within(s, first, before, cuts + 1);

@@ -191,7 +191,11 @@ class JointPart {
     Vec3 color = both.color;
     if (cuts == most_cuts && both.depth > 0.5) {
       // Still dense, as opacity 1 is: nine places do not tell where the light goes, but all of it goes here.
-      const Sample s = sample(middle);
+      // Values are floats: a knot may lie a little beside where it should, and only part of this be dense.
+      Sample s;
+      for (double begin : {from, middle})
+        for (double place : places)
+          if (const Sample there = sample(begin + place * 0.5 * (to - from)); there.tau > s.tau) s = there;
       if (s.tau > 0) color = s.glow * (-std::expm1(-both.depth) / s.tau);
     }
     sum.r += float(pass * color.x), sum.g += float(pass * color.y), sum.b += float(pass * color.z);
