@@ -127,6 +127,15 @@ void random_light(Random& r, VolumeLight& l) {
     l.ambient = r.in(0, 0.5), l.diffuse = r.in(0, 1), l.specular = r.in(0, 0.5), l.power = r.one_of({1.0, 10.0, 32.0, 100.0});
 }
 
+/// One volume, within the tolerance that it states.
+void keeps_tolerance(const RandomVolume& v, const Shot& shot, bool single) {
+  const double tolerance = v.item.sampling.tolerance, allowed = tolerance + 1e-4;  // what the tests' own integral has wrong, and f32
+  check(compare({v}, scene_of({v.item}), shot.view, single, allowed, 1),
+        fmt::format("{}{}, {}, {}, tolerance {:.5f}", v.words, shot.words, v.item.shaded ? "lit" : "not lit", single ? "single" : "packets",
+                    tolerance),
+        allowed);
+}
+
 void composited(uint64_t seed, const Kinds& kinds, bool lit, int pixels) {
   CAPTURE(seed);
   Random r(seed);
@@ -135,15 +144,9 @@ void composited(uint64_t seed, const Kinds& kinds, bool lit, int pixels) {
   random_transfer(r, kinds, v.lo, v.hi, v.cell, v);
   v.item.shaded = lit;
   random_light(r, v.item.light);
-  const double tolerance = r.one_of({1.0 / 512, 1.0 / 512, 1.0 / 512, 1.0 / 64, 1.0 / 4096});
-  v.item.sampling.tolerance = tolerance;
+  v.item.sampling.tolerance = r.one_of({1.0 / 512, 1.0 / 512, 1.0 / 512, 1.0 / 64, 1.0 / 4096});
   const Shot shot = random_view(r, v.box, pixels);
-  const bool single = r.chance(0.3);
-  const Scene scene = scene_of({v.item});
-  // What the tests' own integral has wrong, and f32.
-  const double allowed = tolerance + 1e-4;
-  check(compare({v}, scene, shot.view, single, allowed, 1),
-        fmt::format("{}{}, {}, tolerance {:.5f}", v.words, shot.words, single ? "single" : "packets", tolerance), allowed);
+  keeps_tolerance(v, shot, r.chance(0.3));
 }
 
 }  // namespace
@@ -224,10 +227,7 @@ TEST_CASE("property: as good as opaque volumes keep the tolerance along faces, e
     v.item.shaded = r.chance(0.6);
     random_light(r, v.item.light);
     const Shot shot = r.chance(0.7) ? along_cells(r, v, 5) : random_view(r, v.box, 5);
-    const bool single = r.chance(0.3);
-    check(compare({v}, scene_of({v.item}), shot.view, single, 1.0 / 512 + 1e-4, 1),
-          fmt::format("{}{}, {}, {}", v.words, shot.words, v.item.shaded ? "lit" : "not lit", single ? "single" : "packets"),
-          1.0 / 512 + 1e-4);
+    keeps_tolerance(v, shot, r.chance(0.3));
   }
 }
 
@@ -239,10 +239,8 @@ TEST_CASE("property: projected tetrahedra keep the tolerance, lit or not") {
     random_transfer(r, kinds, v.lo, v.hi, v.cell, v);
     v.item.method = VolumeMethod::cells, v.item.shaded = r.chance(0.5);
     random_light(r, v.item.light);
-    const double tolerance = v.item.sampling.tolerance = r.one_of({1.0 / 64, 1.0 / 512, 1.0 / 4096});
-    const Shot shot = random_view(r, v.box, 6);
-    check(compare({v}, scene_of({v.item}), shot.view, false, tolerance + 1e-4, 1),
-          fmt::format("{}{}, {}, tolerance {:.5f}", v.words, shot.words, v.item.shaded ? "lit" : "not lit", tolerance), tolerance + 1e-4);
+    v.item.sampling.tolerance = r.one_of({1.0 / 64, 1.0 / 512, 1.0 / 4096});
+    keeps_tolerance(v, random_view(r, v.box, 6), false);
   }
 }
 

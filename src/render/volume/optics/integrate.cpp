@@ -364,8 +364,6 @@ float may_bend(const LitRay& lit, const LitPlace& a, const LitPlace& b) {
   return std::max(over, turn * bend * (1.0f / 12)) + kink;
 }
 
-constexpr double hair = 1e-6;  // of a stretch: so far beside a kink, or a face of cells, light is that of one side of it
-
 /// Integrates a stretch with light.
 class LitStretch {
  public:
@@ -520,10 +518,7 @@ void composite(const Look& look, const Stretch& s, RayField& walker, RayState& s
   if (look.detail) {
     if (!(lo <= hi) || (!(look.detail->ink > 0) && look.detail->transfer.clear(lo, hi))) return;
     LightKinks kinks;
-    if (look.lit && has_kinks(*look.lit)) {
-      const double beside = hair * (s.to - s.from);
-      kinks = light_kinks(*look.lit, walker, s, walker.gradient(s, s.from + beside), walker.gradient(s, s.to - beside));
-    }
+    if (look.lit && has_kinks(*look.lit)) kinks = light_kinks(*look.lit, walker, s);
     double from = s.from;
     for (int i = 0; i <= kinks.count; ++i) {
       const double to = i < kinks.count ? kinks.at[i] : s.to, beside = hair * (to - from);

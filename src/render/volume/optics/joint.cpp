@@ -60,8 +60,7 @@ class JointPart {
     for (const Joint* j : media_) {
       if (!j->look->detail) knots(*j, ends);
       if (!j->look->lit || !has_kinks(*j->look->lit)) continue;
-      const Stretch& s = j->stretch;
-      const LightKinks kinks = light_kinks(*j->look->lit, *j->walker, s, j->walker->gradient(s, s.from), j->walker->gradient(s, s.to));
+      const LightKinks kinks = light_kinks(*j->look->lit, *j->walker, j->stretch);
       ends.insert(ends.end(), kinks.at, kinks.at + kinks.count);
     }
     std::sort(ends.begin(), ends.end());

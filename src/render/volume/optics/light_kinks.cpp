@@ -39,4 +39,9 @@ LightKinks light_kinks(const LitRay& lit, RayField& walker, const Stretch& s, Ve
   return out;
 }
 
+LightKinks light_kinks(const LitRay& lit, RayField& walker, const Stretch& s) {
+  const double beside = hair * (s.to - s.from);
+  return light_kinks(lit, walker, s, walker.gradient(s, s.from + beside), walker.gradient(s, s.to - beside));
+}
+
 }  // namespace sg::volume

@@ -19,5 +19,10 @@ bool has_kinks(const LitRay& lit);
 /// From the gradient at the ends of a stretch and at its thirds, which the walker is asked for, as if it went like a cubic: in a lattice it
 /// does, and on straight cells.
 LightKinks light_kinks(const LitRay& lit, RayField& walker, const Stretch& stretch, Vec3f first, Vec3f last);
+/// The same, and the gradients at the ends are asked for, just inside of them.
+LightKinks light_kinks(const LitRay& lit, RayField& walker, const Stretch& stretch);
+
+/// Of a stretch: so far beside a kink, or a face of cells, light is that of one side of it.
+constexpr double hair = 1e-6;
 
 }  // namespace sg::volume
