@@ -4,6 +4,7 @@
 #include "render/volume/optics/medium.h"
 #include "support/property.h"
 #include "volume_support.h"
+#include "volume_truth.h"
 
 using namespace sg;
 using namespace sg::test;
@@ -55,6 +56,44 @@ TEST_CASE("volume medium: beside a step of colour each line has its own colour t
         CHECK(last.x == own.x);
       }
     }
+}
+
+TEST_CASE("property: a medium has the colours of its scale to twice the accuracy that it is made for, however steep they are") {
+  for (uint64_t seed : property_seeds(60)) {
+    CAPTURE(seed);
+    Random r(seed);
+    ColorScale scale;
+    std::string stops = "0:#000000";
+    double at = 0;
+    for (int i = r.whole(0, 3); i > 0; --i) {
+      at += (1 - at) * r.magnitude(0.01, 0.8);
+      stops += fmt::format(",{}:#{:06x}", at, r.whole(0, 0xffffff));
+      // By a little or by much.
+      if (r.chance(0.3)) stops += fmt::format(",{}:#{:06x}", at, r.whole(0, r.chance(0.5) ? 3 : 0xffffff));
+    }
+    parse_color_stops(stops + fmt::format(",1:#{:06x}", r.whole(0, 0xffffff)), scale, true);
+    scale.kind = r.one_of({ScaleKind::linear, ScaleKind::linear, ScaleKind::log, ScaleKind::symlog});
+    scale.lo = r.in(0.1, 0.5), scale.hi = r.in(0.9, 40), scale.linear_threshold = r.in(0.02, 0.4);
+    OpacityCurve curve;
+    curve.points = {{scale.lo, 0.1}, {scale.hi, 0.5}};
+    volume::Medium::Plan plan;
+    plan.unit = 0.1, plan.lo = scale.lo, plan.hi = scale.hi, plan.accuracy = r.one_of({1.0 / 2048, 1.0 / 16384});
+    const volume::Medium medium(scale, curve, plan);
+    const std::vector<double> knots = color_knots(scale);
+    double worst = 0;
+    for (int i = 0; i < 2000; ++i) {
+      const auto v = float(r.in(scale.lo, scale.hi));
+      // Beside a knot floats tell the sides apart no better than this.
+      const double air = 1e-6 * scale.hi;
+      if (std::any_of(knots.begin(), knots.end(), [&](double k) { return std::abs(k - double(v)) < air; })) continue;
+      const Vec4f c = scale.color(double(v));
+      const Vec3f seen = medium.color(v);
+      const double truth[3] = {srgb_decoded(double(c.x)), srgb_decoded(double(c.y)), srgb_decoded(double(c.z))};
+      for (int k = 0; k < 3; ++k) worst = std::max(worst, std::abs(double(seen[k]) - truth[k]));
+    }
+    // A plain table may have twice the accuracy wrong; 16 bits, and floats on the axis.
+    CHECK(worst < 2 * plan.accuracy + 4e-5);
+  }
 }
 
 TEST_CASE("volume medium: a spike up to opacity 1 keeps its integral, however few floats it is wide") {

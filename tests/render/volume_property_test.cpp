@@ -155,6 +155,11 @@ TEST_CASE("property: volumes keep the tolerance, whatever the field, the transfe
   for (uint64_t seed : property_seeds(150)) composited(seed, kinds, false, 7);
 }
 
+// Found by other seeds at 1/4096: solid surfaces have the colour of their very value, however steep colours are.
+TEST_CASE("volume: steep colours of solid surfaces stay within a fine tolerance") {
+  for (uint64_t seed : {96000110059, 96000140044, 96000180118, 48523120004, 48523430121}) composited(seed, kinds, false, 7);
+}
+
 // Found by other seeds, packets and single rays: ramps that bent values meet, thin volumes, dense cells, colours that kink within strides,
 // faces of cells in the middle of short strides.
 TEST_CASE("volume: knots, faint steps, kinks of colour and faces of cells within strides stay within the tolerance") {

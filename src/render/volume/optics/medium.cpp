@@ -224,6 +224,15 @@ void Medium::make_colors(const ColorScale& scale, const Plan& plan) {
     else steepest = std::max(steepest, change);
   }
   stretches.push_back(size_t(nodes));
+  if (scale.labels.empty()) {
+    // A value has the colour of the nearest node; the nodes of lines are as many as it takes.
+    abrupt_colors_ = abrupt_colors_ || steepest > 4 * plan.accuracy;
+    for (double k : color_knots(scale)) {
+      if (!(k > lo && k < hi)) continue;
+      const Vec3 before = linear_color(scale, just_inside(scale, k, lo)), after = linear_color(scale, just_inside(scale, k, hi));
+      abrupt_colors_ = abrupt_colors_ || difference(before, after) > plan.accuracy;
+    }
+  }
   const auto straight = [&](size_t from, size_t to) {
     for (size_t q = 1; q < 8; ++q) {
       const size_t at = from + (to - from) * q / 8;
@@ -242,22 +251,34 @@ void Medium::make_colors(const ColorScale& scale, const Plan& plan) {
   color_width_ = per > 0 ? float(double(width) * per) : 1e30f, color_slope_ = float(steepest * double(per_node_));
 }
 
-/// Nodes for each line: colours are those of the line up to its very ends.
+/// Nodes for each line: colours are those of the line up to its very ends, and change by no more than the accuracy from node to node.
 void Medium::piece_colors(const ColorScale& scale, const Spans& spans) {
   colors_.clear();
   const double all = std::abs(double(axis(top_)) - double(axis(lines_.front().origin)));
+  const double finest = std::max(double(accuracy_), 2.0 / 65535);  // 16 bits tell no nearer ones apart
+  const int most = int(std::clamp((size_t(1) << 22) / lines_.size(), size_t(8), size_t(1) << 16));
+  std::vector<Vec3> c;
   for (size_t i = 0; i < lines_.size(); ++i) {
     const double from = just_inside(scale, spans[i].x, spans[i].y), to = just_inside(scale, spans[i].y, spans[i].x);
     const Vec3 a = linear_color(scale, from), m = linear_color(scale, 0.5 * from + 0.5 * to), b = linear_color(scale, to);
     const float lo = axis(lines_[i].origin), hi = axis(std::min(lines_[i].hi, top_));
     const double share = all > 0 ? std::clamp((double(hi) - double(lo)) / all, 0.0, 1.0) : 0, change = difference(a, m) + difference(m, b);
     const bool even = change == 0 && difference(linear_color(scale, 0.75 * from + 0.25 * to), m) == 0;
-    const int count = even || !(hi > lo) ? 0 : int(std::ceil(std::max({8.0, 2 * share * nodes, std::min(change, 1.0) * 1024})));
+    int count = even || !(hi > lo) ? 0 : int(std::ceil(std::max({8.0, 2 * share * nodes, std::min(change, 1.0) * 1024})));
+    for (bool finer = true; finer;) {
+      c.clear();
+      double step = 0;
+      for (int k = 0; k <= count; ++k) {
+        const double at = double(lo) + (double(hi) - double(lo)) * k / std::max(count, 1);
+        c.push_back(linear_color(scale, std::clamp(count > 0 ? value_on_axis(at) : 0.5 * from + 0.5 * to, from, std::max(from, to))));
+        if (k > 0) step = std::max(step, difference(c[size_t(k) - 1], c[size_t(k)]));
+      }
+      finer = step > finest && count < most;
+      if (finer) count = int(std::min(double(most), std::ceil(1.05 * count * step / finest)));
+    }
     pieces_.push_back({lo, count > 0 ? float(count) / (hi - lo) : 0, float(colors_.size() / 4), float(count)});
-    for (int k = 0; k <= count; ++k) {
-      const double at = double(lo) + (double(hi) - double(lo)) * k / std::max(count, 1);
-      const Vec3 c = linear_color(scale, std::clamp(count > 0 ? value_on_axis(at) : 0.5 * from + 0.5 * to, from, std::max(from, to)));
-      for (int q = 0; q < 3; ++q) colors_.push_back(uint16_t(std::clamp(c[q], 0.0, 1.0) * 65535 + 0.5));
+    for (const Vec3& color : c) {
+      for (int q = 0; q < 3; ++q) colors_.push_back(uint16_t(std::clamp(color[q], 0.0, 1.0) * 65535 + 0.5));
       colors_.push_back(0);
     }
   }
