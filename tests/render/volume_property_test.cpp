@@ -171,6 +171,11 @@ TEST_CASE("property: lit volumes keep the tolerance, whatever the field, the tra
   for (uint64_t seed : property_seeds(100)) composited(seed, kinds, true, 6);
 }
 
+// Found by another seed: where the gradient becomes longer it turns more slowly.
+TEST_CASE("volume: light that turns unevenly along a tetrahedron stays within a fine tolerance") {
+  composited(48523370046, kinds, true, 6);
+}
+
 TEST_CASE("property: lit volumes of tetrahedra, hexahedra and other cells keep the tolerance") {
   Kinds cells = kinds;
   cells.lattices = false;

@@ -138,7 +138,12 @@ class Lighting {
     const F bend = hn::Mul(hn::Mul(turn, second), hn::Set(d, all_ / 12));
     // The amount of surface turns sharply where it becomes whole.
     const F fades = hn::Mul(hn::Set(d, 0.25f), hn::Abs(hn::Sub(a.much, b.much)));
-    return {hn::Add(bend, fades), hn::Add(hn::Mul(hn::Mul(bend, turn), hn::Mul(hn::Set(d, 0.1f), hn::Add(one, lobe))), fades)};
+    // Where the gradient is shorter it turns faster, and half of the change of light lies not in the middle: of that the arch's mean.
+    const F sizes = hn::Max(hn::Add(a.per_size, b.per_size), hn::Set(d, 1e-30f));
+    const F faster = hn::Div(hn::Abs(hn::Sub(a.per_size, b.per_size)), sizes);
+    const F arch = hn::Mul(hn::Mul(faster, hn::Set(d, 1.0f / 3)), apart(a.shine, b.shine));
+    return {hn::Add(hn::Add(bend, fades), arch),
+            hn::Add(hn::Mul(hn::Mul(bend, turn), hn::Mul(hn::Set(d, 0.1f), hn::Add(one, lobe))), fades)};
   }
 
   /// The next place beyond `at` where the surface turns over, or a lamp begins or ceases to shine on it; 2 when there is none.
