@@ -140,7 +140,7 @@ class PacketCells : public RayLanes<D, T, Axes> {
     const F color_slope = hn::Set(d, m.color_slope());
     const F widths = hn::Mul(range, hn::Set(d, 1 / m.color_width())), change = hn::Min(one, hn::Mul(range, color_slope));
     const F bend = hn::Max(hn::Abs(f.c), hn::Abs(mul_add(hn::Set(d, 3.0f), f.e, f.c)));
-    const F recolored = hn::Mul(taken, hn::Min(one, hn::Mul(bend, color_slope))), tilt = hn::Mul(length, slope);
+    const F recolored = hn::Mul(taken, hn::Min(hn::Set(d, 1e6f), hn::Mul(bend, color_slope))), tilt = hn::Mul(length, slope);
     const F deep = hn::Mul(hn::Mul(depth, tilt), hn::Mul(range, hn::Set(d, 0.05f)));
     const F deeper = hn::Min(hn::Set(d, 1.0f / 6), hn::Mul(hn::Mul(depth, depth), hn::Set(d, 1.0f / 360)));
     F error = hn::Mul(hn::Mul(taken, hn::Set(d, 0.25f * tolerance)), hn::Mul(widths, widths));

@@ -271,14 +271,15 @@ class Pieces {
     const float most = denser_ * medium.most_tau(lo, hi), slope = denser_ * medium.most_slope(lo, hi),
                 taken = std::min(1.0f, length * most);
     const float widths = (medium.axis(hi) - medium.axis(lo)) / medium.color_width();
-    const float recolor = std::min(1.0f, (medium.axis(hi) - medium.axis(lo)) * medium.color_slope());
+    const float colors = (medium.axis(hi) - medium.axis(lo)) * medium.color_slope(), recolor = std::min(1.0f, colors);
     const float change = recolor + (lit ? difference(lit->first, lit->last) : 0);
     // What one piece gets wrong: colours bend on a width, and at every octave of an axis that is no straight one; in a deep piece the front
-    // shows more of its own colour than a constant tau would have it, and than the mean of a value that bends. All fall with the square of
-    // the number of pieces.
+    // shows more of its own colour than a constant tau would have it, and than the mean of a value that bends (more than a whole change of
+    // colour, too, where few pieces would have it). All fall with the square of the number of pieces.
     const float first = a - 2 * s.b[1] + s.b[2], last = s.b[1] - 2 * s.b[2] + b;
     const float bend = 3 * std::max(std::abs(first), std::abs(last));  // half of the largest second derivative, over the stretch
-    const float depth = length * most, recolored = std::min(1.0f, hi > lo ? bend / (hi - lo) * recolor : 0);
+    const float depth = length * most;
+    const float recolored = std::min(1e6f, hi > lo ? bend / (hi - lo) * colors : 0);
     float error = taken * (0.25f * tolerance) * widths * widths;
     if (!medium.linear() && std::floor(medium.axis(lo)) != std::floor(medium.axis(hi))) error += taken * recolor * (1.0f / 12);
     error += change * std::min(1.0f, 0.05f * length * depth * slope * (hi - lo));
@@ -286,7 +287,7 @@ class Pieces {
     // Where tau rises Simpson's rule has the mean colour of a value that bends wrong by a 120th of the fourth power's factor in their
     // product, which falls with the fourth power.
     const float fourth = slope * (bend + 2 * std::abs(last - first) * (hi - lo) / std::max(bend, 1e-30f));
-    const float uneven = pass * recolored * std::min(1.0f, length * fourth) * (1.0f / 120);
+    const float uneven = pass * std::min(1.0f, recolored) * std::min(1.0f, length * fourth) * (1.0f / 120);
     const float share = pass * std::min(1.0f, denser_ * length * medium.tau(0.25f * (s.b[0] + s.b[1] + s.b[2] + s.b[3])));
     const float allowed = tolerance * (float(0.3 / look_.budget.length) * length + 0.4f * share);
     // And the value may turn beyond its ends, where there may be knots: then pieces end there, too.
