@@ -84,25 +84,40 @@ Worst compare(const std::vector<RandomVolume>& volumes, const Scene& scene, cons
   const Frame frame = draw(scene, view, {}, single ? by_single_rays(view) : FragmentLists());
   std::vector<TrueLight> lights;
   for (const RandomVolume& v : volumes) lights.push_back(light_of(v, view, scene));
+  // With all values so much higher.
+  const auto truth = [&](const Projection::Ray& ray, double higher) {
+    // From the middle of the picture's volumes on, so that lengths keep their digits.
+    double from = HUGE_VAL, to = -HUGE_VAL;
+    std::vector<TrueVolume> along;
+    for (size_t i = 0; i < volumes.size(); ++i) {
+      TrueVolume v = volumes[i].along(ray.origin, ray.direction);
+      v.transfer = &volumes[i].transfer, v.knots = volumes[i].transfer.knots();
+      if (volumes[i].item.shaded) v.light = &lights[i];
+      if (higher != 0) v.value = [value = v.value, off = higher * (volumes[i].hi - volumes[i].lo)](double t) { return value(t) + off; };
+      for (double t : v.ends) from = std::min(from, t), to = std::max(to, t);
+      along.push_back(std::move(v));
+    }
+    const double near = view.near_plane * ray.per_depth;
+    TrueSum sum;
+    if (std::max(from, near) < to) sum = TrueRay(std::move(along), ray.direction, 64).integrate(std::max(from, near), to);
+    return std::array<double, 4>{sum.color.x, sum.color.y, sum.color.z, 1 - sum.pass};
+  };
   Worst worst;
   for (int y = 0; y < view.height; ++y)
     for (int x = y % every; x < view.width; x += every) {
       const Projection::Ray ray = view.ray(x + 0.5, y + 0.5);
-      // From the middle of the picture's volumes on, so that lengths keep their digits.
-      double from = HUGE_VAL, to = -HUGE_VAL;
-      std::vector<TrueVolume> along;
-      for (size_t i = 0; i < volumes.size(); ++i) {
-        TrueVolume v = volumes[i].along(ray.origin, ray.direction);
-        v.transfer = &volumes[i].transfer, v.knots = volumes[i].transfer.knots();
-        if (volumes[i].item.shaded) v.light = &lights[i];
-        for (double t : v.ends) from = std::min(from, t), to = std::max(to, t);
-        along.push_back(std::move(v));
+      const float* seen = &frame.rgba[4 * (size_t(y) * size_t(view.width) + size_t(x))];
+      Worst here;
+      here.add(x, y, truth(ray, 0), seen, allowed);
+      // A value that just meets a step, or just does not, as near as floats tell.
+      for (const double higher : {-0x1p-22, 0x1p-22}) {
+        if (here.over == 0) break;
+        Worst beside;
+        beside.add(x, y, truth(ray, higher), seen, allowed);
+        if (beside.over == 0) here = beside;
       }
-      const double near = view.near_plane * ray.per_depth;
-      TrueSum sum;
-      if (std::max(from, near) < to) sum = TrueRay(std::move(along), ray.direction, 64).integrate(std::max(from, near), to);
-      worst.add(x, y, {sum.color.x, sum.color.y, sum.color.z, 1 - sum.pass}, &frame.rgba[4 * (size_t(y) * size_t(view.width) + size_t(x))],
-                allowed);
+      worst.over += here.over;
+      if (!(here.error <= worst.error)) here.over = worst.over, worst = here;
     }
   return worst;
 }
