@@ -70,6 +70,17 @@ HWY_ATTR inline F column(const TetMedium& m, I line, int k) {
   return hn::GatherIndex(D(), reinterpret_cast<const float*>(m.intervals.data()) + k, hn::ShiftLeft<4>(line));
 }
 
+HWY_ATTR inline F rest(const TetMedium& m, I line, int k) {
+  static_assert(sizeof(TetMedium::Rest) == 32);
+  return hn::GatherIndex(D(), reinterpret_cast<const float*>(m.rests.data()) + k, hn::ShiftLeft<3>(line));
+}
+
+/// Of a column of sums, from number 10 on.
+HWY_ATTR inline F sum_between(const TetMedium& m, I first, I last, int k, bool whole) {
+  const F sum = hn::Sub(column(m, last, k), column(m, first, k));
+  return whole ? hn::Add(sum, hn::Sub(rest(m, last, k - 10), rest(m, first, k - 10))) : sum;
+}
+
 template <bool lit>
 HWY_ATTR inline LinePart part_of_line(const TetMedium& m, I line, F lo, F from, F to) {
   const D d;
@@ -153,8 +164,7 @@ HWY_ATTR inline LinePart means(const TetMedium& m, F f0, F f1, I slice0, I slice
   const auto total = [&](F x, F y, int k) HWY_ATTR {
     F sum = hn::Add(hn::Mul(share0, x), hn::IfThenElseZero(hn::Not(same), hn::Mul(share1, y)));
     if (any) {
-      const F whole = hn::Sub(column(m, last, k), column(m, first, k));
-      sum = hn::Add(sum, hn::IfThenElseZero(more, hn::Mul(whole, per)));
+      sum = hn::Add(sum, hn::IfThenElseZero(more, hn::Mul(sum_between(m, first, last, k, m.long_sums), per)));
     }
     return sum;
   };
@@ -165,7 +175,7 @@ HWY_ATTR inline LinePart means(const TetMedium& m, F f0, F f1, I slice0, I slice
     const F behind = hn::Mul(share1, hn::Add(hn::Mul(hn::Sub(one, share1), b.tau), hn::Mul(share1, b.moment)));
     r.moment = hn::Add(hn::Mul(hn::Mul(share0, share0), a.moment), hn::IfThenElseZero(hn::Not(same), behind));
     if (any) {
-      const F tau = hn::Sub(column(m, last, 10), column(m, first, 10)), of = hn::Sub(column(m, last, 14), column(m, first, 14));
+      const F tau = sum_between(m, first, last, 10, m.long_moments), of = sum_between(m, first, last, 14, m.long_moments);
       const F about = hn::Sub(of, hn::Mul(hn::Sub(f0, hn::Set(d, m.slice_lo)), tau));
       r.moment = hn::Add(r.moment, hn::IfThenElseZero(more, hn::Mul(hn::Mul(about, per), per)));
     }
