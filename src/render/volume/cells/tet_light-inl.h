@@ -271,7 +271,7 @@ HWY_ATTR inline void gather_lit(const TetMedium& medium, const Lighting& lightin
   const D d;
   const F zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
   const Fair fair{medium, lighting};
-  const LinePart all = means<true>(medium, way.front, way.back, slice(way.front), slice(way.back), on);
+  const LinePart all = means<Ask::moment>(medium, way.front, way.back, slice(way.front), slice(way.back), on);
   on = hn::And(on, hn::Gt(hn::Mul(all.tau, way.length), zero));
   const Surface &first = way.first, &last = way.last;
   // Where it turns over, at an end too, or meets another lamp, its ends do not tell.
@@ -307,7 +307,7 @@ HWY_ATTR inline void gather_lit(const TetMedium& medium, const Lighting& lightin
     const F from = Lighting::mixed(way.front, way.back, at);
     const F to = hn::IfThenElse(hn::Ge(end, one), way.back, Lighting::mixed(way.front, way.back, end));
     const F length = hn::Mul(way.length, hn::Sub(end, at));
-    const LinePart p = means<true>(medium, from, to, slice(from), slice(to), more);
+    const LinePart p = means<Ask::moment>(medium, from, to, slice(from), slice(to), more);
     const M finest = hn::Le(hn::Sub(end, at), hn::Set(d, 1.0f / TetMedium::most_parts));
     const M good = hn::Or(finest, fair(p, length, sum.pass, a, m, b));
     behind_lit(p, length, hn::And(more, good), a.shine, m.shine, b.shine, sum);
