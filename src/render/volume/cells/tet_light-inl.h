@@ -288,12 +288,16 @@ HWY_ATTR inline void gather_lit(const TetMedium& medium, const Lighting& lightin
   M more = hn::AndNot(as_one, on);
   if (hn::AllFalse(d, more)) return;
 
-  F at = zero, step = hn::IfThenElse(smooth, half, one);
+  F at = zero, step = hn::IfThenElse(smooth, half, one), from = way.front;
   Surface a = first;
   M turned = hn::Gt(first.along, zero);  // the side on which `a` is lit
   F facing = first.facing;               // and by which lamps
   while (!hn::AllFalse(d, more)) {
-    const F end = hn::Min(hn::Min(hn::Add(at, step), one), lighting.next_kink(first, last, at));
+    F end = hn::Min(hn::Min(hn::Add(at, step), one), lighting.next_kink(first, last, at));
+    F to = hn::IfThenElse(hn::Ge(end, one), way.back, Lighting::mixed(way.front, way.back, end));
+    const M fine = hn::And(more, finest(hn::Sub(end, at)));
+    const bool any_fine = !hn::AllFalse(d, fine);
+    if (any_fine) end_at_knot(medium, at, from, slice, fine, end, to);
     const Surface m = lighting.between(first, last, hn::Mul(half, hn::Add(at, end)));
     // Its ends are lit as what lies between them: kinks lie in no part.
     const M side = hn::Gt(m.along, zero);
@@ -304,15 +308,13 @@ HWY_ATTR inline void gather_lit(const TetMedium& medium, const Lighting& lightin
     }
     Surface b = lighting.straight(first, last, end);
     lighting.shine_beside(b, m);
-    const F from = Lighting::mixed(way.front, way.back, at);
-    const F to = hn::IfThenElse(hn::Ge(end, one), way.back, Lighting::mixed(way.front, way.back, end));
     const F length = hn::Mul(way.length, hn::Sub(end, at));
-    const LinePart p = means<Ask::moment>(medium, from, to, slice(from), slice(to), more);
-    const M finest = hn::Le(hn::Sub(end, at), hn::Set(d, 1.0f / TetMedium::most_parts));
-    const M good = hn::Or(finest, fair(p, length, sum.pass, a, m, b));
+    LinePart p = means<Ask::moment>(medium, from, to, slice(from), slice(to), more);
+    const M good = hn::Or(fine, fair(p, length, sum.pass, a, m, b));
+    if (any_fine) without_order(fine, p);
     behind_lit(p, length, hn::And(more, good), a.shine, m.shine, b.shine, sum);
     a = chosen(good, b, a);
-    at = hn::IfThenElse(good, end, at);
+    at = hn::IfThenElse(good, end, at), from = hn::IfThenElse(good, to, from);
     step = hn::IfThenElse(good, hn::Add(step, step), hn::Mul(half, hn::Sub(end, at)));
     more = hn::And(more, hn::And(hn::Lt(at, one), hn::Ge(sum.pass, hn::Set(d, stop_below))));
   }

@@ -3,6 +3,7 @@
 
 #include "base/parallel.h"
 #include "render/volume/cells/tet_walk.h"
+#include "render/volume/optics/color_between.h"
 
 namespace sg::volume {
 
@@ -22,7 +23,7 @@ struct Sample {
 };
 
 /// On a line of the medium, its ends included.
-Sample sample_on(const Medium& medium, int line, float v) { return {v, {medium.lines()[size_t(line)](v), medium.color(v, line)}}; }
+Sample sample_on(const Medium& medium, int line, float v) { return {v, {medium.lines()[size_t(line)](v), color_between(medium, line, v)}}; }
 
 /// Appends the ends of pieces after a, up to and with b, on which a line of the medium is straight.
 void refine(const Medium& medium, int line, const Sample& a, const Sample& b, float accuracy, float faint, int depth,
