@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rays through cells of every kind, by what is known of cubes.
 #include "render/volume/cells/cell_volume.h"
+#include "render/volume/cells/tet_walk.h"
 #include "support/test.h"
 #include "volume_cells_support.h"
 
@@ -153,6 +154,52 @@ TEST_CASE("volume cells: rays along faces, edges and through vertices lose nothi
     // In the skin itself: all of it or nothing.
     const RaySum skin = gather(*source, *walker, {0, 0.3, -1}, {0, 0, 1});
     CHECK((skin.length == 0 || std::abs(skin.length - 1) < 1e-9));
+  }
+}
+
+// A face that a ray sees edge-on has shares for its corners that are rounding alone: it was met anywhere, with the value of that place.
+TEST_CASE("volume cells: rays in the planes of faces, but for rounding, have the value of the places where they meet them") {
+  const Mat3 turn{{{0.36, 0.48, -0.8}, {-0.8, 0.6, 0}, {0.48, 0.64, 0.6}}};
+  const auto turned = [&](Vec3 p) { return turn * (bent(p) + Vec3{0.1, 0.2, 0.3}); };
+  const DatasetPtr mesh = with_field(cube(CellType::tetra, 2, turned), linear);
+  const auto& tets = *mesh->as<UnstructuredMesh>();
+  const VolumeItem item = item_of(mesh);
+  Context context;
+  const auto source = volume::cell_source(item, context);
+  const auto walker = source->walker();
+  double worst = 0;
+  size_t ends = 0;
+  for (size_t t = 0; t < mesh->cell_count(); ++t) {
+    Vec3 v[4];
+    for (size_t k = 0; k < 4; ++k) v[k] = tets.points.at(size_t(tets.cells.connectivity.get(4 * t + k)));
+    for (size_t k = 0; k < 4; ++k)
+      for (double f : {0.13, 0.37, 0.71}) {
+        const Vec3 a = v[k], p = v[(k + 1) % 4] - a, q = v[(k + 2) % 4] - a;
+        const Vec3 d = normalize(p * f - q * (1 - f)), o = a + (p + q) * 0.3 - d * 3.0;
+        walker->start(o, d, -100, 100);
+        volume::Stretch s[5];
+        while (const size_t n = walker->next(s))
+          for (size_t i = 0; i < n; ++i, ends += 2) {
+            worst = std::max(worst, std::abs(double(s[i].b[0]) - linear(o + d * s[i].from)));
+            worst = std::max(worst, std::abs(double(s[i].b[3]) - linear(o + d * s[i].to)));
+          }
+      }
+  }
+  CHECK(ends > 1000);
+  CHECK(worst < 1e-5);
+}
+
+TEST_CASE("volume cells: a point in a flat triangle is the mean of its corners by their weights") {
+  const double needles[][3][2] = {{{-1, -1e-17}, {2, 3e-17}, {3, -2e-17}},
+                                  {{-0.1, -0.3}, {0.2, 0.6}, {0.3, 0.9 + 2e-16}},
+                                  {{1, 1}, {2, 2}, {-3, -3}},
+                                  {{0, 0}, {0, 0}, {1, 2}},
+                                  {{0, 0}, {-1, 2}, {3, 1}}};
+  for (const auto& v : needles) {
+    double w[3];
+    volume::weights_in_face(v, w);
+    CHECK(w[0] + w[1] + w[2] == doctest::Approx(1));
+    for (int a = 0; a < 2; ++a) CHECK(std::abs(w[0] * v[0][a] + w[1] * v[1][a] + w[2] * v[2][a]) < 1e-15);
   }
 }
 

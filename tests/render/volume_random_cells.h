@@ -14,7 +14,7 @@ namespace sg::test {
 inline void take_range(RandomVolume& out, const std::vector<double>& v) {
   const auto [lo, hi] = std::minmax_element(v.begin(), v.end());
   out.lo = *lo, out.hi = *hi;
-  out.item.field = "f";
+  out.item.field = "f", out.opaque = true;
   out.box = out.item.data->bounds();
 }
 

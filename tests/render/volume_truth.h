@@ -31,7 +31,6 @@ struct TrueTransfer {
   double threshold = 1;  ///< of symlog
   bool clamp = true;     ///< false: nothing is drawn beyond lo and hi
   double unit = 1;
-  double solid = HUGE_VAL;  ///< what stands for the tau of opacity 1
 
   double on_axis(double v) const {
     if (kind == ScaleKind::linear) return v;
@@ -87,7 +86,7 @@ struct TrueTransfer {
   double mean_tau(double a, double b) const {
     const auto whole = [](double o) { return o < 1 ? (1 - o) * std::log1p(-o) + o : 1.0; };
     if (std::abs(b - a) > 1e-4) return (whole(b) - whole(a)) / (b - a) / unit;
-    if (a >= 1 && b >= 1) return solid < HUGE_VAL ? solid : opaque / unit;
+    if (a >= 1 && b >= 1) return opaque / unit;
     return -std::log1p(-std::min(0.5 * (a + b), 1 - 1e-16)) / unit;
   }
 };

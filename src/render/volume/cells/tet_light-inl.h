@@ -86,7 +86,13 @@ class Lighting {
   }
 
   /// light_at, on the side of the surface that is seen where the product with the direction is `along`.
-  HWY_ATTR void shine(Surface& s, F along) const {
+  HWY_ATTR void shine(Surface& s, F along) const { shine<false>(s, along, s); }
+  /// The limit of the light from the side of another place, which is lit already: at a kink, where rounding does not tell.
+  HWY_ATTR void shine_beside(Surface& s, const Surface& other) const { shine<true>(s, other.along, other); }
+
+  /// `like` tells which lamps it faces.
+  template <bool beside>
+  HWY_ATTR void shine(Surface& s, F along, const Surface& like) const {
     const D d;
     const F zero = hn::Zero(d), one = hn::Set(d, 1.0f);
     const F square = dot(s.gradient, s.gradient);
@@ -94,15 +100,20 @@ class Lighting {
     const F size = hn::Sqrt(hn::IfThenElse(bent, square, one));
     s.much = hn::IfThenElseZero(bent, hn::Min(one, hn::Mul(size, hn::Set(d, light.edge_per_scale))));
     s.per_size = hn::IfThenElseZero(bent, hn::Div(one, size));
-    const F side = hn::IfThenElse(hn::Gt(along, zero), hn::Neg(s.per_size), s.per_size);
+    const M far = hn::Gt(along, zero);
+    const F side = hn::IfThenElse(far, hn::Neg(s.per_size), s.per_size);
+    F side_there = side;
+    if constexpr (beside) side_there = hn::IfThenElse(far, hn::Neg(like.per_size), like.per_size);
     F diffuse = zero, specular = zero;
     s.nearest = s.facing = zero;
     float number = 1;
     for (size_t n = 0; n < light.lamps.size(); ++n) {
       const TetLight::Lamp& l = light.lamps[n];
       const F to[3] = {hn::Set(d, l.direction.x), hn::Set(d, l.direction.y), hn::Set(d, l.direction.z)};
-      const F c = hn::Mul(side, dot(s.gradient, to)), intensity = hn::Set(d, l.intensity);
-      const M faces = hn::Gt(c, zero);
+      F c = hn::Mul(side, dot(s.gradient, to));
+      const F intensity = hn::Set(d, l.intensity);
+      M faces = hn::Gt(c, zero);
+      if constexpr (beside) faces = hn::Gt(hn::Mul(side_there, dot(like.gradient, to)), zero), c = hn::Max(c, zero);
       s.facing = hn::Add(s.facing, hn::IfThenElseZero(faces, hn::Set(d, number)));
       number *= 2;
       diffuse = hn::Add(diffuse, hn::IfThenElseZero(faces, hn::Mul(intensity, c)));
@@ -138,12 +149,16 @@ class Lighting {
     const F bend = hn::Mul(hn::Mul(turn, second), hn::Set(d, all_ / 12));
     // The amount of surface turns sharply where it becomes whole.
     const F fades = hn::Mul(hn::Set(d, 0.25f), hn::Abs(hn::Sub(a.much, b.much)));
-    // Where the gradient is shorter it turns faster, and half of the change of light lies not in the middle: of that the arch's mean.
-    const F sizes = hn::Max(hn::Add(a.per_size, b.per_size), hn::Set(d, 1e-30f));
-    const F faster = hn::Div(hn::Abs(hn::Sub(a.per_size, b.per_size)), sizes);
-    const F arch = hn::Mul(hn::Mul(faster, hn::Set(d, 1.0f / 3)), apart(a.shine, b.shine));
-    return {hn::Add(hn::Add(bend, fades), arch),
-            hn::Add(hn::Mul(hn::Mul(bend, turn), hn::Mul(hn::Set(d, 0.1f), hn::Add(one, lobe))), fades)};
+    // The sum of a short gradient and a long one turns with the long one: where it is, light has changed by the share s r / (1 - s + s r)
+    // at the share s of the way, r = (1 + f) / (1 - f) the ratio of their lengths. In the mean that is off the line by f (1/3 + f^2 / 6) at
+    // most, and off the parabola by f^3 (1/15 + f^2 / 10).
+    const F sizes = hn::Add(a.per_size, b.per_size);
+    const F ratio = hn::Div(hn::Abs(hn::Sub(a.per_size, b.per_size)), hn::IfThenElse(hn::Gt(sizes, zero), sizes, one));
+    const F square = hn::Mul(ratio, ratio), early = hn::Mul(apart(a.shine, b.shine), ratio);
+    const F line = hn::Mul(early, hn::Add(hn::Set(d, 1.0f / 3), hn::Mul(square, hn::Set(d, 1.0f / 6))));
+    const F parabola = hn::Mul(hn::Mul(early, square), hn::Add(hn::Set(d, 1.0f / 15), hn::Mul(square, hn::Set(d, 0.1f))));
+    return {hn::Add(hn::Add(bend, line), fades),
+            hn::Add(hn::Add(hn::Mul(hn::Mul(bend, turn), hn::Mul(hn::Set(d, 0.1f), hn::Add(one, lobe))), parabola), fades)};
   }
 
   /// The next place beyond `at` where the surface turns over, or a lamp begins or ceases to shine on it; 2 when there is none.
@@ -256,7 +271,7 @@ HWY_ATTR inline void gather_lit(const TetMedium& medium, const Lighting& lightin
   const D d;
   const F zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
   const Fair fair{medium, lighting};
-  const LinePart all = means<true>(medium, way.front, way.back, slice(way.front), slice(way.back), on);
+  const LinePart all = means<Ask::moment>(medium, way.front, way.back, slice(way.front), slice(way.back), on);
   on = hn::And(on, hn::Gt(hn::Mul(all.tau, way.length), zero));
   const Surface &first = way.first, &last = way.last;
   // Where it turns over, at an end too, or meets another lamp, its ends do not tell.
@@ -273,29 +288,33 @@ HWY_ATTR inline void gather_lit(const TetMedium& medium, const Lighting& lightin
   M more = hn::AndNot(as_one, on);
   if (hn::AllFalse(d, more)) return;
 
-  F at = zero, step = hn::IfThenElse(smooth, half, one);
+  F at = zero, step = hn::IfThenElse(smooth, half, one), from = way.front;
   Surface a = first;
   M turned = hn::Gt(first.along, zero);  // the side on which `a` is lit
+  F facing = first.facing;               // and by which lamps
   while (!hn::AllFalse(d, more)) {
-    const F end = hn::Min(hn::Min(hn::Add(at, step), one), lighting.next_kink(first, last, at));
+    F end = hn::Min(hn::Min(hn::Add(at, step), one), lighting.next_kink(first, last, at));
+    F to = hn::IfThenElse(hn::Ge(end, one), way.back, Lighting::mixed(way.front, way.back, end));
+    const M fine = hn::And(more, finest(hn::Sub(end, at)));
+    const bool any_fine = !hn::AllFalse(d, fine);
+    if (any_fine) end_at_knot(medium, at, from, slice, fine, end, to);
     const Surface m = lighting.between(first, last, hn::Mul(half, hn::Add(at, end)));
+    // Its ends are lit as what lies between them: kinks lie in no part.
     const M side = hn::Gt(m.along, zero);
-    if (!hn::AllFalse(d, hn::And(more, hn::Xor(side, turned)))) {
+    if (!hn::AllFalse(d, hn::And(more, hn::Or(hn::Xor(side, turned), hn::Ne(m.facing, facing))))) {
       a = lighting.straight(first, last, at);
-      lighting.shine(a, m.along);
-      turned = side;
+      lighting.shine_beside(a, m);
+      turned = side, facing = m.facing;
     }
     Surface b = lighting.straight(first, last, end);
-    lighting.shine(b, m.along);
-    const F from = Lighting::mixed(way.front, way.back, at);
-    const F to = hn::IfThenElse(hn::Ge(end, one), way.back, Lighting::mixed(way.front, way.back, end));
+    lighting.shine_beside(b, m);
     const F length = hn::Mul(way.length, hn::Sub(end, at));
-    const LinePart p = means<true>(medium, from, to, slice(from), slice(to), more);
-    const M finest = hn::Le(hn::Sub(end, at), hn::Set(d, 1.0f / TetMedium::most_parts));
-    const M good = hn::Or(finest, fair(p, length, sum.pass, a, m, b));
+    LinePart p = means<Ask::moment>(medium, from, to, slice(from), slice(to), more);
+    const M good = hn::Or(fine, fair(p, length, sum.pass, a, m, b));
+    if (any_fine) without_order(fine, p);
     behind_lit(p, length, hn::And(more, good), a.shine, m.shine, b.shine, sum);
     a = chosen(good, b, a);
-    at = hn::IfThenElse(good, end, at);
+    at = hn::IfThenElse(good, end, at), from = hn::IfThenElse(good, to, from);
     step = hn::IfThenElse(good, hn::Add(step, step), hn::Mul(half, hn::Sub(end, at)));
     more = hn::And(more, hn::And(hn::Lt(at, one), hn::Ge(sum.pass, hn::Set(d, stop_below))));
   }

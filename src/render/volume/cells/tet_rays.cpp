@@ -3,6 +3,7 @@
 
 #include "base/parallel.h"
 #include "render/volume/cells/tet_walk.h"
+#include "render/volume/optics/color_between.h"
 
 namespace sg::volume {
 
@@ -22,7 +23,7 @@ struct Sample {
 };
 
 /// On a line of the medium, its ends included.
-Sample sample_on(const Medium& medium, int line, float v) { return {v, {medium.lines()[size_t(line)](v), medium.color(v, line)}}; }
+Sample sample_on(const Medium& medium, int line, float v) { return {v, {medium.lines()[size_t(line)](v), color_between(medium, line, v)}}; }
 
 /// Appends the ends of pieces after a, up to and with b, on which a line of the medium is straight.
 void refine(const Medium& medium, int line, const Sample& a, const Sample& b, float accuracy, float faint, int depth,
@@ -75,10 +76,12 @@ TetMedium::TetMedium(const Medium& medium, const Range& range, float tolerance) 
   add(top, {1e30f, top.at});
 
   double sum[4] = {}, moment = 0;
+  rests.assign(intervals.size(), Rest{});
   for (size_t i = 1; i < intervals.size(); ++i) {
     Interval& v = intervals[i];
-    for (int k = 0; k < 4; ++k) v.before[k] = float(sum[k]);
-    v.moment = float(moment);
+    Rest& rest = rests[i];
+    for (int k = 0; k < 4; ++k) v.before[k] = float(sum[k]), rest.before[k] = float(sum[k] - double(v.before[k]));
+    v.moment = float(moment), rest.moment = float(moment - double(v.moment));
     if (v.hi >= 1e30f) break;
     const double w = double(v.hi) - double(v.lo), tau = double(v.at[0]) + 0.5 * w * double(v.slope[0]);
     sum[0] += w * tau;
@@ -86,6 +89,15 @@ TetMedium::TetMedium(const Medium& medium, const Range& range, float tolerance) 
     for (int k = 1; k < 4; ++k)
       sum[k] += w * (tau * (double(v.at[k]) + 0.5 * w * double(v.slope[k])) + w * w / 12 * double(v.slope[k]) * double(v.slope[0]));
   }
+
+  // What a segment over a whole line may have wrong of its mean tau, and of where that is.
+  for (size_t i = 1; i + 1 < intervals.size(); ++i) {
+    const Interval& v = intervals[i];
+    const double w = double(v.hi) - double(v.lo), wrong = 0x1p-24 * sum[0] / w;
+    long_sums = long_sums || wrong > std::max(1e-4 * double(v.at[0] + 0.5f * (v.hi - v.lo) * v.slope[0]), 0.01 * double(medium.faint()));
+    long_moments = long_moments || w < (double(hi) - double(lo)) / 1024;
+  }
+  long_moments = long_moments || long_sums;
 
   // Slice 0 lies below, the last one above, those between have equal width.
   slice_lo = lo, per_slice = hi > lo ? float(slices) / (hi - lo) : 0;

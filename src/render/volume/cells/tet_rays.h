@@ -22,8 +22,15 @@ struct TetMedium {
   struct alignas(64) Interval {
     float lo, hi, at[4], slope[4], before[4], moment, unused;
   };
+  /// What the floats of these sums leave out: beside what is as good as opaque, and where lines are narrow, differences of sums need it.
+  struct alignas(32) Rest {
+    float before[4], moment, unused[3];
+  };
   static constexpr int most_parts = 1024;
   std::vector<Interval> intervals;
+  std::vector<Rest> rests;
+  bool long_sums = false;      ///< are the rests of `before` needed?
+  bool long_moments = false;   ///< and those for moments?
   std::vector<int32_t> first;  ///< per slice of the value: the interval of the slice before
   std::vector<int32_t> seen;   ///< slices before this one in which tau is not zero
   float slice_lo = 0, per_slice = 0;

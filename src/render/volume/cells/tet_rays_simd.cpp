@@ -40,6 +40,28 @@ HWY_ATTR inline M left(const Corner& a, const Corner& b) {
   return decide(a.x, a.y, b.x, b.y, found, equal);
 }
 
+/// Shares so small of the products that they are differences of are mostly rounding: the plane of a face is as good as along the line.
+constexpr float edge_on = 1.0f / 4096;
+
+/// Weights of corners without a share of rounding.
+HWY_NOINLINE HWY_ATTR void weigh_exactly(const F x[3], const F y[3], M which, F weight[3]) {
+  const D d;
+  const DI di;
+  alignas(64) float at[2][3][TetPacket::lanes], w[3][TetPacket::lanes];
+  alignas(64) int32_t ask[TetPacket::lanes];
+  for (int k = 0; k < 3; ++k) hn::Store(x[k], d, at[0][k]), hn::Store(y[k], d, at[1][k]), hn::Store(weight[k], d, w[k]);
+  hn::Store(hn::VecFromMask(di, to_int(which)), di, ask);
+  for (size_t i = 0; i < hn::Lanes(d); ++i)
+    if (ask[i]) {
+      // Products of floats are exact in double, so their difference is rounded once.
+      double v[3][2], share[3];
+      for (int k = 0; k < 3; ++k) v[k][0] = double(at[0][k][i]), v[k][1] = double(at[1][k][i]);
+      weights_in_face(v, share);
+      for (int k = 0; k < 3; ++k) w[k][i] = float(share[k]);
+    }
+  for (int k = 0; k < 3; ++k) weight[k] = hn::Load(d, w[k]);
+}
+
 HWY_ATTR inline Corner chosen(M yes, const Corner& a, const Corner& b) {
   return {hn::IfThenElse(yes, a.x, b.x), hn::IfThenElse(yes, a.y, b.y), hn::IfThenElse(yes, a.z, b.z), hn::IfThenElse(yes, a.f, b.f),
           hn::IfThenElse(to_int(yes), a.id, b.id)};
@@ -66,16 +88,23 @@ HWY_ATTR void walk_lanes(const TetTables& tables, TetPacket& p, size_t lane) {
                   id};
   };
   F weight[3];  // of a, b, c where the line crosses their face
-  const auto cross_at = [&](const Corner& a, const Corner& b, const Corner& c, F& f) HWY_ATTR {
-    const F wa = hn::Max(turn(b.x, b.y, c.x, c.y), zero), wb = hn::Max(turn(c.x, c.y, a.x, a.y), zero);
-    const F wc = hn::Max(turn(a.x, a.y, b.x, b.y), zero), all = hn::Add(hn::Add(wa, wb), wc);
-    const M some = hn::Gt(all, hn::Set(d, 1e-37f));
-    const F per = hn::Div(one, hn::IfThenElse(some, all, one)), third = hn::Set(d, 1.0f / 3);
-    const F u = hn::IfThenElse(some, hn::Mul(wa, per), third), v = hn::IfThenElse(some, hn::Mul(wb, per), third);
-    const F w = hn::IfThenElse(some, hn::Mul(wc, per), third);
-    weight[0] = u, weight[1] = v, weight[2] = w;
-    f = hn::Add(hn::Add(hn::Mul(u, a.f), hn::Mul(v, b.f)), hn::Mul(w, c.f));
-    return hn::Add(hn::Add(hn::Mul(u, a.z), hn::Mul(v, b.z)), hn::Mul(w, c.z));
+  const auto cross_at = [&](const Corner& a, const Corner& b, const Corner& c, M which, F& f) HWY_ATTR {
+    const F pa = hn::Mul(b.x, c.y), qa = hn::Mul(b.y, c.x), pb = hn::Mul(c.x, a.y), qb = hn::Mul(c.y, a.x);
+    const F pc = hn::Mul(a.x, b.y), qc = hn::Mul(a.y, b.x);
+    const F wa = hn::Max(hn::Sub(pa, qa), zero), wb = hn::Max(hn::Sub(pb, qb), zero), wc = hn::Max(hn::Sub(pc, qc), zero);
+    const F all = hn::Add(hn::Add(wa, wb), wc);
+    // No product p is below its q: the largest one by size is one of these.
+    const F size = hn::Max(hn::Max(hn::Max(pa, pb), pc), hn::Neg(hn::Min(hn::Min(qa, qb), qc)));
+    const F least = hn::Set(d, 1e-37f);
+    const M unsure = hn::And(which, hn::Le(all, hn::Add(hn::Mul(size, hn::Set(d, edge_on)), least)));
+    const F per = hn::Div(one, hn::Max(all, least));
+    weight[0] = hn::Mul(wa, per), weight[1] = hn::Mul(wb, per), weight[2] = hn::Mul(wc, per);
+    if (!hn::AllFalse(d, unsure)) {
+      const F x[3] = {a.x, b.x, c.x}, y[3] = {a.y, b.y, c.y};
+      weigh_exactly(x, y, unsure, weight);
+    }
+    f = hn::Add(hn::Add(hn::Mul(weight[0], a.f), hn::Mul(weight[1], b.f)), hn::Mul(weight[2], c.f));
+    return hn::Add(hn::Add(hn::Mul(weight[0], a.z), hn::Mul(weight[1], b.z)), hn::Mul(weight[2], c.z));
   };
   const Slice slice{medium};
   // The surface at the face in front, in the lanes that have asked for it.
@@ -86,8 +115,8 @@ HWY_ATTR void walk_lanes(const TetTables& tables, TetPacket& p, size_t lane) {
   M known_before = hn::Lt(one, zero);
 
   Corner a = corner(hn::Load(di, p.id[0] + lane)), b = corner(hn::Load(di, p.id[1] + lane)), c = corner(hn::Load(di, p.id[2] + lane));
-  F f, z = cross_at(a, b, c, f);
   M on = hn::Not(to_float(hn::Lt(tet, hn::Zero(di))));
+  F f, z = cross_at(a, b, c, on, f);
   while (!hn::AllFalse(d, on)) {
     const I entered[3] = {a.id, b.id, c.id};
     const F enter_weight[3] = {weight[0], weight[1], weight[2]}, enter = z;
@@ -104,7 +133,7 @@ HWY_ATTR void walk_lanes(const TetTables& tables, TetPacket& p, size_t lane) {
     const I next = hn::GatherIndex(di, links + 1, hn::Add(link, rank));
     c = chosen(no_c, e, c), b = chosen(no_b, e, b), a = chosen(hn::Or(no_c, no_b), a, e);
     F f1;
-    const F z1 = cross_at(a, b, c, f1);
+    const F z1 = cross_at(a, b, c, on, f1);
 
     // What lies between, cut to what is not drawn yet and not hidden.
     const F from = hn::Max(z, done), to = hn::Min(z1, limit);
@@ -180,6 +209,7 @@ HWY_ATTR uint32_t cut(const ColumnTet& t, const float y[4], RowCut& out) {
   const D d;
   constexpr int faces[4][3] = {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {1, 2, 3}};
   uint32_t bits = 0;
+  const float high = std::max(std::max(std::abs(y[0]), std::abs(y[1])), std::max(std::abs(y[2]), std::abs(y[3])));
   for (size_t lane = 0; lane < size_t(ColumnTet::lanes); lane += hn::Lanes(d)) {
     Corner v[4];
     for (int k = 0; k < 4; ++k) v[k].x = hn::Load(d, t.x[k] + lane), v[k].y = hn::Set(d, y[k]);
@@ -190,6 +220,9 @@ HWY_ATTR uint32_t cut(const ColumnTet& t, const float y[4], RowCut& out) {
         left_of[a][b] = left(v[a], v[b]);
         size[a][b] = hn::Abs(turn(v[a].x, v[a].y, v[b].x, v[b].y));
       }
+    // No product is larger than those of the largest coordinates.
+    const F wide = hn::Max(hn::Max(hn::Abs(v[0].x), hn::Abs(v[1].x)), hn::Max(hn::Abs(v[2].x), hn::Abs(v[3].x)));
+    const F small = hn::Add(hn::Mul(wide, hn::Set(d, high * edge_on)), hn::Set(d, 1e-37f));
     F enter = hn::Set(d, 1e30f), leave = hn::Set(d, -1e30f), front = hn::Zero(d), back = hn::Zero(d);
     M any = hn::Lt(enter, leave);
     for (const auto& [a, b, c] : faces) {
@@ -197,12 +230,16 @@ HWY_ATTR uint32_t cut(const ColumnTet& t, const float y[4], RowCut& out) {
       const M in = hn::Or(hn::AndNot(ac, hn::And(ab, bc)), hn::And(ac, hn::Not(hn::Or(ab, bc))));
       if (hn::AllFalse(d, in)) continue;
       const F all = hn::Add(hn::Add(size[b][c], size[a][c]), size[a][b]);
-      const M some = hn::Gt(all, hn::Set(d, 1e-37f));
-      const F per = hn::Div(hn::Set(d, 1.0f), hn::IfThenElse(some, all, hn::Set(d, 1.0f))), third = hn::Set(d, 1.0f / 3);
-      const F wa = hn::IfThenElse(some, hn::Mul(size[b][c], per), third), wb = hn::IfThenElse(some, hn::Mul(size[a][c], per), third);
-      const F wc = hn::IfThenElse(some, hn::Mul(size[a][b], per), third);
+      const F per = hn::Div(hn::Set(d, 1.0f), hn::Max(all, hn::Set(d, 1e-37f)));
+      F weight[3] = {hn::Mul(size[b][c], per), hn::Mul(size[a][c], per), hn::Mul(size[a][b], per)};
+      const M unsure = hn::And(in, hn::Le(all, small));
+      if (!hn::AllFalse(d, unsure)) {
+        const F xs[3] = {v[a].x, v[b].x, v[c].x}, ys[3] = {v[a].y, v[b].y, v[c].y};
+        weigh_exactly(xs, ys, unsure, weight);
+      }
       const auto mix = [&](const float* q) HWY_ATTR {
-        return hn::Add(hn::Add(hn::Mul(wa, hn::Set(d, q[a])), hn::Mul(wb, hn::Set(d, q[b]))), hn::Mul(wc, hn::Set(d, q[c])));
+        return hn::Add(hn::Add(hn::Mul(weight[0], hn::Set(d, q[a])), hn::Mul(weight[1], hn::Set(d, q[b]))),
+                       hn::Mul(weight[2], hn::Set(d, q[c])));
       };
       const F z = mix(t.z), f = mix(t.f);
       const M nearer = hn::And(in, hn::Lt(z, enter)), farther = hn::And(in, hn::Gt(z, leave));

@@ -7,7 +7,31 @@ namespace {
 
 bool left(const auto& a, const auto& b) { return turns_left(a.x, a.y, b.x, b.y); }
 
+/// ax by - ay bx, right to the last bits (Kahan).
+double area(const double a[2], const double b[2]) {
+  const double q = a[1] * b[0], rest = std::fma(a[1], b[0], -q);
+  return std::fma(a[0], b[1], -q) - rest;
+}
+
 }  // namespace
+
+void weights_in_face(const double v[3][2], double weights[3]) {
+  double sum = 0;
+  for (int k = 0; k < 3; ++k) weights[k] = std::abs(area(v[(k + 1) % 3], v[(k + 2) % 3])), sum += weights[k];
+  if (sum > 0) {
+    for (int k = 0; k < 3; ++k) weights[k] /= sum;
+    return;
+  }
+  // All on one straight line: between the two that have the point between them.
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3;
+    if (v[i][0] * v[j][0] + v[i][1] * v[j][1] > 0) continue;
+    const double a = std::sqrt(v[i][0] * v[i][0] + v[i][1] * v[i][1]), b = std::sqrt(v[j][0] * v[j][0] + v[j][1] * v[j][1]);
+    weights[i] = a + b > 0 ? b / (a + b) : 0.5, weights[j] = 1 - weights[i], weights[3 - i - j] = 0;
+    return;
+  }
+  weights[0] = weights[1] = weights[2] = 1.0 / 3;
+}
 
 TetWalk::Corner TetWalk::corner(uint32_t id) const {
   const Vec3 p = mesh_.at[id] - origin_;
@@ -17,10 +41,17 @@ TetWalk::Corner TetWalk::corner(uint32_t id) const {
 /// Place and value where the line crosses v_.
 double TetWalk::interpolate(float& f) const {
   const Corner &a = v_[0], &b = v_[1], &c = v_[2];
-  double wa = std::max(b.x * c.y - b.y * c.x, 0.0), wb = std::max(c.x * a.y - c.y * a.x, 0.0), wc = std::max(a.x * b.y - a.y * b.x, 0.0);
-  const double sum = wa + wb + wc;
-  if (sum > 0) wa /= sum, wb /= sum, wc /= sum;
-  else wa = wb = wc = 1.0 / 3;
+  const double pa = b.x * c.y, qa = b.y * c.x, pb = c.x * a.y, qb = c.y * a.x, pc = a.x * b.y, qc = a.y * b.x;
+  double wa = std::max(pa - qa, 0.0), wb = std::max(pb - qb, 0.0), wc = std::max(pc - qc, 0.0);
+  const double sum = wa + wb + wc, size = std::max({pa, pb, pc, -qa, -qb, -qc});
+  if (sum > 0x1p-30 * size) {
+    wa /= sum, wb /= sum, wc /= sum;
+  } else {
+    const double corners[3][2] = {{a.x, a.y}, {b.x, b.y}, {c.x, c.y}};
+    double w[3];
+    weights_in_face(corners, w);
+    wa = w[0], wb = w[1], wc = w[2];
+  }
   // Rounding must not carry a value beyond those of the corners.
   f = float(wa * double(a.f) + wb * double(b.f) + wc * double(c.f));
   return wa * a.t + wb * b.t + wc * c.t;

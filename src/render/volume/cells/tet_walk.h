@@ -23,6 +23,10 @@ inline bool turns_left(double ax, double ay, double bx, double by) {
   return bx > ax;
 }
 
+/// Where the point (0, 0) lies in a triangle around it, as weights of its corners: right to the last bits however flat it is. A line
+/// through a face that it sees edge-on meets it somewhere on the line, too, not somewhere on the face.
+void weights_in_face(const double corners[3][2], double weights[3]);
+
 class TetWalk {
  public:
   /// What one tetrahedron adds.

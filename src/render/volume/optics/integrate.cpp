@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "render/volume/light/effects.h"
+#include "render/volume/optics/color_between.h"
 #include "render/volume/optics/functions.h"
 #include "render/volume/optics/joint.h"
 #include "render/volume/optics/light_kinks.h"
@@ -134,7 +135,8 @@ double optical_depth(const Detail& detail, const Stretch& s, RayField& walker) {
 
 namespace {
 
-constexpr float deep = 0.05f;  // optical depth from which on the order within a segment is seen
+constexpr float deep = 0.05f;   // optical depth from which on the order within a segment is seen
+constexpr float solid = 16.0f;  // and from which on its front alone is
 
 /// Where there is light on the ends of a part of a stretch, linear between them.
 struct LitPart {
@@ -170,14 +172,15 @@ class Pieces {
     if (styled_) depth *= lit->at(t + double(length) * double(weight)).opacity;
     const float pass = exp_minus(depth), alpha = depth < 0.02f ? depth * (1 - depth * (0.5f - depth * (1.0f / 6))) : 1 - pass;
     const Medium& medium = look_.medium;
-    Vec3f c = medium.color(mean, line) * alpha, both{0, 0, 0};
+    const auto color = [&](float v) { return depth > solid ? color_between(medium, line, v) : medium.color(v, line); };
+    Vec3f c = color(mean) * alpha, both{0, 0, 0};
     const float brighter = lit ? lit->brighter(length) : 0;
     const bool together = lit && std::abs(brighter) * medium.color_slope() * std::abs(medium.axis(b) - medium.axis(a)) > covary_from_;
     if (depth > deep || together) {
       // A/2 - A/D + exp(-D), by its series where that cancels.
       const float hidden =
           depth < 0.2f ? depth * depth * (1.0f / 12 - depth * (1.0f / 24 - depth * (1.0f / 80))) : 0.5f * alpha - alpha / depth + pass;
-      const Vec3f change = medium.color(b, line) - medium.color(a, line);
+      const Vec3f change = color(b) - color(a);
       c -= change * hidden;
       weight -= hidden / alpha;
       if (together) both = change * (alpha * brighter * spread(depth, alpha, pass));
