@@ -286,7 +286,8 @@ class Pieces {
     // Where tau rises Simpson's rule has the mean colour of a value that bends wrong by a 120th of the fourth power's factor in their
     // product, which falls with the fourth power.
     const float fourth = slope * (bend + 2 * std::abs(last - first) * (hi - lo) / std::max(bend, 1e-30f));
-    const float uneven = pass * recolored * std::min(1.0f, length * fourth) * (1.0f / 120);
+    const float leaning = std::min(120 * taken, denser_ * length * medium.leaning(slope, hi - lo, bend, std::abs(last - first)));
+    const float uneven = pass * (recolored * std::min(1.0f, length * fourth) + leaning) * (1.0f / 120);
     const float share = pass * std::min(1.0f, denser_ * length * medium.tau(0.25f * (s.b[0] + s.b[1] + s.b[2] + s.b[3])));
     const float allowed = tolerance * (float(0.3 / look_.budget.length) * length + 0.4f * share);
     // And the value may turn beyond its ends, where there may be knots: then pieces end there, too.
