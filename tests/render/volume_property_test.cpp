@@ -244,6 +244,11 @@ TEST_CASE("property: projected tetrahedra keep the tolerance, lit or not") {
   }
 }
 
+// Found by another seed: light of single rays had risen and fallen again.
+TEST_CASE("volume: light that rises and falls again between places where it is alike stays within the tolerance") {
+  for (uint64_t seed : {96000160030}) composited(seed, kinds, true, 6);
+}
+
 // Scenes of few grey values, smooth: equal samples have no gradient, beside them a surface begins within a cell.
 TEST_CASE("volume: beside equal samples lit surfaces stay within the tolerance") {
   const Kinds plain{.steps = false, .color_steps = false, .any_scale = false, .opaque = false, .refined = false};
