@@ -244,9 +244,9 @@ TEST_CASE("property: projected tetrahedra keep the tolerance, lit or not") {
   }
 }
 
-// Found by another seed: light of single rays had risen and fallen again.
-TEST_CASE("volume: light that rises and falls again between places where it is alike stays within the tolerance") {
-  for (uint64_t seed : {96000160030}) composited(seed, kinds, true, 6);
+// Found by other seeds: along strides of packets a surface turned over there and back, light of single rays had risen and fallen again.
+TEST_CASE("volume: surfaces that turn over and back, and light that is alike where it is looked at, stay within the tolerance") {
+  for (uint64_t seed : {95000030002, 96000160030}) composited(seed, kinds, true, 6);
 }
 
 // Scenes of few grey values, smooth: equal samples have no gradient, beside them a surface begins within a cell.
