@@ -26,6 +26,35 @@ TEST_CASE("volume: opacity .3 per unit becomes .0853 over a quarter, and four qu
   CHECK(look(scene_of({item(grid(g, [](Vec3) { return 0.5; }), one_color({1, 1, 1}), curve, 0.25)})).rgba[3] == Approx(0.3));
 }
 
+// tau = -ln(1 - opacity) is no straight line over the value, nor is the value one along the diagonal of a face: 1.7 s (1 - s).
+TEST_CASE("volume: a dense ramp of opacity over a value that turns is within the tolerance") {
+  UniformGrid g;
+  g.dims = {2, 2, 2}, g.spacing = {1, 1, 1}, g.origin = {0, 0, 0};
+  const DatasetPtr d = grid(g, [](Vec3 p) { return p.x > p.y ? 1 : p.x < p.y ? 0.7 : 0; });
+  for (const double steep : {0.2, 0.3, 0.4, 0.6})
+    for (const double unit : {3.0, 1.0, 0.3, 0.1}) {
+      OpacityCurve curve;
+      curve.points = {{-0.25, 0}, {1.25, 1.5 * steep}};  // no knot on the way
+      VolumeItem v = item(d, one_color({1, 1, 1}), curve);
+      v.unit_distance = unit, v.shaded = false;
+      double depth = 0;
+      constexpr int n = 20000;
+      for (int i = 0; i < n; ++i) {
+        const double s = (i + 0.5) / n;
+        depth -= std::log1p(-(1.7 * s * (1 - s) + 0.25) * steep) / n;
+      }
+      depth *= std::sqrt(2.0) / unit;
+      Projection view = parallel_view(1, 1, 1, normalize(Vec3{1, 1, 0}), {0, 0, 1}, {0.5, 0.5, 0.5});
+      view.eye = Vec3{0.5, 0.5, 0.5} - view.forward * 4, view.far_plane = 10;
+      for (const double tolerance : {1.0 / 64, 1.0 / 512, 1.0 / 4096}) {
+        v.sampling.tolerance = tolerance;
+        INFO("opacity " << steep << " (v + 1/4), unit " << unit << ", tolerance " << tolerance);
+        CHECK(std::abs(draw(scene_of({v}), view).rgba[3] + std::expm1(-depth)) < tolerance);
+        CHECK(std::abs(draw(scene_of({v}), view, {}, by_single_rays(view)).rgba[3] + std::expm1(-depth)) < tolerance);
+      }
+    }
+}
+
 TEST_CASE("volume: exp and log of our own agree with the library's") {
   for (int i = 0; i < 2000; ++i) {
     const double x = random_unit(1, uint64_t(i)) * (i % 2 ? 1 : 50);

@@ -303,6 +303,11 @@ TEST_CASE("volume: tetrahedra of opacity 1 show what is in front of it") {
   for (uint64_t seed : {880000451ul, 660100000227ul}) projected(seed);
 }
 
+// Found by other seeds: along strides of packets a surface turned over there and back, light of single rays had risen and fallen again.
+TEST_CASE("volume: surfaces that turn over and back, and light that is alike where it is looked at, stay within the tolerance") {
+  for (uint64_t seed : {95000030002, 96000160030}) composited(seed, kinds, true, 6);
+}
+
 // Scenes of few grey values, smooth: equal samples have no gradient, beside them a surface begins within a cell.
 TEST_CASE("volume: beside equal samples lit surfaces stay within the tolerance") {
   const Kinds plain{.steps = false, .color_steps = false, .any_scale = false, .opaque = false, .refined = false};

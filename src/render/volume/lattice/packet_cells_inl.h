@@ -147,7 +147,9 @@ class PacketCells : public RayLanes<D, T, Axes> {
     error = mul_add(change, hn::Min(one, deep), error);
     error = hn::Mul(mul_add(recolored, deeper, error), pass);
     const F fourth = mul_add(hn::Abs(f.e), hn::Add(range, range), hn::Mul(bend, bend));
-    const F uneven = hn::Mul(hn::Mul(pass, hn::Set(d, 1.0f / 120)), hn::Min(one, hn::Mul(fourth, hn::Mul(tilt, color_slope))));
+    const F leaning = hn::Min(hn::Mul(taken, hn::Set(d, 120.0f)), hn::Mul(length, medium.leaning(slope, range, bend, hn::Abs(f.e))));
+    const F uneven =
+        hn::Mul(hn::Mul(pass, hn::Set(d, 1.0f / 120)), hn::Add(hn::Min(one, hn::Mul(fourth, hn::Mul(tilt, color_slope))), leaning));
     const F share = hn::Mul(pass, hn::Min(one, hn::Mul(length, tau_mean)));
     const F allowed =
         hn::Mul(hn::Set(d, tolerance), mul_add(share, hn::Set(d, 0.4f), hn::Mul(length, hn::Set(d, float(0.3 / plan.budget.length)))));

@@ -170,6 +170,10 @@ struct StrideLight {
     const F faded = hn::Mul(hn::Mul(hollows, hn::Set(d, 0.5f * share_hollow)), lighting.most_fade());
     const F aside = hn::Add(faded, beside_parabola(p0, p2));
     l.error = hn::Max(hn::Mul(bend, share), hn::Add(aside, hn::Add(jump(p0, p1), jump(p1, p2))));
+    // Between places on one side of the surface's edge, but so near to it, the other may be seen.
+    const auto there_and_back = [&](const LitPlace<D>& a, const LitPlace<D>& b)
+                                    HWY_ATTR { return hn::AndNot(kinked(a.sides, b.sides), grazing(a.surface, b.surface)); };
+    l.error = hn::IfThenElse(hn::Or(there_and_back(p0, p1), there_and_back(p1, p2)), hn::Set(d, 1.0f), l.error);
     return l;
   }
   /// Where the surface turns over between the ends, and nothing else is a kink: each face on its part of the way, lit by a straight line

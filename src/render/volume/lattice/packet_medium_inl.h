@@ -118,6 +118,14 @@ struct MediumLanes {
   }
   /// On a line, its ends included: at a knot colours may jump.
   HWY_INLINE Color color(F v, I line) const { return medium.pieced() ? color_on(v, line) : color(v); }
+  /// Medium::leaning.
+  HWY_INLINE F leaning(F slope, F range, F bend, F twist) const {
+    const D d;
+    const F one = hn::Set(d, 1.0f), per_opacity = hn::Min(hn::Mul(slope, hn::Set(d, medium.unit())), hn::Set(d, 1e30f));
+    const auto turned = [&](F by) HWY_ATTR { return hn::Min(hn::Mul(per_opacity, by), one); };
+    const F y = turned(range), u = turned(bend);
+    return hn::Mul(hn::Set(d, medium.per_unit()), mul_add(u, mul_add(hn::Set(d, 0.5f), u, hn::Mul(y, y)), hn::Mul(turned(twist), y)));
+  }
   /// Do abrupt knots lie between two lines?
   HWY_INLINE hn::Mask<D> abrupt(I first, I last) const {
     const D d;

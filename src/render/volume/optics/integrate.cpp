@@ -290,7 +290,8 @@ class Pieces {
     // Where tau rises Simpson's rule has the mean colour of a value that bends wrong by a 120th of the fourth power's factor in their
     // product, which falls with the fourth power.
     const float fourth = slope * (bend + 2 * std::abs(last - first) * (hi - lo) / std::max(bend, 1e-30f));
-    const float uneven = pass * std::min(1.0f, recolored) * std::min(1.0f, length * fourth) * (1.0f / 120);
+    const float leaning = std::min(120 * taken, denser_ * length * medium.leaning(slope, hi - lo, bend, std::abs(last - first)));
+    const float uneven = pass * (std::min(1.0f, recolored) * std::min(1.0f, length * fourth) + leaning) * (1.0f / 120);
     const float share = pass * std::min(1.0f, denser_ * length * medium.tau(0.25f * (s.b[0] + s.b[1] + s.b[2] + s.b[3])));
     const float allowed = tolerance * (float(0.3 / look_.budget.length) * length + 0.4f * share);
     // And the value may turn beyond its ends, where there may be knots: then pieces end there, too.
@@ -380,7 +381,7 @@ class LitStretch {
     const float depth = float(s.to - s.from) * look_.medium.most_tau(lo, hi), weight = state_.sum.transmittance * std::min(depth, 1.0f);
     LightKinks kinks;
     if (weight * most_jump() > allowed(s, weight)) kinks = light_kinks(*look_.lit, walker_, s, first.gradient, last.gradient);
-    if (kinks.count == 0) return part(s, lo, hi, first, last, 0);
+    if (kinks.count == 0) return part(s, lo, hi, first, last, 0, unknown);
     LitPlace begin = first;
     for (int i = 0; i <= kinks.count; ++i) {
       // The light on both sides of a kink, which is the same place.
@@ -390,7 +391,7 @@ class LitStretch {
         next = lit_place(look_, walker_, s, std::min(s.to, kinks.at[i] + beside));
         end.t = next.t = kinks.at[i];
       }
-      within(s, begin, end, 0);
+      within(s, begin, end, 0, unknown);
       if (state_.sum.transmittance < look_.budget.stop_below) return;
       begin = next;
     }
@@ -398,6 +399,7 @@ class LitStretch {
 
  private:
   static constexpr int most_cuts = 10;
+  static constexpr float unknown = 0.1f;  // what light may be off where it is known at two ends alone
 
   /// What may be wrong of a part: a share of the tolerance by the light that is taken, one by the length.
   float allowed(const Stretch& s, float weight) const {
@@ -410,25 +412,28 @@ class LitStretch {
     for (const LitRay::One& l : look_.lit->lights) all += l.intensity;
     return all * (look_.lit->material.diffuse + look_.lit->material.specular);
   }
-  /// Cuts the stretch until the light on its ends tells the light on its way.
-  void part(const Stretch& s, float lo, float hi, const LitPlace& first, const LitPlace& last, int cuts) {
+  /// Cuts the stretch until the light on its ends tells the light on its way. Ends may be alike by chance: `may_be_off` is what light in
+  /// between may be off the straight line between them as far as is known.
+  void part(const Stretch& s, float lo, float hi, const LitPlace& first, const LitPlace& last, int cuts, float may_be_off) {
     const float depth = float(s.to - s.from) * look_.medium.most_tau(lo, hi);
     const float weight = state_.sum.transmittance * std::min(depth, 1.0f);
     const float allowed = this->allowed(s, weight);
     const float bend = may_bend(*look_.lit, first, last), differ = std::max(bend, difference(first.light, last.light));
     // The ends of a whole stretch tell little of it, and its middle little where a short way in it is all that is seen.
+    if (cuts == 1 && depth > 1) may_be_off = std::max(may_be_off, unknown);
     const bool dense = cuts == 0 && depth > 2;
-    if (cuts < most_cuts && weight * std::max(differ, cuts == 0 || (cuts == 1 && depth > 1) ? 0.1f : 0.0f) > allowed) {
+    if (cuts < most_cuts && weight * std::max(differ, may_be_off) > allowed) {
       const LitPlace middle = lit_place(look_, walker_, s, 0.5 * (s.from + s.to));
       const float off = difference(middle.light, lerp(first.light, last.light, 0.5f));
       if (dense || weight * std::max(off, bend) > allowed) {
         LitPlace before = middle, after = middle;
         if (jumps(s, first, middle, last, before, after)) {
-          within(s, first, before, cuts + 1);
-          return within(s, after, last, cuts + 1);
+          within(s, first, before, cuts + 1, 0);
+          return within(s, after, last, cuts + 1, 0);
         }
-        within(s, first, middle, cuts + 1);
-        return within(s, middle, last, cuts + 1);
+        // What bends evenly is off by a fourth on either half.
+        within(s, first, middle, cuts + 1, 0.25f * off);
+        return within(s, middle, last, cuts + 1, 0.25f * off);
       }
     }
     Pieces pieces(look_, state_);
@@ -436,11 +441,11 @@ class LitStretch {
     pieces.light(lit);
     pieces.whole(s, lo, hi);
   }
-  void within(const Stretch& s, const LitPlace& first, const LitPlace& last, int cuts) {
+  void within(const Stretch& s, const LitPlace& first, const LitPlace& last, int cuts, float may_be_off) {
     if (!(last.t > first.t)) return;
     const Stretch p = part_of(s, first.t, last.t);
     const float lo = p.lowest(), hi = p.highest();
-    if (!look_.medium.clear(lo, hi)) part(p, lo, hi, first, last, cuts);
+    if (!look_.medium.clear(lo, hi)) part(p, lo, hi, first, last, cuts, may_be_off);
   }
 
   /// Does the light jump, as where a surface turns over? Then between two places next to each other, which count as one.

@@ -165,6 +165,7 @@ Medium::Spans Medium::make_lines(const ColorScale& scale, const OpacityCurve& cu
   if (lines_.empty()) lines_.push_back({0, 0, 0, float(tau.at(lo).tau), 0, 0, 0}), spans.push_back({lo, hi});
   bound();
   top_ = lines_.back().hi, accuracy_ = float(plan.accuracy), faint_ = float(plan.faint);
+  unit_ = float(plan.unit), per_unit_ = float(1 / plan.unit);
   // Beyond the data nothing is asked, but for rounding errors.
   lines_.front().lo = -HUGE_VALF, lines_.back().hi = HUGE_VALF;
   for (const Line& l : lines_) columns_.hi.push_back(l.hi);
