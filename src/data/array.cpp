@@ -112,7 +112,7 @@ double Array::get(size_t i, int c) const {
 Array Array::component(int c) const {
   if (c < 0 || c >= components_) fail_internal(fmt::format("array has {} components, not component {}", components_, c));
   Array a = *this;
-  a.data_ += c * component_stride_;
+  if (a.data_) a.data_ += c * component_stride_;  // none of an empty array
   a.components_ = 1;
   return a;
 }
@@ -120,7 +120,7 @@ Array Array::component(int c) const {
 Array Array::slice(size_t begin, size_t end) const {
   if (begin > end || end > count_) fail_internal(fmt::format("array has {} tuples, not {} to {}", count_, begin, end));
   Array a = *this;
-  a.data_ += ptrdiff_t(begin) * stride_;
+  if (a.data_) a.data_ += ptrdiff_t(begin) * stride_;
   a.count_ = end - begin;
   return a;
 }

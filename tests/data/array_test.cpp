@@ -18,6 +18,13 @@ TEST_CASE("array: strides see any layout without a copy") {
   CHECK_THROWS_AS(Array(a.buffer(), ElementType::f64, 4, 1), Error);
 }
 
+TEST_CASE("array: components and slices of an empty array are empty") {
+  const Array none(Buffer{}, ElementType::f32, 0, 3);
+  CHECK(none.component(1).count() == 0);
+  CHECK(none.component(2).components() == 1);
+  CHECK(none.slice(0, 0).count() == 0);
+}
+
 TEST_CASE("array: conversion rounds and clamps") {
   const Array a = Array::from_vector<double>({-1, 1.5, 300, NAN});
   const Array b = a.converted(ElementType::u8);

@@ -67,7 +67,9 @@ class CgnsFile {
   double node(double parent, const std::string& name, const std::string& label) {
     double id = 0;
     REQUIRE(lib_.create(file_, parent, name.c_str(), &id) == 0);
-    REQUIRE(lib_.label(file_, id, label.c_str()) == 0);
+    std::string whole = label;
+    whole.resize(33);  // the library takes so many bytes, whatever their length
+    REQUIRE(lib_.label(file_, id, whole.c_str()) == 0);
     return id;
   }
   double text(double parent, const std::string& name, const std::string& label, const std::string& value, std::vector<int> dims = {}) {

@@ -14,6 +14,7 @@
 #include <thread>
 
 #include "base/context.h"
+#include "data/memory_budget.h"
 
 namespace sg::test::hostile {
 
@@ -29,10 +30,11 @@ inline double seconds(double s) {
   return shadow_memory ? 20 * s : s;
 }
 
-/// Within its life the process may have so many gigabytes more than before.
+/// Within its life the process may have so many gigabytes more than before, and is told that half as many are allowed.
 class MemoryFence {
  public:
   explicit MemoryFence(size_t gigabytes = 1) {
+    set_memory_limit(array_memory() + (gigabytes << 29));
     if (uncounted()) return;
     getrlimit(RLIMIT_AS, &before_);
     size_t pages = 0;
@@ -42,6 +44,7 @@ class MemoryFence {
     setrlimit(RLIMIT_AS, &fence);
   }
   ~MemoryFence() {
+    set_memory_limit(0);
     if (!uncounted()) setrlimit(RLIMIT_AS, &before_);
   }
 

@@ -230,7 +230,7 @@ DatasetPtr degenerate_lines(const DatasetPtr& input, const DegenerateLinesParams
                dimension == 2 ? "degenerate_points finds those of flat meshes and surfaces" : "a mesh of solid cells");
   // Curved cells in parts, as many as can be looked through in a moment, and three halvings at least.
   TessellateParams straight;
-  while (straight.max_level > 3 && double(input->cell_count()) * std::pow(8.0, straight.max_level) > 250'000) --straight.max_level;
+  while (straight.max_level > 3 && double(input->cell_count()) * std::pow(8.0, straight.max_level) > 100'000) --straight.max_level;
   const DatasetPtr in = tessellate(input, straight, ctx);
   TensorField t = read_point_tensors(in, p.tensors, "degenerate_lines", ctx);
   if (t.dimension != 3)

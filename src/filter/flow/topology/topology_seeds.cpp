@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include "data/memory_budget.h"
 #include "filter/flow/topology/topology.h"
 
 namespace sg {
@@ -86,6 +87,10 @@ void describe(Schema& s, TopologySeedsParams& p) {
 DatasetPtr topology_seeds(const Data& in, const TopologySeedsParams& p, Context& context) {
   const FlowParts flow(in, p.field.name, "topology_seeds", context);
   const CriticalPoints critical = find_critical_points(flow, p.critical, context);
+  constexpr double bytes_a_seed = 100;  // its place, its numbers, and lists that grow
+  need_memory(double(p.count) * double(critical.points.size() + 1) * bytes_a_seed,
+              fmt::format("{} seeds around each of {} critical points", p.count, critical.points.size()), "topology_seeds",
+              "take fewer: count");
   const std::vector<double> reach = reaches(critical.points, p.radius, 0.1 * flow.bounds().diagonal());
   std::vector<double> xyz;
   std::vector<int32_t> number, type;

@@ -236,12 +236,17 @@ void link(TetMesh& mesh, Context& context) {
           TetLink& l = mesh.links[t];
           l.all = v[0] ^ v[1] ^ v[2] ^ v[3];
           for (size_t f = 0; f < 4; ++f) {
-            // Where three cells meet at a face, two of them are neighbours and the third ends there.
-            int64_t other = across(t, f);
-            bool mutual = false;
-            for (size_t g = 0; other >= 0 && g < 4; ++g) mutual = mutual || across(size_t(other), g) == int64_t(t);
-            if (!mutual) other = -1;
             const auto k = size_t(opposite[f]);
+            // Where three cells meet at a face, two of them are neighbours and the third ends there, although it may be the neighbour of
+            // one of them across another face: a walk that goes back another way than it came could go round for ever.
+            int64_t other = across(t, f);
+            if (other >= 0) {
+              const Tet& o = mesh.corners[size_t(other)];
+              const uint32_t apex = o[0] ^ o[1] ^ o[2] ^ o[3] ^ l.all ^ v[k];
+              bool mutual = false;
+              for (size_t g = 0; g < 4; ++g) mutual = mutual || (o[size_t(opposite[g])] == apex && across(size_t(other), g) == int64_t(t));
+              if (!mutual) other = -1;
+            }
             l.next[k] = int32_t(other);
             if (other >= 0) continue;
             TetMesh::Face face{{}, v[k], uint32_t(t)};

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "base/parallel.h"
+#include "data/memory_budget.h"
 #include "filter/flow/topology/topology_support.h"
 #include "filter/surface_shapes.h"
 #include "support/test.h"
@@ -214,6 +215,18 @@ TEST_CASE("topology seeds: patterns about the critical points, inside the mesh")
   std::string told;
   context.on_log = [&](LogLevel l, std::string_view t) { told += l == LogLevel::warning ? t : ""; };
   CHECK(topology_seeds(none, p, context)->point_count() == 0);
+
+  TopologySeedsParams many;
+  many.count = 1'000'000;
+  set_memory_limit(array_memory() + (size_t(64) << 20));
+  std::string said;
+  try {
+    topology_seeds(d, many, context);
+  } catch (const Error& e) {
+    said = e.what();
+  }
+  set_memory_limit(0);
+  CHECK(said.find("1000000 seeds around each of") != std::string::npos);
   CHECK(told.find("no critical point") != std::string::npos);
   const DatasetPtr solid = topology_seeds(cube_grid(20, 0, 6, abc), p, context);
   CHECK(solid->point_count() > 50);
