@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "filter/flow/flow_parts.h"
 #include "filter/flow/integrator.h"
 

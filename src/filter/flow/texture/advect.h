@@ -2,7 +2,7 @@
 // advect: fields and images carried along by the flow.
 #pragma once
 #include "base/context.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 
 namespace sg {

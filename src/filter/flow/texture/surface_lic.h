@@ -2,7 +2,7 @@
 // surface_lic: the directions of a flow as a texture on a surface, in space.
 #pragma once
 #include "base/context.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 
 namespace sg {

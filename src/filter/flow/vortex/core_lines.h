@@ -2,7 +2,7 @@
 // vortex_cores: lines about which a flow turns.
 #pragma once
 #include "base/context.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 
 namespace sg {

@@ -2,7 +2,7 @@
 // shear_lines: lines along which a plane flow shears most in a finite time (Haller, Beron-Vera 2012).
 #pragma once
 #include "base/context.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 
 namespace sg {
