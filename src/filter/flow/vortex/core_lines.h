@@ -7,9 +7,15 @@
 
 namespace sg {
 
+enum class CoreMethod { sujudi_haimes, levy };
+constexpr auto enum_words(CoreMethod) {
+  using enum CoreMethod;
+  return std::array{Word{"sujudi_haimes", sujudi_haimes}, Word{"levy", levy}};
+}
+
 struct VortexCoresParams {
   FieldName field;
-  std::string method = "sujudi_haimes";
+  CoreMethod method = CoreMethod::sujudi_haimes;
   double min_swirl = 0.05;
   double max_angle = 45;
   double min_length = 0.02;

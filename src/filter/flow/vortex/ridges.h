@@ -9,9 +9,15 @@
 
 namespace sg {
 
+enum class RidgeKind { ridges, valleys };
+constexpr auto enum_words(RidgeKind) {
+  using enum RidgeKind;
+  return std::array{Word{"ridges", ridges}, Word{"valleys", valleys}};
+}
+
 struct RidgesParams {
   FieldName field;
-  std::string kind = "ridges";
+  RidgeKind kind = RidgeKind::ridges;
   std::optional<double> limit;
   double smooth = 2;
   double strength = 0.02;

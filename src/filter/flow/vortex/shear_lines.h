@@ -7,8 +7,15 @@
 
 namespace sg {
 
+/// Which of the two directions.
+enum class ShearChoice { plus, minus, both };
+constexpr auto enum_words(ShearChoice) {
+  using enum ShearChoice;
+  return std::array{Word{"plus", plus}, Word{"minus", minus}, Word{"both", both}};
+}
+
 struct ShearLinesParams {
-  std::string family = "both";
+  ShearChoice family = ShearChoice::both;
   int64_t count = 100;
   std::optional<double> max_length;
 };
