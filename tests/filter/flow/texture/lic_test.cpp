@@ -104,7 +104,7 @@ TEST_CASE("lic: constant noise stays constant, whatever the kernel, up to the bo
   for (const char* kernel : {"box", "hanning", "ripple"})
     for (const char* method : {"plain", "fast"}) {
       LicParams p;
-      p.kernel = kernel, p.method = method, p.contrast = texture::Contrast::none, p.phase = 0.3;
+      p.kernel = *value_of_word<texture::LineWeights>(kernel), p.method = *value_of_word<LicMethod>(method), p.contrast = texture::Contrast::none, p.phase = 0.3;
       float most = 0;
       for (const float x : values_of(texture_of(d, p, even), "lic")) most = std::max(most, std::abs(x - 0.3f));
       CAPTURE(kernel);
@@ -116,7 +116,7 @@ TEST_CASE("lic: constant noise stays constant, whatever the kernel, up to the bo
 TEST_CASE("lic: the waves of the ripple kernel move downstream, and phase 1 is phase 0") {
   const DatasetPtr d = along_x(400, 60);
   LicParams p;
-  p.kernel = "ripple", p.length = 30, p.ripples = 2, p.contrast = texture::Contrast::none;
+  p.kernel = texture::LineWeights::ripple, p.length = 30, p.ripples = 2, p.contrast = texture::Contrast::none;
   auto frame = [&](double phase) {
     p.phase = phase;
     return values_of(texture_of(d, p), "lic");
