@@ -10,7 +10,12 @@ namespace sg {
 enum class Scheme : uint8_t { euler, midpoint, heun, rk4, dormand_prince, implicit_midpoint };
 constexpr auto enum_words(Scheme) {
   using enum Scheme;
-  return std::array{Word{"euler", euler}, Word{"midpoint", midpoint}, Word{"heun", heun}, Word{"rk4", rk4}, Word{"dormand_prince", dormand_prince}, Word{"implicit_midpoint", implicit_midpoint}};
+  return std::array{Word{"euler", euler},
+                    Word{"midpoint", midpoint},
+                    Word{"heun", heun},
+                    Word{"rk4", rk4},
+                    Word{"dormand_prince", dormand_prince},
+                    Word{"implicit_midpoint", implicit_midpoint}};
 }
 
 /// Order of the error of a whole path: 1, 2, 2, 4, 5, 2.

@@ -16,7 +16,8 @@ namespace sg {
 enum class SeedKind { random, points, line, plane, sphere, ball, grid, mesh, pixels };
 constexpr auto enum_words(SeedKind) {
   using enum SeedKind;
-  return std::array{Word{"random", random}, Word{"points", points}, Word{"line", line}, Word{"plane", plane}, Word{"sphere", sphere}, Word{"ball", ball}, Word{"grid", grid}, Word{"mesh", mesh}, Word{"pixels", pixels}};
+  return std::array{Word{"random", random}, Word{"points", points}, Word{"line", line}, Word{"plane", plane},  Word{"sphere", sphere},
+                    Word{"ball", ball},     Word{"grid", grid},     Word{"mesh", mesh}, Word{"pixels", pixels}};
 }
 
 /// Shared by every operation that starts at seeds.

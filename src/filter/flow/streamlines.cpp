@@ -117,9 +117,7 @@ Data streamlines(const std::vector<Data>& inputs, const StreamlinesParams& p, Co
     for (const Field& f : more)
       if (!out.fields.find(f.name, f.association)) out.fields.add(f);
   };
-  const auto wanted = [&](LineAttribute a) {
-    return std::find(p.attributes.begin(), p.attributes.end(), a) != p.attributes.end();
-  };
+  const auto wanted = [&](LineAttribute a) { return std::find(p.attributes.begin(), p.attributes.end(), a) != p.attributes.end(); };
   const bool vorticity = wanted(LineAttribute::vorticity), rotation = wanted(LineAttribute::rotation);
   if (vorticity || rotation) add(rotation_along(parts, *lines, parts.name(), vorticity, rotation, context));
   if (wanted(LineAttribute::fields)) add(fields_along(parts, *lines, parts.name(), context));

@@ -50,8 +50,8 @@ void check_way(const FlowField& flow, double duration, double most, const TraceO
   constexpr double nowhere = 1e-6;
   const double goal = o.unit == StepUnit::cells ? 1 : o.unit == StepUnit::length ? cell : std::abs(duration);
   if (std::isfinite(goal) && reach < nowhere * goal)
-    fail_usage(fmt::format("{} steps of {:.4g} (step_unit={}) go nowhere", o.max_steps, step, word_of(o.unit)),
-               fmt::format("{} step", who), fmt::format("larger ones: {:.4g} would be a cell in as many", goal / double(o.max_steps)));
+    fail_usage(fmt::format("{} steps of {:.4g} (step_unit={}) go nowhere", o.max_steps, step, word_of(o.unit)), fmt::format("{} step", who),
+               fmt::format("larger ones: {:.4g} would be a cell in as many", goal / double(o.max_steps)));
 }
 
 namespace {

@@ -39,14 +39,15 @@ void describe(Schema& s, StopParams& p);
 enum class StopReason : uint8_t { outside, length, time, steps, speed, closed, error };
 constexpr auto enum_words(StopReason) {
   using enum StopReason;
-  return std::array{Word{"outside", outside}, Word{"length", length}, Word{"time", time}, Word{"steps", steps}, Word{"speed", speed}, Word{"closed", closed}, Word{"error", error}};
+  return std::array{Word{"outside", outside}, Word{"length", length}, Word{"time", time},  Word{"steps", steps},
+                    Word{"speed", speed},     Word{"closed", closed}, Word{"error", error}};
 }
 
 /// What the words mean, resolved once.
 struct TraceOptions {
   Scheme scheme = Scheme::dormand_prince;
   StepUnit unit = StepUnit::cells;  ///< of the three step sizes
-  double step = 0.5;                                                     ///< fixed schemes: every step; dormand_prince: the first one
+  double step = 0.5;                ///< fixed schemes: every step; dormand_prince: the first one
   double min_step = 0.01, max_step = 1;
   double tolerance = 1e-4;  ///< dormand_prince: error of a step, in cell sizes
   double max_length = HUGE_VAL, max_time = HUGE_VAL;

@@ -90,7 +90,8 @@ TEST_CASE("timelines: a shear stretches the line into its closed form, and new p
 TEST_CASE("timelines: a line in the oscillating flow moves as a whole; bends get points") {
   Context context;
   TimelinesParams p;
-  p.seeds.from = Vec3(-1, -0.5, 0), p.seeds.to = Vec3(-1, 0.5, 0), p.seeds.count = 5, p.every = 0.5, p.interpolation = TimeInterpolation::cubic;
+  p.seeds.from = Vec3(-1, -0.5, 0), p.seeds.to = Vec3(-1, 0.5, 0), p.seeds.count = 5, p.every = 0.5,
+  p.interpolation = TimeInterpolation::cubic;
   const Lines lines{timelines(oscillating_series(41), {}, p, context)};
   REQUIRE(lines.points() == 25);
   for (size_t k = 0; k < 25; ++k)

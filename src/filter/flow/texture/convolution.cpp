@@ -160,7 +160,8 @@ Weights kernel_weights(LineWeights kernel, int steps, double phase, int ripples)
   for (int k = -steps; k <= steps; ++k) {
     double w = 1;
     if (!r.box) w = 0.5 + 0.5 * std::cos(turn * k / (2 * steps + 2));
-    if (kernel == LineWeights::ripple) w *= 0.5 + 0.5 * std::cos(turn * (double(ripples) * k / (2 * steps + 1) + (phase - std::floor(phase))));
+    if (kernel == LineWeights::ripple)
+      w *= 0.5 + 0.5 * std::cos(turn * (double(ripples) * k / (2 * steps + 1) + (phase - std::floor(phase))));
     r.w.push_back(float(w));
     r.sum.push_back(float(sum += double(float(w))));
   }

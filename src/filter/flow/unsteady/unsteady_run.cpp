@@ -17,8 +17,7 @@ void describe(Schema& s, UnsteadyParams& p, const std::string& start, const std:
       .unit("time");
   s("start", p.start, start).unit("time");
   s("time", p.time, time).unit("time");
-  s("interpolation", p.interpolation, "Between time steps: linear through two, or cubic through four (smooth, where steps are far apart).")
-      ;
+  s("interpolation", p.interpolation, "Between time steps: linear through two, or cubic through four (smooth, where steps are far apart).");
   describe(s, p.integration);
   s("max_steps", p.max_steps, "Most steps of one particle.").range(1, 1e9);
   describe(s, p.seeds);

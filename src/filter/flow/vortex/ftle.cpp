@@ -179,8 +179,7 @@ DatasetPtr ftle(const Series& given, const FtleParams& p, Context& context) {
                            given.times.front(), given.times.back()),
                "ftle", "another start or duration");
   }
-  UnsteadyFlow flow(series, p.field.name, p.interpolation, context,
-                    p.geographic);
+  UnsteadyFlow flow(series, p.field.name, p.interpolation, context, p.geographic);
   size_t k = flow.interval_of(start, sign);
   const size_t last = flow.interval_of(until, -sign);
   flow.open(k, context);

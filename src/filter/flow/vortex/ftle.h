@@ -8,8 +8,8 @@
 #include "base/context.h"
 #include "base/schema/schema.h"
 #include "data/dataset.h"
-#include "filter/flow/unsteady/time_interpolation.h"
 #include "filter/flow/trace.h"
+#include "filter/flow/unsteady/time_interpolation.h"
 
 namespace sg {
 

@@ -78,7 +78,8 @@ TEST_CASE("lic meshes: in every kind of flat mesh white noise keeps 1/L of its v
       Context context;
       const DatasetPtr d = flow::with_velocity(kind.make(6, 1), [&](Vec3) { return along_y ? Vec3(0, 3, 0) : Vec3(2, 0, 0); });
       LicParams p;
-      p.resolution = int64_t(n), p.length = 10, p.contrast = texture::Contrast::none, p.method = along_y ? LicMethod::fast : LicMethod::plain;
+      p.resolution = int64_t(n), p.length = 10, p.contrast = texture::Contrast::none,
+      p.method = along_y ? LicMethod::fast : LicMethod::plain;
       return values_of(lic(d, nullptr, p, context), "lic");
     };
     const MeshKind& first = flat_meshes()[0];

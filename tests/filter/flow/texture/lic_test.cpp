@@ -104,7 +104,8 @@ TEST_CASE("lic: constant noise stays constant, whatever the kernel, up to the bo
   for (const char* kernel : {"box", "hanning", "ripple"})
     for (const char* method : {"plain", "fast"}) {
       LicParams p;
-      p.kernel = *value_of_word<texture::LineWeights>(kernel), p.method = *value_of_word<LicMethod>(method), p.contrast = texture::Contrast::none, p.phase = 0.3;
+      p.kernel = *value_of_word<texture::LineWeights>(kernel), p.method = *value_of_word<LicMethod>(method),
+      p.contrast = texture::Contrast::none, p.phase = 0.3;
       float most = 0;
       for (const float x : values_of(texture_of(d, p, even), "lic")) most = std::max(most, std::abs(x - 0.3f));
       CAPTURE(kernel);
@@ -147,7 +148,7 @@ TEST_CASE("lic: the same bytes for one thread and eight") {
   for (const char* method : {"plain", "fast"})
     for (const char* contrast : {"stretch", "equalise"}) {
       LicParams p;
-      p.method = method, p.contrast = contrast, p.grain = 1.5, p.passes = 2;
+      p.method = *value_of_word<LicMethod>(method), p.contrast = *value_of_word<texture::Contrast>(contrast), p.grain = 1.5, p.passes = 2;
       set_thread_count(1);
       const std::vector<float> one = values_of(texture_of(d, p), "lic");
       set_thread_count(8);
@@ -283,7 +284,8 @@ TEST_CASE("lic: a solid grid gives a volume of texture that varies across the fl
   const DatasetPtr d = make_dataset(g, fields);
   for (const char* method : {"plain", "fast"}) {
     LicParams p;
-    p.resolution = 48, p.length = 8, p.contrast = texture::Contrast::none, p.method = method, p.noise = LicNoise::white;
+    p.resolution = 48, p.length = 8, p.contrast = texture::Contrast::none, p.method = *value_of_word<LicMethod>(method),
+    p.noise = LicNoise::white;
     const std::vector<float> v = values_of(texture_of(d, p), "lic");
     double along = 0, across = 0, n = 0;
     for (size_t k = 0; k + 1 < 36; ++k)
