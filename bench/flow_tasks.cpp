@@ -79,10 +79,10 @@ Task streamlines_task(Cells cells, const char* scheme, const char* label) {
               if (!pool->empty()) pool->pop_back();
               const double h = 2.0 / 127;
               StreamlinesParams p;
-              p.direction = "forward";
-              p.integration.integrator = scheme;
+              p.direction = TraceDirection::forward;
+              p.integration.integrator = *value_of_word<Scheme>(scheme);
               p.integration.step = 0.5 * h, p.integration.min_step = 0.05 * h, p.integration.max_step = 2 * h;
-              p.integration.step_unit = "length";
+              p.integration.step_unit = StepUnit::length;
               p.integration.tolerance = 1e-6 / (cells == Cells::tets ? 2.0 / 55 : h);  // theirs is a length
               p.stop.max_steps = 1000, p.stop.min_speed = 1e-12, p.stop.closed = false, p.stop.max_length = 1e6;
               Context context;

@@ -31,7 +31,7 @@ Task convolution(const char* label, const char* method) {
             image.add({"noise", Association::point, Array::from_vector(std::move(noise)), "", Role::scalars});
             const DatasetPtr d = make_dataset(g, flow), w = make_dataset(g, image);
             LicParams p;
-            p.length = 40, p.step = 1, p.method = method, p.contrast = "none";
+            p.length = 40, p.step = 1, p.method = *value_of_word<LicMethod>(method), p.contrast = texture::Contrast::none;
             return [=] {
               Context context;
               const DatasetPtr out = lic(d, w, p, context);

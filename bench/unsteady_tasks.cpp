@@ -61,7 +61,7 @@ template <class Params, class Filter>
 Task unsteady(const char* name, Filter filter, bool adapts) {
   Params params;
   if constexpr (std::is_same_v<Params, StreaklinesParams>) params.refine = false;  // the peer's particles, and no more
-  if (!adapts) params.integration.integrator = "rk4", params.integration.step_unit = "time", params.integration.step = 0.02;
+  if (!adapts) params.integration.integrator = Scheme::rk4, params.integration.step_unit = StepUnit::time, params.integration.step = 0.02;
   return {"particles_unsteady", "uniform64 x 20 time steps x 10000 seeds",
           fmt::format("sightglass:{}{}", name, adapts ? "(dormand_prince)" : ""), "points out", [=] {
             const Series series = swinging_flow();

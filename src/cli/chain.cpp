@@ -10,6 +10,7 @@
 #include "io/file_series.h"
 #include "pipeline/operation.h"
 #include "pipeline/read_params.h"
+#include "scene/camera_params.h"
 
 namespace sg {
 
@@ -61,7 +62,7 @@ void add_picture_words(const Options& o, PipelineFile& file) {
     for (const std::string& w : quoted_words(group)) file.picture.push_back(w);
   for (const std::string& w : quoted_words(o.camera)) {
     const bool named = w.find('=') == std::string::npos;
-    if (named && (w == "parallel" || w == "perspective")) file.picture.push_back("camera.projection=" + w);
+    if (named && value_of_word<ProjectionKind>(w)) file.picture.push_back("camera.projection=" + w);
     else file.picture.push_back(named ? "camera.view=" + w : "camera." + w);
   }
 }

@@ -7,7 +7,7 @@
 #include "pipeline/picture.h"
 #include "pipeline/read_params.h"
 #include "scene/camera_params.h"
-#include "scene/show.h"
+#include "scene/show/show.h"
 
 namespace sg {
 
@@ -43,7 +43,8 @@ std::string all_json() {
   r += ",\"show\":[";
   bool first = true;
   for (const ShowKind& k : show_kinds()) {
-    r += fmt::format("{}{{\"name\":\"{}\",\"sentence\":{},\"params\":{}}}", first ? "" : ",", k.name, json_string(k.sentence), k.json());
+    r += fmt::format("{}{{\"name\":\"{}\",\"sentence\":{},\"params\":{}}}", first ? "" : ",", k.name, json_string(k.sentence),
+                     params_json(k.make_params().schema));
     first = false;
   }
   r += "]";
@@ -76,7 +77,10 @@ int run_ops(const Options& o, Context&) {
       done = true;
     };
     for (const ShowKind& k : show_kinds())
-      if (k.name == name) print(k.sentence, k.help(), k.json());
+      if (k.name == name) {
+        const ParamSet params = k.make_params();
+        print(k.sentence, params_help(params.schema), params_json(params.schema));
+      }
     for (const Group& g : groups)
       if (g.name == name) print(g.sentence, g.help(), g.json());
     for (const Operation& op : operations())

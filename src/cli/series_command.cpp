@@ -14,7 +14,6 @@
 #include "cli/cli.h"
 #include "cli/say.h"
 #include "data/memory_budget.h"
-#include "filter/glyph/choose.h"
 #include "image/codec.h"
 #include "io/file_series.h"
 #include "io/movie.h"
@@ -22,6 +21,8 @@
 #include "pipeline/picture_parts.h"
 #include "pipeline/read_params.h"
 #include "pipeline/series_input.h"
+#include "scene/choose/shared_scale.h"
+#include "scene/show/show.h"
 
 namespace sg {
 
@@ -142,29 +143,26 @@ class Ahead {
 void fix_ranges(PipelineFile& first, const std::vector<PipelineFile>& some, Context& context) {
   for (size_t i = 0; i < first.show.size(); ++i) {
     PipelineFile::Show& show = first.show[i];
-    if (!colors_by_field(show.kind) || word_value(show.words, "range") || word_value(show.words, "color")) continue;
-    std::string named = word_value(show.words, "field").value_or("");
-    if (named.empty() && show.kind == "glyphs") named = word_value(show.words, "vectors").value_or("");
-    if (named == "none") continue;
+    const ShowKind& kind = find_show(show.kind);
+    const ParamSet params = show_params(kind, show.words);
+    if (!kind.coloring || !kind.coloring(params)->color.empty()) continue;
+    ColoringParams& coloring = *kind.coloring(params);
     Range all;
-    const int component = int(parse_int(word_value(show.words, "component").value_or("-1")).value_or(-1));
+    std::optional<Field> one;
     for (const PipelineFile& file : some) {
       const std::vector<Data> data = results_of(file, std::make_shared<Cache>(0), context);
       for_each_dataset(data[std::min(i, data.size() - 1)], [&](const std::string&, const DatasetPtr& d) {
-        const Field* f = !named.empty() ? d->fields().find(named) : show.kind == "glyphs" ? automatic_vectors(*d) : automatic_field(*d);
-        if (f && f->association != Association::whole && f->role != Role::colors)
-          all.add(d->range(*f, f->components() > 1 ? component : 0));
+        const Field* f = shown_field(kind, params, *d);
+        if (!f || f->association == Association::whole || f->role == Role::colors) return;
+        all.add(d->range(*f, f->components() > 1 ? coloring.component : 0));
+        if (!one) one = *f;
       });
     }
-    if (!(all.lo < all.hi)) continue;
-    if (word_value(show.words, "map").value_or("auto") == "auto" && all.lo < 0 && all.hi > 0 &&
-        std::min(-all.lo, all.hi) > 0.05 * std::max(-all.lo, all.hi)) {
-      const double most = std::max(-all.lo, all.hi);  // values of both signs: no colour for one side only
-      all = {-most, most};
-    }
-    show.words.push_back(fmt::format("range={},{}", exact_number(all.lo), exact_number(all.hi)));
-    context.info(fmt::format("one range for all pictures: {} to {}, that of {} steps spread over the series", short_number(all.lo),
-                             short_number(all.hi), some.size()));
+    if (!one || !share_range(*one, all, coloring)) continue;
+    const Range range{coloring.range[0], coloring.range[1]};
+    show.words.push_back(fmt::format("range={},{}", exact_number(range.lo), exact_number(range.hi)));
+    context.info(fmt::format("one range for all pictures: {} to {}, that of {} steps spread over the series", short_number(range.lo),
+                             short_number(range.hi), some.size()));
   }
 }
 
@@ -259,9 +257,7 @@ PipelineFile with_looks(const PipelineFile& plain, PipelineFile first, const Pic
   std::vector<std::string> notes;
   std::vector<Data> looked;
   if (first.show.empty()) choose_looks(first, options, options.cache, looked, notes, context);
-  else
-    for (auto& s : first.show)
-      if (colors_by_field(s.kind)) s.words.insert(s.words.end(), options.coloring.begin(), options.coloring.end());
+  else add_coloring(first, options.coloring);
   for (size_t i = 0; i < plain.steps.size(); ++i) first.steps[i].words = plain.steps[i].words;  // without its time
   return first;
 }

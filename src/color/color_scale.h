@@ -5,12 +5,16 @@
 #include <string>
 #include <vector>
 
+#include "base/schema/enum_words.h"
 #include "base/vec.h"
 #include "color/colormap.h"
 
 namespace sg {
 
 enum class ScaleKind { linear, log, symlog };
+constexpr auto enum_words(ScaleKind) {
+  return std::array{Word{"linear", ScaleKind::linear}, Word{"log", ScaleKind::log}, Word{"symlog", ScaleKind::symlog}};
+}
 
 struct ColorScale {
   Colormap map;

@@ -2,7 +2,7 @@
 // All volumes of a series side by side: what tensor_fit starts from.
 #pragma once
 #include "base/context.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 
 namespace sg {

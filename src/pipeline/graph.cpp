@@ -47,30 +47,38 @@ NodeId Graph::add_data(Data data, std::string content, std::string name) {
 }
 
 NodeId Graph::add_operation(std::string operation, std::vector<std::string> words, std::vector<NodeId> inputs, std::string name) {
-  const auto id = NodeId(state_->nodes.size());
   Node node{std::move(name), {}, {}, {}};
-  OperationNode op{std::move(operation), std::move(words), nullptr, {}, false};
-  auto mistake = [&](const std::string& text) { node.mistake += (node.mistake.empty() ? "" : "; ") + text; };
+  OperationNode op{std::move(operation), nullptr, {}, false};
   try {
     op.found = &find_operation(op.operation, state_->options.operations);
-    op.params = make_params(*op.found, op.words);
+    op.params = make_params(*op.found, words);
   } catch (const Error& e) {
-    mistake(e.what());
+    node.mistake = e.what();
   }
-  int depth = 1;
-  double copies = 0;
+  return state_->add(std::move(node), std::move(op), inputs);
+}
+
+NodeId Graph::add_operation(const Operation& operation, const ParamSet& params, std::vector<NodeId> inputs, std::string name) {
+  return state_->add({std::move(name), {}, {}, {}}, {std::string(operation.name), &operation, copy_of(params), false}, inputs);
+}
+
+NodeId Graph::State::add(Node node, OperationNode op, const std::vector<NodeId>& inputs) {
+  const auto id = NodeId(nodes.size());
+  auto mistake = [&](const std::string& text) { node.mistake += (node.mistake.empty() ? "" : "; ") + text; };
+  int deepest = 1;
+  double joined = 0;
   const bool joins = op.found && op.found->max_inputs < 0;
   for (const NodeId in : inputs) {
     if (in < 0 || in >= id) mistake(fmt::format("{}: input {} is no earlier step", op.operation, in + 1));
     else {
-      node.inputs.push_back(in), depth = std::max(depth, state_->depth[size_t(in)] + 1);
-      const double of = state_->copies[size_t(in)];
-      copies = joins ? copies + of : std::max(copies, of);
+      node.inputs.push_back(in), deepest = std::max(deepest, depth[size_t(in)] + 1);
+      const double of = copies[size_t(in)];
+      joined = joins ? joined + of : std::max(joined, of);
     }
   }
-  if (depth > deepest_chain) mistake(fmt::format("the chain of steps is longer than {}", deepest_chain));
-  if (copies > most_copies)
-    mistake(fmt::format("{}: steps that join their inputs, one upon the other, would join {:.3g} meshes", op.operation, copies));
+  if (deepest > deepest_chain) mistake(fmt::format("the chain of steps is longer than {}", deepest_chain));
+  if (joined > most_copies)
+    mistake(fmt::format("{}: steps that join their inputs, one upon the other, would join {:.3g} meshes", op.operation, joined));
   if (op.found && node.inputs.size() == inputs.size()) {
     const int n = int(inputs.size()), lo = op.found->min_inputs, hi = op.found->max_inputs;
     if (lo == 0 && hi == 0 && n > 0) mistake(fmt::format("{}: is a source and takes no input", op.operation));
@@ -79,14 +87,12 @@ NodeId Graph::add_operation(std::string operation, std::vector<std::string> word
   }
   if (op.params && (op.found->kind == OperationKind::source || op.found->run_series)) {
     const ParamDecl* time = op.params->schema.find("time");
-    const bool settable = time && (std::holds_alternative<double*>(time->ref) || std::holds_alternative<std::optional<double>*>(time->ref));
-    op.follows_time = settable && std::none_of(op.words.begin(), op.words.end(),
-                                               [](const std::string& w) { return trim(w.substr(0, w.find('='))) == "time"; });
+    op.follows_time = time && time->ref.type() == ParamType::number && !time->stated;
   }
   node.what = std::move(op);
-  state_->nodes.push_back(std::move(node));
-  state_->depth.push_back(depth);
-  state_->copies.push_back(std::max(copies, 1.0));
+  nodes.push_back(std::move(node));
+  depth.push_back(deepest);
+  copies.push_back(std::max(joined, 1.0));
   return id;
 }
 
@@ -134,11 +140,12 @@ void check_fields(const std::vector<Node>& nodes, NodeId id, const GraphOptions&
     have.insert(have.end(), names->begin(), names->end());
   }
   for (const ParamDecl& d : op->params->schema.decls()) {
-    auto* field = std::get_if<FieldName*>(&d.ref);
-    if (!field || (*field)->empty() || std::find(have.begin(), have.end(), (*field)->name) != have.end()) continue;
+    if (d.ref.type() != ParamType::field) continue;
+    const std::string field = param_text(d);
+    if (field.empty() || std::find(have.begin(), have.end(), field) != have.end()) continue;
     out.push_back({id, ErrorKind::usage,
-                   fmt::format("{}: {} {}: field '{}' not found; {}", step_label(node, id), op->operation, d.name, (*field)->name,
-                               unknown_name_hint((*field)->name, have))});
+                   fmt::format("{}: {} {}: field '{}' not found; {}", step_label(node, id), op->operation, d.name, field,
+                               unknown_name_hint(field, have))});
   }
 }
 

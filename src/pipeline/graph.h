@@ -72,6 +72,8 @@ class Graph {
   NodeId add_data(Data data, std::string content = {}, std::string name = {});
   /// A source (no inputs) or a filter, with its "key=value" words. Mistakes wait for validate().
   NodeId add_operation(std::string operation, std::vector<std::string> words = {}, std::vector<NodeId> inputs = {}, std::string name = {});
+  /// The same with typed parameters (make_params(), set_value()), of which the graph keeps a copy.
+  NodeId add_operation(const Operation& operation, const ParamSet& params, std::vector<NodeId> inputs = {}, std::string name = {});
   size_t size() const;
 
   /// All mistakes that can be seen without running: unknown operations and parameters, bad values, wrong numbers of inputs,

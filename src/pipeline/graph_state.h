@@ -18,9 +18,8 @@ struct DataNode {
 };
 struct OperationNode {
   std::string operation;
-  std::vector<std::string> words;
   const Operation* found = nullptr;  ///< null: unknown
-  std::optional<ParamSet> params;    ///< empty: mistakes in the words
+  std::optional<ParamSet> params;    ///< empty: mistakes in what was stated
   bool follows_time = false;         ///< a source, or a filter of series, whose parameter `time` was left open
 };
 
@@ -37,6 +36,8 @@ struct Graph::State {
   std::vector<Node> nodes;
   std::vector<int> depth;      ///< longest chain above each node
   std::vector<double> copies;  ///< how often one and the same input may stand in each node's result: steps that join several add up
+
+  NodeId add(Node node, OperationNode operation, const std::vector<NodeId>& inputs);
 };
 
 /// "step 2" or "step 'bone'".

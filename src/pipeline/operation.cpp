@@ -42,9 +42,10 @@ namespace {
 // Adds the fields that the parameters name; false when one is left open, so that the operation chooses among all.
 bool add_named_fields(const ParamSet& params, Request& request) {
   for (const ParamDecl& d : params.schema.decls())
-    if (auto* field = std::get_if<FieldName*>(&d.ref)) {
-      if ((*field)->empty()) return false;
-      add_field(request, (*field)->name);
+    if (d.ref.type() == ParamType::field) {
+      const std::string name = param_text(d);
+      if (name.empty()) return false;
+      add_field(request, name);
     }
   return true;
 }

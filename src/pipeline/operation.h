@@ -13,19 +13,13 @@
 
 #include "base/context.h"
 #include "base/help_word.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 #include "pipeline/request.h"
 
 namespace sg {
 
 enum class OperationKind { source, filter };
-
-/// A parameter struct of some type and the schema bound to it. Fresh ones hold the defaults.
-struct ParamSet {
-  std::shared_ptr<void> values;  ///< the operation's Params
-  Schema schema;                 ///< refers into `values`
-};
 
 /// What running is expected to cost.
 struct Estimate {

@@ -22,17 +22,6 @@ namespace sg {
 
 namespace detail {
 
-template <class P>
-ParamSet make_param_set() {
-  auto values = std::make_shared<P>();
-  return {values, schema_of(*values)};
-}
-
-template <class P>
-const P& values_of(const ParamSet& params) {
-  return *static_cast<const P*>(params.values.get());
-}
-
 template <class P, class F>
 constexpr bool takes_list = std::is_invocable_v<F, const std::vector<Data>&, const P&, Context&>;
 template <class P, class F>
@@ -54,14 +43,14 @@ Series one_step(const Data& data);
 
 template <class P, class F>
 Data run_series_filter(F f, const Series& series, const std::vector<Data>& others, const ParamSet& params, Context& context) {
-  const P& p = values_of<P>(params);
+  const P& p = params.as<P>();
   if constexpr (takes_series_alone<P, F>) return f(series, p, context);
   else return f(series, others, p, context);
 }
 
 template <class P, class F>
 Data run_filter(F f, std::string_view name, const std::vector<Data>& inputs, const ParamSet& params, Context& context) {
-  const P& p = values_of<P>(params);
+  const P& p = params.as<P>();
   if constexpr (takes_series<P, F>)
     return run_series_filter<P>(f, one_step(inputs[0]), std::vector<Data>(inputs.begin() + 1, inputs.end()), params, context);
   else if constexpr (takes_list<P, F>) return f(inputs, p, context);
@@ -132,5 +121,5 @@ constexpr auto op_inputs = [](Operation& o) { o.min_inputs = MIN, o.max_inputs =
 #define SG_SOURCE(name, Params, function, sentence, ...)                                                                          \
   ::sg::detail::make_source<Params>(#name, sentence,                                                                              \
                                     [](const std::vector<::sg::Data>&, const ::sg::ParamSet& p, ::sg::Context& c) -> ::sg::Data { \
-                                      return function(::sg::detail::values_of<Params>(p), c);                                     \
+                                      return function(p.as<Params>(), c);                                                         \
                                     } __VA_OPT__(, ) __VA_ARGS__)

@@ -101,7 +101,7 @@ namespace {
 // Beside the fields wanted, those that its lists name.
 Request request_of_transform(const ParamSet& params, const Request& wanted) {
   Request r = detail::request_carried(params, wanted);
-  const FieldLawParams& p = detail::values_of<TransformParams>(params).fields;
+  const FieldLawParams& p = params.as<TransformParams>().fields;
   for (const auto* names : {&p.turn, &p.keep, &p.gradients, &p.axial})
     for (const std::string& name : *names) add_field(r, name);
   return r;
@@ -110,7 +110,7 @@ Request request_of_transform(const ParamSet& params, const Request& wanted) {
 // A plane across an axis at a known place needs the cells around it alone.
 Request request_of_slice(const ParamSet& params, const Request& wanted) {
   Request r = detail::request_carried(params, wanted);
-  const auto& p = detail::values_of<SliceParams>(params);
+  const auto& p = params.as<SliceParams>();
   if (!p.function.empty()) return Request{};
   if (!p.positions.empty() || (p.planes != "none" && !p.planes.empty())) return r;
   int axis = p.axis == "x" ? 0 : p.axis == "y" ? 1 : p.axis == "z" ? 2 : -1;
@@ -151,13 +151,13 @@ Data tractography_from(const std::vector<Data>& in, const TractographyParams& p,
 // An expression may name any field.
 Request request_of_clip(const ParamSet& params, const Request& wanted) {
   Request r = detail::request_carried(params, wanted);
-  const auto& p = detail::values_of<ClipParams>(params);
+  const auto& p = params.as<ClipParams>();
   if (!p.function.empty()) return Request{};
   return r;
 }
 
 Request request_of_extract(const ParamSet& params, const Request& wanted) {
-  const auto& p = detail::values_of<ExtractParams>(params);
+  const auto& p = params.as<ExtractParams>();
   return p.region.function.empty() ? detail::request_carried(params, wanted) : Request{};
 }
 

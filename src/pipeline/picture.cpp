@@ -5,12 +5,10 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "color/parse_color.h"
-#include "filter/glyph/choose.h"
 #include "pipeline/picture_parts.h"
 #include "pipeline/transfer_file.h"
-#include "scene/field_habits.h"
-#include "scene/glyph_parts.h"
-#include "scene/volume_parts.h"
+#include "scene/show/parts.h"
+#include "scene/show/volume.h"
 
 namespace sg {
 
@@ -74,21 +72,26 @@ StatedPicture stated_in(const PipelineFile& file) {
 
 namespace {
 
-void check_shows(const PipelineFile& file) {
+// One entry under `show`, with its parameters.
+struct StatedShow {
+  const ShowKind* kind;
+  ParamSet params;
+};
+
+// All mistakes at once, each with its line.
+std::vector<StatedShow> stated_shows(const PipelineFile& file) {
+  std::vector<StatedShow> shows;
   std::string problems;
   for (const auto& s : file.show) {
     try {
-      find_show(s.kind).check(s.words);
+      const ShowKind& kind = find_show(s.kind);
+      shows.push_back({&kind, show_params(kind, s.words)});
     } catch (const Error& e) {
       problems += (problems.empty() ? "" : "; ") + std::string(s.line > 0 ? fmt::format("{}:{}: ", file.origin, s.line) : "") + e.what();
     }
   }
   if (!problems.empty()) fail_usage(problems);
-}
-
-bool same_legend(const Legend& a, const Legend& b) {
-  return a.title == b.title && a.map.name == b.map.name && a.lo == b.lo && a.hi == b.hi && a.kind == b.kind && a.labels == b.labels &&
-         a.limits == b.limits && (!a.glyph || !b.glyph || a.glyph->length == b.glyph->length);
+  return shows;
 }
 
 bool has_nan(const Scene& scene) {
@@ -117,103 +120,30 @@ struct Shown {
   bool outlined = false, any_points = false;
 };
 
-// The parts of a collection are one picture: the same field, over the range of all parts. Parts without the field take one colour.
-std::vector<std::vector<std::string>> words_of_parts(const std::vector<DatasetPtr>& parts, const PipelineFile::Show& show) {
-  std::vector<std::vector<std::string>> words(parts.size(), show.words);
-  if (parts.size() < 2 || !colors_by_field(show.kind) || word_value(show.words, "color")) return words;
-  std::string name = word_value(show.words, "field").value_or("");
-  if (name == "none") return words;
-  const bool by_vectors = show.kind == "glyphs" && name.empty();  // they choose their field themselves: here the range alone
-  if (by_vectors && word_value(show.words, "shape").value_or("") == "barbs") return words;
-  if (by_vectors) name = word_value(show.words, "vectors").value_or("");
-  std::vector<size_t> by_size(parts.size());
-  std::iota(by_size.begin(), by_size.end(), size_t(0));
-  std::stable_sort(by_size.begin(), by_size.end(), [&](size_t a, size_t b) { return parts[a]->point_count() > parts[b]->point_count(); });
-  for (const bool labels : {false, true})  // a mask or a numbering of the largest part says less than values of another
-    for (const size_t i : by_size)
-      if (name.empty())
-        if (const Field* f = by_vectors ? automatic_vectors(*parts[i]) : automatic_field(*parts[i]);
-            f && (labels || f->role != Role::labels))
-          name = f->name;
-  if (name.empty()) return words;
-  if (name == "band" && is_banded(*parts[by_size[0]])) name = "band low";  // bands of parts differ; their values can be compared
-  const int component = int(parse_int(word_value(show.words, "component").value_or("-1")).value_or(-1));
-  Range all;
-  bool same = true;
-  std::vector<FieldOf> fields;
-  for (const DatasetPtr& d : parts)
-    if (const Field* f = d->fields().find(name); f && f->association != Association::whole) {
-      const Range r = d->range(*f, f->components() > 1 ? component : 0);
-      same = same && (fields.empty() || r == all);
-      all.add(r), fields.push_back({d.get(), f});
-    }
-  if (fields.empty()) return words;  // the show says what there is instead
-  // What choose_scale() does for one mesh, decided once for all.
-  const std::string scale = word_value(show.words, "scale").value_or("linear");
-  const bool automatic = word_value(show.words, "map").value_or("auto") == "auto" && scale != "log";
-  const bool is_signed = two_sided(*fields[0].field, all);
-  const std::string map = is_signed ? "coolwarm" : "sight";
-  ShownRange shown{all};
-  if (automatic && scale == "linear") shown = shown_range(fields, component, is_signed);
-  else if (automatic && is_signed) shown.range.hi = std::max(-all.lo, all.hi), shown.range.lo = -shown.range.hi;
-  const auto triangle = [&](std::vector<std::string>& w, std::string_view word, double at) {  // in the legend
-    if (!word_value(show.words, word)) w.push_back(fmt::format("{}={}", word, color_text(find_colormap(map).at(at))));
-  };
-  for (size_t i = 0; i < parts.size(); ++i) {
-    const Field* f = parts[i]->fields().find(name);
-    if (!by_vectors) {
-      std::erase_if(words[i], [](const std::string& w) { return w.starts_with("field="); });
-      words[i].push_back("field=" + (f ? name : std::string("none")));
-    }
-    const bool cut = shown.cut_low || shown.cut_high;
-    if (!f || (same && !cut) || !(all.lo < all.hi)) continue;
-    if (automatic) words[i].push_back("map=" + map);
-    if (word_value(show.words, "range")) continue;
-    words[i].push_back(fmt::format("range={},{}", exact_number(shown.range.lo), exact_number(shown.range.hi)));
-    if (shown.cut_low) triangle(words[i], "below", 0);
-    if (shown.cut_high) triangle(words[i], "above", 1);
-  }
-  return words;
-}
-
-Shown collect(const PipelineFile& file, const std::vector<Data>& results, const StatedPicture& stated, Context& context) {
+Shown collect(const PipelineFile& file, const std::vector<StatedShow>& shows, const std::vector<Data>& results, bool legends,
+              Context& context) {
   Shown s;
   for (size_t i = 0; i < results.size(); ++i) {
-    const auto& show = file.show[i];
-    s.outlined = s.outlined || show.kind == "outline";
+    const auto& [kind, params] = shows[i];
+    s.outlined = s.outlined || kind->type == ShowType::outline;
     if (std::holds_alternative<TablePtr>(results[i]))
-      fail_no_mesh(results[i], file_name_of(origin_of(file, show.of.empty() ? file.steps.back().name : show.of)));
+      fail_no_mesh(results[i], file_name_of(origin_of(file, file.show[i].of.empty() ? file.steps.back().name : file.show[i].of)));
     std::vector<DatasetPtr> parts;
-    for_each_dataset(results[i], [&](const std::string&, const DatasetPtr& d) { parts.push_back(d); });
-    auto words = words_of_parts(parts, show);
-    if (show.kind == "glyphs" && parts.size() > 1) take_one_glyph_scale(parts, words);
-    const size_t first = s.scene.items.size();
-    const bool joined = show.kind == "volume" && parts.size() > 1;  // one look for all parts, that of the largest
-    size_t largest = 0, most = 0;
-    std::optional<Legend> legend_of_all;
-    for (size_t k = 0; k < parts.size(); ++k) {
-      const DatasetPtr& d = parts[k];
+    for_each_dataset(results[i], [&](const std::string&, const DatasetPtr& d) {
+      parts.push_back(d);
       s.any_points = s.any_points || d->point_count() > 0;
       s.box.add(d->bounds());
-      if (parts.size() > 1 && d->point_count() == 0) continue;                                             // what a filter left nothing of
-      if (parts.size() > 1 && show.kind == "volume" && word_value(words[k], "field") == "none") continue;  // nothing to see through
-      const auto legend = find_show(show.kind).add(s.scene, d, words[k], context);
-      if (const auto path = show.kind == "volume" ? word_value(words[k], "save") : std::nullopt; path && !path->empty())
-        save_transfer_file(path_beside(file.origin, *path), std::get<VolumeItem>(s.scene.items.back()));
-      if (joined && (s.scene.items.size() == first + 1 || d->point_count() > most))
-        largest = s.scene.items.size() - 1, most = d->point_count(), legend_of_all = legend;
-      if (!legend || !stated.picture.legend || joined) continue;
-      const auto have = std::find_if(s.legends.begin(), s.legends.end(), [&](const Legend& l) { return same_legend(l, *legend); });
-      if (have == s.legends.end()) s.legends.push_back(*legend);
-      else if (legend->glyph && (!have->glyph || have->glyph->most < legend->glyph->most)) have->glyph = legend->glyph;
+    });
+    const size_t first = s.scene.items.size();
+    for (const Legend& legend : show_parts(s.scene, parts, *kind, params, uint32_t(i + 1), context)) {
+      if (!legends) continue;
+      const auto have = std::find_if(s.legends.begin(), s.legends.end(), [&](const Legend& l) { return same_legend(l, legend); });
+      if (have == s.legends.end()) s.legends.push_back(legend);
+      else if (legend.glyph && (!have->glyph || have->glyph->most < legend.glyph->most)) have->glyph = legend.glyph;
     }
-    if (!joined || s.scene.items.size() == first) continue;
-    const VolumeItem model = std::get<VolumeItem>(s.scene.items[largest]);
-    join_volumes(std::span(s.scene.items).subspan(first), model, uint32_t(i + 1));
-    if (legend_of_all && stated.picture.legend) {
-      if (!legend_of_all->volume) static_cast<ColorScale&>(*legend_of_all) = std::get<VolumeItem>(s.scene.items[largest]).color;
-      s.legends.push_back(*legend_of_all);
-    }
+    if (kind->type != ShowType::volume || s.scene.items.size() == first) continue;
+    if (const std::string& path = params.as<VolumeShow>().save; !path.empty())
+      save_transfer_file(path_beside(file.origin, path), std::get<VolumeItem>(s.scene.items.back()));
   }
   return s;
 }
@@ -236,7 +166,7 @@ Annotation annotation_of(const StatedPicture& stated, const Shown& shown, const 
 Picture make_picture(PipelineFile& file, const PictureOptions& options, Context& context) {
   const StatedPicture stated = stated_in(file);
   load_transfer_files(file);
-  check_shows(file);
+  stated_shows(file);
   const auto cache = options.cache ? options.cache : std::make_shared<Cache>(0);
   std::vector<Data> held;
   Picture picture;
@@ -244,10 +174,9 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
   if (file.show.empty()) {
     look = choose_looks(file, options, cache, held, picture.notes, context);
   } else {
-    for (auto& s : file.show)
-      if (colors_by_field(s.kind)) s.words.insert(s.words.end(), options.coloring.begin(), options.coloring.end());
-    check_shows(file);
+    add_coloring(file, options.coloring);
   }
+  const std::vector<StatedShow> shows = stated_shows(file);
 
   GraphOptions graph_options;
   graph_options.cache = cache;
@@ -265,7 +194,7 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
     said.emplace_back(text);
     context.log(level, text);
   };
-  Shown shown = collect(file, results, stated, once);
+  Shown shown = collect(file, shows, results, stated.picture.legend, once);
   const Box3& box = shown.box;
   if (!shown.any_points) context.warn("the picture is empty: there are no points to show");
   if (!file.show.empty() && look.shows.empty())

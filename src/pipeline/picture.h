@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/context.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "image/image.h"
 #include "pipeline/pipeline_file.h"
 

@@ -6,7 +6,10 @@
 
 namespace sg {
 
-bool colors_by_field(std::string_view kind) { return kind != "outline" && kind != "labels"; }
+void add_coloring(PipelineFile& file, const std::vector<std::string>& words) {
+  for (auto& s : file.show)
+    if (find_show(s.kind).coloring) s.words.insert(s.words.end(), words.begin(), words.end());
+}
 
 std::string origin_of(const PipelineFile& file, std::string step) {
   for (int hops = 0; hops < 1000; ++hops) {
@@ -158,9 +161,10 @@ Look choose_looks(PipelineFile& file, const PictureOptions& options, const std::
       file.steps.push_back({result, look.filter[0], {look.filter.begin() + 1, look.filter.end()}, {end}, 0});
     }
     for (const Look::Show& s : look.shows) {
-      std::vector<std::string> words = s.words;
-      if (colors_by_field(s.kind)) words.insert(words.end(), coloring.begin(), coloring.end());
-      file.show.push_back({s.kind, words, s.of_input ? end : result, 0});
+      const ShowKind& kind = show_kind(s.type);
+      std::vector<std::string> words = changed_words(s.params);
+      if (kind.coloring) words.insert(words.end(), coloring.begin(), coloring.end());
+      file.show.push_back({std::string(kind.name), words, s.of_input ? end : result, 0});
     }
     if (!have) first = look;
     have = true;

@@ -29,8 +29,8 @@ StatedPicture stated_in(const PipelineFile& file);
 /// Throws Error(usage) for data without a mesh; of tables it says how to make points.
 [[noreturn]] void fail_no_mesh(const Data& data, const std::string& where);
 
-/// Outlines have one colour; all other ways to show take the words of ColoringParams.
-bool colors_by_field(std::string_view kind);
+/// Adds the words of ColoringParams to every way to show that colours by a field.
+void add_coloring(PipelineFile& file, const std::vector<std::string>& words);
 /// The file a step's data comes from, for hints by extension; "" for sources.
 std::string origin_of(const PipelineFile& file, std::string step);
 /// Chooses how to show every step that nobody takes as input, adding steps and shows to the file. Returns the view of the first.

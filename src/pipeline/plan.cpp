@@ -75,10 +75,8 @@ void count_consumers(Plan& plan) {
 
 ParamSet params_for(const OperationNode& op, const Request& request) {
   if (!op.follows_time || !request.time) return *op.params;
-  ParamSet params = make_params(*op.found, op.words);
-  const ParamDecl& time = *params.schema.find("time");
-  if (auto* open = std::get_if<std::optional<double>*>(&time.ref)) **open = *request.time;
-  else *std::get<double*>(time.ref) = *request.time;
+  ParamSet params = copy_of(*op.params);
+  set_value(params.schema, "time", *request.time, op.operation);
   return params;
 }
 

@@ -78,7 +78,7 @@ ReadOptions read_options(const ReadParams& p) {
 }
 
 std::vector<std::string> read_words(const std::string& path, const ReadOptions& o) {
-  ReadParams defaults, p;
+  ReadParams p;
   p.path = path;
   p.fields = o.fields;
   if (o.raw_dims[0] > 0) p.dims = {int64_t(o.raw_dims[0]), int64_t(o.raw_dims[1]), int64_t(o.raw_dims[2])};
@@ -97,13 +97,7 @@ std::vector<std::string> read_words(const std::string& path, const ReadOptions& 
       p.region.push_back(int64_t(r.lo[a])), p.region.push_back(int64_t(std::min<size_t>(r.hi[a], size_t(INT64_MAX))));
   if (r.stride != LatticeRegion().stride) p.stride = {int64_t(r.stride[0]), int64_t(r.stride[1]), int64_t(r.stride[2])};
   p.piece = o.piece, p.pieces = o.pieces, p.ghost_levels = o.ghost_levels;
-  Schema have = schema_of(p), plain = schema_of(defaults);
-  std::vector<std::string> words;
-  for (size_t i = 0; i < have.decls().size(); ++i) {
-    const std::string value = param_text(have.decls()[i]);
-    if (value != param_text(plain.decls()[i])) words.push_back(have.decls()[i].name + "=" + value);
-  }
-  return words;
+  return changed_words(param_set_of(std::move(p)));
 }
 
 }  // namespace sg

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The parameters of a step that reads a file, declared like those of an operation.
 #pragma once
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "io/io.h"
 
 namespace sg {

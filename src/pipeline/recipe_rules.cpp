@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a recipe may not do. The fence around the process (base/file_fence.h) holds whatever is overlooked here; these rules say it before
 // anything runs, step by step.
-#include <nlohmann/json.hpp>
+#include <map>
 
 #include "base/file.h"
 #include "base/file_fence.h"
@@ -10,7 +10,7 @@
 #include "pipeline/graph.h"
 #include "pipeline/picture.h"
 #include "pipeline/read_params.h"
-#include "scene/show.h"
+#include "scene/show/show.h"
 
 namespace sg {
 
@@ -21,13 +21,6 @@ using Units = std::map<std::string, std::string, std::less<>>;  // of the parame
 Units units_of(const Schema& schema) {
   Units units;
   for (const ParamDecl& d : schema.decls()) units[d.name] = d.unit_;
-  return units;
-}
-
-Units units_of_show(const std::string& kind) {
-  Units units;
-  const auto schema = nlohmann::json::parse(find_show(kind).json());
-  for (const auto& [name, value] : schema["properties"].items()) units[name] = value.value("unit", "");
   return units;
 }
 
@@ -91,7 +84,8 @@ void check_recipe(const PipelineFile& recipe, const std::string& picture_path) {
   Rules rules(picture_path);
   for (const auto& step : recipe.steps)
     rules.look(fmt::format("step '{}'", step.name), step.line, units_of_step(step.operation), step.words);
-  for (const auto& show : recipe.show) rules.look(fmt::format("show {}", show.kind), show.line, units_of_show(show.kind), show.words);
+  for (const auto& show : recipe.show)
+    rules.look(fmt::format("show {}", show.kind), show.line, units_of(find_show(show.kind).make_params().schema), show.words);
   rules.finish();
 }
 

@@ -87,7 +87,8 @@ Series SeriesInput::open(const Graph& graph, const Node& consumer, const Request
   Above above = look_above(graph.state_->nodes, graph.state_->options, from, context);
   std::vector<double> times;
   if (const ParamDecl* asked = params.schema.find("times"))
-    if (auto* text = std::get_if<std::string*>(&asked->ref); text && !(*text)->empty()) times = parse_times(**text, who + " times");
+    if (const std::string text = param_text(*asked); asked->ref.type() == ParamType::word && !text.empty())
+      times = parse_times(text, who + " times");
   if (!times.empty() && !above.times.empty()) check_listed(times, above);
   if (times.empty()) times = above.times;
   if (times.empty() && !above.any_time.empty())

@@ -49,8 +49,8 @@ SlabSource slabs_of_source(const std::string& operation, const std::vector<std::
   for (int a = 0; a < 3; ++a)
     box.hi[a] = small.origin[a] + (small.dims[size_t(a)] > 1 ? small.spacing[a] * double(small.dims[size_t(a)] - 1) : 0);
   GridParams grid;
-  grid.size = *std::get<int*>(params.schema.find("size")->ref),
-  grid.dims = *std::get<std::vector<int64_t>*>(params.schema.find("dims")->ref);
+  grid.size = int(std::get<int64_t>(params.schema.find("size")->ref.get())),
+  grid.dims = std::get<std::vector<int64_t>>(params.schema.find("dims")->ref.get());
   s.grid = analytic_grid(grid, box, operation.c_str(), Context());
   s.slab = [=, &op, g = s.grid, field = s.field, base = without_grid(words), &context](size_t first, size_t count) {
     std::vector<std::string> part = base;

@@ -5,7 +5,8 @@
 #include "base/file.h"
 #include "base/text.h"
 #include "pipeline/yaml_tree.h"
-#include "scene/show_volume.h"
+#include "scene/show/show.h"
+#include "scene/show/volume.h"
 
 namespace sg {
 
@@ -41,14 +42,13 @@ std::vector<std::string> read_words(const std::string& path) {
     if (key.text == "transfer" || key.text == "save") fail(key.line, fmt::format("'{}' names another file", key.text), "leave it out");
     const std::string word = key.text + "=" + text;
     with_context(fmt::format("reading '{}' line {}", path, key.line), [&] {
-      VolumeShow p;
-      Schema schema = schema_of(p);
-      set_params(schema, {word}, "volume");
+      ParamSet params = make_param_set<VolumeShow>();
+      set_params(params.schema, {word}, "volume");
     });
     words.push_back(word);
   }
   if (!known) fail(root.line, "is no transfer function", fmt::format("its first line is '{}: 1'", head));
-  with_context(fmt::format("reading '{}'", path), [&] { check_volume_words(words); });
+  with_context(fmt::format("reading '{}'", path), [&] { show_params(show_kind(ShowType::volume), words); });
   return words;
 }
 
@@ -56,7 +56,7 @@ std::vector<std::string> read_words(const std::string& path) {
 
 void load_transfer_files(PipelineFile& file) {
   for (auto& show : file.show) {
-    if (show.kind != "volume") continue;
+    if (show.kind != show_kind(ShowType::volume).name) continue;
     const std::string name = word_value(show.words, "transfer").value_or("");
     if (!names_file(name)) continue;
     std::vector<std::string> words = read_words(path_beside(file.origin, name));

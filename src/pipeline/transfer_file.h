@@ -2,7 +2,7 @@
 // Transfer function files: the words of a volume's look as a map of YAML, "opacity: '@-500:0,@200:0.4'" and so on.
 #pragma once
 #include "pipeline/pipeline_file.h"
-#include "scene/volume_item.h"
+#include "scene/items/volume_item.h"
 
 namespace sg {
 

@@ -9,15 +9,21 @@ namespace sg {
 
 namespace {
 
-struct NamedView {
-  std::string_view name;
+struct ViewAxes {
   Vec3 direction, up;
 };
-// Named as an observer says it: "front" looks along +y, z is up.
-const NamedView views[] = {
-    {"front", {0, -1, 0}, {0, 0, 1}}, {"back", {0, 1, 0}, {0, 0, 1}},    {"left", {-1, 0, 0}, {0, 0, 1}},  {"right", {1, 0, 0}, {0, 0, 1}},
-    {"top", {0, 0, 1}, {0, 1, 0}},    {"bottom", {0, 0, -1}, {0, 1, 0}}, {"iso", {1, -1, 0.8}, {0, 0, 1}},
-};
+ViewAxes axes_of(NamedView view) {
+  switch (view) {
+    case NamedView::front: return {{0, -1, 0}, {0, 0, 1}};
+    case NamedView::back: return {{0, 1, 0}, {0, 0, 1}};
+    case NamedView::left: return {{-1, 0, 0}, {0, 0, 1}};
+    case NamedView::right: return {{1, 0, 0}, {0, 0, 1}};
+    case NamedView::top: return {{0, 0, 1}, {0, 1, 0}};
+    case NamedView::bottom: return {{0, 0, -1}, {0, 1, 0}};
+    case NamedView::iso: break;
+  }
+  return {{1, -1, 0.8}, {0, 0, 1}};
+}
 
 // v turned about a unit axis (Rodrigues).
 Vec3 turned(Vec3 v, Vec3 axis, double degrees) {
@@ -28,7 +34,7 @@ Vec3 turned(Vec3 v, Vec3 axis, double degrees) {
 }  // namespace
 
 void describe(Schema& s, CameraParams& p) {
-  s("view", p.view, "A named view, or auto.").choices({"auto", "front", "back", "left", "right", "top", "bottom", "iso"});
+  s("view", p.view, "A named view; default: chosen from the data.");
   s("position", p.position, "Where the camera stands; default: far enough to see everything.");
   s("target", p.target, "What it looks at; default: the centre of the data.");
   s("direction", p.direction, "From the data towards the camera.");
@@ -38,22 +44,21 @@ void describe(Schema& s, CameraParams& p) {
   s("roll", p.roll, "Turn about the line of sight.").unit("deg");
   s("zoom", p.zoom, "Above 1 comes closer.").positive();
   s("view_angle", p.view_angle, "Vertical angle of view.").unit("deg").range(1, 170);
-  s("projection", p.projection, "perspective, or parallel (no foreshortening).").choices({"auto", "perspective", "parallel"});
+  s("projection", p.projection, "With or without foreshortening; default: parallel for flat data.");
 }
 
 std::vector<std::string> camera_words(const std::vector<std::string>& words) {
   std::vector<std::string> r;
   for (const std::string& w : words) {
     if (w.find('=') != std::string::npos) r.push_back(w);
-    else if (w == "parallel" || w == "perspective") r.push_back("projection=" + w);
+    else if (value_of_word<ProjectionKind>(w)) r.push_back("projection=" + w);
     else r.push_back("view=" + w);
   }
   return r;
 }
 
 Camera make_camera(const CameraParams& p, const Box3& box, double aspect, Vec3 direction, Vec3 up, bool parallel, double margin) {
-  for (const NamedView& v : views)
-    if (p.view == v.name) direction = v.direction, up = v.up;
+  if (p.view) direction = axes_of(*p.view).direction, up = axes_of(*p.view).up;
   if (p.direction) direction = *p.direction;
   if (p.up) up = *p.up;
   if (p.position && p.target) direction = *p.position - *p.target;
@@ -73,7 +78,7 @@ Camera make_camera(const CameraParams& p, const Box3& box, double aspect, Vec3 d
     up = turned(up, side, -p.elevation);
   }
   if (p.roll != 0) up = turned(up, normalize(direction), p.roll);
-  if (p.projection != "auto") parallel = p.projection == "parallel";
+  if (p.projection) parallel = p.projection == ProjectionKind::parallel;
 
   Camera c = fit_camera(box, direction, up, aspect, margin, p.view_angle, parallel);
   if (p.target || p.position) {

@@ -3,16 +3,32 @@
 #pragma once
 #include <optional>
 
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "scene/camera.h"
 
 namespace sg {
 
+/// Named as an observer says it: "front" looks along +y, z is up.
+enum class NamedView { front, back, left, right, top, bottom, iso };
+constexpr auto enum_words(NamedView) {
+  using enum NamedView;
+  return std::array{Word{"front", front}, Word{"back", back},     Word{"left", left}, Word{"right", right},
+                    Word{"top", top},     Word{"bottom", bottom}, Word{"iso", iso}};
+}
+
+enum class ProjectionKind {
+  perspective,
+  parallel,  ///< no foreshortening
+};
+constexpr auto enum_words(ProjectionKind) {
+  return std::array{Word{"perspective", ProjectionKind::perspective}, Word{"parallel", ProjectionKind::parallel}};
+}
+
 struct CameraParams {
-  std::string view = "auto";
+  std::optional<NamedView> view;
   std::optional<Vec3> position, target, direction, up;
   double azimuth = 0, elevation = 0, roll = 0, zoom = 1, view_angle = 30;
-  std::string projection = "auto";
+  std::optional<ProjectionKind> projection;
 };
 void describe(Schema& s, CameraParams& p);
 

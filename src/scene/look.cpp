@@ -4,8 +4,14 @@
 #include "base/text.h"
 #include "data/lattice.h"
 #include "data/mesh_dimension.h"
-#include "scene/field_habits.h"
-#include "scene/volume_look.h"
+#include "scene/choose/field_habits.h"
+#include "scene/choose/scale.h"
+#include "scene/choose/volume_look.h"
+#include "scene/show/labels.h"
+#include "scene/show/outline.h"
+#include "scene/show/points.h"
+#include "scene/show/surface.h"
+#include "scene/show/volume.h"
 
 namespace sg {
 
@@ -60,18 +66,22 @@ bool is_turned(const Dataset& d) {
 void look_at_grid(const Dataset& d, const Field& f, Look& look) {
   if (d.as<UniformGrid>() && f.association == Association::point && looks_like_labels(d, f)) {
     look.filter = {"label_surface", "field=" + f.name};
-    look.shows.push_back({"surface", {"field=" + f.name, "map=labels"}, false});
+    SurfaceShow surface;
+    surface.coloring.field.name = f.name, surface.coloring.map = "labels";
+    look.shows.push_back({ShowType::surface, param_set_of(surface), false});
     look.reason = fmt::format("'{}' holds few integer values in pieces: labels, shown as surfaces with one colour each", f.name);
     return;
   }
-  look.shows.push_back({"volume", {"field=" + f.name}, true});
-  if (is_turned(d)) look.shows.push_back({"outline", {}, true});
+  VolumeShow volume;
+  volume.coloring.field.name = f.name;
+  if (habit_of(f).shows == FieldHabit::Shows::fibres)
+    if (const Field* speed = d.fields().find("speed", f.association); speed && speed->components() == 1)
+      volume.color_by.name = speed->name, volume.sampling.tolerance = 0.01;  // one colour says less
+  look.shows.push_back({ShowType::volume, param_set_of(volume), true});
+  if (is_turned(d)) look.shows.push_back({ShowType::outline, param_set_of(OutlineShow()), true});
   ColoringParams params;
   Context quiet;
   VolumeItem item;
-  if (habit_of(f).shows == FieldHabit::Shows::fibres)
-    if (const Field* speed = d.fields().find("speed", f.association); speed && speed->components() == 1)
-      look.shows[0].words.insert(look.shows[0].words.end(), {"color_by=speed", "tolerance=0.01"});  // one colour says less
   item.color = choose_scale(d, f, params, quiet);
   const std::string why = choose_volume_look(d, f, params, item);
   look.reason = fmt::format("scalar field '{}' on a 3D grid: volume; {}", f.name, why);
@@ -120,20 +130,20 @@ Look choose_look(const Dataset& d, const std::string& field, const std::string& 
     return look;
   }
   if (is_line_labels(d)) {
-    look.shows.push_back({"labels", {}, true});
+    look.shows.push_back({ShowType::labels, param_set_of(LabelsShow()), true});
     look.reason = "places along lines: their values as text";
     return look;
   }
   if (d.as<PointCloud>() || (d.cell_count() == 0 && !is_lattice(d.mesh()))) {
-    const double size = d.point_count() > 200000 ? 1.5 : d.point_count() > 5000 ? 3 : 7;
-    look.shows.push_back({"points", {"size=" + short_number(size)}, true});
-    if (d.fields().with_role(Role::normals) && field.empty() && !automatic_field(d))
-      look.shows.back().words.push_back("color=#c8c8cc");  // lit
+    PointsShow points;
+    points.size = d.point_count() > 200000 ? 1.5 : d.point_count() > 5000 ? 3 : 7;
+    if (d.fields().with_role(Role::normals) && field.empty() && !automatic_field(d)) points.coloring.color = "#c8c8cc";  // lit
+    look.shows.push_back({ShowType::points, param_set_of(points), true});
     look.reason = fmt::format("points only: dots, {}", field_reason(d, field));
     return look;
   }
   if (!has_polygons(d)) {
-    look.shows.push_back({"surface", {}, true});
+    look.shows.push_back({ShowType::surface, param_set_of(SurfaceShow()), true});
     look.reason = fmt::format("lines and vertices, {}", field_reason(d, field));
     return look;
   }
@@ -141,19 +151,21 @@ Look choose_look(const Dataset& d, const std::string& field, const std::string& 
   using Shows = FieldHabit::Shows;
   if (scalar && !colors && mesh_dimension(d) == 3)
     if (const Shows shows = habit_of(*scalar).shows; shows == Shows::high || shows == Shows::low) {
-      look.shows.push_back({"volume", {"field=" + scalar->name}, true});
+      VolumeShow volume;
+      volume.coloring.field.name = scalar->name;
+      look.shows.push_back({ShowType::volume, param_set_of(volume), true});
       look.reason = fmt::format("'{}' in a solid mesh: volume", scalar->name);
       return look;
     }
-  std::vector<std::string> words;
+  SurfaceShow surface;
   const bool simulation = !d.as<SurfaceMesh>() && !is_lattice(d.mesh());
   const bool bare_map = look.parallel && d.fields().empty() && d.as<SurfaceMesh>();  // nothing but its edges tells its parts apart
   const bool show_edges = (simulation && d.cell_count() <= 12000) || (bare_map && d.cell_count() <= 2000);
-  if (show_edges) words.push_back("edges=true");
+  surface.edges = show_edges;
   const bool filled_contours = flat && field.empty() && is_banded(d);
-  if ((look.parallel && box_grid) || filled_contours) words.push_back("lit=false");  // an image: its colours as they are
-  look.shows.push_back({"surface", words, true});
-  if (is_lattice(d.mesh()) && !box_grid) look.shows.push_back({"outline", {}, true});
+  surface.lit = !((look.parallel && box_grid) || filled_contours);  // an image: its colours as they are
+  look.shows.push_back({ShowType::surface, param_set_of(surface), true});
+  if (is_lattice(d.mesh()) && !box_grid) look.shows.push_back({ShowType::outline, param_set_of(OutlineShow()), true});
   look.reason = fmt::format("{} mesh: its outer surface{}, {}", d.kind(), show_edges ? " with cell edges" : "", field_reason(d, field));
   return look;
 }

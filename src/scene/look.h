@@ -4,15 +4,16 @@
 #include <string>
 #include <vector>
 
-#include "scene/show.h"
+#include "base/context.h"
+#include "scene/show/show.h"
 
 namespace sg {
 
 struct Look {
   std::vector<std::string> filter;  ///< operation and its key=value words to run first; empty = none
   struct Show {
-    std::string kind;
-    std::vector<std::string> words;
+    ShowType type;
+    ParamSet params;        ///< of show_kind(type)
     bool of_input = false;  ///< show the input, not the filter's result
   };
   std::vector<Show> shows;

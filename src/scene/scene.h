@@ -10,9 +10,9 @@
 #include "data/dataset.h"
 #include "filter/glyph/instances.h"
 #include "scene/camera.h"
-#include "scene/material.h"
-#include "scene/surface_texture.h"
-#include "scene/volume_item.h"
+#include "scene/items/material.h"
+#include "scene/items/surface_texture.h"
+#include "scene/items/volume_item.h"
 
 namespace sg {
 

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which parameters name files: those that write one are marked "new file", so that a recipe cannot use them.
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "base/text.h"
 #include "pipeline/graph.h"
 #include "pipeline/picture.h"
 #include "pipeline/read_params.h"
-#include "scene/show.h"
+#include "scene/show/show.h"
 #include "support/test.h"
 
 using namespace sg;
@@ -24,11 +23,7 @@ std::vector<Param> all_params() {
     for (const ParamDecl& d : schema.decls()) all.push_back({owner + " " + d.name, d.doc, d.unit_});
   };
   for (const Operation& o : operations()) add(std::string(o.name), o.make_params().schema);
-  for (const ShowKind& k : show_kinds()) {
-    const auto json = nlohmann::json::parse(k.json());
-    for (const auto& [name, p] : json["properties"].items())
-      all.push_back({std::string(k.name) + " " + name, p.value("description", ""), p.value("unit", "")});
-  }
+  for (const ShowKind& k : show_kinds()) add(std::string(k.name), k.make_params().schema);
   PictureParams picture;
   add("picture", schema_of(picture));
   ReadParams read;

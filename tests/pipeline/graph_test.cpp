@@ -474,7 +474,7 @@ TEST_CASE("graph: an operation may state its own estimate") {
   std::vector<Operation> table(test::operations().begin(), test::operations().end());
   table[0].estimate = [](const ParamSet& p, std::span<const uint64_t> in) {
     CHECK(in.empty());
-    return Estimate{uint64_t(**std::get_if<int64_t*>(&p.schema.find("n")->ref)) * 8, 2.5};
+    return Estimate{uint64_t(std::get<int64_t>(p.schema.find("n")->ref.get())) * 8, 2.5};
   };
   GraphOptions o = options();
   o.operations = table;

@@ -238,20 +238,24 @@ std::vector<std::string> words(const ParamDecl& d) {
   auto add = [&](std::initializer_list<const char*> values) {
     for (const char* value : values) r.push_back(d.name + "=" + value);
   };
-  if (std::get_if<bool*>(&d.ref)) add({"true", "false"});
-  else if (std::get_if<FieldName*>(&d.ref)) add({"s", "v", "t", "m", "labels", "nothing"});
-  else if (!d.choices_.empty())
+  if (!d.choices_.empty()) {
     for (const std::string& choice : d.choices_) r.push_back(d.name + "=" + choice);
-  else if (std::get_if<std::string*>(&d.ref) || std::get_if<std::vector<std::string>*>(&d.ref))
-    add({"s", "v", "nothing", "1e300", "x+*", "-1:nan:3", "0:1:999999999"});
-  else if (std::get_if<Vec3*>(&d.ref) || std::get_if<std::optional<Vec3>*>(&d.ref))
-    add({"0,0,0", "nan,0,0", "1e300,-1e300,1e300", "1e-300,0,0", "inf,inf,inf"});
-  else if (std::get_if<std::vector<double>*>(&d.ref) || std::get_if<std::vector<int64_t>*>(&d.ref))
-    add({"0", "-1,-1,-1", "0,0,0,0,0,0", "1e300,1e300,1e300", "nan,nan,nan", "2147483647,2147483647,2147483647", "1,0,1,0,1,0",
-         "0,1,0,1,0,1", "9223372036854775807"});
-  else if (std::get_if<double*>(&d.ref) || std::get_if<std::optional<double>*>(&d.ref))
-    add({"0", "-1", "1e300", "-1e300", "1e-300", "nan", "inf"});
-  else add({"0", "-1", "1e300", "1e-300", "nan", "2147483647", "9223372036854775807", "-9223372036854775808"});
+    return r;
+  }
+  switch (d.ref.type()) {
+    case ParamType::boolean: add({"true", "false"}); break;
+    case ParamType::field: add({"s", "v", "t", "m", "labels", "nothing"}); break;
+    case ParamType::word:
+    case ParamType::words: add({"s", "v", "nothing", "1e300", "x+*", "-1:nan:3", "0:1:999999999"}); break;
+    case ParamType::point: add({"0,0,0", "nan,0,0", "1e300,-1e300,1e300", "1e-300,0,0", "inf,inf,inf"}); break;
+    case ParamType::integers:
+    case ParamType::numbers:
+      add({"0", "-1,-1,-1", "0,0,0,0,0,0", "1e300,1e300,1e300", "nan,nan,nan", "2147483647,2147483647,2147483647", "1,0,1,0,1,0",
+           "0,1,0,1,0,1", "9223372036854775807"});
+      break;
+    case ParamType::number: add({"0", "-1", "1e300", "-1e300", "1e-300", "nan", "inf"}); break;
+    case ParamType::integer: add({"0", "-1", "1e300", "1e-300", "nan", "2147483647", "9223372036854775807", "-9223372036854775808"}); break;
+  }
   return r;
 }
 

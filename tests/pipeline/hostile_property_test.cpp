@@ -9,8 +9,7 @@
 #include "pipeline/hostile_watch.h"
 #include "pipeline/operation.h"
 #include "pipeline/picture_parts.h"
-#include "scene/show_glyphs.h"
-#include "scene/show_volume.h"
+#include "scene/show/show.h"
 #include "support/test.h"
 
 using namespace sg;
@@ -95,16 +94,6 @@ std::vector<std::string> words_of(Random& random, const Data& data, double chanc
   return hostile::random_words(random, s, data, chance);
 }
 
-std::vector<std::string> show_words(std::string_view kind, Random& random, const Data& data, double chance) {
-  if (kind == "surface") return words_of<SurfaceShow>(random, data, chance);
-  if (kind == "volume") return words_of<VolumeShow>(random, data, chance);
-  if (kind == "lines") return words_of<LinesShow>(random, data, chance);
-  if (kind == "points") return words_of<PointsShow>(random, data, chance);
-  if (kind == "labels") return words_of<LabelsShow>(random, data, chance);
-  if (kind == "glyphs") return words_of<GlyphsShow>(random, data, chance);
-  return words_of<OutlineShow>(random, data, chance);
-}
-
 // What `render --show` does with it, in a picture of 32x32 or so.
 void draw(const std::vector<DatasetPtr>& parts, const std::vector<std::pair<std::string_view, std::vector<std::string>>>& shows,
           const std::vector<std::string>& camera_stated, Random& random, Context& context) {
@@ -114,7 +103,7 @@ void draw(const std::vector<DatasetPtr>& parts, const std::vector<std::pair<std:
   for (const DatasetPtr& d : parts) {
     box.add(d->bounds());
     for (const auto& [kind, words] : shows)
-      if (const auto legend = find_show(kind).add(scene, d, words, context); legend && annotation.legends.size() < 2)
+      if (const auto legend = add_show(scene, kind, d, words, context); legend && annotation.legends.size() < 2)
         annotation.legends.push_back(*legend);
   }
   StatedPicture stated;
@@ -147,7 +136,7 @@ void show_one(uint64_t seed, Count& count) {
     const std::string_view kind = only()               ? find_show(only()).name
                                   : random.chance(0.3) ? "volume"
                                                        : kinds[size_t(random.whole(0, int(kinds.size()) - 1))].name;
-    shows.emplace_back(kind, show_words(kind, random, data, chance));
+    shows.emplace_back(kind, hostile::random_words(random, find_show(kind).make_params().schema, data, chance));
     if (kind == "volume" && random.chance(0.3))
       shows.back().second.push_back("method=" + random.one_of<std::string>({"ray", "splat", "slices", "shear_warp", "fourier"}));
   }

@@ -433,17 +433,21 @@ std::string random_word(Random& r, const ParamDecl& d, const Data& data) {
   };
   const auto real = [&] { return number(r, d.lo, d.hi, false); };
   const auto whole = [&] { return number(r, d.lo, d.hi, true); };
-  std::string value;
-  if (std::get_if<bool*>(&d.ref)) value = r.chance(0.5) ? "true" : "false";
-  else if (std::get_if<FieldName*>(&d.ref)) value = field_name(r, data);
-  else if (std::get_if<std::string*>(&d.ref)) value = text();
-  else if (std::get_if<std::vector<std::string>*>(&d.ref)) value = list(r, text);
-  else if (std::get_if<Vec3*>(&d.ref) || std::get_if<std::optional<Vec3>*>(&d.ref)) value = real() + "," + real() + "," + real();
-  else if (std::get_if<std::vector<double>*>(&d.ref)) value = list(r, real);
-  else if (std::get_if<std::vector<int64_t>*>(&d.ref)) value = list(r, whole);
-  else if (std::get_if<double*>(&d.ref) || std::get_if<std::optional<double>*>(&d.ref)) value = real();
-  else value = whole();
-  return d.name + "=" + value;
+  const auto value = [&]() -> std::string {
+    switch (d.ref.type()) {
+      case ParamType::boolean: return r.chance(0.5) ? "true" : "false";
+      case ParamType::integer: return whole();
+      case ParamType::number: return real();
+      case ParamType::word: return text();
+      case ParamType::field: return field_name(r, data);
+      case ParamType::point: return real() + "," + real() + "," + real();
+      case ParamType::integers: return list(r, whole);
+      case ParamType::numbers: return list(r, real);
+      case ParamType::words: return list(r, text);
+    }
+    return {};
+  };
+  return d.name + "=" + value();
 }
 
 std::vector<std::string> random_words(Random& r, const Schema& schema, const Data& data, double chance) {
@@ -458,7 +462,7 @@ std::vector<std::string> small_sizes(const Schema& schema, std::string_view oper
   for (const char* name : {"size", "resolution", "density"}) {
     const ParamDecl* d = schema.find(name);
     const bool surface_texture = d && d->name == "density" && !schema.find("resolution");
-    if (d && (std::get_if<int*>(&d->ref) || std::get_if<int64_t*>(&d->ref) || surface_texture)) r.push_back(d->name + "=8");
+    if (d && (d->ref.type() == ParamType::integer || surface_texture)) r.push_back(d->name + "=8");
   }
   Box3 box;
   if (!inputs.empty()) for_each_dataset(inputs[0], [&](const std::string&, const DatasetPtr& d) { box.add(d->bounds()); });

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 #include "support/property.h"
 

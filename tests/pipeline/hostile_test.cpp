@@ -53,7 +53,7 @@ std::vector<std::string> words_for(const Operation& o, const std::string& word) 
   for (const char* name : {"size", "resolution", "density"}) {
     const ParamDecl* d = params.schema.find(name);
     const bool surface_texture = d && d->name == "density" && !params.schema.find("resolution");
-    const bool takes = d && (std::get_if<int*>(&d->ref) || std::get_if<int64_t*>(&d->ref) || surface_texture);
+    const bool takes = d && (d->ref.type() == ParamType::integer || surface_texture);
     if (takes && !word.starts_with(d->name + "=")) r.push_back(d->name + "=8");
   }
   if (o.name.ends_with("_surface") && params.schema.find("spacing") && !word.starts_with("spacing=")) r.push_back("spacing=0.1");

@@ -11,7 +11,8 @@
 #include "render/volume_cells_support.h"
 #include "scene/camera.h"
 #include "scene/camera_params.h"
-#include "scene/show_volume.h"
+#include "scene/show/show.h"
+#include "scene/show/volume.h"
 #include "support/test.h"
 
 using namespace sg;
@@ -46,7 +47,7 @@ std::string refusal(const DatasetPtr& data, const std::vector<std::string>& word
   try {
     Context context;
     Scene scene;
-    find_show(kind).add(scene, data, words, context);
+    add_show(scene, kind, data, words, context);
     if (kind != "volume") return "";
     Camera camera;
     camera.position = {0.5, 0.7, 5}, camera.parallel = parallel, camera.parallel_height = 3, camera.near_plane = 0.1, camera.far_plane = 20;
@@ -160,13 +161,13 @@ TEST_CASE("volume: what a refusal advises exists") {
   const DatasetPtr rectilinear_data = with_fields(rectilinear());
   std::vector<DatasetPtr> meshes{with_fields(small_grid()), rectilinear_data, with_fields(tets()), with_fields(amr())};
   std::vector<std::vector<std::string>> asked;
-  for (const std::string& method : volume_method_names())
+  for (const auto& [method, value] : enum_words(VolumeMethod()))
     for (const char* more : {"mode=composite", "mode=first_hit",      "mode=sum",       "clip=1,0,0,0",  "second=gradient", "second=v",
                              "kernel=sinc",    "gradient=sobel",      "classify=table", "antialias=mip", "antialias=split", "shadows=1",
                              "occlusion=1",    "style=hatch",         "ink=0.5",        "depth_cue=0.5", "step=1e-9",       "levels=nan",
                              "preset=xray",    "transfer=boundaries", "opacity=0:2",    "colors=0:none", "widgets=disc",    "opacity_by=v",
                              "component=5",    "transfer=none",       "clip=1",         "unit=inf"})
-      asked.push_back({"method=" + method, more});
+      asked.push_back({fmt::format("method={}", method), more});
   asked.push_back({"shadows=1", "mode=maximum"});
   asked.push_back({"opacity_by=f", "color_by=c"});
   asked.push_back({"opacity_by=f", "second=gradient"});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Textures in pictures: samples per pixel, bands, translucency, animation, and what is refused.
-#include "scene/show.h"
+#include "scene/show/show.h"
 #include "texture_support.h"
 
 using namespace sg;
@@ -102,7 +102,7 @@ TEST_CASE("lic: what is no vector field is refused by name") {
   Context context;
   const auto shown = [&](std::vector<std::string> words) {
     Scene s;
-    find_show("surface").add(s, d, words, context);
+    add_show(s, "surface", d, words, context);
     return std::get<SurfaceItem>(s.items.at(0)).lic;
   };
   CHECK_FALSE(shown({}).has_value());

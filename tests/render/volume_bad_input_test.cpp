@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a program may hand over by mistake, and views and fields at the edge of what there is: right pictures or clear errors.
-#include "scene/volume_parts.h"
+#include "scene/show/volume_parts.h"
 #include "volume_cells_support.h"
 #include "volume_support.h"
 

@@ -395,7 +395,7 @@ TEST_CASE("property: volumes show the largest, the smallest and the mean value o
         }
         worst.add(x, y, best, p, 0.01);
       }
-    check(worst, v.words + shot.words + " " + ray_function_names()[size_t(v.item.mode)], 0.01);
+    check(worst, v.words + shot.words + " " + std::string(word_of(v.item.mode)), 0.01);
   }
 }
 

@@ -156,7 +156,7 @@ TEST_CASE("volume targets: rays through tetrahedra are the same with every width
 
 TEST_CASE("volume targets: projected tetrahedra and the classic methods are the same with every width of vectors") {
   for (const VolumeMethod method : {VolumeMethod::cells, VolumeMethod::splat, VolumeMethod::slices, VolumeMethod::shear_warp}) {
-    INFO(volume_method_names()[size_t(method)]);
+    INFO(std::string(word_of(method)));
     same_on_all_targets([&] {
       VolumeItem v = wave_item(ElementType::f32, method != VolumeMethod::cells, 0);
       v.method = method;

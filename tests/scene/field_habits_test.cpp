@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Looks of the fields that flow operations make, and of fields with few extreme values.
-#include "scene/field_habits.h"
+#include "scene/choose/field_habits.h"
 
 #include <cmath>
 
-#include "scene/glyph_parts.h"
+#include "scene/choose/scale.h"
+#include "scene/choose/volume_look.h"
 #include "scene/look.h"
-#include "scene/show_glyphs.h"
-#include "scene/show_volume.h"
-#include "scene/volume_look.h"
+#include "scene/show/glyphs.h"
+#include "scene/show/volume.h"
 #include "support/test.h"
 
 using namespace sg;
@@ -48,7 +48,7 @@ ColorScale scale_of(const DatasetPtr& d, ColoringParams p = {}, std::string* log
 OpacityCurve opacity_of(const DatasetPtr& d) {
   Context context;
   Scene scene;
-  find_show("volume").add(scene, d, {}, context);
+  add_show(scene, "volume", d, {}, context);
   return std::get<VolumeItem>(scene.items.back()).opacity;
 }
 
@@ -57,7 +57,7 @@ std::string log_of_lines(const DatasetPtr& d) {
   std::string log;
   context.on_log = [&](LogLevel level, std::string_view text) { log += (level == LogLevel::warning ? "!" : "") + std::string(text); };
   Scene scene;
-  find_show("lines").add(scene, d, {}, context);
+  add_show(scene, "lines", d, {}, context);
   return log;
 }
 
@@ -147,8 +147,8 @@ TEST_CASE("volume: the side of Q that matters says how far its colours go, and a
     f.add({name, Association::point, Array::from_vector(std::move(v)), "", Role::scalars});
     return make_dataset(Mesh(g), std::move(f));
   };
-  CHECK(choose_look(*bent("Q"), "", "").shows[0].kind == "volume");
-  CHECK(choose_look(*bent("temperature"), "", "").shows[0].kind == "surface");
+  CHECK(choose_look(*bent("Q"), "", "").shows[0].type == ShowType::volume);
+  CHECK(choose_look(*bent("temperature"), "", "").shows[0].type == ShowType::surface);
 }
 
 TEST_CASE("look: a solid texture of sparse noise is shown as opaque strands in the colours of the speed") {
@@ -160,17 +160,17 @@ TEST_CASE("look: a solid texture of sparse noise is shown as opaque strands in t
   const DatasetPtr d = make_dataset(std::move(parts));
   const Look look = choose_look(*d, "", "");
   REQUIRE(look.shows.size() == 1);
-  CHECK(look.shows[0].kind == "volume");
-  CHECK(look.shows[0].words == std::vector<std::string>{"field=lic", "color_by=speed", "tolerance=0.01"});
+  CHECK(look.shows[0].type == ShowType::volume);
+  CHECK(changed_words(look.shows[0].params) == std::vector<std::string>{"field=lic", "color_by=speed", "tolerance=0.01"});
   Context context;
   Scene scene;
-  find_show("volume").add(scene, d, look.shows[0].words, context);
+  show_kind(ShowType::volume).add(scene, d, look.shows[0].params, context);
   const auto& item = std::get<VolumeItem>(scene.items.back());
   CHECK(item.field == "lic");
   CHECK(item.opacity.at(0) == 0);
   CHECK(item.opacity.at(0.5) > 0.9);
   CHECK(item.unit_distance == doctest::Approx(3));
-  CHECK(choose_look(*d, "other", "").shows[0].words[0] == "field=other");
+  CHECK(choose_look(*d, "other", "").shows[0].params.as<VolumeShow>().coloring.field.name == "other");
 }
 
 TEST_CASE("lines of data without lines draw nothing, and say what to do") {
@@ -185,14 +185,18 @@ TEST_CASE("lines of data without lines draw nothing, and say what to do") {
 
 TEST_CASE("glyphs of several parts: one length for one value, and shares of one number of glyphs") {
   const std::vector<DatasetPtr> parts{wind(0, 60, 2), wind(60, 20, 6)};
-  std::vector<std::vector<std::string>> words(2);
-  take_one_glyph_scale(parts, words);
+  const auto shared = [&](const GlyphsShow& stated) {
+    std::vector<GlyphsShow> all(2, stated);
+    share(parts, {&all[0], &all[1]});
+    return all;
+  };
+  const std::vector<GlyphsShow> both = shared({});
   double scale[2];
   size_t count[2];
   for (size_t i = 0; i < 2; ++i) {
     Context context;
     Scene scene;
-    const auto legend = find_show("glyphs").add(scene, parts[i], words[i], context);
+    const auto legend = add(scene, parts[i], both[i], context);
     const auto& item = std::get<GlyphsItem>(scene.items.back());
     scale[i] = item.rule.scale, count[i] = item.data->point_count();
     REQUIRE(legend);
@@ -203,10 +207,10 @@ TEST_CASE("glyphs of several parts: one length for one value, and shares of one 
   CHECK(scale[0] == scale[1]);
   CHECK(count[0] > 2 * count[1]);
   CHECK(count[0] + count[1] < 1100);
-  std::vector<std::vector<std::string>> stated(2, {"factor=0.25", "count=50"});
-  take_one_glyph_scale(parts, stated);
-  CHECK(stated[0] == std::vector<std::string>{"factor=0.25", "count=50"});
-  std::vector<std::vector<std::string>> sized(2, {"size=3"});  // of the largest of all
-  take_one_glyph_scale(parts, sized);
-  CHECK(std::find(sized[0].begin(), sized[0].end(), "factor=0.5") != sized[0].end());
+  GlyphsShow stated;
+  stated.glyphs.factor = 0.25, stated.glyphs.count = 50;
+  CHECK(changed_words(param_set_of(shared(stated)[0])) == std::vector<std::string>{"factor=0.25", "count=50"});
+  GlyphsShow sized;
+  sized.glyphs.size = 3;  // of the largest of all
+  CHECK(shared(sized)[0].glyphs.factor == 0.5);
 }

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is chosen when nobody says: colours, ranges, representations.
 #include "scene/look.h"
+#include "scene/show/labels.h"
 
 #include "color/parse_color.h"
 #include "filter/scalar/bands.h"
-#include "scene/volume_look.h"
+#include "scene/choose/scale.h"
+#include "scene/choose/volume_look.h"
 #include "support/test.h"
 
 using namespace sg;
@@ -70,7 +72,7 @@ TEST_CASE("choose_scale: labels have the names that the dataset notes, when it n
 TEST_CASE("choose_scale: a log scale begins at the smallest positive value, and refuses data without one") {
   const auto d = image<float>(4, [](size_t i, size_t, size_t) { return i == 0 ? 0.f : float(i) * 10; });
   ColoringParams p;
-  p.scale = "log";
+  p.scale = ScaleKind::log;
   const ColorScale s = scale_of(d, p);
   CHECK(s.lo == 10);
   CHECK(s.hi == 30);
@@ -113,7 +115,7 @@ TEST_CASE("choose_look: CT, labels, flat images, surfaces and points are recogni
   CHECK(looks_like_ct(*ct, ct->fields()[0], &offset));
   CHECK(offset == 0);
   CHECK(choose_look(*ct, "", "mhd").reason.find("CT") != std::string::npos);
-  CHECK(choose_look(*ct, "", "mhd").shows[0].kind == "volume");
+  CHECK(choose_look(*ct, "", "mhd").shows[0].type == ShowType::volume);
 
   const auto labels = image<uint8_t>(16, [](size_t i, size_t j, size_t) { return uint8_t(i < 4 ? 0 : j < 8 ? 1 : 2); });
   const Look look = choose_look(*labels, "", "");
@@ -127,11 +129,11 @@ TEST_CASE("choose_look: CT, labels, flat images, surfaces and points are recogni
   const Look map = choose_look(*make_dataset(flat, f), "", "");
   CHECK(map.parallel);
   CHECK(map.direction == Vec3(0, 0, 1));
-  CHECK(map.shows[0].kind == "surface");
+  CHECK(map.shows[0].type == ShowType::surface);
 
   PointCloud cloud;
   cloud.points.xyz = Array::from_vector<float>({0, 0, 0, 1, 2, 3}, 3);
-  CHECK(choose_look(*make_dataset(cloud), "", "").shows[0].kind == "points");
+  CHECK(choose_look(*make_dataset(cloud), "", "").shows[0].type == ShowType::points);
 }
 
 TEST_CASE("show: a constant field is no automatic colour, a named one is") {
@@ -145,14 +147,14 @@ TEST_CASE("show: a constant field is no automatic colour, a named one is") {
   const DatasetPtr d = make_dataset(m, f);
   Context context;
   Scene scene;
-  const auto automatic = find_show("surface").add(scene, d, {}, context);
+  const auto automatic = add_show(scene, "surface", d, {}, context);
   REQUIRE(automatic);
   CHECK(automatic->title == "t");
-  const auto named = find_show("surface").add(scene, d, {"field=iso"}, context);
+  const auto named = add_show(scene, "surface", d, {"field=iso"}, context);
   REQUIRE(named);
   CHECK(named->title == "iso");
-  CHECK_FALSE(find_show("surface").add(scene, d, {"color=white"}, context));
-  CHECK(test::error_of([&] { find_show("surface").add(scene, d, {"field=tt"}, context); }).find("did you mean 't'") != std::string::npos);
+  CHECK_FALSE(add_show(scene, "surface", d, {"color=white"}, context));
+  CHECK(test::error_of([&] { add_show(scene, "surface", d, {"field=tt"}, context); }).find("did you mean 't'") != std::string::npos);
   CHECK(test::error_of([] { find_show("volme"); }).find("did you mean 'volume'") != std::string::npos);
 }
 
@@ -172,7 +174,7 @@ TEST_CASE("outline: twelve edges of the grid's own box, turned with it") {
   g.direction.m[0][0] = 0, g.direction.m[0][1] = -1, g.direction.m[1][0] = 1, g.direction.m[1][1] = 0;
   Context context;
   Scene scene;
-  find_show("outline").add(scene, make_dataset(g), {}, context);
+  add_show(scene, "outline", make_dataset(g), {}, context);
   const auto& item = std::get<LinesItem>(scene.items.at(0));
   CHECK(item.data->as<SurfaceMesh>()->lines.size() == 12);
   CHECK(item.data->bounds().lo == Vec3(-2, 0, 0));
@@ -187,14 +189,14 @@ TEST_CASE("surface with edges: a curved cell shows its own four sides, a linear 
   m.single_type = CellType::quadratic_quad;
   Context context;
   Scene scene;
-  find_show("surface").add(scene, make_dataset(m), {"edges=true"}, context);
+  add_show(scene, "surface", make_dataset(m), {"edges=true"}, context);
   const auto& curved = std::get<SurfaceItem>(scene.items.at(0));
   REQUIRE(curved.edge_lines);
   CHECK(curved.edge_lines->as<SurfaceMesh>()->lines.size() == 4);
   CHECK(curved.data->as<SurfaceMesh>()->polygons.size() > 100);
   m.cells = {Array::from_vector(std::vector<int32_t>{0, 1, 2, 3}), {}, 4};
   m.single_type = CellType::quad;
-  find_show("surface").add(scene, make_dataset(m), {"edges=true"}, context);
+  add_show(scene, "surface", make_dataset(m), {"edges=true"}, context);
   CHECK_FALSE(std::get<SurfaceItem>(scene.items.at(1)).edge_lines);
 }
 
@@ -211,7 +213,7 @@ TEST_CASE("choose_look: filled contours are coloured by band, unlit on a plane, 
   CHECK(automatic_field(*d)->name == "band");
   const Look look = choose_look(*d, "", "");
   REQUIRE(look.shows.size() == 1);
-  CHECK(look.shows[0].words == std::vector<std::string>{"lit=false"});
+  CHECK(changed_words(look.shows[0].params) == std::vector<std::string>{"lit=false"});
   const ColorScale s = choose_scale(*d, *automatic_field(*d), {}, ctx);
   CHECK(s.title == "t");
   CHECK(s.unit == "K");
@@ -219,7 +221,7 @@ TEST_CASE("choose_look: filled contours are coloured by band, unlit on a plane, 
   CHECK(s.limits == std::vector<double>{0, 2, 4, 6, 8});
   CHECK(s.color(0) == Vec4f{find_colormap("sight").at(0).x, find_colormap("sight").at(0).y, find_colormap("sight").at(0).z, 1});
   CHECK_FALSE(s.color(1) == s.color(2));
-  CHECK(choose_look(*d, "t", "").shows[0].words.empty());
+  CHECK(changed_words(choose_look(*d, "t", "").shows[0].params).empty());
 }
 
 TEST_CASE("labels: a cloud of line labels becomes texts that lie along their lines") {
@@ -232,14 +234,14 @@ TEST_CASE("labels: a cloud of line labels becomes texts that lie along their lin
   CHECK(is_line_labels(*d));
   const Look look = choose_look(*d, "", "");
   REQUIRE(look.shows.size() == 1);
-  CHECK(look.shows[0].kind == "labels");
+  CHECK(look.shows[0].type == ShowType::labels);
   Scene scene;
-  find_show("labels").add(scene, d, {}, ctx);
+  add_show(scene, "labels", d, {}, ctx);
   REQUIRE(scene.texts.size() == 2);
   CHECK(scene.texts[0].text == "988");
   CHECK(scene.texts[1].text == "992.25");
   CHECK(scene.texts[1].at == Vec3(3, 4, 0));
   CHECK(length(scene.texts[0].along - Vec3(std::sqrt(0.75), 0.5, 0)) < 1e-12);
   CHECK(length(scene.texts[1].along - Vec3(0, -1, 0)) < 1e-12);
-  CHECK(test::error_of([&] { find_show("labels").add(scene, d, {"field=none such"}, ctx); }).find("none such") != std::string::npos);
+  CHECK(test::error_of([&] { add_show(scene, "labels", d, {"field=none such"}, ctx); }).find("none such") != std::string::npos);
 }

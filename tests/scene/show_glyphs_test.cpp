@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/show_glyphs.h"
+#include "scene/show/glyphs.h"
+
+#include "scene/show/show.h"
 #include "support/test.h"
 
 using namespace sg;
@@ -22,7 +24,7 @@ DatasetPtr wind() {
 
 GlyphsItem item_of(const std::vector<std::string>& words, std::optional<Legend>* legend = nullptr, Scene scene = {}) {
   Context context;
-  const auto shown = find_show("glyphs").add(scene, wind(), words, context);
+  const auto shown = add_show(scene, "glyphs", wind(), words, context);
   if (legend) *legend = shown;
   return std::get<GlyphsItem>(scene.items.back());
 }
@@ -68,9 +70,9 @@ TEST_CASE("show glyphs: barbs have sizes in pixels and the strokes of their hemi
   CHECK(most <= 100 + 37 / 5 + 1);
   Scene map;
   Context context;
-  find_show("surface").add(map, wind(), {"field=t"}, context);
+  add_show(map, "surface", wind(), {"field=t"}, context);
   CHECK_FALSE(item_of({}, nullptr, map).color_by);
   CHECK(error_of([] { item_of({"shape=barb"}); }).find("did you mean 'barbs'") != std::string::npos);
   CHECK(error_of([] { item_of({"field=nothing"}); }).find("'nothing'") != std::string::npos);
-  CHECK(error_of([] { find_show("glyphs").check({"shap=arrow"}); }).find("shape") != std::string::npos);
+  CHECK(error_of([] { show_params(find_show("glyphs"), {"shap=arrow"}); }).find("shape") != std::string::npos);
 }

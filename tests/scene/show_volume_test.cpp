@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/show_volume.h"
+#include "scene/show/volume.h"
 
 #include "color/parse_color.h"
 #include "color/transfer_text.h"
 #include "data/field_ops.h"
 #include "filter/field/point_cell.h"
-#include "scene/volume_presets.h"
+#include "scene/show/show.h"
+#include "scene/show/volume_presets.h"
 #include "support/test.h"
 #include "volume_support.h"
 
@@ -24,8 +25,7 @@ Made show(const DatasetPtr& d, const std::vector<std::string>& words) {
   Context context;
   context.on_log = [&](LogLevel, std::string_view text) { m.notes += std::string(text) + "\n"; };
   Scene scene;
-  check_volume_words(words);
-  const auto legend = find_show("volume").add(scene, d, words, context);
+  const auto legend = add_show(scene, "volume", d, words, context);
   REQUIRE(legend);
   REQUIRE(scene.items.size() == 1);
   m.legend = *legend;
@@ -36,11 +36,11 @@ Made show(const DatasetPtr& d, const std::vector<std::string>& words) {
 std::string show_error(const DatasetPtr& d, const std::vector<std::string>& words) {
   Scene scene;
   Context context;
-  return test::error_of([&] { find_show("volume").add(scene, d, words, context); });
+  return test::error_of([&] { add_show(scene, "volume", d, words, context); });
 }
 
 std::string check_error(const std::vector<std::string>& words) {
-  return test::error_of([&] { find_show("volume").check(words); });
+  return test::error_of([&] { show_params(find_show("volume"), words); });
 }
 
 bool says(const std::string& text, std::string_view what) { return text.find(what) != std::string::npos; }
@@ -121,10 +121,9 @@ TEST_CASE("volume words: everything about sampling, light and method reaches the
   CHECK(v.detail.plain());
   REQUIRE(m.legend.volume);
   CHECK(m.legend.volume->opacity.at(0.5) == 0.4);
-  for (size_t i = 0; i < ray_function_names().size(); ++i)
-    CHECK(size_t(show(d, {"field=r", "mode=" + ray_function_names()[i]}).item.mode) == i);
-  for (size_t i = 0; i < volume_method_names().size(); ++i)
-    CHECK(size_t(show(d, {"field=r", "method=" + volume_method_names()[i]}).item.method) == i);
+  for (const auto& [word, mode] : enum_words(RayFunction())) CHECK(show(d, {"field=r", fmt::format("mode={}", word)}).item.mode == mode);
+  for (const auto& [word, method] : enum_words(VolumeMethod()))
+    CHECK(show(d, {"field=r", fmt::format("method={}", word)}).item.method == method);
 }
 
 TEST_CASE("volume words: what cannot be is refused before any data is read, all mistakes at once") {
@@ -153,10 +152,10 @@ TEST_CASE("volume words: what cannot be is refused before any data is read, all 
   const std::string both = check_error({"opacity=0:2", "clip=1,2"});
   CHECK(says(both, "not between"));
   CHECK(says(both, "has 2 numbers"));
-  CHECK_NOTHROW(find_show("volume").check({"scale=log", "opacity=@5:0,@500:1"}));
+  CHECK_NOTHROW(show_params(find_show("volume"), {"scale=log", "opacity=@5:0,@500:1"}));
   // Which of a position and a value comes first, only the data can tell.
-  CHECK_NOTHROW(find_show("volume").check({"opacity=0:0,@-500:0.1,1:1", "colors=0:black,@-500:white", "widgets="}));
-  CHECK_NOTHROW(find_show("volume").check({"widgets=triangle 0 @-500 0 1"}));
+  CHECK_NOTHROW(show_params(find_show("volume"), {"opacity=0:0,@-500:0.1,1:1", "colors=0:black,@-500:white", "widgets="}));
+  CHECK_NOTHROW(show_params(find_show("volume"), {"widgets=triangle 0 @-500 0 1"}));
   const DatasetPtr d = two_fields();
   CHECK(says(show_error(d, {"field=T", "opacity=0:0,@100:0.5,1:1"}), "'@100:0.5' lies below the point before it (100 after 200)"));
   CHECK(show(d, {"field=T", "opacity=0:0,@250:0.5,1:1"}).item.opacity.at(250) == 0.5);
@@ -361,7 +360,7 @@ TEST_CASE("volume show: a constant field is drawn evenly, not left out") {
   fields.add({"f", Association::point, Array::from_vector(std::vector<float>(27, 1.0f)), "", Role::scalars});
   Scene scene;
   Context context;
-  add_volume(scene, make_dataset(g, fields), {}, context);
+  add(scene, make_dataset(g, fields), VolumeShow(), context);
   const auto& item = std::get<VolumeItem>(scene.items.at(0));
   CHECK(item.opacity.at(1) > 0.1);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/texture_color.h"
+#include "scene/show/texture_color.h"
 
-#include "scene/show.h"
+#include "scene/show/show.h"
 #include "support/test.h"
 
 using namespace sg;
@@ -20,7 +20,7 @@ DatasetPtr strip(const char* name, std::vector<float> texture) {
 
 const SurfaceItem& shown(Scene& scene, const DatasetPtr& d, std::vector<std::string> words) {
   Context c;
-  find_show("surface").add(scene, d, words, c);
+  add_show(scene, "surface", d, words, c);
   return std::get<SurfaceItem>(scene.items.back());
 }
 
@@ -42,7 +42,7 @@ TEST_CASE("texture: a field 'lic' darkens and brightens the colours of another, 
   // Coloured by 'v': the texture is no candidate for the colours.
   CHECK(automatic_field(*d)->name == "v");
   Context c;
-  CHECK(find_show("surface").add(scene, d, {}, c).has_value());
+  CHECK(add_show(scene, "surface", d, {}, c).has_value());
   CHECK(std::get<SurfaceItem>(scene.items.back()).color_by->direct);
   // As the colour itself it is no texture.
   CHECK(!shown(scene, d, {"field=lic"}).color_by->direct);

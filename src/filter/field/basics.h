@@ -2,7 +2,7 @@
 // Small operations on fields; the mesh stays as it is.
 #pragma once
 #include "base/context.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 
 namespace sg {

@@ -5,7 +5,7 @@
 
 #include "base/context.h"
 #include "base/help_word.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 
 namespace sg {

@@ -2,7 +2,7 @@
 // gaussian_smooth: a field of a grid averaged with a Gaussian.
 #pragma once
 #include "base/context.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 
 namespace sg {

@@ -2,7 +2,7 @@
 // join_fields: the fields of several files or results on one mesh.
 #pragma once
 #include "base/context.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 
 namespace sg {

@@ -2,7 +2,7 @@
 // resize: a grid with other numbers of points, its fields by a reconstruction kernel.
 #pragma once
 #include "base/context.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 
 namespace sg {

@@ -2,11 +2,21 @@
 // One step of an ordinary differential equation x' = v(x, t), by the classic explicit schemes and a symplectic one. A *flow* is explained
 // in flow_field.h; here only its velocity is asked for.
 #pragma once
+#include "base/schema/enum_words.h"
 #include "base/vec.h"
 
 namespace sg {
 
 enum class Scheme : uint8_t { euler, midpoint, heun, rk4, dormand_prince, implicit_midpoint };
+constexpr auto enum_words(Scheme) {
+  using enum Scheme;
+  return std::array{Word{"euler", euler},
+                    Word{"midpoint", midpoint},
+                    Word{"heun", heun},
+                    Word{"rk4", rk4},
+                    Word{"dormand_prince", dormand_prince},
+                    Word{"implicit_midpoint", implicit_midpoint}};
+}
 
 /// Order of the error of a whole path: 1, 2, 2, 4, 5, 2.
 constexpr int order_of(Scheme s) {

@@ -39,7 +39,7 @@ struct LineArrays {
     fields.add({"stop", Association::cell, Array::from_vector(std::move(stop)), "", Role::labels});
     DatasetParts parts{std::move(mesh), std::move(fields), {}, {}, {}, {}};
     std::string words;
-    for (int r = 0; r <= int(StopReason::error); ++r) words += fmt::format("{}{} {}", r ? ", " : "", r, stop_reason_name(StopReason(r)));
+    for (int r = 0; r <= int(StopReason::error); ++r) words += fmt::format("{}{} {}", r ? ", " : "", r, word_of(StopReason(r)));
     parts.notes.emplace_back("stop", words);
     return make_trusted_dataset(std::move(parts));
   }

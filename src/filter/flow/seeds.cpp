@@ -16,8 +16,7 @@ void describe(Schema& s, SeedParams& p) {
   s("seeds", p.seeds,
     "Where lines begin: random places in the mesh, a list of points, a line, a plane, a sphere's surface, a ball, a box' grid, or the "
     "points "
-    "of the second input; auto: by what else is given.")
-      .choices({"auto", "random", "points", "line", "plane", "sphere", "ball", "grid", "mesh"});
+    "of the second input; auto: by what else is given.");
   s("points", p.points, "Points as x,y,z,x,y,z,...").unit("length");
   s("from", p.from, "First point of the line.").unit("length");
   s("to", p.to, "Last point of the line.").unit("length");
@@ -33,20 +32,20 @@ void describe(Schema& s, SeedParams& p) {
   s("random_seed", p.random_seed, "Other numbers, other random places.");
 }
 
-std::string seed_kind(const SeedParams& p, bool mesh) {
-  if (p.seeds != "auto") return p.seeds;
-  if (mesh) return "mesh";
-  if (!p.points.empty()) return "points";
-  if (p.from || p.to) return "line";
-  if (p.radius) return "sphere";
-  if (p.normal || p.size.size() == 2 || p.counts.size() == 2) return "plane";
-  if (p.size.size() == 3 || p.counts.size() == 3) return "grid";
-  return "random";
+SeedKind seed_kind(const SeedParams& p, bool mesh) {
+  if (p.seeds) return *p.seeds;
+  if (mesh) return SeedKind::mesh;
+  if (!p.points.empty()) return SeedKind::points;
+  if (p.from || p.to) return SeedKind::line;
+  if (p.radius) return SeedKind::sphere;
+  if (p.normal || p.size.size() == 2 || p.counts.size() == 2) return SeedKind::plane;
+  if (p.size.size() == 3 || p.counts.size() == 3) return SeedKind::grid;
+  return SeedKind::random;
 }
 
-int64_t seed_count(const SeedParams& p, std::string_view kind, int dimension) {
+int64_t seed_count(const SeedParams& p, SeedKind kind, int dimension) {
   if (p.count > 0) return p.count;
-  return kind == "line" ? 40 : kind == "random" && dimension < 3 ? 60 : 200;
+  return kind == SeedKind::line ? 40 : kind == SeedKind::random && dimension < 3 ? 60 : 200;
 }
 
 std::vector<Vec3> points_of(const Dataset& mesh) {
@@ -208,26 +207,26 @@ std::vector<Vec3> of_mesh(const DatasetPtr& mesh) {
 std::vector<Vec3> make_seeds(const SeedParams& given, const std::vector<DatasetPtr>& parts, const DatasetPtr& mesh, const SeedPlace& accept,
                              Context& context) {
   SeedParams p = given;
-  const std::string kind = seed_kind(p, bool(mesh));
+  const SeedKind kind = seed_kind(p, bool(mesh));
   int dimension = 0;
   for (const DatasetPtr& d : parts) dimension = std::max(dimension, mesh_dimension(*d));
   p.count = seed_count(p, kind, dimension);
   Box3 box;
   for (const DatasetPtr& d : parts) box.add(d->bounds());
-  if (kind == "mesh") return of_mesh(mesh);
-  if (kind == "points") return listed(p);
+  if (kind == SeedKind::mesh) return of_mesh(mesh);
+  if (kind == SeedKind::points) return listed(p);
   double count = double(p.count);
-  if (!p.counts.empty() && (kind == "plane" || kind == "grid"))
+  if (!p.counts.empty() && (kind == SeedKind::plane || kind == SeedKind::grid))
     count = std::accumulate(p.counts.begin(), p.counts.end(), 1.0, [](double a, int64_t b) { return a * double(b); });
   constexpr double bytes_a_seed = 100;  // its place, where that lies in the mesh, the point that is made of it
   need_memory(count * bytes_a_seed, fmt::format("{:.0f} seeds", count), "seeds", "take fewer: count, counts");
-  if (kind == "line") return on_line(p);
-  if (kind == "plane") return on_plane(p, box);
-  if (kind == "pixels") return of_pixels(p, box, mesh);
-  if (kind == "sphere" || kind == "ball") return in_sphere(p, box, kind == "ball");
-  if (kind == "grid") return in_grid(p, box);
+  if (kind == SeedKind::line) return on_line(p);
+  if (kind == SeedKind::plane) return on_plane(p, box);
+  if (kind == SeedKind::pixels) return of_pixels(p, box, mesh);
+  if (kind == SeedKind::sphere || kind == SeedKind::ball) return in_sphere(p, box, kind == SeedKind::ball);
+  if (kind == SeedKind::grid) return in_grid(p, box);
   std::vector<Vec3> out = random_places(parts, size_t(p.count), uint64_t(p.random_seed), accept, context);
-  if (p.seeds == "auto")
+  if (!p.seeds)
     context.info(
         fmt::format("seeds: {} random places in the mesh; seeds=, points=, from= and to=, radius=, normal= choose others", out.size()));
   return out;

@@ -7,14 +7,22 @@
 #include <vector>
 
 #include "base/context.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 
 namespace sg {
 
+/// Where seeds lie; mesh: at the points of a second input; pixels: in the middle of the pixels of a plane.
+enum class SeedKind { random, points, line, plane, sphere, ball, grid, mesh, pixels };
+constexpr auto enum_words(SeedKind) {
+  using enum SeedKind;
+  return std::array{Word{"random", random}, Word{"points", points}, Word{"line", line}, Word{"plane", plane},  Word{"sphere", sphere},
+                    Word{"ball", ball},     Word{"grid", grid},     Word{"mesh", mesh}, Word{"pixels", pixels}};
+}
+
 /// Shared by every operation that starts at seeds.
 struct SeedParams {
-  std::string seeds = "auto";
+  std::optional<SeedKind> seeds;
   std::vector<double> points;
   std::optional<Vec3> from, to;
   std::optional<Vec3> center, normal;
@@ -26,12 +34,12 @@ struct SeedParams {
 };
 void describe(Schema& s, SeedParams& p);
 
-/// What `seeds` stands for: its word, or the kind that the other parameters imply ("auto": mesh when there is one, points, line, sphere,
-/// plane, grid by what is given; else random).
-std::string seed_kind(const SeedParams& p, bool mesh);
+/// `seeds`, or the kind that the other parameters imply: mesh when there is one, points, line, sphere, plane, grid by what is given; else
+/// random.
+SeedKind seed_kind(const SeedParams& p, bool mesh);
 
 /// count, or what stands for it: 200, on a line 40, at random in meshes of surfaces 60 (their lines lie side by side).
-int64_t seed_count(const SeedParams& p, std::string_view kind, int dimension);
+int64_t seed_count(const SeedParams& p, SeedKind kind, int dimension);
 
 /// Is there a place for a seed? Asked from one thread.
 using SeedPlace = std::function<bool(Vec3)>;

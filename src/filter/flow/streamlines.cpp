@@ -12,14 +12,13 @@ namespace sg {
 
 void describe(Schema& s, StreamlinesParams& p) {
   s("field", p.field, "Velocity: a point or cell field of 2 or 3 components; default: the active vectors.");
-  s("direction", p.direction, "Along the flow, against it, or both from each seed, as one line.").choices({"forward", "backward", "both"});
+  s("direction", p.direction, "Along the flow, against it, or both from each seed, as one line.");
   describe(s, p.integration);
   describe(s, p.stop);
   describe(s, p.seeds);
   s("geographic", p.geographic, "x and y are degrees and the velocity is in m/s: it is converted (times are seconds, lengths degrees).");
   s("attributes", p.attributes,
-    "What lines carry beside speed, time, length and velocity: the mesh's other fields; the vorticity; how the flow turns about the line.")
-      .choices({"fields", "vorticity", "rotation", "none"});
+    "What lines carry beside speed, time, length and velocity: the mesh's other fields; the vorticity; how the flow turns about the line.");
 }
 
 namespace {
@@ -84,7 +83,7 @@ Data streamlines(const std::vector<Data>& inputs, const StreamlinesParams& p, Co
   // Seeds that nobody placed go where much flows: into vessels, not into the still parts around them.
   double much = 0;
   uint64_t asked = 0;
-  const bool chosen = p.seeds.seeds != "auto";
+  const bool chosen = p.seeds.seeds.has_value();
   const SeedPlace flows = [&](Vec3 x) {
     Vec3 v;
     const double chance = random_unit(uint64_t(p.seeds.random_seed) + 17, asked++);
@@ -94,18 +93,15 @@ Data streamlines(const std::vector<Data>& inputs, const StreamlinesParams& p, Co
     return chosen ? s > 0 : chance < s * s && length(v) > options.min_speed;
   };
   std::vector<Vec3> at = make_seeds(p.seeds, meshes, seed_mesh_of(inputs, "streamlines"), flows, context);
-  const TraceDirection direction = p.direction == "both"      ? TraceDirection::both
-                                   : p.direction == "forward" ? TraceDirection::forward
-                                                              : TraceDirection::backward;
   const std::string& unit = parts.fields().front().field().unit;
   const auto trace = [&](std::span<const Vec3> from) {
     if (parts.count() == 1)
-      if (const auto by_packets = packets::trace(parts.fields().front(), from, direction, options, context))
+      if (const auto by_packets = packets::trace(parts.fields().front(), from, p.direction, options, context))
         return lines_dataset(*by_packets, parts.name(), unit);
-    return lines_dataset(trace_lines(parts, from, direction, options, context), parts.name(), unit);
+    return lines_dataset(trace_lines(parts, from, p.direction, options, context), parts.name(), unit);
   };
   DatasetPtr lines = trace(at);
-  if (p.seeds.count == 0 && seed_kind(p.seeds, inputs.size() > 1) == "random")
+  if (p.seeds.count == 0 && seed_kind(p.seeds, inputs.size() > 1) == SeedKind::random)
     if (const size_t most = most_apart(*lines, parts.name(), parts.bounds()); most < lines->cell_count()) {
       const int64_t last = lines->fields().require("seed", Association::cell).array.view<int64_t>()[most - 1];
       context.info(fmt::format("streamlines: {} of {}, as many as can be told apart; count= makes more", most, lines->cell_count()));
@@ -121,12 +117,10 @@ Data streamlines(const std::vector<Data>& inputs, const StreamlinesParams& p, Co
     for (const Field& f : more)
       if (!out.fields.find(f.name, f.association)) out.fields.add(f);
   };
-  const auto wanted = [&](std::string_view word) {
-    return std::find(p.attributes.begin(), p.attributes.end(), word) != p.attributes.end();
-  };
-  const bool vorticity = wanted("vorticity"), rotation = wanted("rotation");
+  const auto wanted = [&](LineAttribute a) { return std::find(p.attributes.begin(), p.attributes.end(), a) != p.attributes.end(); };
+  const bool vorticity = wanted(LineAttribute::vorticity), rotation = wanted(LineAttribute::rotation);
   if (vorticity || rotation) add(rotation_along(parts, *lines, parts.name(), vorticity, rotation, context));
-  if (wanted("fields")) add(fields_along(parts, *lines, parts.name(), context));
+  if (wanted(LineAttribute::fields)) add(fields_along(parts, *lines, parts.name(), context));
   const DatasetPtr traced = make_trusted_dataset(std::move(out));
   return p.geographic ? in_metres(traced, parts.name(), 1) : traced;
 }

@@ -6,14 +6,21 @@
 
 namespace sg {
 
+/// What lines carry beside speed, time, length and velocity.
+enum class LineAttribute { fields, vorticity, rotation, none };
+constexpr auto enum_words(LineAttribute) {
+  using enum LineAttribute;
+  return std::array{Word{"fields", fields}, Word{"vorticity", vorticity}, Word{"rotation", rotation}, Word{"none", none}};
+}
+
 struct StreamlinesParams {
   FieldName field;
-  std::string direction = "both";
+  TraceDirection direction = TraceDirection::both;
   IntegrationParams integration;
   StopParams stop;
   SeedParams seeds;
   bool geographic = false;  ///< see geographic.h
-  std::vector<std::string> attributes{"fields"};
+  std::vector<LineAttribute> attributes{LineAttribute::fields};
 };
 void describe(Schema& s, StreamlinesParams& p);
 

@@ -8,10 +8,9 @@ namespace sg {
 
 void describe(Schema& s, IntegrationParams& p) {
   s("integrator", p.integrator,
-    "Scheme: dormand_prince adapts its steps to the tolerance, the others take steps of one size; implicit_midpoint is symplectic.")
-      .choices({"euler", "midpoint", "heun", "rk4", "dormand_prince", "implicit_midpoint"});
+    "Scheme: dormand_prince adapts its steps to the tolerance, the others take steps of one size; implicit_midpoint is symplectic.");
   s("step", p.step, "Size of a step (dormand_prince: of the first), in step_unit.").positive();
-  s("step_unit", p.step_unit, "What steps are measured in: sizes of the local cell, length, or time.").choices({"cells", "length", "time"});
+  s("step_unit", p.step_unit, "What steps are measured in: sizes of the local cell, length, or time.");
   s("tolerance", p.tolerance, "dormand_prince: error of one step, in sizes of the local cell.").positive();
   s("min_step", p.min_step, "dormand_prince: smallest step, in step_unit; default: a fiftieth of step.");
   s("max_step", p.max_step, "dormand_prince: largest step, in step_unit; default: step, which keeps lines smooth.");
@@ -29,18 +28,9 @@ void describe(Schema& s, StopParams& p) {
   s("closed", p.closed, "Lines end where they come back to their seed.");
 }
 
-std::string_view stop_reason_name(StopReason r) {
-  constexpr std::string_view names[] = {"outside", "length", "time", "steps", "speed", "closed", "error"};
-  return names[int(r)];
-}
-
 TraceOptions trace_options(const IntegrationParams& p, const StopParams& stop, double largest_speed) {
   TraceOptions o;
-  constexpr std::string_view names[] = {"euler", "midpoint", "heun", "rk4", "dormand_prince", "implicit_midpoint"};
-  o.scheme = Scheme(std::find(std::begin(names), std::end(names), p.integrator) - std::begin(names));
-  o.unit = p.step_unit == "cells"    ? TraceOptions::Unit::cells
-           : p.step_unit == "length" ? TraceOptions::Unit::length
-                                     : TraceOptions::Unit::time;
+  o.scheme = p.integrator, o.unit = p.step_unit;
   o.step = p.step, o.tolerance = p.tolerance;
   o.min_step = p.min_step.value_or(p.step / 50), o.max_step = p.max_step.value_or(p.step);
   if (!(o.min_step > 0) || !(o.max_step >= o.min_step))
@@ -58,11 +48,10 @@ void check_way(const FlowField& flow, double duration, double most, const TraceO
                std::string(who), "do the units of its time, velocity and mesh belong together?");
   const double step = o.scheme == Scheme::dormand_prince ? o.max_step : o.step, reach = step * double(o.max_steps);
   constexpr double nowhere = 1e-6;
-  constexpr std::string_view units[] = {"cells", "length", "time"};
-  const double goal = o.unit == TraceOptions::Unit::cells ? 1 : o.unit == TraceOptions::Unit::length ? cell : std::abs(duration);
+  const double goal = o.unit == StepUnit::cells ? 1 : o.unit == StepUnit::length ? cell : std::abs(duration);
   if (std::isfinite(goal) && reach < nowhere * goal)
-    fail_usage(fmt::format("{} steps of {:.4g} (step_unit={}) go nowhere", o.max_steps, step, units[size_t(o.unit)]),
-               fmt::format("{} step", who), fmt::format("larger ones: {:.4g} would be a cell in as many", goal / double(o.max_steps)));
+    fail_usage(fmt::format("{} steps of {:.4g} (step_unit={}) go nowhere", o.max_steps, step, word_of(o.unit)), fmt::format("{} step", who),
+               fmt::format("larger ones: {:.4g} would be a cell in as many", goal / double(o.max_steps)));
 }
 
 namespace {

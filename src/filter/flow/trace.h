@@ -6,17 +6,23 @@
 #include <string>
 #include <vector>
 
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "filter/flow/flow_parts.h"
 #include "filter/flow/integrator.h"
 
 namespace sg {
 
 /// Shared by every operation that follows a flow.
+enum class StepUnit : uint8_t { cells, length, time };
+constexpr auto enum_words(StepUnit) {
+  using enum StepUnit;
+  return std::array{Word{"cells", cells}, Word{"length", length}, Word{"time", time}};
+}
+
 struct IntegrationParams {
-  std::string integrator = "dormand_prince";
+  Scheme integrator = Scheme::dormand_prince;
   double step = 0.5;
-  std::string step_unit = "cells";
+  StepUnit step_unit = StepUnit::cells;
   double tolerance = 1e-4;
   std::optional<double> min_step, max_step;
 };
@@ -31,14 +37,17 @@ struct StopParams {
 void describe(Schema& s, StopParams& p);
 
 enum class StopReason : uint8_t { outside, length, time, steps, speed, closed, error };
-/// "outside", "length", ...
-std::string_view stop_reason_name(StopReason r);
+constexpr auto enum_words(StopReason) {
+  using enum StopReason;
+  return std::array{Word{"outside", outside}, Word{"length", length}, Word{"time", time},  Word{"steps", steps},
+                    Word{"speed", speed},     Word{"closed", closed}, Word{"error", error}};
+}
 
 /// What the words mean, resolved once.
 struct TraceOptions {
   Scheme scheme = Scheme::dormand_prince;
-  enum class Unit : uint8_t { cells, length, time } unit = Unit::cells;  ///< of the three step sizes
-  double step = 0.5;                                                     ///< fixed schemes: every step; dormand_prince: the first one
+  StepUnit unit = StepUnit::cells;  ///< of the three step sizes
+  double step = 0.5;                ///< fixed schemes: every step; dormand_prince: the first one
   double min_step = 0.01, max_step = 1;
   double tolerance = 1e-4;  ///< dormand_prince: error of a step, in cell sizes
   double max_length = HUGE_VAL, max_time = HUGE_VAL;
@@ -69,6 +78,10 @@ struct TracedLines {
 /// A step that leaves the mesh is halved up to ten times, so that lines end at the border. Template: trace_line.h.
 /// Both directions of a seed make one line, backward part first (its times negative).
 enum class TraceDirection : uint8_t { forward, backward, both };
+constexpr auto enum_words(TraceDirection) {
+  using enum TraceDirection;
+  return std::array{Word{"forward", forward}, Word{"backward", backward}, Word{"both", both}};
+}
 
 /// From all seeds, in parallel: the same lines for any number of threads, in the order of the seeds. Seeds without velocity give no line.
 TracedLines trace_lines(const FlowField& field, std::span<const Vec3> seeds, TraceDirection direction, const TraceOptions& options,

@@ -12,8 +12,8 @@ namespace detail {
 /// Steps in units of time: what `size` (in the options' unit) means at a speed in a cell.
 inline double time_of(const TraceOptions& o, double size, double speed, double cell) {
   switch (o.unit) {
-    case TraceOptions::Unit::cells: return size * cell / speed;
-    case TraceOptions::Unit::length: return size / speed;
+    case StepUnit::cells: return size * cell / speed;
+    case StepUnit::length: return size / speed;
     default: return size;
   }
 }
@@ -40,7 +40,7 @@ inline Vec3 crossing(Vec3 x0, Vec3 x1, Vec3 m0, Vec3 m1, Vec3 at, Vec3 normal, d
 /// Then all steps are as long as they should be, and none is longer near places where the flow stands still. Adaptive steps watch their
 /// error instead, and implicit ones keep the areas that time keeps.
 inline bool by_length(const TraceOptions& o) {
-  return o.unit != TraceOptions::Unit::time && o.scheme != Scheme::dormand_prince && o.scheme != Scheme::implicit_midpoint;
+  return o.unit != StepUnit::time && o.scheme != Scheme::dormand_prince && o.scheme != Scheme::implicit_midpoint;
 }
 
 /// The flow of dx/ds = v / |v| for one step of length l (signed) from t, where the speed is `speed`; takes down what time it needs.

@@ -2,7 +2,7 @@
 // glyph_points: where glyphs go.
 #pragma once
 #include "base/context.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 
 namespace sg {

@@ -2,7 +2,7 @@
 // Trails: where particles were just before a time, for moving pictures like weather maps.
 #pragma once
 #include "base/context.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 
 namespace sg {

@@ -2,7 +2,7 @@
 // The skin of a mesh: what one sees of it from outside.
 #pragma once
 #include "base/context.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 
 namespace sg {

@@ -2,7 +2,7 @@
 // One part of a mesh that several processes share, with layers of ghost cells.
 #pragma once
 #include "base/context.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 
 namespace sg {

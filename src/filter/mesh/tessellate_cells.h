@@ -2,7 +2,7 @@
 // Linear cells in place of curved ones.
 #pragma once
 #include "base/context.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 
 namespace sg {

@@ -2,7 +2,7 @@
 // Cells whose values lie in a range.
 #pragma once
 #include "base/context.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 
 namespace sg {

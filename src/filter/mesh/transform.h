@@ -2,7 +2,7 @@
 // Moves, turns and scales a mesh.
 #pragma once
 #include "base/context.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 #include "filter/mesh/transform_fields.h"
 

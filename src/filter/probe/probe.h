@@ -2,7 +2,7 @@
 // probe: the fields of one mesh at the points of another, or at given points.
 #pragma once
 #include "base/context.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 
 namespace sg {

@@ -2,7 +2,7 @@
 // resample: any mesh on a uniform grid.
 #pragma once
 #include "base/context.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 
 namespace sg {

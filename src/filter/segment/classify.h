@@ -2,7 +2,7 @@
 // Tissue classes by a Gaussian mixture, with partial volume and a smooth bias field.
 #pragma once
 #include "base/context.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 
 namespace sg {

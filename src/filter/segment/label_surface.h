@@ -2,7 +2,7 @@
 // The surfaces between the labels of a label image, smooth or voxel by voxel.
 #pragma once
 #include "base/context.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 
 namespace sg {

@@ -2,7 +2,7 @@
 // Labels grown, shrunk, opened, closed and filled.
 #pragma once
 #include "base/context.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 
 namespace sg {

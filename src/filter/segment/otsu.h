@@ -2,7 +2,7 @@
 // Thresholds that split the values of a field into classes.
 #pragma once
 #include "base/context.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 
 namespace sg {

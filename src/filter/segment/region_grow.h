@@ -2,7 +2,7 @@
 // Samples that hang together with seeds.
 #pragma once
 #include "base/context.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 
 namespace sg {

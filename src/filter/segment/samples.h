@@ -9,7 +9,7 @@
 
 #include "base/context.h"
 #include "base/huge_allocator.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 
 namespace sg {

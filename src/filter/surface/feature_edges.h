@@ -2,7 +2,7 @@
 // Edges of a surface that mean something, and its outline seen from somewhere.
 #pragma once
 #include "base/context.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 
 namespace sg {

@@ -2,7 +2,7 @@
 // Area, volume, centroid and inertia of what a surface encloses.
 #pragma once
 #include "base/context.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 
 namespace sg {

@@ -2,7 +2,7 @@
 // Normals of surfaces: smooth, with sharp edges kept sharp.
 #pragma once
 #include "base/context.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 
 namespace sg {

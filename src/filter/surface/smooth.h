@@ -2,7 +2,7 @@
 // Smoothing of surfaces that does not shrink them.
 #pragma once
 #include "base/context.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 
 namespace sg {

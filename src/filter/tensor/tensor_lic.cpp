@@ -17,7 +17,7 @@ void describe(Schema& s, TensorLicParams& p) {
       .range(0, 100000);
   s("steps", p.steps, "Steps of each line each way.").range(1, 10000);
   s("step", p.step, "Length of a step; 0: half the mean edge of the split triangles.").unit("length").at_least(0);
-  s("kernel", p.kernel, "Weights along a line: hann fades out, box is even.").choices({"hann", "box"});
+  s("kernel", p.kernel, "Weights along a line: hann fades out, box is even.");
   s("stretch", p.stretch, "Spreads the means over 0 to 1 by what is known of their variance; false leaves the means of the noise.");
   s("fade", p.fade,
     "Anisotropy |a - b| / (|a| + |b|) of the two eigenvalues in the surface from which on the texture is full; it fades below, where the "

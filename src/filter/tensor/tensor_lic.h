@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // tensor_lic: the eigenvectors of a tensor field as a texture on a surface.
 #pragma once
+#include "filter/flow/texture/line_fade.h"
 #include "filter/tensor/tensor_field.h"
 
 namespace sg {
@@ -11,7 +12,7 @@ struct TensorLicParams {
   std::optional<double> density = {};
   int steps = 40;
   double step = 0;
-  std::string kernel = "hann";
+  LineFade kernel = LineFade::hann;
   bool stretch = true;
   double fade = 0.05;
   std::string isotropic = "noise";

@@ -3,7 +3,7 @@
 #pragma once
 #include <vector>
 
-#include "scene/surface_texture.h"
+#include "scene/items/surface_texture.h"
 
 namespace sg::raster {
 

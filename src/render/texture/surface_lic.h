@@ -13,7 +13,7 @@
 #include "base/huge_allocator.h"
 #include "render/raster/kernels.h"
 #include "render/texture/lic_kernel.h"
-#include "scene/surface_texture.h"
+#include "scene/items/surface_texture.h"
 
 namespace sg {
 class PreparedScene;

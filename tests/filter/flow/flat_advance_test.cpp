@@ -61,7 +61,7 @@ Series series_of(const Plane& p) {
 
 TraceOptions options_of(const char* unit = "cells", double step = 0.5) {
   IntegrationParams integration;
-  integration.step_unit = unit, integration.step = step;
+  integration.step_unit = *value_of_word<StepUnit>(unit), integration.step = step;
   StopParams stop;
   stop.max_steps = 100000;
   return trace_options(integration, stop, 1);

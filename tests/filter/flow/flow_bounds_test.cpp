@@ -66,7 +66,7 @@ TEST_CASE("flow: a time in which the flow passes through a billion cells is refu
   CHECK_NOTHROW(ftle(steady(d, {0}), f, context));
   for (const char* unit : {"cells", "length", "time"}) {
     CAPTURE(unit);
-    p.integration.step = 1e-300, p.integration.step_unit = unit;
+    p.integration.step = 1e-300, p.integration.step_unit = *value_of_word<StepUnit>(unit);
     CHECK(contains(error_of([&] { pathlines(steady(d, {0, 1}), {}, p, context); }), "go nowhere"));
     p.integration.step = 1e-2;
     CHECK_NOTHROW(pathlines(steady(d, {0, 1}), {}, p, context));
@@ -126,7 +126,7 @@ TEST_CASE("streamlines: cells without volume among others change nothing, and a 
   Context context;
   StreamlinesParams p;
   p.seeds.points = {0.5, 0, 0.1, 0.3, 0.2, -0.4}, p.stop.max_time = 3;
-  p.direction = "forward";
+  p.direction = TraceDirection::forward;
   const auto a = std::get<DatasetPtr>(streamlines({good}, p, context)),
              b = std::get<DatasetPtr>(streamlines({with_cells(all)}, p, context));
   const auto end = [](const DatasetPtr& d) { return d->as<SurfaceMesh>()->points.at(d->point_count() - 1); };

@@ -27,7 +27,7 @@ Vec3 seed_in(const MeshKind& kind) { return {0.55, -0.21, kind.flat ? 0 : 0.37};
 
 TraceOptions timed(Scheme scheme, double step, double time) {
   TraceOptions o;
-  o.scheme = scheme, o.unit = TraceOptions::Unit::time, o.step = step, o.max_time = time, o.closed = false, o.max_steps = 100000;
+  o.scheme = scheme, o.unit = StepUnit::time, o.step = step, o.max_time = time, o.closed = false, o.max_steps = 100000;
   return o;
 }
 

@@ -56,7 +56,7 @@ TEST_CASE("geographic: lines at 45 degrees of the compass keep their heading") {
   // On a sphere such a line is a loxodrome: dlon = dy_mercator, y = ln tan(45 + lat / 2).
   Context context;
   StreamlinesParams p;
-  p.geographic = true, p.direction = "forward";
+  p.geographic = true, p.direction = TraceDirection::forward;
   p.seeds.points = {5, 30, 0};
   const DatasetPtr d = std::get<DatasetPtr>(streamlines({sea({1, 1, 0})}, p, context));
   const Lines lines{d};

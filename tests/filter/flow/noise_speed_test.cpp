@@ -51,7 +51,7 @@ TEST_CASE("streamlines: around a measured vessel lines begin and end where it fl
   CHECK(slowest(p, true) > 0.01);
   CHECK(log.find("min_speed=0") != std::string::npos);
   log.clear();
-  p.seeds.seeds = "random";
+  p.seeds.seeds = SeedKind::random;
   p.stop.min_speed = 0;
   CHECK(slowest(p, true) < 0.01);
   p.stop.min_speed = StopParams().min_speed;
@@ -62,7 +62,7 @@ TEST_CASE("streamlines: around a measured vessel lines begin and end where it fl
 TEST_CASE("lic: there is no texture in the noise around a vessel, unless still=0 asks for it") {
   Context context;
   LicParams p;
-  p.resolution = int64_t(n), p.noise = "white";
+  p.resolution = int64_t(n), p.noise = LicNoise::white;
   const auto plain = [&] {
     const DatasetPtr d = lic(vessel(true), nullptr, p, context);
     const Array& v = d->fields().require("lic").array;

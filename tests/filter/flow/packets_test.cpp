@@ -108,10 +108,10 @@ bool same(const Dataset& a, const Dataset& b) {
 DatasetPtr streamlines_of(const DatasetPtr& mesh, const std::string& integrator) {
   Context context;
   StreamlinesParams p;
-  p.integration.integrator = integrator;
-  p.seeds.seeds = "random", p.seeds.count = 300;
+  p.integration.integrator = *value_of_word<Scheme>(integrator);
+  p.seeds.seeds = SeedKind::random, p.seeds.count = 300;
   p.stop.max_steps = 300;
-  p.attributes = {"fields", "vorticity", "rotation"};
+  p.attributes = {LineAttribute::fields, LineAttribute::vorticity, LineAttribute::rotation};
   return std::get<DatasetPtr>(streamlines({Data(mesh)}, p, context));
 }
 
@@ -133,9 +133,9 @@ TEST_CASE("packets: the lines of the plain tracer to 1e-5, in grids and tetrahed
 TEST_CASE("packets: steps in length and time, limits of time and steps, and speed as the plain tracer takes them") {
   const DatasetPtr mesh = f32_mesh("uniform");
   TraceOptions o = options_of(Scheme::rk4);
-  o.unit = TraceOptions::Unit::length, o.step = 0.05, o.min_step = 0.005, o.max_step = 0.2;
+  o.unit = StepUnit::length, o.step = 0.05, o.min_step = 0.005, o.max_step = 0.2;
   compare(mesh, o, TraceDirection::forward, 1e-5);
-  o.unit = TraceOptions::Unit::time, o.max_time = 0.73;
+  o.unit = StepUnit::time, o.max_time = 0.73;
   compare(mesh, o, TraceDirection::both, 1e-5);
   o.max_steps = 7, o.max_time = HUGE_VAL;
   compare(mesh, o, TraceDirection::both, 1e-5);

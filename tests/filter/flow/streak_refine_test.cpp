@@ -14,7 +14,7 @@ using test::series_of;
 TEST_CASE("streaklines: releases between the steps keep the closed form of the oscillating flow") {
   Context context;
   auto p = seeded_at<StreaklinesParams>({-1.5, 0, 0});
-  p.interpolation = "cubic", p.integration.tolerance = 1e-8, p.spacing = 0.02;
+  p.interpolation = TimeInterpolation::cubic, p.integration.tolerance = 1e-8, p.spacing = 0.02;
   const Lines lines{streaklines(oscillating_series(41), {}, p, context)};
   CHECK(lines.mesh().lines.size() == 1);
   CHECK(lines.points() > 41 * 2);
@@ -35,7 +35,7 @@ TEST_CASE("streaklines: particles that come between are where their release time
   const auto box = [](double) -> Mesh { return grid(33, {-2, -2, -2}, {2, 2, 2}, 5); };
   Context context;
   auto p = seeded_at<StreaklinesParams>({-1.4, 0, 0});
-  p.interpolation = "cubic", p.integration.tolerance = 1e-8, p.spacing = 0.02;
+  p.interpolation = TimeInterpolation::cubic, p.integration.tolerance = 1e-8, p.spacing = 0.02;
   const Lines lines{streaklines(series_of(even_times(0, 2, 41), box, v), {}, p, context)};
   CHECK(lines.points() > 60);
   for (size_t i = 0; i < lines.points(); ++i) {
@@ -122,7 +122,7 @@ TEST_CASE("unsteady: the parts of a collection are one flow") {
   };
   Context context;
   auto p = seeded_at<PathlinesParams>({-0.5, 0.1, 0.2, -1, -0.3, 0});
-  p.integration.tolerance = 1e-8, p.interpolation = "cubic";
+  p.integration.tolerance = 1e-8, p.interpolation = TimeInterpolation::cubic;
   const Lines one{pathlines(halves(false), {}, p, context)}, two{pathlines(halves(true), {}, p, context)};
   REQUIRE(two.mesh().lines.size() == 2);
   const size_t a = one.points() - 1, b = two.points() - 1;

@@ -14,7 +14,7 @@ TEST_CASE("streaklines: the oscillating flow has its closed form, the newest par
   for (const std::optional<double> every : {std::optional<double>(), std::optional<double>(0.03)}) {
     Context context;
     auto p = seeded_at<StreaklinesParams>({-1, 0, 0, -0.5, 0.3, 0.2});
-    p.every = every, p.interpolation = "cubic";
+    p.every = every, p.interpolation = TimeInterpolation::cubic;
     const Lines lines{streaklines(oscillating_series(41, 1.8), {}, p, context)};
     REQUIRE(lines.mesh().lines.size() == 2);
     const size_t per_line = every ? 61 : 41;
@@ -90,7 +90,8 @@ TEST_CASE("timelines: a shear stretches the line into its closed form, and new p
 TEST_CASE("timelines: a line in the oscillating flow moves as a whole; bends get points") {
   Context context;
   TimelinesParams p;
-  p.seeds.from = Vec3(-1, -0.5, 0), p.seeds.to = Vec3(-1, 0.5, 0), p.seeds.count = 5, p.every = 0.5, p.interpolation = "cubic";
+  p.seeds.from = Vec3(-1, -0.5, 0), p.seeds.to = Vec3(-1, 0.5, 0), p.seeds.count = 5, p.every = 0.5,
+  p.interpolation = TimeInterpolation::cubic;
   const Lines lines{timelines(oscillating_series(41), {}, p, context)};
   REQUIRE(lines.points() == 25);
   for (size_t k = 0; k < 25; ++k)

@@ -86,11 +86,11 @@ TEST_CASE("streamlines: one poly-line a seed with speed, velocity, time, length,
 TEST_CASE("streamlines: forward and backward are the two halves of both") {
   const DatasetPtr mesh = with_velocity(mesh_of("rectilinear", 8, 1), [](Vec3 p) { return Vec3(1, p.x, 0.3); });
   StreamlinesParams p = from_points({0.1, 0.1, 0.1});
-  p.direction = "both";
+  p.direction = TraceDirection::both;
   const DatasetPtr both = run(mesh, p);
-  p.direction = "forward";
+  p.direction = TraceDirection::forward;
   const DatasetPtr forward = run(mesh, p);
-  p.direction = "backward";
+  p.direction = TraceDirection::backward;
   const DatasetPtr backward = run(mesh, p);
   CHECK(forward->point_count() + backward->point_count() - 1 == both->point_count());
   const Points &a = both->as<SurfaceMesh>()->points, &f = forward->as<SurfaceMesh>()->points, &b = backward->as<SurfaceMesh>()->points;
@@ -105,7 +105,7 @@ TEST_CASE("streamlines: vorticity and rotation of a screw") {
   // Rigid rotation with angular velocity 2 about z, and a drift along it: the vorticity is 4, a ribbon turns by 2 cos(angle to z).
   const DatasetPtr mesh = with_velocity(mesh_of("uniform", 6, 1), [](Vec3 p) { return Vec3(-2 * p.y, 2 * p.x, 0.5); });
   StreamlinesParams p = from_points({0.1, 0, 0});
-  p.attributes = {"vorticity", "rotation"};
+  p.attributes = {LineAttribute::vorticity, LineAttribute::rotation};
   const DatasetPtr lines = run(mesh, p);
   const FieldSet& f = lines->fields();
   const double cosine = 0.5 / std::hypot(0.5, 0.2);
@@ -115,7 +115,7 @@ TEST_CASE("streamlines: vorticity and rotation of a screw") {
     CHECK(f.require("angular velocity").array.get(i) == doctest::Approx(2 * cosine).epsilon(1e-3));
     CHECK(f.require("rotation").array.get(i) == doctest::Approx(2 * cosine * f.require("time").array.get(i)).epsilon(1e-3));
   }
-  p.attributes = {"none"};
+  p.attributes = {LineAttribute::none};
   CHECK(run(mesh, p)->fields().size() == 6);
 }
 
@@ -151,7 +151,7 @@ TEST_CASE("streamlines: the ABC flow has no divergence, is its own curl, and has
 TEST_CASE("streamlines: along lines of the ABC flow the vorticity is the velocity") {
   const DatasetPtr flow = abc_grid(65);
   StreamlinesParams s;
-  s.seeds.seeds = "random", s.seeds.count = 20, s.attributes = {"vorticity"}, s.stop.max_steps = 100;
+  s.seeds.seeds = SeedKind::random, s.seeds.count = 20, s.attributes = {LineAttribute::vorticity}, s.stop.max_steps = 100;
   const DatasetPtr lines = run(flow, s);
   const std::string name = "u";
   double worst = 0;
@@ -182,7 +182,7 @@ TEST_CASE("streamlines: a limit of length, time and steps, and lines that end in
   const DatasetPtr mesh = with_velocity(mesh_of("uniform", 8, 1), [](Vec3 p) { return Vec3(0.5 - p.x, 0, 0); });
   const auto stop = [&](StopParams s) {
     StreamlinesParams p = from_points({-0.9, 0, 0});
-    p.direction = "forward", p.stop = s;
+    p.direction = TraceDirection::forward, p.stop = s;
     const DatasetPtr lines = run(mesh, p);
     return std::pair(StopReason(int(lines->fields().require("stop").array.get(0))),
                      lines->fields().require("length").array.get(lines->point_count() - 1));
@@ -221,7 +221,7 @@ TEST_CASE("streamlines: bad input is named") {
   p.integration.step = 0.5, p.integration.min_step = 2;
   CHECK(contains(error_with(good, p), "leave no step"));
   p = {};
-  p.seeds.seeds = "mesh";
+  p.seeds.seeds = SeedKind::mesh;
   CHECK(contains(error_with(good, p), "no second input"));
   DatasetParts parts = plain->parts();
   parts.fields.add({"t", Association::point, Array::from_vector(std::vector<float>(125 * 6), 6), "", Role::none});
@@ -240,7 +240,7 @@ TEST_CASE("streamlines: lines end where the flow is NaN, and at cells that are h
     CAPTURE(kind);
     const DatasetPtr mesh = with_velocity<float>(mesh_of(kind, 8, 1), [](Vec3 p) { return p.x > 0.45 ? Vec3(NAN, 0, 0) : Vec3(1, 0, 0); });
     StreamlinesParams p = from_points({-0.5, 0.1, 0.1, 0.8, 0, 0});
-    p.direction = "forward";
+    p.direction = TraceDirection::forward;
     const DatasetPtr lines = run(mesh, p);
     CHECK(lines->cell_count() == 1);
     const auto last = lines->as<SurfaceMesh>()->points.at(lines->point_count() - 1);
@@ -267,9 +267,9 @@ TEST_CASE("streamlines: flat and collapsed cells do not stop lines that pass bes
   m.types = {}, m.single_type = CellType::tetra;
   const DatasetPtr mesh = with_velocity<float>(make_dataset(std::move(m)), [](Vec3) { return Vec3(1, 0.2, 0.1); });
   StreamlinesParams p;
-  p.seeds.seeds = "plane", p.seeds.normal = Vec3(1, 0, 0), p.seeds.center = Vec3(-0.99, -0.2, -0.1), p.seeds.size = {1.4, 1.4},
+  p.seeds.seeds = SeedKind::plane, p.seeds.normal = Vec3(1, 0, 0), p.seeds.center = Vec3(-0.99, -0.2, -0.1), p.seeds.size = {1.4, 1.4},
   p.seeds.count = 64;
-  p.direction = "forward";
+  p.direction = TraceDirection::forward;
   const DatasetPtr lines = run(mesh, p);
   CHECK(lines->cell_count() == 64);
   const CellsView v = cells_view(lines->as<SurfaceMesh>()->lines);
@@ -301,7 +301,7 @@ TEST_CASE("seeds: lists, lines, planes, spheres, balls, boxes and meshes") {
     mean += x / 1000;
   }
   CHECK(length(mean) < 2e-3);
-  p.seeds = "ball";
+  p.seeds = SeedKind::ball;
   s = seeds_of(mesh, p);
   size_t inner = 0;
   for (const Vec3& x : s) {
@@ -325,14 +325,14 @@ TEST_CASE("seeds: lists, lines, planes, spheres, balls, boxes and meshes") {
 TEST_CASE("seeds: random places fill solids by volume and surfaces by area, and depend on their number alone") {
   for (const char* kind : {"uniform", "curvilinear", "mixed", "amr"}) {
     CAPTURE(kind);
-    const std::vector<Vec3> s = seeds_of(mesh_of(kind, 6, 1), {.seeds = "random", .count = 2000});
+    const std::vector<Vec3> s = seeds_of(mesh_of(kind, 6, 1), {.seeds = SeedKind::random, .count = 2000});
     REQUIRE(s.size() == 2000);
     size_t left = 0;
     for (const Vec3& x : s) left += x.x < 0;
     CHECK(double(left) == doctest::Approx(1000).epsilon(0.08));
   }
   // A sphere of triangles that are far from equal in size: heights are even (Archimedes).
-  const std::vector<Vec3> s = seeds_of(shapes::sphere(3).dataset(), {.seeds = "random", .count = 2000});
+  const std::vector<Vec3> s = seeds_of(shapes::sphere(3).dataset(), {.seeds = SeedKind::random, .count = 2000});
   REQUIRE(s.size() == 2000);
   size_t low = 0;
   for (const Vec3& x : s) {
@@ -340,9 +340,9 @@ TEST_CASE("seeds: random places fill solids by volume and surfaces by area, and 
     low += x.z < -0.5;
   }
   CHECK(double(low) == doctest::Approx(500).epsilon(0.1));
-  const std::vector<Vec3> fewer = seeds_of(shapes::sphere(3).dataset(), {.seeds = "random", .count = 20});
+  const std::vector<Vec3> fewer = seeds_of(shapes::sphere(3).dataset(), {.seeds = SeedKind::random, .count = 20});
   for (size_t i = 0; i < 20; ++i) CHECK(fewer[i] == s[i]);
-  CHECK(seeds_of(shapes::sphere(3).dataset(), {.seeds = "random", .count = 20, .random_seed = 2})[0] != s[0]);
+  CHECK(seeds_of(shapes::sphere(3).dataset(), {.seeds = SeedKind::random, .count = 20, .random_seed = 2})[0] != s[0]);
 }
 
 TEST_CASE("seeds: bright pixels of a picture on a plane") {
@@ -355,7 +355,7 @@ TEST_CASE("seeds: bright pixels of a picture on a plane") {
   fields.add({"picture", Association::point, Array::from_vector(rgb, 3), "", Role::none});
   const DatasetPtr mesh = mesh_of("uniform", 4, 1), picture = make_dataset(g, fields);
   SeedParams p;
-  p.seeds = "pixels", p.normal = Vec3(0, 0, 1), p.size = {2, 1}, p.count = 100;
+  p.seeds = SeedKind::pixels, p.normal = Vec3(0, 0, 1), p.size = {2, 1}, p.count = 100;
   const std::vector<Vec3> s = seeds_of(mesh, p, picture);
   CHECK(double(s.size()) == doctest::Approx(100).epsilon(0.3));
   for (const Vec3& x : s) {
@@ -376,7 +376,7 @@ TEST_CASE("seeds: numbers that make no seeds are named") {
   const auto said = [&](const SeedParams& p, const char* part) { return contains(error_of([&] { seeds_of(mesh, p); }), part); };
   CHECK(said({.from = Vec3(0, 0, 0)}, "add to=x,y,z"));
   CHECK(said({.normal = Vec3(0, 0, 0)}, "no direction"));
-  CHECK(said({.seeds = "plane", .size = {1, 2, 3}}, "a plane has 2 edges"));
-  CHECK(said({.seeds = "grid", .counts = {1, 2}}, "a box has 3 edges"));
-  CHECK(said({.seeds = "points"}, "0 numbers make no points"));
+  CHECK(said({.seeds = SeedKind::plane, .size = {1, 2, 3}}, "a plane has 2 edges"));
+  CHECK(said({.seeds = SeedKind::grid, .counts = {1, 2}}, "a box has 3 edges"));
+  CHECK(said({.seeds = SeedKind::points}, "0 numbers make no points"));
 }

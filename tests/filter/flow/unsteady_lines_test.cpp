@@ -22,7 +22,7 @@ TEST_CASE("unsteady: RK4 follows the oscillating flow with order 4, the other sc
       // A shear beside the oscillation, so that places matter as well: y' = V cos wt + x, x = x0 + U t.
       AnalyticFlow flow{[](Vec3 x, double t) { return oscillating(x, t) + Vec3(0, x.x, 0); }};
       TraceOptions o;
-      o.scheme = scheme, o.unit = TraceOptions::Unit::time, o.step = h[i] = 0.25 / double(1 << i);
+      o.scheme = scheme, o.unit = StepUnit::time, o.step = h[i] = 0.25 / double(1 << i);
       Particle p;
       p.x = {0.1, 0.2, 0};
       REQUIRE(detail::start_particle(flow, p));
@@ -59,7 +59,7 @@ TEST_CASE("pathlines: the oscillating flow has its closed form; linear in time o
       h[i] = 1.0 / double(n);
       Context context;
       auto p = seeded_at<PathlinesParams>({-1, 0, 0, -0.5, 0.3, 0.2});
-      p.interpolation = how, p.integration.tolerance = 1e-9;
+      p.interpolation = *value_of_word<TimeInterpolation>(how), p.integration.tolerance = 1e-9;
       const Lines lines{pathlines(oscillating_series(n + 1), {}, p, context)};
       REQUIRE(lines.mesh().lines.size() == 2);
       error[i] = 0;
@@ -79,7 +79,7 @@ TEST_CASE("pathlines: the oscillating flow has its closed form; linear in time o
 TEST_CASE("pathlines: backwards from the end they come to the seeds, and carry what the mesh has") {
   Context context;
   auto p = seeded_at<PathlinesParams>({-1, 0, 0.5});
-  p.interpolation = "cubic", p.start = 0.25, p.time = 1.75, p.integration.tolerance = 1e-8;
+  p.interpolation = TimeInterpolation::cubic, p.start = 0.25, p.time = 1.75, p.integration.tolerance = 1e-8;
   const Lines forward{pathlines(oscillating_series(41), {}, p, context)};
   const Vec3 end = forward.x(forward.points() - 1);
   CHECK(forward.value("time", 0) == 0.25);
@@ -119,12 +119,12 @@ TEST_CASE("unsteady: the double gyre's particles go where its formula sends them
   Context context;
   const Series series = gyre_series(100, even_times(0, 5, 101));
   auto p = seeded_at<PathlinesParams>({0.4, 0.3, 0, 1.5, 0.7, 0, 0.95, 0.5, 0});
-  p.interpolation = "cubic", p.integration.tolerance = 1e-7;
+  p.interpolation = TimeInterpolation::cubic, p.integration.tolerance = 1e-7;
   const Lines lines{pathlines(series, {}, p, context)};
   for (size_t l = 0; l < 3; ++l) {
     AnalyticFlow flow{gyre};
     TraceOptions o;
-    o.scheme = Scheme::rk4, o.unit = TraceOptions::Unit::time, o.step = 0.01;
+    o.scheme = Scheme::rk4, o.unit = StepUnit::time, o.step = 0.01;
     Particle q;
     q.x = {p.seeds.points[3 * l], p.seeds.points[3 * l + 1], 0};
     detail::start_particle(flow, q);
@@ -267,10 +267,10 @@ TEST_CASE("unsteady: uniform f32 grids take the fast way, with the answer of the
       };
       Context context;
       PathlinesParams p;
-      p.interpolation = how;
-      if (kind == 2) p.integration.integrator = "rk4";
+      p.interpolation = *value_of_word<TimeInterpolation>(how);
+      if (kind == 2) p.integration.integrator = Scheme::rk4;
       else p.integration.tolerance = 1e-6;
-      p.seeds.seeds = "grid", p.seeds.counts = {9, 9, flat ? 1 : 5};
+      p.seeds.seeds = SeedKind::grid, p.seeds.counts = {9, 9, flat ? 1 : 5};
       const Lines a{pathlines(f32, {}, p, context)}, b{pathlines(f64, {}, p, context)};
       REQUIRE(a.mesh().lines.size() == b.mesh().lines.size());
       size_t same_points = 0, ends = 0;

@@ -69,7 +69,7 @@ void check_closed_forms(const Case& c) {
   const Vec3 seeds[] = {{-0.9, 0.3, z}, {-0.3, 0.1, -z}};
   const std::vector<double> list{-0.9, 0.3, z, -0.3, 0.1, -z};
   const auto with = [&](auto p) {
-    p.interpolation = "cubic", p.integration.tolerance = 1e-5;
+    p.interpolation = TimeInterpolation::cubic, p.integration.tolerance = 1e-5;
     return p;
   };
   const Lines paths{pathlines(series, {}, with(seeded_at<PathlinesParams>(list)), context)};
@@ -81,7 +81,7 @@ void check_closed_forms(const Case& c) {
   tp.seeds.from = seeds[0], tp.seeds.to = seeds[1], tp.seeds.count = 5, tp.every = 0.5;
   const Lines times{timelines(series, {}, tp, context)};
   StreamlinesParams sp = seeded_at<StreamlinesParams>(list);
-  sp.direction = "forward", sp.integration.tolerance = 1e-7, sp.stop.max_time = 1.2;
+  sp.direction = TraceDirection::forward, sp.integration.tolerance = 1e-7, sp.stop.max_time = 1.2;
   const Lines streams{std::get<DatasetPtr>(streamlines({series.load(15)}, sp, context))};
 
   double worst[5] = {0, 0, 0, 0, 0};
@@ -140,7 +140,7 @@ TEST_CASE("unsteady meshes: RK4 has order 4 along pathlines in every kind of mes
     Context context;
     const Series series = on_meshes(c.meshes, 2, 1, turning);
     auto p = seeded_at<PathlinesParams>({0.7, -0.3, c.flat ? 0 : 0.3});
-    p.integration.integrator = "rk4", p.integration.step_unit = "time";
+    p.integration.integrator = Scheme::rk4, p.integration.step_unit = StepUnit::time;
     double h[4], error[4];
     for (int k = 0; k < 4; ++k) {
       p.integration.step = h[k] = 0.25 / (1 << k);

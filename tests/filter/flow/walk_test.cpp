@@ -139,7 +139,7 @@ TEST_CASE("walk: steps in length are as long as they should be, and time is kept
   // A vortex whose speed grows with the radius: arcs of the same length, angle after time t is t.
   const DatasetPtr mesh = with_velocity(mesh_of("uniform", 6, 1), [](Vec3 p) { return Vec3(-p.y - 0.2 * p.x, p.x - 0.2 * p.y, 0); });
   TraceOptions o;
-  o.scheme = Scheme::rk4, o.unit = TraceOptions::Unit::length, o.step = 0.01, o.min_step = 0.001, o.max_step = 0.01, o.closed = false;
+  o.scheme = Scheme::rk4, o.unit = StepUnit::length, o.step = 0.01, o.min_step = 0.001, o.max_step = 0.01, o.closed = false;
   o.max_time = 3;
   const TracedLines l = line_from(mesh, {0.7, 0, 0}, o);
   REQUIRE(l.lines() == 1);
@@ -151,7 +151,7 @@ TEST_CASE("walk: steps in length are as long as they should be, and time is kept
     CHECK(length(l.points[i] - Vec3(r * std::cos(t), r * std::sin(t), 0)) < 1e-8);
   }
   // Towards a place where the flow stands still no step is longer than it should be.
-  o.max_time = HUGE_VAL, o.step = 0.05, o.max_steps = 200, o.unit = TraceOptions::Unit::cells;
+  o.max_time = HUGE_VAL, o.step = 0.05, o.max_steps = 200, o.unit = StepUnit::cells;
   const DatasetPtr sink = with_velocity(mesh_of("uniform", 6, 1), [](Vec3 p) { return Vec3(0.1, 0.05, 0) - p; });
   const TracedLines s = line_from(sink, {0.7, 0.3, 0.2}, o);
   for (size_t i = 1; i < s.points.size(); ++i) CHECK(length(s.points[i] - s.points[i - 1]) < 0.0501 / 3);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "filter/flow/fronts/stream_surface.h"
 #include "filter/flow/trace_line.h"
 
 namespace sg {
@@ -23,8 +24,6 @@ struct Trajectory {
   bool ended = false;
   int depth = 0;  ///< how often the gap was halved in which it was inserted
 };
-
-enum class FrontClock : uint8_t { length, time };
 
 /// Moves the last point by `step` of length or time, in the direction `sign`, with errors below `tolerance` of a cell a step; appends the
 /// point of the next level. Ends (once more appending where it got to) at the border and where the flow is slower than min_speed.

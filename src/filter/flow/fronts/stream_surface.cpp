@@ -14,8 +14,8 @@ namespace sg {
 void describe(Schema& s, StreamSurfaceParams& p) {
   s("field", p.field, "Velocity: a point or cell field of 2 or 3 components; default: the active vectors.");
   describe(s, p.curve);
-  s("direction", p.direction, "Along the flow, against it, or both.").choices({"forward", "backward", "both"});
-  s("front", p.front, "What the places of a front have in common: the length they have gone, or the time.").choices({"length", "time"});
+  s("direction", p.direction, "Along the flow, against it, or both.");
+  s("front", p.front, "What the places of a front have in common: the length they have gone, or the time.");
   s("spacing", p.spacing,
     "Largest distance between neighbours in a front, and between fronts (by length); default: a 100th of the diagonal.")
       .unit("length")
@@ -355,7 +355,7 @@ Data stream_surface(const std::vector<Data>& inputs, const StreamSurfaceParams& 
   }
   if (inside == 0)
     fail_usage("the seed curve does not lie in the flow", "stream_surface", fmt::format("the mesh lies in {}", box_text(parts.bounds())));
-  const FrontClock clock = p.front == "length" ? FrontClock::length : FrontClock::time;
+  const FrontClock clock = p.front;
   const double mean = sum / inside, all = clock == FrontClock::length ? far : p.max_time.value_or(mean > 0 ? far / mean : 0);
   const double step = clock == FrontClock::length ? spacing : mean > 0 ? spacing / mean : 0;
   if (!(step > 0) || !(mean > 0)) fail_usage("nothing flows at the seed curve", "stream_surface");
@@ -364,8 +364,8 @@ Data stream_surface(const std::vector<Data>& inputs, const StreamSurfaceParams& 
   const size_t levels = size_t(count) + 1;
   Growth g(parts, curve, p, spacing, clock, all / count, levels, context);
   g.begin();
-  if (p.direction != "backward") g.grow(1);
-  if (p.direction != "forward") g.grow(-1);
+  if (p.direction != TraceDirection::backward) g.grow(1);
+  if (p.direction != TraceDirection::forward) g.grow(-1);
 
   SurfaceMesh mesh;
   mesh.points.origin = parts.bounds().center();

@@ -6,10 +6,18 @@
 
 namespace sg {
 
+/// What the places of a front have in common: the length that they have gone, or the time.
+enum class FrontClock : uint8_t { length, time };
+constexpr auto enum_words(FrontClock) {
+  using enum FrontClock;
+  return std::array{Word{"length", length}, Word{"time", time}};
+}
+
 struct StreamSurfaceParams {
   FieldName field;
   SeedCurveParams curve;
-  std::string direction = "forward", front = "length";
+  TraceDirection direction = TraceDirection::forward;
+  FrontClock front = FrontClock::length;
   std::optional<double> spacing, max_length, max_time;
   double max_angle = 25;
   double tear = 4;

@@ -17,7 +17,7 @@ void describe_shared(Schema& s, UnsteadySurfaceParams& p) {
   s("times", p.times, "Time steps, FIRST:LAST:COUNT or a list; default: those of the file.").unit("time");
   s("start", p.start, "When it begins; default: the first time of the series.").unit("time");
   s("time", p.time, "When it ends; default: the last time of the series.").unit("time");
-  s("interpolation", p.interpolation, "Between time steps.").choices({"linear", "cubic"});
+  s("interpolation", p.interpolation, "Between time steps.");
   describe(s, p.integration);
   s("geographic", p.geographic, "x and y are degrees and the velocity is in m/s: it is converted.");
   s("spacing", p.spacing, "Longest edge of the surface; default: a 100th of the mesh's diagonal.").unit("length").positive();

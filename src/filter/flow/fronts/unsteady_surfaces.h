@@ -11,7 +11,7 @@ struct UnsteadySurfaceParams {
   FieldName field;
   std::string times;
   std::optional<double> start, time;
-  std::string interpolation = "linear";
+  TimeInterpolation interpolation = TimeInterpolation::linear;
   IntegrationParams integration;
   std::optional<double> spacing;
   double tear = 8;

@@ -185,8 +185,8 @@ Data even_streamlines(const Data& in, const EvenStreamlinesParams& p, Context& c
   stop.max_steps = 64;  // a stretch
   TraceOptions options = trace_options(p.integration, stop, parts.largest_speed());
   // Lines are compared by their points, which must lie closer than the distance of the test.
-  if (options.unit != TraceOptions::Unit::length || options.max_step > spacing * p.test / 2) {
-    options.unit = TraceOptions::Unit::length;
+  if (options.unit != StepUnit::length || options.max_step > spacing * p.test / 2) {
+    options.unit = StepUnit::length;
     options.max_step = options.step = spacing * p.test / 2, options.min_step = options.max_step / 100;
   }
   Filler filler(parts, p, spacing, options);

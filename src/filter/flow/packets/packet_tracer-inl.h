@@ -48,7 +48,7 @@ class Tracer {
   using Lanes3 = T[3][N];
   Tracer(Mesh& mesh, const TraceOptions& options, float sign, Lines& out) : mesh_(mesh), o_(options), sign_(sign), out_(out) {
     adaptive_ = o_.scheme == Scheme::dormand_prince;
-    sized_ = o_.unit == TraceOptions::Unit::cells;
+    sized_ = o_.unit == StepUnit::cells;
     along_ = detail::by_length(o_);
     bounded_ = std::isfinite(o_.max_time) || std::isfinite(o_.max_length);
   }

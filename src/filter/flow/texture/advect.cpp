@@ -16,7 +16,7 @@ void describe(Schema& s, AdvectParams& p) {
   s("carry", p.carry, "Point fields that are carried, of the second input where there is one; default: all scalars and colours.");
   s("time", p.time, "How long; negative: backwards. Default: until the fastest place has gone a tenth of the longest side.").unit("time");
   s("steps", p.steps, "Steps of the paths; 0: as many as keep a step below a cell of the data.").range(0, 1e6);
-  s("border", p.border, "What comes in from outside: clamp (the value at the border) or nan (nothing).").choices({"clamp", "nan"});
+  s("border", p.border, "What comes in from outside: clamp (the value at the border) or nan (nothing).");
   s("dye", p.dye, "Places x,y,z,x,y,z,... where dye comes out all the time.").unit("length");
   s("dye_radius", p.dye_radius, "Radius of these places; 0: a fiftieth of the longest side.").unit("length").at_least(0);
   s("resolution", p.resolution, "Pixels along the longest side; 0: those of the grid, coarse ones refined to 1024 (flat) or 128 (solid).")
@@ -92,7 +92,7 @@ DatasetPtr advect(const DatasetPtr& input, const DatasetPtr& image, const Advect
   if (how.steps > 0) how.h = -time / double(how.steps);
   for (size_t i = 0; i < p.dye.size(); i += 3) how.dye.push_back(f.to_pixels({p.dye[i], p.dye[i + 1], p.dye[i + 2]}));
   std::copy_n(f.pitch, 3, how.pitch);
-  const bool clamp = p.border == "clamp";
+  const bool clamp = p.border == InflowBorder::clamp;
   const double radius = p.dye_radius > 0 ? p.dye_radius : longest * f.pitch[0] / 50;
   float* dye = nullptr;
   Array dyed;

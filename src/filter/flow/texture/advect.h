@@ -2,17 +2,24 @@
 // advect: fields and images carried along by the flow.
 #pragma once
 #include "base/context.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 
 namespace sg {
+
+/// What comes in from outside: the value at the border, or nothing.
+enum class InflowBorder { clamp, nan };
+constexpr auto enum_words(InflowBorder) {
+  using enum InflowBorder;
+  return std::array{Word{"clamp", clamp}, Word{"nan", nan}};
+}
 
 struct AdvectParams {
   FieldName field;
   std::vector<std::string> carry;
   std::optional<double> time;
   int64_t steps = 0;
-  std::string border = "clamp";
+  InflowBorder border = InflowBorder::clamp;
   std::vector<double> dye;
   double dye_radius = 0;
   int64_t resolution = 0;

@@ -20,8 +20,8 @@ struct Extent {
 
 }  // namespace
 
-void set_contrast(std::span<float> v, const std::string& kind, bool from_zero, const Context& context) {
-  if (kind == "none") return;
+void set_contrast(std::span<float> v, Contrast kind, bool from_zero, const Context& context) {
+  if (kind == Contrast::none) return;
   const Extent e = parallel_reduce(
       v.size(), grain, Extent(),
       [&](size_t begin, size_t end) {
@@ -57,7 +57,7 @@ void set_contrast(std::span<float> v, const std::string& kind, bool from_zero, c
   uint64_t total = 0;
   for (const uint64_t c : counts) total += c;
   if (total == 0) return;
-  if (kind == "equalise") {
+  if (kind == Contrast::equalise) {
     std::vector<float> below(bins + 1, 0);
     uint64_t sum = 0;
     for (int b = 0; b < bins; ++b) below[size_t(b) + 1] = float(double(sum += counts[size_t(b)]) / double(total));

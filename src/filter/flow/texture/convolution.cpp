@@ -151,16 +151,17 @@ class SharedLines {
 
 }  // namespace
 
-Weights kernel_weights(const std::string& kernel, int steps, double phase, int ripples) {
+Weights kernel_weights(LineWeights kernel, int steps, double phase, int ripples) {
   Weights r;
-  r.steps = steps, r.box = kernel == "box";
+  r.steps = steps, r.box = kernel == LineWeights::box;
   const double turn = 2 * std::numbers::pi;
   double sum = 0;
   r.sum.push_back(0);
   for (int k = -steps; k <= steps; ++k) {
     double w = 1;
     if (!r.box) w = 0.5 + 0.5 * std::cos(turn * k / (2 * steps + 2));
-    if (kernel == "ripple") w *= 0.5 + 0.5 * std::cos(turn * (double(ripples) * k / (2 * steps + 1) + (phase - std::floor(phase))));
+    if (kernel == LineWeights::ripple)
+      w *= 0.5 + 0.5 * std::cos(turn * (double(ripples) * k / (2 * steps + 1) + (phase - std::floor(phase))));
     r.w.push_back(float(w));
     r.sum.push_back(float(sum += double(float(w))));
   }

@@ -1,17 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // The two ways of line integral convolution over a whole grid.
 #pragma once
-#include <string>
 #include <vector>
 
 #include "base/context.h"
+#include "base/schema/enum_words.h"
 #include "filter/flow/texture/line_batch.h"
 
 namespace sg::texture {
 
+enum class LineWeights { box, hanning, ripple };
+constexpr auto enum_words(LineWeights) {
+  using enum LineWeights;
+  return std::array{Word{"box", box}, Word{"hanning", hanning}, Word{"ripple", ripple}};
+}
+
 /// kernel: box; hanning, (1 + cos(pi s/(L+1)))/2; ripple, that times a wave (1 + cos(2 pi ripples s/(2L+1) + 2 pi phase))/2, which moves
 /// forward as the phase grows (Cabral, Leedom 1993). The box has the same weight everywhere.
-Weights kernel_weights(const std::string& kernel, int steps, double phase, int ripples);
+Weights kernel_weights(LineWeights kernel, int steps, double phase, int ripples);
 
 /// A line for each pixel: the weighted mean of the noise along it. Pixels without a direction are NaN. In tiles, in parallel.
 void convolve_plain(const DirectionGrid& grid, const Weights& weights, float step, float* out, const Context& context);

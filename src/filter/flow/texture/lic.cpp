@@ -9,8 +9,6 @@
 #include "base/text.h"
 #include "filter/flow/flow_field.h"
 #include "filter/flow/noise_speed.h"
-#include "filter/flow/texture/contrast.h"
-#include "filter/flow/texture/convolution.h"
 #include "filter/flow/texture/frame.h"
 #include "filter/flow/texture/noise.h"
 
@@ -24,23 +22,21 @@ void describe(Schema& s, LicParams& p) {
       .unit("pixels")
       .range(0, 4096);
   s("step", p.step, "Distance of the places that are averaged.").unit("pixels").range(0.05, 4);
-  s("kernel", p.kernel, "Weights along the line: box, hanning (fading), ripple (waves that phase moves).")
-      .choices({"box", "hanning", "ripple"});
+  s("kernel", p.kernel, "Weights along the line: box, hanning (fading), ripple (waves that phase moves).");
   s("phase", p.phase, "Where the waves of kernel=ripple stand, in periods: frames of 0, 1/n, 2/n, ... move along the flow.");
   s("ripples", p.ripples, "Waves in the length of the kernel.").range(1, 100);
-  s("method", p.method, "plain: a line for each pixel. fast: long lines that share their sums.").choices({"plain", "fast"});
+  s("method", p.method, "plain: a line for each pixel. fast: long lines that share their sums.");
   s("noise", p.noise,
     "What is averaged: white noise, or sparse dots, which become strands that a volume can be looked into by; auto: white in flat data, "
-    "sparse in solid ones.")
-      .choices({"auto", "white", "sparse"});
+    "sparse in solid ones.");
   s("density", p.density,
     "Part of the noise's points that are dots when it is sparse; 0: 0.02 in flat data, in solid ones 0.0015, more where little flows.")
       .range(0, 1);
   s("grain", p.grain, "Size of the grains of the noise; 0: 1, sparse dots in solid data 2.").unit("pixels").range(0, 256);
   s("seed", p.seed, "Another number, another noise.");
   s("image", p.image, "Field of the second input that is smeared along the flow in place of noise; default: its active scalar or colours.");
-  s("contrast", p.contrast, "none: plain averages. stretch: a hundredth of the pixels black, a hundredth white. equalise: all greys alike.")
-      .choices({"none", "stretch", "equalise"});
+  s("contrast", p.contrast,
+    "none: plain averages. stretch: a hundredth of the pixels black, a hundredth white. equalise: all greys alike.");
   s("passes", p.passes, "2: the texture is sharpened and averaged once more, for finer and clearer lines.").range(1, 4);
   s("still", p.still,
     "Speed up to which there is no texture. Default: 0, where most of a grid is noise (scans of vessels) 2 % of the largest speed.")
@@ -129,7 +125,7 @@ void average(const DirectionGrid& directions, const float* what, const LicParams
       for (float& x : between) x = x == x ? x : 0.5f;
       grid.noise = between.data();
     }
-    (p.method == "fast" ? convolve_fast : convolve_plain)(grid, weights, float(p.step), out, context);
+    (p.method == LicMethod::fast ? convolve_fast : convolve_plain)(grid, weights, float(p.step), out, context);
     context.progress(double(pass + 1) / double(p.passes), "averaging along the flow");
   }
 }
@@ -147,7 +143,8 @@ DatasetPtr lic(const DatasetPtr& input, const DatasetPtr& image, const LicParams
   std::copy_n(f.n, 3, grid.n);
   grid.codes = codes.data();
 
-  const bool solid = f.dimension == 3, sparse = !image && (p.noise == "sparse" || (p.noise == "auto" && solid));
+  const bool solid = f.dimension == 3,
+             sparse = !image && (p.noise.value_or(solid ? LicNoise::sparse : LicNoise::white) == LicNoise::sparse);
   const double reach = p.length.value_or(sparse && solid ? 30 : 20);
   const size_t n = f.size();
   Array what;

@@ -4,24 +4,38 @@
 #include <optional>
 
 #include "base/context.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
+#include "filter/flow/texture/contrast.h"
+#include "filter/flow/texture/convolution.h"
 
 namespace sg {
+
+/// plain: a line for each pixel; fast: long lines that share their sums.
+enum class LicMethod { plain, fast };
+constexpr auto enum_words(LicMethod) {
+  using enum LicMethod;
+  return std::array{Word{"plain", plain}, Word{"fast", fast}};
+}
+enum class LicNoise { white, sparse };
+constexpr auto enum_words(LicNoise) {
+  using enum LicNoise;
+  return std::array{Word{"white", white}, Word{"sparse", sparse}};
+}
 
 struct LicParams {
   FieldName field;
   std::optional<double> length;
   double step = 1;
-  std::string kernel = "box";
+  texture::LineWeights kernel = texture::LineWeights::box;
   double phase = 0;
   int ripples = 2;
-  std::string method = "plain";
-  std::string noise = "auto";
+  LicMethod method = LicMethod::plain;
+  std::optional<LicNoise> noise;
   double density = 0, grain = 0;
   int64_t seed = 1;
   FieldName image;
-  std::string contrast = "stretch";
+  texture::Contrast contrast = texture::Contrast::stretch;
   int passes = 1;
   std::optional<double> still;
   int64_t resolution = 0;

@@ -2,7 +2,7 @@
 // spot_noise: a texture of many small spots that the flow stretches and bends.
 #pragma once
 #include "base/context.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 
 namespace sg {

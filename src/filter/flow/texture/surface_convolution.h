@@ -2,9 +2,9 @@
 // Line integral convolution of noise on a surface, whatever directions its lines follow.
 #pragma once
 #include <span>
-#include <string>
 
 #include "base/context.h"
+#include "filter/flow/texture/line_fade.h"
 #include "filter/flow/texture/surface_walk.h"
 
 namespace sg {
@@ -13,7 +13,7 @@ namespace sg {
 struct SurfaceConvolution {
   int steps = 40;
   double step = 0;  ///< 0: half the mean edge
-  std::string kernel = "hann";
+  LineFade kernel = LineFade::hann;
   bool stretch = true;
   int64_t seed = 1;
 };

@@ -2,8 +2,9 @@
 // surface_lic: the directions of a flow as a texture on a surface, in space.
 #pragma once
 #include "base/context.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
+#include "filter/flow/texture/line_fade.h"
 
 namespace sg {
 
@@ -12,7 +13,7 @@ struct SurfaceLicParams {
   std::optional<double> density = {};
   int steps = 40;
   double step = 0;
-  std::string kernel = "hann";
+  LineFade kernel = LineFade::hann;
   bool stretch = true;
   int64_t seed = 1;
 };
@@ -24,7 +25,7 @@ inline void describe(Schema& s, SurfaceLicParams& p) {
       .range(0, 100000);
   s("steps", p.steps, "Steps of each line each way.").range(1, 10000);
   s("step", p.step, "Length of a step; 0: half the mean edge of the split triangles.").unit("length").at_least(0);
-  s("kernel", p.kernel, "Weights along a line: hann fades out, box is even.").choices({"hann", "box"});
+  s("kernel", p.kernel, "Weights along a line: hann fades out, box is even.");
   s("stretch", p.stretch,
     "Spreads the means over 0 to 1 by what is known of their variance (to be shown with map=gray); false leaves the means of the noise.");
   s("seed", p.seed, "Number of the noise.");

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "filter/flow/flow_parts.h"
 #include "filter/flow/topology/linearisation.h"
 #include "filter/flow/topology/plane_frame.h"

@@ -242,8 +242,8 @@ class Runner {
     for (size_t l = 0; l < n; l += hn::Lanes(d)) {
       const Mask begins = hn::Ne(hn::Load(d, s_.begins + l), hn::Zero(d));
       VD unit = set(1);
-      if (o_.unit != TraceOptions::Unit::time)
-        unit = hn::Div(set(o_.unit == TraceOptions::Unit::cells ? g_.job->cell : 1.0),
+      if (o_.unit != StepUnit::time)
+        unit = hn::Div(set(o_.unit == StepUnit::cells ? g_.job->cell : 1.0),
                        length_of(hn::Load(d, s_.k[0][0] + l), hn::Load(d, s_.k[0][1] + l)));
       const VD least = hn::Mul(set(o_.min_step), unit), next = hn::Load(d, s_.next + l), left = hn::Load(d, s_.left + l);
       const VD wished = hn::Min(hn::Max(hn::IfThenElse(hn::Gt(next, hn::Zero(d)), next, hn::Mul(set(o_.step), unit)), least),

@@ -198,8 +198,8 @@ class Lanes {
   /// What a size of 1 in the options' unit takes.
   double unit_time(double speed) const {
     switch (o_.unit) {
-      case TraceOptions::Unit::cells: return g_.job->cell / speed;
-      case TraceOptions::Unit::length: return 1 / speed;
+      case StepUnit::cells: return g_.job->cell / speed;
+      case StepUnit::length: return 1 / speed;
       default: return 1;
     }
   }

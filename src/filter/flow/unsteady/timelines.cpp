@@ -149,7 +149,7 @@ std::vector<double> line_times(const UnsteadyRun& run, std::optional<double> eve
 DatasetPtr timelines(const Series& series, const std::vector<Data>& others, const TimelinesParams& p, Context& context) {
   UnsteadyRun run(series, others, p, "timelines", false, context);
   if (run.seeds.size() < 2) fail_usage(fmt::format("{} seed makes no line", run.seeds.size()), "timelines", "from=x,y,z to=x,y,z");
-  if (seed_kind(p.seeds, !others.empty()) == "random") fail_usage("random seeds make no line", "timelines", "from=x,y,z to=x,y,z");
+  if (seed_kind(p.seeds, !others.empty()) == SeedKind::random) fail_usage("random seeds make no line", "timelines", "from=x,y,z to=x,y,z");
   const std::vector<double> shown = line_times(run, p.every);
   Front front(run, p);
   Snapshots out;

@@ -14,13 +14,12 @@
 #include <vector>
 
 #include "filter/flow/flow_field.h"
+#include "filter/flow/unsteady/time_interpolation.h"
 
 namespace sg {
 
 /// linear: between two steps. cubic: Hermite through two steps with slopes from four (three-point differences on uneven times; one step
 /// less at the ends of the series): C1 in time.
-enum class TimeInterpolation : uint8_t { linear, cubic };
-
 class UnsteadyFlow {
  public:
   /// How the meshes of the open steps belong together: one mesh; one set of cells whose points move (then velocities are mixed at points

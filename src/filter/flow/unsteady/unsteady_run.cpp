@@ -17,14 +17,13 @@ void describe(Schema& s, UnsteadyParams& p, const std::string& start, const std:
       .unit("time");
   s("start", p.start, start).unit("time");
   s("time", p.time, time).unit("time");
-  s("interpolation", p.interpolation, "Between time steps: linear through two, or cubic through four (smooth, where steps are far apart).")
-      .choices({"linear", "cubic"});
+  s("interpolation", p.interpolation, "Between time steps: linear through two, or cubic through four (smooth, where steps are far apart).");
   describe(s, p.integration);
   s("max_steps", p.max_steps, "Most steps of one particle.").range(1, 1e9);
   describe(s, p.seeds);
   s("geographic", p.geographic,
     "x and y are degrees and the velocity is in m/s: it is converted, to the file's unit of time (lengths stay degrees).");
-  s("attributes", p.attributes, "What is carried beside velocity and time: the mesh's other fields.").choices({"fields", "none"});
+  s("attributes", p.attributes, "What is carried beside velocity and time: the mesh's other fields.");
 }
 
 namespace {
@@ -43,7 +42,7 @@ double checked_time(const UnsteadyFlow& flow, std::optional<double> t, double ot
 
 UnsteadyRun::UnsteadyRun(const Series& series, const std::vector<Data>& others, const UnsteadyParams& p, std::string who, bool backward,
                          Context& context)
-    : flow(series, p.field.name, p.interpolation == "cubic" ? TimeInterpolation::cubic : TimeInterpolation::linear, context, p.geographic),
+    : flow(series, p.field.name, p.interpolation, context, p.geographic),
       who_(std::move(who)),
       geographic_(p.geographic),
       context_(context) {
@@ -60,7 +59,7 @@ UnsteadyRun::UnsteadyRun(const Series& series, const std::vector<Data>& others, 
   if (!integration.max_step)
     integration.max_step = std::max(4 * integration.step, integration.min_step.value_or(0));  // intervals bound steps too
   options = trace_options(integration, stop, 0);
-  carries = std::find(p.attributes.begin(), p.attributes.end(), "fields") != p.attributes.end();
+  carries = std::find(p.attributes.begin(), p.attributes.end(), CarriedAttribute::fields) != p.attributes.end();
   flow.open(flow.interval_of(start, sign), context);
   check_way(flow.steps()[flow.base()], time - start, most_cells_passed, options, who_);
   if (!geographic_) warn_of_degrees(*flow.steps()[flow.base()].dataset(), velocity(), who_, context);

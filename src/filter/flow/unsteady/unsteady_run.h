@@ -10,16 +10,22 @@
 
 namespace sg {
 
+enum class CarriedAttribute { fields, none };
+constexpr auto enum_words(CarriedAttribute) {
+  using enum CarriedAttribute;
+  return std::array{Word{"fields", fields}, Word{"none", none}};
+}
+
 struct UnsteadyParams {
   FieldName field;
   std::string times;
   std::optional<double> start, time;
-  std::string interpolation = "linear";
+  TimeInterpolation interpolation = TimeInterpolation::linear;
   IntegrationParams integration;
   int64_t max_steps = 100000;
   SeedParams seeds;
   bool geographic = false;  ///< see flow/geographic.h
-  std::vector<std::string> attributes{"fields"};
+  std::vector<CarriedAttribute> attributes{CarriedAttribute::fields};
 };
 /// `start`, `time`: the sentences of these two, whose meaning belongs to the operation.
 void describe(Schema& s, UnsteadyParams& p, const std::string& start, const std::string& time);

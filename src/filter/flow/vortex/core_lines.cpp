@@ -66,7 +66,7 @@ DatasetPtr of_mesh(const DatasetPtr& given, const VortexCoresParams& p, Context&
   const Array gradients = velocity_gradients(data, velocity, context);
   const View<double> g = gradients.view<double>();
   std::vector<Vec3> w(u.size());
-  const bool levy = p.method == "levy";
+  const bool levy = p.method == CoreMethod::levy;
   parallel_for(u.size(), 1 << 14, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       Mat3 j;

@@ -2,14 +2,20 @@
 // vortex_cores: lines about which a flow turns.
 #pragma once
 #include "base/context.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 
 namespace sg {
 
+enum class CoreMethod { sujudi_haimes, levy };
+constexpr auto enum_words(CoreMethod) {
+  using enum CoreMethod;
+  return std::array{Word{"sujudi_haimes", sujudi_haimes}, Word{"levy", levy}};
+}
+
 struct VortexCoresParams {
   FieldName field;
-  std::string method = "sujudi_haimes";
+  CoreMethod method = CoreMethod::sujudi_haimes;
   double min_swirl = 0.05;
   double max_angle = 45;
   double min_length = 0.02;

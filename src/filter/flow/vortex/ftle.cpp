@@ -19,7 +19,7 @@ void describe(Schema& s, FtleParams& p) {
       .unit("time");
   s("start", p.start, "Time at which they start; default: the first of the series (backwards the last).").unit("time");
   s("times", p.times, "Times of a series that a source computes: FIRST:LAST:COUNT or a list; default: those of the file.");
-  s("interpolation", p.interpolation, "Between the time steps.").choices({"linear", "cubic"});
+  s("interpolation", p.interpolation, "Between the time steps.");
   s("dims", p.dims, "Seeds along x, y and z; default: from size.").at_least(1);
   s("size", p.size,
     "Seeds along the longest axis, the others in proportion; 0: 256, in space 64, in the space around a bent surface or curves 32.")
@@ -179,8 +179,7 @@ DatasetPtr ftle(const Series& given, const FtleParams& p, Context& context) {
                            given.times.front(), given.times.back()),
                "ftle", "another start or duration");
   }
-  UnsteadyFlow flow(series, p.field.name, p.interpolation == "cubic" ? TimeInterpolation::cubic : TimeInterpolation::linear, context,
-                    p.geographic);
+  UnsteadyFlow flow(series, p.field.name, p.interpolation, context, p.geographic);
   size_t k = flow.interval_of(start, sign);
   const size_t last = flow.interval_of(until, -sign);
   flow.open(k, context);

@@ -6,9 +6,10 @@
 #include <span>
 
 #include "base/context.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 #include "filter/flow/trace.h"
+#include "filter/flow/unsteady/time_interpolation.h"
 
 namespace sg {
 
@@ -16,7 +17,8 @@ struct FtleParams {
   FieldName field;
   std::optional<double> duration;
   std::optional<double> start;
-  std::string times, interpolation = "linear";
+  std::string times;
+  TimeInterpolation interpolation = TimeInterpolation::linear;
   std::vector<int64_t> dims;
   int64_t size = 0;
   std::vector<double> bounds;

@@ -18,7 +18,7 @@ namespace sg {
 
 void describe(Schema& s, RidgesParams& p) {
   s("field", p.field, "Scalar field of points; default: the active scalar.");
-  s("kind", p.kind, "Crests or troughs.").choices({"ridges", "valleys"});
+  s("kind", p.kind, "Crests or troughs.");
   s("limit", p.limit, "Ridges: only where the field is at least this; valleys: at most. Default: no limit.").unit("@field");
   s("smooth", p.smooth, "Standard deviation, in cells, of the Gaussian that uniform and rectilinear grids are averaged with before.")
       .range(0, 100);
@@ -212,7 +212,7 @@ DatasetPtr ridges(const DatasetPtr& in, const RidgesParams& p, Context& context)
   const int dimension = mesh_dimension(*in);
   if (dimension < 2) fail_usage("a mesh of lines or points has no ridges", "ridges");
   const int flat = dimension == 2 ? flat_axis(in) : -1;
-  const double sign = p.kind == "ridges" ? 1 : -1;
+  const double sign = p.kind == RidgeKind::ridges ? 1 : -1;
   const double cell = mean_cell(*in, dimension, flat);
   const DatasetPtr all = where_free(in, field, p.smooth * cell, flat, sign, context);
   std::vector<double> strength;

@@ -4,14 +4,20 @@
 #include <optional>
 
 #include "base/context.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 
 namespace sg {
 
+enum class RidgeKind { ridges, valleys };
+constexpr auto enum_words(RidgeKind) {
+  using enum RidgeKind;
+  return std::array{Word{"ridges", ridges}, Word{"valleys", valleys}};
+}
+
 struct RidgesParams {
   FieldName field;
-  std::string kind = "ridges";
+  RidgeKind kind = RidgeKind::ridges;
   std::optional<double> limit;
   double smooth = 2;
   double strength = 0.02;

@@ -8,7 +8,7 @@
 namespace sg {
 
 void describe(Schema& s, ShearLinesParams& p) {
-  s("family", p.family, "Which of the two directions.").choices({"plus", "minus", "both"});
+  s("family", p.family, "Which of the two directions.");
   s("count", p.count, "Seeds of each family, about.").range(1, 1e7);
   s("max_length", p.max_length, "Longest line; default: the diagonal of the data.").unit("length").positive();
 }
@@ -60,7 +60,7 @@ DatasetPtr one_family(const DatasetPtr& in, int sign, const ShearLinesParams& p,
 }  // namespace
 
 DatasetPtr shear_lines(const DatasetPtr& in, const ShearLinesParams& p, Context& context) {
-  if (p.family != "both") return one_family(in, p.family == "plus" ? 1 : -1, p, context);
+  if (p.family != ShearChoice::both) return one_family(in, p.family == ShearChoice::plus ? 1 : -1, p, context);
   return append({Data(one_family(in, 1, p, context)), Data(one_family(in, -1, p, context))}, {}, context);
 }
 

@@ -2,13 +2,20 @@
 // shear_lines: lines along which a plane flow shears most in a finite time (Haller, Beron-Vera 2012).
 #pragma once
 #include "base/context.h"
-#include "base/schema.h"
+#include "base/schema/schema.h"
 #include "data/dataset.h"
 
 namespace sg {
 
+/// Which of the two directions.
+enum class ShearChoice { plus, minus, both };
+constexpr auto enum_words(ShearChoice) {
+  using enum ShearChoice;
+  return std::array{Word{"plus", plus}, Word{"minus", minus}, Word{"both", both}};
+}
+
 struct ShearLinesParams {
-  std::string family = "both";
+  ShearChoice family = ShearChoice::both;
   int64_t count = 100;
   std::optional<double> max_length;
 };

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "render/volume/optics/integrate.h"
-#include "scene/volume_item.h"
+#include "scene/items/volume_item.h"
 
 namespace sg::volume {
 

@@ -7,7 +7,7 @@
 #include "data/memo.h"
 #include "render/volume/lattice/lattice_volume.h"
 #include "render/volume/optics/stretch.h"
-#include "scene/volume_item.h"
+#include "scene/items/volume_item.h"
 
 namespace sg::volume {
 

@@ -10,7 +10,7 @@
 #include "render/volume/light/occlusion.h"
 #include "render/volume/light/surface_shadow.h"
 #include "scene/camera.h"
-#include "scene/volume_item.h"
+#include "scene/items/volume_item.h"
 
 namespace sg::volume {
 

@@ -8,7 +8,7 @@
 
 #include "render/volume/optics/medium.h"
 #include "render/volume/optics/stretch.h"
-#include "scene/volume_item.h"
+#include "scene/items/volume_item.h"
 
 namespace sg::volume {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "render/volume/optics/stretch.h"
-#include "scene/volume_item.h"
+#include "scene/items/volume_item.h"
 
 namespace sg::volume {
 

@@ -72,7 +72,7 @@ TEST_CASE("stream surface: uniform wind sweeps a rectangle of exact area, forwar
   StreamSurfaceParams p = line({0, -0.5, 0}, {0, 0.5, 0}, 0.1);
   p.max_length = 0.75;
   for (const char* direction : {"forward", "backward", "both"}) {
-    p.direction = direction;
+    p.direction = *value_of_word<TraceDirection>(direction);
     const Surface s(stream_surface({wind}, p, context));
     CHECK(s.area() == doctest::Approx(std::string_view(direction) == "both" ? 1.5 : 0.75).epsilon(1e-5));
     CHECK(s.euler() == 1);
@@ -87,7 +87,7 @@ TEST_CASE("stream surface: a radius that turns about an axis sweeps a ring, whos
   double error[3], h[3];
   for (int k = 0; k < 3; ++k) {
     StreamSurfaceParams p = line({0.3, 0, 0.1}, {0.8, 0, 0.1}, 0.1 / (1 << k));
-    p.front = "time", p.max_time = pi, p.tolerance = 1e-7;
+    p.front = FrontClock::time, p.max_time = pi, p.tolerance = 1e-7;
     h[k] = 0.1 / (1 << k);
     error[k] = std::abs(Surface(stream_surface({turning}, p, context)).area() - pi / 2 * (0.64 - 0.09));
   }
@@ -109,7 +109,7 @@ TEST_CASE("stream surface: where the flow pulls apart, places are put in; all of
   // x = x0 e^t, z = z0 + t: neighbours part by a factor of e^1.5.
   const DatasetPtr apart = flow_on_grid(33, [](Vec3 x) { return Vec3(x.x, -x.y, 1); });
   StreamSurfaceParams p = line({-0.15, 0.3, -0.8}, {0.15, 0.3, -0.8}, 0.03);
-  p.front = "time", p.max_time = 1.5, p.tolerance = 1e-6;
+  p.front = FrontClock::time, p.max_time = 1.5, p.tolerance = 1e-6;
   const Surface s(stream_surface({apart}, p, context));
   CHECK(s.euler() == 1);
   CHECK(s.longest_edge() < 0.08);

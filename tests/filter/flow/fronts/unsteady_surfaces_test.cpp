@@ -29,7 +29,7 @@ template <class P>
 P along_z() {
   P p;
   p.curve.from = Vec3(-0.5, 0, -0.3), p.curve.to = Vec3(-0.5, 0, 0.3);
-  p.spacing = 0.1, p.interpolation = "cubic", p.integration.tolerance = 1e-7;
+  p.spacing = 0.1, p.interpolation = TimeInterpolation::cubic, p.integration.tolerance = 1e-7;
   return p;
 }
 
@@ -88,7 +88,7 @@ TEST_CASE("streak surface: of an oscillating flow it is the streakline of its cl
 TEST_CASE("time surface: a rectangle keeps its shape in uniform wind and its area grows in a flow that pulls") {
   Context context;
   TimeSurfaceParams p;
-  p.center = Vec3(-0.5, 0, 0), p.size = {0.4, 0.6}, p.spacing = 0.1, p.interpolation = "cubic";
+  p.center = Vec3(-0.5, 0, 0), p.size = {0.4, 0.6}, p.spacing = 0.1, p.interpolation = TimeInterpolation::cubic;
   const DatasetPtr d = time_surface(oscillating(), {}, p, context);
   check_manifold(d);
   CHECK(area(d) == doctest::Approx(0.24).epsilon(1e-4));

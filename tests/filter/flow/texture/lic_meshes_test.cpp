@@ -78,7 +78,8 @@ TEST_CASE("lic meshes: in every kind of flat mesh white noise keeps 1/L of its v
       Context context;
       const DatasetPtr d = flow::with_velocity(kind.make(6, 1), [&](Vec3) { return along_y ? Vec3(0, 3, 0) : Vec3(2, 0, 0); });
       LicParams p;
-      p.resolution = int64_t(n), p.length = 10, p.contrast = "none", p.method = along_y ? "fast" : "plain";
+      p.resolution = int64_t(n), p.length = 10, p.contrast = texture::Contrast::none,
+      p.method = along_y ? LicMethod::fast : LicMethod::plain;
       return values_of(lic(d, nullptr, p, context), "lic");
     };
     const MeshKind& first = flat_meshes()[0];
@@ -108,7 +109,7 @@ TEST_CASE("lic meshes: rings stay rings where the flow turns, in every kind of f
     CAPTURE(kind.name);
     Context context;
     LicParams p;
-    p.resolution = int64_t(n), p.length = 30, p.contrast = "none";
+    p.resolution = int64_t(n), p.length = 30, p.contrast = texture::Contrast::none;
     const DatasetPtr d = flow::with_velocity(kind.make(9, 1), [](Vec3 x) { return Vec3(-x.y, x.x, 0); });
     const std::vector<float> v = values_of(lic(d, image, p, context), "lic");
     double squares = 0, most = 0, count = 0;
@@ -134,7 +135,7 @@ TEST_CASE("lic meshes: surface_lic has the statistics on flat triangles, quads, 
     CAPTURE(name);
     Context context;
     SurfaceLicParams p;
-    p.density = 0, p.steps = half, p.step = 2.0 / n, p.kernel = "box", p.stretch = false;
+    p.density = 0, p.steps = half, p.step = 2.0 / n, p.kernel = LineFade::box, p.stretch = false;
     const DatasetPtr d = flow::with_velocity(kind.make(n, 1), [](Vec3) { return Vec3(1.5, 0, 0); });
     const std::vector<float> v = on_lattice(surface_lic(d, p, context), "lic", n, 1);
     CHECK(largest_difference(v, v) == 0);  // no place is left out
@@ -151,7 +152,7 @@ TEST_CASE("lic meshes: volumes of texture have the statistics in every kind of s
     const auto* u = mesh->as<UniformGrid>();
     const Vec3 along = u ? u->direction.column(1) : Vec3(0, 1, 0);
     LicParams p;
-    p.resolution = int64_t(n), p.length = 4, p.contrast = "none", p.noise = "white";
+    p.resolution = int64_t(n), p.length = 4, p.contrast = texture::Contrast::none, p.noise = LicNoise::white;
     return lic(flow::with_velocity(mesh, [&](Vec3) { return along; }), nullptr, p, context);
   };
   const std::vector<float> wanted = values_of(texture(solid_meshes()[0], 14), "lic");

@@ -39,7 +39,7 @@ TEST_CASE("lic: white noise keeps 1/L of its variance, and neighbours along the 
       CAPTURE(method);
       CAPTURE(half);
       LicParams p;
-      p.length = half, p.contrast = "none", p.method = method;
+      p.length = half, p.contrast = texture::Contrast::none, p.method = *value_of_word<LicMethod>(method);
       const std::vector<float> v = values_of(texture_of(d, p), "lic");
       const Statistics s{v, 512, 512, 32};
       const double L = 2 * half + 1;
@@ -54,9 +54,9 @@ TEST_CASE("lic: white noise keeps 1/L of its variance, and neighbours along the 
 
 TEST_CASE("lic: both methods give the same along straight rows, and alike pictures elsewhere") {
   LicParams p;
-  p.length = 12, p.contrast = "none";
+  p.length = 12, p.contrast = texture::Contrast::none;
   LicParams fast = p;
-  fast.method = "fast";
+  fast.method = LicMethod::fast;
   const DatasetPtr rows = along_x(300, 200);
   const std::vector<float> a = values_of(texture_of(rows, p), "lic"), b = values_of(texture_of(rows, fast), "lic");
   float most = 0;
@@ -66,7 +66,7 @@ TEST_CASE("lic: both methods give the same along straight rows, and alike pictur
   // three quarters in the mean.
   const DatasetPtr turning = rotation(400);
   for (const char* kernel : {"box", "hanning", "ripple"}) {
-    p.kernel = fast.kernel = kernel;
+    p.kernel = fast.kernel = *value_of_word<texture::LineWeights>(kernel);
     const std::vector<float> c = values_of(texture_of(turning, p), "lic"), e = values_of(texture_of(turning, fast), "lic");
     CAPTURE(kernel);
     CHECK(correlation_of(c, e) > 0.75);
@@ -81,7 +81,7 @@ TEST_CASE("lic: what is the same along circles stays when the flow turns in circ
   const DatasetPtr rings = picture(n, n, [](double x, double y) { return float(std::sin(std::hypot(x - 150, y - 150) / 6)); });
   for (const char* method : {"plain", "fast"}) {
     LicParams p;
-    p.length = 60, p.contrast = "none", p.method = method;
+    p.length = 60, p.contrast = texture::Contrast::none, p.method = *value_of_word<LicMethod>(method);
     const std::vector<float> v = values_of(texture_of(rotation(n), p, rings), "lic"), r = values_of(rings, "picture");
     double most = 0, squares = 0, count = 0;
     for (size_t j = 0; j < n; ++j)
@@ -104,7 +104,8 @@ TEST_CASE("lic: constant noise stays constant, whatever the kernel, up to the bo
   for (const char* kernel : {"box", "hanning", "ripple"})
     for (const char* method : {"plain", "fast"}) {
       LicParams p;
-      p.kernel = kernel, p.method = method, p.contrast = "none", p.phase = 0.3;
+      p.kernel = *value_of_word<texture::LineWeights>(kernel), p.method = *value_of_word<LicMethod>(method),
+      p.contrast = texture::Contrast::none, p.phase = 0.3;
       float most = 0;
       for (const float x : values_of(texture_of(d, p, even), "lic")) most = std::max(most, std::abs(x - 0.3f));
       CAPTURE(kernel);
@@ -116,7 +117,7 @@ TEST_CASE("lic: constant noise stays constant, whatever the kernel, up to the bo
 TEST_CASE("lic: the waves of the ripple kernel move downstream, and phase 1 is phase 0") {
   const DatasetPtr d = along_x(400, 60);
   LicParams p;
-  p.kernel = "ripple", p.length = 30, p.ripples = 2, p.contrast = "none";
+  p.kernel = texture::LineWeights::ripple, p.length = 30, p.ripples = 2, p.contrast = texture::Contrast::none;
   auto frame = [&](double phase) {
     p.phase = phase;
     return values_of(texture_of(d, p), "lic");
@@ -147,7 +148,7 @@ TEST_CASE("lic: the same bytes for one thread and eight") {
   for (const char* method : {"plain", "fast"})
     for (const char* contrast : {"stretch", "equalise"}) {
       LicParams p;
-      p.method = method, p.contrast = contrast, p.grain = 1.5, p.passes = 2;
+      p.method = *value_of_word<LicMethod>(method), p.contrast = *value_of_word<texture::Contrast>(contrast), p.grain = 1.5, p.passes = 2;
       set_thread_count(1);
       const std::vector<float> one = values_of(texture_of(d, p), "lic");
       set_thread_count(8);
@@ -178,14 +179,14 @@ TEST_CASE("lic: no value where the flow has none, grey where it rests, the pictu
 TEST_CASE("lic: the contrast spreads the greys") {
   const DatasetPtr d = rotation(256);
   LicParams p;
-  p.contrast = "equalise";
+  p.contrast = texture::Contrast::equalise;
   const std::vector<float> v = values_of(texture_of(d, p), "lic");
   for (const double limit : {0.1, 0.5, 0.8}) {
     double below = 0;
     for (const float x : v) below += double(x) < limit;
     CHECK(below / double(v.size()) == doctest::Approx(limit).epsilon(0.02));
   }
-  p.contrast = "stretch";
+  p.contrast = texture::Contrast::stretch;
   double black = 0, white = 0;
   for (const float x : values_of(texture_of(d, p), "lic")) black += x <= 0, white += x >= 1;
   CHECK(black / double(v.size()) == doctest::Approx(0.01).epsilon(0.1));
@@ -283,7 +284,8 @@ TEST_CASE("lic: a solid grid gives a volume of texture that varies across the fl
   const DatasetPtr d = make_dataset(g, fields);
   for (const char* method : {"plain", "fast"}) {
     LicParams p;
-    p.resolution = 48, p.length = 8, p.contrast = "none", p.method = method, p.noise = "white";
+    p.resolution = 48, p.length = 8, p.contrast = texture::Contrast::none, p.method = *value_of_word<LicMethod>(method),
+    p.noise = LicNoise::white;
     const std::vector<float> v = values_of(texture_of(d, p), "lic");
     double along = 0, across = 0, n = 0;
     for (size_t k = 0; k + 1 < 36; ++k)
@@ -298,7 +300,7 @@ TEST_CASE("lic: a solid grid gives a volume of texture that varies across the fl
     CHECK(across / n == doctest::Approx(2.0 / 12 / 17).epsilon(0.05));
   }
   LicParams p;
-  p.noise = "sparse", p.resolution = 48, p.density = 0.02, p.grain = 1;
+  p.noise = LicNoise::sparse, p.resolution = 48, p.density = 0.02, p.grain = 1;
   const std::vector<float> v = values_of(texture_of(d, p), "lic");
   double empty = 0;
   for (const float x : v) empty += x == 0;

@@ -67,7 +67,7 @@ TEST_CASE("lines of a batch: every kind of processor walks as the reference does
       LineBatch reference = batch_of(s, 40, box);
       trace_lines_scalar(s.grid, reference);
       for (const char* kernel : {"box", "ripple"}) {
-        const Weights w = kernel_weights(kernel, 12, 0.2, 2);
+        const Weights w = kernel_weights(*value_of_word<LineWeights>(kernel), 12, 0.2, 2);
         std::vector<float> sums(lanes * 81);
         convolve_lines_scalar(reference, w, 0, 80, sums.data());
         on_all_targets([&] {

@@ -126,7 +126,7 @@ TEST_CASE("advect: whole pixels move exactly, and back again") {
   const DatasetPtr back = advected(d, p);
   for (size_t i = 0; i < 60; ++i)
     CHECK(value(back, "s", i, 3) == doctest::Approx(value(d, "s", std::min<size_t>(59, i + 7), 3)).epsilon(1e-12));
-  p.time = 14, p.border = "nan";
+  p.time = 14, p.border = InflowBorder::nan;
   const DatasetPtr open = advected(d, p);
   CHECK(std::isnan(value(open, "s", 6, 5)));
   CHECK(value(open, "s", 7, 5) == doctest::Approx(value(d, "s", 0, 5)).epsilon(1e-12));

@@ -91,7 +91,7 @@ Stats stats(int n, int margin, At at) {
 
 SurfaceLicParams plain(int steps) {
   SurfaceLicParams p;
-  p.density = 0, p.steps = steps, p.step = 1, p.kernel = "box", p.stretch = false;
+  p.density = 0, p.steps = steps, p.step = 1, p.kernel = LineFade::box, p.stretch = false;
   return p;
 }
 
@@ -227,7 +227,7 @@ TEST_CASE("surface_lic: other triangles and refinement change the noise, not its
   const Flow flow = [](Vec3) { return Vec3{1, 0, 0}; };
   const auto spread = [&](const DatasetPtr& d) {
     SurfaceLicParams p;
-    p.steps = 20, p.step = 0.5, p.density = 0, p.kernel = "box";
+    p.steps = 20, p.step = 0.5, p.density = 0, p.kernel = LineFade::box;
     const DatasetPtr r = run(d, p);
     const View<float> v = lic_of(r);
     return stats(n, L, [&](int i, int j) { return double(v[size_t(j * (n + 1) + i)]); });

@@ -39,7 +39,7 @@ TEST_CASE("vortex cores: the axis of a linear swirl comes out exactly, as one li
   for (const DatasetPtr& mesh : {grid, to_unstructured(grid, {}, context)})
     for (const char* method : {"sujudi_haimes", "levy"}) {
       VortexCoresParams p;
-      p.method = method;
+      p.method = *value_of_word<CoreMethod>(method);
       const DatasetPtr core = single_dataset(vortex_cores(mesh, p, context), "test");
       const SurfaceMesh& m = *core->as<SurfaceMesh>();
       CAPTURE(method);

@@ -30,7 +30,7 @@ struct Cores {
 Cores cores_of(const DatasetPtr& d, const std::string& method, Vec3 through, Vec3 along) {
   Context context;
   VortexCoresParams p;
-  p.field.name = "u", p.method = method;
+  p.field.name = "u", p.method = *value_of_word<CoreMethod>(method);
   const DatasetPtr core = single_dataset(vortex_cores(d, p, context), "test");
   Cores r;
   const auto* m = core->as<SurfaceMesh>();

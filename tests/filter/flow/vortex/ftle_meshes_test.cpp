@@ -66,8 +66,8 @@ TEST_CASE("ftle meshes: the double gyre has its known values in every kind of fl
     series.load = [&](size_t k) -> Data { return all[k]; };
     for (const auto& k : known) {
       FtleParams p;
-      p.duration = 15, p.interpolation = "cubic", p.offset = 5e-4, p.dims = {2, 2, 1};
-      p.integration.integrator = "rk4", p.integration.step = 0.25, p.integration.step_unit = "time";
+      p.duration = 15, p.interpolation = TimeInterpolation::cubic, p.offset = 5e-4, p.dims = {2, 2, 1};
+      p.integration.integrator = Scheme::rk4, p.integration.step = 0.25, p.integration.step_unit = StepUnit::time;
       p.bounds = {k.at.x, k.at.x + 0.01, k.at.y, k.at.y + 0.01, 0, 0};
       const DatasetPtr d = ftle(series, p, context);
       // The values at Bezier points are not those of the flow but of a smoothed one.

@@ -136,7 +136,7 @@ TEST_CASE("ftle: of a series of grids it approaches the known values of the doub
   } known[] = {{{0.25, 0.25, 0}, 0.295298}, {{1, 0.5, 0}, 0.0691409}};
   for (const auto& k : known) {
     FtleParams p;
-    p.duration = 15, p.interpolation = "cubic", p.offset = 5e-4, p.dims = {3, 3, 1};
+    p.duration = 15, p.interpolation = TimeInterpolation::cubic, p.offset = 5e-4, p.dims = {3, 3, 1};
     p.bounds = {k.at.x - 0.01, k.at.x + 0.01, k.at.y - 0.01, k.at.y + 0.01, 0, 0};
     const DatasetPtr d = ftle(series, p, context);
     CHECK(d->fields().require("ftle").array.get(4) == doctest::Approx(k.ftle).epsilon(0.01));

@@ -66,10 +66,10 @@ TEST_CASE("ridges: a ring has a circle, its negative the same valley, and a limi
   p.strength = 0.15, p.smooth = 0.5;
   const DatasetPtr crest = ridges(height({101, 101, 1}, ring), p, context);
   CHECK(total(crest, "length") == doctest::Approx(2 * 3.14159265 * 0.6).epsilon(0.02));
-  p.kind = "valleys";
+  p.kind = RidgeKind::valleys;
   const DatasetPtr trough = ridges(height({101, 101, 1}, [&](Vec3 x) { return -ring(x); }), p, context);
   CHECK(total(trough, "length") == doctest::Approx(total(crest, "length")).epsilon(1e-6));
-  p.kind = "ridges", p.limit = 2.0;  // the half x > 0
+  p.kind = RidgeKind::ridges, p.limit = 2.0;  // the half x > 0
   CHECK(total(ridges(height({101, 101, 1}, ring), p, context), "length") == doctest::Approx(3.14159265 * 0.6).epsilon(0.05));
 }
 

@@ -19,7 +19,7 @@ TEST_CASE("shear lines: of simple shear one family lies along the flow; all keep
   int along_x = 0, lines = 0;
   for (const char* family : {"plus", "minus"}) {
     ShearLinesParams p;
-    p.family = family, p.count = 9;
+    p.family = *value_of_word<ShearChoice>(family), p.count = 9;
     const DatasetPtr found = shear_lines(d, p, context);
     const SurfaceMesh& m = *found->as<SurfaceMesh>();
     const CellsView v = cells_view(m.lines);

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/choose/field_habits.h"
+
+#include <cmath>
+
+#include "base/text.h"
+
+namespace sg {
+
+namespace {
+
+struct Known {
+  std::string_view name;
+  FieldHabit habit;
+};
+using Shows = FieldHabit::Shows;
+constexpr Known known[] = {
+    {"ftle", {Shows::high, true, false, true}},         {"Q", {Shows::high, false, true, true}},
+    {"delta", {Shows::high, false, true, true}},        {"lambda2", {Shows::low, false, true, true}},
+    {"Okubo-Weiss", {Shows::low, false, true, true}},   {"swirling strength", {Shows::high, false, false, true}},
+    {"vorticity", {Shows::high, false, false, true}},   {"vorticity magnitude", {Shows::high, false, false, true}},
+    {"strain rate", {Shows::high, false, false, true}}, {"helicity", {Shows::any, false, true, true}},
+    {"divergence", {Shows::any, false, true, true}},    {"speed", {Shows::any, false, false, true}},
+    {"lic", {Shows::fibres, false, false, false}},
+};
+
+constexpr size_t most_samples = 400000;
+constexpr double inside = 0.995, inside_tailed = 0.99;
+
+// Evenly spread finite values of all the fields.
+std::vector<double> samples_of(std::span<const FieldOf> fields, int component) {
+  size_t all = 0;
+  for (const FieldOf& f : fields) all += f.field->array.count();
+  const size_t step = std::max<size_t>(1, all / most_samples);
+  std::vector<double> v;
+  v.reserve(all / step + fields.size());
+  for (const FieldOf& f : fields)
+    dispatch(f.field->array, [&](auto view) {
+      const bool magnitude = component < 0 && view.components > 1;
+      const int one = view.components > 1 ? std::max(component, 0) : 0;
+      for (size_t i = 0; i < view.count; i += step) {
+        double x = double(view(i, one));
+        if (magnitude) {
+          x = 0;
+          for (int c = 0; c < view.components; ++c) x += double(view(i, c)) * double(view(i, c));
+          x = std::sqrt(x);
+        }
+        if (std::isfinite(x)) v.push_back(x);
+      }
+    });
+  return v;
+}
+
+double quantile(std::vector<double>& v, double q) {
+  const auto at = v.begin() + ptrdiff_t(q * double(v.size() - 1));
+  std::nth_element(v.begin(), at, v.end());
+  return *at;
+}
+
+// To three digits, outwards or inwards as it falls: numbers for people to read.
+double rounded(double x) { return *parse_double(short_number(x, 3)); }
+
+}  // namespace
+
+FieldHabit habit_of(const Field& field) {
+  for (const Known& k : known)
+    if (k.name == field.name) return k.habit;
+  return {};
+}
+
+ShownRange shown_range(std::span<const FieldOf> fields, int component, bool symmetric) {
+  ShownRange s;
+  bool may_cut = !fields.empty(), tailed = false;
+  auto shows = FieldHabit::Shows::any;
+  for (const FieldOf& f : fields) {
+    s.range.add(f.data->range(*f.field, f.field->components() > 1 ? component : 0));
+    may_cut = may_cut && is_float(f.field->array.type());
+    tailed = tailed || habit_of(*f.field).tailed;
+    if (symmetric) shows = habit_of(*f.field).shows;
+  }
+  if (s.range.empty()) return s;
+  const Range whole = s.range;
+  // Of fields with one side that matters, that side says how far: shear may be a thousand times as strong as vortices are.
+  if (!(whole.lo < 0 && whole.hi > 0)) shows = Shows::any;
+  const double reach = shows == Shows::high ? whole.hi : shows == Shows::low ? -whole.lo : std::max(-whole.lo, whole.hi);
+  if (symmetric) s = {{-reach, reach}, whole.lo<-reach, whole.hi> reach};
+  if (!may_cut || !(tailed || symmetric)) return s;
+  std::vector<double> v = samples_of(fields, component);
+  if (symmetric) {
+    std::erase_if(v, [&](double x) {  // what is nowhere but in a few places has no tails
+      return x == 0 || (shows == Shows::high && x < 0) || (shows == Shows::low && x > 0);
+    });
+    for (double& x : v) x = std::abs(x);
+  }
+  if (v.size() < 200) return s;
+  const double most = tailed ? inside_tailed : inside, high = quantile(v, most);
+  if (symmetric) {
+    const double end = rounded(high);
+    if (end > 0 && reach > (tailed ? 1.5 : 4) * end) s.range = {-end, end};
+    s.cut_low = whole.lo<s.range.lo, s.cut_high = whole.hi> s.range.hi;
+    return s;
+  }
+  const double low = quantile(v, 1 - most), width = high - low;
+  if (!(width > 0)) return s;
+  const double far = 0.5 * width;
+  if (whole.hi - high > far && rounded(high) > low) s.range.hi = rounded(high), s.cut_high = true;
+  if (low - whole.lo > far && rounded(low) < s.range.hi) s.range.lo = rounded(low), s.cut_low = true;
+  return s;
+}
+
+void take_shown_range(const ShownRange& shown, const Range& whole, const std::string& name, ColorScale& s, Context& context) {
+  s.lo = shown.range.lo, s.hi = shown.range.hi;
+  if (!shown.cut_low && !shown.cut_high) return;
+  if (shown.cut_low && !s.below) s.below = s.map.at(0);
+  if (shown.cut_high && !s.above) s.above = s.map.at(1);
+  context.info(fmt::format("'{}' reaches from {} to {}, but few values lie outside the colours; range={},{} has all", name,
+                           short_number(whole.lo, 3), short_number(whole.hi, 3), short_number(whole.lo, 4), short_number(whole.hi, 4)));
+}
+
+}  // namespace sg

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/choose/scale.h"
+
+#include <charconv>
+#include <map>
+
+#include "base/text.h"
+#include "color/colormap_file.h"
+#include "color/parse_color.h"
+#include "data/lattice.h"
+#include "scene/choose/field_habits.h"
+
+namespace sg {
+
+namespace {
+
+constexpr size_t most_labels = 64;
+
+// Distinct values among evenly spread samples, or more than `most_labels` of them.
+std::vector<double> distinct_values(const Field& field, size_t limit) {
+  const size_t n = field.array.count(), step = std::max<size_t>(1, n / 400000);
+  std::vector<double> found;
+  dispatch(field.array, [&](auto v) {
+    double last = NAN;
+    for (size_t i = 0; i < n && found.size() <= limit; i += step) {
+      const double x = double(v[i]);
+      if (x == last) continue;
+      last = x;
+      const auto at = std::lower_bound(found.begin(), found.end(), x);
+      if (at == found.end() || *at != x) found.insert(at, x);
+    }
+  });
+  return found;
+}
+
+// Of neighbours along x of which one at least is not background, the share that is equal.
+double share_of_equal_neighbours(const Field& field, size_t nx, double background) {
+  return dispatch(field.array, [&](auto v) {
+    const size_t n = v.count, rows = n / std::max<size_t>(nx, 1), step = std::max<size_t>(1, rows / 2000);
+    size_t equal = 0, all = 0;
+    for (size_t r = 0; r < rows; r += step)
+      for (size_t i = 1; i < nx; ++i) {
+        const double a = double(v[r * nx + i - 1]), b = double(v[r * nx + i]);
+        if (a == background && b == background) continue;
+        ++all;
+        equal += a == b;
+      }
+    return all ? double(equal) / double(all) : 0.0;
+  });
+}
+
+double nice_symmetric(const Range& r) { return std::max(std::abs(r.lo), std::abs(r.hi)); }
+
+// The categories of a file where most values of the data are among them; values without a category of their own take the colours
+// in order. Data with other or more values gets the colours as bands over the range.
+void take_categories(const FileColormap& file, const Field& field, ColorScale& s, Context& context) {
+  const auto is_category = [&](double v) { return std::find(file.labels.begin(), file.labels.end(), v) != file.labels.end(); };
+  const auto met = size_t(std::count_if(s.labels.begin(), s.labels.end(), is_category));
+  if (file.labels.empty() ? s.labels.size() <= file.map.colors.size() : 2 * met >= s.labels.size()) {
+    if (!file.labels.empty()) s.labels = file.labels, s.label_names = file.label_names;
+    return;
+  }
+  s.labels.clear();
+  context.warn(fmt::format("the values of '{}' are not the categories of the colour map '{}'; its {} colours are drawn as bands",
+                           field.name, s.map.name, file.map.colors.size()));
+}
+
+// Names of labels from the dataset's note "labels of FIELD", lines of "number=name"; empty when one has none.
+std::vector<std::string> noted_names(const Dataset& d, const Field& field, const std::vector<double>& labels) {
+  for (const auto& [name, text] : d.notes()) {
+    if (name != "labels of " + field.name) continue;
+    std::map<double, std::string> known;
+    for (size_t begin = 0; begin < text.size();) {
+      const size_t end = std::min(text.find('\n', begin), text.size()), equal = text.find('=', begin);
+      double number = 0;
+      if (equal < end && std::from_chars(text.data() + begin, text.data() + equal, number).ec == std::errc())
+        known[number] = text.substr(equal + 1, end - equal - 1);
+      begin = end + 1;
+    }
+    std::vector<std::string> names;
+    for (const double l : labels)
+      if (const auto k = known.find(l); k != known.end()) names.push_back(k->second);
+    if (names.size() == labels.size()) return names;
+  }
+  return {};
+}
+
+// The point field whose values lie within the limits of every polygon's band: what the bands are of. Null when there is none.
+const Field* banded_field(const Dataset& d, const Field& low, const Field& high) {
+  const auto* mesh = d.as<SurfaceMesh>();
+  if (!mesh || mesh->vertices.size() + mesh->lines.size() + mesh->strips.size() > 0) return nullptr;
+  const CellsView c = cells_view(mesh->polygons);
+  const auto fits = [&](const Field& f) {
+    for (size_t cell = 0; cell < c.count; ++cell)
+      for (size_t k = 0; k < c.size(cell); ++k) {
+        const double v = f.array.get(size_t(c.point(cell, k)));
+        if (v < low.array.get(cell) || v > high.array.get(cell)) return false;
+      }
+    return true;
+  };
+  for (const Field& f : d.fields())
+    if (f.association == Association::point && f.components() == 1 && fits(f)) return &f;
+  return nullptr;
+}
+
+// Filled contours: a colour for each band, and a legend of the limits between them.
+ColorScale band_scale(const Dataset& d, const Field& band, const ColoringParams& p) {
+  const Field &low = d.fields().require("band low", Association::cell), &high = d.fields().require("band high", Association::cell);
+  std::map<double, std::pair<double, double>> bands;
+  for (size_t c = 0; c < band.array.count(); ++c) bands.try_emplace(band.array.get(c), low.array.get(c), high.array.get(c));
+  ColorScale s;
+  const Field* of = banded_field(d, low, high);
+  s.title = of ? of->name : "band";
+  s.unit = low.unit;
+  std::vector<double> limits;
+  bool neighbours = true;
+  for (const auto& [number, ends] : bands) {
+    neighbours = neighbours && (limits.empty() || limits.back() == ends.first);
+    if (limits.empty()) limits.push_back(ends.first);
+    limits.push_back(ends.second);
+    s.labels.push_back(number);
+    const auto texts = distinct_texts({ends.first, ends.second});
+    s.label_names.push_back(texts[0] + " \u2026 " + texts[1]);
+  }
+  if (s.labels.empty()) s.labels = {0}, s.label_names = {""};
+  else if (neighbours) s.limits = limits;
+  // The colours of values: evenly from band to band, or where range, scale or a middle at zero ask for places.
+  Range r;
+  for (double v : limits) r.add({v, v});
+  if (r.empty()) r = {0, 1};
+  const bool is_signed = r.lo < 0 && r.hi > 0 && std::min(-r.lo, r.hi) > 0.05 * std::max(-r.lo, r.hi);
+  const std::optional<FileColormap> file = p.map && names_colormap_file(*p.map) ? std::optional(find_file_colormap(*p.map)) : std::nullopt;
+  s.map = file ? file->map : find_colormap(p.map ? *p.map : is_signed && p.scale != ScaleKind::log ? "coolwarm" : "sight");
+  ColorScale by_value;
+  by_value.kind = p.scale;
+  by_value.linear_threshold = p.linear_threshold;
+  const bool centred = s.map.kind == MapKind::diverging && is_signed;
+  by_value.lo = r.lo, by_value.hi = r.hi;
+  if (centred) by_value.hi = nice_symmetric(r), by_value.lo = -by_value.hi;
+  if (!p.range.empty()) by_value.lo = p.range[0], by_value.hi = p.range[1];
+  if (!s.map.categorical()) {
+    std::vector<Vec3f> colors;
+    const size_t n = s.labels.size();
+    for (const auto& [number, ends] : bands) {
+      double t = n > 1 ? double(colors.size()) / double(n - 1) : 0.5;
+      if (centred || !p.range.empty() || by_value.kind != ScaleKind::linear)
+        t = 0.5 * (by_value.position(ends.first) + by_value.position(ends.second));
+      colors.push_back(s.map.at(std::isfinite(t) ? std::clamp(t, 0.0, 1.0) : 0));
+    }
+    if (!colors.empty()) s.map.colors = colors, s.map.kind = MapKind::categorical;
+  }
+  s.lo = s.labels.front(), s.hi = std::max(s.labels.back(), s.lo + 1);
+  if (!p.nan.empty()) s.nan = parse_color(p.nan, "nan");
+  return s;
+}
+
+}  // namespace
+
+bool looks_like_labels(const Dataset& data, const Field& field) {
+  if (is_float(field.array.type()) || field.components() != 1 || field.array.count() < 2) return false;
+  if (field.role == Role::global_ids || field.role == Role::colors) return false;
+  const Range r = data.range(field);
+  if (r.empty() || r.lo < 0 || r.hi - r.lo > 10000) return false;
+  const auto values = distinct_values(field, most_labels);
+  if (values.size() > most_labels || values.size() < 2) return false;
+  if (!is_lattice(data.mesh())) return values.size() * 2 <= field.array.count() + 2;
+  if (values.size() == 2 || field.role == Role::labels) return true;
+  const auto d = lattice_dims(data.mesh());
+  const size_t nx = field.association == Association::point ? d[0] : std::max<size_t>(d[0], 2) - 1;
+  return share_of_equal_neighbours(field, nx, values[0]) > 0.7;
+}
+
+bool two_sided(const Field& field, const Range& r) {
+  const FieldHabit habit = habit_of(field);
+  if (habit.one_sided || !(r.lo < 0 && r.hi > 0)) return false;
+  return habit.two_sided || std::min(-r.lo, r.hi) > 0.05 * std::max(-r.lo, r.hi);
+}
+
+ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringParams& p, Context& context) {
+  ColorScale s;
+  s.title = field.name;
+  if (field.components() > 1) s.title += p.component < 0 ? " magnitude" : fmt::format(" [{}]", p.component);
+  s.unit = field.unit;
+  Range r = data.range(field, p.component);
+  if (r.empty()) {
+    context.warn(fmt::format("field '{}' has no finite value; it is drawn in the colour of NaN", field.name));
+    r = {0, 1};
+  }
+  if (!p.range.empty() && (p.range.size() != 2 || !(p.range[0] < p.range[1])))
+    fail_usage("range needs two numbers, the lower one first", "range", "like range=0,100");
+  if (field.name == "band" && field.association == Association::cell && is_banded(data)) return band_scale(data, field, p);
+  const bool automatic = !p.map;
+  const std::optional<FileColormap> file = p.map && names_colormap_file(*p.map) ? std::optional(find_file_colormap(*p.map)) : std::nullopt;
+  const Colormap asked = automatic ? Colormap{} : file ? file->map : find_colormap(*p.map);
+  const bool labels = automatic ? p.range.empty() && looks_like_labels(data, field) : asked.categorical();
+  s.kind = p.scale;
+  if (s.kind == ScaleKind::log && p.range.empty() && r.lo <= 0) {
+    // Zeros and negative values have no place on a log scale: start at the smallest positive value.
+    Range positive;
+    const Field& f = field;
+    dispatch(f.array, [&](auto v) {
+      for (size_t i = 0; i < v.count; ++i) {
+        const double x = double(v(i, std::max(p.component, 0)));
+        if (x > 0 && std::isfinite(x)) positive.add({x, x});
+      }
+    });
+    if (positive.empty())
+      fail_usage(fmt::format("field '{}' has no positive value for a log scale", field.name), "scale", "use scale=linear or scale=symlog");
+    r = positive;
+    context.info(fmt::format("values of '{}' at or below 0 have no place on a log scale; they are drawn as below it", field.name));
+  }
+  const bool is_signed = two_sided(field, r);
+  if (automatic) s.map = find_colormap(labels ? "labels" : is_signed && s.kind != ScaleKind::log ? "coolwarm" : "sight");
+  else s.map = asked;
+  if (s.map.kind == MapKind::unsafe)
+    context.warn(fmt::format(
+        "colour map '{}' is not perceptually uniform: its lightness rises and falls, so it shows edges that are not in the data; "
+        "'sight' is the safe choice (see: sightglass colormap {})",
+        s.map.name, s.map.name));
+
+  if (!p.range.empty()) {
+    s.lo = p.range[0], s.hi = p.range[1];
+  } else {
+    s.lo = r.lo, s.hi = r.hi;
+    const bool centred = s.map.kind == MapKind::diverging && is_signed && !(file && file->hard_hinge);
+    if (centred) s.hi = nice_symmetric(r), s.lo = -s.hi;
+    const FieldOf one{&data, &field};
+    if (s.kind == ScaleKind::linear && !labels && !file)
+      if (const ShownRange shown = shown_range({&one, 1}, p.component, centred); !shown.range.empty())
+        take_shown_range(shown, r, field.name, s, context);
+  }
+  if (s.lo == s.hi) {  // a constant field: any range around it will do
+    const double d = s.lo == 0 ? 1 : std::abs(s.lo) * 0.01;
+    s.lo -= d, s.hi += d;
+    if (s.kind == ScaleKind::log) s.lo = s.hi / 1.1;
+  }
+  if (s.kind == ScaleKind::symlog) s.linear_threshold = p.linear_threshold > 0 ? p.linear_threshold : nice_symmetric({s.lo, s.hi}) * 1e-3;
+  if (labels) {
+    s.labels = distinct_values(field, 4096);
+    if (file) take_categories(*file, field, s, context);
+    else s.label_names = noted_names(data, field, s.labels);
+    if (!s.labels.empty()) s.lo = s.labels.front(), s.hi = std::max(s.labels.back(), s.lo + 1);
+  }
+  if (file) {
+    s.below = file->below, s.above = file->above;
+    if (file->nan) s.nan = *file->nan;
+    if (file->hard_hinge && s.kind == ScaleKind::linear) s.map = hinged(*file, s.lo, s.hi);
+  }
+  if (!p.below.empty()) s.below = parse_color(p.below, "below");
+  if (!p.above.empty()) s.above = parse_color(p.above, "above");
+  if (!p.nan.empty()) s.nan = parse_color(p.nan, "nan");
+  s.clamp = p.clamp;
+  return s;
+}
+
+}  // namespace sg

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/choose/shared_scale.h"
+
+#include "color/parse_color.h"
+#include "scene/choose/scale.h"
+
+namespace sg {
+
+bool share_scale(std::span<const FieldOf> fields, ColoringParams& p) {
+  Range all;
+  bool same = true;
+  for (const FieldOf& f : fields) {
+    const Range r = f.data->range(*f.field, f.field->components() > 1 ? p.component : 0);
+    same = same && (&f == &fields.front() || r == all);
+    all.add(r);
+  }
+  const bool automatic = !p.map && p.scale != ScaleKind::log;
+  const bool is_signed = two_sided(*fields[0].field, all);
+  ShownRange shown{all};
+  if (automatic && p.scale == ScaleKind::linear) shown = shown_range(fields, p.component, is_signed);
+  else if (automatic && is_signed) shown.range.hi = std::max(-all.lo, all.hi), shown.range.lo = -shown.range.hi;
+  const bool cut = shown.cut_low || shown.cut_high;
+  if ((same && !cut) || !(all.lo < all.hi)) return false;
+  const std::string map = is_signed ? "coolwarm" : "sight";
+  if (automatic) p.map = map;
+  if (!p.range.empty()) return true;
+  p.range = {shown.range.lo, shown.range.hi};
+  const auto triangle = [&](std::string& color, double at) {  // in the legend
+    if (color.empty()) color = color_text(find_colormap(map).at(at));
+  };
+  if (shown.cut_low) triangle(p.below, 0);
+  if (shown.cut_high) triangle(p.above, 1);
+  return true;
+}
+
+bool share_range(const Field& one, Range all, ColoringParams& p) {
+  if (!p.range.empty() || !(all.lo < all.hi)) return false;
+  if (!p.map && two_sided(one, all)) {  // values of both signs: no colour for one side only
+    const double most = std::max(-all.lo, all.hi);
+    all = {-most, most};
+  }
+  p.range = {all.lo, all.hi};
+  return true;
+}
+
+}  // namespace sg

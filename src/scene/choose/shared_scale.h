@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// Colours that several datasets share: the parts of a collection, the steps of a film.
+#pragma once
+#include <span>
+
+#include "scene/choose/coloring.h"
+#include "scene/choose/field_habits.h"
+
+namespace sg {
+
+/// What choose_scale() does for one dataset, decided once for all: fills in map, range, and the colours beyond cut ends, where they are not
+/// stated. `fields`: the same field of each dataset that has it, at least one. False, and nothing changed, where every dataset comes to the
+/// same by itself.
+bool share_scale(std::span<const FieldOf> fields, ColoringParams& p);
+
+/// The same by the range of all, for datasets that are not in memory together; no tails are cut. `one`: the field in one of them.
+bool share_range(const Field& one, Range all, ColoringParams& p);
+
+}  // namespace sg

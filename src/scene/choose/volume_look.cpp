@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/choose/volume_look.h"
+
+#include "base/text.h"
+#include "data/field_ops.h"
+#include "data/lattice.h"
+#include "scene/choose/field_habits.h"
+#include "scene/choose/scale.h"
+
+namespace sg {
+
+std::vector<size_t> histogram(const Field& field, int component, double lo, double hi, size_t bins) {
+  std::vector<size_t> h(bins);
+  if (!(lo < hi)) return h;
+  const double scale = double(bins) / (hi - lo);
+  const size_t step = std::max<size_t>(1, field.array.count() / 2000000);
+  const bool magnitude = component < 0 && field.components() > 1;
+  dispatch(field.array, [&](auto v) {
+    for (size_t i = 0; i < v.count; i += step) {
+      double x = double(v(i, std::max(component, 0)));
+      if (magnitude) {
+        x = 0;
+        for (int c = 0; c < v.components; ++c) x += double(v(i, c)) * double(v(i, c));
+        x = std::sqrt(x);
+      }
+      if (x >= lo && x <= hi) ++h[std::min(bins - 1, size_t((x - lo) * scale))];
+    }
+  });
+  return h;
+}
+
+bool looks_like_ct(const Dataset& data, const Field& field, double* offset) {
+  const ElementType t = field.array.type();
+  if ((t != ElementType::i16 && t != ElementType::u16) || field.components() != 1) return false;
+  const Range r = data.range(field);
+  if (r.empty() || r.hi < 1500 || r.hi > 8000 || r.lo < -4000) return false;
+  const bool hounsfield = r.lo <= -500;
+  if (!hounsfield && r.lo > 300) return false;
+  *offset = hounsfield ? 0 : 1024;
+  // Air: a good part of the volume lies at least 300 HU below water.
+  const auto h = histogram(field, -1, r.lo, r.hi);
+  size_t all = 0, air = 0, tissue = 0;
+  for (size_t b = 0; b < h.size(); ++b) {
+    const double hu = r.lo + (double(b) + 0.5) / double(h.size()) * (r.hi - r.lo) - *offset;
+    all += h[b];
+    if (hu < -300) air += h[b];
+    if (hu > -150 && hu < 200) tissue += h[b];
+  }
+  return air * 10 > all && tissue * 20 > all;
+}
+
+namespace {
+
+// Value below which the share q of the histogram's samples lies.
+double quantile(const std::vector<size_t>& h, double lo, double hi, double q) {
+  size_t all = 0;
+  for (size_t n : h) all += n;
+  double sum = 0;
+  for (size_t b = 0; b < h.size(); ++b) {
+    sum += double(h[b]);
+    if (sum >= q * double(all)) return lo + (double(b) + 1) / double(h.size()) * (hi - lo);
+  }
+  return hi;
+}
+
+// The fullest bin of the stretch of a twentieth of the range that holds most samples: a spike of one value (saturation, letters burnt in)
+// is less than the spread of a background.
+size_t fullest(const std::vector<size_t>& h) {
+  const size_t n = h.size(), width = std::max<size_t>(1, n / 20);
+  size_t sum = 0, most = 0, begin = 0;
+  for (size_t b = 0; b < n; ++b) {
+    sum += h[b];
+    if (b >= width) sum -= h[b - width];
+    if (sum > most) most = sum, begin = b + 1 >= width ? b + 1 - width : 0;
+  }
+  return size_t(std::max_element(h.begin() + ptrdiff_t(begin), h.begin() + ptrdiff_t(std::min(n, begin + width))) - h.begin());
+}
+
+// Fields of which it is known what matters in them: crests, troughs or strands. "" when it is not.
+std::string known_look(const Dataset& data, const Field& field, const Range& r, int component, VolumeItem& item) {
+  using Shows = FieldHabit::Shows;
+  const Shows shows = habit_of(field).shows;
+  if (shows == Shows::any) return "";
+  const auto h = histogram(field, component, r.lo, r.hi, 1024);
+  size_t all = 0;
+  for (const size_t n : h) all += n;
+  const double width = r.hi - r.lo;
+  if (shows == Shows::fibres && 10 * h.front() > 3 * all) {  // else made of white noise, which has no strands
+    item.opacity.points = {{r.lo, 0}, {r.lo + 0.2 * width, 0}, {r.lo + 0.5 * width, 0.95}, {r.hi, 0.99}};
+    if (const auto* grid = data.as<UniformGrid>(); grid && item.unit_distance == 0) {
+      const Vec3 s = grid->spacing;
+      item.unit_distance = 3 * std::max({s.x, s.y, s.z});  // as wide as a strand
+    }
+    return "strands along the flow";
+  }
+  const bool low = shows == Shows::low;
+  // From what most of the volume holds to the end that matters; zero and what lies beyond it is no crest.
+  const double end = low ? r.lo : r.hi, most = quantile(h, r.lo, r.hi, low ? 0.25 : 0.75);
+  double start = most;
+  if (r.lo < 0 && r.hi > 0 && two_sided(field, r)) start = low ? std::min(most, 0.0) : std::max(most, 0.0);
+  start += 0.06 * (end - start);
+  const double middle = start + 0.3 * (end - start);
+  if (low) item.opacity.points = {{end, 0.75}, {middle, 0.18}, {start, 0}, {r.hi, 0}};
+  else item.opacity.points = {{r.lo, 0}, {start, 0}, {middle, 0.18}, {end, 0.75}};
+  return fmt::format("{} values matter: those {} {} are shown", low ? "low" : "high", low ? "below" : "above", short_number(start, 3));
+}
+
+// Skin faintly, bone strongly; colours of flesh and ivory. Hounsfield units + offset.
+void ct_look(const Range& r, double offset, bool choose_colors, VolumeItem& item) {
+  item.opacity.points.clear();
+  const double points[][2] = {{-500, 0}, {-250, 0.035}, {-60, 0.05}, {60, 0.05}, {130, 0.10}, {250, 0.45}, {800, 0.75}, {3000, 0.9}};
+  for (const auto& p : points) item.opacity.points.push_back({p[0] + offset, p[1]});
+  item.shaded = true;
+  if (!choose_colors) return;
+  struct Stop {
+    double hu;
+    Vec3f color;
+  };
+  const Stop stops[] = {{-500, {0.55f, 0.25f, 0.15f}}, {-100, {0.85f, 0.55f, 0.42f}}, {60, {0.88f, 0.52f, 0.40f}},
+                        {160, {0.93f, 0.80f, 0.64f}},  {300, {0.96f, 0.93f, 0.86f}},  {1500, {1.0f, 1.0f, 0.97f}}};
+  item.color.lo = std::max(-500 + offset, r.lo);
+  item.color.hi = std::min(1500 + offset, r.hi);
+  item.color.map = Colormap{"ct", MapKind::sequential, "Flesh to bone over Hounsfield units.", {}, {}};
+  for (int i = 0; i < 256; ++i) {
+    const double hu = item.color.lo + (item.color.hi - item.color.lo) * i / 255.0 - offset;
+    size_t k = 1;
+    while (k + 1 < std::size(stops) && stops[k].hu < hu) ++k;
+    const float t = float(std::clamp((hu - stops[k - 1].hu) / (stops[k].hu - stops[k - 1].hu), 0.0, 1.0));
+    item.color.map.colors.push_back(lerp(stops[k - 1].color, stops[k].color, t));
+  }
+  if (item.color.title == "MetaImage" || item.color.title.empty()) item.color.title = "CT value";
+}
+
+}  // namespace
+
+Range foreground(const Field& field, int component, double lo, double hi) {
+  auto h = histogram(field, component, lo, hi, 1024);
+  const double width = hi - lo;
+  const size_t peak = fullest(h);
+  Range r{lo, hi};
+  if (peak < h.size() / 2) {
+    const size_t end = std::min(h.size() - 1, peak + 1 + h.size() / 50);
+    r.lo = lo + double(end) / double(h.size()) * width;
+    std::fill(h.begin(), h.begin() + ptrdiff_t(end), size_t(0));
+  }
+  r.hi = std::max(quantile(h, lo, hi, 0.999), r.lo + 0.01 * width);
+  return r;
+}
+
+std::string choose_volume_look(const Dataset& data, const Field& field, const ColoringParams& params, VolumeItem& item, bool anatomy) {
+  const Range r{item.color.lo, item.color.hi};
+  if (item.mode == VolumeItem::Mode::maximum) {
+    item.opacity.points = {{r.lo, 0}, {r.hi, 1}};
+    return "maximum along each ray";
+  }
+  const Range values = data.range(field, params.component);
+  if (!values.empty() && values.lo == values.hi) {
+    item.opacity.points = {{values.lo, 0.2}};
+    return fmt::format("every value is {}: drawn evenly", short_number(values.lo, 6));
+  }
+  double offset = 0;
+  if (anatomy && params.range.empty() && looks_like_ct(data, field, &offset)) {
+    ct_look(data.range(field), offset, !params.map, item);
+    return fmt::format("CT (an air peak and soft tissue in 16-bit values{}): skin and bone colours", offset ? ", Hounsfield + 1024" : "");
+  }
+  if (item.color.kind != ScaleKind::linear) {  // by position, so that decades get equal shares
+    item.opacity.points.clear();
+    for (int i = 0; i <= 16; ++i) item.opacity.points.push_back({item.color.value_at(i / 16.0), 0.25 * (i / 16.0) * (i / 16.0)});
+    return "opacity rises with the position on the scale";
+  }
+  if (const std::string why = known_look(data, field, r, params.component, item); !why.empty()) return why;
+  if (item.color.map.kind == MapKind::diverging && r.lo < 0 && r.hi > 0) {
+    const double m = std::max(-r.lo, r.hi);
+    item.opacity.points = {{-m, 0.8}, {-0.5 * m, 0.25}, {-0.2 * m, 0}, {0.2 * m, 0}, {0.5 * m, 0.25}, {m, 0.8}};
+    return "signed: opaque away from zero on both sides";
+  }
+  // What most samples have about is taken for the background; opacity follows the quantiles away from it.
+  const auto h = histogram(field, params.component, r.lo, r.hi);
+  const size_t peak = fullest(h);
+  if (peak > h.size() / 2) {  // bright background: see the low values
+    const double q50 = quantile(h, r.lo, r.hi, 0.5), q10 = quantile(h, r.lo, r.hi, 0.1);
+    item.opacity.points = {{r.lo, 0.5}, {std::min(q10, 0.5 * (r.lo + q50)), 0.10}, {q50, 0}, {r.hi, 0}};
+    std::sort(item.opacity.points.begin(), item.opacity.points.end(), [](Vec2 a, Vec2 b) { return a.x < b.x; });
+    return "the background is bright: low values are shown";
+  }
+  const double width = r.hi - r.lo, peak_value = r.lo + (double(peak) + 1) / double(h.size()) * width;
+  // Where the foreground begins: past the background peak, and past what most of the volume holds.
+  const double start = std::max(peak_value + 0.02 * width, std::min(quantile(h, r.lo, r.hi, 0.6), r.lo + 0.35 * width));
+  const double middle = std::max(start + 0.15 * width, quantile(h, r.lo, r.hi, 0.95));
+  item.opacity.points = {{r.lo, 0}, {start, 0}, {std::min(middle, 0.5 * (start + r.hi)), 0.12}, {r.hi, 0.7}};
+  return fmt::format("values above {} are shown, the background below is left out", short_number(start, 3));
+}
+
+}  // namespace sg

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/show/lines.h"
+
+#include "color/parse_color.h"
+#include "filter/mesh/surface.h"
+#include "scene/show/field_color.h"
+
+namespace sg {
+
+void describe(Schema& s, LinesShow& p) {
+  describe(s, p.coloring);
+  s("opacity", p.opacity, "1 hides what is behind, 0 is invisible.").range(0, 1);
+  s("width", p.width, "Width of the lines.").unit("pixels").positive();
+  s("lit", p.lit, "Light the lines by their direction: bright across the light, dark along it.");
+  s("halo", p.halo, "Border around each line that hides lines behind it, so that crossings show which is in front.")
+      .unit("pixels")
+      .range(0, 100);
+  s("halo_color", p.halo_color, "Colour of the halos.");
+}
+
+std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const LinesShow& p, Context& context) {
+  LinesItem item;
+  item.data = surface_of(input, context);
+  if (const auto& m = *item.data->as<SurfaceMesh>(); m.lines.size() == 0 && m.polygons.size() + m.strips.size() > 0)
+    context.warn(
+        "lines: these data have cells but no lines, nothing is drawn; -f streamlines, isolines, feature_edges or contour of a flat mesh "
+        "make lines, --show 'surface edges=true' draws the edges of cells");
+  item.color_by = field_color(*input, p.coloring, context);
+  if (!p.coloring.color.empty()) item.color = parse_color(p.coloring.color, "color");
+  item.opacity = p.opacity;
+  item.width = p.width;
+  item.lit = p.lit;
+  item.halo = p.halo;
+  item.halo_color = parse_color(p.halo_color, "halo_color");
+  auto legend = legend_of(item.color_by);
+  scene.items.emplace_back(std::move(item));
+  return legend;
+}
+
+}  // namespace sg

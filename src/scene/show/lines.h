@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lines of constant width.
+#pragma once
+#include "color/legend_content.h"
+#include "scene/choose/coloring.h"
+#include "scene/scene.h"
+
+namespace sg {
+
+struct LinesShow {
+  ColoringParams coloring;
+  double opacity = 1, width = 1.5;
+  bool lit = false;
+  double halo = 0;
+  std::string halo_color = "#0d0d0f";
+};
+void describe(Schema& s, LinesShow& p);
+
+/// Of data without lines it warns, and says what makes some.
+std::optional<Legend> add(Scene& scene, const DatasetPtr& data, const LinesShow& p, Context& context);
+
+}  // namespace sg

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/show/parts.h"
+
+#include "scene/choose/shared_scale.h"
+#include "scene/show/volume_parts.h"
+
+namespace sg {
+
+namespace {
+
+// The name of the field that colours all parts; "" for none.
+std::string field_of_parts(const std::vector<DatasetPtr>& parts, const ShowKind& kind, const ParamSet& params) {
+  std::vector<const Dataset*> by_size;
+  for (const DatasetPtr& d : parts) by_size.push_back(d.get());
+  std::stable_sort(by_size.begin(), by_size.end(), [](const Dataset* a, const Dataset* b) { return a->point_count() > b->point_count(); });
+  for (const bool labels : {false, true})
+    for (const Dataset* d : by_size)
+      if (const Field* f = shown_field(kind, params, *d); f && (labels || f->role != Role::labels))
+        return f->name == "band" && is_banded(*d) ? "band low" : f->name;  // bands of parts differ; their values can be compared
+  return "";
+}
+
+void share_colors(const std::vector<DatasetPtr>& parts, const ShowKind& kind, std::vector<ParamSet>& params) {
+  ColoringParams shared = *kind.coloring(params[0]);
+  const bool by_themselves = kind.automatic && shared.field.empty();  // they choose their field: here the range alone
+  const std::string name = field_of_parts(parts, kind, params[0]);
+  if (name.empty()) return;
+  std::vector<FieldOf> fields;
+  for (const DatasetPtr& d : parts)
+    if (const Field* f = d->fields().find(name); f && f->association != Association::whole) fields.push_back({d.get(), f});
+  if (fields.empty()) return;  // the show says what there is instead
+  share_scale(fields, shared);
+  for (size_t i = 0; i < parts.size(); ++i) {
+    ColoringParams& own = *kind.coloring(params[i]);
+    const bool has = parts[i]->fields().find(name) != nullptr;
+    const FieldName field = by_themselves ? own.field : FieldName{has ? name : "none"};
+    if (has) own = shared;
+    own.field = field;
+  }
+}
+
+}  // namespace
+
+std::vector<ParamSet> params_of_parts(const std::vector<DatasetPtr>& parts, const ShowKind& kind, const ParamSet& stated) {
+  std::vector<ParamSet> params;
+  for (size_t i = 0; i < parts.size(); ++i) params.push_back(copy_of(stated));
+  if (parts.size() < 2) return params;
+  if (kind.coloring) share_colors(parts, kind, params);
+  if (kind.share) kind.share(parts, params);
+  return params;
+}
+
+std::vector<Legend> show_parts(Scene& scene, const std::vector<DatasetPtr>& parts, const ShowKind& kind, const ParamSet& stated,
+                               uint32_t group, Context& context) {
+  const std::vector<ParamSet> params = params_of_parts(parts, kind, stated);
+  const size_t first = scene.items.size();
+  const bool several = parts.size() > 1, joined = several && kind.type == ShowType::volume;
+  std::vector<Legend> legends;
+  size_t largest = 0, most = 0;  // of joined volumes: the item that speaks for all
+  for (size_t i = 0; i < parts.size(); ++i) {
+    const DatasetPtr& d = parts[i];
+    if (several && d->point_count() == 0) continue;                          // what a filter left nothing of
+    if (joined && kind.coloring(params[i])->field.name == "none") continue;  // nothing to see through
+    const auto legend = kind.add(scene, d, params[i], context);
+    if (!joined) {
+      if (legend) legends.push_back(*legend);
+    } else if (scene.items.size() == first + 1 || d->point_count() > most) {
+      largest = scene.items.size() - 1, most = d->point_count();
+      legends.assign(legend ? 1 : 0, legend.value_or(Legend()));
+    }
+  }
+  if (!joined || scene.items.size() == first) return legends;
+  const VolumeItem model = std::get<VolumeItem>(scene.items[largest]);
+  join_volumes(std::span(scene.items).subspan(first), model, group);
+  for (Legend& l : legends)
+    if (!l.volume) static_cast<ColorScale&>(l) = std::get<VolumeItem>(scene.items[largest]).color;
+  return legends;
+}
+
+bool same_legend(const Legend& a, const Legend& b) {
+  return a.title == b.title && a.map.name == b.map.name && a.lo == b.lo && a.hi == b.hi && a.kind == b.kind && a.labels == b.labels &&
+         a.limits == b.limits && (!a.glyph || !b.glyph || a.glyph->length == b.glyph->length);
+}
+
+}  // namespace sg

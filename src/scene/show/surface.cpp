@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/show/surface.h"
+
+#include "color/parse_color.h"
+#include "data/field_ops.h"
+#include "filter/mesh/faces.h"
+#include "filter/mesh/surface.h"
+#include "scene/show/field_color.h"
+#include "scene/show/texture_color.h"
+
+namespace sg {
+
+void describe(Schema& s, SurfaceShow& p) {
+  describe(s, p.coloring);
+  s("opacity", p.opacity, "1 hides what is behind, 0 is invisible.").range(0, 1);
+  s("edges", p.edges, "Draw the edges of the cells.");
+  s("flat", p.flat, "One normal per polygon instead of smooth shading.");
+  s("lit", p.lit, "Light the surface; false shows the plain colours.");
+  s("feature_angle", p.feature_angle, "Edges sharper than this stay sharp when normals are computed.").unit("deg").range(0, 180);
+  describe(s, p.lic);
+  s("texture", p.texture, "Point field in [0, 1] that darkens and brightens the colours; default: 'lic' or 'spot noise'; 'none' for none.");
+}
+
+namespace {
+
+// The points of the vertex cells as a cloud, on which a cell field is a point field.
+DatasetPtr vertex_cells(const Dataset& d, const SurfaceMesh& mesh, const std::string& field) {
+  const CellsView v = cells_view(mesh.vertices);
+  std::vector<double> xyz;
+  std::vector<int64_t> cells;
+  for (size_t c = 0; c < v.count; ++c)
+    for (size_t k = v.begin(c); k < v.end(c); ++k) {
+      const Vec3 p = mesh.points.at(size_t(v.connectivity[k])) - mesh.points.origin;
+      xyz.insert(xyz.end(), {p.x, p.y, p.z});
+      cells.push_back(int64_t(c));
+    }
+  Field f = d.fields().require(field, Association::cell);
+  f.association = Association::point;
+  f.array = gather(f.array, cells);
+  FieldSet fields;
+  fields.add(std::move(f));
+  return make_dataset(Mesh(PointCloud{{Array::from_vector(std::move(xyz), 3), mesh.points.origin}}), std::move(fields));
+}
+
+}  // namespace
+
+std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const SurfaceShow& p, Context& context) {
+  SurfaceItem item;
+  // Ranges come from the whole input, so that a surface and its volume share colours.
+  item.color_by = field_color(*input, p.coloring, context);
+  if (p.edges) {
+    Skin skin = faces_and_edges(input, {}, context);
+    item.data = std::move(skin.surface), item.edge_lines = std::move(skin.edges);
+  } else {
+    item.data = surface_of(input, context);
+  }
+  if (!p.coloring.color.empty()) item.color = parse_color(p.coloring.color, "color");
+  item.opacity = p.opacity;
+  item.edges = p.edges;
+  item.flat = p.flat;
+  item.material.lit = p.lit;
+  item.feature_angle = p.feature_angle;
+  item.lic = surface_texture_of(*item.data, p.lic);
+  const SurfaceMesh& mesh = *item.data->as<SurfaceMesh>();
+  const auto legend = legend_of(item.color_by);
+  if (mesh.lines.size() > 0) {
+    LinesItem lines;
+    lines.data = item.data;
+    lines.color_by = item.color_by;
+    if (!p.coloring.color.empty()) lines.color = item.color;
+    lines.opacity = p.opacity;
+    if (mesh.polygons.size() + mesh.strips.size() == 0) lines.width = 2.5;  // alone they may be seen
+    scene.items.emplace_back(std::move(lines));
+  }
+  if (mesh.vertices.size() > 0) {
+    PointsItem points;
+    points.data = item.data;
+    points.color_by = item.color_by;
+    if (item.color_by && item.color_by->association == Association::cell) {
+      points.data = vertex_cells(*item.data, mesh, item.color_by->field);
+      points.color_by->association = Association::point;
+    }
+    if (!p.coloring.color.empty()) points.color = item.color;
+    points.opacity = p.opacity;
+    points.size = 8;
+    scene.items.emplace_back(std::move(points));
+  }
+  const bool any_surface = mesh.polygons.size() + mesh.strips.size() > 0;
+  apply_texture(item, texture_field(*input, p.texture, item.color_by));  // gives the item other data: `mesh` may be gone
+  if (any_surface) scene.items.emplace_back(std::move(item));
+  return legend;
+}
+
+}  // namespace sg

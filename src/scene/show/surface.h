@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// The outer surface of the data, with its lines and vertices.
+#pragma once
+#include "color/legend_content.h"
+#include "scene/choose/coloring.h"
+#include "scene/scene.h"
+#include "scene/show/lic.h"
+
+namespace sg {
+
+struct SurfaceShow {
+  ColoringParams coloring;
+  double opacity = 1;
+  bool edges = false, flat = false, lit = true;
+  double feature_angle = 40;
+  LicShow lic;
+  std::string texture;
+};
+void describe(Schema& s, SurfaceShow& p);
+
+/// Adds items for the dataset; returns what the legend shows when a field is mapped to colours.
+std::optional<Legend> add(Scene& scene, const DatasetPtr& data, const SurfaceShow& p, Context& context);
+
+}  // namespace sg

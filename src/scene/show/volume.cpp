@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "scene/show/volume.h"
+
+#include "base/text.h"
+#include "color/parse_color.h"
+#include "color/transfer_text.h"
+#include "data/field_component.h"
+#include "data/lattice.h"
+#include "scene/choose/scale.h"
+#include "scene/choose/volume_boundaries.h"
+#include "scene/choose/volume_extent.h"
+#include "scene/choose/volume_look.h"
+#include "scene/show/volume_presets.h"
+
+namespace sg {
+
+namespace {
+
+constexpr std::string_view second_words[] = {"none", "gradient", "second_derivative", "curvature"};
+template <size_t N>
+int place_in(const std::string_view (&words)[N], std::string_view w) {
+  for (size_t i = 0; i < N; ++i)
+    if (words[i] == w) return int(i);
+  return -1;
+}
+
+const Field& mesh_field(const Dataset& d, const std::string& name, std::string_view word) {
+  const Field& f = d.fields().require(name);
+  if (f.association == Association::whole)
+    fail_usage(fmt::format("field '{}' belongs to the whole dataset, not to points or cells", f.name), std::string(word));
+  return f;
+}
+
+// One colour for all values.
+void take_one_colour(ColorScale& scale, const std::string& color) {
+  const Vec3f c = parse_color(color, "color");
+  scale.map = Colormap{"one", MapKind::sequential, "One colour.", {c, c}, {}};
+  scale.labels.clear(), scale.label_names.clear();
+}
+
+struct Fields {
+  const Field* color;    // through the colour scale
+  const Field* opacity;  // the value axis
+};
+
+Fields fields_of(const Dataset& d, const VolumeShow& p) {
+  ColoringParams named = p.coloring;
+  named.color.clear();
+  if (named.field.name == "none") named.field.name.clear();
+  Fields f{};
+  f.color = wanted_field(d, named);
+  if (!f.color) f.color = d.fields().active(1);  // one that is the same everywhere is seen through all the same
+  if (!p.color_by.empty() && named.field.empty() && f.color && f.color->name == p.color_by.name) f.color = nullptr;  // the other one
+  if (!f.color && named.field.empty() && !p.color_by.empty())
+    for (const Field& other : d.fields())
+      if (!f.color && other.association != Association::whole && other.components() == 1 && other.name != p.color_by.name) f.color = &other;
+  if (!f.color) fail_usage("there is no field to see through", "volume", "name one with field=");
+  f.opacity = f.color;
+  if (!p.opacity_by.empty()) f.opacity = &mesh_field(d, p.opacity_by.name, "opacity_by");
+  if (!p.color_by.empty()) f.color = &mesh_field(d, p.color_by.name, "color_by");
+  return f;
+}
+
+/// A component counts for the fields that have several; where both have one, for none.
+int component_of(const VolumeShow& p, const Fields& all, const Field& f) {
+  const Field& other = &f == all.color ? *all.opacity : *all.color;
+  return f.components() == 1 && other.components() > 1 ? -1 : p.coloring.component;
+}
+
+void check_second_field(const Field& value, const Field& second) {
+  if (second.components() != 1)
+    fail_usage(fmt::format("'{}' has {} components", second.name, second.components()), "volume",
+               "a second field has one number each: -f 'calc expr=mag(NAME)' makes the magnitude");
+  if (value.association != second.association)
+    fail_usage(fmt::format("'{}' is a {} field and '{}' a {} field", value.name, association_name(value.association), second.name,
+                           association_name(second.association)),
+               "volume", "both must lie on the points or both on the cells: -f cell_to_point makes point fields");
+}
+
+// The second axis and its part of opacity; colours by it.
+void take_second_axis(const VolumeShow& p, const Fields& fields, const ColorScale& colors, VolumeItem& item, Context& context) {
+  TransferDetail& detail = item.detail;
+  const Dataset& d = *item.data;
+  const Field* second = nullptr;
+  std::string word = p.second;
+  if (fields.color != fields.opacity) {
+    detail.second = SecondAxis::field, detail.color_by_second = true, detail.second_color = colors;
+    second = fields.color;
+  } else {
+    if (word == "none" && !p.widgets.empty()) word = "gradient";
+    const int k = place_in(second_words, word);
+    if (k >= 0) detail.second = SecondAxis(k);
+    else {
+      detail.second = SecondAxis::field;
+      second = d.fields().find(word);
+      if (!second) {
+        std::vector<std::string> names(std::begin(second_words), std::end(second_words));
+        for (const std::string& n : d.fields().names()) names.push_back(n);
+        fail_usage(fmt::format("'{}' is neither a second axis nor a field", word), "second", unknown_name_hint(word, names));
+      }
+    }
+  }
+  if (detail.second == SecondAxis::none) return;
+  if (second) check_second_field(*fields.opacity, *second), detail.second_field = second->name;
+  const Range r = second_axis_range(item.data, *fields.opacity, item.component, detail.second, second, context);
+  detail.second_lo = r.lo, detail.second_hi = r.hi;
+  ColorScale axis;
+  axis.lo = r.lo, axis.hi = r.hi;
+  if (p.second_opacity) detail.second_factor = parse_opacity(*p.second_opacity, axis, "second_opacity");
+  else if (detail.second == SecondAxis::gradient) detail.second_factor = parse_opacity("0:0,0.25:1", axis);
+  else if (detail.second == SecondAxis::second_derivative)
+    detail.second_factor = parse_opacity("0.35:0,0.5:1,0.65:0", axis);  // the middle of borders
+  else if (detail.second == SecondAxis::curvature)
+    detail.second_factor = parse_opacity("0:1,0.3:1,0.5:0.1,0.7:1,1:1", axis);  // ridges and valleys
+  if (!p.widgets.empty()) {
+    detail.widgets = parse_widgets(p.widgets, item.color, axis);
+    // The curve that bounds them, for everything that only knows values: largest opacity at each end and middle.
+    std::vector<double> knots;
+    for (const TransferWidget& w : detail.widgets) knots.insert(knots.end(), {w.lo, 0.5 * (w.lo + w.hi), w.hi});
+    std::sort(knots.begin(), knots.end());
+    knots.erase(std::unique(knots.begin(), knots.end()), knots.end());
+    item.opacity.points.clear();
+    for (const double x : knots) {
+      double most = 0;
+      for (const TransferWidget& w : detail.widgets)
+        most = std::max(most, w.opacity * (1 - std::abs(x - 0.5 * (w.lo + w.hi)) / (0.5 * (w.hi - w.lo))));
+      item.opacity.points.push_back({x, std::max(0.0, most)});
+    }
+  }
+}
+
+bool needs_level(RayFunction f) {
+  return f == RayFunction::first_hit || f == RayFunction::distance || f == RayFunction::accumulate || f == RayFunction::isosurface;
+}
+
+// The value at which something begins, when nobody says.
+void choose_level(const Field& field, VolumeItem& item, Context& context) {
+  const Range r = item.data->range(field, field.components() > 1 ? item.component : 0);
+  if (r.empty()) return item.levels.push_back(0);
+  const auto found = material_boundaries(sample_derivatives(item.data, field, item.component, false, 500000, context), r.lo, r.hi, 1);
+  double level = 0.5 * (r.lo + r.hi);
+  if (!found.empty()) level = found[0].value;
+  item.levels.push_back(*parse_double(short_number(level, 4)));
+  context.info(
+      fmt::format("level {}: {}", short_number(item.levels[0]),
+                  found.empty() ? "the middle of the range" : "the strongest border of materials (the mean gradient peaks there)"));
+}
+
+// Opacity, and for CT the colours, where nothing is stated.
+void choose_transfer(const VolumeShow& p, const Field& field, VolumeItem& item, Context& context) {
+  if (item.mode == RayFunction::isosurface) {
+    // The innermost surface hides, those around it are seen through.
+    const double last = *std::max_element(item.levels.begin(), item.levels.end());
+    const Range r{item.color.lo, item.color.hi};
+    const double before = std::nextafter(last, -HUGE_VAL);
+    item.opacity.points = {{std::min(r.lo, before), 0.35}, {before, 0.35}, {last, 1}, {std::max(r.hi, last), 1}};
+    return;
+  }
+  const bool composites = item.mode == RayFunction::composite || item.mode == RayFunction::maximum_difference;
+  if (!composites && item.mode != RayFunction::maximum) {  // what is collected is drawn as it is
+    item.opacity.points = {{item.color.lo, 1}};
+    return;
+  }
+  if (p.transfer == "boundaries") {
+    const Range r = item.data->range(field, field.components() > 1 ? item.component : 0);
+    const auto found = material_boundaries(sample_derivatives(item.data, field, item.component, false, 2000000, context), r.lo, r.hi);
+    const bool free = item.detail.second == SecondAxis::none;
+    TransferDetail detail;
+    const std::string why = show_boundaries(found, r.lo, r.hi, item.opacity, detail);
+    if (!why.empty()) {
+      if (free) {
+        item.detail.second = detail.second, item.detail.second_factor = detail.second_factor;
+        const Range axis = second_axis_range(item.data, field, item.component, SecondAxis::gradient, nullptr, context);
+        item.detail.second_lo = axis.lo, item.detail.second_hi = axis.hi;
+      }
+      return context.info(why);
+    }
+    context.info(fmt::format("no borders of materials stand out in '{}'; opacity comes from its histogram", field.name));
+  }
+  const std::string why = choose_volume_look(*item.data, field, p.coloring, item, p.transfer == "auto");
+  if (composites) context.info(why);
+}
+
+std::string title_of_second(const TransferDetail& detail) {
+  switch (detail.second) {
+    case SecondAxis::none: return "";
+    case SecondAxis::gradient: return "gradient";
+    case SecondAxis::second_derivative: return "2nd derivative";
+    case SecondAxis::curvature: return "curvature";
+    case SecondAxis::field: return detail.second_field;
+  }
+  return "";
+}
+
+// What the legend shows: what the ray collects, and for those that composite the opacity.
+Legend legend_of(const VolumeItem& item) {
+  Legend legend(item.detail.color_by_second ? item.detail.second_color : item.color);
+  const RayFunction f = item.mode;
+  if (f == RayFunction::composite || f == RayFunction::isosurface || f == RayFunction::maximum_difference)
+    legend.volume = VolumeLegend{item.opacity, item.detail, item.color, title_of_second(item.detail)};
+  return legend;
+}
+
+// The preset's look, but where the parameters state otherwise.
+VolumeShow with_preset(const VolumeShow& p, const Schema& schema, const Dataset& d, Context& context) {
+  const ParamSet defaults = make_param_set<VolumeShow>();
+  VolumeShow given = p;
+  const Schema own = schema_of(given);
+  const auto states = [&](std::string_view name) {
+    return schema.stated(name) || own.find(name)->ref.get() != defaults.schema.find(name)->ref.get();
+  };
+  const Fields fields = fields_of(d, p);
+  const int component = component_of(p, fields, *fields.opacity);
+  check_component(*fields.opacity, component, "component");
+  std::string reason;
+  VolumeShow look = volume_of_preset(p.preset, d, *fields.opacity, component, reason);
+  context.info(reason);
+  if (states("map") || states("color")) look.colors.clear();
+  if (states("widgets") || states("transfer")) look.opacity.reset();
+  if (states("opacity_by") || states("color_by") || states("widgets") || states("second"))
+    look.second = "none", look.second_opacity.reset();
+  if (states("colors")) look.coloring.range.clear();
+  Schema result = schema_of(look);
+  for (const ParamDecl& decl : own.decls())
+    if (states(decl.name)) result.find(decl.name)->ref.set(decl.ref.get());
+  return look;
+}
+
+}  // namespace
+
+std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const VolumeShow& p, Context& context) {
+  return add(scene, input, p, Schema(), context);
+}
+
+std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const VolumeShow& stated, const Schema& schema, Context& context) {
+  if (is_lattice(input->mesh())) {
+    const auto n = lattice_dims(input->mesh());
+    if (std::min({n[0], n[1], n[2]}) < 2)
+      fail_usage(fmt::format("a grid of {}x{}x{} points has no volume", n[0], n[1], n[2]), "volume",
+                 "show it as a surface: --show surface");
+  }
+  const VolumeShow p = stated.preset.empty() ? stated : with_preset(stated, schema, *input, context);
+  const Fields fields = fields_of(*input, p);
+  VolumeItem item;
+  item.data = input;
+  item.field = fields.opacity->name;
+  item.association = fields.opacity->association;
+  item.component = component_of(p, fields, *fields.opacity);
+  check_component(*fields.opacity, item.component, "component");
+  item.method = p.method;
+  item.mode = p.mode;
+  item.levels = p.levels;
+  item.shaded = p.shaded;
+  item.unit_distance = p.unit;
+  item.sampling = p.sampling;
+  item.light = p.light;
+  if (!p.clip.empty()) item.clip = parse_clip(p.clip);
+
+  // Colours as asked for, over the field that they belong to.
+  ColoringParams coloring = p.coloring;
+  coloring.component = component_of(p, fields, *fields.color);
+  ColorScale colors = choose_scale(*input, *fields.color, coloring, context);
+  const ColorScale whole = colors;
+  if (!p.coloring.color.empty()) take_one_colour(colors, p.coloring.color);
+  if (!p.colors.empty()) parse_color_stops(p.colors, colors, !p.coloring.range.empty());
+  if (fields.color == fields.opacity) item.color = whole;
+  else {
+    ColoringParams plain;
+    plain.component = item.component;
+    item.color = choose_scale(*input, *fields.opacity, plain, context);
+  }
+  if (needs_level(item.mode) && item.levels.empty()) choose_level(*fields.opacity, item, context);
+  take_second_axis(p, fields, colors, item, context);
+  if (!p.widgets.empty()) {
+  } else if (!p.opacity) choose_transfer(p, *fields.opacity, item, context);
+  else item.opacity = parse_opacity(*p.opacity, item.color);
+  const bool own_colors = !p.colors.empty() || !p.coloring.color.empty();
+  if (fields.color == fields.opacity && own_colors) item.color = colors;
+  take_collected_range(item, p.coloring.range.empty() && p.colors.empty(), !p.coloring.map && !own_colors);
+  const Legend legend = legend_of(item);
+  scene.items.emplace_back(std::move(item));
+  return legend;
+}
+
+}  // namespace sg

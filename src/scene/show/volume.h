@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// A scalar field of any mesh, seen through.
+#pragma once
+#include "color/legend_content.h"
+#include "scene/choose/coloring.h"
+#include "scene/scene.h"
+
+namespace sg {
+
+struct VolumeShow {
+  ColoringParams coloring;
+  std::string preset, transfer = "auto", save;
+  std::optional<std::string> opacity;
+  std::string colors;
+  FieldName opacity_by, color_by;
+  std::string second = "none";
+  std::optional<std::string> second_opacity;
+  std::string widgets;
+  double unit = 0;
+  VolumeMethod method = VolumeMethod::ray;
+  RayFunction mode = RayFunction::composite;
+  std::vector<double> levels;
+  bool shaded = true;
+  VolumeSampling sampling;
+  VolumeLight light;
+  std::string clip;
+};
+void describe(Schema& s, VolumeShow& p);
+
+/// Throws Error(usage) for what no data could make right; all mistakes at once.
+void check(const VolumeShow& p);
+
+/// Adds one VolumeItem; what was chosen and why goes to context.info(). A preset gives way to what is stated beside it: what `schema`, the
+/// one of `p`, knows as stated, and all that is not a default. Throws Error(usage) for data without volume, unknown fields and presets, and
+/// transfer functions that cannot be.
+std::optional<Legend> add(Scene& scene, const DatasetPtr& data, const VolumeShow& p, const Schema& schema, Context& context);
+std::optional<Legend> add(Scene& scene, const DatasetPtr& data, const VolumeShow& p, Context& context);
+
+/// "1,0,0,5; box 0,1,0,1,0,1": planes as normal and offset, boxes as their six sides. Throws Error(usage).
+std::vector<ClipPlane> parse_clip(const std::string& text);
+
+/// The words that make the look of this item again on any data with its fields: opacity, colours, second axis, ray function, sampling and
+/// light, all in values of the field; not the field, the clipping nor the method. What a transfer function file holds.
+std::vector<std::string> transfer_words(const VolumeItem& item);
+
+}  // namespace sg

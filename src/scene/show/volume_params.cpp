@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+// The declaration of the words, and what can be said about them without data.
+#include "base/text.h"
+#include "color/transfer_text.h"
+#include "scene/show/volume.h"
+#include "scene/show/volume_presets.h"
+
+namespace sg {
+
+void describe(Schema& s, VolumeShow& p) {
+  describe(s, p.coloring);
+  std::string presets;
+  std::vector<std::string> names;
+  for (const VolumePreset& preset : volume_presets()) {
+    presets += fmt::format("{}{} ({})", presets.empty() ? "" : ", ", preset.name, preset.about);
+    names.emplace_back(preset.name);
+  }
+  s("preset", p.preset, fmt::format("A whole look by name; words stated besides it win: {}.", presets)).choices(names);
+  s("transfer", p.transfer,
+    "What decides on opacity (and colours) where none are stated: auto, histogram, boundaries (of materials: where gradients are large), "
+    "or a "
+    "FILE.yaml made with save.");
+  s("save", p.save, "Writes the look to this file, for transfer=FILE.yaml.").unit("new file");
+  s("opacity", p.opacity,
+    "Opacity as place:opacity points with straight lines between them, ascending: 0:0,0.3:0.1,1:0.8. A place is a position on the range, "
+    "or with @ a "
+    "value: @-500:0,@200:0.4. Two points at one place make a step. Per 'unit' of length.");
+  s("colors", p.colors, "Colours as place:colour stops instead of a map: 0:#000000,0.4:#aa3311,1:white, or @-500:black,@300:ivory.");
+  s("opacity_by", p.opacity_by, "Field whose values decide on opacity, while 'field' gives the colours.");
+  s("color_by", p.color_by, "Field whose values give the colours, while 'field' decides on opacity.");
+  s("second", p.second,
+    "Second axis: none, gradient (its magnitude), second_derivative (along the gradient), curvature (mean curvature of the level set), or "
+    "a field.");
+  s("second_opacity", p.second_opacity,
+    "Factor of opacity over the second axis, points as in opacity: 0:0,0.2:1. Positions: 0 to the largest gradient; minus to plus the "
+    "largest "
+    "second derivative or curvature; the range of the field.");
+  s("widgets", p.widgets,
+    "Regions of the plane (value, second) that are drawn, instead of opacity: 'triangle LO HI BASE TOP OPACITY COLOR; rectangle LO HI LOW "
+    "HIGH "
+    "OPACITY COLOR'. Places as in opacity; second=gradient unless stated.");
+  s("unit", p.unit, "World length to which opacity refers; 0 is a hundredth of the diagonal.").at_least(0);
+  s("method", p.method, "The algorithm; ray is the reference.");
+  s("mode", p.mode, "What a ray collects.");
+  s("levels", p.levels, "Values of first_hit, distance and accumulate (one), and isosurface; default: the strongest border of materials.")
+      .unit("@field");
+  s("shaded", p.shaded, "Light the volume by the gradient of the field.");
+  describe(s, p.sampling);
+  describe(s, p.light);
+  s("clip", p.clip,
+    "What is cut away: planes 'nx,ny,nz,offset; ...' draw the side where n.x <= offset, 'box x0,x1,y0,y1,z0,z1' its inside.");
+}
+
+namespace {
+
+constexpr std::string_view transfer_choices[] = {"auto", "histogram", "boundaries"};
+
+// Are there positions beside @values, so that only data can tell which comes first?
+bool mixes_places(const std::string& points) {
+  int values = 0, positions = 0;
+  for (const std::string_view part : split(points, ','))
+    if (part.find(':') != part.npos) ++(part.starts_with('@') ? values : positions);
+  return values > 0 && positions > 0;
+}
+bool mixes_ends(const std::string& widgets) {
+  for (const std::string_view part : split(widgets, ';')) {
+    const auto w = words(part);
+    for (size_t i = 1; i + 1 < std::min<size_t>(w.size(), 5); i += 2)
+      if (w[i].starts_with('@') != w[i + 1].starts_with('@')) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+void check(const VolumeShow& p) {
+  std::string problems;
+  const auto each = [&](auto&& f) {
+    try {
+      f();
+    } catch (const Error& e) {
+      problems += (problems.empty() ? "" : "; ") + std::string(e.what());
+    }
+  };
+  ColorScale axis;  // any will do
+  if (p.coloring.scale == ScaleKind::log) axis.kind = ScaleKind::log, axis.lo = 1e-300, axis.hi = 1;
+  each([&] {
+    std::vector<double> numbers{p.unit, p.sampling.step};
+    numbers.insert(numbers.end(), p.levels.begin(), p.levels.end());
+    for (const double v : numbers)
+      if (!std::isfinite(v))
+        fail_usage(fmt::format("{} is not a finite number", exact_number(v)), "volume", "unit, step and levels are finite");
+  });
+  if (p.opacity && !mixes_places(*p.opacity)) each([&] { parse_opacity(*p.opacity, axis); });
+  if (p.second_opacity && !mixes_places(*p.second_opacity)) each([&] { parse_opacity(*p.second_opacity, ColorScale{}, "second_opacity"); });
+  if (!p.colors.empty() && !mixes_places(p.colors))
+    each([&] {
+      ColorScale scale = axis;
+      parse_color_stops(p.colors, scale, false);
+    });
+  if (!p.widgets.empty())
+    each([&] {
+      if (!mixes_ends(p.widgets)) parse_widgets(p.widgets, axis, ColorScale{});
+      if (p.opacity)
+        fail_usage("both opacity and widgets are stated", "widgets", "the widgets decide on opacity; leave out one of the two");
+    });
+  if (!p.clip.empty()) each([&] { parse_clip(p.clip); });
+  each([&] {
+    if (std::find(std::begin(transfer_choices), std::end(transfer_choices), p.transfer) == std::end(transfer_choices)) {
+      const std::vector<std::string> names(std::begin(transfer_choices), std::end(transfer_choices));
+      fail_usage(fmt::format("'{}' is no way to choose a transfer function", p.transfer), "transfer",
+                 unknown_name_hint(p.transfer, names) + "; files end in .yaml");
+    }
+    const int by = !p.opacity_by.empty() + !p.color_by.empty();
+    if (by == 2) fail_usage("both opacity_by and color_by are stated", "opacity_by", "state one of them, and the other field as field=");
+    if (by == 1 && p.second != "none")
+      fail_usage("a second field already is the second axis", "second", "leave out second=, or opacity_by and color_by");
+    if (p.second == "none" && p.second_opacity && p.widgets.empty() && by == 0)
+      fail_usage("there is no second axis", "second_opacity", "state one: second=gradient");
+  });
+  if (!problems.empty()) fail_usage(problems);
+}
+
+std::vector<ClipPlane> parse_clip(const std::string& text) {
+  const char* form = "write planes as nx,ny,nz,offset with ; between them, or box x0,x1,y0,y1,z0,z1";
+  std::vector<ClipPlane> planes;
+  for (std::string_view part : split(text, ';')) {
+    if (part.empty()) continue;
+    const bool box = part.starts_with("box");
+    const auto words = split(trim(box ? part.substr(3) : part), ',');
+    std::vector<double> v;
+    for (const std::string_view w : words) {
+      const auto x = parse_double(w);
+      if (!x || !std::isfinite(*x)) fail_usage(fmt::format("'{}' in '{}' is not a number", w, part), "clip", form);
+      v.push_back(*x);
+    }
+    if (v.size() != (box ? 6u : 4u)) fail_usage(fmt::format("'{}' has {} numbers", part, v.size()), "clip", form);
+    if (box) {
+      for (size_t a = 0; a < 3; ++a) {
+        if (!(v[2 * a] < v[2 * a + 1]))
+          fail_usage(fmt::format("the box '{}' is empty", part), "clip", "write the lower end of each axis first");
+        Vec3 n{a == 0 ? 1.0 : 0.0, a == 1 ? 1.0 : 0.0, a == 2 ? 1.0 : 0.0};
+        planes.push_back({-n, -v[2 * a]});
+        planes.push_back({n, v[2 * a + 1]});
+      }
+      continue;
+    }
+    const Vec3 n{v[0], v[1], v[2]};
+    if (!(length(n) > 0)) fail_usage(fmt::format("the plane '{}' has no direction", part), "clip", form);
+    planes.push_back({n, v[3]});
+  }
+  if (planes.empty()) fail_usage("there are no planes", "clip", form);
+  return planes;
+}
+
+}  // namespace sg
