@@ -298,6 +298,11 @@ TEST_CASE("property: projected tetrahedra keep the tolerance, lit or not") {
   for (uint64_t seed : property_seeds(40)) projected(seed);
 }
 
+// A deep stretch shows the colour at its front, beside which colours bend more than beside their mean.
+TEST_CASE("volume: rays that begin within what is opaque have the colour of the very beginning") {
+  for (uint64_t seed : {660100004989ul}) composited(seed, kinds, false, 7);
+}
+
 // Colours that step within a 1024th of what is opaque, and the colour of a single value where that is steep.
 TEST_CASE("volume: tetrahedra of opacity 1 show what is in front of it") {
   for (uint64_t seed : {880000451ul, 660100000227ul}) projected(seed);

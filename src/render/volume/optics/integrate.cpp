@@ -281,9 +281,10 @@ class Pieces {
     // colour, too, where few pieces would have it). All fall with the square of the number of pieces.
     const float first = a - 2 * s.b[1] + s.b[2], last = s.b[1] - 2 * s.b[2] + b;
     const float bend = 3 * std::max(std::abs(first), std::abs(last));  // half of the largest second derivative, over the stretch
-    const float depth = length * most;
-    const float recolored = std::min(1e6f, hi > lo ? bend / (hi - lo) * colors : 0);
-    float error = taken * (0.25f * tolerance) * widths * widths;
+    const float depth = length * most, recolored = std::min(1e6f, hi > lo ? bend / (hi - lo) * colors : 0);
+    // The colour at the middle of a bend is a third of its height beside the mean, and all of it beside what a straight line has at the
+    // front.
+    float error = taken * (0.25f * tolerance) * widths * widths * (1 + 0.25f * std::min(depth, 8.0f));
     if (!medium.linear() && std::floor(medium.axis(lo)) != std::floor(medium.axis(hi))) error += taken * recolor * (1.0f / 12);
     error += change * std::min(1.0f, 0.05f * length * depth * slope * (hi - lo));
     error += taken * recolored * std::min(1.0f / 6, depth * depth * (1.0f / 360));
