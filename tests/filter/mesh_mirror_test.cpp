@@ -383,7 +383,7 @@ TEST_CASE("property: streamlines of an unmarked velocity turn with the mesh, on 
       const Moved map = random_map(random, kind.flat, in->as<AmrGrid>());
       const DatasetPtr out = transform(in, map.params, ctx);
       TraceOptions o;
-      o.scheme = Scheme::rk4, o.unit = TraceOptions::Unit::time, o.step = 0.05, o.max_steps = 40;
+      o.scheme = Scheme::rk4, o.unit = StepUnit::time, o.step = 0.05, o.max_steps = 40;
       const auto line = [&](const DatasetPtr& d, Vec3 start) {
         const FlowField flow(d, "", ctx);
         const Vec3 seeds[] = {start};

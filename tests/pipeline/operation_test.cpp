@@ -47,10 +47,11 @@ TEST_CASE("operations: JSON holds name, family, sentence, inputs and the schema 
       "\"start\":{\"type\":\"number\",\"unit\":\"m\",\"default\":0,\"description\":\"First value.\"}}}},\n"
       "{\"name\":\"moment\",\"kind\":\"source\",\"family\":\"source\",\"sentence\":\"A line at a moment.\",\"version\":1,\"inputs\":[0,0],"
       "\"params\":{\"type\":\"object\",\"additionalProperties\":false,\"properties\":{"
-      "\"time\":{\"type\":\"number\",\"description\":\"Moment; default: the one asked for.\"}}}},\n"
+      "\"time\":{\"type\":[\"number\",\"null\"],\"default\":null,\"description\":\"Moment; default: the one asked for.\"}}}},\n"
       "{\"name\":\"scale\",\"kind\":\"filter\",\"family\":\"scalar\",\"sentence\":\"Multiplies a field.\",\"version\":3,\"inputs\":[1,1],"
       "\"params\":{\"type\":\"object\",\"additionalProperties\":false,\"properties\":{"
-      "\"field\":{\"type\":\"string\",\"format\":\"field\",\"description\":\"Field to scale; default: the active scalar.\"},"
+      "\"field\":{\"type\":\"string\",\"field\":{\"on\":[\"point\",\"cell\"],\"of\":[\"scalar\",\"vector\",\"tensor\",\"other\"]},"
+      "\"description\":\"Field to scale; default: the active scalar.\"},"
       "\"by\":{\"type\":\"number\",\"minimum\":-1000,\"maximum\":1000,\"unit\":\"@field\",\"default\":2,\"description\":\"Factor.\"},"
       "\"mode\":{\"type\":\"string\",\"enum\":[\"plain\",\"fancy\"],\"default\":\"plain\",\"description\":\"How.\"}}}}\n"
       "]}\n");

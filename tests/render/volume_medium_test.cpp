@@ -96,6 +96,32 @@ TEST_CASE("property: a medium has the colours of its scale to twice the accuracy
   }
 }
 
+// The place of a value on the scale rounds: it must not lie inside for the next value beyond an end.
+TEST_CASE("property: a medium ends where its scale ends that draws nothing beyond, as sharply as floats tell") {
+  for (const uint64_t seed : property_seeds(300)) {
+    CAPTURE(seed);
+    Random r(seed);
+    ColorScale scale = one_color({1, 1, 1});
+    scale.clamp = false;
+    const double size = r.magnitude(1e-20, 1e20), lo = r.in(-1, 1) * size, hi = lo + r.in(0.1, 2) * size;
+    scale.lo = lo + r.in(0.02, 0.3) * (hi - lo), scale.hi = hi - r.in(0.02, 0.3) * (hi - lo);
+    scale.kind = r.chance(0.3) ? ScaleKind::symlog : ScaleKind::linear;
+    OpacityCurve curve;
+    const double opacity = r.in(0.1, 0.95);
+    curve.points = {{lo, opacity}, {hi, opacity}};
+    volume::Medium::Plan plan;
+    plan.unit = 0.1, plan.lo = lo, plan.hi = hi;
+    const volume::Medium medium(scale, curve, plan);
+    const double inside = -std::log1p(-opacity) / plan.unit, air = 1e-6 * std::max(std::abs(lo), std::abs(hi));
+    for (const double away : {1.0, 3.0, 10.0, 100.0}) {
+      CHECK(medium.tau(float(scale.lo - away * air)) == 0);
+      CHECK(medium.tau(float(scale.hi + away * air)) == 0);
+      CHECK(medium.tau(float(scale.lo + away * air)) == doctest::Approx(inside).epsilon(1e-3));
+      CHECK(medium.tau(float(scale.hi - away * air)) == doctest::Approx(inside).epsilon(1e-3));
+    }
+  }
+}
+
 TEST_CASE("volume medium: a spike up to opacity 1 keeps its integral, however few floats it is wide") {
   for (const double width : {0.003, 3e-4, 3e-5}) {
     constexpr double tip = 5.1281540402, unit = 0.0838913;

@@ -180,6 +180,9 @@ TEST_CASE("volume: steep colours of solid surfaces stay within the tolerance whe
   composited(777000002547, kinds, false, 7);
 }
 
+// Found by another seed: a value whose turn lies just inside of the end of a scale that draws nothing beyond.
+TEST_CASE("volume: the end of a scale with clamp=false is sharp") { composited(555000003487, kinds, false, 7); }
+
 // Found by other seeds, packets and single rays: ramps that bent values meet, thin volumes, dense cells, colours that kink within strides,
 // faces of cells in the middle of short strides.
 TEST_CASE("volume: knots, faint steps, kinks of colour and faces of cells within strides stay within the tolerance") {

@@ -12,7 +12,8 @@ namespace {
 // What a value is compared with, and named by when it does not fit.
 class Check {
  public:
-  Check(const ParamDecl& decl, std::string where, const Value& value) : decl_(decl), where_(std::move(where)), given_(value) {}
+  Check(const ParamDecl& decl, std::string where, const Value& value, std::string_view written)
+      : decl_(decl), where_(std::move(where)), given_(value), written_(written.empty() ? value_text(value) : std::string(written)) {}
 
   // The same value as the alternative that the parameter holds.
   Value operator()() const {
@@ -41,12 +42,15 @@ class Check {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& wanted) const { fail(wanted, value_text(given_)); }
+  [[noreturn]] void fail(const std::string& wanted) const { fail(wanted, written_); }
   // `part` is the element of a list that is wrong.
   [[noreturn]] void fail(const std::string& wanted, const std::string& part) const {
-    const std::string all = value_text(given_);
-    fail_usage(part == all ? fmt::format("'{}' is not {}", all, wanted) : fmt::format("'{}' in '{}' is not {}", part, all, wanted), where_);
+    fail_usage(
+        part == written_ ? fmt::format("'{}' is not {}", part, wanted) : fmt::format("'{}' in '{}' is not {}", part, written_, wanted),
+        where_);
   }
+  // How an element is told: alone as it was written.
+  std::string told(const Value& element) const { return given_.index() == element.index() ? written_ : value_text(element); }
 
   std::string a_number() const { return decl_.unit_.empty() || decl_.unit_[0] == '@' ? "a number" : "a number in " + decl_.unit_; }
   double number(const Value& v) const {
@@ -55,7 +59,7 @@ class Check {
     fail(a_number());
   }
   int64_t whole(double d) const {
-    if (!(d == std::floor(d) && std::abs(d) < 0x1p63)) fail("a whole number", exact_number(d));
+    if (!(d == std::floor(d) && std::abs(d) < 0x1p63)) fail("a whole number", told(d));
     return int64_t(d);
   }
   int64_t integer() const {
@@ -72,15 +76,15 @@ class Check {
   double in_range(double v) const {
     if (!(v >= decl_.lo && v <= decl_.hi) || (decl_.lo_open && v == decl_.lo) || (decl_.hi_open && v == decl_.hi)) {
       const std::string range = range_text(decl_);
-      fail("in range: it must be " + (range.empty() ? "a number, not NaN" : range), exact_number(v));
+      fail("in range: it must be " + (range.empty() ? "a number, not NaN" : range), told(v));
     }
     return v;
   }
   int64_t in_range(int64_t v) const {
     const double d = double(v);
     if (d < decl_.lo || d > decl_.hi || (decl_.lo_open && d == decl_.lo) || (decl_.hi_open && d == decl_.hi))
-      fail("in range: it must be " + range_text(decl_), std::to_string(v));
-    if (v < decl_.ref.least() || v > decl_.ref.most()) fail("a number of at most 2^31", std::to_string(v));
+      fail("in range: it must be " + range_text(decl_), told(v));
+    if (v < decl_.ref.least() || v > decl_.ref.most()) fail("a number of at most 2^31", told(v));
     return v;
   }
   std::string choice(const std::string& word) const {
@@ -118,6 +122,7 @@ class Check {
   const ParamDecl& decl_;
   std::string where_;
   const Value& given_;
+  std::string written_;
 };
 
 }  // namespace
@@ -160,14 +165,14 @@ std::string range_text(const ParamDecl& d) {
   return "from " + exact_number(d.lo) + " to " + exact_number(d.hi);
 }
 
-void set_value(Schema& schema, std::string_view name, const Value& value, std::string_view owner) {
+void set_value(Schema& schema, std::string_view name, const Value& value, std::string_view owner, std::string_view written) {
   ParamDecl* decl = schema.find(name);
   if (!decl) {
     std::vector<std::string> names;
     for (const ParamDecl& d : schema.decls()) names.push_back(d.name);
     fail_usage(fmt::format("unknown parameter '{}'", name), std::string(owner), unknown_name_hint(name, names));
   }
-  decl->ref.set(Check(*decl, fmt::format("{} {}", owner, name), value)());
+  decl->ref.set(Check(*decl, fmt::format("{} {}", owner, name), value, written)());
   decl->stated = true;
 }
 

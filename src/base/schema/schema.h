@@ -130,8 +130,8 @@ ParamSet param_set_of(P values) {
 ParamSet copy_of(const ParamSet& params);
 
 /// Sets one parameter. Whole numbers serve as numbers, a single value as a list of one; words may differ in case. Throws Error(usage)
-/// naming `owner` (the operation), the parameter, and what would be right.
-void set_value(Schema& schema, std::string_view name, const Value& value, std::string_view owner);
+/// naming `owner` (the operation), the parameter, and what would be right; the value as it was `written`, where that is given.
+void set_value(Schema& schema, std::string_view name, const Value& value, std::string_view owner, std::string_view written = {});
 
 /// The same from text, as command lines and pipeline files write it.
 void set_param(Schema& schema, std::string_view name, std::string_view text, std::string_view owner);

@@ -93,6 +93,9 @@ TEST_CASE("schema: values pass the same checks as text") {
   CHECK(error("keep", int64_t(2)).find("a word") != std::string::npos);
   CHECK(error("sieze", 1.0).find("did you mean 'size'?") != std::string::npos);
   CHECK(p.size == 3);  // what is refused changes nothing
+  const std::string typed = error_of([&] { set_param(s, "count", "-1_", "cut"); });
+  CHECK(typed == "cut count: '-1_' is not a whole number");
+  CHECK(error_of([&] { set_param(s, "size", "-1e9", "cut"); }).find("'-1e9' is not in range") != std::string::npos);  // as it was written
 }
 
 TEST_CASE("schema: sets of parameters know what was stated, and copies have values of their own") {

@@ -73,7 +73,7 @@ DatasetPtr globe(int n, const Tensors& tensors) {
 
 TensorLicParams plain(int steps, int eigenvector = 1) {
   TensorLicParams p;
-  p.eigenvector = eigenvector, p.density = 0, p.steps = steps, p.step = 1, p.kernel = "box", p.stretch = false;
+  p.eigenvector = eigenvector, p.density = 0, p.steps = steps, p.step = 1, p.kernel = LineFade::box, p.stretch = false;
   return p;
 }
 
@@ -299,7 +299,7 @@ TEST_CASE("tensor_lic: isotropic tensors keep the noise or are gray, and the tex
   // (1 + a) and (1 - a) have the anisotropy a, here growing from 0 at the left to 0.64 at the right; full from 0.32 on.
   const DatasetPtr growing = plane(n, [](Vec3 q) { return diagonal(1 + q.x / 100, 1 - q.x / 100, 0); });
   TensorLicParams f = plain(20);
-  f.kernel = "hann", f.fade = 0.32;
+  f.kernel = LineFade::hann, f.fade = 0.32;
   const auto column_variance = [&](const DatasetPtr& d, int i) {
     double mean = 0, square = 0;
     for (int j = 0; j <= n; ++j) {

@@ -24,7 +24,7 @@ Data file(const char* name) {
 TEST_CASE("streamlines of files: lines cross the six blocks about a cylinder and keep their mass flow" * doctest::skip(no_data())) {
   const Data data = file("vectors/cylinder_Re35/cylinder_Re35.case");
   StreamlinesParams p;
-  p.direction = "forward", p.seeds.from = Vec3(0.05, -3, 0), p.seeds.to = Vec3(0.05, 3, 0), p.seeds.count = 13;
+  p.direction = TraceDirection::forward, p.seeds.from = Vec3(0.05, -3, 0), p.seeds.to = Vec3(0.05, 3, 0), p.seeds.count = 13;
   const DatasetPtr lines = lines_of(data, p);
   CHECK(lines->cell_count() == 13);
   const auto& s = *lines->as<SurfaceMesh>();
@@ -69,7 +69,7 @@ TEST_CASE("streamlines of sources: closed lines of the double gyre") {
   g.grid.size = 129;
   StreamlinesParams p;
   p.seeds.from = Vec3(0.1, 0.5, 0), p.seeds.to = Vec3(0.4, 0.5, 0), p.seeds.count = 7;
-  p.direction = "forward", p.integration.tolerance = 1e-6;
+  p.direction = TraceDirection::forward, p.integration.tolerance = 1e-6;
   p.stop.max_time = 400;
   const DatasetPtr lines = lines_of(double_gyre(g, context), p);
   for (size_t l = 0; l < 7; ++l) CHECK(StopReason(int(lines->fields().require("stop").array.get(l))) == StopReason::closed);

@@ -20,6 +20,12 @@ Vec3 linear_color(const ColorScale& scale, double v) {
 
 double difference(Vec3 a, Vec3 b) { return std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)}); }
 
+/// Just inside of a part that begins at `end`: so far that the place on the scale, which rounds, is inside, too.
+double just_inside(const ColorScale& scale, double end, double other) {
+  const double size = std::max({std::abs(end), std::abs(other), std::abs(scale.lo), std::abs(scale.hi)});
+  return end + std::copysign(std::min(1e-3 * std::abs(other - end), 1e-13 * size), other - end);
+}
+
 /// The curve of tau.
 class Curve {
  public:
@@ -38,14 +44,11 @@ class Curve {
     most_ = plan.most_tau * (opaque > 0 ? std::clamp(0.3 * (plan.hi - plan.lo) / opaque, 1.0, 1e3) : 1.0);
     most_ = std::max(most_, minus_log_one_minus(1 - 0x1p-53) / plan.unit);
   }
-  Sample at(double v) const {
-    const double opacity = std::clamp(curve_.at(v), 0.0, 1.0) * double(scale_.color(v).w);
-    return {v, opacity < 1 ? minus_log_one_minus(opacity) / plan_.unit : most_};
-  }
+  Sample at(double v) const { return at(v, v); }
   /// The limit at one end of a part: that of a ramp that ends in opacity 1 is the largest of an opacity below 1.
   Sample beside(double v, double end) const {
     const double opaque = minus_log_one_minus(1 - 0x1p-53) / plan_.unit;
-    const Sample s{v, at(std::nextafter(v, end)).tau};
+    const Sample s{v, at(std::nextafter(v, end), just_inside(scale_, v, end)).tau};
     return {v, s.tau > opaque && at(0.5 * v + 0.5 * end).tau <= opaque ? opaque : s.tau};
   }
   /// The cubic through four places at equal distances.
@@ -93,17 +96,17 @@ class Curve {
   static Arc even(Sample a, Sample b) { return {a, a.tau + (b.tau - a.tau) / 3, b.tau - (b.tau - a.tau) / 3, b}; }
 
  private:
+  /// Where the scale is asked at `on_scale` whether it draws v.
+  Sample at(double v, double on_scale) const {
+    const double opacity = std::clamp(curve_.at(v), 0.0, 1.0) * double(scale_.color(on_scale).w);
+    return {v, opacity < 1 ? minus_log_one_minus(opacity) / plan_.unit : most_};
+  }
+
   const ColorScale& scale_;
   const OpacityCurve& curve_;
   const Medium::Plan& plan_;
   double most_ = 0;
 };
-
-/// Just inside of a part that begins at `end`: so far that the place on the scale, which rounds, is inside, too.
-double just_inside(const ColorScale& scale, double end, double other) {
-  const double size = std::max({std::abs(end), std::abs(other), std::abs(scale.lo), std::abs(scale.hi)});
-  return end + std::copysign(std::min(1e-3 * std::abs(other - end), 1e-13 * size), other - end);
-}
 
 /// Values in [lo, hi] at which tau may bend or jump, or colour may jump.
 std::vector<double> bends(const ColorScale& scale, const OpacityCurve& curve, double lo, double hi) {
