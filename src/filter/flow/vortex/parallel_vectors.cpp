@@ -11,6 +11,7 @@
 #include "data/cell_topology.h"
 #include "filter/field/point_cell.h"
 #include "filter/flow/flow_parts.h"
+#include "filter/flow/vortex/mend_lines.h"
 #include "filter/flow/vortex/parallel_tetra.h"
 #include "filter/flow/vortex/whole_faces.h"
 #include "filter/mesh/append.h"
@@ -293,6 +294,14 @@ ParallelLines parallel_lines(const DatasetPtr& data, std::span<const Vec3> a, st
     out.segments.insert(out.segments.end(), ends[k].begin(), ends[k].end());
     out.cells.push_back(cells[k]);
   }
+  // Near a vertex a line is as uncertain as the numbers are, magnified by how flat its angle with faces may be.
+  constexpr double magnified = 20;
+  std::vector<double> reach;
+  for (const ParallelPoint& p : out.points) {
+    reader.open(size_t(p.cell));
+    reach.push_back(magnified * nothing * reader.box().diagonal());
+  }
+  mend_lines(out, reach);
   return out;
 }
 

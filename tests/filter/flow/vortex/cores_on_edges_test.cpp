@@ -70,49 +70,61 @@ TEST_CASE("vortex cores: along edges, in faces and through vertices of grids and
       }
 }
 
-TEST_CASE("property: the axis of a turning flow is one line on meshes of every kind, wherever it meets cells") {
-  for (const uint64_t seed : property_seeds(60)) {
-    CAPTURE(seed);
-    Random random(seed);
-    const auto& kinds = solid_meshes();
-    const MeshKind& kind = kinds[size_t(random.whole(0, int(kinds.size()) - 1))];
-    CAPTURE(kind.name);
-    const int n = random.whole(2, 5);
-    DatasetPtr mesh = kind.make(n, 1);
-    const Array at = point_positions(mesh->mesh());
-    const auto vertex = [&] {
-      const auto i = size_t(random.whole(0, int(at.count()) - 1));
-      return Vec3(at.get(i, 0), at.get(i, 1), at.get(i, 2));
-    };
-    Vec3 through = vertex() * 0.999;
-    const int where = random.whole(0, 3);
-    CAPTURE(where);
-    for (int tries = 0; tries < 50 && std::max({std::abs(through.x), std::abs(through.y), std::abs(through.z)}) > 0.9; ++tries)
-      through = where == 0 ? vertex() : where == 1 ? 0.5 * (vertex() + vertex()) : Vec3(random.in(-0.5, 0.5), random.in(-0.5, 0.5), 0);
-    const Vec3 along = normalize(where == 3 ? Vec3(random.in(-1, 1), random.in(-1, 1), random.in(-1, 1))
-                                            : Vec3(random.whole(-1, 1), random.whole(-1, 1), random.whole(-1, 1)) + Vec3(0, 0, 1e-30));
-    const bool inside = std::max({std::abs(through.x), std::abs(through.y), std::abs(through.z)}) <= 0.9;
-    if (length(along) < 0.5 || !inside) continue;
-    const bool turnable = mesh->as<UnstructuredMesh>() != nullptr;
-    const Mat3 turn = turnable && random.chance(0.6) ? distorted::random_rotation(random) : Mat3();
-    if (turnable) {
-      DatasetParts parts = mesh->parts();
-      std::get<UnstructuredMesh>(parts.mesh).points = {at_points(parts.mesh, [&](Vec3 p) { return turn * p; }), {}};
-      mesh = make_dataset(std::move(parts));
-    }
-    const Vec3 a = turn * along, x0 = turn * through;
-    const bool rounded = random.chance(0.3);
-    const double turns = random.in(0.5, 4), speed = random.in(0.3, 3);
-    const auto u = [&](Vec3 x) { return cross(a, x - x0) * turns + a * speed; };
-    const DatasetPtr d = rounded ? flow::with_velocity<float>(mesh, u) : flow::with_velocity(mesh, u);
-    CAPTURE(rounded);
-    const Cores found = cores_of(d, random.one_of({"sujudi_haimes", "levy"}), x0, a);
-    CHECK(found.lines == 1);
-    CHECK(found.off < (rounded ? 1e-3 : 1e-6));
-    const bool box = kind.name != "rotated" && kind.name != "curvilinear" && kind.name.find("bent") == kind.name.npos &&
-                     kind.name.find("curved") == kind.name.npos;
-    if (box) CHECK(found.length == doctest::Approx(chord(through, along, 1)).epsilon(rounded ? 1e-2 : 1e-5));
+namespace {
+
+// One line from wall to wall.
+void turn_about_an_axis(uint64_t seed) {
+  CAPTURE(seed);
+  Random random(seed);
+  const auto& kinds = solid_meshes();
+  const MeshKind& kind = kinds[size_t(random.whole(0, int(kinds.size()) - 1))];
+  CAPTURE(kind.name);
+  const int n = random.whole(2, 5);
+  DatasetPtr mesh = kind.make(n, 1);
+  const Array at = point_positions(mesh->mesh());
+  const auto vertex = [&] {
+    const auto i = size_t(random.whole(0, int(at.count()) - 1));
+    return Vec3(at.get(i, 0), at.get(i, 1), at.get(i, 2));
+  };
+  Vec3 through = vertex() * 0.999;
+  const int where = random.whole(0, 3);
+  CAPTURE(where);
+  for (int tries = 0; tries < 50 && std::max({std::abs(through.x), std::abs(through.y), std::abs(through.z)}) > 0.9; ++tries)
+    through = where == 0 ? vertex() : where == 1 ? 0.5 * (vertex() + vertex()) : Vec3(random.in(-0.5, 0.5), random.in(-0.5, 0.5), 0);
+  const Vec3 along = normalize(where == 3 ? Vec3(random.in(-1, 1), random.in(-1, 1), random.in(-1, 1))
+                                          : Vec3(random.whole(-1, 1), random.whole(-1, 1), random.whole(-1, 1)) + Vec3(0, 0, 1e-30));
+  const bool inside = std::max({std::abs(through.x), std::abs(through.y), std::abs(through.z)}) <= 0.9;
+  if (length(along) < 0.5 || !inside) return;
+  const bool turnable = mesh->as<UnstructuredMesh>() != nullptr;
+  const Mat3 turn = turnable && random.chance(0.6) ? distorted::random_rotation(random) : Mat3();
+  if (turnable) {
+    DatasetParts parts = mesh->parts();
+    std::get<UnstructuredMesh>(parts.mesh).points = {at_points(parts.mesh, [&](Vec3 p) { return turn * p; }), {}};
+    mesh = make_dataset(std::move(parts));
   }
+  const Vec3 a = turn * along, x0 = turn * through;
+  const bool rounded = random.chance(0.3);
+  const double turns = random.in(0.5, 4), speed = random.in(0.3, 3);
+  const auto u = [&](Vec3 x) { return cross(a, x - x0) * turns + a * speed; };
+  const DatasetPtr d = rounded ? flow::with_velocity<float>(mesh, u) : flow::with_velocity(mesh, u);
+  CAPTURE(rounded);
+  const Cores found = cores_of(d, random.one_of({"sujudi_haimes", "levy"}), x0, a);
+  CHECK(found.lines == 1);
+  CHECK(found.off < (rounded ? 1e-3 : 1e-6));
+  const bool box = kind.name != "rotated" && kind.name != "curvilinear" && kind.name.find("bent") == kind.name.npos &&
+                   kind.name.find("curved") == kind.name.npos;
+  if (box) CHECK(found.length == doctest::Approx(chord(through, along, 1)).epsilon(rounded ? 1e-2 : 1e-5));
+}
+
+}  // namespace
+
+TEST_CASE("property: the axis of a turning flow is one line on meshes of every kind, wherever it meets cells") {
+  for (const uint64_t seed : property_seeds(60)) turn_about_an_axis(seed);
+}
+
+// Found by another seed.
+TEST_CASE("vortex cores: a line that passes by a vertex at a ten thousandth of a cell is not broken by rounded numbers") {
+  turn_about_an_axis(57830120058);
 }
 
 namespace {
