@@ -61,19 +61,43 @@ class Cutter {
       for (int32_t l = ra; l < rb; ++l) cross(l, b);
       for (int32_t l = ra - 1; l >= rb; --l) cross(l, a);
     }
-    std::vector<Ring> above{std::move(whole)}, next;
-    for (int32_t level = lowest; level < highest; ++level) {
-      const double v = levels_[size_t(level)];
-      const bool four = n == 4 && joined_inside(f_[size_t(p[0])] - v, f_[size_t(p[1])] - v, f_[size_t(p[2])] - v, f_[size_t(p[3])] - v);
-      next.clear();
-      for (const Ring& ring : above) split(ring, level, four, next, level, cell, out);
-      std::swap(above, next);
-    }
-    for (const Ring& ring : above) out.add(ring, highest, cell);
+    std::vector<Ring> rings{std::move(whole)};
+    divide(p, rings, lowest, highest, cell, out);
   }
 
  private:
   enum Side : uint8_t { low, high, on };
+
+  // The parts of rings with these ranks, by rising band. From the lowest band on each cut copies what is left, so that many bands are
+  // halved first.
+  void divide(std::span<const int64_t> p, std::vector<Ring>& rings, int32_t lowest, int32_t highest, int64_t cell, Pieces& out) {
+    constexpr int32_t many = 64;
+    std::vector<Ring> below, above;
+    if (highest - lowest > many) {
+      const int32_t middle = lowest + (highest - lowest) / 2;
+      for (const Ring& ring : rings)
+        split(ring, middle, joins_high(p, middle), [&](Ring part, Side s) { (s == low ? below : above).push_back(std::move(part)); });
+      rings.clear();
+      divide(p, below, lowest, middle, cell, out);
+      return divide(p, above, middle + 1, highest, cell, out);
+    }
+    for (int32_t level = lowest; level < highest; ++level) {
+      above.clear();
+      for (const Ring& ring : rings)
+        split(ring, level, joins_high(p, level), [&](Ring part, Side s) {
+          if (s == low) out.add(part, level, cell);
+          else above.push_back(std::move(part));
+        });
+      std::swap(rings, above);
+    }
+    for (const Ring& ring : rings) out.add(ring, highest, cell);
+  }
+
+  // Does the saddle of a quadrilateral lie above the level?
+  bool joins_high(std::span<const int64_t> p, int32_t level) const {
+    const auto at = [&](size_t k) { return f_[size_t(p[k])] - levels_[size_t(level)]; };
+    return p.size() == 4 && joined_inside(at(0), at(1), at(2), at(3));
+  }
 
   Side side(const Ring& ring, size_t k, int32_t level) const {
     const Node& node = ring[k];
@@ -82,9 +106,10 @@ class Cutter {
     return f_[node.lo] == levels_[size_t(level)] ? on : high;
   }
 
-  // Parts below the level go out as a band, parts above into `upper`. Runs of nodes on one side are cut off by a straight line
-  // between the places on the level before and behind them.
-  void split(const Ring& ring, int32_t level, bool join_high, std::vector<Ring>& upper, int32_t band, int64_t cell, Pieces& out) {
+  // Gives the parts below the level, and those above it. Runs of nodes on one side are cut off by a straight line between the places on
+  // the level before and behind them.
+  template <class Give>
+  void split(const Ring& ring, int32_t level, bool join_high, Give&& give) {
     const size_t n = ring.size();
     side_.resize(n);
     size_t runs[2] = {0, 0};
@@ -92,14 +117,9 @@ class Cutter {
     for (size_t k = 0; k < n; ++k)
       if (const Side s = side_[k]; s != on && side_[(k + n - 1) % n] != s) ++runs[s];
     const bool any_low = std::count(side_.begin(), side_.end(), low) > 0, any_high = std::count(side_.begin(), side_.end(), high) > 0;
-    if (!any_low) return upper.push_back(ring);
-    if (!any_high) return out.add(ring, band, cell);
+    if (!any_low || !any_high) return give(ring, any_low ? low : high);
     // Each run of `cut_off` becomes a polygon; what is left is one.
     const Side cut_off = runs[low] == 1 ? low : runs[high] == 1 ? high : join_high ? low : high;
-    auto give = [&](const Ring& r, Side s) {
-      if (s == low) out.add(r, band, cell);
-      else upper.push_back(r);
-    };
     Ring rest;
     for (size_t k = 0; k < n; ++k) {
       if (side_[k] != cut_off) rest.push_back(ring[k]);

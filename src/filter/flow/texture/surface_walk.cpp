@@ -10,7 +10,8 @@ namespace sg {
 
 namespace {
 
-constexpr int most_idle = 64;  ///< triangles passed without going anywhere, around a point
+constexpr int most_idle = 64;       ///< triangles passed without going anywhere, around a point
+constexpr int most_passed = 20000;  ///< triangles of one step, as where slivers lead around a point
 
 // Which of three edges a line meets first, by what is so in bits: 1, 2, 4: it goes towards edge 0, 1, 2; 8: 1 comes before 0, 16: 2 before
 // 0, 32: 2 before 1. 3: none. A table, because nobody can foresee the edge and a wrong guess costs more than all the rest.
@@ -197,7 +198,7 @@ bool SurfaceWalker<D>::aim(Place& at, double sign, double nothing) const {
 template <class D>
 bool SurfaceWalker<D>::advance(Place& at, double length, double sign) const {
   const double nothing = 1e-12 * length;
-  int idle = 0;
+  int idle = 0, passed = 0;
   if (at.sign != sign) at.left = 0;
   while (length > nothing) {
     if (!(at.left > 0) && !aim(at, sign, nothing)) return false;
@@ -207,7 +208,7 @@ bool SurfaceWalker<D>::advance(Place& at, double length, double sign) const {
     at.left = whole ? 0 : at.left - s;
     if (!whole || !(length > nothing)) return true;
     if (at.edge < 0 && s > nothing) continue;
-    if (at.edge < 0 || ++idle > most_idle) return false;
+    if (at.edge < 0 || ++idle > most_idle || ++passed > most_passed) return false;
     at.b[size_t(at.edge)] = 0;
     if (!cross(at, at.edge)) return false;
   }
