@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "data/field_ops.h"
+#include "data/memory_budget.h"
 #include "filter/flow/integrator.h"
 #include "filter/probe/field_sampler.h"
 #include "filter/tensor/tensor_shape.h"
@@ -150,6 +151,7 @@ std::string_view tensor_stop_name(TensorStop s) {
 }
 
 TensorLines trace_tensor_lines(const TensorSampler& sampler, std::span<const Vec3> seeds, const TensorLineOptions& options, Context& ctx) {
+  need_memory(double(seeds.size()) * double(sizeof(Line)), fmt::format("{} seeds", seeds.size()), "seeds", "take fewer: count, seeds");
   std::vector<Line> lines(seeds.size());
   parallel_for(
       seeds.size(), 8,
