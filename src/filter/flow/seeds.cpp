@@ -14,9 +14,9 @@ namespace sg {
 
 void describe(Schema& s, SeedParams& p) {
   s("seeds", p.seeds,
-    "Where lines begin: random places in the mesh, a list of points, a line, a plane, a sphere's surface, a ball, a box' grid, or the "
-    "points "
-    "of the second input; auto: by what else is given.");
+    "Where lines begin: random places in the mesh, a list of points, a line, a plane, a sphere's surface, a ball, a box' grid, the points "
+    "of the second input (mesh), or the pixels of a picture as second input, laid over the plane, bright ones more often; default: by what "
+    "else is given.");
   s("points", p.points, "Points as x,y,z,x,y,z,...").unit("length");
   s("from", p.from, "First point of the line.").unit("length");
   s("to", p.to, "Last point of the line.").unit("length");
