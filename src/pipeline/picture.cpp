@@ -166,7 +166,7 @@ Annotation annotation_of(const StatedPicture& stated, const Shown& shown, const 
 Picture make_picture(PipelineFile& file, const PictureOptions& options, Context& context) {
   const StatedPicture stated = stated_in(file);
   load_transfer_files(file);
-  stated_shows(file);
+  stated_shows(file);  // mistakes are told before anything runs
   const auto cache = options.cache ? options.cache : std::make_shared<Cache>(0);
   std::vector<Data> held;
   Picture picture;

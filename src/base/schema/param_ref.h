@@ -129,18 +129,20 @@ inline constexpr auto words_alone = [] {
 }();
 
 template <class T>
+concept MayBeOpen = ParamTraits<T>::optional;
+template <class T>
+concept HasWords = std::is_enum_v<typename ParamTraits<T>::Enum>;
+
+template <class T>
 constexpr ParamAccess make_param_access() {
   using Traits = ParamTraits<T>;
-  ParamAccess a{Traits::type, requires {Traits::optional;
+  ParamAccess a{Traits::type, MayBeOpen<T>, INT64_MIN, INT64_MAX, {}, nullptr, nullptr};
+  if constexpr (std::is_same_v<T, int> || std::is_same_v<T, std::optional<int>>) a.least = INT32_MIN, a.most = INT32_MAX;
+  if constexpr (HasWords<T>) a.words = words_alone<typename Traits::Enum>;
+  a.get = [](const void* member) { return Traits::get(*static_cast<const T*>(member)); };
+  a.set = [](void* member, const Value& v) { *static_cast<T*>(member) = Traits::from(v); };
+  return a;
 }
-, INT64_MIN, INT64_MAX, {}, nullptr, nullptr
-};  // namespace detail
-if constexpr (std::is_same_v<T, int> || std::is_same_v<T, std::optional<int>>) a.least = INT32_MIN, a.most = INT32_MAX;
-if constexpr (requires { typename Traits::Enum; }) a.words = words_alone<typename Traits::Enum>;
-a.get = [](const void* member) { return Traits::get(*static_cast<const T*>(member)); };
-a.set = [](void* member, const Value& v) { *static_cast<T*>(member) = Traits::from(v); };
-return a;
-}  // namespace sg
 
 template <class T>
 inline constexpr ParamAccess param_access = make_param_access<T>();
