@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Contours of grids and of tetrahedra, once and again and again.
 #include "bench.h"
-#include "filter/scalar/contour.h"
+#include "filter/scalar/contour/contour.h"
 #include "inputs.h"
 
 namespace sg::bench {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Slices, clips, thresholds and outer faces of grids and of tetrahedra.
 #include "bench.h"
-#include "filter/mesh/clip.h"
-#include "filter/mesh/faces.h"
-#include "filter/mesh/slice.h"
-#include "filter/mesh/threshold.h"
+#include "filter/mesh/clip/clip.h"
+#include "filter/mesh/faces/faces.h"
+#include "filter/mesh/select/threshold.h"
+#include "filter/mesh/slice/slice.h"
 #include "inputs.h"
 
 namespace sg::bench {

@@ -4,7 +4,7 @@
 
 #include "base/parallel.h"
 #include "bench.h"
-#include "data/point_positions.h"
+#include "data/cells/point_positions.h"
 #include "filter/flow/streamlines.h"
 #include "inputs.h"
 

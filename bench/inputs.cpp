@@ -8,10 +8,10 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/file.h"
+#include "base/file/file.h"
 #include "base/parallel.h"
 #include "bench.h"
-#include "filter/scalar/contour.h"
+#include "filter/scalar/contour/contour.h"
 #include "io/io.h"
 
 namespace sg::bench {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is measured, under the names of the peers' records.
-#include "base/file.h"
+#include "base/file/file.h"
 #include "base/random.h"
 #include "bench.h"
-#include "filter/field/gradient.h"
+#include "filter/field/derivatives/gradient.h"
 #include "filter/probe/probe.h"
 #include "filter/probe/resample.h"
-#include "filter/scalar/contour.h"
+#include "filter/scalar/contour/contour.h"
 #include "filter/surface/surfels.h"
 #include "index/cell_tree.h"
 #include "inputs.h"

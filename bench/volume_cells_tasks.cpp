@@ -3,8 +3,8 @@
 #include "base/parallel.h"
 #include "bench.h"
 #include "inputs.h"
-#include "render/volume/cells/tet_rays.h"
-#include "render/volume/classic/layer.h"
+#include "render/volume/engines/tets/tet_rays.h"
+#include "render/volume/methods/layer.h"
 
 namespace sg::bench {
 

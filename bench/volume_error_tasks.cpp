@@ -9,12 +9,12 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/file.h"
+#include "base/file/file.h"
 #include "base/parallel.h"
 #include "bench.h"
 #include "inputs.h"
 #include "render/render.h"
-#include "render/volume/optics/light_model.h"
+#include "render/volume/rays/light_model.h"
 
 namespace sg::bench {
 

@@ -8,7 +8,7 @@
 #include "color/colormap.h"
 #include "image/image.h"
 #include "inputs.h"
-#include "render/volume/classic/options.h"
+#include "render/volume/methods/options.h"
 #include "render/volume/volume.h"
 #include "scene/scene.h"
 

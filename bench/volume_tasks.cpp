@@ -2,10 +2,10 @@
 // Frames of volumes: lattices of two sizes and types in the peers' four scenes, and a transfer function that changes.
 #include "base/parallel.h"
 #include "bench.h"
-#include "data/memo.h"
+#include "data/memory/memo.h"
 #include "inputs.h"
 #include "render/progressive.h"
-#include "render/volume/lattice/lattice_volume.h"
+#include "render/volume/sources/lattice/lattice_volume.h"
 
 namespace sg::bench {
 

@@ -4,7 +4,7 @@
 #include <numbers>
 
 #include "bench.h"
-#include "data/point_positions.h"
+#include "data/cells/point_positions.h"
 #include "filter/flow/flow_parts.h"
 #include "filter/flow/trace_line.h"
 #include "inputs.h"

@@ -3,7 +3,7 @@
 #pragma once
 #include <string>
 
-#include "base/text.h"
+#include "base/text/text.h"
 #include "bundle.h"
 #include "io/io.h"
 

@@ -5,11 +5,11 @@
 #include <map>
 
 #include "base/error.h"
-#include "base/file.h"
-#include "base/text.h"
+#include "base/file/file.h"
+#include "base/text/text.h"
 #include "io/file_series.h"
-#include "pipeline/operation.h"
-#include "pipeline/read_params.h"
+#include "pipeline/file/read_params.h"
+#include "pipeline/operation/operation.h"
 #include "scene/camera_params.h"
 
 namespace sg {

@@ -2,7 +2,7 @@
 // What stands on the command line as steps of a pipeline file.
 #pragma once
 #include "cli/options.h"
-#include "pipeline/pipeline_file.h"
+#include "pipeline/file/pipeline_file.h"
 
 namespace sg {
 

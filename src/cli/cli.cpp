@@ -9,15 +9,15 @@
 #include <new>
 
 #include "base/error.h"
-#include "base/file_fence.h"
-#include "base/mapped_watch.h"
+#include "base/file/file_fence.h"
+#include "base/file/mapped_watch.h"
+#include "base/file/partial_file.h"
 #include "base/parallel.h"
-#include "base/partial_file.h"
-#include "base/utf8.h"
+#include "base/text/utf8.h"
 #include "cli/info.h"
 #include "cli/say.h"
 #include "cli/spool.h"
-#include "data/memory_budget.h"
+#include "data/memory/memory_budget.h"
 #include "io/plugin.h"
 
 namespace sg {

@@ -3,8 +3,8 @@
 #pragma once
 #include "base/context.h"
 #include "cli/options.h"
-#include "pipeline/picture.h"
-#include "pipeline/pipeline_file.h"
+#include "pipeline/file/pipeline_file.h"
+#include "pipeline/picture/picture.h"
 
 namespace sg {
 

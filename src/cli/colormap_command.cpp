@@ -2,9 +2,9 @@
 #include <cstdio>
 
 #include "base/error.h"
-#include "base/file.h"
-#include "base/text.h"
-#include "base/utf8.h"
+#include "base/file/file.h"
+#include "base/text/text.h"
+#include "base/text/utf8.h"
 #include "cli/cli.h"
 #include "color/colormap.h"
 #include "color/colormap_file.h"

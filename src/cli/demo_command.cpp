@@ -6,15 +6,15 @@
 #include <cstdio>
 
 #include "base/error.h"
-#include "base/file.h"
-#include "base/text.h"
-#include "base/utf8.h"
+#include "base/file/file.h"
+#include "base/text/text.h"
+#include "base/text/utf8.h"
 #include "cli/chain.h"
 #include "cli/cli.h"
 #include "cli/say.h"
 #include "color/colormap_file.h"
 #include "image/codec.h"
-#include "pipeline/picture.h"
+#include "pipeline/picture/picture.h"
 #include "render/annotate/contact_sheet.h"
 
 namespace sg {

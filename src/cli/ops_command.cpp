@@ -2,10 +2,10 @@
 #include <cstdio>
 
 #include "base/error.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "cli/cli.h"
-#include "pipeline/picture.h"
-#include "pipeline/read_params.h"
+#include "pipeline/file/read_params.h"
+#include "pipeline/picture/picture.h"
 #include "scene/camera_params.h"
 #include "scene/show/show.h"
 

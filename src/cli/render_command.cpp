@@ -8,19 +8,19 @@
 #include <cstring>
 
 #include "base/error.h"
-#include "base/file.h"
-#include "base/file_fence.h"
-#include "base/text.h"
-#include "base/utf8.h"
+#include "base/file/file.h"
+#include "base/file/file_fence.h"
+#include "base/text/text.h"
+#include "base/text/utf8.h"
 #include "cli/chain.h"
 #include "cli/cli.h"
 #include "cli/info.h"
 #include "cli/say.h"
-#include "filter/mesh/piece.h"
+#include "filter/mesh/select/piece.h"
 #include "image/codec.h"
 #include "io/file_series.h"
-#include "pipeline/picture.h"
-#include "pipeline/slabs.h"
+#include "pipeline/graph/slabs.h"
+#include "pipeline/picture/picture.h"
 
 namespace sg {
 

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/partial_file.h"
-#include "base/text.h"
+#include "base/file/partial_file.h"
+#include "base/text/text.h"
 
 namespace sg {
 

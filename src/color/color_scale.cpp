@@ -2,7 +2,7 @@
 #include "color/color_scale.h"
 
 #include "base/error.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "color/cie.h"
 
 namespace sg {

@@ -2,7 +2,7 @@
 // GMT colour palette tables. Slices "z0 colour z1 colour [annotation] [;label]", categories "key colour [;label]", the colours B, F
 // and N, and the comments COLOR_MODEL, RANGE, HARD_HINGE, SOFT_HINGE, HINGE. Source: GMT manual, "Of colors and color legends".
 #include "base/error.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "color/colormap_formats.h"
 #include "color/parse_color.h"
 

@@ -2,8 +2,8 @@
 #include "color/colormap_file.h"
 
 #include "base/error.h"
-#include "base/file.h"
-#include "base/text.h"
+#include "base/file/file.h"
+#include "base/text/text.h"
 #include "color/colormap_formats.h"
 #include "color/colormap_nodes.h"
 

@@ -2,7 +2,7 @@
 #include "color/parse_color.h"
 
 #include "base/error.h"
-#include "base/text.h"
+#include "base/text/text.h"
 
 namespace sg {
 

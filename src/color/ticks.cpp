@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // nice_ticks: round numbers, and texts that tell them apart.
-#include "base/text.h"
+#include "base/text/text.h"
 #include "color/color_scale.h"
 
 namespace sg {

@@ -2,7 +2,7 @@
 #include "color/transfer_text.h"
 
 #include "base/error.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "color/colormap_nodes.h"
 #include "color/parse_color.h"
 

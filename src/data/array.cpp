@@ -5,8 +5,8 @@
 
 #include "base/huge_allocator.h"
 #include "base/parallel.h"
-#include "base/text.h"
-#include "data/memory_budget.h"
+#include "base/text/text.h"
+#include "data/memory/memory_budget.h"
 
 namespace sg {
 

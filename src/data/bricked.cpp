@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "data/memo.h"
+#include "data/memory/memo.h"
 
 namespace sg {
 

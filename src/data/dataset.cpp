@@ -5,9 +5,9 @@
 
 #include "base/error.h"
 #include "data/bricked.h"
+#include "data/cells/own_indices.h"
 #include "data/lattice.h"
-#include "data/memo.h"
-#include "data/own_indices.h"
+#include "data/memory/memo.h"
 #include "data/trusted.h"
 
 namespace sg {

@@ -11,7 +11,7 @@
 
 #include "base/vec.h"
 #include "data/array.h"
-#include "data/cell_type.h"
+#include "data/cells/cell_type.h"
 
 namespace sg {
 

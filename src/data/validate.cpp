@@ -3,7 +3,7 @@
 #include <atomic>
 
 #include "base/parallel.h"
-#include "data/cell_topology.h"
+#include "data/cells/cell_topology.h"
 #include "data/lattice.h"
 #include "data/mesh.h"
 #include "data/trusted.h"

@@ -5,7 +5,7 @@
 #include <webp/encode.h>
 
 #include "base/error.h"
-#include "base/file.h"
+#include "base/file/file.h"
 
 namespace sg {
 namespace {

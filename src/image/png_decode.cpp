@@ -5,7 +5,7 @@
 
 #include "base/bytes.h"
 #include "base/error.h"
-#include "base/file.h"
+#include "base/file/file.h"
 #include "image/codec.h"
 
 namespace sg {

@@ -7,7 +7,7 @@
 #include <span>
 
 #include "base/context.h"
-#include "data/cell_map.h"
+#include "data/cells/shape/cell_map.h"
 #include "data/dataset.h"
 
 namespace sg {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "index/cell_probe.h"
 
-#include "data/cell_topology.h"
+#include "data/cells/cell_topology.h"
 #include "index/triangle.h"
 
 namespace sg {

@@ -7,7 +7,7 @@
 #pragma once
 #include <vector>
 
-#include "data/cell_map.h"
+#include "data/cells/shape/cell_map.h"
 #include "data/dataset.h"
 
 namespace sg {

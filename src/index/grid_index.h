@@ -4,7 +4,7 @@
 #include <array>
 
 #include "base/vec.h"
-#include "data/cell_map.h"
+#include "data/cells/shape/cell_map.h"
 #include "data/lattice.h"
 
 namespace sg {

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/mapped_watch.h"
-#include "base/partial_file.h"
+#include "base/file/mapped_watch.h"
+#include "base/file/partial_file.h"
 
 namespace sg {
 

@@ -6,8 +6,8 @@
 #include <map>
 #include <mutex>
 
-#include "base/file.h"
-#include "base/text.h"
+#include "base/file/file.h"
+#include "base/text/text.h"
 #include "data/trusted.h"
 
 namespace sg {

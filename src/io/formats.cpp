@@ -4,10 +4,10 @@
 
 #include <set>
 
-#include "base/file.h"
-#include "base/file_fence.h"
-#include "base/mapped_watch.h"
-#include "base/text.h"
+#include "base/file/file.h"
+#include "base/file/file_fence.h"
+#include "base/file/mapped_watch.h"
+#include "base/text/text.h"
 #include "data/lattice.h"
 #include "data/lattice_crop.h"
 #include "io/file_series.h"

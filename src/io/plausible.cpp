@@ -2,8 +2,8 @@
 #include "io/plausible.h"
 
 #include "base/error.h"
-#include "base/text.h"
-#include "data/memory_budget.h"
+#include "base/text/text.h"
+#include "data/memory/memory_budget.h"
 
 namespace sg {
 

@@ -9,7 +9,7 @@
 #include <mutex>
 
 #include "base/error.h"
-#include "base/file.h"
+#include "base/file/file.h"
 #include "base/parallel.h"
 
 namespace sg {

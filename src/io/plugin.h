@@ -9,11 +9,11 @@
 #pragma once
 #include <algorithm>
 
-#include "base/mapped_watch.h"
+#include "base/file/mapped_watch.h"
 #include "base/parallel.h"
-#include "data/memory_budget.h"
+#include "data/memory/memory_budget.h"
+#include "io/film/movie.h"
 #include "io/io.h"
-#include "io/movie.h"
 
 namespace sg {
 

@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
-#include "base/file.h"
-#include "base/mapped_watch.h"
+#include "base/file/file.h"
+#include "base/file/mapped_watch.h"
 #include "io/plausible.h"
 
 namespace sg {

@@ -3,7 +3,7 @@
 #pragma once
 #include <string>
 
-#include "data/memory_budget.h"
+#include "data/memory/memory_budget.h"
 
 namespace sg {
 

@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "data/memory_budget.h"
+#include "data/memory/memory_budget.h"
 #include "render/composite/background.h"
 #include "render/raster/raster.h"
 #include "render/volume/volume.h"

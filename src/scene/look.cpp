@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/look.h"
 
-#include "base/text.h"
+#include "base/text/text.h"
+#include "data/cells/mesh_dimension.h"
 #include "data/lattice.h"
-#include "data/mesh_dimension.h"
 #include "scene/choose/field_habits.h"
 #include "scene/choose/scale.h"
 #include "scene/choose/volume_look.h"

@@ -2,7 +2,7 @@
 #include "base/bytes.h"
 
 #include "base/random.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "support/test.h"
 
 using namespace sg;

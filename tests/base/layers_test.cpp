@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "base/file.h"
+#include "base/file/file.h"
 #include "support/test.h"
 
 using namespace sg;

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <limits>
 
-#include "base/file.h"
+#include "base/file/file.h"
 #include "cli/program.h"
 #include "io/io.h"
 #include "support/test.h"

@@ -12,7 +12,7 @@
 #include <map>
 #include <thread>
 
-#include "base/file.h"
+#include "base/file/file.h"
 #include "cli/program.h"
 #include "support/test.h"
 

@@ -2,7 +2,7 @@
 // Flows of real files whose answers are known.
 #include <filesystem>
 
-#include "base/file.h"
+#include "base/file/file.h"
 #include "program.h"
 #include "support/test.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Glyphs and trails from the command line.
-#include "base/file.h"
+#include "base/file/file.h"
 #include "cli/program.h"
 #include "support/test.h"
 

@@ -2,7 +2,7 @@
 // Volumes that are written slab by slab, and pictures of a series.
 #include <unistd.h>
 
-#include "base/file.h"
+#include "base/file/file.h"
 #include "cli/program.h"
 #include "support/test.h"
 

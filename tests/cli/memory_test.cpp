@@ -3,9 +3,9 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "base/file.h"
+#include "base/file/file.h"
 #include "cli/program.h"
-#include "data/memory_budget.h"
+#include "data/memory/memory_budget.h"
 #include "io/io.h"
 #include "support/test.h"
 

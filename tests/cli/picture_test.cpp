@@ -2,7 +2,7 @@
 // The whole way: file to picture, recipe and back, on any number of threads.
 #include <nlohmann/json.hpp>
 
-#include "base/file.h"
+#include "base/file/file.h"
 #include "cli/program.h"
 #include "image/codec.h"
 #include "support/test.h"

@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "base/file.h"
+#include "base/file/file.h"
 #include "support/test.h"
 
 namespace sg::test {

@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
-#include "base/file.h"
-#include "base/utf8.h"
+#include "base/file/file.h"
+#include "base/text/utf8.h"
 #include "cli/program.h"
 #include "image/codec.h"
 #include "support/property.h"

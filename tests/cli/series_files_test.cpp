@@ -2,7 +2,7 @@
 // Several files as a series, further inputs of a chain, and films from the command line.
 #include <filesystem>
 
-#include "base/file.h"
+#include "base/file/file.h"
 #include "image/codec.h"
 #include "io/io.h"
 #include "program.h"

@@ -2,7 +2,7 @@
 // Tables and files of colours where meshes are expected, and colours of a file in a picture.
 #include <filesystem>
 
-#include "base/file.h"
+#include "base/file/file.h"
 #include "cli/program.h"
 #include "image/codec.h"
 #include "support/test.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Textures of flows from the command line.
-#include "base/file.h"
+#include "base/file/file.h"
 #include "image/codec.h"
 #include "program.h"
 #include "support/test.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Transfer functions from the command line: repeated by the recipe, saved and loaded, explained.
-#include "base/file.h"
+#include "base/file/file.h"
 #include "cli/program.h"
 #include "support/test.h"
 

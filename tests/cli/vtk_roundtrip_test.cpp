@@ -4,7 +4,7 @@
 
 #include <cstdio>
 
-#include "base/file.h"
+#include "base/file/file.h"
 #include "support/test.h"
 
 using namespace sg;

@@ -3,8 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "base/file.h"
-#include "base/text.h"
+#include "base/file/file.h"
+#include "base/text/text.h"
 #include "color/cie.h"
 #include "color/colormap_nodes.h"
 #include "color/parse_color.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Stops of colour stay where they are stated: in text, in files, and about a hinge.
-#include "base/text.h"
+#include "base/text/text.h"
 #include "color/colormap_file.h"
 #include "color/colormap_formats.h"
 #include "color/colormap_nodes.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data/byte_cache.h"
+#include "data/memory/byte_cache.h"
 
 #include <atomic>
 

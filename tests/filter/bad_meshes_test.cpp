@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What makes and cuts surfaces, on meshes that are empty, of one cell, or broken.
 #include "filter/cell_meshes.h"
-#include "filter/mesh/clip.h"
-#include "filter/mesh/extract.h"
-#include "filter/mesh/faces.h"
-#include "filter/mesh/slice.h"
-#include "filter/mesh/threshold.h"
-#include "filter/mesh_meshes.h"
+#include "filter/mesh/clip/clip.h"
+#include "filter/mesh/faces/faces.h"
+#include "filter/mesh/mesh_meshes.h"
+#include "filter/mesh/select/extract.h"
+#include "filter/mesh/select/threshold.h"
+#include "filter/mesh/slice/slice.h"
 #include "filter/scalar/bands.h"
 #include "filter/scalar/isolines.h"
 

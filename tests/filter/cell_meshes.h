@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "data/dataset.h"
-#include "filter/contour_support.h"
+#include "filter/scalar/contour/contour_support.h"
 
 namespace sg::test {
 

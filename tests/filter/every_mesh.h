@@ -3,7 +3,7 @@
 #pragma once
 #include <functional>
 
-#include "filter/field/point_cell.h"
+#include "filter/field/sampling/point_cell.h"
 #include "filter/flow/flow_meshes.h"
 #include "filter/flow/topology/topology_support.h"
 #include "filter/mesh/merge_points.h"

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "base/file.h"
+#include "base/file/file.h"
 #include "samples.h"
 
 using namespace sg;

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "../io/io_files.h"
+#include "io/io_files.h"
 
 namespace sg::test {
 

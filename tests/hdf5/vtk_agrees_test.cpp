@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "base/text.h"
+#include "base/text/text.h"
 #include "samples.h"
 
 using namespace sg;

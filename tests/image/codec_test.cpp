@@ -7,7 +7,7 @@
 
 #include <cstring>
 
-#include "base/file.h"
+#include "base/file/file.h"
 #include "base/parallel.h"
 #include "base/random.h"
 #include "support/test.h"

@@ -5,8 +5,8 @@
 
 #include <filesystem>
 
-#include "../../fuzz/fuzz.h"
-#include "base/file.h"
+#include "base/file/file.h"
+#include "fuzz.h"
 #include "support/test.h"
 
 namespace sg::test {

@@ -3,7 +3,7 @@
 
 #include <sys/stat.h>
 
-#include "base/file.h"
+#include "base/file/file.h"
 #include "support/test.h"
 
 using namespace sg;

@@ -2,7 +2,7 @@
 // Every NRRD, MetaImage, raw, STL, PLY and OBJ file of the data folder against what other readers say of it.
 #include <nlohmann/json.hpp>
 
-#include "base/file.h"
+#include "base/file/file.h"
 #include "data/lattice.h"
 #include "io/io.h"
 #include "support/test.h"

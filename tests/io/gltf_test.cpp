@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <nlohmann/json.hpp>
 
+#include "io/mesh/mesh_robust.h"
 #include "io_files.h"
-#include "mesh_robust.h"
 
 using namespace sg;
 using Json = nlohmann::ordered_json;

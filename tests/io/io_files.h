@@ -3,7 +3,7 @@
 #pragma once
 #include <string>
 
-#include "base/file.h"
+#include "base/file/file.h"
 #include "base/parallel.h"
 #include "data/dataset.h"
 #include "io/io.h"

@@ -4,7 +4,7 @@
 
 #include <map>
 
-#include "data/point_positions.h"
+#include "data/cells/point_positions.h"
 #include "io_files.h"
 #include "support/property.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Adaptive supersampling: all samples where they are needed, the single one elsewhere.
 #include "render/render.h"
-#include "volume_support.h"
+#include "render/volume/volume_support.h"
 
 using namespace sg;
 using namespace sg::test;

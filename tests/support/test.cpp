@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "base/file.h"
+#include "base/file/file.h"
 
 namespace sg::test {
 

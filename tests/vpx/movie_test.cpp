@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Films, decoded again by the library.
-#include "io/movie.h"
+#include "io/film/movie.h"
 
 #include <vpx/vp8dx.h>
 #include <vpx/vpx_decoder.h>
@@ -9,7 +9,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "base/file.h"
+#include "base/file/file.h"
 #include "base/parallel.h"
 #include "support/test.h"
 

@@ -3,7 +3,7 @@
 #include "base/schema/schema.h"
 
 #include "base/error.h"
-#include "base/text.h"
+#include "base/text/text.h"
 
 namespace sg {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Parameters for people and as JSON schema.
 #include "base/schema/schema.h"
-#include "base/text.h"
+#include "base/text/text.h"
 
 namespace sg {
 

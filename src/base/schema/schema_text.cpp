@@ -2,7 +2,7 @@
 // Text as one way to state parameters.
 #include "base/error.h"
 #include "base/schema/schema.h"
-#include "base/text.h"
+#include "base/text/text.h"
 
 namespace sg {
 

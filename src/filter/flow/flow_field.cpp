@@ -6,9 +6,9 @@
 #include <limits>
 
 #include "base/parallel.h"
-#include "data/mesh_dimension.h"
-#include "filter/field/point_cell.h"
-#include "filter/flow/flow_access.h"
+#include "data/cells/mesh_dimension.h"
+#include "filter/field/sampling/point_cell.h"
+#include "filter/flow/cursors/flow_access.h"
 
 namespace sg {
 

@@ -2,7 +2,7 @@
 #include "filter/flow/flow_parts.h"
 
 #include "base/parallel.h"
-#include "data/mesh_dimension.h"
+#include "data/cells/mesh_dimension.h"
 
 namespace sg {
 

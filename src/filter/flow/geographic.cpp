@@ -2,8 +2,8 @@
 #include "filter/flow/geographic.h"
 
 #include "base/parallel.h"
-#include "base/text.h"
-#include "data/point_positions.h"
+#include "base/text/text.h"
+#include "data/cells/point_positions.h"
 #include "data/trusted.h"
 #include "filter/flow/line_mesh.h"
 

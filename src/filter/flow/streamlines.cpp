@@ -6,7 +6,7 @@
 #include "filter/flow/geographic.h"
 #include "filter/flow/line_attributes.h"
 #include "filter/flow/line_mesh.h"
-#include "filter/flow/noise_speed.h"
+#include "filter/flow/seeds/noise_speed.h"
 
 namespace sg {
 

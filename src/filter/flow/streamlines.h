@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // streamlines: lines along a steady flow from seeds.
 #pragma once
-#include "filter/flow/seeds.h"
+#include "filter/flow/seeds/seeds.h"
 #include "filter/flow/trace.h"
 
 namespace sg {

@@ -8,8 +8,8 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "base/text.h"
-#include "data/point_positions.h"
+#include "base/text/text.h"
+#include "data/cells/point_positions.h"
 #include "filter/glyph/instances.h"
 #include "filter/glyph/shapes.h"
 

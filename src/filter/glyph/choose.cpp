@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "base/text.h"
+#include "base/text/text.h"
+#include "data/cells/point_positions.h"
 #include "data/field_ops.h"
-#include "data/point_positions.h"
 
 namespace sg {
 

@@ -6,7 +6,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "data/field_ops.h"
-#include "data/memory_budget.h"
+#include "data/memory/memory_budget.h"
 #include "filter/mesh/surface.h"
 
 namespace sg {

@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "data/point_positions.h"
+#include "data/cells/point_positions.h"
 
 namespace sg {
 

@@ -8,8 +8,8 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "base/file.h"
-#include "filter/mesh/faces.h"
+#include "base/file/file.h"
+#include "filter/mesh/faces/faces.h"
 #include "filter/mesh/surface.h"
 
 namespace sg {

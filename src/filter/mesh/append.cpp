@@ -5,8 +5,8 @@
 
 #include "base/error.h"
 #include "data/field_ops.h"
-#include "data/memory_budget.h"
-#include "filter/mesh/extract.h"
+#include "data/memory/memory_budget.h"
+#include "filter/mesh/select/extract.h"
 #include "filter/mesh/to_unstructured.h"
 
 namespace sg {

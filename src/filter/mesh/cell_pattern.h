@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/vec.h"
-#include "data/cell_type.h"
+#include "data/cells/cell_type.h"
 
 namespace sg::detail {
 

@@ -4,10 +4,10 @@
 #include <unordered_map>
 
 #include "base/error.h"
-#include "data/cell_reader.h"
+#include "data/cells/cell_reader.h"
 #include "data/field_ops.h"
 #include "data/lattice.h"
-#include "filter/mesh/extract.h"
+#include "filter/mesh/select/extract.h"
 
 namespace sg {
 

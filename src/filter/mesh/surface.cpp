@@ -2,8 +2,8 @@
 #include "filter/mesh/surface.h"
 
 #include "base/parallel.h"
-#include "data/cell_topology.h"
-#include "filter/mesh/faces.h"
+#include "data/cells/cell_topology.h"
+#include "filter/mesh/faces/faces.h"
 #include "filter/mesh/surface_builder.h"
 
 namespace sg {

@@ -3,7 +3,7 @@
 
 #include "base/parallel.h"
 #include "data/field_ops.h"
-#include "filter/mesh/id_set.h"
+#include "filter/mesh/select/id_set.h"
 
 namespace sg {
 

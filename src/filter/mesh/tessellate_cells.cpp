@@ -7,7 +7,7 @@
 #include <unordered_map>
 
 #include "base/error.h"
-#include "data/cell_map.h"
+#include "data/cells/shape/cell_map.h"
 #include "data/field_ops.h"
 #include "filter/mesh/cell_pattern.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/mesh/to_unstructured.h"
 
-#include "filter/mesh/extract.h"
+#include "filter/mesh/select/extract.h"
 
 namespace sg {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/probe/cell_pieces.h"
 
-#include "data/cell_topology.h"
+#include "data/cells/cell_topology.h"
 
 namespace sg {
 

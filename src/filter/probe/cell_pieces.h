@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "data/cell_map.h"
+#include "data/cells/shape/cell_map.h"
 
 namespace sg {
 

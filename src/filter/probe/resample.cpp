@@ -2,7 +2,7 @@
 #include "filter/probe/resample.h"
 
 #include "base/error.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "data/lattice.h"
 #include "filter/probe/sample.h"
 

@@ -3,10 +3,10 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "base/text.h"
-#include "data/cell_topology.h"
+#include "base/text/text.h"
+#include "data/cells/cell_topology.h"
 #include "data/field_ops.h"
-#include "filter/scalar/cell_cases.h"
+#include "filter/scalar/contour/cells/cell_cases.h"
 #include "filter/surface/polygons.h"
 
 namespace sg {

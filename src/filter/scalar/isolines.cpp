@@ -2,10 +2,10 @@
 #include "filter/scalar/isolines.h"
 
 #include "base/error.h"
-#include "data/cell_reader.h"
+#include "data/cells/cell_reader.h"
 #include "data/field_ops.h"
 #include "data/lattice.h"
-#include "filter/scalar/contour.h"
+#include "filter/scalar/contour/contour.h"
 #include "filter/surface/polygons.h"
 
 namespace sg {

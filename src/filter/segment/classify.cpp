@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "filter/segment/otsu.h"
 #include "filter/segment/samples.h"
 #include "filter/segment/tissue_model.h"

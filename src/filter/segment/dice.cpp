@@ -6,7 +6,7 @@
 #include <unordered_map>
 
 #include "base/parallel.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "filter/segment/samples.h"
 
 namespace sg {

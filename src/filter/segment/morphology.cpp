@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "filter/segment/distance_map.h"
 #include "filter/segment/label_components.h"
 #include "filter/segment/samples.h"

@@ -8,7 +8,7 @@
 #include <queue>
 
 #include "base/parallel.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "filter/segment/samples.h"
 
 namespace sg {

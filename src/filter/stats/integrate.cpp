@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "data/cell_map.h"
+#include "data/cells/shape/cell_map.h"
 #include "filter/stats/stats_parts.h"
 
 namespace sg {

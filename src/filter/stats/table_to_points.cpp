@@ -2,7 +2,7 @@
 #include "filter/stats/table_to_points.h"
 
 #include "base/error.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "data/field_ops.h"
 
 namespace sg {

@@ -4,7 +4,7 @@
 #include "base/error.h"
 #include "data/field_ops.h"
 #include "filter/mesh/append.h"
-#include "filter/scalar/contour.h"
+#include "filter/scalar/contour/contour.h"
 #include "filter/surface/normals.h"
 #include "filter/surface/polygons.h"
 

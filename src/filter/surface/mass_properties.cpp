@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "data/cell_reader.h"
+#include "data/cells/cell_reader.h"
 #include "filter/mesh/merge_points.h"
 #include "filter/mesh/surface.h"
 #include "filter/surface/polygons.h"

@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "data/cell_topology.h"
+#include "data/cells/cell_topology.h"
 #include "data/field_ops.h"
 #include "filter/mesh/merge_points.h"
 #include "filter/mesh/surface.h"

@@ -3,8 +3,8 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "data/cell_reader.h"
-#include "data/cell_shape.h"
+#include "data/cells/cell_reader.h"
+#include "data/cells/shape/cell_shape.h"
 
 namespace sg {
 

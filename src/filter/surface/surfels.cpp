@@ -3,10 +3,10 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "data/field_ops.h"
 #include "data/lattice.h"
-#include "filter/scalar/contour_surfels.h"
+#include "filter/scalar/contour/lattice/contour_surfels.h"
 
 namespace sg {
 

@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "filter/field/point_cell.h"
+#include "filter/field/sampling/point_cell.h"
 
 namespace sg {
 

@@ -4,7 +4,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "data/lattice.h"
-#include "filter/flow/surface_normal.h"
+#include "filter/flow/cursors/surface_normal.h"
 
 namespace sg {
 

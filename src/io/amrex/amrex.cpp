@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // AMReX and BoxLib plotfiles: all levels as one AmrGrid, with the cells that a finer level covers marked.
 #include "base/bytes.h"
-#include "base/file.h"
+#include "base/file/file.h"
 #include "base/parallel.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "io/amrex/plotfile.h"
 #include "io/formats.h"
-#include "io/unread.h"
+#include "io/mesh/unread.h"
 
 namespace sg {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/amrex/plotfile.h"
 
-#include "base/file.h"
-#include "base/file_fence.h"
-#include "base/text.h"
-#include "io/text_scan.h"
+#include "base/file/file.h"
+#include "base/file/file_fence.h"
+#include "base/text/text.h"
+#include "io/text/text_scan.h"
 
 namespace sg::amrex {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/ensight/case_file.h"
 
-#include "base/file.h"
-#include "base/file_fence.h"
-#include "base/text.h"
+#include "base/file/file.h"
+#include "base/file/file_fence.h"
+#include "base/text/text.h"
 
 namespace sg::ensight {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // EnSight Gold: a case file, a geometry and one file per variable. Source: EnSight User Manual, "EnSight Gold Casefile Format".
-#include "base/text.h"
+#include "base/text/text.h"
 #include "io/ensight/variables.h"
 #include "io/formats.h"
-#include "io/unread.h"
+#include "io/mesh/unread.h"
 
 namespace sg {
 

@@ -3,9 +3,9 @@
 
 #include "base/bytes.h"
 #include "base/parallel.h"
-#include "base/text.h"
-#include "io/blanking.h"
-#include "io/brick.h"
+#include "base/text/text.h"
+#include "io/mesh/blanking.h"
+#include "io/volume/brick.h"
 
 namespace sg::ensight {
 

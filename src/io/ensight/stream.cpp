@@ -3,9 +3,9 @@
 
 #include "base/bytes.h"
 #include "base/parallel.h"
-#include "base/text.h"
-#include "io/text_scan.h"
-#include "io/vtk_numbers.h"
+#include "base/text/text.h"
+#include "io/text/text_scan.h"
+#include "io/vtk/vtk_numbers.h"
 
 namespace sg::ensight {
 

@@ -2,8 +2,8 @@
 #include "io/ensight/variables.h"
 
 #include "base/parallel.h"
-#include "base/text.h"
-#include "io/unread.h"
+#include "base/text/text.h"
+#include "io/mesh/unread.h"
 
 namespace sg::ensight {
 

@@ -2,7 +2,7 @@
 #include "io/gltf/gltf_bytes.h"
 
 #include "base/bytes.h"
-#include "base/file_fence.h"
+#include "base/file/file_fence.h"
 #include "io/formats.h"
 
 namespace sg {

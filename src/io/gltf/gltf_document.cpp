@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 
 #include "base/bytes.h"
-#include "base/file.h"
-#include "base/text.h"
+#include "base/file/file.h"
+#include "base/text/text.h"
 #include "io/gltf/gltf_bytes.h"
 
 namespace sg {

@@ -4,10 +4,10 @@
 // its buffer as a data: URI.
 #include <nlohmann/json.hpp>
 
-#include "base/file.h"
+#include "base/file/file.h"
 #include "io/formats.h"
 #include "io/gltf/gltf_bytes.h"
-#include "io/surface_parts.h"
+#include "io/surface/surface_parts.h"
 #include "io/write_losses.h"
 
 namespace sg {

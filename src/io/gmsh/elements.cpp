@@ -5,7 +5,7 @@
 #include <map>
 
 #include "base/error.h"
-#include "io/mesh_text.h"
+#include "io/text/mesh_text.h"
 
 namespace sg::gmsh {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "data/cell_type.h"
+#include "data/cells/cell_type.h"
 
 namespace sg::gmsh {
 

@@ -3,7 +3,7 @@
 #include "io/gmsh/msh_file.h"
 
 #include "base/bytes.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "io/gmsh/elements.h"
 
 namespace sg::gmsh {

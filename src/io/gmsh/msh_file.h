@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "io/mesh_text.h"
+#include "io/text/mesh_text.h"
 
 namespace sg::gmsh {
 

@@ -2,8 +2,8 @@
 // Shape functions of MFEM's elements at the nodes of ours. A nodal basis is found from its nodes: with V the matrix of some basis of
 // the same polynomials (products of Legendre polynomials, well conditioned up to order 10) at the nodes, N(x) = V^-T phi(x).
 #include "base/error.h"
-#include "io/mesh_text.h"
 #include "io/mfem/element.h"
+#include "io/text/mesh_text.h"
 
 namespace sg::mfem {
 

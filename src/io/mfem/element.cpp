@@ -2,8 +2,8 @@
 #include "io/mfem/element.h"
 
 #include "base/error.h"
-#include "base/text.h"
-#include "io/mesh_text.h"
+#include "base/text/text.h"
+#include "io/text/mesh_text.h"
 
 namespace sg::mfem {
 

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "data/cell_type.h"
+#include "data/cells/cell_type.h"
 
 namespace sg::mfem {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/mfem/mesh_file.h"
 
-#include "base/text.h"
+#include "base/text/text.h"
 
 namespace sg::mfem {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "base/context.h"
-#include "io/mesh_text.h"
 #include "io/mfem/topology.h"
+#include "io/text/mesh_text.h"
 
 namespace sg::mfem {
 

@@ -4,8 +4,8 @@
 // fields, NURBS patches rational Bezier cells; "attribute" is a cell field. Boundary elements are left out.
 #include <algorithm>
 
-#include "base/file.h"
-#include "base/text.h"
+#include "base/file/file.h"
+#include "base/text/text.h"
 #include "io/formats.h"
 #include "io/mfem/mesh_file.h"
 

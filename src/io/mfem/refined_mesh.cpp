@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Non-conforming meshes (a tree of refined elements; the leaves are the mesh) and meshes that are made from a few numbers.
-#include "base/text.h"
+#include "base/text/text.h"
 #include "io/mfem/mesh_file.h"
 
 namespace sg::mfem {

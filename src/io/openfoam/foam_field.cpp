@@ -2,10 +2,10 @@
 #include "io/openfoam/foam_field.h"
 
 #include "base/parallel.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "data/field_ops.h"
+#include "io/mesh/unread.h"
 #include "io/openfoam/foam_file.h"
-#include "io/unread.h"
 
 namespace sg::openfoam {
 

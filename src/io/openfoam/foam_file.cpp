@@ -3,10 +3,10 @@
 
 #include "base/bytes.h"
 #include "base/parallel.h"
-#include "base/text.h"
-#include "io/inflate.h"
-#include "io/number_text.h"
-#include "io/text_scan.h"
+#include "base/text/text.h"
+#include "io/bytes/inflate.h"
+#include "io/text/number_text.h"
+#include "io/text/text_scan.h"
 
 namespace sg::openfoam {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // OpenFOAM cases: a folder with constant/polyMesh, time folders with fields, perhaps cut into processor* folders and regions.
-#include "base/file.h"
-#include "base/text.h"
+#include "base/file/file.h"
+#include "base/text/text.h"
 #include "data/field_ops.h"
 #include "io/formats.h"
+#include "io/mesh/unread.h"
 #include "io/openfoam/foam_field.h"
 #include "io/openfoam/foam_file.h"
-#include "io/unread.h"
 
 namespace sg {
 

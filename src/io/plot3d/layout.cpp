@@ -3,8 +3,8 @@
 
 #include "base/bytes.h"
 #include "base/parallel.h"
-#include "io/number_text.h"
-#include "io/text_scan.h"
+#include "io/text/number_text.h"
+#include "io/text/text_scan.h"
 
 namespace sg::plot3d {
 

@@ -2,12 +2,12 @@
 // PLOT3D: a grid file, and beside it a solution (q) and a function file. Layout: see layout.h.
 #include <nlohmann/json.hpp>
 
-#include "base/file_fence.h"
-#include "base/text.h"
-#include "io/blanking.h"
+#include "base/file/file_fence.h"
+#include "base/text/text.h"
 #include "io/formats.h"
+#include "io/mesh/blanking.h"
+#include "io/mesh/unread.h"
 #include "io/plot3d/layout.h"
-#include "io/unread.h"
 
 namespace sg {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tecplot ASCII: ordered zones become curvilinear grids, finite-element zones unstructured meshes; several zones a collection. Zones of
 // different solution times are steps. Values are f32 unless the zone says DOUBLE.
-#include "base/file.h"
-#include "base/text.h"
+#include "base/file/file.h"
+#include "base/text/text.h"
 #include "io/formats.h"
-#include "io/mesh_text.h"
 #include "io/tecplot/tecplot_parse.h"
+#include "io/text/mesh_text.h"
 
 namespace sg {
 

@@ -7,8 +7,8 @@
 
 #include "base/bytes.h"
 #include "base/error.h"
-#include "base/text.h"
-#include "io/text_scan.h"
+#include "base/text/text.h"
+#include "io/text/text_scan.h"
 
 namespace sg::tecplot {
 

@@ -9,8 +9,8 @@
 #include <nlohmann/json.hpp>
 
 #include "base/bytes.h"
-#include "base/file.h"
-#include "base/file_fence.h"
+#include "base/file/file.h"
+#include "base/file/file_fence.h"
 #include "io/zarr/zarr_json.h"
 
 namespace sg::zarr {

@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "base/file.h"
+#include "base/file/file.h"
 #include "base/parallel.h"
-#include "data/byte_cache.h"
+#include "data/memory/byte_cache.h"
 #include "io/zarr/zarr_image.h"
 
 namespace sg::zarr {

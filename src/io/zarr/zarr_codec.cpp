@@ -10,7 +10,7 @@
 
 #include "base/bytes.h"
 #include "base/error.h"
-#include "io/inflate.h"
+#include "io/bytes/inflate.h"
 
 namespace sg::zarr {
 

@@ -9,7 +9,7 @@
 #include "base/vec.h"
 #include "data/bricked.h"
 #include "data/mesh.h"
-#include "io/lattice_part.h"
+#include "io/volume/lattice_part.h"
 #include "io/zarr/zarr_array.h"
 
 namespace sg::zarr {

@@ -2,11 +2,11 @@
 // Zarr folders as datasets: whole, a part, or, when that is more than memory holds, the finest level that fits with a way to the rest.
 #include <unistd.h>
 
-#include "base/file.h"
-#include "base/text.h"
+#include "base/file/file.h"
+#include "base/text/text.h"
 #include "data/bricked.h"
 #include "io/formats.h"
-#include "io/unread.h"
+#include "io/mesh/unread.h"
 #include "io/zarr/zarr_image.h"
 
 namespace sg {

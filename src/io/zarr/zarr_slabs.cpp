@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where slabs come from: files and datasets.
 #include "base/error.h"
-#include "base/file.h"
+#include "base/file/file.h"
 #include "io/formats.h"
 #include "io/write_losses.h"
 #include "io/zarr/zarr.h"

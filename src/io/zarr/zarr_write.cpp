@@ -7,10 +7,10 @@
 #include <filesystem>
 
 #include "base/error.h"
-#include "base/file.h"
+#include "base/file/file.h"
+#include "base/file/partial_file.h"
 #include "base/parallel.h"
-#include "base/partial_file.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "data/bricked.h"
 #include "io/formats.h"
 #include "io/zarr/zarr.h"

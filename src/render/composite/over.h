@@ -3,7 +3,7 @@
 #pragma once
 #include "base/context.h"
 #include "image/image.h"
-#include "render/fragments.h"
+#include "render/composite/fragments.h"
 
 namespace sg {
 

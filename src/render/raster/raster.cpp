@@ -7,14 +7,14 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "render/raster/bins.h"
-#include "render/raster/discs.h"
-#include "render/raster/fragments.h"
-#include "render/raster/glyphs.h"
-#include "render/raster/key_plane.h"
-#include "render/raster/marks.h"
-#include "render/raster/shade.h"
-#include "render/texture/textures.h"
+#include "render/raster/discs/discs.h"
+#include "render/raster/glyphs/glyphs.h"
+#include "render/raster/lic/textures.h"
+#include "render/raster/marks/marks.h"
+#include "render/raster/triangles/bins.h"
+#include "render/raster/triangles/fragments.h"
+#include "render/raster/triangles/key_plane.h"
+#include "render/shade/shade.h"
 
 namespace sg {
 

@@ -12,7 +12,7 @@
 
 #include "base/context.h"
 #include "image/image.h"
-#include "render/fragments.h"
+#include "render/composite/fragments.h"
 #include "scene/scene.h"
 
 namespace sg {

@@ -8,7 +8,7 @@
 
 #include "base/parallel.h"
 #include "data/bricked.h"
-#include "data/memo.h"
+#include "data/memory/memo.h"
 #include "render/volume/prepare_cast.h"
 
 namespace sg::volume {

@@ -4,7 +4,7 @@
 #pragma once
 #include <optional>
 
-#include "render/fragments.h"
+#include "render/composite/fragments.h"
 #include "scene/scene.h"
 
 namespace sg::volume {

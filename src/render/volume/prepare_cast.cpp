@@ -7,13 +7,13 @@
 
 #include "base/error.h"
 #include "data/field_component.h"
-#include "render/volume/cells/cell_source.h"
-#include "render/volume/cells/cell_volume.h"
-#include "render/volume/large/bricked_source.h"
-#include "render/volume/large/mip_source.h"
-#include "render/volume/lattice/lattice_ray.h"
-#include "render/volume/lattice/reconstructed_ray.h"
-#include "render/volume/light/effects.h"
+#include "render/volume/effects/effects.h"
+#include "render/volume/sources/bricks/bricked_source.h"
+#include "render/volume/sources/bricks/mip_source.h"
+#include "render/volume/sources/cells/cell_source.h"
+#include "render/volume/sources/cells/cell_volume.h"
+#include "render/volume/sources/lattice/lattice_ray.h"
+#include "render/volume/sources/lattice/reconstructed_ray.h"
 
 namespace sg::volume {
 

@@ -2,8 +2,8 @@
 // From a volume item to what rays need: checks, its source by the kind of mesh, its medium.
 #pragma once
 #include "base/context.h"
-#include "render/volume/lattice/lattice_volume.h"
-#include "render/volume/optics/cast.h"
+#include "render/volume/rays/cast.h"
+#include "render/volume/sources/lattice/lattice_volume.h"
 
 namespace sg::volume {
 

@@ -4,7 +4,7 @@
 #include <charconv>
 #include <map>
 
-#include "base/text.h"
+#include "base/text/text.h"
 #include "color/colormap_file.h"
 #include "color/parse_color.h"
 #include "data/lattice.h"

@@ -6,7 +6,7 @@
 
 #include "base/parallel.h"
 #include "data/lattice.h"
-#include "filter/field/derivatives.h"
+#include "filter/field/derivatives/derivatives.h"
 
 namespace sg {
 

@@ -2,7 +2,7 @@
 #include "scene/choose/volume_extent.h"
 
 #include "base/parallel.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "data/lattice.h"
 
 namespace sg {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/choose/volume_look.h"
 
-#include "base/text.h"
+#include "base/text/text.h"
 #include "data/field_ops.h"
 #include "data/lattice.h"
 #include "scene/choose/field_habits.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/show/glyphs.h"
 
-#include "base/text.h"
+#include "base/text/text.h"
 #include "color/parse_color.h"
 #include "scene/choose/scale.h"
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/show/labels.h"
 
-#include "base/text.h"
+#include "base/text/text.h"
 #include "color/parse_color.h"
-#include "data/point_positions.h"
+#include "data/cells/point_positions.h"
 #include "filter/scalar/line_labels.h"
 
 namespace sg {

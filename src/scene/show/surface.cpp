@@ -3,7 +3,7 @@
 
 #include "color/parse_color.h"
 #include "data/field_ops.h"
-#include "filter/mesh/faces.h"
+#include "filter/mesh/faces/faces.h"
 #include "filter/mesh/surface.h"
 #include "scene/show/field_color.h"
 #include "scene/show/texture_color.h"

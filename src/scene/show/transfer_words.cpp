@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A volume's look as words.
 #include "base/schema/schema.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "color/parse_color.h"
 #include "color/transfer_text.h"
 #include "scene/show/volume.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/show/volume.h"
 
-#include "base/text.h"
+#include "base/text/text.h"
 #include "color/parse_color.h"
 #include "color/transfer_text.h"
 #include "data/field_component.h"

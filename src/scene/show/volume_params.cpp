@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The declaration of the words, and what can be said about them without data.
-#include "base/text.h"
+#include "base/text/text.h"
 #include "color/transfer_text.h"
 #include "scene/show/volume.h"
 #include "scene/show/volume_presets.h"

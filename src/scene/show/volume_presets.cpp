@@ -2,7 +2,7 @@
 #include "scene/show/volume_presets.h"
 
 #include "base/error.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "color/parse_color.h"
 #include "scene/choose/volume_look.h"
 

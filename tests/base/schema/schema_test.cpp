@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/schema/schema.h"
 
-#include "base/text.h"
+#include "base/text/text.h"
 #include "support/test.h"
 
 using namespace sg;

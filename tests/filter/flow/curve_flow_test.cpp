@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Flows on curves: only the part along the curve carries anything, and lines end where the curve does.
 #include "filter/flow/streamlines.h"
-#include "filter/flow/texture/refined_surface.h"
+#include "filter/flow/texture/surface/refined_surface.h"
 #include "support/test.h"
 
 using namespace sg;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Divergence, curl and vortex measures on every kind of mesh (correctness.md F4).
 #include "filter/every_mesh.h"
-#include "filter/field/derivatives.h"
+#include "filter/field/derivatives/derivatives.h"
 #include "filter/flow/vortex/measures.h"
 #include "filter/stats/integrate.h"
 

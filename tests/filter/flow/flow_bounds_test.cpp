@@ -4,7 +4,7 @@
 #include "filter/flow/fronts/stream_surface.h"
 #include "filter/flow/lines/even_streamlines.h"
 #include "filter/flow/streamlines.h"
-#include "filter/flow/texture/surface_lic.h"
+#include "filter/flow/texture/surface/surface_lic.h"
 #include "filter/flow/unsteady/pathlines.h"
 #include "filter/flow/unsteady/streaklines.h"
 #include "filter/flow/vortex/ftle.h"

@@ -4,8 +4,8 @@
 #include "filter/cell_meshes.h"
 #include "filter/flow/flow_support.h"
 #include "filter/flow/trace.h"
-#include "filter/mesh_meshes.h"
-#include "filter/surface_shapes.h"
+#include "filter/mesh/mesh_meshes.h"
+#include "filter/surface/surface_shapes.h"
 
 namespace sg::test::flow {
 

@@ -3,8 +3,8 @@
 #pragma once
 #include <vector>
 
+#include "data/cells/point_positions.h"
 #include "data/dataset.h"
-#include "data/point_positions.h"
 
 namespace sg::test {
 

@@ -3,7 +3,7 @@
 
 #include "filter/flow/streamlines.h"
 #include "filter/flow/unsteady/pathlines.h"
-#include "filter/flow/unsteady_lines.h"
+#include "filter/flow/unsteady/unsteady_lines.h"
 #include "filter/flow/vortex/ftle.h"
 #include "support/test.h"
 

@@ -3,7 +3,7 @@
 #include "filter/flow/streamlines.h"
 
 #include "base/parallel.h"
-#include "filter/field/derivatives.h"
+#include "filter/field/derivatives/derivatives.h"
 #include "filter/flow/flow_meshes.h"
 
 using namespace sg;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Walking from cell to cell against searching: the same answers in every kind of mesh.
 #include "base/random.h"
-#include "data/memo.h"
+#include "data/memory/memo.h"
 #include "filter/flow/flow_meshes.h"
 #include "filter/flow/flow_parts.h"
 #include "index/locator_meshes.h"

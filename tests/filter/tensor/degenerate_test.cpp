@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filter/tensor/degenerate_face.h"
-#include "filter/tensor/degenerate_lines.h"
-#include "filter/tensor/degenerate_points.h"
+#include "filter/tensor/degenerate/degenerate_face.h"
+#include "filter/tensor/degenerate/degenerate_lines.h"
+#include "filter/tensor/degenerate/degenerate_points.h"
 #include "filter/tensor/tensor_support.h"
 
 using namespace sg;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Boussinesq's point load on every kind of solid mesh (correctness.md section 3).
 #include "filter/every_mesh.h"
-#include "filter/field/gradient.h"
-#include "filter/mesh/slice.h"
-#include "filter/mesh/transform.h"
+#include "filter/field/derivatives/gradient.h"
+#include "filter/mesh/slice/slice.h"
+#include "filter/mesh/transform/transform.h"
 #include "filter/stats/integrate.h"
-#include "filter/tensor/hyperstreamlines.h"
+#include "filter/tensor/lines/hyperstreamlines.h"
 #include "filter/tensor/stress_measures.h"
 #include "filter/tensor/tensor_support.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filter/tensor/tensor_fit.h"
+#include "filter/tensor/diffusion/tensor_fit.h"
 
-#include "base/file.h"
-#include "filter/tensor/diffusion_model.h"
+#include "base/file/file.h"
+#include "filter/tensor/diffusion/diffusion_model.h"
 #include "filter/tensor/tensor_support.h"
 
 using namespace sg;

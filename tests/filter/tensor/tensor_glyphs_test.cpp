@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filter/tensor/tensor_glyphs.h"
+#include "filter/tensor/glyphs/tensor_glyphs.h"
 
-#include "filter/mesh_meshes.h"
-#include "filter/tensor/glyph_shapes.h"
+#include "filter/mesh/mesh_meshes.h"
+#include "filter/tensor/glyphs/glyph_shapes.h"
 #include "filter/tensor/tensor_support.h"
 
 using namespace sg;

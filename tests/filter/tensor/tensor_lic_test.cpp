@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // LIC along eigenvectors: statistics (F9), circles without seams, creases, isotropic places, and what is refused.
-#include "filter/tensor/tensor_lic.h"
+#include "filter/tensor/lines/tensor_lic.h"
 
 #include <functional>
 
-#include "filter/flow/texture/surface_lic.h"
-#include "filter/flow/texture/surface_walk.h"
+#include "filter/flow/texture/surface/surface_lic.h"
+#include "filter/flow/texture/surface/surface_walk.h"
 #include "filter/tensor/tensor_support.h"
 
 using namespace sg;

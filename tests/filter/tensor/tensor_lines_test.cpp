@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filter/tensor/tensor_lines.h"
+#include "filter/tensor/lines/tensor_lines.h"
 
-#include "filter/tensor/hyperstreamlines.h"
+#include "filter/tensor/lines/hyperstreamlines.h"
+#include "filter/tensor/lines/tractography.h"
 #include "filter/tensor/tensor_support.h"
-#include "filter/tensor/tractography.h"
 
 using namespace sg;
 using namespace sg::test;

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tensors on every kind of mesh (correctness.md section 3).
 #include "filter/every_mesh.h"
-#include "filter/mesh/slice.h"
-#include "filter/mesh/transform.h"
-#include "filter/tensor/diffusion_model.h"
-#include "filter/tensor/hyperstreamlines.h"
+#include "filter/mesh/slice/slice.h"
+#include "filter/mesh/transform/transform.h"
+#include "filter/tensor/diffusion/diffusion_model.h"
+#include "filter/tensor/diffusion/tensor_fit.h"
+#include "filter/tensor/lines/hyperstreamlines.h"
+#include "filter/tensor/lines/tensor_lines.h"
+#include "filter/tensor/lines/tractography.h"
 #include "filter/tensor/stress_measures.h"
-#include "filter/tensor/tensor_fit.h"
-#include "filter/tensor/tensor_lines.h"
 #include "filter/tensor/tensor_measures.h"
 #include "filter/tensor/tensor_support.h"
-#include "filter/tensor/tractography.h"
 
 using namespace sg;
 using namespace sg::test;

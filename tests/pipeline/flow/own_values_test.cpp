@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lines and surfaces of a flow have values of their own; the velocity may be called as one of them.
 #include "filter/flow/flow_meshes.h"
-#include "pipeline/operation.h"
+#include "pipeline/operation/operation.h"
 #include "support/test.h"
 
 using namespace sg;

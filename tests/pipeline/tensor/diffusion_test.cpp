@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Diffusion tensors of real images.
-#include "filter/tensor/tensor_fit.h"
+#include "filter/tensor/diffusion/tensor_fit.h"
+#include "filter/tensor/lines/tractography.h"
 #include "filter/tensor/tensor_measures.h"
 #include "filter/tensor/tensor_support.h"
-#include "filter/tensor/tractography.h"
 #include "io/io.h"
-#include "pipeline/gradient_images.h"
+#include "pipeline/file/gradient_images.h"
 
 using namespace sg;
 using namespace sg::test;

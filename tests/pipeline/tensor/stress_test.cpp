@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tensors of a known stress and of real files.
-#include "filter/mesh/slice.h"
-#include "filter/tensor/degenerate_points.h"
-#include "filter/tensor/hyperstreamlines.h"
+#include "filter/mesh/slice/slice.h"
+#include "filter/tensor/degenerate/degenerate_points.h"
+#include "filter/tensor/glyphs/tensor_glyphs.h"
+#include "filter/tensor/lines/hyperstreamlines.h"
 #include "filter/tensor/stress_measures.h"
-#include "filter/tensor/tensor_glyphs.h"
 #include "filter/tensor/tensor_measures.h"
 #include "filter/tensor/tensor_support.h"
 #include "io/io.h"

@@ -2,7 +2,7 @@
 #include "filter/flow/fronts/default_curve.h"
 
 #include "base/error.h"
-#include "filter/flow/random_places.h"
+#include "filter/flow/seeds/random_places.h"
 
 namespace sg {
 

@@ -6,8 +6,8 @@
 #include "filter/flow/fronts/front.h"
 #include "filter/flow/line_attributes.h"
 #include "filter/flow/line_mesh.h"
-#include "filter/flow/noise_speed.h"
-#include "filter/flow/seeds.h"
+#include "filter/flow/seeds/noise_speed.h"
+#include "filter/flow/seeds/seeds.h"
 
 namespace sg {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/fronts/unsteady_surfaces.h"
 
-#include "base/text.h"
+#include "base/text/text.h"
 #include "filter/flow/fronts/default_curve.h"
 #include "filter/flow/fronts/sheet.h"
 #include "filter/flow/fronts/surface_run.h"

@@ -4,9 +4,9 @@
 #include <deque>
 #include <unordered_map>
 
+#include "filter/flow/cursors/surface_normal.h"
 #include "filter/flow/line_attributes.h"
 #include "filter/flow/line_mesh.h"
-#include "filter/flow/surface_normal.h"
 #include "filter/flow/trace_line.h"
 
 namespace sg {

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
-#include "filter/flow/tet_cursor.h"
+#include "filter/flow/cursors/tet_cursor.h"
 
 namespace sg::packets {
 

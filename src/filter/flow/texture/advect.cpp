@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "filter/flow/texture/back_trace.h"
 #include "filter/flow/texture/frame.h"
 

@@ -3,10 +3,10 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "data/field_ops.h"
 #include "data/lattice.h"
-#include "filter/field/point_cell.h"
+#include "filter/field/sampling/point_cell.h"
 #include "filter/flow/flow_field.h"
 #include "filter/probe/probe.h"
 #include "filter/probe/resample.h"

@@ -8,8 +8,8 @@
 
 #include "base/context.h"
 #include "base/huge_allocator.h"
+#include "data/cells/mesh_dimension.h"
 #include "data/dataset.h"
-#include "data/mesh_dimension.h"
 
 namespace sg::texture {
 

@@ -6,9 +6,9 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "filter/flow/flow_field.h"
-#include "filter/flow/noise_speed.h"
+#include "filter/flow/seeds/noise_speed.h"
 #include "filter/flow/texture/frame.h"
 #include "filter/flow/texture/noise.h"
 

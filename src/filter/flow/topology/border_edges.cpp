@@ -5,8 +5,8 @@
 #include <array>
 #include <set>
 
-#include "data/cell_reader.h"
-#include "data/cell_topology.h"
+#include "data/cells/cell_reader.h"
+#include "data/cells/cell_topology.h"
 
 namespace sg {
 

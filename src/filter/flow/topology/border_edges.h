@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "filter/flow/flow_parts.h"
-#include "filter/flow/topology/plane_frame.h"
+#include "filter/flow/topology/zeros/plane_frame.h"
 
 namespace sg {
 

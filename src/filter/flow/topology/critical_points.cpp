@@ -4,12 +4,12 @@
 #include <algorithm>
 
 #include "base/parallel.h"
-#include "filter/flow/noise_speed.h"
-#include "filter/flow/topology/cell_scan.h"
-#include "filter/flow/topology/cell_zeros.h"
+#include "filter/flow/seeds/noise_speed.h"
 #include "filter/flow/topology/mean_divergence.h"
-#include "filter/flow/topology/surface_zeros.h"
-#include "filter/flow/topology/winding.h"
+#include "filter/flow/topology/zeros/cell_scan.h"
+#include "filter/flow/topology/zeros/cell_zeros.h"
+#include "filter/flow/topology/zeros/surface_zeros.h"
+#include "filter/flow/topology/zeros/winding.h"
 #include "filter/mesh/surface_builder.h"
 
 namespace sg {

@@ -6,8 +6,8 @@
 
 #include "base/schema/schema.h"
 #include "filter/flow/flow_parts.h"
-#include "filter/flow/topology/linearisation.h"
-#include "filter/flow/topology/plane_frame.h"
+#include "filter/flow/topology/zeros/linearisation.h"
+#include "filter/flow/topology/zeros/plane_frame.h"
 
 namespace sg {
 

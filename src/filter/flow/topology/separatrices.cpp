@@ -5,7 +5,7 @@
 
 #include "base/parallel.h"
 #include "filter/flow/packets/packet_lines.h"
-#include "filter/flow/topology/surface_zeros.h"
+#include "filter/flow/topology/zeros/surface_zeros.h"
 
 namespace sg {
 

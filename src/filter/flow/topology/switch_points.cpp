@@ -5,7 +5,7 @@
 #include <array>
 #include <map>
 
-#include "data/cell_map.h"
+#include "data/cells/shape/cell_map.h"
 #include "filter/flow/topology/border_edges.h"
 #include "filter/mesh/surface_builder.h"
 

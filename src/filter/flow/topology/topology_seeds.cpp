@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
-#include "data/memory_budget.h"
+#include "data/memory/memory_budget.h"
 #include "filter/flow/topology/topology.h"
 
 namespace sg {

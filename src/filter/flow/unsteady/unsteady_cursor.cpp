@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <optional>
 
-#include "filter/flow/surface_normal.h"
+#include "filter/flow/cursors/surface_normal.h"
 #include "filter/flow/unsteady/unsteady_flow.h"
 
 namespace sg {

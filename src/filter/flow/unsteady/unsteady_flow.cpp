@@ -2,8 +2,8 @@
 #include "filter/flow/unsteady/unsteady_flow.h"
 
 #include "base/error.h"
-#include "base/text.h"
-#include "data/point_positions.h"
+#include "base/text/text.h"
+#include "data/cells/point_positions.h"
 #include "data/trusted.h"
 #include "filter/flow/flow_parts.h"
 #include "filter/flow/geographic.h"

@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "base/parallel.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "filter/flow/geographic.h"
 #include "filter/flow/line_mesh.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "filter/flow/seeds.h"
+#include "filter/flow/seeds/seeds.h"
 #include "filter/flow/unsteady/particles.h"
 
 namespace sg {

@@ -2,7 +2,7 @@
 #include "filter/flow/vortex/core_lines.h"
 
 #include "base/parallel.h"
-#include "data/cell_reader.h"
+#include "data/cells/cell_reader.h"
 #include "filter/flow/eigen_general.h"
 #include "filter/flow/flow_parts.h"
 #include "filter/flow/vortex/keep_large.h"

@@ -2,7 +2,7 @@
 #include "filter/flow/vortex/ftle.h"
 
 #include "base/parallel.h"
-#include "data/memory_budget.h"
+#include "data/memory/memory_budget.h"
 #include "filter/flow/flow_parts.h"
 #include "filter/flow/geographic.h"
 #include "filter/flow/unsteady/particles.h"

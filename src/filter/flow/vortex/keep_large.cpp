@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/vortex/keep_large.h"
 
-#include "data/cell_reader.h"
-#include "filter/mesh/extract.h"
+#include "data/cells/cell_reader.h"
+#include "filter/mesh/select/extract.h"
 
 namespace sg {
 

@@ -2,7 +2,7 @@
 #include "filter/flow/vortex/measures.h"
 
 #include "base/parallel.h"
-#include "filter/field/gradient.h"
+#include "filter/field/derivatives/gradient.h"
 #include "filter/flow/eigen_general.h"
 #include "filter/flow/flow_field.h"
 #include "filter/tensor/sym_tensor.h"

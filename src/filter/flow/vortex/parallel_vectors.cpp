@@ -7,9 +7,9 @@
 #include <numeric>
 
 #include "base/parallel.h"
-#include "data/cell_reader.h"
-#include "data/cell_topology.h"
-#include "filter/field/point_cell.h"
+#include "data/cells/cell_reader.h"
+#include "data/cells/cell_topology.h"
+#include "filter/field/sampling/point_cell.h"
 #include "filter/flow/flow_parts.h"
 #include "filter/flow/vortex/mend_lines.h"
 #include "filter/flow/vortex/parallel_tetra.h"

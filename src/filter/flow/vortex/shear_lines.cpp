@@ -3,7 +3,7 @@
 
 #include "base/parallel.h"
 #include "filter/mesh/append.h"
-#include "filter/tensor/hyperstreamlines.h"
+#include "filter/tensor/lines/hyperstreamlines.h"
 
 namespace sg {
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "filter/scalar/contour_amr.h"
+#include "filter/scalar/contour/contour_amr.h"
 
 namespace sg {
 

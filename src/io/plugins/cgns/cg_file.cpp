@@ -6,9 +6,9 @@
 #include <cstring>
 
 #include "base/bytes.h"
-#include "base/file.h"
-#include "base/file_fence.h"
-#include "base/text.h"
+#include "base/file/file.h"
+#include "base/file/file_fence.h"
+#include "base/text/text.h"
 
 namespace sg::cg {
 

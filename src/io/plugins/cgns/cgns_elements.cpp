@@ -2,7 +2,7 @@
 #include "io/plugins/cgns/cgns_elements.h"
 
 #include "base/parallel.h"
-#include "io/node_order.h"
+#include "io/mesh/node_order.h"
 
 namespace sg::cg {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The CGNS plug-in: bases, their zones and time steps.
 #include "base/parallel.h"
-#include "io/isolated.h"
+#include "io/isolated/isolated.h"
 #include "io/plugin.h"
 #include "io/plugins/cgns/cgns_zone.h"
 

@@ -4,9 +4,9 @@
 #include "base/bytes.h"
 #include "base/parallel.h"
 #include "data/lattice_crop.h"
-#include "io/component_names.h"
+#include "io/mesh/unread.h"
 #include "io/plugins/cgns/cgns_elements.h"
-#include "io/unread.h"
+#include "io/volume/component_names.h"
 
 namespace sg::cg {
 

@@ -3,14 +3,14 @@
 // by position along their normal, and become uniform grids in the patient's space (left-posterior-superior, mm).
 #include "base/bytes.h"
 #include "base/error.h"
-#include "base/file.h"
-#include "base/file_fence.h"
+#include "base/file/file.h"
+#include "base/file/file_fence.h"
 #include "base/parallel.h"
-#include "base/text.h"
-#include "io/lattice_part.h"
+#include "base/text/text.h"
+#include "io/mesh/unread.h"
 #include "io/plugin.h"
 #include "io/plugins/gdcm/dicom_picture.h"
-#include "io/unread.h"
+#include "io/volume/lattice_part.h"
 
 namespace sg {
 

@@ -3,7 +3,7 @@
 
 #include "base/bytes.h"
 #include "base/error.h"
-#include "base/text.h"
+#include "base/text/text.h"
 
 namespace sg {
 

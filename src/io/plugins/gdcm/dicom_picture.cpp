@@ -13,9 +13,9 @@
 
 #include "base/bytes.h"
 #include "base/error.h"
-#include "base/file.h"
-#include "base/text.h"
-#include "io/child.h"
+#include "base/file/file.h"
+#include "base/text/text.h"
+#include "io/isolated/child.h"
 #include "io/plausible.h"
 #include "io/plugins/gdcm/dicom_elements.h"
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // ENZO output: grids of the hierarchy as an AMR grid, their fields from the HDF5 files beside it, in CGS units where the parameter
 // file gives factors.
-#include "base/file_fence.h"
-#include "base/text.h"
-#include "io/amr_cover.h"
+#include "base/file/file_fence.h"
+#include "base/text/text.h"
 #include "io/io.h"
+#include "io/mesh/amr_cover.h"
 #include "io/plugins/hdf5/enzo.h"
 #include "io/plugins/hdf5/h5.h"
-#include "io/vtk_cells.h"
+#include "io/vtk/vtk_cells.h"
 
 namespace sg {
 

@@ -11,7 +11,7 @@
 #include <chrono>
 #include <csignal>
 
-#include "io/child.h"
+#include "io/isolated/child.h"
 
 namespace sg::h5 {
 

@@ -3,8 +3,8 @@
 
 #include "base/bytes.h"
 #include "base/error.h"
-#include "base/file_fence.h"
-#include "base/text.h"
+#include "base/file/file_fence.h"
+#include "base/text/text.h"
 #include "io/plugins/hdf5/guarded.h"
 #include "io/plugins/hdf5/h5_probe.h"
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "base/file.h"
+#include "base/file/file.h"
 #include "data/array.h"
 #include "io/plugins/hdf5/h5_data.h"
 

@@ -2,7 +2,7 @@
 // Datasets: shape, what the file can back, where the numbers lie.
 #include "base/bytes.h"
 #include "base/error.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "io/plausible.h"
 #include "io/plugins/hdf5/guarded.h"
 #include "io/plugins/hdf5/h5.h"

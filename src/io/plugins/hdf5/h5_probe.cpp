@@ -10,7 +10,7 @@
 #include <set>
 
 #include "base/error.h"
-#include "io/isolated.h"
+#include "io/isolated/isolated.h"
 #include "io/plugins/hdf5/h5.h"
 
 namespace sg::h5 {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // VTKHDF: overlapping AMR. Groups Level0, Level1, ... hold the spacing, the boxes and the fields of all boxes one after the other.
 #include "base/bytes.h"
-#include "io/amr_cover.h"
+#include "io/mesh/amr_cover.h"
 #include "io/plugins/hdf5/vtkhdf.h"
-#include "io/vtk_cells.h"
+#include "io/vtk/vtk_cells.h"
 
 namespace sg::vtkhdf {
 

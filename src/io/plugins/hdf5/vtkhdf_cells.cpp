@@ -3,7 +3,7 @@
 // they are merged here. In a series, tables in Steps say which partitions, points, cells and ids belong to a step.
 #include "base/bytes.h"
 #include "io/plugins/hdf5/vtkhdf.h"
-#include "io/vtk_cells.h"
+#include "io/vtk/vtk_cells.h"
 
 namespace sg::vtkhdf {
 

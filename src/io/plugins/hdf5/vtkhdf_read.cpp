@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // VTKHDF files: the choice of the kind, time steps, fields, blocks.
 #include "base/bytes.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "io/plugins/hdf5/vtkhdf.h"
-#include "io/vtk_cells.h"
+#include "io/vtk/vtk_cells.h"
 
 namespace sg {
 

@@ -6,8 +6,8 @@
 #include <cerrno>
 #include <cstdio>
 
-#include "base/partial_file.h"
-#include "base/text.h"
+#include "base/file/partial_file.h"
+#include "base/text/text.h"
 #include "data/lattice.h"
 #include "io/plugins/hdf5/h5_pack.h"
 #include "io/plugins/hdf5/vtkhdf.h"

@@ -2,10 +2,10 @@
 #include "io/plugins/netcdf/cf.h"
 
 #include "base/parallel.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "data/lattice.h"
 #include "data/lattice_crop.h"
-#include "io/unread.h"
+#include "io/mesh/unread.h"
 
 namespace sg::nc {
 

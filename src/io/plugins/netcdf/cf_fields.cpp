@@ -2,7 +2,7 @@
 #include <netcdf.h>
 
 #include "base/parallel.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "io/plugins/netcdf/cf.h"
 
 namespace sg::nc {

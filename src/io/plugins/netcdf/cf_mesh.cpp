@@ -2,7 +2,7 @@
 #include <cstring>
 #include <unordered_map>
 
-#include "base/text.h"
+#include "base/text/text.h"
 #include "io/plugins/netcdf/cf.h"
 
 namespace sg::nc {

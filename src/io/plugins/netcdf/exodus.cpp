@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/plugins/netcdf/exodus.h"
 
-#include "base/text.h"
-#include "io/unread.h"
+#include "base/text/text.h"
+#include "io/mesh/unread.h"
 
 namespace sg::nc {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Exodus II: variables, maps and points of an object.
 #include "base/parallel.h"
-#include "io/component_names.h"
+#include "io/mesh/unread.h"
 #include "io/plugins/netcdf/exodus.h"
-#include "io/unread.h"
+#include "io/volume/component_names.h"
 
 namespace sg::nc {
 

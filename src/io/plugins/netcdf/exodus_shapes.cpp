@@ -4,7 +4,7 @@
 #include "io/plugins/netcdf/exodus_shapes.h"
 
 #include "base/error.h"
-#include "base/text.h"
+#include "base/text/text.h"
 
 namespace sg::nc {
 

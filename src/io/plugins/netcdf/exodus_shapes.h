@@ -4,7 +4,7 @@
 #include <span>
 #include <string_view>
 
-#include "io/node_order.h"
+#include "io/mesh/node_order.h"
 
 namespace sg::nc {
 

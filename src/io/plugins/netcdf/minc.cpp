@@ -4,9 +4,9 @@
 #include <netcdf.h>
 
 #include "base/parallel.h"
-#include "base/text.h"
+#include "base/text/text.h"
 #include "data/lattice_crop.h"
-#include "io/direction.h"
+#include "io/volume/direction.h"
 
 namespace sg::nc {
 

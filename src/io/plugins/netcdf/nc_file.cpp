@@ -7,8 +7,8 @@
 #include <netcdf.h>
 
 #include "base/bytes.h"
-#include "base/file.h"
-#include "base/text.h"
+#include "base/file/file.h"
+#include "base/text/text.h"
 
 namespace sg::nc {
 

@@ -6,7 +6,7 @@
 
 #include <mutex>
 
-#include "io/isolated.h"
+#include "io/isolated/isolated.h"
 #include "io/plugin.h"
 #include "io/plugins/netcdf/cf.h"
 #include "io/plugins/netcdf/exodus.h"

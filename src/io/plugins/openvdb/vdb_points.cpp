@@ -3,7 +3,7 @@
 #include <openvdb/points/PointDataGrid.h>
 
 #include "base/error.h"
-#include "base/file.h"
+#include "base/file/file.h"
 #include "io/plugins/openvdb/vdb.h"
 
 namespace sg {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/bytes.h"
 #include "base/error.h"
-#include "base/file.h"
+#include "base/file/file.h"
 #include "base/parallel.h"
-#include "base/text.h"
-#include "io/direction.h"
-#include "io/isolated.h"
-#include "io/lattice_part.h"
+#include "base/text/text.h"
+#include "io/isolated/isolated.h"
 #include "io/plugin.h"
 #include "io/plugins/openvdb/vdb.h"
+#include "io/volume/direction.h"
+#include "io/volume/lattice_part.h"
 
 namespace sg {
 

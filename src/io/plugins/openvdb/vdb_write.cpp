@@ -6,9 +6,9 @@
 #include <fstream>
 
 #include "base/error.h"
-#include "base/partial_file.h"
-#include "io/lattice_part.h"
+#include "base/file/partial_file.h"
 #include "io/plugins/openvdb/vdb.h"
+#include "io/volume/lattice_part.h"
 #include "io/write_losses.h"
 
 namespace sg {

@@ -5,12 +5,12 @@
 
 #include "base/bytes.h"
 #include "base/error.h"
-#include "base/file.h"
+#include "base/file/file.h"
 #include "base/parallel.h"
-#include "io/isolated.h"
-#include "io/lattice_part.h"
+#include "io/isolated/isolated.h"
 #include "io/plausible.h"
 #include "io/plugin.h"
+#include "io/volume/lattice_part.h"
 
 namespace sg {
 

@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "io/movie.h"
+#include "io/film/movie.h"
 #include "io/plugin.h"
 
 namespace sg {

@@ -2,7 +2,7 @@
 // Statistics of textures on every kind of mesh (correctness.md F9).
 #include "filter/every_mesh.h"
 #include "filter/flow/texture/lic.h"
-#include "filter/flow/texture/surface_lic.h"
+#include "filter/flow/texture/surface/surface_lic.h"
 #include "texture_support.h"
 
 using namespace sg;

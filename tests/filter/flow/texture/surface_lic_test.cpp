@@ -5,8 +5,8 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
-#include "filter/flow/texture/surface_lic.h"
-#include "filter/flow/texture/surface_walk.h"
+#include "filter/flow/texture/surface/surface_lic.h"
+#include "filter/flow/texture/surface/surface_walk.h"
 #include "support/test.h"
 
 using namespace sg;

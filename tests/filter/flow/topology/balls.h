@@ -5,9 +5,9 @@
 #include <array>
 #include <map>
 
-#include "data/cell_reader.h"
+#include "data/cells/cell_reader.h"
 #include "filter/flow/topology/topology_support.h"
-#include "filter/surface_shapes.h"
+#include "filter/surface/surface_shapes.h"
 
 namespace sg::test::topology {
 

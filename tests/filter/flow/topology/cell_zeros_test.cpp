@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Several zeros in one cell, on every type of cell.
-#include "filter/flow/topology/cell_zeros.h"
+#include "filter/flow/topology/zeros/cell_zeros.h"
 
 #include "base/random.h"
-#include "data/cell_map.h"
+#include "data/cells/shape/cell_map.h"
 #include "filter/flow/topology/topology_support.h"
-#include "filter/flow/topology/winding.h"
+#include "filter/flow/topology/zeros/winding.h"
 #include "support/test.h"
 
 using namespace sg;

@@ -4,9 +4,9 @@
 #include <map>
 
 #include "base/random.h"
-#include "data/cell_reader.h"
+#include "data/cells/cell_reader.h"
 #include "filter/flow/topology/balls.h"
-#include "filter/flow/topology/winding.h"
+#include "filter/flow/topology/zeros/winding.h"
 #include "support/test.h"
 
 using namespace sg;

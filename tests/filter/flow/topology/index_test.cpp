@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/random.h"
 #include "filter/flow/topology/topology_support.h"
-#include "filter/flow/topology/winding.h"
-#include "filter/surface_shapes.h"
+#include "filter/flow/topology/zeros/winding.h"
+#include "filter/surface/surface_shapes.h"
 #include "support/test.h"
 
 using namespace sg;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filter/flow/topology/linearisation.h"
+#include "filter/flow/topology/zeros/linearisation.h"
 
 #include "base/random.h"
 #include "filter/flow/topology/topology_support.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Topology across blocks, levels and ghost cells.
 #include "base/parallel.h"
-#include "data/cell_reader.h"
+#include "data/cells/cell_reader.h"
 #include "filter/flow/flow_meshes.h"
 #include "filter/flow/topology/topology.h"
 #include "filter/flow/topology/topology_support.h"

@@ -3,10 +3,10 @@
 #pragma once
 #include <vector>
 
-#include "data/cell_shape.h"
+#include "data/cells/shape/cell_shape.h"
 #include "filter/flow/flow_support.h"
 #include "filter/flow/topology/critical_points.h"
-#include "filter/mesh_meshes.h"
+#include "filter/mesh/mesh_meshes.h"
 
 namespace sg::test::topology {
 

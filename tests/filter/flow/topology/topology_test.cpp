@@ -4,9 +4,9 @@
 #include <map>
 
 #include "base/parallel.h"
-#include "data/memory_budget.h"
+#include "data/memory/memory_budget.h"
 #include "filter/flow/topology/topology_support.h"
-#include "filter/surface_shapes.h"
+#include "filter/surface/surface_shapes.h"
 #include "support/test.h"
 
 using namespace sg;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Critical points that lie exactly on a vertex, an edge or a face of the mesh are found, and once.
-#include "data/cell_topology.h"
+#include "data/cells/cell_topology.h"
 #include "filter/every_mesh.h"
 #include "filter/flow/topology/balls.h"
 #include "filter/smooth_distortion.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Vortex cores that run along edges, in faces and through vertices of the mesh are one line.
-#include "data/cell_reader.h"
+#include "data/cells/cell_reader.h"
 #include "filter/every_mesh.h"
 #include "filter/flow/vortex/core_lines.h"
 #include "filter/mesh/to_unstructured.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // FTLE on every kind of mesh (correctness.md F5, F6).
 #include "filter/every_mesh.h"
-#include "filter/flow/unsteady_lines.h"
+#include "filter/flow/unsteady/unsteady_lines.h"
 #include "filter/flow/vortex/ftle.h"
-#include "filter/mesh/transform.h"
+#include "filter/mesh/transform/transform.h"
 
 using namespace sg;
 using namespace sg::test;

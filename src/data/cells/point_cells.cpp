@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "data/cells/point_cells.h"
+
+#include "base/error.h"
+#include "data/cells/cell_reader.h"
+
+namespace sg {
+
+PointCells::PointCells(const DatasetPtr& dataset) {
+  CellReader reader(dataset);
+  const size_t n = reader.count();
+  if (n >= UINT32_MAX)
+    fail_usage(fmt::format("{} cells are more than can be listed by point", n), "neighbours of points", "crop the mesh first");
+  begin_.assign(dataset->point_count() + 1, 0);
+  // Counting, then filling in the order of the cells: each list comes out sorted.
+  for (size_t c = 0; c < n; ++c) {
+    if (reader.hidden(c)) continue;
+    reader.open(c);
+    for (const int64_t p : reader.ids()) ++begin_[size_t(p) + 1];
+  }
+  std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+  cells_.resize(begin_.back());
+  std::vector<size_t> next(begin_.begin(), begin_.end() - 1);
+  for (size_t c = 0; c < n; ++c) {
+    if (reader.hidden(c)) continue;
+    reader.open(c);
+    for (const int64_t p : reader.ids()) cells_[next[size_t(p)]++] = uint32_t(c);
+  }
+}
+
+}  // namespace sg

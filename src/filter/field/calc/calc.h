@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Arithmetic on fields: calc 'expr=mag(velocity)*rho'.
+#pragma once
+#include <vector>
+
+#include "base/context.h"
+#include "base/schema/schema.h"
+#include "base/text/help_word.h"
+#include "data/dataset.h"
+
+namespace sg {
+
+struct CalcParams {
+  std::string expr;
+  std::string name = "result";
+  std::string on = "auto";
+};
+
+inline void describe(Schema& s, CalcParams& p) {
+  s("expr", p.expr,
+    "What to compute, like mag(velocity)*rho; names of fields as they are, or in \"quotes\"; also x, y, z, position, time, pi. Operators "
+    "and "
+    "functions are listed below.");
+  s("name", p.name, "Name of the new field.");
+  s("on", p.on, "Where: auto follows the fields of the expression (points when it has none).").choices({"auto", "point", "cell"});
+}
+
+/// Adds a field computed from others, tuple by tuple, in double; the result is f32 when every field used is f32 or a small
+/// integer, else f64; comparisons are 0 or 1. NaN goes through.
+///
+///   expression   or && ||, comparison < <= > >= == !=, + -, * / %, ^ (right to left), - !, a ? b : c, a.x .y .z, a[i], (a)
+///   numbers      1.5e-3, pi, e, nan
+///   coordinates  x y z and position (of points, or of cell centres) where no field has that name; time
+///   functions    sin cos tan asin acos atan sinh cosh tanh exp log log10 log2 sqrt cbrt abs sign floor ceil round
+///                atan2 pow mod min max hypot clamp(a,lo,hi) if(c,a,b) isnan
+///   vectors      mag norm dot cross vec(a,b,c) sum; a scalar meets each component of a vector; trace det of 3x3 tensors
+///
+/// Units are carried: products and powers combine them, sums need equal ones (else the result has none, and a note says so).
+/// Throws Error(usage) with the place in the expression, and for point fields mixed with cell fields.
+DatasetPtr calc(const DatasetPtr& in, const CalcParams& p, Context& ctx);
+
+/// Operators, names and functions of expressions, for help.
+std::vector<HelpWord> calc_words();
+
+}  // namespace sg

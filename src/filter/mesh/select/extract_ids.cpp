@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filter/mesh/select/extract_ids.h"
+
+#include <algorithm>
+#include <cctype>
+#include <unordered_set>
+
+#include "base/error.h"
+#include "data/cells/cell_reader.h"
+#include "filter/mesh/select/extract.h"
+
+namespace sg {
+
+namespace {
+
+// 1 for each chosen cell or point.
+std::vector<uint8_t> chosen(const DatasetPtr& in, const ExtractParams& p, size_t count) {
+  std::vector<uint8_t> yes(count, 0);
+  if (p.by.empty()) {
+    for (const int64_t id : p.ids) {
+      if (id < 0 || size_t(id) >= count)
+        fail_usage(fmt::format("there is no {} {}", p.of, id), "extract ids", count ? fmt::format("0 to {}", count - 1) : "there are none");
+      yes[size_t(id)] = 1;
+    }
+    return yes;
+  }
+  const Association on = p.of == "cell" && !in->as<PointCloud>() ? Association::cell : Association::point;
+  const Field& f = in->fields().require(p.by.name, on);
+  if (f.components() != 1)
+    fail_usage(fmt::format("field '{}' has {} components", f.name, f.components()), "extract by", "ids are single numbers");
+  const std::unordered_set<int64_t> wanted(p.ids.begin(), p.ids.end());
+  for (size_t i = 0; i < count; ++i) {
+    const double v = f.array.get(i);
+    yes[i] = std::isfinite(v) && std::fabs(v) < 9e15 && v == std::floor(v) && wanted.count(int64_t(v)) > 0;
+  }
+  return yes;
+}
+
+bool has_region(const ImplicitParams& p) {
+  return p.origin || p.position || (p.axis != "none" && !p.axis.empty()) || !p.sphere.empty() || !p.cylinder.empty() || !p.box.empty() ||
+         !p.quadric.empty() || !p.function.empty();
+}
+
+// Cells (or points of a cloud) in the region.
+void keep_region(const DatasetPtr& in, const ExtractParams& p, std::vector<uint8_t>& yes, Context& ctx) {
+  const ImplicitFunction f = implicit_function(p.region, in, nullptr, "extract", ctx);
+  CellReader reader(in);
+  if (in->as<AmrGrid>()) {
+    if (!f.evaluate) fail_usage("a function of fields is not known on AMR points", "extract function", "use x, y, z alone");
+    for (size_t c = 0; c < yes.size(); ++c) {
+      reader.open(c);
+      size_t inside = 0;
+      for (const Vec3& x : reader.at()) inside += f(x) <= 0;
+      yes[c] = yes[c] && (p.all_points ? inside == reader.at().size() : inside > 0);
+    }
+    return;
+  }
+  const Array values = values_at_points(f, in, ctx);
+  const auto v = values.view<double>();
+  for (size_t c = 0; c < yes.size(); ++c) {
+    reader.open(c);
+    size_t inside = 0;
+    for (const int64_t id : reader.ids()) inside += v[size_t(id)] <= 0;
+    yes[c] = yes[c] && (p.all_points ? inside == reader.ids().size() : inside > 0) && !reader.ids().empty();
+  }
+}
+
+void keep_types(const DatasetPtr& in, const std::vector<std::string>& names, std::vector<uint8_t>& yes) {
+  bool wanted[256] = {};
+  std::vector<std::string> known;
+  for (const auto& [name, count] : cell_type_counts(in->mesh())) known.emplace_back(name);
+  for (const std::string& name : names) {
+    bool found = false;
+    for (int t = 0; t < 256; ++t)
+      if (const CellTypeInfo* info = cell_type_info(uint8_t(t)))
+        if (info->name.size() == name.size() && std::equal(name.begin(), name.end(), info->name.begin(), [](char a, char b) {
+              return std::tolower(uint8_t(a)) == std::tolower(uint8_t(b));
+            }))
+          wanted[t] = found = true;
+    if (!found) fail_usage(fmt::format("there is no cell type '{}'", name), "extract types", unknown_name_hint(name, known));
+  }
+  CellReader reader(in);
+  for (size_t c = 0; c < yes.size(); ++c) {
+    reader.open(c);
+    yes[c] = yes[c] && wanted[uint8_t(reader.type())];
+  }
+}
+
+void keep_levels(const DatasetPtr& in, const std::vector<int64_t>& levels, std::vector<uint8_t>& yes) {
+  const AmrGrid* g = in->as<AmrGrid>();
+  if (!g) fail_usage(fmt::format("a {} mesh has no levels", in->kind()), "extract levels", "levels are of AMR grids");
+  std::vector<uint8_t> here(yes.size(), 0);
+  for (const int64_t l : levels) {
+    if (l < 0 || size_t(l) >= g->levels.size())
+      fail_usage(fmt::format("there is no level {}", l), "extract levels", fmt::format("0 to {}", g->levels.size() - 1));
+    for (const auto& patch : g->levels[size_t(l)].patches) {
+      const auto n = patch.cells();
+      std::fill_n(here.begin() + ptrdiff_t(patch.cell_offset), n[0] * n[1] * n[2], uint8_t(1));
+    }
+  }
+  for (size_t c = 0; c < yes.size(); ++c) yes[c] &= here[c];
+}
+
+}  // namespace
+
+DatasetPtr extract(const DatasetPtr& in, const ExtractParams& p, Context& ctx) {
+  const bool region = has_region(p.region);
+  if (p.ids.empty() && !region && p.types.empty() && p.levels.empty())
+    fail_usage("no numbers are given", "extract ids", "like ids=3,7,12; or a region (box=...), types, levels");
+  const bool cloud = in->as<PointCloud>();
+  const bool by_points = p.of == "point" && !cloud;
+  const size_t cells = cloud ? in->point_count() : in->cell_count();
+  std::vector<uint8_t> yes(cells, 1);
+  if (!p.ids.empty()) {
+    yes = chosen(in, p, by_points ? in->point_count() : cells);
+    if (by_points) {
+      std::vector<uint8_t> users(cells, 0);
+      CellReader reader(in);
+      for (size_t c = 0; c < cells; ++c) {
+        reader.open(c);
+        for (const int64_t id : reader.ids()) users[c] |= yes[size_t(id)];
+      }
+      yes = std::move(users);
+    }
+  }
+  if (region) keep_region(in, p, yes, ctx);
+  if (!p.types.empty()) keep_types(in, p.types, yes);
+  if (!p.levels.empty()) keep_levels(in, p.levels, yes);
+  if (p.invert)
+    for (uint8_t& y : yes) y = !y;
+  return extract_marked(in, yes, "extract");
+}
+
+Data extract_blocks(const Data& in, const ExtractParams& p, Context& ctx) {
+  Data chosen = in;
+  if (!p.blocks.empty()) {
+    const auto* c = std::get_if<CollectionPtr>(&in);
+    if (!c) fail_usage("the input is no collection", "extract blocks", "leave blocks out");
+    std::vector<std::string> names;
+    for_each_dataset(in, [&](const std::string& name, const DatasetPtr&) { names.push_back(name); });
+    for (const auto& part : (*c)->parts) names.push_back(part.name);
+    auto r = std::make_shared<Collection>();
+    for (const std::string& wanted : p.blocks) {
+      const size_t before = r->parts.size();
+      const bool digits = !wanted.empty() && wanted.size() < 10 && wanted.find_first_not_of("0123456789") == std::string::npos;
+      for (const auto& part : (*c)->parts)
+        if (part.name == wanted) r->parts.push_back(part);
+      if (r->parts.size() == before && digits && std::stoul(wanted) < (*c)->parts.size())
+        r->parts.push_back((*c)->parts[std::stoul(wanted)]);
+      if (r->parts.size() == before)
+        for_each_dataset(in, [&](const std::string& name, const DatasetPtr& d) {
+          if (name == wanted || name.starts_with(wanted + "/")) r->parts.push_back({name, d});
+        });
+      if (r->parts.size() == before)
+        fail_usage(fmt::format("there is no block '{}'", wanted), "extract blocks", unknown_name_hint(wanted, names));
+    }
+    chosen = CollectionPtr(r);
+    if (p.ids.empty() && !has_region(p.region) && p.types.empty() && p.levels.empty()) return chosen;
+  }
+  if (auto* d = std::get_if<DatasetPtr>(&chosen)) return extract(*d, p, ctx);
+  return map_datasets(chosen, [&](const DatasetPtr& d) {
+    const DatasetPtr r = extract(d, p, ctx);
+    return r->cell_count() > 0 || (r->as<PointCloud>() && r->point_count() > 0) ? r : nullptr;
+  });
+}
+
+}  // namespace sg

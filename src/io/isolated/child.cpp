@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "io/isolated/child.h"
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <poll.h>
+
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+
+#include "base/error.h"
+#include "base/serial.h"
+#include "base/text/text.h"
+#include "io/plausible.h"
+
+namespace sg {
+
+namespace {
+
+constexpr size_t library_memory = size_t(256) << 20;
+constexpr const char* seconds_variable = "SIGHTGLASS_READ_SECONDS";
+
+// Whole seconds, at least one.
+rlim_t whole_seconds(double s) { return rlim_t(std::clamp(std::ceil(s), 1.0, 1e9)); }
+
+size_t plus(size_t a, size_t b) { return a > SIZE_MAX / 2 - std::min(b, SIZE_MAX / 2) ? SIZE_MAX / 2 : a + b; }
+
+void limit_to(int what, rlim_t value) {
+  rlimit now{};
+  if (::getrlimit(what, &now) != 0) return;
+  now.rlim_cur = now.rlim_max = std::min({value, now.rlim_cur, now.rlim_max});
+  ::setrlimit(what, &now);
+}
+
+double seconds_since(std::chrono::steady_clock::time_point begin) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+}
+
+[[noreturn]] void fail_time(const std::string& took, double seconds, const std::string& path) {
+  fail_data(fmt::format("reading it takes more than {:.0f} s {}", std::ceil(seconds), took), path,
+            fmt::format("the file is damaged, or allow more: {}=SECONDS in the environment", seconds_variable));
+}
+
+// Until the child ends or that many milliseconds have passed. Without a descriptor of the process (old systems) it looks again and again.
+void wait_a_little(int process, int milliseconds) {
+  if (process < 0) {
+    ::usleep(500);
+    return;
+  }
+  pollfd ends{process, POLLIN, 0};
+  ::poll(&ends, 1, milliseconds);
+}
+
+}  // namespace
+
+ChildLimits reading_limits(size_t file_bytes) {
+  ChildLimits l;
+  const size_t numbers = size_t(std::min<uint64_t>(plausible_memory(file_bytes), SIZE_MAX / 8));
+  l.memory = plus(2 * numbers, library_memory);
+  l.processor = 5 + double(l.memory >> 29) + double(file_bytes >> 20);
+  if (const char* set = std::getenv(seconds_variable)) l.processor = std::max(std::atof(set), 1.0);
+  l.wall = 10 * l.processor;
+  return l;
+}
+
+size_t bytes_at(const std::string& path) {
+  struct stat st {};
+  if (::stat(path.c_str(), &st) != 0) return 0;
+  if (!S_ISDIR(st.st_mode)) return size_t(st.st_size);
+  size_t sum = 0;
+  DIR* folder = ::opendir(path.c_str());
+  while (const dirent* entry = folder ? ::readdir(folder) : nullptr)
+    if (::fstatat(::dirfd(folder), entry->d_name, &st, 0) == 0 && S_ISREG(st.st_mode)) sum = plus(sum, size_t(st.st_size));
+  if (folder) ::closedir(folder);
+  return sum;
+}
+
+void become_child(const ChildLimits& limits) {
+  run_serially();
+  for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGXCPU, SIGXFSZ, SIGALRM, SIGINT, SIGTERM, SIGHUP, SIGPIPE})
+    std::signal(signal, SIG_DFL);
+  size_t pages = 0;
+  if (std::FILE* f = std::fopen("/proc/self/statm", "r")) {
+    if (std::fscanf(f, "%zu", &pages) != 1) pages = 0;
+    std::fclose(f);
+  }
+  if (pages > 0) limit_to(RLIMIT_AS, plus(pages * size_t(::sysconf(_SC_PAGESIZE)), limits.memory));
+  limit_to(RLIMIT_FSIZE, plus(limits.memory, 1 << 20));  // what it hands over is memory too
+  limit_to(RLIMIT_CPU, whole_seconds(limits.processor));
+  limit_to(RLIMIT_CORE, 0);
+  ::alarm(unsigned(whole_seconds(limits.wall) + 2));  // should the parent be gone
+  if (const int nowhere = ::open("/dev/null", O_WRONLY); nowhere >= 0) ::dup2(nowhere, 1), ::dup2(nowhere, 2);
+}
+
+int wait_for_child(pid_t child, const ChildLimits& limits, const std::string& path, const Context& context) {
+  const auto begin = std::chrono::steady_clock::now();
+#ifdef SYS_pidfd_open
+  const int process = int(::syscall(SYS_pidfd_open, child, 0));
+#else
+  const int process = -1;
+#endif
+  bool late = false;
+  int status = 0;
+  for (;;) {
+    const pid_t r = ::waitpid(child, &status, WNOHANG);
+    if (r == child || (r < 0 && errno != EINTR)) break;
+    late = seconds_since(begin) > limits.wall;
+    if (late || context.cancelled()) ::kill(child, SIGKILL);
+    wait_a_little(process, 20);
+  }
+  if (process >= 0) ::close(process);
+  context.check();
+  if (late) fail_time("by the clock", limits.wall, path);
+  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM) fail_time("by the clock", limits.wall, path);
+  // The processor's limit ends a child by SIGXCPU, or by SIGKILL where both limits are one; nobody else but the system short of memory
+  // kills it so.
+  if (WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL))
+    fail_time("of the processor", limits.processor, path);
+  if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXFSZ) fail_child_memory(limits, path);
+  return status;
+}
+
+void fail_child_memory(const ChildLimits& limits, const std::string& path) {
+  fail_data(fmt::format("reading it needs more memory than the {} that are allowed for a file of {}", human_bytes(limits.memory),
+                        human_bytes(bytes_at(path))),
+            path, "the file is damaged, or allow more: --memory SIZE, like 16G");
+}
+
+}  // namespace sg

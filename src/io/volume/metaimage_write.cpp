@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// MetaImage: .mha with the numbers behind the header, .mhd with a .raw or .zraw file beside it.
+#include <libdeflate.h>
+
+#include "base/file/file.h"
+#include "base/text/text.h"
+#include "io/atomic_files.h"
+#include "io/formats.h"
+#include "io/write_losses.h"
+
+namespace sg {
+
+namespace {
+
+const Field& field_to_write(const Dataset& d, const std::string& path, WriteLosses& losses) {
+  const Field* chosen = nullptr;
+  for (const Field& f : d.fields())
+    if (f.association == Association::point && (!chosen || (f.role == Role::scalars && chosen->role != Role::scalars))) chosen = &f;
+  if (!chosen)
+    fail_usage("there is no point field to write", path, "a MetaImage file holds one array of numbers at the points of a uniform grid");
+  losses.keeps_only(d, *chosen, false);
+  return *chosen;
+}
+
+std::vector<std::byte> pack_zlib(std::span<const std::byte> in) {
+  const std::unique_ptr<libdeflate_compressor, void (*)(libdeflate_compressor*)> c(libdeflate_alloc_compressor(6),
+                                                                                   libdeflate_free_compressor);
+  if (!c) fail_data("not enough memory to compress");
+  std::vector<std::byte> out(libdeflate_zlib_compress_bound(c.get(), in.size()));
+  out.resize(libdeflate_zlib_compress(c.get(), in.data(), in.size(), out.data(), out.size()));
+  return out;
+}
+
+std::string three(Vec3 v) { return fmt::format("{} {} {}", exact_number(v.x), exact_number(v.y), exact_number(v.z)); }
+
+std::string header_text(const UniformGrid& g, const Field& f, size_t packed, const std::string& data_file, const Dataset& d) {
+  constexpr std::string_view types[] = {"MET_UCHAR", "MET_CHAR",       "MET_USHORT",    "MET_SHORT", "MET_UINT",
+                                        "MET_INT",   "MET_ULONG_LONG", "MET_LONG_LONG", "MET_FLOAT", "MET_DOUBLE"};
+  std::string t = "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\n";
+  t += packed ? fmt::format("CompressedData = True\nCompressedDataSize = {}\n", packed) : "CompressedData = False\n";
+  t +=
+      fmt::format("TransformMatrix = {} {} {}\n", three(g.direction.column(0)), three(g.direction.column(1)), three(g.direction.column(2)));
+  t += fmt::format("Offset = {}\nElementSpacing = {}\n", three(g.origin), three(g.spacing));
+  t += fmt::format("DimSize = {} {} {}\n", g.dims[0], g.dims[1], g.dims[2]);
+  for (const auto& [key, value] : d.notes())
+    for (const std::string_view known : {"Modality", "AnatomicalOrientation", "Comment", "Name"})
+      if (key == known && value.find('\n') == std::string::npos) t += fmt::format("{} = {}\n", key, value);
+  if (!f.name.empty() && f.name != "MetaImage" && f.name.find('\n') == std::string::npos) t += fmt::format("FieldName = {}\n", f.name);
+  if (f.components() > 1) t += fmt::format("ElementNumberOfChannels = {}\n", f.components());
+  return t + fmt::format("ElementType = {}\nElementDataFile = {}\n", types[size_t(f.array.type())], data_file);
+}
+
+}  // namespace
+
+void write_metaimage(const std::string& path, const Data& data, const WriteOptions& options, Context& context) {
+  const DatasetPtr d = single_dataset(data, "writing MetaImage");
+  const UniformGrid* grid = d->as<UniformGrid>();
+  if (!grid)
+    fail_usage(fmt::format("a MetaImage file holds a uniform grid, not a {} mesh", d->kind()), path,
+               "sample it on a grid first: -f 'resample'");
+  if (options.compression != "none" && options.compression != "zlib")
+    fail_usage(fmt::format("MetaImage cannot be compressed with '{}'", options.compression), path, "none or zlib");
+  WriteLosses losses(path, "MetaImage");
+  const Field& f = field_to_write(*d, path, losses);
+  losses.renames(f, f.name.empty() || f.name.find('\n') != std::string::npos ? "MetaImage" : trim(f.name));
+  const Array a = f.array.made_packed();
+  std::span<const std::byte> bytes(a.raw(), a.bytes());
+  std::vector<std::byte> packed;
+  if (options.compression == "zlib") bytes = packed = pack_zlib(bytes);
+
+  const bool apart = extension_of(path) == "mhd";
+  const std::string data_path = path.substr(0, path.size() - 3) + (packed.empty() ? "raw" : "zraw");
+  const std::string header = header_text(*grid, f, packed.size(), apart ? file_name_of(data_path) : "LOCAL", *d);
+  if (apart) {
+    AtomicFiles files({data_path, path});
+    files.write(0, bytes.data(), bytes.size());
+    files.write(1, header);
+    files.commit();
+  } else {
+    AtomicFile file(path);
+    file.write(header);
+    file.write(bytes.data(), bytes.size());
+    file.commit();
+  }
+  losses.tell(context);
+}
+
+}  // namespace sg

@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: Apache-2.0
+// From YAML to PipelineFile, collecting all mistakes, and back.
+#include "pipeline/file/pipeline_file.h"
+
+#include <map>
+
+#include "base/file/file.h"
+#include "base/text/text.h"
+#include "pipeline/file/yaml_tree.h"
+#include "pipeline/graph/graph_state.h"
+
+namespace sg {
+
+namespace {
+
+using Kind = YamlNode::Kind;
+
+constexpr size_t most_steps = 1000, most_shows = 250;
+
+class FileParser {
+ public:
+  FileParser(const std::string& origin, const PipelineVocabulary& vocabulary)
+      : origin_(origin.empty() ? "pipeline" : origin), vocabulary_(vocabulary) {}
+
+  PipelineFile parse(const YamlNode& root) {
+    PipelineFile file;
+    if (root.kind != Kind::map) {
+      mistake(root.line, "a pipeline file is a map with the keys sightglass, steps, show, picture");
+      finish();
+    }
+    static const std::vector<std::string> keys{"sightglass", "steps", "show", "picture"};
+    bool versioned = false;
+    unique_keys(root, "");
+    for (const auto& [key, value] : root.pairs) {
+      if (key.text == "sightglass") versioned = true, check_version(value);
+      else if (key.text == "steps") parse_steps(value, file);
+      else if (key.text == "show") parse_shows(value, file);
+      else if (key.text == "picture") file.picture_line = key.line, parse_picture(value, file);
+      else mistake(key.line, fmt::format("unknown key '{}'; {}", key.text, unknown_name_hint(key.text, keys)));
+    }
+    if (!versioned) mistake(1, "the key 'sightglass' is missing; begin the file with sightglass: 1");
+    if (file.steps.empty() && mistakes_.empty()) mistake(1, "there are no steps; write steps: {name: {read: FILE}}");
+    finish();
+    return file;
+  }
+
+ private:
+  void mistake(int line, const std::string& text) {
+    mistakes_.push_back({line, ErrorKind::usage, fmt::format("{}:{}: {}", origin_, line, text)});
+  }
+
+  void finish() {
+    std::stable_sort(mistakes_.begin(), mistakes_.end(), [](const Mistake& a, const Mistake& b) { return a.node < b.node; });
+    if (!mistakes_.empty()) throw_mistakes(mistakes_);
+  }
+
+  void unique_keys(const YamlNode& map, const std::string& of) {
+    std::vector<std::string_view> seen;
+    for (const auto& [key, value] : map.pairs) seen.push_back(key.text);
+    std::sort(seen.begin(), seen.end());
+    for (size_t i = 1; i < seen.size(); ++i)
+      if (seen[i] == seen[i - 1] && (i < 2 || seen[i - 2] != seen[i])) {
+        int line = map.line;
+        for (const auto& [key, value] : map.pairs)
+          if (key.text == seen[i]) line = key.line;
+        mistake(line, fmt::format("{}the key '{}' stands twice", of, seen[i]));
+      }
+  }
+
+  void check_version(const YamlNode& value) {
+    if (value.kind != Kind::scalar || value.text != "1")
+      mistake(value.line, fmt::format("sightglass: '{}' is no version that this program reads; it reads 1", value.text));
+  }
+
+  // "key=value", "key=a,b,c" or the bare key. False after a mistake.
+  bool add_word(const std::string& key, const YamlNode& value, int line, const std::string& of, std::vector<std::string>& words) {
+    if (key.find('=') != key.npos) return mistake(line, fmt::format("{}: '{}' is no name", of, key)), false;
+    if (value.kind == Kind::null) return words.push_back(key), true;
+    if (value.kind == Kind::scalar) return words.push_back(key + "=" + value.text), true;
+    if (value.kind == Kind::map) return mistake(value.line, fmt::format("{} {}: must be a value or a list, not a map", of, key)), false;
+    std::string text;
+    for (const YamlNode& item : value.items) {
+      if (item.kind != Kind::scalar) return mistake(item.line, fmt::format("{} {}: the items of a list must be values", of, key)), false;
+      if (item.text.find(',') != item.text.npos)
+        return mistake(item.line, fmt::format("{} {}: '{}': an item of a list has no comma", of, key, item.text)), false;
+      text += (text.empty() && &item == &value.items.front() ? "" : ",") + item.text;
+    }
+    words.push_back(key + "=" + text);
+    return true;
+  }
+
+  // The value of an operation or a show: nothing or a map of parameters.
+  std::vector<std::string> parse_words(const YamlNode& value, const std::string& of) {
+    std::vector<std::string> words;
+    if (value.kind == Kind::null) return words;
+    if (value.kind != Kind::map) {
+      mistake(value.line, fmt::format("{}: must be a map of parameters, like {{{}: {{key: value}}}}", of, of));
+      return words;
+    }
+    unique_keys(value, of + ": ");
+    for (const auto& [key, v] : value.pairs) add_word(key.text, v, key.line, of, words);
+    return words;
+  }
+
+  // The one key of `body` that is not `other` ("from", "of"); null after a mistake.
+  const YamlPair* one_besides(const YamlNode& body, const std::string& other, const std::string& of, const std::string& what) {
+    const YamlPair* found = nullptr;
+    for (const auto& pair : body.pairs) {
+      if (pair.first.text == other) continue;
+      if (found) {
+        const std::string near = nearest_name(pair.first.text, std::span(&other, 1));
+        mistake(pair.first.line, fmt::format("{}: has '{}' beside '{}', but one {} and '{}' are all it may have{}", of, pair.first.text,
+                                             found->first.text, what, other, near.empty() ? "" : "; did you mean '" + near + "'?"));
+        return nullptr;
+      }
+      found = &pair;
+    }
+    if (!found) mistake(body.line, fmt::format("{}: has no {}", of, what));
+    return found;
+  }
+
+  void parse_steps(const YamlNode& steps, PipelineFile& file) {
+    if (steps.kind != Kind::map) return mistake(steps.line, "steps: must be a map of names, like {head: {read: FILE}}");
+    if (steps.pairs.size() > most_steps) return mistake(steps.line, fmt::format("steps: more than {}", most_steps));
+    unique_keys(steps, "steps: ");
+    for (const auto& [key, body] : steps.pairs) {
+      PipelineFile::Step step{key.text, {}, {}, {}, key.line};
+      const std::string of = fmt::format("step '{}'", key.text);
+      if (body.kind != Kind::map) {
+        mistake(body.line, of + ": must be a map, like {read: FILE} or {contour: {values: [1]}}");
+        continue;
+      }
+      unique_keys(body, of + ": ");
+      const auto* op = one_besides(body, "from", of, "operation");
+      if (!op) continue;
+      step.operation = op->first.text;
+      if (step.operation == "read" && op->second.kind == Kind::scalar) step.words = {"path=" + op->second.text};
+      else if (step.operation == "read" && op->second.kind == Kind::list) add_word("path", op->second, op->second.line, "read", step.words);
+      else if (step.operation == "read" && op->second.kind != Kind::map) mistake(op->second.line, of + ": read: needs the name of a file");
+      else step.words = parse_words(op->second, step.operation);
+      for (const auto& [k, v] : body.pairs)
+        if (k.text == "from") step.from = names_in(v, of);
+      file.steps.push_back(std::move(step));
+    }
+  }
+
+  std::vector<std::string> names_in(const YamlNode& value, const std::string& of) {
+    std::vector<std::string> names;
+    if (value.kind == Kind::scalar) names.push_back(value.text);
+    for (const YamlNode& item : value.items)
+      if (item.kind == Kind::scalar) names.push_back(item.text);
+    if (names.empty() || (value.kind == Kind::list && names.size() != value.items.size()))
+      mistake(value.line, of + ": from: must be the name of a step or a list of names");
+    return names;
+  }
+
+  void parse_shows(const YamlNode& shows, PipelineFile& file) {
+    if (shows.kind != Kind::list) return mistake(shows.line, "show: must be a list, like [{surface: {opacity: 0.5}, of: bone}]");
+    if (shows.items.size() > most_shows) return mistake(shows.line, fmt::format("show: more than {} items", most_shows));
+    for (const YamlNode& body : shows.items) {
+      PipelineFile::Show show;
+      show.line = body.line;
+      if (body.kind == Kind::scalar) {
+        show.kind = body.text;
+      } else if (body.kind == Kind::map) {
+        unique_keys(body, "show: ");
+        const auto* kind = one_besides(body, "of", "show", "kind");
+        if (!kind) continue;
+        show.kind = kind->first.text;
+        show.words = parse_words(kind->second, show.kind);
+        for (const auto& [k, v] : body.pairs)
+          if (k.text == "of") {
+            if (v.kind == Kind::scalar) show.of = v.text;
+            else mistake(v.line, "show: of: must be the name of a step");
+          }
+      } else {
+        mistake(body.line, "show: each item is a kind, like {surface: {opacity: 0.5}, of: bone}");
+        continue;
+      }
+      check_known(show.kind, show.line, "show: unknown kind", vocabulary_.show);
+      file.show.push_back(std::move(show));
+    }
+  }
+
+  void check_known(const std::string& name, int line, const std::string& what, const std::vector<std::string>& known) {
+    if (!known.empty() && std::find(known.begin(), known.end(), name) == known.end())
+      mistake(line, fmt::format("{} '{}'; {}", what, name, unknown_name_hint(name, known)));
+  }
+
+  void parse_picture(const YamlNode& picture, PipelineFile& file) {
+    if (picture.kind == Kind::null) return;
+    if (picture.kind != Kind::map) return mistake(picture.line, "picture: must be a map, like {size: 1280x720, output: out.png}");
+    unique_keys(picture, "picture: ");
+    std::map<std::string_view, int> lines;
+    for (const auto& [key, value] : picture.pairs) lines[key.text] = key.line;
+    for (const auto& [key, value] : picture.pairs) {
+      check_known(key.text.substr(0, key.text.find('.')), key.line, "picture: unknown key", vocabulary_.picture);
+      if (value.kind != Kind::map) {
+        add_word(key.text, value, key.line, "picture", file.picture);
+        continue;
+      }
+      unique_keys(value, fmt::format("picture {}: ", key.text));
+      for (const auto& [k, v] : value.pairs) {
+        if (k.text.find('.') != k.text.npos) mistake(k.line, fmt::format("picture {}: '{}' is no name", key.text, k.text));
+        const std::string flat = key.text + "." + k.text;
+        if (const auto at = lines.find(flat); at != lines.end())
+          mistake(at->second, fmt::format("picture: the key '{}' stands twice", flat));
+        add_word(key.text + "." + k.text, v, k.line, "picture", file.picture);
+      }
+    }
+  }
+
+  std::string origin_;
+  const PipelineVocabulary& vocabulary_;
+  std::vector<Mistake> mistakes_;  // with the line in the place of the node
+};
+
+}  // namespace
+
+PipelineFile parse_pipeline(std::string_view text, const std::string& origin, const PipelineVocabulary& vocabulary) {
+  PipelineFile file = FileParser(origin, vocabulary).parse(parse_yaml(text, origin));
+  file.origin = origin;
+  return file;
+}
+
+PipelineFile read_pipeline(const std::string& path, const PipelineVocabulary& vocabulary) {
+  const MappedFile file(path);
+  return parse_pipeline(file.text(), path, vocabulary);
+}
+
+namespace {
+
+// "1,2,3" as [1, 2, 3] when the parts are plain numbers: reads back to the same text.
+std::string value_text(const std::string& value) {
+  if (value.find(',') == value.npos) return yaml_scalar(value);
+  std::string list;
+  size_t begin = 0;
+  while (begin <= value.size()) {
+    const size_t end = std::min(value.find(',', begin), value.size());
+    const std::string part = value.substr(begin, end - begin);
+    if (!parse_double(part) || trim(part) != part) return yaml_scalar(value);
+    list += (list.empty() ? "" : ", ") + part;
+    begin = end + 1;
+  }
+  return "[" + list + "]";
+}
+
+std::string pair_text(const std::string& word, size_t skip = 0) {
+  const size_t eq = word.find('=');
+  const std::string key = word.substr(skip, eq == word.npos ? word.npos : eq - skip);
+  if (key.empty()) fail_usage("a word without a name cannot stand in a pipeline file", word);
+  return yaml_scalar(key) + (eq == word.npos ? ":" : ": " + value_text(word.substr(eq + 1)));
+}
+
+std::string key_of(const std::string& word) { return word.substr(0, word.find('=')); }
+
+// Of words with the same key the last counts, as in set_params.
+std::vector<std::string> last_words(const std::vector<std::string>& words) {
+  std::map<std::string, size_t> last;
+  for (size_t i = 0; i < words.size(); ++i) last[key_of(words[i])] = i;
+  std::vector<std::string> r;
+  for (size_t i = 0; i < words.size(); ++i)
+    if (last[key_of(words[i])] == i) r.push_back(words[i]);
+  return r;
+}
+
+std::string words_text(const std::vector<std::string>& all) {
+  std::string r;
+  for (const std::string& w : last_words(all)) r += (r.empty() ? "" : ", ") + pair_text(w);
+  return r.empty() ? "" : "{" + r + "}";
+}
+
+std::string picture_text(const std::vector<std::string>& all) {
+  const std::vector<std::string> words = last_words(all);
+  auto map_of = [](const std::string& word) {
+    const std::string key = key_of(word);
+    const size_t dot = key.find('.');
+    return dot == key.npos || dot == 0 || dot + 1 == key.size() || key.find('.', dot + 1) != key.npos ? std::string() : key.substr(0, dot);
+  };
+  std::string r;
+  std::vector<std::string> written;  // names that stand already; further words of such a map are written flat
+  for (const std::string& w : words)
+    if (map_of(w).empty()) written.push_back(key_of(w));
+  for (size_t i = 0; i < words.size();) {
+    r += r.empty() ? "" : ", ";
+    const std::string map = map_of(words[i]);
+    if (map.empty() || std::find(written.begin(), written.end(), map) != written.end()) {
+      r += pair_text(words[i++]);
+      continue;
+    }
+    written.push_back(map);
+    r += yaml_scalar(map) + ": {";
+    for (bool first = true; i < words.size() && map_of(words[i]) == map; ++i, first = false)
+      r += (first ? "" : ", ") + pair_text(words[i], map.size() + 1);
+    r += "}";
+  }
+  return r;
+}
+
+}  // namespace
+
+std::string emit_pipeline(const PipelineFile& file) {
+  std::string r = "sightglass: 1\nsteps:\n";
+  for (const PipelineFile::Step& s : file.steps) {
+    const bool only_path = s.operation == "read" && s.words.size() == 1 && s.words[0].starts_with("path=");
+    const std::string words = only_path ? yaml_scalar(s.words[0].substr(5)) : words_text(s.words);
+    r += fmt::format("  {}: {{{}:{}{}", yaml_scalar(s.name), yaml_scalar(s.operation), words.empty() ? "" : " ", words);
+    if (s.from.size() == 1) r += ", from: " + yaml_scalar(s.from[0]);
+    if (s.from.size() > 1) {
+      r += ", from: [";
+      for (size_t i = 0; i < s.from.size(); ++i) r += (i ? ", " : "") + yaml_scalar(s.from[i]);
+      r += "]";
+    }
+    r += "}\n";
+  }
+  if (!file.show.empty()) r += "show:\n";
+  for (const PipelineFile::Show& s : file.show) {
+    const std::string words = words_text(s.words);
+    r += fmt::format("  - {{{}:{}{}{}}}\n", yaml_scalar(s.kind), words.empty() ? "" : " ", words,
+                     s.of.empty() ? "" : ", of: " + yaml_scalar(s.of));
+  }
+  if (!file.picture.empty()) r += "picture: {" + picture_text(file.picture) + "}\n";
+  return r;
+}
+
+std::vector<std::string> words_under(const std::vector<std::string>& words, std::string_view map) {
+  std::vector<std::string> r;
+  for (const std::string& w : words)
+    if (w.size() > map.size() + 1 && w.starts_with(map) && w[map.size()] == '.') r.push_back(w.substr(map.size() + 1));
+  return r;
+}
+
+std::optional<std::string> word_value(const std::vector<std::string>& words, std::string_view key) {
+  std::optional<std::string> r;
+  for (const std::string& w : words)
+    if (w.size() > key.size() && w.starts_with(key) && w[key.size()] == '=') r = w.substr(key.size() + 1);
+  return r;
+}
+
+}  // namespace sg

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+// From a PipelineFile to a Graph.
+#include <map>
+
+#include "base/file/file.h"
+#include "base/text/text.h"
+#include "io/file_series.h"
+#include "pipeline/file/pipeline_file.h"
+#include "pipeline/file/read_params.h"
+#include "pipeline/graph/graph_state.h"
+
+namespace sg {
+
+namespace {
+
+class GraphBuilder {
+ public:
+  GraphBuilder(const PipelineFile& file, GraphOptions options)
+      : file_(file), options_(options), built_{Graph(std::move(options)), {}, {}, -1} {}
+
+  PipelineGraph build() {
+    for (const PipelineFile::Step& step : file_.steps) all_names_.push_back(step.name);
+    for (const PipelineFile::Step& step : file_.steps) add(step);
+    for (const Mistake& m : built_.graph.mistakes()) mistake(line_of_[size_t(m.node)], m.text, m.kind);
+    for (const PipelineFile::Show& show : file_.show) {
+      NodeId node = built_.last;
+      if (!show.of.empty()) {
+        const auto at = nodes_.find(show.of);
+        if (at == nodes_.end())
+          mistake(show.line, fmt::format("show {}: there is no step '{}'; {}", show.kind, show.of, unknown_name_hint(show.of, all_names_)));
+        else node = at->second;
+      }
+      built_.show.push_back(node);
+    }
+    if (file_.steps.empty()) mistake(0, "there are no steps");
+    if (!mistakes_.empty()) {
+      std::stable_sort(mistakes_.begin(), mistakes_.end(), [](const Mistake& a, const Mistake& b) { return a.node < b.node; });
+      throw_mistakes(mistakes_);
+    }
+    return std::move(built_);
+  }
+
+ private:
+  // The line stands in Mistake::node, so that they sort by it.
+  void mistake(int line, const std::string& text, ErrorKind kind = ErrorKind::usage) {
+    const std::string origin = file_.origin.empty() ? "pipeline" : file_.origin;
+    mistakes_.push_back({line, kind, line > 0 ? fmt::format("{}:{}: {}", origin, line, text) : text});
+  }
+
+  void add(const PipelineFile::Step& step) {
+    const NodeId node = step.operation == "read" ? add_read(step) : add_operation(step);
+    line_of_.push_back(step.line);
+    if (!nodes_.emplace(step.name, node).second) mistake(step.line, fmt::format("there are two steps '{}'", step.name));
+    built_.nodes.emplace_back(step.name, node);
+    built_.last = node;
+  }
+
+  NodeId add_read(const PipelineFile::Step& step) {
+    ReadParams params;
+    ReadOptions options;
+    try {
+      Schema schema = schema_of(params);
+      set_params(schema, step.words, "read");
+      options = read_options(params);
+    } catch (const Error& e) {
+      mistake(step.line, fmt::format("step '{}': {}", step.name, e.what()));
+      // A given nothing in its place: a missing file would only repeat the mistake.
+      return built_.graph.add_data(DatasetPtr(), "mistake", step.name);
+    }
+    if (!step.from.empty()) mistake(step.line, fmt::format("step '{}': read takes no input", step.name));
+    return built_.graph.add_read(series_beside(file_.origin, params.path), options, step.name);
+  }
+
+  NodeId add_operation(const PipelineFile::Step& step) {
+    std::vector<NodeId> inputs;
+    for (const std::string& name : step.from) {
+      if (const auto at = nodes_.find(name); at != nodes_.end()) {
+        inputs.push_back(at->second);
+        continue;
+      }
+      const bool later = std::find(all_names_.begin(), all_names_.end(), name) != all_names_.end();
+      if (later)
+        mistake(step.line, fmt::format("step '{}': its input '{}' comes {}", step.name, name,
+                                       name == step.name ? "from itself" : "later; move that step up"));
+      else mistake(step.line, fmt::format("step '{}': there is no step '{}'; {}", step.name, name, unknown_name_hint(name, all_names_)));
+      if (built_.last >= 0) inputs.push_back(built_.last);  // keeps the number of inputs, so that one mistake is told once
+    }
+    if (step.from.empty() && wants_input(step.operation) && built_.last >= 0) inputs.push_back(built_.last);
+    return built_.graph.add_operation(step.operation, with_paths(step), std::move(inputs), step.name);
+  }
+
+  // Parameters that name files (unit "file") are relative to the pipeline file, as those of read are.
+  std::vector<std::string> with_paths(const PipelineFile::Step& step) const {
+    std::vector<std::string> words = step.words;
+    const auto op =
+        std::find_if(options_.operations.begin(), options_.operations.end(), [&](const Operation& o) { return o.name == step.operation; });
+    if (op == options_.operations.end()) return words;
+    const ParamSet params = op->make_params();
+    for (std::string& word : words) {
+      const size_t sign = word.find('=');
+      const ParamDecl* d = sign == word.npos ? nullptr : params.schema.find(word.substr(0, sign));
+      if (d && d->unit_ == "file" && sign + 1 < word.size())
+        word = word.substr(0, sign + 1) + path_beside(file_.origin, word.substr(sign + 1));
+    }
+    return words;
+  }
+
+  bool wants_input(const std::string& operation) const {
+    for (const Operation& o : options_.operations)
+      if (o.name == operation) return o.kind == OperationKind::filter;
+    return false;
+  }
+
+  const PipelineFile& file_;
+  GraphOptions options_;
+  PipelineGraph built_;
+  std::map<std::string, NodeId> nodes_;
+  std::vector<std::string> all_names_;
+  std::vector<int> line_of_;  // of each node
+  std::vector<Mistake> mistakes_;
+};
+
+}  // namespace
+
+PipelineGraph build_graph(const PipelineFile& file, GraphOptions options) { return GraphBuilder(file, std::move(options)).build(); }
+
+}  // namespace sg

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+// The recipe inside a picture: the pipeline as YAML, the version, and a hash of each input.
+#include <xxhash.h>
+
+#include <filesystem>
+#include <set>
+
+#include "base/file/file.h"
+#include "base/parallel.h"
+#include "base/text/text.h"
+#include "io/file_series.h"
+#include "pipeline/file/yaml_tree.h"
+#include "pipeline/graph/key.h"
+#include "pipeline/picture/picture.h"
+
+namespace sg {
+
+namespace {
+
+// XXH3-64 over the hashes of 4 MiB blocks, so that all cores share the work and the result does not depend on them.
+// Of a folder: the names and sizes of the files in it, at any depth (a case may hold many gigabytes).
+std::string folder_hash(const std::string& path) {
+  namespace fs = std::filesystem;
+  std::vector<std::string> files;
+  std::error_code error;
+  for (fs::recursive_directory_iterator at(path, error), end; !error && at != end; at.increment(error))
+    if (at->is_regular_file(error))
+      files.push_back(fmt::format("{} {}\n", at->path().lexically_relative(path).string(), at->file_size(error)));
+  std::sort(files.begin(), files.end());
+  std::string all;
+  for (const std::string& f : files) all += f;
+  return fmt::format("{:016x}", XXH3_64bits(all.data(), all.size()));
+}
+
+// Of several files: their names and sizes.
+std::string series_hash(const std::string& path) {
+  std::string all;
+  for (const std::string& f : series_files(path)) all += fmt::format("{} {}\n", file_name_of(f), file_state(f).size);
+  return fmt::format("{:016x}", XXH3_64bits(all.data(), all.size()));
+}
+
+std::string content_hash(const std::string& path) {
+  if (names_series(path)) return series_hash(path);
+  if (is_folder(path)) return folder_hash(path);
+  const MappedFile file(path);
+  constexpr size_t block = size_t(4) << 20;
+  std::vector<uint64_t> parts((file.size() + block - 1) / block);
+  parallel_for(parts.size(), 1, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) parts[i] = XXH3_64bits(file.data() + i * block, std::min(block, file.size() - i * block));
+  });
+  return fmt::format("{:016x}", XXH3_64bits(parts.data(), parts.size() * sizeof(uint64_t)));
+}
+
+std::string relative_to_folder(const std::string& path, const std::string& folder) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path target = fs::weakly_canonical(path, error), base = fs::weakly_canonical(folder.empty() ? "." : folder, error);
+  const fs::path r = target.lexically_relative(base);
+  return r.empty() ? target.string() : r.string();
+}
+
+bool is_there(const std::string& path) {
+  if (!names_series(path)) return file_exists(path);
+  try {
+    return !series_files(path).empty();
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+// One line of "sightglass-inputs": a name may hold anything, line ends too.
+std::string line_text(const std::string& hash, const std::string& path) { return fmt::format("{} xxh3-4m {}\n", hash, yaml_scalar(path)); }
+
+std::string path_in_line(std::string_view text) {
+  return text.starts_with('"') ? parse_yaml(text, "sightglass-inputs").text : std::string(text);
+}
+
+void replace_path(std::vector<std::string>& words, const std::string& path) {
+  for (std::string& w : words)
+    if (w.starts_with("path=")) w = "path=" + path;
+}
+
+}  // namespace
+
+void attach_recipe(Image& image, const PipelineFile& file, const std::string& picture_path) {
+  PipelineFile recipe = file;
+  const std::string folder = folder_of(picture_path);
+  std::string inputs;
+  for (auto& step : recipe.steps) {
+    if (step.operation != "read") continue;
+    const auto stated = word_value(step.words, "path");
+    if (!stated) continue;
+    const std::string path = series_beside(file.origin, *stated);
+    const std::string relative = map_series(path, [&](const std::string& part) { return relative_to_folder(part, folder); });
+    replace_path(step.words, relative);
+    inputs += line_text(content_hash(path), relative);
+  }
+  std::erase_if(recipe.picture, [](const std::string& w) { return w.starts_with("output="); });
+  for (auto& show : recipe.show) std::erase_if(show.words, [](const std::string& w) { return w.starts_with("save="); });
+  image.text.emplace_back("Software", "Sightglass " SG_VERSION);
+  image.text.emplace_back("sightglass", emit_pipeline(recipe));
+  if (!inputs.empty()) image.text.emplace_back("sightglass-inputs", inputs);
+}
+
+namespace {
+
+const std::string* text_in(const Image& image, std::string_view name) {
+  const std::string* last = nullptr;
+  for (const auto& [key, value] : image.text)
+    if (key == name) last = &value;
+  return last;
+}
+
+}  // namespace
+
+PipelineFile recipe_in(const Image& image, const std::string& picture_path) {
+  const std::string* recipe = text_in(image, "sightglass");
+  if (!recipe)
+    fail_data("has no recipe inside", picture_path, "pictures made by sightglass carry one, unless another program rewrote them");
+  return parse_pipeline(*recipe, picture_path, picture_vocabulary());
+}
+
+PipelineFile recipe_in(const Image& image, const std::string& picture_path, std::vector<std::string>& changed) {
+  PipelineFile file = recipe_in(image, picture_path);
+  check_recipe(file, picture_path);
+  std::erase_if(file.picture,
+                [](const std::string& w) { return w.starts_with("output=") || w.starts_with("times=") || w.starts_with("fps="); });
+  // Only what the recipe reads is looked at, each once.
+  std::set<std::string> read;
+  for (const auto& step : file.steps)
+    if (step.operation == "read") read.insert(word_value(step.words, "path").value_or(""));
+  if (const std::string* inputs = text_in(image, "sightglass-inputs"))
+    for (std::string_view line : split(*inputs, '\n')) {
+      const size_t a = line.find(' '), b = a == line.npos ? line.npos : line.find(' ', a + 1);
+      if (b == line.npos) continue;
+      const std::string named = path_in_line(line.substr(b + 1));
+      if (read.erase(named) == 0) continue;
+      const std::string path = series_beside(picture_path, named);
+      if (is_there(path) && content_hash(path) != line.substr(0, a)) changed.push_back(path);
+    }
+  return file;
+}
+
+}  // namespace sg

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a recipe may not do. The fence around the process (base/file_fence.h) holds whatever is overlooked here; these rules say it before
+// anything runs, step by step.
+#include <map>
+
+#include "base/file/file.h"
+#include "base/file/file_fence.h"
+#include "base/text/text.h"
+#include "io/file_series.h"
+#include "pipeline/file/read_params.h"
+#include "pipeline/graph/graph.h"
+#include "pipeline/picture/picture.h"
+#include "scene/show/show.h"
+
+namespace sg {
+
+namespace {
+
+using Units = std::map<std::string, std::string, std::less<>>;  // of the parameters, by name
+
+Units units_of(const Schema& schema) {
+  Units units;
+  for (const ParamDecl& d : schema.decls()) units[d.name] = d.unit_;
+  return units;
+}
+
+Units units_of_step(const std::string& operation) {
+  if (operation == "read") {
+    ReadParams params;
+    return units_of(schema_of(params));
+  }
+  for (const Operation& o : operations())
+    if (o.name == operation) return units_of(o.make_params().schema);
+  return {};  // said later, with "did you mean"
+}
+
+class Rules {
+ public:
+  explicit Rules(const std::string& picture) : picture_(picture) {}
+
+  void look(const std::string& who, int line, const Units& units, const std::vector<std::string>& words) {
+    for (const std::string& word : words) {
+      const size_t sign = word.find('=');
+      const auto unit = units.find(trim(std::string_view(word).substr(0, sign)));
+      if (unit == units.end()) continue;
+      const std::string value = sign == word.npos ? "" : word.substr(sign + 1);
+      if (unit->second == "new file")
+        mistake(line, fmt::format("{}: {}={} would write a file, and a recipe writes its picture alone", who, unit->first, value));
+      if (unit->second != "file") continue;
+      bool good = true;  // of a long list one is enough
+      map_series(value, [&](const std::string& part) {
+        good = good && check_path(who, line, part);
+        return part;
+      });
+    }
+  }
+  void finish() const {
+    if (!mistakes_.empty()) fail_usage(mistakes_, fmt::format("the recipe in '{}'", picture_));
+  }
+
+ private:
+  void mistake(int line, const std::string& text) { mistakes_ += fmt::format("{}line {}: {}", mistakes_.empty() ? "" : "; ", line, text); }
+
+  bool check_path(const std::string& who, int line, const std::string& path) {
+    if (path.empty()) return true;
+    try {
+      const std::string at = named_file(picture_, path);
+      check_may_read(at.substr(0, at.find_first_of("*?{")));  // of a pattern its folder
+      return true;
+    } catch (const Error& e) {
+      mistake(line, fmt::format("{} reads '{}', which is neither below the folder of the picture nor below the working folder; if it is "
+                                "meant, say --read-anywhere",
+                                who, path));
+      return false;
+    }
+  }
+
+  std::string picture_, mistakes_;
+};
+
+}  // namespace
+
+void check_recipe(const PipelineFile& recipe, const std::string& picture_path) {
+  Rules rules(picture_path);
+  for (const auto& step : recipe.steps)
+    rules.look(fmt::format("step '{}'", step.name), step.line, units_of_step(step.operation), step.words);
+  for (const auto& show : recipe.show)
+    rules.look(fmt::format("show {}", show.kind), show.line, units_of(find_show(show.kind).make_params().schema), show.words);
+  rules.finish();
+}
+
+}  // namespace sg

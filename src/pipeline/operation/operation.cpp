@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/operation/operation.h"
+
+#include "base/error.h"
+#include "base/text/text.h"
+#include "pipeline/operation/operation_table.h"
+
+namespace sg {
+
+const Operation& find_operation(std::string_view name, std::span<const Operation> table) {
+  std::vector<std::string> names;
+  for (const Operation& o : table) {
+    if (o.name == name) return o;
+    names.emplace_back(o.name);
+  }
+  fail_usage(fmt::format("unknown operation '{}'", name), {}, unknown_name_hint(name, names));
+}
+
+ParamSet make_params(const Operation& operation, const std::vector<std::string>& words) {
+  ParamSet params = operation.make_params();
+  set_params(params.schema, words, operation.name);
+  return params;
+}
+
+Data run_operation(const Operation& operation, const std::vector<Data>& inputs, const std::vector<std::string>& words, Context& context) {
+  const int n = int(inputs.size());
+  if (n < operation.min_inputs || (operation.max_inputs >= 0 && n > operation.max_inputs))
+    fail_usage(fmt::format("takes {} input{}, not {}", operation.min_inputs, operation.min_inputs == 1 ? "" : "s", n),
+               std::string(operation.name));
+  return operation.run(inputs, make_params(operation, words), context);
+}
+
+Request upstream_request(const Operation& operation, const ParamSet& params, const Request& wanted) {
+  if (operation.request) return operation.request(params, wanted);
+  Request all;  // region and piece stop here: only a hook knows what part of the input a part of the result needs
+  all.time = wanted.time;
+  return all;
+}
+
+namespace {
+
+// Adds the fields that the parameters name; false when one is left open, so that the operation chooses among all.
+bool add_named_fields(const ParamSet& params, Request& request) {
+  for (const ParamDecl& d : params.schema.decls())
+    if (d.ref.type() == ParamType::field) {
+      const std::string name = param_text(d);
+      if (name.empty()) return false;
+      add_field(request, name);
+    }
+  return true;
+}
+
+Request named_or_all(const ParamSet& params, Request request, std::optional<double> time) {
+  request.time = time;
+  request.region.reset();
+  request.piece = 0, request.pieces = 1;
+  if (add_named_fields(params, request)) return request;
+  Request all;
+  all.time = time;
+  return all;
+}
+
+}  // namespace
+
+Series detail::one_step(const Data& data) {
+  auto* d = std::get_if<DatasetPtr>(&data);
+  return {{d && *d ? (*d)->time().value_or(0) : 0.0}, [data](size_t) { return data; }};
+}
+
+Request detail::request_carried(const ParamSet& params, const Request& wanted) { return named_or_all(params, wanted, wanted.time); }
+
+Request detail::request_named(const ParamSet& params, const Request& wanted) {
+  return named_or_all(params, Request::only({}), wanted.time);
+}
+
+std::string ops_help(std::string_view name, std::span<const Operation> table) {
+  if (!name.empty()) {
+    const Operation& o = find_operation(name, table);
+    const ParamSet params = o.make_params();
+    std::string r = fmt::format("{} ({}{})\n  {}\n", o.name, o.family, o.kind == OperationKind::filter ? " filter" : "", o.sentence);
+    if (o.min_inputs > 1) r += fmt::format("  Takes {} inputs.\n", o.min_inputs);
+    else if (o.max_inputs < 0) r += "  Takes any number of inputs.\n";
+    const std::string help = params_help(params.schema);
+    return r + (help.empty() ? "\nIt has no parameters.\n" : "\nParameters (key=value):\n" + help) + words_help(o);
+  }
+  std::vector<std::string_view> families;
+  size_t width = 0;
+  for (const Operation& o : table) {
+    if (std::find(families.begin(), families.end(), o.family) == families.end()) families.push_back(o.family);
+    width = std::max(width, o.name.size());
+  }
+  std::string r;
+  for (std::string_view family : families) {
+    r += fmt::format("{}{}\n", r.empty() ? "" : "\n", family);
+    for (const Operation& o : table)
+      if (o.family == family) r += fmt::format("  {:<{}}  {}\n", o.name, width, o.sentence);
+  }
+  return r;
+}
+
+std::string words_help(const Operation& operation) {
+  if (!operation.words) return {};
+  const std::vector<HelpWord> words = operation.words();
+  size_t width = 0;
+  for (const HelpWord& w : words) width = std::max(width, w.form.size());
+  std::string r;
+  std::string_view group;
+  for (const HelpWord& w : words) {
+    if (w.group != group) r += fmt::format("\n{}s\n", w.group), group = w.group;
+    r += fmt::format("  {:<{}}  {}\n", w.form, width, w.sentence);
+  }
+  return r;
+}
+
+std::string words_json(const Operation& operation) {
+  std::string r;
+  if (operation.words)
+    for (const HelpWord& w : operation.words())
+      r += fmt::format("{}{{\"group\":{},\"form\":{},\"sentence\":{}}}", r.empty() ? "" : ",", json_string(w.group), json_string(w.form),
+                       json_string(w.sentence));
+  return "[" + r + "]";
+}
+
+std::string ops_json(std::span<const Operation> table) {
+  std::string r = "{\"operations\":[";
+  for (size_t i = 0; i < table.size(); ++i) {
+    const Operation& o = table[i];
+    r += fmt::format("{}{{\"name\":{},\"kind\":\"{}\",\"family\":{},\"sentence\":{},\"version\":{},\"inputs\":[{},{}],\"params\":{}{}}}",
+                     i ? ",\n" : "\n", json_string(o.name), o.kind == OperationKind::source ? "source" : "filter", json_string(o.family),
+                     json_string(o.sentence), o.version, o.min_inputs, o.max_inputs, params_json(o.make_params().schema),
+                     o.words ? ",\"words\":" + words_json(o) : "");
+  }
+  return r + "\n]}\n";
+}
+
+}  // namespace sg

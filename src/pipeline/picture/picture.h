@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// From a pipeline description to an annotated picture with its recipe inside.
+#pragma once
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/context.h"
+#include "base/schema/schema.h"
+#include "image/image.h"
+#include "pipeline/file/pipeline_file.h"
+
+namespace sg {
+
+/// Everything about a picture that is neither data nor camera.
+struct PictureParams {
+  std::string size = "1280x720";
+  std::string background = "white";
+  std::string title;
+  bool legend = true, axes = true, triad = true;
+  int samples = 0;
+  double adaptive = 0;
+  double text = 1;
+};
+void describe(Schema& s, PictureParams& p);
+
+/// "1280x720" to numbers; throws Error(usage).
+void parse_size(const std::string& text, int& width, int& height);
+
+/// The words a pipeline file may use under `show` and `picture`.
+PipelineVocabulary picture_vocabulary();
+
+struct Picture;
+
+/// One of several pictures of a volume that memory does not hold.
+struct PictureDraft {
+  std::string made_of;      ///< "level 3 of 7 (204x204x204)": what is in memory; or "bricks"
+  double voxel_pixels = 1;  ///< a voxel covers so many pixels at most (where the memory allowed is enough for that)
+  bool compared = false;
+  double most = 0, mean = 0;  ///< of full scale: change from the picture with voxels of about twice that size, an estimate of the error
+};
+
+struct PictureOptions {
+  std::shared_ptr<Cache> cache;  ///< shared between pictures; null = one of its own
+  /// For volumes that memory does not hold: gets a picture at once, then finer ones; the final one is returned alone. Not called for
+  /// others.
+  std::function<void(const Picture&, const PictureDraft&)> on_draft;
+  std::optional<std::chrono::steady_clock::time_point> until;  ///< with on_draft: then the finest picture so far is returned
+  std::vector<std::string> coloring;  ///< words added to every way to show that colours by a field ("field=T", "map=ember")
+};
+
+struct Picture {
+  Image image;
+  std::vector<std::string> notes;    ///< what was chosen and why, one line each
+  std::vector<PictureDraft> drafts;  ///< with on_draft: of each that was made, this one last
+};
+
+/// Evaluates the steps, shows what is asked for (or what the data suggests when nothing is), renders and annotates.
+/// `file` is completed with what was chosen, so that recipe_of() gives the recipe. All mistakes that can be seen beforehand are
+/// reported together, before anything runs.
+Picture make_picture(PipelineFile& file, const PictureOptions& options, Context& context);
+
+/// Puts the recipe, the version and the hashes of the inputs into the image's text. Paths of inputs are written relative to
+/// the folder of `picture_path`, where the picture is going to be.
+void attach_recipe(Image& image, const PipelineFile& file, const std::string& picture_path);
+
+/// The recipe inside a picture as it stands there, to be looked at. Throws Error(data) when there is none.
+PipelineFile recipe_in(const Image& image, const std::string& picture_path);
+/// The recipe inside a picture, to be followed; its relative paths begin at the picture. Throws Error(data) when there is none,
+/// Error(usage) when it breaks check_recipe(). `changed` receives the inputs whose content is no longer what it was.
+PipelineFile recipe_in(const Image& image, const std::string& picture_path, std::vector<std::string>& changed);
+
+/// A recipe is data from outside, whoever made the picture: it may write no file (parameters in the unit "new file"), and read only below
+/// the folder of the picture or the working folder (unit "file"). Throws one Error(usage) that names all steps and files in the way;
+/// reading is allowed by allow_reading_anywhere(). See docs/security.md.
+void check_recipe(const PipelineFile& recipe, const std::string& picture_path);
+
+}  // namespace sg

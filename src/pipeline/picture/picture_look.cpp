@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is shown when nothing is said.
+#include "base/error.h"
+#include "base/file/file.h"
+#include "pipeline/picture/picture_parts.h"
+
+namespace sg {
+
+void add_coloring(PipelineFile& file, const std::vector<std::string>& words) {
+  for (auto& s : file.show)
+    if (find_show(s.kind).coloring) s.words.insert(s.words.end(), words.begin(), words.end());
+}
+
+std::string origin_of(const PipelineFile& file, std::string step) {
+  for (int hops = 0; hops < 1000; ++hops) {
+    size_t at = file.steps.size();
+    for (size_t i = 0; i < file.steps.size(); ++i)
+      if (file.steps[i].name == step) at = i;
+    if (at == file.steps.size()) return "";
+    const auto& s = file.steps[at];
+    if (s.operation == "read") return word_value(s.words, "path").value_or("");
+    if (!s.from.empty()) step = s.from[0];
+    else if (at > 0) step = file.steps[at - 1].name;
+    else return "";
+  }
+  return "";
+}
+
+namespace {
+
+// The steps that nobody takes as input: what is to be seen when nothing is said.
+std::vector<std::string> open_ends(const PipelineFile& file) {
+  std::vector<std::string> used, ends;
+  for (size_t i = 0; i < file.steps.size(); ++i) {
+    const auto& s = file.steps[i];
+    if (!s.from.empty()) used.insert(used.end(), s.from.begin(), s.from.end());
+    else if (i > 0 && s.operation != "read") {
+      const auto names = operations();
+      const auto op = std::find_if(names.begin(), names.end(), [&](const Operation& o) { return o.name == s.operation; });
+      if (op == names.end() || op->kind == OperationKind::filter) used.push_back(file.steps[i - 1].name);
+    }
+  }
+  for (const auto& s : file.steps)
+    if (std::find(used.begin(), used.end(), s.name) == used.end()) ends.push_back(s.name);
+  return ends;
+}
+
+std::string free_name(const PipelineFile& file, const std::string& wanted) {
+  for (int n = 0;; ++n) {
+    const std::string name = n ? fmt::format("{}_{}", wanted, n + 1) : wanted;
+    if (std::none_of(file.steps.begin(), file.steps.end(), [&](const auto& s) { return s.name == name; })) return name;
+  }
+}
+
+// Operations whose result is a new field: the parameter that names it, and its name when nothing is said.
+struct Maker {
+  std::string_view operation, word, name;
+};
+constexpr Maker makers[] = {
+    {"calc", "name", "result"},
+    {"otsu", "name", "otsu"},
+    {"classify", "", "label"},
+    {"label_components", "", "component"},
+    {"components", "", "component"},
+    {"distance_map", "name", "distance"},
+    {"region_grow", "name", "region"},
+    {"watershed", "name", "watershed"},
+    {"morphology", "name", ""},
+    {"quality", "measures", "scaled_jacobian"},
+    {"curvature", "", "mean curvature"},
+    {"divergence", "as", ""},
+    {"gradient", "as", ""},
+    {"curl", "as", ""},
+    {"tensor_measures", "measures", "FA"},
+    {"stress_measures", "", "von Mises stress"},
+    {"direction_colors", "", "direction"},
+    {"traction", "", "normal traction"},
+    {"vortex_cores", "", "swirling strength"},
+};
+
+// The field that the last steps were made for, when `d` has it; "" = the data decides.
+std::string made_field(const PipelineFile& file, const std::string& end, const Dataset& d) {
+  size_t at = file.steps.size();
+  for (size_t i = 0; i < file.steps.size(); ++i)
+    if (file.steps[i].name == end) at = i;
+  for (; at < file.steps.size(); --at) {
+    const auto& s = file.steps[at];
+    if (!s.from.empty() || s.operation == "read") return "";
+    const auto maker = std::find_if(std::begin(makers), std::end(makers), [&](const Maker& m) { return m.operation == s.operation; });
+    if (maker != std::end(makers)) {
+      std::string name = maker->word.empty() ? "" : word_value(s.words, maker->word).value_or("");
+      if (name.empty()) name = maker->name;
+      name = name.substr(0, name.find(','));                      // the first of several
+      if (name.empty() && s.operation == "morphology") continue;  // in place of labels that an earlier step made
+      const Field* f = name.empty() ? nullptr : d.fields().find(name);
+      if (!f || f->association == Association::whole || f->role == Role::global_ids) return "";
+      const Range r = d.range(*f, f->components() > 1 ? -1 : 0);
+      return r.lo < r.hi ? name : "";  // one value everywhere shows nothing
+    }
+    const auto known = operations();
+    const auto op = std::find_if(known.begin(), known.end(), [&](const Operation& o) { return o.name == s.operation; });
+    if (op == known.end() || (op->family != "mesh" && op->family != "surface")) return "";  // a surface of other values
+  }
+  return "";
+}
+
+}  // namespace
+
+void fail_no_mesh(const Data& data, const std::string& where) {
+  const Table* table = nullptr;
+  std::string parts;
+  if (auto* t = std::get_if<TablePtr>(&data)) table = t->get();
+  if (auto* c = std::get_if<CollectionPtr>(&data))
+    for (const Collection::Part& part : (*c)->parts)
+      if (std::holds_alternative<TablePtr>(part.data)) parts += (parts.empty() ? "" : ", ") + part.name;
+  if (!parts.empty()) fail_usage(fmt::format("holds tables ({}) and no mesh to show", parts), where, "table_to_points needs one table");
+  if (!table) fail_usage("there is no mesh to show", where);
+  std::vector<std::string> numbers;
+  for (size_t i = 0; i < table->columns.size(); ++i)
+    if (!table->words(i)) numbers.push_back(table->columns[i].name);
+  if (numbers.size() < 2) fail_usage("is a table with fewer than two columns of numbers; there is no mesh to show", where);
+  fail_usage("is a table; there is no mesh to show", where,
+             fmt::format("read it with `sightglass info`, keep it with `sightglass convert -o NAME.csv`, or make points of its rows: "
+                         "-f \"table_to_points x='{}' y='{}'\"",
+                         numbers[0], numbers[1]));
+}
+
+Look choose_looks(PipelineFile& file, const PictureOptions& options, const std::shared_ptr<Cache>& cache, std::vector<Data>& held,
+                  std::vector<std::string>& notes, Context& context) {
+  GraphOptions graph_options;
+  graph_options.cache = cache;
+  const PipelineGraph built = build_graph(file, graph_options);
+  const std::string stated = word_value(options.coloring, "field").value_or("");
+  Look first;
+  bool have = false;
+  const std::vector<std::string> ends = open_ends(file);
+  for (const std::string& end : ends) {
+    NodeId node = built.last;
+    for (const auto& [name, id] : built.nodes)
+      if (name == end) node = id;
+    const Data data = held.emplace_back(built.graph.evaluate(node, {}, context));
+    // The largest part speaks for all; one with values before one with a mask or a numbering alone.
+    DatasetPtr largest;
+    bool has_values = false;
+    for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) {
+      const Field* f = automatic_field(*d);
+      const bool values = f && f->role != Role::labels;
+      if (!largest || (values && !has_values) || (values == has_values && d->point_count() > largest->point_count()))
+        largest = d, has_values = values;
+    });
+    if (!largest) fail_no_mesh(data, file_name_of(origin_of(file, end)));
+    if (!stated.empty()) largest->fields().require(stated);
+    const std::string field = stated.empty() ? made_field(file, end, *largest) : stated;
+    std::vector<std::string> coloring = options.coloring;
+    if (field != stated) coloring.push_back("field=" + field);
+    const Look look = choose_look(*largest, field, extension_of(origin_of(file, end)));
+    notes.push_back(ends.size() > 1 ? fmt::format("{}: {}", file_name_of(origin_of(file, end)), look.reason) : look.reason);
+    std::string result = end;
+    if (!look.filter.empty()) {
+      result = free_name(file, look.filter[0]);
+      file.steps.push_back({result, look.filter[0], {look.filter.begin() + 1, look.filter.end()}, {end}, 0});
+    }
+    for (const Look::Show& s : look.shows) {
+      const ShowKind& kind = show_kind(s.type);
+      std::vector<std::string> words = changed_words(s.params);
+      if (kind.coloring) words.insert(words.end(), coloring.begin(), coloring.end());
+      file.show.push_back({std::string(kind.name), words, s.of_input ? end : result, 0});
+    }
+    if (!have) first = look;
+    have = true;
+  }
+  return first;
+}
+
+}  // namespace sg

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// Smooth normals: the angle-weighted mean of the faces around a point (Thuermer & Wuethrich 1998), split where faces meet sharply.
+#include <cmath>
+
+#include "base/parallel.h"
+#include "render/prepare/prepared.h"
+
+namespace sg::raster {
+
+namespace {
+
+constexpr size_t grain = 1 << 13;
+
+Vec3f position(const float* xyz, uint32_t i) { return {xyz[3 * size_t(i)], xyz[3 * size_t(i) + 1], xyz[3 * size_t(i) + 2]}; }
+
+/// Corner numbers (3 * triangle + k) around each point, ascending.
+struct Around {
+  std::vector<uint32_t> start, corner;
+};
+
+Around corners_around(const uint32_t* t, size_t triangles, size_t points) {
+  Around a;
+  a.start.assign(points + 1, 0);
+  a.corner.resize(3 * triangles);
+  for (size_t i = 0; i < 3 * triangles; ++i) ++a.start[t[i] + 1];
+  for (size_t p = 0; p < points; ++p) a.start[p + 1] += a.start[p];
+  std::vector<uint32_t> next(a.start.begin(), a.start.end() - 1);
+  for (size_t i = 0; i < 3 * triangles; ++i) a.corner[next[t[i]]++] = uint32_t(i);
+  return a;
+}
+
+}  // namespace
+
+NormalSet smooth_normals(const TriangleSet& set, double feature_angle) {
+  NormalSet out;
+  const size_t n = set.count, points = set.positions.count();
+  if (n == 0 || 3 * n >= (size_t(1) << 32)) return out;
+  const uint32_t* t = set.indices();
+  const float* xyz = set.xyz();
+  std::vector<Vec3f> face(n);
+  std::vector<float> weight(3 * n);  // angle of the corner
+  parallel_for(n, grain, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      const Vec3f p[3] = {position(xyz, t[3 * i]), position(xyz, t[3 * i + 1]), position(xyz, t[3 * i + 2])};
+      const Vec3f c = cross(p[1] - p[0], p[2] - p[0]);
+      const float l = length(c);
+      const bool good = l > 0 && std::isfinite(l);
+      face[i] = good ? c / l : Vec3f();
+      for (int k = 0; k < 3; ++k) {
+        const Vec3f u = p[(k + 1) % 3] - p[k], v = p[(k + 2) % 3] - p[k];
+        weight[3 * i + size_t(k)] = good ? std::atan2(length(cross(u, v)), dot(u, v)) : 0.0f;
+      }
+    }
+  });
+  const Around around = corners_around(t, n, points);
+  const float limit = float(std::cos(feature_angle * 3.14159265358979323846 / 180));
+
+  // A point is split when two of its faces differ by more than the angle from its mean normal's side of the fan.
+  std::vector<Vec3f> mean(points);
+  std::vector<uint8_t> split(points);
+  parallel_for(points, grain, [&](size_t begin, size_t end) {
+    for (size_t p = begin; p < end; ++p) {
+      Vec3f sum;
+      const uint32_t from = around.start[p], to = around.start[p + 1];
+      for (uint32_t k = from; k < to; ++k) sum += face[around.corner[k] / 3] * weight[around.corner[k]];
+      mean[p] = normalize(sum);
+      for (uint32_t a = from; a < to && !split[p]; ++a)
+        for (uint32_t b = a + 1; b < to && b < a + 64; ++b)
+          if (weight[around.corner[a]] > 0 && weight[around.corner[b]] > 0 &&
+              dot(face[around.corner[a] / 3], face[around.corner[b] / 3]) < limit) {
+            split[p] = 1;
+            break;
+          }
+    }
+  });
+  std::vector<size_t> extra(points);
+  for (size_t p = 0; p < points; ++p) extra[p] = split[p] ? around.start[p + 1] - around.start[p] : 0;
+  const size_t more = exclusive_scan(extra);
+  float* normals = nullptr;
+  out.normals = Array::make<float>(points + more, 3, &normals);
+  uint32_t* corners = nullptr;
+  if (more) {
+    out.corners = Array::make<uint32_t>(n, 3, &corners);
+    std::copy(t, t + 3 * n, corners);
+  }
+  auto put = [&](size_t at, Vec3f v) { normals[3 * at] = v.x, normals[3 * at + 1] = v.y, normals[3 * at + 2] = v.z; };
+  parallel_for(points, grain, [&](size_t begin, size_t end) {
+    for (size_t p = begin; p < end; ++p) {
+      put(p, mean[p]);
+      if (!split[p]) continue;
+      const uint32_t from = around.start[p], to = around.start[p + 1];
+      for (uint32_t a = from; a < to; ++a) {  // each corner takes the faces that meet its own smoothly
+        const Vec3f own = face[around.corner[a] / 3];
+        Vec3f sum;
+        for (uint32_t b = from; b < to; ++b) {
+          const Vec3f other = face[around.corner[b] / 3];
+          if (dot(own, other) >= limit) sum += other * weight[around.corner[b]];
+        }
+        const size_t at = points + extra[p] + (a - from);
+        put(at, dot(sum, sum) > 0 ? normalize(sum) : own);
+        corners[around.corner[a]] = uint32_t(at);
+      }
+    }
+  });
+  return out;
+}
+
+}  // namespace sg::raster

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// Oriented discs (surfels): each pixel shows the nearest disc that its ray meets, with the disc's own normal. Internal to raster/.
+#pragma once
+#include <atomic>
+
+#include "render/shade/shade.h"
+
+namespace sg::raster {
+
+struct DiscJob {
+  EyeView view;
+  const float *xyz, *normals, *radius;
+  const uint32_t* points;  ///< of each disc; null: disc i is point i
+  uint32_t first_primitive;
+  uint64_t* keys;  ///< one per pixel of the picture
+};
+
+/// Draws discs begin..end into the visibility buffer with an atomic minimum. Discs smaller than a pixel take the one at their centre.
+void draw_discs(const DiscJob& job, size_t begin, size_t end);
+void draw_discs_one_by_one(const DiscJob& job, size_t begin, size_t end);  ///< the same in plain C++
+
+/// Whether the discs at the end of the list lie nearer to the viewer than those at its beginning, by a few of both: then drawing from the
+/// end hides more of the others before they are looked at.
+bool last_is_nearer(const DiscJob& job, size_t count);
+
+/// The minimum does not depend on the order in which threads come.
+inline void keep_nearer(uint64_t* slot, uint64_t key) {
+  std::atomic_ref<uint64_t> a(*slot);
+  uint64_t seen = a.load(std::memory_order_relaxed);
+  while (key < seen && !a.compare_exchange_weak(seen, key, std::memory_order_relaxed)) {
+  }
+}
+
+/// Like shade(), for the pixels of a disc item; `triangle` of the batch holds the disc. Depth comes from the keys.
+void shade_discs(const PreparedItem& item, const EyeView& view, const std::vector<WorldLight>& lights, const uint64_t* keys, ShadeBatch& b);
+
+/// Light and gloss of the discs of a batch, as shade() makes them; the exponent of the gloss is a whole number. Pads the batch.
+struct DiscLight {
+  const EyeView& view;
+  const Material& material;
+  const WorldLight* lights;
+  size_t light_count;
+  const uint32_t* points;  ///< null: disc i is point i
+  const float* normals;
+  int power;
+};
+void light_discs(const DiscLight& job, ShadeBatch& batch);
+
+}  // namespace sg::raster

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Packets of rays through the bricks of a volume that memory does not hold: brick by brick from front to back.
+#pragma once
+#include "data/memory/byte_cache.h"
+#include "render/volume/engines/packets/packets.h"
+#include "render/volume/sources/bricks/brick_source.h"
+
+namespace sg::volume {
+
+/// What the lattices of all bricks share: all but the samples. `unit`: world length to which opacity refers.
+Volume brick_stage(const BrickedSource& source, const VolumeItem& item, uint32_t id, double unit, float per_scale);
+
+/// One volume alone. Draws what single rays through the source draw, but where two levels meet: there the levels are mixed at the samples
+/// and linear between them.
+class BrickPackets {
+ public:
+  /// May this be drawn so: as in_tolerant_packets() and in_packets(), and bricks that lattice_key() can tell apart.
+  static bool fits(const BrickedSource& source, const VolumeItem& item, const PacketPlan& plan, bool in_steps);
+
+  /// `stage` as brick_stage() makes it; plan.volume is not read. The source must have its Invisible. All of them, and the plan's medium,
+  /// must outlive this.
+  BrickPackets(const BrickedSource& source, const Volume& stage, const PacketPlan& plan, bool in_steps, const Context& context);
+
+  /// Composites the pixels [x0, x1) x [y0, y1) before what is in the frame, as cast_tile() does; reads bricks as rays reach them.
+  void draw(int x0, int y0, int x1, int y1, Frame& frame) const;
+
+ private:
+  struct Leaf {
+    int node;
+    float x0, y0, x1, y1;  ///< what it covers in the picture: pixels
+    std::array<Vec2, 8> corner;
+    bool all = false;  ///< it reaches behind the eye: anything
+  };
+  bool meets(const Leaf& leaf, double x0, double y0, double x1, double y1) const;
+  /// The lattice of a leaf as the volume of a plan; false when there is nothing to draw.
+  bool load(const BrickNode& node, Volume& volume, PacketPlan& plan, std::shared_ptr<const BrickLattice>& lattice) const;
+
+  const BrickedSource& source_;
+  const Volume& stage_;
+  PacketPlan plan_;
+  bool in_steps_;
+  const Context& context_;
+  std::vector<Leaf> leaves_;  // front to back
+  mutable ByteCache<BrickSpace> spaces_{size_t(32) << 20};
+};
+
+}  // namespace sg::volume

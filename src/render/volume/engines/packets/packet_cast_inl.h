@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// Draws a tile by packets of one kind, for any type of samples.
+#if defined(SG_PACKET_CAST_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SG_PACKET_CAST_INL_H
+#undef SG_PACKET_CAST_INL_H
+#else
+#define SG_PACKET_CAST_INL_H
+#endif
+
+#include "render/volume/engines/packets/packets_inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sg::volume::HWY_NAMESPACE {
+
+template <template <class, class, bool> class Packet, class D, class T, bool shaded>
+HWY_NOINLINE void cast_all(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+  constexpr int lanes = lanes_of<D>, width = packet_width<D>, height = lanes / width;
+  RayPacket rays;
+  PacketResult result;
+  for (int y = y0; y < y1; y += height)
+    for (int x = x0; x < x1; x += width) {
+      if (!set_up<D>(plan, x, y, x1, y1, frame, rays)) continue;
+      Packet<D, T, shaded> packet(plan, rays);
+      packet.run(result);
+      put(plan, rays, result, lanes, frame);
+    }
+}
+
+template <template <class, class, bool> class Packet, class D, class T>
+HWY_INLINE void cast_as(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+  if (plan.volume.shaded) cast_all<Packet, D, T, true>(plan, x0, y0, x1, y1, frame);
+  else cast_all<Packet, D, T, false>(plan, x0, y0, x1, y1, frame);
+}
+template <template <class, class, bool> class Packet, class D>
+HWY_INLINE void cast_with(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+  switch (plan.volume.voxels.array.type()) {
+    case ElementType::u8: return cast_as<Packet, D, uint8_t>(plan, x0, y0, x1, y1, frame);
+    case ElementType::i8: return cast_as<Packet, D, int8_t>(plan, x0, y0, x1, y1, frame);
+    case ElementType::u16: return cast_as<Packet, D, uint16_t>(plan, x0, y0, x1, y1, frame);
+    case ElementType::i16: return cast_as<Packet, D, int16_t>(plan, x0, y0, x1, y1, frame);
+    default: return cast_as<Packet, D, float>(plan, x0, y0, x1, y1, frame);
+  }
+}
+
+}  // namespace sg::volume::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rays of a packet as plain arrays, and what draws tiles of them.
+#pragma once
+#include "render/volume/engines/packets/packets.h"
+
+namespace sg::volume {
+
+constexpr int most_lanes = 16;
+
+struct RayPacket {
+  // Places in q, one array per axis.
+  alignas(64) float first[3][most_lanes], by[3][most_lanes];     ///< the middle of the first step, and one step
+  alignas(64) float last[3][most_lanes];                         ///< the middle of the last, shorter step
+  alignas(64) float entry[3][most_lanes], along[3][most_lanes];  ///< where the ray enters, and one world length
+  alignas(64) float steps[most_lanes];                           ///< whole ones; 0 for a ray that misses
+  alignas(64) float rest[most_lanes];                            ///< world length of the last step
+  alignas(64) float length[most_lanes];                          ///< inside the box; <= 0 for a ray that misses
+  alignas(64) float before[most_lanes];                          ///< share of the light that passes what was drawn before
+  alignas(64) float direction[3][most_lanes];                    ///< world, unit
+  alignas(64) double enter[most_lanes];                          ///< world length from the ray's origin
+  alignas(64) double leave[most_lanes];
+  alignas(64) double first_depth[most_lanes], per_length[most_lanes];  ///< depth = first_depth + t * per_length
+  size_t pixel[most_lanes];
+  bool inside[most_lanes];  ///< of the tile
+};
+
+/// What a packet found.
+struct PacketResult {
+  alignas(64) float r[most_lanes], g[most_lanes], b[most_lanes], transmittance[most_lanes];
+  double surface[most_lanes];  ///< t of it; -1 = none
+};
+
+/// Adds the results to the frame.
+void put(const PacketPlan& plan, const RayPacket& rays, const PacketResult& result, int lanes, Frame& frame);
+
+/// Draws the maximum; the same contract as march_tile.
+void maximum_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame);
+
+/// cast_tile() for rectilinear grids: plan.uneven.
+void cast_uneven_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame);
+/// cast_tile() where opacity hangs on the gradient, too: plan.detail.
+void cast_detail_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame);
+
+}  // namespace sg::volume

@@ -1,0 +1,509 @@
+// SPDX-License-Identifier: Apache-2.0
+// Emission and absorption along packets of rays. Every lane has its own place on its own ray: a lane in empty bricks leaps, the
+// others do not wait for it. What is to be lit is queued, so that gradients are taken of full vectors only.
+#include <array>
+#include <memory>
+
+#include "render/volume/engines/packets/cache_rows.h"
+#include "render/volume/engines/packets/packet_rays.h"
+
+// Targets without gathers of their own share one version.
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "render/volume/engines/packets/packets_march.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "render/volume/engines/packets/packet_shading_inl.h"
+#include "render/volume/engines/packets/packets_inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sg::volume::HWY_NAMESPACE {
+
+/// Samples between two looks at the bricks.
+constexpr int samples_per_look = 4;
+/// Samples half an edge apart or more are lit by twos; those of a look together when they take less than the first share of the light,
+/// those of several looks when they take less than the second.
+constexpr float faint = 1.0f / 32, faintest = 1.0f / 256;
+/// So far ahead samples are asked for: in the next turn or the one after it.
+constexpr float samples_asked_ahead = 48;
+
+/// Bricks that draw nothing, ready for gathers.
+template <class D>
+struct Space {
+  const uint8_t* distance;
+  Int<D> row, layer, last[3], up[3];  ///< up: of SpaceAhead
+  hn::Vec<D> margin, edges[3];
+
+  HWY_INLINE explicit Space(const PacketPlan& plan) : distance(plan.ahead ? plan.ahead->bricks.data() : plan.volume.distance.data()) {
+    const D d;
+    const IntTag<D> di;
+    const Volume& v = plan.volume;
+    for (size_t a = 0; a < 3; ++a) up[a] = hn::Set(di, plan.ahead ? plan.ahead->up[a] : 0);
+    const auto& dims = v.fine().dims;
+    row = hn::Set(di, int(dims[0])), layer = hn::Set(di, int(dims[0] * dims[1]));
+    for (size_t a = 0; a < 3; ++a) last[a] = hn::Set(di, int(dims[a]) - 1), edges[a] = hn::Set(d, float(dims[a]));
+    margin = hn::Set(d, float(std::max({v.margin.x, v.margin.y, v.margin.z})));
+  }
+};
+
+/// Where the lanes of a packet are: sample s of `end`, at first + s * by.
+template <class D>
+struct Lanes {
+  hn::Vec<D> first[3], by[3], per_by[3], s, end;
+
+  HWY_INLINE Lanes(const RayPacket& r, const float (*per)[most_lanes], hn::Vec<D> sample) : s(sample) {
+    const D d;
+    for (int a = 0; a < 3; ++a) first[a] = hn::Load(d, r.first[a]), by[a] = hn::Load(d, r.by[a]), per_by[a] = hn::Load(d, per[a]);
+    end = hn::Load(d, r.steps);
+  }
+  HWY_INLINE hn::Vec<D> u(int a) const { return u(a, s); }
+  HWY_INLINE hn::Vec<D> u(int a, hn::Vec<D> sample) const { return mul_add(sample, by[a], first[a]); }
+};
+
+/// The bricks that the lanes are in.
+template <class D>
+struct Nearby {
+  Int<D> brick[3];
+  Int<D> free;  ///< so many bricks around draw nothing
+
+  template <class T>
+  HWY_INLINE void find(const Source<D, T>& source, const Space<D>& space, const Lanes<D>& lanes) {
+    const D d;
+    for (int a = 0; a < 3; ++a) {
+      const auto cell = to_int(d, hn::Max(hn::Zero(d), hn::Min(lanes.u(a), source.top[a])));
+      brick[a] = hn::Min(hn::ShiftRight<FineBricks::shift>(cell), space.last[a]);
+    }
+    auto id = hn::Add(brick[0], hn::Add(hn::Mul(brick[1], space.row), hn::Mul(brick[2], space.layer)));
+    for (int a = 0; a < 3; ++a)
+      id = hn::Add(id, hn::IfThenElseZero(hn::RebindMask(IntTag<D>(), hn::Gt(lanes.by[a], hn::Zero(d))), space.up[a]));
+    free = hn::And(gather_words(d, space.distance, id, source.loads), hn::Set(IntTag<D>(), 255));
+  }
+};
+
+/// Takes the lanes that are `looking`, if they are in bricks that draw nothing, to their first sample beyond those that are known to be so.
+/// Whether that is in such a brick, too, is asked with the next look: to go on at once would let the other lanes wait.
+template <class D>
+HWY_INLINE void leap(const Space<D>& space, const Nearby<D>& here, Lanes<D>& lanes, hn::Mask<D> looking) {
+  const D d;
+  const auto zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+  looking = hn::And(looking, hn::RebindMask(d, hn::Gt(here.free, hn::Zero(IntTag<D>()))));
+  if (hn::AllFalse(d, looking)) return;
+  // All bricks nearer than that are empty: leave their cube, but for a margin wider than rounding errors.
+  const auto reach = hn::ConvertTo(d, here.free);
+  auto out = lanes.end;
+  for (int a = 0; a < 3; ++a) {
+    const auto forth = hn::Gt(lanes.by[a], zero);
+    const auto side = hn::Add(hn::ConvertTo(d, here.brick[a]), hn::IfThenElse(forth, reach, hn::Sub(one, reach)));
+    const auto at = mul_add(side, hn::Set(d, float(FineBricks::edge)), hn::IfThenElse(forth, hn::Neg(space.margin), space.margin));
+    const auto there = hn::Mul(hn::Sub(at, lanes.first[a]), lanes.per_by[a]);
+    // Beyond the outermost bricks there is nothing else.
+    const auto open = hn::Or(hn::Or(hn::Le(side, zero), hn::Ge(side, space.edges[a])), hn::Eq(lanes.by[a], zero));
+    out = hn::IfThenElse(open, out, hn::Min(out, there));
+  }
+  // Always by twos, as samples are taken.
+  const auto next = hn::Mul(hn::Floor(hn::Mul(hn::Ceil(out), hn::Set(d, 0.5f))), hn::Set(d, 2.0f));
+  lanes.s = hn::IfThenElse(looking, hn::Max(next, lanes.s), lanes.s);
+}
+
+/// Transfer::index, times four: where the entry's numbers begin.
+template <class D, class T>
+struct Entries {
+  hn::Vec<D> first, per_axis, count, last;
+  Int<D> below_count, above, none;
+  bool spanned;         ///< no values are beyond the ends
+  Int<D> drawn_eights;  ///< Transfer::drawn_eights
+
+  HWY_INLINE explicit Entries(const Volume& v) : spanned(v.spanned) {
+    const D d;
+    const IntTag<D> di;
+    drawn_eights = hn::LoadU(di, reinterpret_cast<const int32_t*>(v.transfer[0].drawn_eights().data()));
+    const LinearTable t = v.transfer[0].linear_table();
+    first = hn::Set(d, t.first), per_axis = hn::Set(d, t.per_axis), count = hn::Set(d, float(t.count)),
+    last = hn::Set(d, float(t.count - 1));
+    below_count = hn::Set(di, t.count - 1), above = hn::Set(di, t.count + 1), none = hn::Set(di, t.count + 2);
+  }
+  HWY_INLINE Int<D> at(hn::Vec<D> value) const {
+    const D d;
+    const IntTag<D> di;
+    const auto zero = hn::Zero(d);
+    const auto place = hn::Mul(hn::Sub(value, first), per_axis);
+    if (spanned) {
+      auto e = hn::Add(to_int(d, hn::Min(hn::Max(place, zero), last)), hn::Set(di, 1));
+      if constexpr (std::is_same_v<T, float>) e = hn::IfThenElse(hn::RebindMask(di, hn::IsNaN(value)), none, e);
+      return hn::ShiftLeft<2>(e);
+    }
+    auto e = hn::Add(hn::Min(to_int(d, hn::Max(hn::Min(place, count), zero)), below_count), hn::Set(di, 1));
+    e = hn::IfThenElse(hn::RebindMask(di, hn::Gt(place, count)), above, e);
+    e = hn::IfThenElseZero(hn::RebindMask(di, hn::Ge(place, zero)), e);
+    e = hn::IfThenElse(hn::RebindMask(di, hn::Eq(value, value)), e, none);
+    return hn::ShiftLeft<2>(e);
+  }
+  /// False where none of these entries draws anything, as far as can be told at once.
+  HWY_INLINE bool may_draw([[maybe_unused]] Int<D> entry, hn::Mask<D> which) const {
+    if constexpr (lanes_of<D> == 16) {
+      const IntTag<D> di;
+      const auto word = hn::And(hn::ShiftRight<10>(entry), hn::Set(di, 15)), bit = hn::And(hn::ShiftRight<5>(entry), hn::Set(di, 31));
+      const auto words = hn::TableLookupLanes(drawn_eights, hn::IndicesFromVec(di, word));
+      return !hn::AllFalse(di, hn::And(hn::RebindMask(di, which), hn::TestBit(hn::Shr(words, bit), hn::Set(di, 1))));
+    }
+    return !hn::AllFalse(D(), which);
+  }
+};
+
+/// 1 - exp(-x) for x >= 0, to a few units in the last place.
+template <class D>
+HWY_INLINE hn::Vec<D> absorbed(D d, hn::Vec<D> x) {
+  const IntTag<D> di;
+  x = hn::Min(x, hn::Set(d, 80.0f));
+  const auto k = to_int(d, mul_add(x, hn::Set(d, 1.44269504f), hn::Set(d, 0.5f)));
+  const auto kf = hn::ConvertTo(d, k);
+  // r = x - k ln 2 in two parts; e = 1 - exp(-r) by its series.
+  const auto r = neg_mul_add(kf, hn::Set(d, 1.42860677e-6f), neg_mul_add(kf, hn::Set(d, 0.693145752f), x));
+  auto e = hn::Set(d, 1.0f / 5040);
+  for (const float c : {-1.0f / 720, 1.0f / 120, -1.0f / 24, 1.0f / 6, -0.5f, 1.0f}) e = mul_add(e, r, hn::Set(d, c));
+  e = hn::Mul(e, r);
+  const auto power = hn::BitCast(d, hn::ShiftLeft<23>(hn::Sub(hn::Set(di, 127), k)));
+  return mul_add(power, e, hn::Sub(hn::Set(d, 1.0f), power));
+}
+
+/// What waits for its light: samples that follow each other are lit together, where the middle of what they take lies; but not samples
+/// before and after a turn of the value, where surfaces begin to show their other side.
+template <class D>
+struct Due {
+  static constexpr int parts = 7;
+  hn::Vec<D> r, g, b, taken, moment, value, rise;
+  HWY_INLINE Due() { r = g = b = taken = moment = value = rise = hn::Zero(D()); }
+  HWY_INLINE hn::Mask<D> turns(hn::Vec<D> next) {
+    const D d;
+    const auto after = hn::Sub(next, value);
+    const auto turned = hn::And(hn::Lt(hn::Mul(after, rise), hn::Zero(d)), hn::Gt(taken, hn::Zero(d)));
+    value = next, rise = after;
+    return turned;
+  }
+  HWY_INLINE void drop(hn::Mask<D> which) {
+    for (hn::Vec<D>* v : {&r, &g, &b, &taken, &moment}) *v = hn::IfThenElseZero(hn::Not(which), *v);
+  }
+  HWY_INLINE void load(const float from[parts][most_lanes]) {
+    size_t i = 0;
+    for (hn::Vec<D>* v : {&r, &g, &b, &taken, &moment, &value, &rise}) *v = hn::Load(D(), from[i++]);
+  }
+  HWY_INLINE void store(float to[parts][most_lanes]) const {
+    size_t i = 0;
+    for (const hn::Vec<D>* v : {&r, &g, &b, &taken, &moment, &value, &rise}) hn::Store(*v, D(), to[i++]);
+  }
+};
+
+/// A packet on its way. The packets of a tile take turns, so that the voxels between two depths are met by all of them while they
+/// are near in the cache.
+template <class D, class T, bool shaded>
+class March {
+  using F = hn::Vec<D>;
+
+  /// The samples between two looks at the bricks: the cells they lie in.
+  struct Look {
+    alignas(64) int32_t corner[samples_per_look][most_lanes];
+    alignas(64) float fraction[samples_per_look][3][most_lanes];
+
+    /// The field at all of them, for as many lanes at a time as the tag of `source` has.
+    template <class Part>
+    HWY_INLINE void values(const Source<Part, T>& source, float to[samples_per_look][most_lanes]) const {
+      const Part part;
+      for (int n = 0; n < lanes_of<D>; n += lanes_of<Part>)
+        for (int k = 0; k < samples_per_look; ++k)
+          hn::Store(source.value(corner[k] + n, hn::Load(part, fraction[k][0] + n), hn::Load(part, fraction[k][1] + n),
+                                 hn::Load(part, fraction[k][2] + n)),
+                    part, to[k] + n);
+    }
+  };
+
+ public:
+  RayPacket rays;
+  PacketResult result;
+
+  HWY_INLINE void start(const PacketPlan& plan) {
+    const D d;
+    // Places go one way, so all lie inside when the first and the last do. Rays without whole steps stand in the first sample.
+    const F steps = hn::Load(d, rays.steps), zero = hn::Zero(d);
+    const auto none = hn::Eq(steps, zero);
+    inside_ = true;
+    for (size_t a = 0; a < 3; ++a) {
+      const F first = hn::IfThenElseZero(hn::Not(none), hn::Load(d, rays.first[a])), by = hn::Load(d, rays.by[a]);
+      const F last = mul_add(hn::Sub(steps, hn::Set(d, 1.0f)), by, first);
+      const F top = hn::Set(d, float(plan.volume.voxels.dims[a] - 1));
+      const auto good = hn::And(hn::And(hn::Ge(first, zero), hn::Lt(first, top)), hn::And(hn::Ge(last, zero), hn::Lt(last, top)));
+      inside_ = inside_ && hn::AllTrue(d, hn::Or(good, none));
+      hn::Store(first, d, rays.first[a]);
+    }
+    for (int a = 0; a < 3; ++a) hn::Store(hn::Div(hn::Set(d, 1.0f), hn::Load(d, rays.by[a])), d, per_by_[a]);
+    hn::Store(hn::Load(d, rays.before), d, result.transmittance), hn::Store(hn::Set(d, -1.0f), d, seen_half_);
+    hn::Store(hn::Zero(d), d, result.r), hn::Store(hn::Zero(d), d, result.g), hn::Store(hn::Zero(d), d, result.b);
+    if constexpr (shaded) queue_.start(plan, rays), Due<D>().store(due_);
+    Lanes<D> lanes(rays, per_by_, hn::Zero(d));
+    const Source<D, T> source(plan.volume.voxels);
+    const Space<D> space(plan);
+    if (skips(plan)) {
+      Nearby<D> nearby;
+      nearby.find(source, space, lanes);
+      leap(space, nearby, lanes, hn::Lt(lanes.s, lanes.end));
+    }
+    hn::Store(lanes.s, d, next_);
+    constexpr int lanes_here = lanes_of<D>;
+    crowded_ = std::is_same_v<T, float> && lanes_here > 4 && source.loads && crowded(plan.volume.voxels, rays, packet_width<D>, lanes_here);
+  }
+
+  /// Goes on until no ray has samples before `until`; false when all are through.
+  HWY_INLINE bool go(const PacketPlan& plan, float until) {
+    const D d;
+    const Volume& v = plan.volume;
+    const Source<D, T> source(v.voxels);
+    const Source<hn::CappedTag<float, 4>, T> by_fours(v.voxels);
+    const Space<D> space(plan);
+    const Transfer& transfer = v.transfer[0];
+    const Entries<D, T> entries(v);
+    const auto* steps = reinterpret_cast<const float*>(transfer.steps());
+    const bool skip = skips(plan);
+    // Who asks for shorter steps wants to see each of them lit.
+    [[maybe_unused]] const bool together = v.step > 0.4 * v.edge;
+    const F stop = hn::Set(d, plan.knobs.stop_below), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
+
+    Lanes<D> lanes(rays, per_by_, hn::Load(d, next_));
+    F r = hn::Load(d, result.r), g = hn::Load(d, result.g), b = hn::Load(d, result.b);
+    F pass = hn::Load(d, result.transmittance), seen_half = hn::Load(d, seen_half_);
+    const F horizon = hn::Min(hn::Set(d, until), lanes.end);
+    // Values wait for nothing but their samples: the places are known already. The bricks of the next samples are asked for before them,
+    // and leaps do not wait for the light that these samples take.
+    F first = lanes.s;
+    Look look;
+    look_ahead(source, lanes, look);
+    [[maybe_unused]] Due<D> due;
+    if constexpr (shaded) due.load(due_);
+    while (true) {
+      const auto bright = hn::Ge(pass, stop);
+      if (hn::AllFalse(d, hn::And(hn::Lt(first, horizon), bright))) break;
+      lanes.s = hn::Add(first, hn::Set(d, float(samples_per_look)));
+      Nearby<D> nearby;
+      if (skip) nearby.find(source, space, lanes);
+      alignas(64) float values[samples_per_look][most_lanes];
+      if (crowded_) look.values(by_fours, values);
+      else look.values(source, values);
+      if (skip) leap(space, nearby, lanes, hn::And(hn::Lt(lanes.s, lanes.end), bright));
+      look_ahead(source, lanes, look);
+      for (int k = 0; k < samples_per_look; ++k) {
+        const F s = hn::Add(first, hn::Set(d, float(k))), value = hn::Load(d, values[k]);
+        const auto entry = entries.at(value);
+        const auto active = hn::And(hn::Lt(s, lanes.end), hn::Ge(pass, stop));
+        if constexpr (shaded) {
+          const auto turned = due.turns(value);
+          if (!hn::AllFalse(d, turned)) push(plan, due, turned);
+        }
+        if (entries.may_draw(entry, active)) {
+          const auto [r_g, b_pass] = gather_quad(d, steps, entry, source.loads);
+          seen_half = hn::IfThenElse(hn::And(active, hn::Ge(pass, half)), s, seen_half);
+          const F weight = hn::IfThenElseZero(active, pass);
+          const F wr = hn::Mul(weight, r_g.a), wg = hn::Mul(weight, r_g.b), wb = hn::Mul(weight, b_pass.a);
+          if constexpr (shaded) {
+            const F taken = hn::Mul(weight, hn::Sub(one, b_pass.b));
+            due.r = hn::Add(due.r, wr), due.g = hn::Add(due.g, wg), due.b = hn::Add(due.b, wb);
+            due.taken = hn::Add(due.taken, taken), due.moment = mul_add(taken, s, due.moment);
+          } else {
+            r = hn::Add(r, wr), g = hn::Add(g, wg), b = hn::Add(b, wb);
+          }
+          pass = hn::IfThenElse(active, hn::Mul(pass, b_pass.b), pass);
+        }
+        if constexpr (shaded) {
+          if (k % 2 == 1 || !together) {
+            const float enough = !together ? 0 : k + 1 < samples_per_look ? faint : faintest;
+            const auto ready = hn::Gt(due.taken, hn::Set(d, enough));
+            if (!hn::AllFalse(d, ready)) push(plan, due, ready);
+          }
+        }
+      }
+      first = lanes.s;
+    }
+    hn::Store(first, d, next_);
+    if constexpr (shaded) due.store(due_);
+    else hn::Store(r, d, result.r), hn::Store(g, d, result.g), hn::Store(b, d, result.b);
+    hn::Store(pass, d, result.transmittance), hn::Store(seen_half, d, seen_half_);
+    return !hn::AllFalse(d, hn::And(hn::Lt(first, lanes.end), hn::Ge(pass, stop)));
+  }
+
+  /// The last step has what length is left.
+  HWY_INLINE void finish(const PacketPlan& plan) {
+    const D d;
+    const Volume& v = plan.volume;
+    const Source<D, T> source(v.voxels);
+    const Transfer& transfer = v.transfer[0];
+    const Entries<D, T> entries(v);
+    F pass = hn::Load(d, result.transmittance);
+    alignas(64) float before[most_lanes];
+    hn::Store(pass, d, before);
+    const F rest = hn::Load(d, rays.rest);
+    const auto last = hn::And(hn::Gt(rest, hn::Zero(d)), hn::Ge(pass, hn::Set(d, plan.knobs.stop_below)));
+    if (!hn::AllFalse(d, last)) {
+      const F x = hn::Load(d, rays.last[0]), y = hn::Load(d, rays.last[1]), z = hn::Load(d, rays.last[2]);
+      const F value = source.value(source.place(0, x), source.place(1, y), source.place(2, z));
+      const auto entry = entries.at(value);
+      const auto* media = reinterpret_cast<const float*>(&transfer.medium(0));
+      const auto [r_g, b_density] = gather_quad(d, media, entry, source.loads);
+      const auto drawn = hn::And(last, hn::Gt(b_density.b, hn::Zero(d)));
+      if (!hn::AllFalse(d, drawn)) {
+        const F alpha = absorbed(d, hn::Mul(b_density.b, rest));
+        const F weight = hn::IfThenElseZero(drawn, hn::Mul(pass, alpha));
+        const F wr = hn::Mul(weight, r_g.a), wg = hn::Mul(weight, r_g.b), wb = hn::Mul(weight, b_density.a);
+        if constexpr (shaded) {
+          queue_.push(plan, rays, result, drawn, hn::Set(d, -1.0f), wr, wg, wb, weight);
+        } else {
+          hn::Store(hn::Add(hn::Load(d, result.r), wr), d, result.r), hn::Store(hn::Add(hn::Load(d, result.g), wg), d, result.g);
+          hn::Store(hn::Add(hn::Load(d, result.b), wb), d, result.b);
+        }
+        pass = hn::IfThenElse(drawn, hn::Mul(pass, hn::Sub(hn::Set(d, 1.0f), alpha)), pass);
+        hn::Store(pass, d, result.transmittance);
+      }
+    }
+    if constexpr (shaded) {
+      Due<D> due;
+      due.load(due_);
+      const auto any = hn::Gt(due.taken, hn::Zero(d));
+      if (!hn::AllFalse(d, any)) push(plan, due, any);
+      queue_.finish(plan, rays, result);
+    }
+    for (size_t n = 0; n < hn::Lanes(d); ++n) {
+      result.surface[n] = -1;
+      if (before[n] < 0.5f) result.surface[n] = rays.enter[n] + (double(seen_half_[n]) + 0.5) * v.step;
+      else if (result.transmittance[n] < 0.5f) result.surface[n] = rays.leave[n] - 0.5 * double(rays.rest[n]);
+    }
+  }
+
+ private:
+  static bool skips(const PacketPlan& plan) { return plan.knobs.skip_empty && plan.volume.any_empty; }
+
+  HWY_INLINE void push(const PacketPlan& plan, Due<D>& due, hn::Mask<D> which) {
+    queue_.push(plan, rays, result, which, hn::Div(due.moment, due.taken), due.r, due.g, due.b, due.taken);
+    due.drop(which);
+  }
+
+  /// Notes where the lanes' next samples are, and asks for later ones.
+  HWY_INLINE void look_ahead(const Source<D, T>& source, const Lanes<D>& lanes, Look& look) const {
+    const D d;
+    const IntTag<D> di;
+    const F final_sample = hn::Max(hn::Zero(d), hn::Sub(lanes.end, hn::Set(d, 1.0f)));
+    for (int k = 0; k < samples_per_look; ++k) {
+      const F s = hn::Min(hn::Add(lanes.s, hn::Set(d, float(k))), final_sample);
+      Place<D> at[3];
+      for (int a = 0; a < 3; ++a) at[a] = inside_ ? source.inner_place(lanes.u(a, s)) : source.place(a, lanes.u(a, s));
+      hn::Store(source.offset(at[0].cell, at[1].cell, at[2].cell), di, look.corner[k]);
+      for (int a = 0; a < 3; ++a) hn::Store(at[a].fraction, d, look.fraction[k][a]);
+    }
+    if (lanes_of<D> >= 8 && inside_) {
+      alignas(64) int32_t corner[most_lanes];
+      const F s = hn::Min(hn::Add(lanes.s, hn::Set(d, samples_asked_ahead)), final_sample);
+      hn::Store(source.offset(to_int(d, lanes.u(0, s)), to_int(d, lanes.u(1, s)), to_int(d, lanes.u(2, s))), di, corner);
+      for (int n = 0; n < lanes_of<D>; ++n) __builtin_prefetch(source.data + corner[n], 0, 3);
+    }
+  }
+
+  alignas(64) float per_by_[3][most_lanes], seen_half_[most_lanes];
+  alignas(64) float next_[most_lanes];  ///< the number of the next sample
+  alignas(64) float due_[shaded ? Due<D>::parts : 1][most_lanes];
+  bool crowded_;  ///< are samples fetched for four rays at a time?
+  bool inside_;   ///< are all samples of whole steps in cells, none beyond the outermost samples?
+  struct None {};
+  std::conditional_t<shaded, ShadeQueue<D, T>, None> queue_;
+};
+
+constexpr int group = 16;               ///< pixels across of the packets that take turns
+constexpr float samples_per_turn = 96;  ///< fewer are better where nothing is empty, more where rays leap
+
+template <class D, class T, bool shaded>
+HWY_NOINLINE void march_all(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+  using Packet = March<D, T, shaded>;
+  constexpr int lanes = lanes_of<D>, width = packet_width<D>, height = lanes / width;
+  constexpr size_t most = size_t(group / width) * size_t(group / height);
+  const auto packets = std::make_unique_for_overwrite<Packet[]>(most);
+  std::array<Packet*, most> turn;
+  for (int top = y0; top < y1; top += group)
+    for (int left = x0; left < x1; left += group) {
+      size_t count = 0;
+      for (int y = top; y < std::min(top + group, y1); y += height)
+        for (int x = left; x < std::min(left + group, x1); x += width)
+          if (set_up<D>(plan, x, y, x1, y1, frame, packets[count].rays)) packets[count].start(plan), turn[count] = &packets[count], ++count;
+      size_t going = count;
+      for (float until = samples_per_turn; going > 0; until += samples_per_turn) {
+        size_t on = 0;
+        for (size_t i = 0; i < going; ++i)
+          if (turn[i]->go(plan, until)) turn[on++] = turn[i];
+        going = on;
+      }
+      for (size_t i = 0; i < count; ++i) {
+        packets[i].finish(plan);
+        put(plan, packets[i].rays, packets[i].result, lanes, frame);
+      }
+    }
+}
+
+template <class D>
+HWY_INLINE void march_with(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+  const bool shaded = plan.volume.shaded;
+  switch (plan.volume.voxels.array.type()) {
+    case ElementType::u8: return (shaded ? march_all<D, uint8_t, true> : march_all<D, uint8_t, false>)(plan, x0, y0, x1, y1, frame);
+    case ElementType::i8: return (shaded ? march_all<D, int8_t, true> : march_all<D, int8_t, false>)(plan, x0, y0, x1, y1, frame);
+    case ElementType::u16: return (shaded ? march_all<D, uint16_t, true> : march_all<D, uint16_t, false>)(plan, x0, y0, x1, y1, frame);
+    case ElementType::i16: return (shaded ? march_all<D, int16_t, true> : march_all<D, int16_t, false>)(plan, x0, y0, x1, y1, frame);
+    default: return (shaded ? march_all<D, float, true> : march_all<D, float, false>)(plan, x0, y0, x1, y1, frame);
+  }
+}
+
+void march_in_packets(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+  march_with<hn::CappedTag<float, most_lanes>>(plan, x0, y0, x1, y1, frame);
+}
+
+#if HWY_ONCE
+void march_singly(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+  march_with<hn::CappedTag<float, 1>>(plan, x0, y0, x1, y1, frame);
+}
+#endif
+
+}  // namespace sg::volume::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sg::volume {
+
+HWY_EXPORT(march_in_packets);
+
+bool in_packets(const PacketPlan& plan) {
+  const Volume& v = plan.volume;
+  const size_t bytes = v.voxels.array.bytes();
+  const bool offsets_fit = bytes >= 4 && bytes < (size_t(1) << 31) && v.voxels.array.count() < (size_t(1) << 29);
+  return v.affine && v.direct && offsets_fit && plan.lamps.size() <= PacketPlan::most_lamps && whole_power(plan.material);
+}
+
+void put(const PacketPlan& plan, const RayPacket& rays, const PacketResult& result, int lanes, Frame& frame) {
+  for (int n = 0; n < lanes; ++n) {
+    if (!rays.inside[n] || !(rays.length[n] > 0)) continue;
+    const size_t p = rays.pixel[n];
+    float* out = &frame.rgba[4 * p];
+    if (plan.half) {
+      out[0] += result.r[n], out[1] += result.g[n], out[2] += result.b[n], out[3] = 1 - result.transmittance[n];
+      if (result.surface[n] >= 0 && rays.before[n] >= 0.5f && plan.half[p] == HUGE_VALF)
+        plan.half[p] = float(rays.first_depth[n] + result.surface[n] * rays.per_length[n]);
+      continue;
+    }
+    Gathered sum{result.r[n], result.g[n], result.b[n], result.transmittance[n]};
+    sum.behind(out);
+    out[0] = sum.r, out[1] = sum.g, out[2] = sum.b, out[3] = 1 - sum.transmittance;
+    // A volume that hides what is behind it can be picked.
+    if (result.surface[n] >= 0 && !(frame.depth[p] < HUGE_VALF))
+      frame.depth[p] = float(rays.first_depth[n] + result.surface[n] * rays.per_length[n]), frame.ids[p] = plan.volume.id;
+  }
+}
+
+void march_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+  if (plan.volume.mode == VolumeItem::Mode::maximum) return maximum_tile(plan, x0, y0, x1, y1, frame);
+  if (plan.knobs.simd) return HWY_DYNAMIC_DISPATCH(march_in_packets)(plan, x0, y0, x1, y1, frame);
+  return HWY_STATIC_DISPATCH(march_singly)(plan, x0, y0, x1, y1, frame);
+}
+
+}  // namespace sg::volume
+#endif

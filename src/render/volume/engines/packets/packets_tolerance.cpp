@@ -1,0 +1,345 @@
+// SPDX-License-Identifier: Apache-2.0
+// The integral within a tolerance along packets of rays: optics/integrate.cpp for a uniform grid, one ray per vector lane. Every lane has
+// its own place: it leaps over what draws nothing, strides where the field is as good as straight, and crosses the other cells one by one.
+#include "render/volume/engines/packets/packet_rays.h"
+
+#include <bit>
+
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "render/volume/engines/packets/packets_tolerance.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "render/volume/engines/packets/packet_cast_inl.h"
+#include "render/volume/engines/packets/packet_lit_strides_inl.h"
+#include "render/volume/engines/packets/packet_strides_inl.h"
+#include "render/volume/engines/packets/packet_walk_inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sg::volume::HWY_NAMESPACE {
+
+/// Strides in cell lengths. Two go at once, and Bends look a brick around: those from here on up to half a brick, those around the middle
+/// up to a whole one. Where they would have to be shorter than the last, cells are crossed instead.
+constexpr float half_brick = 2, longest_stride = 4, shortest_stride = 1.0f / 8;
+/// Shares of the tolerance: to start with, over the whole length, and over all light that is taken. The rest is for the end of the ray,
+/// the tables, and the cells that are crossed.
+constexpr float share_at_first = 0.2f, share_of_length = 0.2f, share_of_light = 0.5f;
+/// Below it lit volumes are crossed cell by cell: how light goes along a stride is estimated from three places, to some thousandths.
+constexpr double least_lit_tolerance = 1.0 / 1024;
+/// What the light between the ends of the first strides of a ray may be off, of which nothing else is known.
+constexpr float first_error = 0.005f;
+/// Radians by which the gradient may turn over two strides, told by Bends.
+constexpr float most_turned = 4;
+/// Of what is left so much may go for one stride.
+constexpr float share_at_once = 1.0f / 3;
+/// The next stride over this one is so much of what the error would allow, within these bounds. A stride that is refused costs a whole
+/// turn, so they grow slowly.
+constexpr float safety = 0.55f, least_growth = 0.5f, most_growth = 1.4f, most_growth_in_the_dark = 1.2f;
+constexpr float least_if_refused = 0.4f, most_if_refused = 0.7f;
+
+template <class D, class T, bool shaded>
+class TolerantPacket : CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>> {
+  using Walk = CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>>;
+  using typename Walk::Passage, typename Walk::F, typename Walk::I, typename Walk::M;
+  using Walk::brick_id, Walk::cell_at, Walk::cross, Walk::leap, Walk::passage, Walk::store;
+  using Walk::plan_, Walk::cells_, Walk::end_;
+
+ public:
+  HWY_INLINE TolerantPacket(const PacketPlan& plan, const RayPacket& rays) : Walk(plan, rays), sums_{plan.sums, cells_.source.loads} {
+    const D d;
+    F square = hn::Zero(d);
+    for (int a = 0; a < 3; ++a) square = mul_add(cells_.along[a], cells_.along[a], square);
+    speed_ = hn::Sqrt(square);
+    per_speed_ = hn::Div(hn::Set(d, 1.0f), hn::Max(speed_, hn::Set(d, 1e-30f)));
+    reserve_ = hn::Set(d, share_at_first * float(plan.budget.tolerance));
+    stride_ = hn::Set(d, 1.0f);
+    if (plan.passages) here_ = sums_.at(hn::Zero(d));
+    lit_ = hn::MaskFromVec(hn::Zero(d));
+    here_lit_ = LitPlace<D>::none();
+    strides_ = !shaded || plan.budget.tolerance >= least_lit_tolerance;
+    per_scale_ = hn::Set(d, plan.volume.shade_plan.per_scale * (2 / most_turned));
+  }
+
+  HWY_INLINE void run(PacketResult& result) {
+    const D d;
+    const IntTag<D> di;
+    const F stop = hn::Set(d, plan_.budget.stop_below);
+    // Cells -1 and n-1 are the halves beyond the outermost samples; where a lane has strode, the nearest cells inside.
+    F t = hn::Zero(d);
+    I cell[3];
+    for (int a = 0; a < 3; ++a) cell[a] = cell_at(a, t);
+    M strode = hn::MaskFromVec(hn::Zero(d));
+    M known = hn::MaskFromVec(hn::Zero(d));  // the lanes for which here_ is the place t
+    const auto on = [&]() HWY_ATTR { return hn::And(hn::Lt(t, end_), hn::Ge(cells_.sum.pass, stop)); };
+    const auto find_cells = [&](M which) HWY_ATTR {
+      const auto unsure = hn::RebindMask(di, hn::And(which, strode));
+      for (int a = 0; a < 3; ++a) cell[a] = hn::IfThenElse(unsure, cell_at(a, t), cell[a]);
+      strode = hn::AndNot(which, strode), known = hn::AndNot(which, known), lit_ = hn::AndNot(which, lit_);
+      if constexpr (shaded) path_.forget(which);
+    };
+    Passage here = passage(cell);
+    for (M going = on(); !hn::AllFalse(d, going); going = on()) {
+      const M leaping = hn::And(going, here.empty());
+      if (!hn::AllFalse(d, leaping)) {
+        find_cells(leaping);
+        leap(here, leaping, cell, t);
+        here = passage(cell);
+        going = on(), going = hn::AndNot(here.empty(), going);
+      }
+      const M cellwise = !strides_ ? hn::Eq(t, t) : hn::Or(hn::Lt(stride_, hn::Set(d, shortest_stride)), here.bent());
+      const M crossing = hn::And(going, cellwise), striding = hn::AndNot(cellwise, going);
+      if (!hn::AllFalse(d, striding)) {
+        const M fresh = hn::AndNot(known, striding);
+        if (!hn::AllFalse(d, fresh)) renew(t, fresh), known = hn::Or(known, fresh);
+        // A lane that was refused stays in its cell, which rounding may tell otherwise.
+        strode = hn::Or(strode, stride_on(t, cell, here, striding));
+      }
+      if (!hn::AllFalse(d, crossing)) {
+        find_cells(crossing);
+        cross(crossing, cell, t);
+        here = passage(cell);
+        stride_ = hn::IfThenElse(crossing, hn::Max(stride_, hn::Set(d, 2 * shortest_stride)), stride_);
+      }
+    }
+    store(result);
+  }
+
+ private:
+  HWY_INLINE void places_at(F t, Place<D> p[3]) const {
+    for (int a = 0; a < 3; ++a) p[a] = cells_.source.place(a, mul_add(cells_.along[a], t, cells_.start[a]));
+  }
+  HWY_INLINE F value_at(const Place<D> p[3]) const { return cells_.source.value(p[0], p[1], p[2]); }
+  HWY_INLINE F value_at(F t) const {
+    Place<D> p[3];
+    places_at(t, p);
+    return value_at(p);
+  }
+
+  HWY_INLINE void renew(F t, M which) { take(sums_.at(value_at(t)), which); }
+  HWY_INLINE void take(const typename SumLanes<D>::Place& p, M which) {
+    const IntTag<D> di;
+    here_.value = hn::IfThenElse(which, p.value, here_.value), here_.tau = hn::IfThenElse(which, p.tau, here_.tau);
+    here_.slope = hn::IfThenElse(which, p.slope, here_.slope);
+    here_.beyond = hn::IfThenElse(which, p.beyond, here_.beyond), here_.kinks = hn::IfThenElse(which, p.kinks, here_.kinks);
+    const auto whole = hn::RebindMask(di, which);
+    here_.node = hn::IfThenElse(whole, p.node, here_.node), here_.sum = hn::IfThenElse(whole, p.sum, here_.sum);
+  }
+
+  /// How the field bends along two strides.
+  HWY_INLINE I bends_around(const Passage& here, const Place<D> between[3], M longer) const {
+    const D d;
+    const IntTag<D> di;
+    if (hn::AllFalse(d, longer)) return here.code;
+    const I id = brick_id(between[0].cell, between[1].cell, between[2].cell);
+    const I there = hn::And(gather_words(d, plan_.passages->bends->codes.data(), id, cells_.source.loads), hn::Set(di, 255));
+    return hn::IfThenElse(hn::RebindMask(di, longer), there, here.code);
+  }
+
+  /// Two strides from t on, if their errors are allowed. Returns which lanes have moved, to which cell. How that is passed is looked up
+  /// before anything else: what the next turn does hangs on it.
+  HWY_INLINE M stride_on(F& t, I cell[3], Passage& here, M striding) {
+    const D d;
+    const IntTag<D> di;
+    const F half = hn::Set(d, 0.5f);
+    const F world = hn::Min(hn::Mul(stride_, per_speed_), hn::Mul(half, hn::Sub(end_, t)));
+    const F cells = hn::Mul(world, speed_);
+    const M ends = hn::Le(hn::Sub(end_, t), hn::Mul(hn::Set(d, 2.0f), hn::Mul(stride_, per_speed_)));
+    const F t1 = hn::Add(t, world), t2 = hn::IfThenElse(ends, end_, hn::Add(t1, world));
+    Place<D> there[3];
+    places_at(t2, there);
+    const I cell2[3] = {there[0].cell, there[1].cell, there[2].cell};
+    const Passage next_passage = passage(brick_id(cell2[0], cell2[1], cell2[2]));
+    Place<D> between[3];
+    places_at(t1, between);
+    const M longer_pair = hn::Gt(cells, hn::Set(d, half_brick));
+    const I bend_code = bends_around(here, between, longer_pair);
+    const F bend = hn::Mul(hn::BitCast(d, hn::Add(hn::ShiftLeft<21>(bend_code), hn::Set(di, (127 + Bends::least) << 23))),
+                           hn::Set(d, plan_.passages->bends->range));
+    // Where most lanes are lit already the slopes are found together with the values.
+    const bool lit_ahead = shaded && 2 * hn::CountTrue(d, hn::And(striding, lit_)) > hn::Lanes(d);
+    const F value1 = value_at(between);
+    Slope<D> slope2;
+    if (lit_ahead) slopes_of_most(cells_.source, there, striding, slope2);
+    const auto p1 = sums_.at(value1), p2 = sums_.at(lit_ahead ? slope2.value : value_at(there));
+    const Strides<D> s = strides<shaded>(sums_, *plan_.medium, float(plan_.budget.tolerance), here_, p1, p2, world, cells, bend);
+    const F zero = hn::Zero(d), one = hn::Set(d, 1.0f), tolerance = hn::Set(d, float(plan_.budget.tolerance));
+    const F pass = cells_.sum.pass, taken = hn::Mul(pass, hn::Min(one, s.depth));
+    const M unbounded = hn::RebindMask(d, hn::Eq(bend_code, hn::Set(di, int(Bends::unbounded))));
+    F error = hn::IfThenElse(unbounded, hn::Set(d, 1e30f), hn::Mul(pass, s.error));
+    const F own = hn::Mul(tolerance, mul_add(world, hn::Set(d, float(2 * share_of_length / plan_.budget.length)),
+                                             hn::Mul(taken, hn::Set(d, share_of_light))));
+    const F allowed = mul_add(reserve_, hn::Set(d, share_at_once), own);
+    const M seen = hn::And(hn::And(striding, hn::Le(error, allowed)), hn::Gt(s.depth, zero));
+    const bool any_seen = !hn::AllFalse(d, seen);
+    LitPlace<D> lit2;
+    StrideLight<D> light;
+    if constexpr (shaded)
+      if (any_seen) {
+        lit2 = light_ends(t, t2, lit_ahead ? &slope2 : nullptr, seen);
+        const F swerve = path_.swerve(here_lit_, lit2, hn::Sub(t2, t));
+        light = StrideLight<D>::straight(cells_.lighting, here_lit_, lit2, swerve);
+        const auto over = hn::Eq(hn::Xor(here_lit_.sides, lit2.sides), cells_.lighting.turned_over());
+        const M turned = hn::And(seen, hn::RebindMask(d, over));
+        if (!hn::AllFalse(d, turned)) {
+          const F tau[3] = {here_.tau, p1.tau, p2.tau};
+          light.take(StrideLight<D>::turned_over(cells_.lighting, here_lit_, lit2, tau, s.depth), turned);
+        }
+        // The middle only where the ends do not do.
+        const F unknown = hn::IfThenElse(path_.known(), zero, hn::Set(d, first_error));
+        const M unsure =
+            hn::Or(hn::Gt(mul_add(taken, hn::Add(light.error, unknown), error), allowed), grazing(here_lit_.surface, lit2.surface));
+        const M rough = hn::AndNot(turned, hn::And(seen, unsure));
+        if (!hn::AllFalse(d, rough))
+          light.take(StrideLight<D>::curved(cells_.lighting, here_lit_, lit_at(t1, rough), lit2, s.depth), rough);
+        // Three places tell little where the gradient may turn right round in between.
+        const F gradient = hn::Max(here_lit_.surface.much, lit2.surface.much);
+        const M astray = hn::Gt(hn::Mul(hn::Mul(bend, cells), per_scale_), gradient);
+        light.error = hn::Max(light.error, hn::IfThenElseZero(astray, one));
+        error = hn::Add(error, hn::IfThenElseZero(seen, hn::Mul(taken, light.error)));
+        // What the front of an uneven pair hides of the change of light.
+        const F uneven = hn::Mul(hn::Mul(pass, s.uneven), apart(here_lit_.light, lit2.light));
+        error = hn::Add(error, hn::IfThenElseZero(hn::AndNot(turned, seen), uneven));
+      }
+    const M good = hn::And(striding, hn::Le(error, allowed));
+    reserve_ = hn::IfThenElse(good, hn::Sub(hn::Add(reserve_, own), error), reserve_);
+    if (any_seen) {
+      const M drawn = hn::And(seen, good);
+      F lightening = zero;
+      if constexpr (shaded) lightening = hn::Mul(hn::Set(d, 2.0f), hn::Add(hn::Abs(light.diffuse.b), hn::Abs(light.specular.b)));
+      cells_.may_hide(s.change, lightening, lightening);
+      const F taus[3] = {here_.tau, p1.tau, p2.tau};
+      cells_.segment(drawn, t, hn::Add(world, world), s.depth, taus, here_.value, p2.value, s.value, hn::Mul(half, hn::Add(one, s.middle)),
+                     nullptr, [&](F at, F share, const auto& spread, F& red, F& green, F& blue) HWY_ATTR {
+                       if constexpr (shaded) {
+                         const F x = hn::Sub(hn::Add(at, at), one), variance = hn::Mul(s.variance, spread.narrower);
+                         const F factor = light.diffuse.mean(x, variance), flash = hn::Mul(light.specular.mean(x, variance), share);
+                         F* colors[3] = {&red, &green, &blue};
+                         for (F* c : colors) *c = mul_add(*c, factor, flash);
+                         // Colours and light that change together.
+                         if (spread.any_change) {
+                           const F both = hn::Mul(hn::Mul(half, variance), light.diffuse.slope(x));
+                           for (int c = 0; c < 3; ++c) *colors[c] = mul_add(spread.change[c], both, *colors[c]);
+                         }
+                       }
+                     });
+      if constexpr (shaded) path_.go(here_lit_, lit2, hn::Sub(t2, t), drawn), here_lit_.take(lit2, drawn);
+    }
+    if constexpr (shaded) {
+      lit_ = hn::Or(hn::AndNot(good, lit_), hn::And(seen, good));
+      path_.forget(hn::AndNot(lit_, good));
+    }
+    take(p2, good);
+    const F next_error = hn::IfThenElse(good, mul_add(pass, s.ahead, error), error);
+    // safety sqrt(allowed / error)
+    const F product = hn::Max(hn::Mul(allowed, next_error), hn::Set(d, 1e-36f));
+    const F factor = hn::IfThenElseZero(hn::Eq(error, error), hn::Mul(hn::Mul(hn::Set(d, safety), allowed), about_one_by_sqrt(d, product)));
+    const F most = hn::IfThenElse(hn::Gt(s.depth, zero), hn::Set(d, most_growth), hn::Set(d, most_growth_in_the_dark));
+    const F longer = hn::Max(hn::Set(d, least_growth), hn::Min(factor, most));
+    const F shorter = hn::Max(hn::Set(d, least_if_refused), hn::Min(factor, hn::Set(d, most_if_refused)));
+    F next = hn::Min(hn::Mul(stride_, hn::IfThenElse(good, longer, shorter)), hn::Set(d, longest_stride));
+    // Cells are crossed where strides of about the shortest were refused.
+    next = hn::IfThenElse(hn::Lt(stride_, hn::Set(d, 2 * shortest_stride)), next, hn::Max(next, hn::Set(d, shortest_stride)));
+    stride_ = hn::IfThenElse(striding, next, stride_);
+    const M moved = hn::And(good, hn::Gt(t2, t));
+    t = hn::IfThenElse(moved, t2, t);
+    const auto to = hn::RebindMask(di, moved);
+    for (int a = 0; a < 3; ++a) cell[a] = hn::IfThenElse(to, cell2[a], cell[a]);
+    here.code = hn::IfThenElse(to, next_passage.code, here.code);
+    return moved;
+  }
+
+  /// The light at places of the rays of `lighting`, where it is wanted. Out of line: it is long, and wanted from several sides.
+  HWY_NOINLINE void lit_at(const Lighting<D>& lighting, const F u[3], M wanted, LitPlace<D>& out) const {
+    out = LitPlace<D>::at(lighting, slopes_at(cells_.source, plan_.volume.voxels, u, wanted));
+  }
+  HWY_INLINE LitPlace<D> lit_at(F t, M wanted) const {
+    F u[3];
+    for (int a = 0; a < 3; ++a) u[a] = mul_add(cells_.along[a], t, cells_.start[a]);
+    LitPlace<D> p;
+    lit_at(cells_.lighting, u, wanted, p);
+    return p;
+  }
+
+  /// The light at t2, whose slopes may be known, and at t for those lanes of `seen` that do not know it. Lanes that are not seen help: they
+  /// look for others.
+  HWY_INLINE LitPlace<D> light_ends(F t, F t2, const Slope<D>* slope2, M seen) {
+    const D d;
+    const IntTag<D> di;
+    const M dark = hn::AndNot(lit_, seen);
+    lit_ = hn::Or(lit_, seen);
+    const bool any_dark = !hn::AllFalse(d, dark);
+    if (slope2 || !any_dark || hn::CountTrue(d, dark) + hn::CountTrue(d, seen) > hn::Lanes(d)) {
+      if (any_dark) here_lit_.take(lit_at(t, dark), dark);
+      return slope2 ? LitPlace<D>::at(cells_.lighting, *slope2) : lit_at(t2, seen);
+    }
+    alignas(64) int32_t from[most_lanes], to[most_lanes];
+    uint8_t bits[2][8] = {};
+    hn::StoreMaskBits(d, dark, bits[0]), hn::StoreMaskBits(d, seen, bits[1]);
+    uint32_t asking = uint32_t(bits[0][0]) | uint32_t(bits[0][1]) << 8, busy = uint32_t(bits[1][0]) | uint32_t(bits[1][1]) << 8;
+    uint32_t wanted = busy;
+    hn::Store(hn::Iota(di, 0), di, from), hn::Store(hn::Iota(di, 0), di, to);
+    for (uint32_t free = ~busy; asking; asking &= asking - 1, free &= free - 1) {
+      const int who = std::countr_zero(asking), helper = std::countr_zero(free);
+      from[helper] = who, to[who] = helper, wanted |= 1u << helper;
+    }
+    const I order = hn::Load(di, from);
+    const auto indices = hn::IndicesFromVec(d, order);
+    F u[3];
+    for (int a = 0; a < 3; ++a) {
+      const F first = hn::TableLookupLanes(mul_add(cells_.along[a], t, cells_.start[a]), indices);
+      u[a] = hn::IfThenElse(seen, mul_add(cells_.along[a], t2, cells_.start[a]), first);
+    }
+    const uint8_t wanted_bits[8] = {uint8_t(wanted), uint8_t(wanted >> 8)};
+    LitPlace<D> found;
+    lit_at(cells_.lighting.permuted(order), u, hn::LoadMaskBits(d, wanted_bits), found);
+    here_lit_.take(found.permuted(hn::Load(di, to)), dark);
+    return found;
+  }
+
+  const SumLanes<D> sums_;
+  F speed_, per_speed_;  // speed: in cell lengths per world length
+  F stride_, reserve_;
+  bool strides_;
+  F per_scale_;  // by which gradients are told from how they change over a stride
+  typename SumLanes<D>::Place here_;
+  LitPlace<D> here_lit_;
+  GradientPath<D> path_;
+  M lit_;  // the lanes for which it is the place where they are
+};
+
+void cast_in_packets(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+  cast_with<TolerantPacket, hn::CappedTag<float, most_lanes>>(plan, x0, y0, x1, y1, frame);
+}
+
+#if HWY_ONCE
+void cast_singly(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+  cast_with<TolerantPacket, hn::CappedTag<float, 1>>(plan, x0, y0, x1, y1, frame);
+}
+#endif
+
+}  // namespace sg::volume::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sg::volume {
+
+HWY_EXPORT(cast_in_packets);
+
+bool in_tolerant_packets(const PacketPlan& plan) {
+  const Volume& v = plan.volume;
+  const size_t bytes = v.voxels.array.bytes();
+  const bool offsets_fit = bytes >= 4 && bytes < (size_t(1) << 31) && v.voxels.array.count() < (size_t(1) << 29);
+  return v.direct && (v.affine || UnevenAxes::fits(v)) && plan.medium->linear() && offsets_fit &&
+         plan.lamps.size() <= PacketPlan::most_lamps && whole_power(plan.material);
+}
+
+void cast_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+  if (plan.uneven) return cast_uneven_tile(plan, x0, y0, x1, y1, frame);
+  if (plan.detail) return cast_detail_tile(plan, x0, y0, x1, y1, frame);
+  if (plan.knobs.simd) return HWY_DYNAMIC_DISPATCH(cast_in_packets)(plan, x0, y0, x1, y1, frame);
+  return HWY_STATIC_DISPATCH(cast_singly)(plan, x0, y0, x1, y1, frame);
+}
+
+}  // namespace sg::volume
+#endif

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// The integral within a tolerance along packets of rays through a rectilinear grid. Cells are crossed one by one: strides would have to
+// know how long they are.
+#include "render/volume/engines/packets/packet_rays.h"
+
+#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "render/volume/engines/packets/packets_uneven.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "render/volume/engines/packets/packet_cast_inl.h"
+#include "render/volume/engines/packets/packet_walk_inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace sg::volume::HWY_NAMESPACE {
+
+template <class D, class T, bool shaded>
+using UnevenPacket = CellByCell<D, PacketCells<D, T, shaded, UnevenLanes<D>>>;
+
+void cast_uneven_in_packets(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+  cast_with<UnevenPacket, hn::CappedTag<float, most_lanes>>(plan, x0, y0, x1, y1, frame);
+}
+
+#if HWY_ONCE
+void cast_uneven_singly(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+  cast_with<UnevenPacket, hn::CappedTag<float, 1>>(plan, x0, y0, x1, y1, frame);
+}
+#endif
+
+}  // namespace sg::volume::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace sg::volume {
+
+HWY_EXPORT(cast_uneven_in_packets);
+
+void cast_uneven_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
+  if (plan.knobs.simd) return HWY_DYNAMIC_DISPATCH(cast_uneven_in_packets)(plan, x0, y0, x1, y1, frame);
+  return HWY_STATIC_DISPATCH(cast_uneven_singly)(plan, x0, y0, x1, y1, frame);
+}
+
+}  // namespace sg::volume
+#endif

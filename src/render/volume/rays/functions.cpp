@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "render/volume/rays/functions.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace sg::volume {
+
+double bernstein(const float b[4], double f) {
+  const double g = 1 - f;
+  const double b01 = g * double(b[0]) + f * double(b[1]), b12 = g * double(b[1]) + f * double(b[2]),
+               b23 = g * double(b[2]) + f * double(b[3]);
+  return g * (g * b01 + f * b12) + f * (g * b12 + f * b23);
+}
+
+int turns(const float b[4], double f[2]) {
+  // The derivative/3: p (1-f)^2 + 2 q f (1-f) + r f^2.
+  const double p = double(b[1]) - double(b[0]), q = double(b[2]) - double(b[1]), r = double(b[3]) - double(b[2]);
+  const double a = p - 2 * q + r, h = q - p, d = h * h - a * p;  // a f^2 + 2 h f + p
+  int n = 0;
+  const auto add = [&](double x) {
+    if (x > 0 && x < 1) f[n++] = x;
+  };
+  if (!(d >= 0)) return 0;
+  const double w = -(h + std::copysign(std::sqrt(d), h));
+  if (w != 0) add(p / w);
+  if (a != 0 && d > 0) add(w / a);
+  if (n == 2 && f[0] > f[1]) std::swap(f[0], f[1]);
+  return n;
+}
+
+namespace {
+
+/// The zero of a monotone part: false position that keeps it enclosed (Illinois).
+double root_between(const float b[4], double level, double lo, double hi, double at_lo, double at_hi) {
+  int side = 0;
+  for (int i = 0; i < 60; ++i) {
+    const double m = (at_lo * hi - at_hi * lo) / (at_lo - at_hi), at = bernstein(b, m) - level;
+    if (at == 0 || !(m > lo && m < hi) || hi - lo < 1e-14) return std::clamp(m, lo, hi);
+    if ((at > 0) == (at_hi > 0)) {
+      hi = m, at_hi = at;
+      if (side == -1) at_lo *= 0.5;
+      side = -1;
+    } else {
+      lo = m, at_lo = at;
+      if (side == 1) at_hi *= 0.5;
+      side = 1;
+    }
+  }
+  return 0.5 * (lo + hi);
+}
+
+const size_t batch = 32;
+
+}  // namespace
+
+int crossings(const float b[4], float level, double f[3]) {
+  if (level < std::min({b[0], b[1], b[2], b[3]}) || level > std::max({b[0], b[1], b[2], b[3]})) return 0;
+  double ends[4] = {0, 1, 1, 1}, turn[2];
+  const int inner = turns(b, turn);
+  for (int i = 0; i < inner; ++i) ends[i + 1] = turn[i];
+  ends[inner + 1] = 1;
+  int n = 0;
+  for (int i = 0; i <= inner; ++i) {
+    const double lo = bernstein(b, ends[i]) - double(level), hi = bernstein(b, ends[i + 1]) - double(level);
+    if (lo == 0 && hi == 0) continue;
+    double at;
+    if (lo == 0) at = ends[i];
+    else if (hi == 0) at = ends[i + 1];
+    else if ((lo > 0) != (hi > 0)) at = root_between(b, double(level), ends[i], ends[i + 1], lo, hi);
+    else continue;
+    if (n == 0 || at > f[n - 1]) f[n++] = at;
+    if (n == 3) break;
+  }
+  return n;
+}
+
+namespace {
+
+template <class Better>
+Found extreme(RayField& ray, Better better) {
+  Found best;
+  Stretch s[batch];
+  for (size_t n; (n = ray.next(s)) > 0;)
+    for (size_t i = 0; i < n; ++i) {
+      const Stretch& p = s[i];
+      // The hull bounds the cubic.
+      bool hopeful = !best.found;
+      for (float b : p.b) hopeful = hopeful || better(double(b), best.value);
+      if (!hopeful) continue;
+      double f[4] = {0, 0, 0, 1}, turn[2];
+      const int inner = turns(p.b, turn);
+      for (int k = 0; k < inner; ++k) f[k + 1] = turn[k];
+      f[inner + 1] = 1;
+      for (int k = 0; k < inner + 2; ++k) {
+        const double v = bernstein(p.b, f[k]);
+        if (v == v && (!best.found || better(v, best.value))) best = {v, p.from + f[k] * (p.to - p.from), true, 0, p.cell};
+      }
+    }
+  return best;
+}
+
+}  // namespace
+
+Found largest(RayField& ray) {
+  return extreme(ray, [](double a, double b) { return a > b; });
+}
+Found smallest(RayField& ray) {
+  return extreme(ray, [](double a, double b) { return a < b; });
+}
+
+Sum integral(RayField& ray) {
+  Sum sum;
+  Stretch s[batch];
+  for (size_t n; (n = ray.next(s)) > 0;)
+    for (size_t i = 0; i < n; ++i) {
+      if (sum.length == 0) sum.first = s[i].from;
+      const double length = s[i].to - s[i].from;
+      sum.integral += length * 0.25 * (double(s[i].b[0]) + double(s[i].b[1]) + double(s[i].b[2]) + double(s[i].b[3]));
+      sum.length += length;
+    }
+  return sum;
+}
+
+Found first_at_least(RayField& ray, double level) {
+  Stretch s[batch];
+  double first = HUGE_VAL;
+  for (size_t n; (n = ray.next(s)) > 0;)
+    for (size_t i = 0; i < n; ++i) {
+      first = std::min(first, s[i].from);
+      if (!(double(s[i].highest()) >= level)) continue;
+      if (double(s[i].b[0]) >= level) return {double(s[i].b[0]), s[i].from, true, first, s[i].cell};
+      double f[3];
+      if (crossings(s[i].b, float(level), f) > 0) return {level, s[i].from + f[0] * (s[i].to - s[i].from), true, first, s[i].cell};
+    }
+  return {};
+}
+
+Sum length_at_least(RayField& ray, double level) {
+  Sum sum;
+  Stretch s[batch];
+  for (size_t n; (n = ray.next(s)) > 0;)
+    for (size_t i = 0; i < n; ++i) {
+      if (!(double(s[i].highest()) >= level)) continue;
+      double f[5] = {0};
+      const int inner = crossings(s[i].b, float(level), f + 1);
+      f[inner + 1] = 1;
+      for (int k = 0; k <= inner; ++k) {
+        if (!(bernstein(s[i].b, 0.5 * (f[k] + f[k + 1])) >= level)) continue;
+        if (sum.length == 0) sum.first = s[i].from + f[k] * (s[i].to - s[i].from);
+        sum.length += (f[k + 1] - f[k]) * (s[i].to - s[i].from);
+      }
+    }
+  return sum;
+}
+
+void all_crossings(RayField& ray, std::span<const double> levels, std::vector<Crossing>& out) {
+  out.clear();
+  Stretch s[batch];
+  double last_to = -HUGE_VAL;
+  float last_value = 0;
+  for (size_t n; (n = ray.next(s)) > 0;)
+    for (size_t i = 0; i < n; ++i) {
+      const Stretch& p = s[i];
+      const size_t first = out.size();
+      const bool joined = p.from - last_to <= 1e-9 * (1 + std::abs(p.from));
+      for (uint32_t l = 0; l < levels.size(); ++l) {
+        const float level = float(levels[l]);
+        // A jump over the level between neighbours; and a crossing exactly between them counts once, with the nearer one.
+        const bool jump = joined && ((last_value < level && p.b[0] > level) || (last_value > level && p.b[0] < level));
+        if (jump) out.push_back({p.from, l, ray.gradient(p, p.from)});
+        double f[3];
+        const int count = crossings(p.b, level, f);
+        for (int k = 0; k < count; ++k) {
+          if (f[k] == 0 && joined && last_value == level) continue;
+          const double t = p.from + f[k] * (p.to - p.from);
+          out.push_back({t, l, ray.gradient(p, t)});
+        }
+      }
+      std::stable_sort(out.begin() + ptrdiff_t(first), out.end(), [](const Crossing& a, const Crossing& b) { return a.t < b.t; });
+      last_to = p.to, last_value = p.b[3];
+    }
+}
+
+}  // namespace sg::volume

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// The integral of emission and absorption along a ray, with a bound on its error instead of a step.
+//
+// On a stretch the field is a cubic, and between two knots of the medium tau and colour are straight lines over it. A stretch without a
+// knot is integrated as a whole (its optical depth exactly: the mean of the Bernstein coefficients). One with knots is cut into pieces
+// on which the cubic is straight enough, and these at the knots; there tau and colour are linear in t, and the optical depth is exact.
+#pragma once
+#include <vector>
+
+#include "color/transfer_function.h"
+#include "render/volume/medium/medium.h"
+#include "render/volume/medium/preintegrated.h"
+#include "render/volume/medium/stretch.h"
+#include "render/volume/rays/light_model.h"
+#include "render/volume/rays/ray_state.h"
+
+namespace sg::volume {
+
+/// Errors that an integral may make.
+struct Budget {
+  double tolerance = 1.0 / 512;  ///< of full scale, for a whole ray
+  double length = 1;             ///< world length of the longest ray through the volume
+  float stop_below = 0;          ///< a ray ends when less than this share of the light passes
+};
+
+/// exp(-x) for x >= 0 in float arithmetic alone, to 2e-7; the same bits everywhere.
+float exp_minus(float x);
+
+/// A medium that depends on more than the value: it is sampled, see composite().
+struct Detail {
+  const TransferFunction& transfer;
+  SecondAxis axis;
+  double unit;     ///< world length to which opacity refers
+  float most_tau;  ///< stands for that of opacity 1
+  float ink = 0;   ///< extinction that silhouettes and strokes have of their own (Lit::ink of it)
+};
+
+/// Optical depth of what samples of such a medium may overlook in a part.
+constexpr float overlooked_depth = 1.0f / 8192;
+
+/// A place of such a medium. `sample`: its straight colour and opacity.
+struct DetailPlace {
+  float tau = 0, value = 0, second = 0;
+  TransferFunction::Sample sample{};
+};
+/// At t of a stretch; what it depends on is asked of the walker.
+DetailPlace place_at(const Detail& detail, const Stretch& stretch, double t, RayField& walker);
+/// Optical depth of a stretch, by Simpson's rule on parts that are halved until it agrees with the trapezoid rule to 1e-3 (absolute, or of
+/// the depth of the part) and no line of the curves may lie between its samples, 6 times at most: an estimate, no bound.
+double optical_depth(const Detail& detail, const Stretch& stretch, RayField& walker);
+
+/// What a volume is made of and how it is lit.
+struct Look {
+  const Medium& medium;
+  Budget budget;
+  uint32_t id = 0;
+  const LitRay* lit = nullptr;  ///< null = not shaded
+  float per_scale = 1;          ///< 1 / change of the value over `edge` from which on there is a surface
+  float edge = 1;
+  const Detail* detail = nullptr;  ///< null = the medium tells all
+};
+
+/// Light at t of a stretch; look.lit must not be null.
+Lit light_on(const Look& look, RayField& walker, const Stretch& stretch, double t);
+
+/// Puts one stretch behind what the ray has gathered. `walker` is asked for gradients where the look is lit. With a detail, tau is
+/// integrated by Simpson's rule on parts that are halved until it agrees with the trapezoid rule and no line of the curves may lie between
+/// its samples, 10 times at most: an estimate, no bound.
+void composite(const Look& look, const Stretch& stretch, RayField& walker, RayState& state);
+
+/// A piece of the ray on which the value goes straight from `a` to `b` (pre-integrated classification is this over a step).
+void composite_straight(const Look& look, double from, double to, float a, float b, const Lit* lit, RayState& state);
+/// One sample that stands for a length.
+void composite_sample(const Look& look, double from, double length, float value, const Lit* lit, RayState& state);
+/// Optics that stand for a length.
+void composite_optics(const Look& look, double from, double length, const Optics& optics, const Lit* lit, RayState& state);
+/// What a table says of a piece.
+void composite_segment(const Look& look, double from, double length, const Preintegrated::Segment& segment, const Lit* lit,
+                       RayState& state);
+/// Several media at once on stretches with common ends (joint.cpp): cut where a value turns or meets a knot of its medium, and these parts
+/// until Gauss's rule of three places on a part and on its halves differ by less than their share of the smallest tolerance, 14 times at
+/// most: an estimate, no bound.
+struct Joint {
+  const Look* look;
+  RayField* walker;
+  Stretch stretch;
+};
+void composite_joint(const std::vector<Joint>& joint, RayState& state);
+
+/// The part of a stretch between two places.
+Stretch part_of(const Stretch& stretch, double from, double to);
+
+}  // namespace sg::volume

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where light jumps along a ray: where the surface that it falls on turns over, and where lamps begin to reach that.
+#pragma once
+#include "render/volume/medium/stretch.h"
+#include "render/volume/rays/light_model.h"
+
+namespace sg::volume {
+
+/// Places of a stretch, ascending.
+struct LightKinks {
+  static constexpr int most = 20;
+  int count = 0;
+  double at[most];
+};
+
+/// Does the light hang on the gradient?
+bool has_kinks(const LitRay& lit);
+
+/// From the gradient at the ends of a stretch and at its thirds, which the walker is asked for, as if it went like a cubic: in a lattice it
+/// does, and on straight cells.
+LightKinks light_kinks(const LitRay& lit, RayField& walker, const Stretch& stretch, Vec3f first, Vec3f last);
+/// The same, and the gradients at the ends are asked for, just inside of them.
+LightKinks light_kinks(const LitRay& lit, RayField& walker, const Stretch& stretch);
+
+/// Of a stretch: so far beside a kink, or a face of cells, light is that of one side of it.
+constexpr double hair = 1e-6;
+
+}  // namespace sg::volume

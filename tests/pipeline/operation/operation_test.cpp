@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/operation/operation.h"
+
+#include "pipeline/operation/test_operations.h"
+#include "support/test.h"
+
+using namespace sg;
+using test::first;
+
+namespace {
+Data run(const char* name, const std::vector<Data>& in, const std::vector<std::string>& words = {}) {
+  Context context;
+  return run_operation(find_operation(name, test::operations()), in, words, context);
+}
+}  // namespace
+
+TEST_CASE("operations: help of one operation is made from its declaration") {
+  CHECK(ops_help("scale", test::operations()) ==
+        "scale (scalar filter)\n"
+        "  Multiplies a field.\n"
+        "\n"
+        "Parameters (key=value):\n"
+        "  field  Field to scale; default: the active scalar. [field]\n"
+        "  by     Factor. [number, from -1000 to 1000, in units of 'field', default 2]\n"
+        "  mode   How. [plain|fancy, default plain]\n");
+  CHECK(ops_help("whole", test::operations()) == "whole (parts filter)\n  Passes everything on.\n\nIt has no parameters.\n");
+  CHECK(ops_help("add", test::operations()).find("Takes 2 inputs.") != std::string::npos);
+  CHECK(ops_help("ramp", test::operations()).starts_with("ramp (source)\n"));
+}
+
+TEST_CASE("operations: the overview lists families in the order of the table") {
+  const std::string help = ops_help("", test::operations());
+  CHECK(help.starts_with(
+      "source\n  ramp     A line of points with a rising field.\n  moment   A line at a moment.\n\nscalar\n  scale    Multiplies"));
+  CHECK(help.find("\nparts\n") < help.find("\nstats\n"));
+}
+
+TEST_CASE("operations: JSON holds name, family, sentence, inputs and the schema of the parameters") {
+  const std::string json = ops_json(test::operations().subspan(0, 3));
+  CHECK(
+      json ==
+      "{\"operations\":[\n"
+      "{\"name\":\"ramp\",\"kind\":\"source\",\"family\":\"source\",\"sentence\":\"A line of points with a rising "
+      "field.\",\"version\":1,\"inputs\":[0,0],"
+      "\"params\":{\"type\":\"object\",\"additionalProperties\":false,\"properties\":{"
+      "\"n\":{\"type\":\"integer\",\"exclusiveMinimum\":0,\"default\":8,\"description\":\"Number of points.\"},"
+      "\"start\":{\"type\":\"number\",\"unit\":\"m\",\"default\":0,\"description\":\"First value.\"}}}},\n"
+      "{\"name\":\"moment\",\"kind\":\"source\",\"family\":\"source\",\"sentence\":\"A line at a moment.\",\"version\":1,\"inputs\":[0,0],"
+      "\"params\":{\"type\":\"object\",\"additionalProperties\":false,\"properties\":{"
+      "\"time\":{\"type\":[\"number\",\"null\"],\"default\":null,\"description\":\"Moment; default: the one asked for.\"}}}},\n"
+      "{\"name\":\"scale\",\"kind\":\"filter\",\"family\":\"scalar\",\"sentence\":\"Multiplies a field.\",\"version\":3,\"inputs\":[1,1],"
+      "\"params\":{\"type\":\"object\",\"additionalProperties\":false,\"properties\":{"
+      "\"field\":{\"type\":\"string\",\"field\":{\"on\":[\"point\",\"cell\"],\"of\":[\"scalar\",\"vector\",\"tensor\",\"other\"]},"
+      "\"description\":\"Field to scale; default: the active scalar.\"},"
+      "\"by\":{\"type\":\"number\",\"minimum\":-1000,\"maximum\":1000,\"unit\":\"@field\",\"default\":2,\"description\":\"Factor.\"},"
+      "\"mode\":{\"type\":\"string\",\"enum\":[\"plain\",\"fancy\"],\"default\":\"plain\",\"description\":\"How.\"}}}}\n"
+      "]}\n");
+}
+
+TEST_CASE("operations: every operation of this build has a sentence, a family, a name of its own and describable parameters") {
+  std::vector<std::string_view> names;
+  for (const Operation& o : operations()) {
+    CAPTURE(o.name);
+    CHECK(o.sentence.ends_with("."));
+    CHECK_FALSE(o.family.empty());
+    CHECK(std::find(names.begin(), names.end(), o.name) == names.end());
+    names.push_back(o.name);
+    const ParamSet params = o.make_params();
+    for (const ParamDecl& d : params.schema.decls()) CHECK_MESSAGE(d.doc.ends_with("."), d.name);
+    CHECK_FALSE(ops_help(o.name).empty());
+  }
+  CHECK(ops_json().ends_with("\n]}\n"));
+}
+
+TEST_CASE("operations: an unknown name gets the nearest one") {
+  CHECK(test::error_of([] {
+          find_operation("scael", test::operations());
+        }).find("unknown operation 'scael'; did you mean 'scale'? has: ramp, moment") == 0);
+  CHECK(&find_operation("add", test::operations()) == &test::operations()[4]);
+}
+
+TEST_CASE("operations: words set parameters and the function runs with them") {
+  CHECK(first(run("ramp", {}, {"start=5"})) == 5);
+  CHECK(test::value_at(run("scale", {test::line_of(4)}, {"by=10"}), 3) == 30);
+  CHECK(test::value_at(run("add", {test::line_of(4), test::line_of(4)}), 3) == 6);
+  const Data table = run("measure", {test::line_of(7)});
+  CHECK(std::get<TablePtr>(table)->columns[0].array.get(0) == 7);
+}
+
+TEST_CASE("operations: a wrong number of inputs and a table for a mesh are refused") {
+  CHECK(test::error_of([] { run("scale", {}); }) == "scale: takes 1 input, not 0");
+  CHECK(test::error_of([] { run("add", {test::line_of(2)}); }) == "add: takes 2 inputs, not 1");
+  CHECK(test::error_of([] { run("ramp", {test::line_of(2)}); }).find("takes 0 inputs") != std::string::npos);
+  CHECK(test::error_of([] { run("join", {}); }).find("join: takes") == 0);
+  CHECK(test::error_of([] { run("scale", {TablePtr(std::make_shared<Table>())}); }).find("scale: needs a mesh but got a table") == 0);
+  CHECK(test::error_of([] { run("scale", {DatasetPtr()}); }) == "scale: got no data");
+}
+
+TEST_CASE("operations: filters are applied to each part of a collection, and errors name the part") {
+  auto inner = std::make_shared<Collection>();
+  inner->parts = {{"left", test::line_of(8)}, {"right", test::line_of(3)}};
+  auto outer = std::make_shared<Collection>();
+  outer->parts = {{"wing", CollectionPtr(inner)}, {"counts", TablePtr(std::make_shared<Table>())}, {"body", test::line_of(5)}};
+  const Data in = CollectionPtr(outer);
+
+  std::vector<std::string> names;
+  for_each_dataset(run("scale", {in}, {"by=3"}), [&](const std::string& name, const DatasetPtr& d) {
+    names.push_back(name);
+    CHECK(test::value_at(d, 2) == 6);
+  });
+  CHECK(names == std::vector<std::string>{"wing/left", "wing/right", "body"});
+
+  const Data dropped = run("drop", {in});  // null results leave, tables stay
+  CHECK(std::get<CollectionPtr>(dropped)->parts.size() == 3);
+  CHECK(std::get<CollectionPtr>(std::get<CollectionPtr>(dropped)->parts[0].data)->parts.size() == 1);
+
+  CHECK(test::error_of([&] { run("fail", {in}); }) == "fail: cannot do that (while in part 'wing/left')");
+  const Data whole = run("whole", {in});
+  CHECK(std::get<CollectionPtr>(whole) == CollectionPtr(outer));
+  CHECK(std::get<CollectionPtr>(run("join", {in, test::line_of(2)}))->parts.size() == 2);
+  CHECK(test::error_of([&] { run("add", {test::line_of(5), in}); }).find("add: needs one mesh but got 3 parts") == 0);
+}
+
+TEST_CASE("requests: default is everything, named fields and carried fields narrow it") {
+  const Operation& scale = find_operation("scale", test::operations());
+  const Operation& pick = find_operation("pick", test::operations());
+  const Operation& add = find_operation("add", test::operations());
+  const Request p = Request::only({"p", "b", "p"});
+  CHECK(p.fields == std::vector<std::string>{"b", "p"});
+  CHECK(upstream_request(add, add.make_params(), p).all_fields);
+  CHECK(upstream_request(scale, make_params(scale, {"field=T"}), p).fields == std::vector<std::string>{"T", "b", "p"});
+  CHECK(upstream_request(scale, make_params(scale, {}), p).all_fields);
+  CHECK(upstream_request(pick, make_params(pick, {"field=T"}), p).fields == std::vector<std::string>{"T"});
+  Request timed = p;
+  timed.time = 2.5;
+  timed.region = Box3{{0, 0, 0}, {1, 1, 1}};
+  timed.piece = 1, timed.pieces = 4;
+  for (const Operation* o : {&scale, &add}) {
+    const Request up = upstream_request(*o, make_params(*o, {}), timed);
+    CHECK(*up.time == 2.5);
+    CHECK_FALSE(up.region);
+    CHECK(up.pieces == 1);
+  }
+  CHECK(request_text(timed) == "fields=b,p time=2.5 region=0,0,0,1,1,1 piece=1/4");
+  CHECK(request_text({}) == "everything");
+  CHECK(request_text(Request::only({})) == "fields=none");
+  CHECK_FALSE(can_merge(p, timed));
+  CHECK(merged(p, Request::only({"a"})).fields == std::vector<std::string>{"a", "b", "p"});
+  CHECK(merged(p, Request()) == Request());
+}
