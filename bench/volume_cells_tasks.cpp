@@ -42,12 +42,7 @@ double frame_by_rays(const VolumeItem& item, double turn) {
   const volume::CellVolume cells = volume::make_cell_volume(item, context);
   volume::TetRays rays(cells, projection, volume::make_medium(item, cells), context);
   if (item.shaded) {
-    std::vector<volume::TetLight::Lamp> lamps;
-    for (const Light& l : lights_of(Scene{})) {
-      const Vec3 d = projection.right * l.direction.x + projection.up * l.direction.y - projection.forward * l.direction.z;
-      lamps.push_back({Vec3f(normalize(d)), l.intensity});
-    }
-    rays.light(std::move(lamps), item.light, float(1 / (0.002 * (cells.range.hi - cells.range.lo))));
+    rays.light(lamps_of(lights_of(Scene{}), projection), item.light, float(1 / (0.002 * (cells.range.hi - cells.range.lo))));
   }
   constexpr int tile = volume::TetRays::tile, across = pixels / tile;
   return parallel_reduce(

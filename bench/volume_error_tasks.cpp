@@ -105,10 +105,8 @@ double brute_force(const VolumeItem& item, const float* f, size_t n, const Proje
   const auto edge = float(1 / per_voxel), per_scale = float(1 / (0.002 * (range.hi - range.lo)));
   volume::LitRay lit;
   lit.direction = Vec3f(ray.direction);
-  const VolumeLight& m = item.light;
-  lit.material = {float(m.ambient), float(m.diffuse), float(m.specular), float(m.power), true};
-  const Vec3 lamp = view.forward * -1.0;
-  lit.lights.push_back({Vec3f(lamp), Vec3f(normalize(lamp - ray.direction)), 1});
+  lit.material = material_of(item.light);
+  lit.lights.push_back(seen_along({view.forward * -1.0, 1}, ray.direction));
   double sum = 0, pass = 1;
   for (size_t i = 0; i < steps && pass > 1e-7; ++i) {
     const Vec3 p = ray.origin + ray.direction * (from + (double(i) + 0.5) * h);

@@ -36,7 +36,7 @@ class Drawing {
         context_(context),
         textures_(textures),
         grid_(projection.width, projection.height),
-        lights_(world_lights(scene.lights, projection)),
+        lights_(lamps_of(scene.lights, projection)),
         keys_(size_t(projection.width) * size_t(projection.height)) {}
 
   FragmentLists run() {
@@ -321,7 +321,7 @@ class Drawing {
   const RenderTextures* textures_;
   bool large_drawn_ = false;
   const TileGrid grid_;
-  const std::vector<WorldLight> lights_;
+  const std::vector<Lamp> lights_;
   KeyPlane keys_;
   std::vector<EyeView> views_;
   uint32_t only_ = no_item;  ///< the one opaque surface, if there is just one

@@ -3,22 +3,25 @@
 
 #include <cmath>
 
+#include "render/shade/blinn_phong.h"
+
 namespace sg::raster {
 
-void light_line(const Material& m, const WorldLight* lights, size_t count, Vec3 tangent, Vec3 view, float& light, float& gloss) {
+void light_line(const Material& m, std::span<const Lamp> lamps, Vec3 tangent, Vec3 view, float& light, float& gloss) {
   constexpr double pi = 3.14159265358979323846;
   light = 1, gloss = 0;
   if (!m.lit) return;
   const double vt = std::clamp(dot(view, tangent), -1.0, 1.0), v_across = std::sqrt(1 - vt * vt);
   const Vec3 v = view - tangent * vt;  // what lies across the line
   double diffuse = 0, specular = 0;
-  for (size_t i = 0; i < count; ++i) {
-    const Vec3 to{lights[i].x, lights[i].y, lights[i].z};
-    const double strength = double(lights[i].intensity), lt = std::clamp(dot(to, tangent), -1.0, 1.0), across = std::sqrt(1 - lt * lt);
+  for (const Lamp& lamp : lamps) {
+    const Vec3 to = lamp.direction, half = to + view;
+    const double strength = double(lamp.intensity), lt = std::clamp(dot(to, tangent), -1.0, 1.0), across = std::sqrt(1 - lt * lt);
     const double cosine = across * v_across > 1e-12 ? std::clamp(dot(to - tangent * lt, v) / (across * v_across), -1.0, 1.0) : 1.0;
     const double angle = std::acos(cosine);  // between viewer and light around the line
     diffuse += strength * across * (std::sin(angle) + (pi - angle) * cosine) / pi;
-    specular += strength * std::sqrt(0.5 * (1 + cosine)) * std::pow(std::clamp(across * v_across - lt * vt, 0.0, 1.0), double(m.power));
+    const double ht = dot(half, tangent) / std::max(length(half), 1e-9), h_across = std::sqrt(std::max(0.0, 1 - ht * ht));
+    specular += strength * std::sqrt(0.5 * (1 + cosine)) * double(power_of(float(h_across), m.power));
   }
   light = float(double(m.ambient) + double(m.diffuse) * diffuse), gloss = float(double(m.specular) * specular);
 }

@@ -6,10 +6,10 @@
 namespace sg::raster {
 
 /// Light and gloss of a line with unit `tangent` seen along `to_viewer` (unit). Diffuse: Lambert's law averaged over the visible half of
-/// the cylinder (Mallo, Peikert, Sigg, Sadlo 2005), 1 for a line across a light that shines from the viewer; specular: Phong's term of the
-/// normal that shines most, (sqrt(1 - (L.T)^2) sqrt(1 - (V.T)^2) - (L.T)(V.T))^power (Zoeckler, Stalling, Hege 1996), times the cosine
-/// under which that normal is seen: nothing shines that is lit from behind.
-void light_line(const Material& material, const WorldLight* lights, size_t count, Vec3 tangent, Vec3 to_viewer, float& light, float& gloss);
+/// the cylinder (Mallo, Peikert, Sigg, Sadlo 2005), 1 for a line across a light that shines from the viewer; specular: the
+/// highlight of the normal that shines most, sqrt(1 - (H.T)^2)^power with the half vector H (Zoeckler, Stalling, Hege 1996 with Blinn's
+/// model), times the cosine under which that normal is seen: nothing shines that is lit from behind.
+void light_line(const Material& material, std::span<const Lamp> lamps, Vec3 tangent, Vec3 to_viewer, float& light, float& gloss);
 
 /// Tangent of segment i at the place s (0 to 1) on it: between the tangents at its ends, which are the means of the segments that meet
 /// there.

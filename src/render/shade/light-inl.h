@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Vectors of points and the light on them, for files that are compiled once for each target and have included Highway. Inside
-// render only. No fused multiply-add and no libm: every target gives the same bits.
+// render only. No libm: every target gives the same bits.
 #if defined(SG_RASTER_LIGHT_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef SG_RASTER_LIGHT_INL
 #undef SG_RASTER_LIGHT_INL
 #else
 #define SG_RASTER_LIGHT_INL
 #endif
+#include "render/shade/blinn_phong-inl.h"
 #include "render/shade/shade.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -38,35 +39,11 @@ HWY_INLINE V3 gather3(const float* base, I index) {
 }
 HWY_INLINE V3 select3(M m, V3 a, V3 b) { return {hn::IfThenElse(m, a.x, b.x), hn::IfThenElse(m, a.y, b.y), hn::IfThenElse(m, a.z, b.z)}; }
 
-/// x^p for x in [0, 1]: 2^(p log2 x) by series whose errors stay below 1e-6 for the powers in use.
-HWY_INLINE F power(F x, float p) {
+/// n.h for the half vector h between a lamp and the viewer, all unit: from n.l, n.v and l.v.
+HWY_INLINE F cosine_to_half(F n_l, F n_v, F l_v) {
   const DF d;
-  const DI di;
-  const F one = hn::Set(d, 1.0f);
-  const F safe = hn::Max(x, hn::Set(d, 1e-30f));
-  // log2: mantissa in [sqrt(1/2), sqrt(2)), then the series of artanh
-  const I bits = hn::BitCast(di, safe) - hn::Set(di, 0x3F3504F3);
-  const I exponent = hn::ShiftRight<23>(bits);
-  const F m = hn::BitCast(d, hn::And(bits, hn::Set(di, 0x7FFFFF)) + hn::Set(di, 0x3F3504F3));
-  const F t = (m - one) / (m + one), t2 = t * t;
-  F series = hn::Set(d, 1.0f / 9) * t2 + hn::Set(d, 1.0f / 7);
-  series = series * t2 + hn::Set(d, 1.0f / 5);
-  series = series * t2 + hn::Set(d, 1.0f / 3);
-  series = series * t2 + one;
-  const F log2 = hn::ConvertTo(d, exponent) + t * series * hn::Set(d, 2.8853900817779268f);
-  // exp2: integer part into the exponent, the rest by Taylor's series about 0
-  const F y = hn::Max(log2 * hn::Set(d, p), hn::Set(d, -126.0f));
-  const I whole = hn::NearestInt(y);
-  const F f = (y - hn::ConvertTo(d, whole)) * hn::Set(d, 0.69314718055994531f);
-  F e = hn::Set(d, 1.0f / 5040) * f + hn::Set(d, 1.0f / 720);
-  e = e * f + hn::Set(d, 1.0f / 120);
-  e = e * f + hn::Set(d, 1.0f / 24);
-  e = e * f + hn::Set(d, 1.0f / 6);
-  e = e * f + hn::Set(d, 0.5f);
-  e = e * f + one;
-  e = e * f + one;
-  const F r = hn::BitCast(d, hn::BitCast(di, e) + hn::ShiftLeft<23>(whole));
-  return hn::IfThenElseZero(hn::Gt(x, hn::Set(d, 1e-30f)), hn::IfThenElseZero(hn::Gt(y, hn::Set(d, -126.0f)), r));
+  const F square = hn::Set(d, 2.0f) + l_v + l_v;  // of l + v; 0 where the lamp is behind all that is seen
+  return (n_l + n_v) / hn::Sqrt(hn::Max(square, hn::Set(d, 1e-12f)));
 }
 
 HWY_INLINE V3 unit(V3 a, V3 otherwise) {
@@ -78,8 +55,7 @@ HWY_INLINE V3 unit(V3 a, V3 otherwise) {
 
 /// Light and gloss of a surface with face normal `normal` (any length and side) whose smooth normal is smooth(face, otherwise the face's).
 template <class Smooth>
-HWY_INLINE void light_up(const Material& m, const WorldLight* lights, size_t light_count, V3 ray, V3 normal, Smooth&& smooth, F& light,
-                         F& gloss) {
+HWY_INLINE void light_up(const Material& m, std::span<const Lamp> lamps, V3 ray, V3 normal, Smooth&& smooth, F& light, F& gloss) {
   const DF d;
   const F zero = hn::Zero(d), one = hn::Set(d, 1.0f);
   light = one, gloss = zero;
@@ -93,14 +69,13 @@ HWY_INLINE void light_up(const Material& m, const WorldLight* lights, size_t lig
   const V3 n = smooth(face);
   F diffuse = zero, specular = zero;
   const F nv = dot3(n, view);
-  for (size_t i = 0; i < light_count; ++i) {
-    const WorldLight& l = lights[i];
-    const V3 to = {hn::Set(d, l.x), hn::Set(d, l.y), hn::Set(d, l.z)};
-    const F nl = dot3(n, to), strength = hn::Set(d, l.intensity);
-    diffuse = diffuse + hn::Max(nl, zero) * strength;
-    if (m.specular == 0) continue;
-    const F mirrored = hn::Min(hn::Max((nl + nl) * nv - dot3(to, view), zero), one);  // reflected light . viewer
-    specular = specular + hn::IfThenElseZero(hn::Gt(nl, zero), power(mirrored, m.power) * strength);
+  const shading::HWY_NAMESPACE::Power power(m.power);
+  for (const Lamp& lamp : lamps) {
+    const Vec3f direction(lamp.direction);
+    const V3 to = {hn::Set(d, direction.x), hn::Set(d, direction.y), hn::Set(d, direction.z)};
+    const F nl = dot3(n, to), intensity = hn::Set(d, lamp.intensity);
+    const auto terms = shading::HWY_NAMESPACE::lamp_terms(nl, cosine_to_half(nl, nv, dot3(to, view)), power);
+    diffuse = diffuse + terms.diffuse * intensity, specular = specular + terms.specular * intensity;
   }
   light = hn::Set(d, m.ambient) + hn::Set(d, m.diffuse) * diffuse, gloss = hn::Set(d, m.specular) * specular;
 }

@@ -1,45 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lights in world space, shading of single points, and the reference of the vector code.
+// The jobs of deferred shading, and the reference of its vector code.
 #include "render/shade/shade.h"
 
 #include <cmath>
 
+#include "render/shade/blinn_phong.h"
+
 namespace sg::raster {
 
-std::vector<WorldLight> world_lights(const std::vector<Light>& lights, const Projection& p) {
-  std::vector<WorldLight> out;
-  for (const Light& l : lights) {
-    const Vec3 d = l.follows_camera ? p.right * l.direction.x + p.up * l.direction.y - p.forward * l.direction.z : l.direction;
-    const Vec3 u = normalize(d);
-    out.push_back({float(u.x), float(u.y), float(u.z), l.intensity});
-  }
-  return out;
-}
-
-ShadeJob shade_job(const PreparedItem& item, const EyeView& view, const std::vector<WorldLight>& lights) {
+ShadeJob shade_job(const PreparedItem& item, const EyeView& view, const std::vector<Lamp>& lights) {
   ShadeJob j{};
   const TriangleSet& t = item.triangles;
   j.view = view, j.xyz = t.xyz(), j.triangles = t.indices();
   j.normals = item.normals.normals.empty() ? nullptr : reinterpret_cast<const float*>(item.normals.normals.raw());
   j.corners = item.normals.corners.empty() ? t.indices() : reinterpret_cast<const uint32_t*>(item.normals.corners.raw());
   j.color = &item.color, j.cells = t.cell_list(), j.first_cell = t.first_cell;
-  j.material = item.material, j.lights = lights.data(), j.light_count = lights.size();
+  j.material = item.material, j.lights = lights;
   return j;
-}
-
-void light_point(const Material& m, const WorldLight* lights, size_t count, Vec3f n, Vec3f view, float& light, float& gloss) {
-  light = 1, gloss = 0;
-  if (!m.lit) return;
-  double diffuse = 0, specular = 0;
-  for (size_t i = 0; i < count; ++i) {
-    const WorldLight& l = lights[i];
-    const Vec3f to{l.x, l.y, l.z};
-    const double nl = double(dot(n, to));
-    if (!(nl > 0)) continue;
-    const double mirrored = std::clamp(2 * nl * double(dot(n, view)) - double(dot(to, view)), 0.0, 1.0);
-    diffuse += nl * double(l.intensity), specular += std::pow(mirrored, double(m.power)) * double(l.intensity);
-  }
-  light = float(double(m.ambient) + double(m.diffuse) * diffuse), gloss = float(double(m.specular) * specular);
 }
 
 void shade_reference(const ShadeJob& job, ShadeBatch& b) {
@@ -70,7 +47,7 @@ void shade_reference(const ShadeJob& job, ShadeBatch& b) {
     Vec3 n = face;
     if (job.normals) n = normalize(point(job.normals, c[0]) * w[0] + point(job.normals, c[1]) * w[1] + point(job.normals, c[2]) * w[2]);
     if (dot(n, face) < 0) n = -n;
-    light_point(job.material, job.lights, job.light_count, Vec3f(n), Vec3f(view), b.light[i], b.gloss[i]);
+    light_point(job.material, job.lights, Vec3f(n), Vec3f(view), b.light[i], b.gloss[i]);
 
     const ColorSource& color = *job.color;
     Vec4f rgba = color.constant;

@@ -1,20 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // From visible triangles to colours: where the ray of a pixel meets its triangle, with what normal, value and light. Internal to raster/.
 #pragma once
+#include <span>
+
 #include "render/prepare/prepared.h"
 #include "render/raster/triangles/kernels.h"
+#include "render/shade/lamp.h"
 
 namespace sg::raster {
 
 constexpr int tile_size = 64;
 constexpr size_t tile_pixels = size_t(tile_size) * tile_size;
 constexpr size_t shade_batch = 1024;  ///< pixels shaded at once
-
-/// Towards the light, in world space, unit length.
-struct WorldLight {
-  float x, y, z, intensity;
-};
-std::vector<WorldLight> world_lights(const std::vector<Light>& lights, const Projection& projection);
 
 struct ShadeJob {
   EyeView view;
@@ -26,10 +23,9 @@ struct ShadeJob {
   const uint32_t* cells;  ///< null: first_cell + triangle
   uint32_t first_cell;
   Material material;
-  const WorldLight* lights;
-  size_t light_count;
+  std::span<const Lamp> lights;
 };
-ShadeJob shade_job(const PreparedItem& item, const EyeView& view, const std::vector<WorldLight>& lights);
+ShadeJob shade_job(const PreparedItem& item, const EyeView& view, const std::vector<Lamp>& lights);
 
 /// Pixels of one tile and item. `n` of `pixel` (y * 64 + x in the tile) and `triangle` are filled in; the kernel fills the rest.
 struct ShadeBatch {
@@ -46,9 +42,5 @@ struct ShadeBatch {
 void shade(const ShadeJob& job, ShadeBatch& batch);
 /// One pixel at a time, in plain C++ and double precision where it is free: what the vector code is compared with.
 void shade_reference(const ShadeJob& job, ShadeBatch& batch);
-
-/// Ambient and diffuse light, and the specular term, of a unit normal seen along `to_viewer`.
-void light_point(const Material& material, const WorldLight* lights, size_t count, Vec3f normal, Vec3f to_viewer, float& light,
-                 float& gloss);
 
 }  // namespace sg::raster

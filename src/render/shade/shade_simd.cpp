@@ -54,7 +54,7 @@ HWY_INLINE void light_up(const ShadeJob& job, const Hit& h, const I* corner, F& 
         gather3(job.normals, corner[0]) * h.w[0] + gather3(job.normals, corner[1]) * h.w[1] + gather3(job.normals, corner[2]) * h.w[2],
         face);
   };
-  light_up(job.material, job.lights, job.light_count, h.ray, h.normal, smooth, light, gloss);
+  light_up(job.material, job.lights, h.ray, h.normal, smooth, light, gloss);
 }
 
 /// Number of the table's colour: the rule of ColorTable::at().

@@ -162,7 +162,7 @@ CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<con
   v.levels = std::make_unique<std::vector<double>>();
   for (double l : item.levels) v.levels->push_back(l - base);
   const VolumeLight& light = item.light;
-  v.material = {float(light.ambient), float(light.diffuse), float(light.specular), float(light.power), item.shaded};
+  v.material = material_of(light, item.shaded);
   switch (item.mode) {
     case RayFunction::composite:
       if (v.detail && v.detail->ink > 0) break;  // strokes are seen where nothing else is

@@ -8,6 +8,7 @@
 #include "base/random.h"
 #include "data/bricked.h"
 #include "render/composite/background.h"
+#include "render/shade/lamp.h"
 #include "render/volume/effects/effects.h"
 #include "render/volume/engines/bricks/brick_packets.h"
 #include "render/volume/engines/packets/detail_table.h"
@@ -35,10 +36,6 @@ struct Picture {
   std::vector<CastVolume> volumes;
   std::vector<std::shared_ptr<const Volume>> lattices;  // of each volume; null = no uniform or rectilinear grid
   bool shaded = false;
-  struct Lamp {
-    Vec3 direction;  // world, unit
-    float intensity;
-  };
   std::vector<Lamp> lamps;
   std::vector<LampShadows> shadows;  // of each lamp, when a volume asks for them
   const Scene* scene = nullptr;      // with shadows: whose surfaces they fall on
@@ -56,9 +53,7 @@ struct Scratch {
 void light(const Picture& picture, int y, Vec3 origin, Vec3 direction, LitRay& lit) {
   lit.direction = Vec3f(direction), lit.origin = origin, lit.along = direction;
   if (picture.fading) lit.background = background_of_row(*picture.fading, picture.projection, y);
-  lit.lights.clear();
-  for (const Picture::Lamp& l : picture.lamps)
-    lit.lights.push_back({Vec3f(l.direction), Vec3f(normalize(l.direction - direction)), l.intensity});
+  seen_along(picture.lamps, direction, lit.lights);
 }
 
 /// What of the lamps' light arrives at a surface behind or in volumes; 1 for what is not lit.
@@ -128,8 +123,7 @@ class Alone {
     const bool post = composite && item.sampling.classify == "post" && !item.sampling.jitter;
     const auto plan_for = [&](const Volume& volume) {
       plan_.emplace(PacketPlan{volume, picture.projection, picture.knobs, {}, v.material, v.medium.get(), v.budget, float(v.source->edge)});
-      if (picture.shaded)
-        for (const Picture::Lamp& l : picture.lamps) plan_->lamps.push_back({l.direction, l.intensity});
+      if (picture.shaded) plan_->lamps = picture.lamps;
     };
     if (picture.lattices[0]) {
       if (wants_reconstruction(item.sampling)) return;
@@ -168,9 +162,7 @@ class Alone {
         bricks_.emplace(*bricks, stage_, *plan_, !by_tolerance, context);
     } else if (by_tolerance && !bricked_of(*item.data) && TetRays::fits(cell_volume_of(*v.source))) {
       tets_.emplace(cell_volume_of(*v.source), picture.projection, *v.medium, context, v.budget.stop_below, float(v.budget.tolerance));
-      std::vector<TetLight::Lamp> lamps;
-      for (const Picture::Lamp& l : picture.lamps) lamps.push_back({Vec3f(l.direction), l.intensity});
-      if (item.shaded) tets_->light(std::move(lamps), item.light, v.per_scale);
+      if (item.shaded) tets_->light(picture.lamps, item.light, v.per_scale);
     }
   }
 
@@ -235,7 +227,7 @@ void shadow_lamps(const Scene& scene, Picture& picture, const Box3& drawn, Conte
     if (!deepest || v.item->light.shadows > deepest->item->light.shadows) deepest = &v;
   if (!deepest || !(deepest->item->light.shadows > 0)) return;
   std::vector<Vec3> directions;
-  for (const Picture::Lamp& l : picture.lamps) directions.push_back(l.direction);
+  for (const Lamp& l : picture.lamps) directions.push_back(l.direction);
   picture.shadows.resize(directions.size()), picture.scene = &scene;
   picture.darkest = float(deepest->item->light.shadows);
   for (const CastVolume& v : picture.volumes) {
@@ -348,11 +340,7 @@ void cast_volumes(const Scene& scene, const Projection& projection, const Fragme
       picture.shaded = picture.shaded || item->shaded;
     }
   if (picture.volumes.empty()) return composite_fragments(fragments, frame, context);
-  for (const Light& l : lights_of(scene)) {
-    const Vec3 d = l.follows_camera ? projection.right * l.direction.x + projection.up * l.direction.y - projection.forward * l.direction.z
-                                    : l.direction;
-    picture.lamps.push_back({normalize(d), l.intensity});
-  }
+  picture.lamps = lamps_of(lights_of(scene), projection);
   add_effects(scene, picture, context);
   const Alone alone(picture, context);
   const int across = (frame.width + tile - 1) / tile, down = (frame.height + tile - 1) / tile;

@@ -71,6 +71,9 @@ struct VolumeLight {
   double ink = 0;              ///< opacity per unit length that silhouettes and strokes have of their own, where nothing else is drawn too
 };
 void describe(Schema& s, VolumeLight& p);
+inline Material material_of(const VolumeLight& l, bool lit = true) {
+  return {float(l.ambient), float(l.diffuse), float(l.specular), float(l.power), lit};
+}
 
 /// The side of a plane that is drawn: dot(normal, x) <= offset.
 struct ClipPlane {

@@ -93,7 +93,7 @@ TEST_CASE("raster: vector shading agrees with the plain one") {
   const PreparedScenePtr prepared = prepare_scene(s, context);
   const Camera c = full_camera();
   const Projection projection = make_projection(c, 256, 256);
-  const auto lights = world_lights(prepared->lights, projection);
+  const auto lights = lamps_of(prepared->lights, projection);
   for (const PreparedItem& it : prepared->items) {
     const ShadeJob job = shade_job(it, eye_view(projection, it.triangles.origin), lights);
     // The pixel in the middle of each triangle, where its centre is inside.

@@ -29,24 +29,24 @@ float over_black(const Picture& p, int x, int y, int channel = 0) {
 TEST_CASE("lit lines: brightest across the light, ambient along it, dark on the far side") {
   Material m;
   m.ambient = 0.1f, m.diffuse = 0.9f, m.specular = 0.5f, m.power = 20;
-  const raster::WorldLight head{0, 0, 1, 1};
+  const Lamp head{{0, 0, 1}, 1};
   float before = 0, light = 0, gloss = 0;
   for (int k = 0; k <= 18; ++k) {
     const double a = k * pi / 36;  // from along the light to across it
-    raster::light_line(m, &head, 1, {std::sin(a), 0, std::cos(a)}, {0, 0, 1}, light, gloss);
+    raster::light_line(m, {&head, 1}, {std::sin(a), 0, std::cos(a)}, {0, 0, 1}, light, gloss);
     if (k == 0) CHECK(light == doctest::Approx(0.1));
     else CHECK(light > before);
     CHECK(light == doctest::Approx(0.1 + 0.9 * std::sin(a)));
     before = light;
   }
   CHECK(gloss == doctest::Approx(0.5));  // mirrored straight back
-  const raster::WorldLight behind{0, 0, -1, 1};
-  raster::light_line(m, &behind, 1, {1, 0, 0}, {0, 0, 1}, light, gloss);
+  const Lamp behind{{0, 0, -1}, 1};
+  raster::light_line(m, {&behind, 1}, {1, 0, 0}, {0, 0, 1}, light, gloss);
   CHECK(light == doctest::Approx(0.1));
   CHECK(gloss < 1e-6f);
   // The mean of Lambert's law over the visible half, from the side: 1/pi of that from the front.
-  const raster::WorldLight side{0, 1, 0, 1};
-  raster::light_line(m, &side, 1, {1, 0, 0}, {0, 0, 1}, light, gloss);
+  const Lamp side{{0, 1, 0}, 1};
+  raster::light_line(m, {&side, 1}, {1, 0, 0}, {0, 0, 1}, light, gloss);
   CHECK(light == doctest::Approx(0.1 + 0.9 / pi));
 }
 

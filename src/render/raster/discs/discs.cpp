@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/raster/discs/discs.h"
+#include "render/shade/blinn_phong.h"
 
 #include <algorithm>
 #include <cmath>
@@ -57,7 +58,7 @@ void draw_discs_one_by_one(const DiscJob& job, size_t begin, size_t end) {
 
 namespace {
 
-void light_one(const PreparedItem& item, const EyeView& v, const std::vector<WorldLight>& lights, ShadeBatch& b, size_t i) {
+void light_one(const PreparedItem& item, const EyeView& v, const std::vector<Lamp>& lights, ShadeBatch& b, size_t i) {
   const float* normals = reinterpret_cast<const float*>(item.disc_normals.raw());
   const size_t p = item.points ? (*item.points)[b.triangle[i]] : b.triangle[i];
   const int x = b.tile_x + int(b.pixel[i]) % tile_size, y = b.tile_y + int(b.pixel[i]) / tile_size;
@@ -68,20 +69,17 @@ void light_one(const PreparedItem& item, const EyeView& v, const std::vector<Wor
   }
   Vec3f n(normals[3 * p], normals[3 * p + 1], normals[3 * p + 2]);
   if (dot(n, view) < 0) n = -n;
-  light_point(item.material, lights.data(), lights.size(), n, view, b.light[i], b.gloss[i]);
+  light_point(item.material, lights, n, view, b.light[i], b.gloss[i]);
 }
 
 }  // namespace
 
-void shade_discs(const PreparedItem& item, const EyeView& v, const std::vector<WorldLight>& lights, const uint64_t* keys, ShadeBatch& b) {
+void shade_discs(const PreparedItem& item, const EyeView& v, const std::vector<Lamp>& lights, const uint64_t* keys, ShadeBatch& b) {
   if (b.n == 0) return;
   const Material& m = item.material;
   const ColorSource& color = item.color;
-  const auto whole = int(m.power);
-  if (float(whole) == m.power && whole >= 0 && whole < 1024 && item.positions.count() < size_t(INT32_MAX) / 3) {
-    light_discs({v, m, lights.data(), lights.size(), item.points ? item.points->data() : nullptr,
-                 reinterpret_cast<const float*>(item.disc_normals.raw()), whole},
-                b);
+  if (item.positions.count() < size_t(INT32_MAX) / 3) {
+    light_discs({v, m, lights, item.points ? item.points->data() : nullptr, reinterpret_cast<const float*>(item.disc_normals.raw())}, b);
   } else {
     for (size_t i = 0; i < b.n; ++i) light_one(item, v, lights, b, i);
   }

@@ -32,17 +32,15 @@ inline void keep_nearer(uint64_t* slot, uint64_t key) {
 }
 
 /// Like shade(), for the pixels of a disc item; `triangle` of the batch holds the disc. Depth comes from the keys.
-void shade_discs(const PreparedItem& item, const EyeView& view, const std::vector<WorldLight>& lights, const uint64_t* keys, ShadeBatch& b);
+void shade_discs(const PreparedItem& item, const EyeView& view, const std::vector<Lamp>& lights, const uint64_t* keys, ShadeBatch& b);
 
-/// Light and gloss of the discs of a batch, as shade() makes them; the exponent of the gloss is a whole number. Pads the batch.
+/// Light and gloss of the discs of a batch, as shade() makes them. Pads the batch.
 struct DiscLight {
   const EyeView& view;
   const Material& material;
-  const WorldLight* lights;
-  size_t light_count;
+  std::span<const Lamp> lights;
   const uint32_t* points;  ///< null: disc i is point i
   const float* normals;
-  int power;
 };
 void light_discs(const DiscLight& job, ShadeBatch& batch);
 

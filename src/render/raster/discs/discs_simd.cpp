@@ -10,15 +10,11 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "render/shade/light-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace sg::raster::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-
-using DF = hn::ScalableTag<float>;
-using DI = hn::RebindToSigned<DF>;
-using F = hn::Vec<DF>;
-using I = hn::Vec<DI>;
-using M = hn::Mask<DF>;
 
 constexpr int32_t small_disc = 12;                     // pixels wide and high; larger ones are drawn one by one
 constexpr uint32_t most_points = 0x7FFFFFFFu / 3 - 1;  // whose coordinates a lane's offset reaches
@@ -204,6 +200,7 @@ void disc_light(const DiscLight& job, ShadeBatch& b) {
   const Material& m = job.material;
   const size_t lanes = hn::Lanes(d);
   const F zero = set(0), one = set(1);
+  const shading::HWY_NAMESPACE::Power power(m.power);
   for (size_t i = b.n; i % lanes != 0; ++i) b.triangle[i] = b.triangle[b.n - 1], b.pixel[i] = b.pixel[b.n - 1];
   for (size_t i = 0; i < b.n; i += lanes) {
     const I disc = hn::LoadU(di, reinterpret_cast<const int32_t*>(b.triangle + i));
@@ -226,18 +223,12 @@ void disc_light(const DiscLight& job, ShadeBatch& b) {
     for (int c = 0; c < 3; ++c) n[c] = hn::IfThenElse(away, hn::Neg(n[c]), n[c]);
     facing = hn::Abs(facing);
     F diffuse = zero, specular = zero;
-    for (size_t k = 0; k < job.light_count; ++k) {
-      const WorldLight& light = job.lights[k];
-      const float to[3] = {light.x, light.y, light.z};
-      const F nl = along(n, to), intensity = set(light.intensity);
-      const M lit = hn::Gt(nl, zero);
-      diffuse = diffuse + hn::IfThenElseZero(lit, nl * intensity);
-      F x = hn::Min(hn::Max(set(2) * nl * facing - along(view, to), zero), one), power = one;
-      for (int p = job.power; p > 0; p >>= 1) {
-        if (p & 1) power = power * x;
-        x = x * x;
-      }
-      specular = specular + hn::IfThenElseZero(lit, power * intensity);
+    for (const Lamp& lamp : job.lights) {
+      const Vec3f direction(lamp.direction);
+      const float to[3] = {direction.x, direction.y, direction.z};
+      const F n_l = along(n, to), intensity = set(lamp.intensity);
+      const auto terms = shading::HWY_NAMESPACE::lamp_terms(n_l, cosine_to_half(n_l, facing, along(view, to)), power);
+      diffuse = diffuse + terms.diffuse * intensity, specular = specular + terms.specular * intensity;
     }
     hn::StoreU(m.lit ? set(m.ambient) + set(m.diffuse) * diffuse : one, d, b.light + i);
     hn::StoreU(m.lit ? set(m.specular) * specular : zero, d, b.gloss + i);

@@ -167,10 +167,10 @@ void draw_glyphs_reference(const GlyphJob& job, size_t begin, size_t end, std::v
   }
 }
 
-void shade_glyphs(const PreparedItem& item, const EyeView& view, float pixel_scale, const std::vector<WorldLight>& lights, ShadeBatch& b) {
+void shade_glyphs(const PreparedItem& item, const EyeView& view, float pixel_scale, const std::vector<Lamp>& lights, ShadeBatch& b) {
   if (b.n == 0) return;
   const GlyphSet& set = *item.glyphs;
-  light_glyphs({view, set, pixel_scale, item.material, lights.data(), lights.size()}, b);
+  light_glyphs({view, set, pixel_scale, item.material, lights}, b);
   const ColorSource& color = item.color;
   if (color.kind == ColorSource::Kind::constant) {
     for (size_t k = 0; k < 4; ++k) std::fill_n(b.rgba[k], b.n, color.constant[int(k)]);

@@ -66,14 +66,13 @@ void draw_glyphs_reference(const GlyphJob& job, size_t begin, size_t end, std::v
 bool glyph_matrix(const GlyphSet& set, const EyeView& view, float pixel_scale, size_t instance, float* m);
 
 /// Like shade(), for the pixels of an item of glyphs; depth of the batch is given, `triangle` holds the primitive in the item.
-void shade_glyphs(const PreparedItem& item, const EyeView& view, float pixel_scale, const std::vector<WorldLight>& lights, ShadeBatch& b);
+void shade_glyphs(const PreparedItem& item, const EyeView& view, float pixel_scale, const std::vector<Lamp>& lights, ShadeBatch& b);
 struct GlyphLight {
   const EyeView& view;
   const GlyphSet& set;
   float pixel_scale;
   const Material& material;
-  const WorldLight* lights;
-  size_t light_count;
+  std::span<const Lamp> lights;
 };
 /// Light and gloss of the pixels of a batch. Pads the batch.
 void light_glyphs(const GlyphLight& job, ShadeBatch& batch);

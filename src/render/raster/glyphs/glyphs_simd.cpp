@@ -239,7 +239,7 @@ void light_glyph_batch(const GlyphLight& job, ShadeBatch& b) {
       return lit_side(to_world(linear(0), linear(1), linear(2)), face);
     };
     F light, gloss;
-    light_up(job.material, job.lights, job.light_count, ray, normal, smooth, light, gloss);
+    light_up(job.material, job.lights, ray, normal, smooth, light, gloss);
     hn::Store(light, d, b.light + i), hn::Store(gloss, d, b.gloss + i);
   }
 }

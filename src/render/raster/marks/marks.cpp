@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "render/raster/glyphs/glyphs.h"
+#include "render/shade/blinn_phong.h"
 #include "render/shade/illuminated.h"
 
 namespace sg::raster {
@@ -151,7 +152,7 @@ void MarkTile::add(const Cover& c, uint32_t group, double joint, std::vector<Cov
   out.push_back(c);
 }
 
-void color_mark(const PreparedItem& item, const std::vector<WorldLight>& lights, const Projection& p, Cover& c) {
+void color_mark(const PreparedItem& item, const std::vector<Lamp>& lights, const Projection& p, Cover& c) {
   const uint32_t i = c.primitive - item.first_primitive;
   const ColorSource& source = item.color;
   const bool line = item.kind == PreparedItem::Kind::lines;
@@ -180,11 +181,11 @@ void color_mark(const PreparedItem& item, const std::vector<WorldLight>& lights,
                 *b = reinterpret_cast<const float*>(item.positions.raw()) + 3 * size_t(item.segments->points[2 * size_t(i) + 1]);
     const Vec3 at = item.origin + Vec3(a[0], a[1], a[2]) * (1 - double(c.s)) + Vec3(b[0], b[1], b[2]) * double(c.s);
     const Vec3 view = p.parallel ? -p.forward : normalize(p.eye - at);
-    light_line(item.material, lights.data(), lights.size(), line_tangent(item, i, double(c.s)), view, light, gloss);
+    light_line(item.material, lights, line_tangent(item, i, double(c.s)), view, light, gloss);
   } else if (item.shaded) {  // a little sphere: the offset from the centre is its normal
     const float r2 = std::min(c.s * c.s + c.t * c.t, 1.0f), nz = std::sqrt(1 - r2);
     const Vec3 n = p.right * double(c.s) - p.up * double(c.t) - p.forward * double(nz);
-    light_point(item.material, lights.data(), lights.size(), Vec3f(normalize(n)), Vec3f(-p.forward), light, gloss);
+    light_point(item.material, lights, Vec3f(normalize(n)), Vec3f(-p.forward), light, gloss);
   }
   c.alpha *= rgba.w * item.opacity;
   for (int k = 0; k < 3; ++k) c.rgb[k] = rgba[k] * light + gloss;

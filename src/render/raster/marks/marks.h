@@ -61,6 +61,6 @@ class MarkTile {
 };
 
 /// Colours of the covers of lines and dots.
-void color_mark(const PreparedItem& item, const std::vector<WorldLight>& lights, const Projection& projection, Cover& cover);
+void color_mark(const PreparedItem& item, const std::vector<Lamp>& lights, const Projection& projection, Cover& cover);
 
 }  // namespace sg::raster

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/volume/medium/preintegrated.h"
+#include "render/shade/exp.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,6 +8,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "render/shade/blinn_phong.h"
 #include "render/volume/sources/lattice/derivatives.h"
 
 namespace sg::volume {
@@ -73,11 +74,7 @@ Stage make_stage(const LayerInput& input, const Limits& limits) {
   s.empty = v.transfer.empty() || !(v.hi.x > v.lo.x && v.hi.y > v.lo.y && v.hi.z > v.lo.z);
   if (s.empty) return s;
   s.to_world = inverse(v.to_q);
-  const Projection& p = input.projection;
-  for (const Light& l : input.lights) {
-    const Vec3 d = l.follows_camera ? p.right * l.direction.x + p.up * l.direction.y - p.forward * l.direction.z : l.direction;
-    s.lamps.push_back({normalize(d), l.intensity});
-  }
+  s.lamps = lamps_of(input.lights, input.projection);
   return s;
 }
 
@@ -100,16 +97,14 @@ PixelRay Stage::ray(int x, int y) const {
 
 LitRay Stage::lit(Vec3 direction) const {
   LitRay l;
-  l.material.ambient = float(item.light.ambient), l.material.diffuse = float(item.light.diffuse);
-  l.material.specular = float(item.light.specular), l.material.power = float(item.light.power);
+  l.material = material_of(item.light);
   light(direction, l);
   return l;
 }
 
 void Stage::light(Vec3 direction, LitRay& l) const {
   l.direction = Vec3f(direction);
-  l.lights.clear();
-  for (const Lamp& lamp : lamps) l.lights.push_back({Vec3f(lamp.direction), Vec3f(normalize(lamp.direction - direction)), lamp.intensity});
+  seen_along(lamps, direction, l.lights);
 }
 
 float value_at(const Volume& v, size_t i, size_t j, size_t k) {
@@ -132,17 +127,8 @@ Shade shade_normal(Vec3f normal, float surface, const LitRay& lit) {
   const float square = dot(normal, normal);
   if (!(square > 0) || !(square < 1e30f)) return {};
   const float side = (dot(normal, lit.direction) > 0 ? -1.0f : 1.0f) / std::sqrt(square);
-  float diffuse = 0, specular = 0;
-  for (const LitRay::One& l : lit.lights) {
-    const float d = side * dot(normal, l.light);
-    if (!(d > 0)) continue;
-    diffuse += l.intensity * d;
-    float base = std::max(0.0f, side * dot(normal, l.half)), power = 1;
-    for (int n = std::clamp(int(lit.material.power + 0.5f), 1, 1024); n > 0; n >>= 1, base *= base)
-      if (n & 1) power *= base;
-    specular += l.intensity * power;
-  }
-  return {1 + surface * (lit.material.ambient + lit.material.diffuse * diffuse - 1), surface * (lit.material.specular * specular)};
+  const Reflected sum = reflected(lit.lights, normal, side, lit.material.power);
+  return {1 + surface * (lit.material.ambient + lit.material.diffuse * sum.diffuse - 1), surface * (lit.material.specular * sum.specular)};
 }
 
 float alpha_of(float x) {

@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "render/composite/over.h"
+#include "render/shade/lamp.h"
 #include "render/volume/methods/layer.h"
+#include "render/volume/rays/lit_ray.h"
 #include "render/volume/sources/lattice/lattice_volume.h"
 
 namespace sg::volume {
@@ -44,10 +46,6 @@ struct Stage {
   Volume volume;
   bool empty = false;  ///< nothing to draw
   Mat3 to_world;       ///< directions in q -> world
-  struct Lamp {
-    Vec3 direction;  ///< world, unit, towards the light
-    float intensity;
-  };
   std::vector<Lamp> lamps;
 
   size_t pixels() const { return size_t(projection.width) * size_t(projection.height); }
@@ -64,7 +62,7 @@ struct Stage {
 /// Reads and checks the item. Throws Error(usage) for what `limits` leaves out.
 Stage make_stage(const LayerInput& input, const Limits& limits);
 
-/// Phong's model as the ray caster's kernels have it, for one sample: the gradient in q, the change of the value over a cell.
+/// The light model on one sample: the gradient in q, the change of the value over a cell.
 Shade shade_sample(const Stage& stage, Vec3f gradient, float per_cell, const LitRay& lit);
 /// The same from a normal (world, any length above 0) and how far there is a surface (0 to 1).
 Shade shade_normal(Vec3f normal, float surface, const LitRay& lit);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/volume/rays/integrate.h"
+#include "render/shade/exp.h"
 
 #include <algorithm>
 #include <bit>
@@ -13,17 +14,6 @@
 #include "render/volume/rays/light_kinks.h"
 
 namespace sg::volume {
-
-// exp(-x) = 2^-k exp(-r), |r| <= ln2/2, Taylor to the 7th power.
-float exp_minus(float x) {
-  if (!(x < 87)) return 0;
-  constexpr float ln2_hi = 0.693145752f, ln2_lo = 1.42860677e-6f, per_ln2 = 1.44269504f;
-  const float k = float(int(x * per_ln2 + 0.5f)), r = -((x - k * ln2_hi) - k * ln2_lo);
-  float sum = 1.0f / 5040;
-  sum = sum * r + 1.0f / 720, sum = sum * r + 1.0f / 120, sum = sum * r + 1.0f / 24, sum = sum * r + 1.0f / 6;
-  sum = sum * r + 0.5f, sum = sum * r + 1, sum = sum * r + 1;
-  return sum * std::bit_cast<float>((127 - int(k)) << 23);
-}
 
 Stretch part_of(const Stretch& s, double from, double to) {
   const double length = s.to - s.from;
@@ -347,7 +337,7 @@ LitPlace lit_place(const Look& look, RayField& walker, const Stretch& s, double 
   p.normal = gradient * (1 / std::sqrt(square)), p.along = dot(p.normal, look.lit->direction);
   const float side = p.along > 0 ? -1.0f : 1.0f;
   for (size_t i = 0; i < look.lit->lights.size(); ++i)
-    if (const LitRay::One& l = look.lit->lights[i]; side * dot(p.normal, l.light) > 0)
+    if (const SeenLamp& l = look.lit->lights[i]; side * dot(p.normal, l.light) > 0)
       p.nearest = std::max(p.nearest, side * dot(p.normal, l.half)), p.facing |= 1u << (i % 32);
   return p;
 }
@@ -363,7 +353,7 @@ float may_bend(const LitRay& lit, const LitPlace& a, const LitPlace& b) {
   const float closest = std::max(0.0f, away - 0.5f * std::sqrt(turn)), fall = closest * closest;
   const float lobe = exp_minus(power * fall) * std::max(1.0f, 2 * power * fall);
   float all = 0;
-  for (const LitRay::One& l : lit.lights) all += l.intensity;
+  for (const SeenLamp& l : lit.lights) all += l.intensity;
   const float bend = all * (lit.material.diffuse + lit.material.specular * power * lobe);
   // Light bends sharply where a lamp begins to shine, or stops.
   const float kink = a.facing != b.facing ? 0.5f * difference(a.light, b.light) : 0;
@@ -410,7 +400,7 @@ class LitStretch {
   float most_jump() const {
     if (!has_kinks(*look_.lit)) return 0;
     float all = 0;
-    for (const LitRay::One& l : look_.lit->lights) all += l.intensity;
+    for (const SeenLamp& l : look_.lit->lights) all += l.intensity;
     return all * (look_.lit->material.diffuse + look_.lit->material.specular);
   }
   /// Cuts the stretch until the light on its ends tells the light on its way. Ends may be alike by chance: `may_be_off` is what light in

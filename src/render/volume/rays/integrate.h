@@ -23,9 +23,6 @@ struct Budget {
   float stop_below = 0;          ///< a ray ends when less than this share of the light passes
 };
 
-/// exp(-x) for x >= 0 in float arithmetic alone, to 2e-7; the same bits everywhere.
-float exp_minus(float x);
-
 /// A medium that depends on more than the value: it is sampled, see composite().
 struct Detail {
   const TransferFunction& transfer;

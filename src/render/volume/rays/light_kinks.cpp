@@ -34,7 +34,7 @@ LightKinks light_kinks(const LitRay& lit, RayField& walker, const Stretch& s, Ve
     }
   };
   look_along(lit.direction);
-  for (const LitRay::One& l : lit.lights) look_along(l.light);
+  for (const SeenLamp& l : lit.lights) look_along(l.light);
   std::sort(out.at, out.at + out.count);
   return out;
 }

@@ -4,40 +4,29 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/shade/blinn_phong.h"
 #include "render/volume/effects/effects.h"
 
 namespace sg::volume {
 
 namespace {
 
-/// h^power by squaring for whole powers (all the usual ones), else by the library.
-float power_of(float h, float power) {
-  int n = int(power);
-  if (float(n) != power || n < 0 || n > 4096) return std::pow(h, power);
-  float result = 1;
-  for (; n > 0; n >>= 1, h *= h)
-    if (n & 1) result *= h;
-  return result;
-}
-
 /// What arrives at a place with the normal n (zero = none).
 struct Arriving {
-  float diffuse = 0, specular = 0;  ///< sums over the lamps
-  float even = 1;                   ///< mean share of their light
-  float key = 0;                    ///< n.l a(l) of the strongest, from -1 to 1
+  Reflected sum;
+  float even = 1;  ///< mean share of their light
+  float key = 0;   ///< n.l a(l) of the strongest, from -1 to 1
 };
 
 Arriving arriving(const LitRay& lit, Vec3 place, Vec3f normal) {
   Arriving out;
   float sum = 0, all = 0, strongest = 0;
   for (size_t i = 0; i < lit.lights.size(); ++i) {
-    const LitRay::One& l = lit.lights[i];
+    const SeenLamp& l = lit.lights[i];
     const float share = lit.effects->arriving(i, place), d = dot(normal, l.light);
     sum += l.intensity * share, all += l.intensity;
     if (l.intensity > strongest) strongest = l.intensity, out.key = d > 0 ? d * share : d;
-    if (!(d > 0)) continue;
-    out.diffuse += l.intensity * d * share;
-    out.specular += l.intensity * share * power_of(std::max(0.0f, dot(normal, l.half)), lit.material.power);
+    out.sum.add(l, d, dot(normal, l.half), lit.material.power, share);
   }
   if (all > 0) out.even = sum / all;
   return out;
@@ -82,8 +71,8 @@ Lit light_at(const LitRay& lit, double t, Vec3f gradient, float edge, float per_
   const Arriving a = arriving(lit, place, normal);
   const float open = e.open(place, normal, surface), share = m.lit ? surface : 0;
   const float even = m.ambient < 1 ? m.ambient * open + (1 - m.ambient) * a.even : open;
-  const float light = m.ambient * open + m.diffuse * a.diffuse;
-  Lit out{even + share * (light - even), share * (m.specular * a.specular), {0, 0, 0}, 1};
+  const float light = m.ambient * open + m.diffuse * a.sum.diffuse;
+  Lit out{even + share * (light - even), share * (m.specular * a.sum.specular), {0, 0, 0}, 1};
   switch (e.style) {
     case LightStyle::none: break;
     case LightStyle::silhouette: {
@@ -117,15 +106,9 @@ Lit light_at(const LitRay& lit, Vec3f gradient, float edge, float per_scale) {
   if (!(square > 0) || !(square < 1e30f)) return {};
   const float length = std::sqrt(square), surface = std::min(1.0f, length * edge * per_scale);
   const float side = (dot(gradient, lit.direction) > 0 ? -1.0f : 1.0f) / length;
-  float diffuse = 0, specular = 0;
-  for (const LitRay::One& l : lit.lights) {
-    const float d = side * dot(gradient, l.light);
-    if (!(d > 0)) continue;
-    diffuse += l.intensity * d;
-    specular += l.intensity * power_of(std::max(0.0f, side * dot(gradient, l.half)), lit.material.power);
-  }
+  const Reflected sum = reflected(lit.lights, gradient, side, lit.material.power);
   const Material& m = lit.material;
-  return {1 + surface * (m.ambient + m.diffuse * diffuse - 1), surface * (m.specular * specular)};
+  return {1 + surface * (m.ambient + m.diffuse * sum.diffuse - 1), surface * (m.specular * sum.specular)};
 }
 
 }  // namespace sg::volume

@@ -3,7 +3,7 @@
 #pragma once
 #include <cmath>
 
-#include "render/volume/sources/lattice/kernels.h"
+#include "render/volume/rays/lit_ray.h"
 
 namespace sg::volume {
 

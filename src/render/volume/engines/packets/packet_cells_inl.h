@@ -308,7 +308,7 @@ class PacketCells : public RayLanes<D, T, Axes> {
     const M drawn = hn::And(look, hn::Gt(depth, zero));
     if (hn::AllFalse(d, drawn)) return;
     depth = hn::IfThenElseZero(drawn, depth);
-    const F pass = exp_minus_of(d, depth);
+    const F pass = exp_minus(depth);
     const F thin = hn::Mul(depth, neg_mul_add(depth, neg_mul_add(depth, hn::Set(d, 1.0f / 6), half), one));
     const F alpha = hn::IfThenElse(hn::Lt(depth, hn::Set(d, 0.02f)), thin, hn::Sub(one, pass));
     auto color = line ? medium.color(middle, *line) : medium.color(middle);

@@ -14,23 +14,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {
 
-/// -ln(1 - x) for 0 <= x < 1, to a few units in the last place: 2 atanh of x / (2 - x) near 0, else of the mantissa of 1 - x.
-template <class D>
-HWY_INLINE hn::Vec<D> minus_log_of_rest(D d, hn::Vec<D> x) {
-  using F = hn::Vec<D>;
-  const IntTag<D> di;
-  const F one = hn::Set(d, 1.0f), two = hn::Set(d, 2.0f);
-  const auto bits = hn::BitCast(di, hn::Sub(one, x));
-  const auto exponent = hn::ShiftRight<23>(hn::Sub(bits, hn::Set(di, 0x3F3504F3)));  // of a mantissa from sqrt(1/2) on
-  const F mantissa = hn::BitCast(d, hn::Sub(bits, hn::ShiftLeft<23>(exponent)));
-  const auto near = hn::RebindMask(d, hn::Eq(exponent, hn::Zero(di)));
-  const F z = hn::Div(hn::IfThenElse(near, x, hn::Sub(one, mantissa)), hn::IfThenElse(near, hn::Sub(two, x), hn::Add(one, mantissa)));
-  const F z2 = hn::Mul(z, z);
-  F sum = hn::Set(d, 1.0f / 9);
-  for (const float c : {1.0f / 7, 1.0f / 5, 1.0f / 3, 1.0f}) sum = mul_add(sum, z2, hn::Set(d, c));
-  return mul_add(hn::ConvertTo(d, exponent), hn::Set(d, -0.693147181f), hn::Mul(hn::Mul(two, z), sum));
-}
-
 /// A DetailTable, one value per lane.
 template <class D>
 class DetailLanes {
@@ -46,7 +29,8 @@ class DetailLanes {
     const F opacity = hn::Mul(at(table_.opacity, value), at(table_.factor, gradient));
     const M whole = hn::Ge(opacity, one);
     const F below = hn::Max(zero, hn::IfThenElseZero(hn::Not(whole), opacity));
-    return hn::IfThenElse(whole, most, hn::Min(most, hn::Mul(minus_log_of_rest(d, below), hn::Set(d, table_.per_unit))));
+    return hn::IfThenElse(whole, most,
+                          hn::Min(most, hn::Mul(shading::HWY_NAMESPACE::minus_log_of_rest(below), hn::Set(d, table_.per_unit))));
   }
   /// May values from lo to hi draw something?
   HWY_INLINE M draw(F lo, F hi) const {
@@ -136,7 +120,7 @@ class DetailCells : public RayLanes<D, T, Axes> {
       const D d;
       const F one = hn::Set(d, 1.0f), two = hn::Set(d, 2.0f), half = hn::Set(d, 0.5f), tm = hn::Mul(hn::Set(d, 4.0f), m.tau);
       const F all = hn::Add(hn::Add(a.tau, tm), b.tau), per_all = hn::Div(one, hn::Max(all, hn::Set(d, 1e-30f)));
-      depth = hn::Mul(all, hn::Mul(length, hn::Set(d, 1.0f / 6))), passes = exp_minus_of(d, depth);
+      depth = hn::Mul(all, hn::Mul(length, hn::Set(d, 1.0f / 6))), passes = exp_minus(depth);
       // Series where differences would cancel.
       const F square = hn::Mul(depth, depth);
       const auto thin = hn::Lt(depth, hn::Set(d, 0.3f));

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/shade/blinn_phong-inl.h"
 #include "render/volume/engines/packets/packet_axes_inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -101,7 +102,7 @@ class Lighting {
     const auto& m = plan.volume.shade_plan.to_world;
     upright_ = m[0][1] == 0 && m[0][2] == 0 && m[1][0] == 0 && m[1][2] == 0 && m[2][0] == 0 && m[2][1] == 0;
     if (!plan.volume.shaded) return;
-    least_ = std::pow(10.0f, -36 / std::max(1.0f, plan.material.power));
+    power_ = shading::HWY_NAMESPACE::Power(plan.material.power);
     for (size_t l = 0; l < plan.lamps.size(); ++l) {
       intensity_ += plan.lamps[l].intensity;
       // Half way between the light and the viewer.
@@ -134,7 +135,7 @@ class Lighting {
     const D d;
     const auto to = hn::IndicesFromVec(d, order);
     Lighting l;
-    l.plan_ = plan_, l.upright_ = upright_, l.least_ = least_, l.intensity_ = intensity_;
+    l.plan_ = plan_, l.upright_ = upright_, l.power_ = power_, l.intensity_ = intensity_;
     for (int a = 0; a < 3; ++a) l.ray[a] = hn::TableLookupLanes(ray[a], to);
     for (size_t n = 0; n < plan_->lamps.size(); ++n)
       for (int a = 0; a < 3; ++a) l.half_[n][a] = hn::TableLookupLanes(half_[n][a], to);
@@ -169,7 +170,7 @@ class Lighting {
     const F zero = hn::Zero(d), one = hn::Set(d, 1.0f);
     const F away = hn::Sqrt(hn::Max(zero, hn::Sub(one, nearest))), half_arc = hn::Mul(hn::Set(d, 0.5f), hn::Sqrt(hn::Max(zero, turn)));
     const F closest = hn::Max(zero, hn::Sub(away, half_arc)), fall = hn::Mul(closest, closest);
-    const F lobe = hn::Mul(raised(hn::Sub(one, fall)), hn::Max(one, hn::Mul(hn::Set(d, 2 * m.power), fall)));
+    const F lobe = hn::Mul(power_(hn::Sub(one, fall)), hn::Max(one, hn::Mul(hn::Set(d, 2 * m.power), fall)));
     return mul_add(hn::Set(d, intensity_ * m.specular * m.power), lobe, hn::Set(d, intensity_ * m.diffuse));
   }
   /// The same anywhere.
@@ -198,9 +199,9 @@ class Lighting {
 
  private:
   const PacketPlan* plan_ = nullptr;
-  bool upright_ = false;  ///< the axes of the lattice are those of the world
-  float intensity_ = 0;   ///< of all lamps
-  float least_ = 0;       ///< what is raised to the power of highlights: smaller than this it would be no normal number
+  bool upright_ = false;                 ///< the axes of the lattice are those of the world
+  float intensity_ = 0;                  ///< of all lamps
+  shading::HWY_NAMESPACE::Power power_;  ///< of highlights
   F half_[PacketPlan::most_lamps][3];
 
   static HWY_INLINE F flipped() { return hn::SignBit(D()); }
@@ -235,12 +236,12 @@ class Lighting {
       const F lamp[3] = {hn::Set(d, to.x), hn::Set(d, to.y), hn::Set(d, to.z)};
       const F c = hn::Xor(flip, dot(s.normal, lamp)), h = hn::Xor(flip, dot(s.normal, half_[l]));
       const F intensity = hn::Set(d, plan_->lamps[l].intensity);
-      const auto reached = hn::Gt(c, zero);
-      diffuse = mul_add(intensity, hn::Max(c, zero), diffuse);
-      specular = mul_add(intensity, hn::IfThenElseZero(reached, raised(h)), specular);
+      const auto terms = shading::HWY_NAMESPACE::lamp_terms(c, h, power_);
+      diffuse = mul_add(intensity, terms.diffuse, diffuse);
+      specular = mul_add(intensity, terms.specular, specular);
       if constexpr (tell) {
-        *sides = hn::Or(*sides, hn::IfThenElseZero(hn::RebindMask(di, reached), hn::Set(di, 4 << l)));
-        *nearest = hn::Max(*nearest, hn::IfThenElseZero(reached, h));
+        *sides = hn::Or(*sides, hn::IfThenElseZero(hn::RebindMask(di, terms.reached), hn::Set(di, 4 << l)));
+        *nearest = hn::Max(*nearest, hn::IfThenElseZero(terms.reached, h));
       }
     }
     // Where there is no surface normals may be no numbers.
@@ -249,20 +250,6 @@ class Lighting {
     const F change = hn::Sub(mul_add(hn::Set(d, m.diffuse), diffuse, hn::Set(d, m.ambient)), one);
     return {hn::IfThenElse(some, mul_add(much, change, one), one),
             hn::IfThenElseZero(some, hn::Mul(much, hn::Mul(hn::Set(d, m.specular), specular)))};
-  }
-
-  /// To the power of highlights.
-  HWY_INLINE F raised(F h) const {
-    int power = int(plan_->material.power);
-    if (power == 0) return hn::Set(D(), 1.0f);
-    h = hn::Max(h, hn::Set(D(), least_));
-    for (; (power & 1) == 0; power >>= 1) h = hn::Mul(h, h);
-    F result = h;
-    while (power >>= 1) {
-      h = hn::Mul(h, h);
-      if (power & 1) result = hn::Mul(result, h);
-    }
-    return result;
   }
 };
 

@@ -13,21 +13,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {
 
-/// exp_minus of optics/integrate.cpp.
-template <class D>
-HWY_INLINE hn::Vec<D> exp_minus_of(D d, hn::Vec<D> x) {
-  const IntTag<D> di;
-  const auto deep = hn::Ge(x, hn::Set(d, 87.0f));
-  x = hn::Min(x, hn::Set(d, 87.0f));
-  const auto k = to_int(d, mul_add(x, hn::Set(d, 1.44269504f), hn::Set(d, 0.5f)));
-  const auto kf = hn::ConvertTo(d, k);
-  const auto r = hn::Neg(neg_mul_add(kf, hn::Set(d, 1.42860677e-6f), neg_mul_add(kf, hn::Set(d, 0.693145752f), x)));
-  auto sum = hn::Set(d, 1.0f / 5040);
-  for (const float c : {1.0f / 720, 1.0f / 120, 1.0f / 24, 1.0f / 6, 0.5f, 1.0f, 1.0f}) sum = mul_add(sum, r, hn::Set(d, c));
-  const auto power = hn::BitCast(d, hn::ShiftLeft<23>(hn::Sub(hn::Set(di, 127), k)));
-  return hn::IfThenElseZero(hn::Not(deep), hn::Mul(sum, power));
-}
-
 /// The medium, ready for gathers.
 template <class D>
 struct MediumLanes {

@@ -3,6 +3,7 @@
 #pragma once
 #include <vector>
 
+#include "render/shade/lamp.h"
 #include "render/volume/engines/packets/gathers.h"
 #include "render/volume/engines/packets/passages.h"
 #include "render/volume/medium/medium_sums.h"
@@ -17,10 +18,6 @@ struct DetailTable;
 
 /// What the rays of a picture share.
 struct PacketPlan {
-  struct Lamp {
-    Vec3 direction;  ///< towards the light: world, unit
-    float intensity;
-  };
   static constexpr size_t most_lamps = 8;
 
   const Volume& volume;

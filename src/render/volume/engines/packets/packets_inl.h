@@ -8,28 +8,25 @@
 #define SG_PACKETS_INL_H
 #endif
 
-#include "render/volume/engines/packets/fused_inl.h"
+#include "render/shade/exp-inl.h"
 #include "render/volume/engines/packets/gathers_inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+using shading::HWY_NAMESPACE::exp_minus;
+using simd::HWY_NAMESPACE::mul_add;
+using simd::HWY_NAMESPACE::mul_sub;
+using simd::HWY_NAMESPACE::neg_mul_add;
 
 template <class D>
 HWY_INLINE hn::Vec<D> mixed(D, hn::Vec<D> a, hn::Vec<D> b, hn::Vec<D> f) {
   return mul_add(f, hn::Sub(b, a), a);
 }
 
-/// Truncated; |v| < 2^31 (hn::ConvertTo looks after larger ones in four more instructions).
 template <class D>
 HWY_INLINE Int<D> to_int(D, hn::Vec<D> v) {
-#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
-  if constexpr (lanes_of<D> == 16) return Int<D>{_mm512_cvttps_epi32(v.raw)};
-#endif
-#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2
-  if constexpr (lanes_of<D> == 8) return Int<D>{_mm256_cvttps_epi32(v.raw)};
-#endif
-  return hn::ConvertTo(IntTag<D>(), v);
+  return simd::HWY_NAMESPACE::truncated(v);
 }
 
 /// 1 / sqrt(x) to a part in 500, x > 1e-38.

@@ -151,22 +151,6 @@ struct Entries {
   }
 };
 
-/// 1 - exp(-x) for x >= 0, to a few units in the last place.
-template <class D>
-HWY_INLINE hn::Vec<D> absorbed(D d, hn::Vec<D> x) {
-  const IntTag<D> di;
-  x = hn::Min(x, hn::Set(d, 80.0f));
-  const auto k = to_int(d, mul_add(x, hn::Set(d, 1.44269504f), hn::Set(d, 0.5f)));
-  const auto kf = hn::ConvertTo(d, k);
-  // r = x - k ln 2 in two parts; e = 1 - exp(-r) by its series.
-  const auto r = neg_mul_add(kf, hn::Set(d, 1.42860677e-6f), neg_mul_add(kf, hn::Set(d, 0.693145752f), x));
-  auto e = hn::Set(d, 1.0f / 5040);
-  for (const float c : {-1.0f / 720, 1.0f / 120, -1.0f / 24, 1.0f / 6, -0.5f, 1.0f}) e = mul_add(e, r, hn::Set(d, c));
-  e = hn::Mul(e, r);
-  const auto power = hn::BitCast(d, hn::ShiftLeft<23>(hn::Sub(hn::Set(di, 127), k)));
-  return mul_add(power, e, hn::Sub(hn::Set(d, 1.0f), power));
-}
-
 /// What waits for its light: samples that follow each other are lit together, where the middle of what they take lies; but not samples
 /// before and after a turn of the value, where surfaces begin to show their other side.
 template <class D>
@@ -348,7 +332,7 @@ class March {
       const auto [r_g, b_density] = gather_quad(d, media, entry, source.loads);
       const auto drawn = hn::And(last, hn::Gt(b_density.b, hn::Zero(d)));
       if (!hn::AllFalse(d, drawn)) {
-        const F alpha = absorbed(d, hn::Mul(b_density.b, rest));
+        const F alpha = shading::HWY_NAMESPACE::absorbed(hn::Mul(b_density.b, rest));
         const F weight = hn::IfThenElseZero(drawn, hn::Mul(pass, alpha));
         const F wr = hn::Mul(weight, r_g.a), wg = hn::Mul(weight, r_g.b), wb = hn::Mul(weight, b_density.a);
         if constexpr (shaded) {

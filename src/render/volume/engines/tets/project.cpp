@@ -51,7 +51,8 @@ class Projector {
         volume_(make_cell_volume(input.item, input.context)),
         medium_(make_medium(input.item, volume_)),
         table_(medium_, volume_.range, float(input.item.sampling.tolerance)),
-        eye_(volume_, input.projection, input.context) {}
+        eye_(volume_, input.projection, input.context),
+        lamps_(lamps_of(input.lights, input.projection)) {}
 
   Layer draw() {
     const Projection& p = input_.projection;
@@ -241,13 +242,8 @@ class Projector {
     const Projection::Ray ray = p.ray(x + 0.5, y + 0.5);
     const double first = dot(ray.origin - p.eye, p.forward), per_depth = 1 / dot(ray.direction, p.forward);
     s.lit.direction = Vec3f(ray.direction);
-    s.lit.lights.clear();
-    for (const Light& l : input_.lights) {
-      const Vec3 d = normalize(l.follows_camera ? p.right * l.direction.x + p.up * l.direction.y - p.forward * l.direction.z : l.direction);
-      s.lit.lights.push_back({Vec3f(d), Vec3f(normalize(d - ray.direction)), l.intensity});
-    }
-    const VolumeLight& light = input_.item.light;
-    s.lit.material = {float(light.ambient), float(light.diffuse), float(light.specular), float(light.power), true};
+    seen_along(lamps_, ray.direction, s.lit.lights);
+    s.lit.material = material_of(input_.item.light);
     const float edge = float(volume_.mesh->edge), per_scale = float(1 / std::max(0.002 * (volume_.range.hi - volume_.range.lo), 1e-30));
     const double tolerance = input_.item.sampling.tolerance;
     const Look look{medium_, {tolerance, std::max(volume_.mesh->bounds.diagonal(), 1e-30), 0}, 0, &s.lit, per_scale, edge};
@@ -274,6 +270,7 @@ class Projector {
   Medium medium_;
   TetMedium table_;
   EyeSpace eye_;
+  std::vector<Lamp> lamps_;
   std::shared_ptr<const Plane<Vec3f>> gradients_;  // shaded only
   int across_ = 0, down_ = 0;
   std::vector<uint32_t> first_, places_, order_;

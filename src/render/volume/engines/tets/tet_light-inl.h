@@ -7,6 +7,7 @@
 #else
 #define SG_TET_LIGHT_INL
 #endif
+#include "render/shade/blinn_phong-inl.h"
 #include "render/volume/engines/tets/tet_medium-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -50,7 +51,7 @@ class Lighting {
  public:
   const TetLight& light;
 
-  HWY_ATTR Lighting(const TetLight& from, const TetPacket& packet, size_t lane) : light(from) {
+  HWY_ATTR Lighting(const TetLight& from, const TetPacket& packet, size_t lane) : light(from), power_(from.material.power) {
     const D d;
     for (int k = 0; k < 3; ++k) direction_[k] = hn::Load(d, packet.direction[k] + lane);
     for (size_t l = 0; l < from.lamps.size(); ++l) {
@@ -108,25 +109,29 @@ class Lighting {
     s.nearest = s.facing = zero;
     float number = 1;
     for (size_t n = 0; n < light.lamps.size(); ++n) {
-      const TetLight::Lamp& l = light.lamps[n];
-      const F to[3] = {hn::Set(d, l.direction.x), hn::Set(d, l.direction.y), hn::Set(d, l.direction.z)};
+      const Lamp& l = light.lamps[n];
+      const Vec3f direction(l.direction);
+      const F to[3] = {hn::Set(d, direction.x), hn::Set(d, direction.y), hn::Set(d, direction.z)};
       F c = hn::Mul(side, dot(s.gradient, to));
       const F intensity = hn::Set(d, l.intensity);
-      M faces = hn::Gt(c, zero);
-      if constexpr (beside) faces = hn::Gt(hn::Mul(side_there, dot(like.gradient, to)), zero), c = hn::Max(c, zero);
-      s.facing = hn::Add(s.facing, hn::IfThenElseZero(faces, hn::Set(d, number)));
-      number *= 2;
-      diffuse = hn::Add(diffuse, hn::IfThenElseZero(faces, hn::Mul(intensity, c)));
+      if constexpr (beside) {
+        // A lamp that reaches the other place shines here, too, at its limit.
+        const M faces = hn::Gt(hn::Mul(side_there, dot(like.gradient, to)), zero);
+        c = hn::IfThenElse(faces, hn::Max(c, hn::Set(d, 1e-30f)), zero);
+      }
       F other[3];
       if (n >= ready) half_way_to(n, other);
-      F base = hn::Max(hn::Mul(side, dot(s.gradient, n < ready ? half_[n] : other)), zero), power = one;
-      s.nearest = hn::Max(s.nearest, base);
-      for (int p = light.power; p > 0; p >>= 1, base = hn::Mul(base, base))
-        if (p & 1) power = hn::Mul(power, base);
-      specular = hn::Add(specular, hn::IfThenElseZero(faces, hn::Mul(intensity, power)));
+      const F h = hn::Mul(side, dot(s.gradient, n < ready ? half_[n] : other));
+      const auto terms = shading::HWY_NAMESPACE::lamp_terms(c, h, power_);
+      s.nearest = hn::Max(s.nearest, h);
+      s.facing = hn::Add(s.facing, hn::IfThenElseZero(terms.reached, hn::Set(d, number)));
+      number *= 2;
+      diffuse = hn::Add(diffuse, hn::Mul(intensity, terms.diffuse));
+      specular = hn::Add(specular, hn::Mul(intensity, terms.specular));
     }
-    const F factor = hn::Sub(hn::Add(hn::Set(d, light.ambient), hn::Mul(hn::Set(d, light.diffuse), diffuse)), one);
-    s.shine = {hn::Add(one, hn::Mul(s.much, factor)), hn::Mul(s.much, hn::Mul(hn::Set(d, light.specular), specular))};
+    const Material& m = light.material;
+    const F factor = hn::Sub(hn::Add(hn::Set(d, m.ambient), hn::Mul(hn::Set(d, m.diffuse), diffuse)), one);
+    s.shine = {hn::Add(one, hn::Mul(s.much, factor)), hn::Mul(s.much, hn::Mul(hn::Set(d, m.specular), specular))};
   }
 
   /// What a straight line between the light at two places may have wrong in between, no lamp beginning or ceasing to shine and the surface
@@ -143,9 +148,9 @@ class Lighting {
     // The second derivative of a highlight at this angle beside its middle (see integrate.cpp), from above without an exponential.
     const F away = hn::Sqrt(hn::Max(zero, hn::Sub(one, hn::Max(a.nearest, b.nearest))));
     const F closest = hn::Max(zero, hn::Sub(away, hn::Mul(hn::Set(d, 0.5f), hn::Sqrt(turn))));
-    const F power = hn::Set(d, float(light.power)), x = hn::Mul(power, hn::Mul(closest, closest));
+    const F power = hn::Set(d, light.material.power), x = hn::Mul(power, hn::Mul(closest, closest));
     const F lobe = hn::Mul(power, hn::Div(hn::Set(d, 1.5f), hn::Add(one, hn::Mul(hn::Set(d, 0.25f), hn::Mul(x, x)))));
-    const F second = hn::Add(hn::Set(d, light.diffuse), hn::Mul(hn::Set(d, light.specular), lobe));
+    const F second = hn::Add(hn::Set(d, light.material.diffuse), hn::Mul(hn::Set(d, light.material.specular), lobe));
     const F bend = hn::Mul(hn::Mul(turn, second), hn::Set(d, all_ / 12));
     // The amount of surface turns sharply where it becomes whole.
     const F fades = hn::Mul(hn::Set(d, 0.25f), hn::Abs(hn::Sub(a.much, b.much)));
@@ -172,8 +177,9 @@ class Lighting {
       next = hn::IfThenElse(hn::And(some, hn::Gt(place, at)), hn::Min(next, place), next);
     };
     look(a.along, b.along);
-    for (const TetLight::Lamp& l : light.lamps) {
-      const F to[3] = {hn::Set(d, l.direction.x), hn::Set(d, l.direction.y), hn::Set(d, l.direction.z)};
+    for (const Lamp& l : light.lamps) {
+      const Vec3f direction(l.direction);
+      const F to[3] = {hn::Set(d, direction.x), hn::Set(d, direction.y), hn::Set(d, direction.z)};
       look(dot(a.gradient, to), dot(b.gradient, to));
     }
     return next;
@@ -193,7 +199,8 @@ class Lighting {
     for (int k = 0; k < 3; ++k) half[k] = hn::Mul(half[k], per);
   }
 
-  static constexpr size_t ready = 4;  ///< lamps whose half_ is kept; others are asked for each time
+  shading::HWY_NAMESPACE::Power power_;  ///< of highlights
+  static constexpr size_t ready = 4;     ///< lamps whose half_ is kept; others are asked for each time
   F direction_[3], half_[ready][3];
   float all_ = 0;
 };

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Emission and absorption of lanes in which the value goes straight over a TetMedium; for files that are compiled once for each target and
-// have included Highway. No fused multiply-add and no libm: every target gives the same bits.
+// have included Highway. No libm: every target gives the same bits.
 #if defined(SG_TET_MEDIUM_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef SG_TET_MEDIUM_INL
 #undef SG_TET_MEDIUM_INL
 #else
 #define SG_TET_MEDIUM_INL
 #endif
+#include "render/shade/exp-inl.h"
 #include "render/volume/engines/tets/tet_rays.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -30,7 +31,7 @@ struct Faded {
 /// Of an optical depth x >= 0: alpha = 1 - exp(-x), alpha / x, and hidden = alpha / 2 - alpha / x + exp(-x).
 HWY_ATTR inline Faded fade(F x) {
   const D d;
-  // Below 1/2 by their series, which lose nothing for small x; else exp by powers of two.
+  // Below 1/2 by their series, which lose nothing for small x; else by exp.
   const auto term = [&](F sum, float c) HWY_ATTR { return hn::Sub(hn::Set(d, c), hn::Mul(sum, x)); };
   F ratio = hn::Set(d, 1.0f / 5040);
   ratio = term(ratio, 1.0f / 720), ratio = term(ratio, 1.0f / 120), ratio = term(ratio, 1.0f / 24), ratio = term(ratio, 1.0f / 6);
@@ -40,13 +41,7 @@ HWY_ATTR inline Faded fade(F x) {
   Faded r{hn::Mul(ratio, x), ratio, hidden};
   const M large = hn::Gt(x, hn::Set(d, 0.5f));
   if (hn::AllFalse(d, large)) return r;
-  const DI di;
-  const F one = hn::Set(d, 1.0f), y = hn::Mul(hn::Min(x, hn::Set(d, 87.0f)), hn::Set(d, 1.44269504f));
-  const I whole = hn::ConvertTo(di, y);
-  const F f = hn::Mul(hn::Sub(y, hn::ConvertTo(d, whole)), hn::Set(d, 0.69314718f));  // exp(-x) = 2^-whole exp(-f), 0 <= f < 0.7
-  F e = hn::Set(d, 1.0f / 5040);
-  for (float c : {1.0f / 720, 1.0f / 120, 1.0f / 24, 1.0f / 6, 0.5f, 1.0f, 1.0f}) e = hn::Sub(hn::Set(d, c), hn::Mul(e, f));
-  const F pass = hn::Mul(e, hn::BitCast(d, hn::ShiftLeft<23>(hn::Sub(hn::Set(di, 127), whole))));
+  const F one = hn::Set(d, 1.0f), pass = shading::HWY_NAMESPACE::exp_minus(x);
   const F alpha = hn::Sub(one, pass), share = hn::Div(alpha, hn::IfThenElse(large, x, one));
   r.alpha = hn::IfThenElse(large, alpha, r.alpha), r.ratio = hn::IfThenElse(large, share, r.ratio);
   r.hidden = hn::IfThenElse(large, hn::Add(hn::Sub(hn::Mul(alpha, hn::Set(d, 0.5f)), share), pass), r.hidden);

@@ -150,13 +150,10 @@ TetRays::TetRays(const CellVolume& volume, const Projection& projection, const M
   bin_boxes(boxes, across_, down_, first_face_, faces_);
 }
 
-void TetRays::light(std::vector<TetLight::Lamp> lamps, const VolumeLight& light, float per_scale) {
+void TetRays::light(std::vector<Lamp> lamps, const VolumeLight& light, float per_scale) {
   gradients_ = volume_.gradients();
   light_ = TetLight{std::move(lamps),
-                    float(light.ambient),
-                    float(light.diffuse),
-                    float(light.specular),
-                    int(std::lround(std::clamp(light.power, 0.0, 4096.0))),
+                    material_of(light),
                     float(volume_.mesh->edge) * per_scale,
                     tolerance_,
                     float(1 / std::max(volume_.mesh->bounds.diagonal(), 1e-30)),

@@ -10,6 +10,7 @@
 #pragma once
 #include <vector>
 
+#include "render/shade/lamp.h"
 #include "render/volume/engines/tets/eye_space.h"
 #include "render/volume/medium/medium.h"
 
@@ -56,13 +57,8 @@ struct alignas(64) TetPacket : RayLines {
 
 /// Light on the field by its gradient.
 struct TetLight {
-  struct Lamp {
-    Vec3f direction;  ///< towards it: world, unit
-    float intensity;
-  };
   std::vector<Lamp> lamps;
-  float ambient = 0.12f, diffuse = 0.88f, specular = 0.18f;
-  int power = 32;
+  Material material;
   float edge_per_scale = 1;          ///< see light_at
   float tolerance = 1.0f / 512;      ///< of a ray
   float per_ray = 1;                 ///< 1 / length of the longest one
@@ -98,7 +94,7 @@ class TetRays {
           float tolerance = 1.0f / 512);
   /// Lights the field from now on; the lamps of the scene, in world directions. `per_scale` as in Look. Powers of highlights count as
   /// whole numbers.
-  void light(std::vector<TetLight::Lamp> lamps, const VolumeLight& light, float per_scale);
+  void light(std::vector<Lamp> lamps, const VolumeLight& light, float per_scale);
 
   /// Pixels [x0, x0 + width) x [y0, y0 + height), x0 and y0 multiples of `tile`, width and height at most that. `limit`: depth per pixel,
   /// row by row, beyond which nothing is drawn; null = the far plane.

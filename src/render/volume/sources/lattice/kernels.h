@@ -31,22 +31,6 @@ struct Gradients {
   alignas(64) float per_cell[run_length];                         ///< change of the value over the length of a cell
 };
 
-struct LightEffects;
-
-/// A light and the half vector towards the viewer, as seen along one ray.
-struct LitRay {
-  struct One {
-    Vec3f light, half;
-    float intensity;
-  };
-  std::vector<One> lights;
-  Vec3f direction;  ///< of the ray
-  Material material;
-  const LightEffects* effects = nullptr;  ///< of the volume; null = none, and what follows is not read
-  Vec3 origin, along;                     ///< place at t = origin + t along
-  Vec3f background;                       ///< linear, behind the ray
-};
-
 /// What shading needs of a volume.
 struct ShadePlan {
   float to_world[3][3];  ///< gradient in q -> in the world

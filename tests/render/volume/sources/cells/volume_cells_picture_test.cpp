@@ -227,7 +227,7 @@ TEST_CASE("volume cells: lit packets shade as the general integral does") {
   const float per_scale = float(1 / (0.002 * (v.range.hi - v.range.lo)));
   volume::TetRays rays(v, p, medium, context, 1e-5f);
   const Vec3 lamp = normalize(Vec3(1, 2, 3));
-  rays.light({{Vec3f(lamp), 0.9f}}, item.light, per_scale);
+  rays.light({Lamp{lamp, 0.9f}}, item.light, per_scale);
   const auto source = volume::cell_source(item, context);
   const auto walker = source->walker();
   double most = 0, sum = 0, change = 0;
@@ -239,8 +239,8 @@ TEST_CASE("volume cells: lit packets shade as the general integral does") {
         const auto ray = p.ray(x + k % 16 + 0.5, y + k / 16 + 0.5);
         volume::LitRay lit;
         lit.direction = Vec3f(ray.direction);
-        lit.lights.push_back({Vec3f(lamp), Vec3f(normalize(lamp - ray.direction)), 0.9f});
-        lit.material = {float(item.light.ambient), float(item.light.diffuse), float(item.light.specular), float(item.light.power), true};
+        lit.lights.push_back(seen_along({lamp, 0.9f}, ray.direction));
+        lit.material = material_of(item.light);
         const volume::Look look{medium, {1.0 / 4096, 2, 1e-5f}, 1, &lit, per_scale, float(v.mesh->edge)};
         const volume::Look dark{medium, {1.0 / 4096, 2, 1e-5f}, 1, nullptr, per_scale, float(v.mesh->edge)};
         volume::RayState state, plain;

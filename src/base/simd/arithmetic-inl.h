@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Products and sums rounded once. Where a machine has no such instruction the C library computes the same bits, slowly.
-#if defined(SG_FUSED_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef SG_FUSED_INL_H
-#undef SG_FUSED_INL_H
+// Products and sums rounded once, and conversions. Where a machine has no such instruction the C library computes the same bits, slowly.
+// For files that are compiled once for each target and have included Highway.
+#if defined(SG_BASE_ARITHMETIC_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SG_BASE_ARITHMETIC_INL_H
+#undef SG_BASE_ARITHMETIC_INL_H
 #else
-#define SG_FUSED_INL_H
+#define SG_BASE_ARITHMETIC_INL_H
 #endif
 
 #include <cmath>
 
 HWY_BEFORE_NAMESPACE();
-namespace sg::volume::HWY_NAMESPACE {
+namespace sg::simd::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 #if (HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2) || HWY_ARCH_ARM_A64
@@ -49,6 +50,19 @@ HWY_INLINE V mul_sub(V a, V b, V c) {
 }
 #endif
 
-}  // namespace sg::volume::HWY_NAMESPACE
+/// Truncated; |v| < 2^31 (hn::ConvertTo looks after larger ones in four more instructions).
+template <class V>
+HWY_INLINE hn::Vec<hn::RebindToSigned<hn::DFromV<V>>> truncated(V v) {
+  using DI = hn::RebindToSigned<hn::DFromV<V>>;
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
+  if constexpr (hn::MaxLanes(hn::DFromV<V>()) == 16) return hn::Vec<DI>{_mm512_cvttps_epi32(v.raw)};
+#endif
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2
+  if constexpr (hn::MaxLanes(hn::DFromV<V>()) == 8) return hn::Vec<DI>{_mm256_cvttps_epi32(v.raw)};
+#endif
+  return hn::ConvertTo(DI(), v);
+}
+
+}  // namespace sg::simd::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif
