@@ -8,6 +8,7 @@
 #endif
 
 #include <cmath>
+#include <cstddef>
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {
