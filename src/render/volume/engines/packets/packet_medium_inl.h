@@ -13,7 +13,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {
 
-/// exp_minus of optics/integrate.cpp.
+/// exp_minus of rays/integrate.cpp.
 template <class D>
 HWY_INLINE hn::Vec<D> exp_minus_of(D d, hn::Vec<D> x) {
   const IntTag<D> di;
