@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Contours of grids and of tetrahedra, once and again and again.
+#include <fmt/core.h>
+
 #include "bench.h"
 #include "filter/scalar/contour/contour.h"
 #include "inputs.h"

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Streamlines of the ABC flow through a grid and through tetrahedra, with the settings of the peers' stream tracers.
+#include <fmt/core.h>
+
 #include <numbers>
 
 #include "base/parallel.h"

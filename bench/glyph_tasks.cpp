@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Glyphs: a hundred thousand arrows as a picture and as geometry, under the names of the peers' records.
+#include <fmt/core.h>
+
 #include "bench.h"
 #include "filter/glyph/geometry.h"
 #include "filter/glyph/shapes.h"

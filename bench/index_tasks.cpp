@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The indexes for repeated contouring side by side: what they cost to build and to keep, and how long a query takes for what it finds.
 // Items are the single cells of five million tetrahedra (the octree: the cubes of a 256^3 grid).
+#include <fmt/core.h>
+
 #include "bench.h"
 #include "index/span/active_index.h"
 #include "inputs.h"

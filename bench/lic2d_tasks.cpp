@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Line integral convolution of a picture: the peers' flow and noise of random bytes, 40 steps of a pixel each way.
+#include <fmt/core.h>
+
 #include <numbers>
 
 #include "base/random.h"

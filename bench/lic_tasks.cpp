@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Frames of a surface with a flow texture: the peers' mesh of a million triangles, their camera and their number of steps.
+#include <fmt/core.h>
+
 #include <cmath>
 
 #include "base/parallel.h"

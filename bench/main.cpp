@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // sg_bench --data FOLDER [--only REGEX-free substring] [--out records.jsonl] [--runs N] [--large SAMPLES] [--list]
+#include <fmt/core.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is measured, under the names of the peers' records.
+#include <fmt/core.h>
+
 #include "base/file/file.h"
 #include "base/random.h"
 #include "bench.h"

@@ -2,6 +2,8 @@
 // Particles in an ABC flow whose strength swings: 21 time steps of 64^3 in memory, 10,000 seeds, released again at each step (streaklines,
 // particles) or once (pathlines), as the peers' filters do: RK4, one step an
 // interval; and with the error control that is our default.
+#include <fmt/core.h>
+
 #include <numbers>
 
 #include "base/parallel.h"

@@ -3,6 +3,8 @@
 // double precision, at every sixteenth pixel of every sixteenth row. Emission is the value itself, so no colour space is in the way. Lit
 // scenes have the peers' headlight and material; VTK's light is another than ours where the field hardly changes, and it takes the viewer
 // to look along the middle of the picture everywhere.
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

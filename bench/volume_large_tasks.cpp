@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Volumes larger than the memory allowed (an eighth of their numbers), as a user draws them: seconds to the first picture and to the
 // final one, from a warm file, and peak memory.
+#include <fmt/core.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include <algorithm>
 
 #include "base/error.h"
 #include "base/file/file.h"

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Frames of volumes: lattices of two sizes and types in the peers' four scenes, and a transfer function that changes.
+#include <fmt/core.h>
+
 #include "base/parallel.h"
 #include "bench.h"
 #include "data/memory/memo.h"

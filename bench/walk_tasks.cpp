@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lines through every kind of mesh of about 200,000 cells: by walking, and by asking the locator for every place. One thread, meshes and
 // indices at hand, RK4 in half cells: what a step costs.
+#include <fmt/core.h>
+
 #include <numbers>
 
 #include "bench.h"

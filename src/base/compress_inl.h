@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Chosen lanes, written one after the other; included once per target, after highway.h.
+#include <cstddef>
+
 #if defined(SG_COMPRESS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SG_COMPRESS_INL_H
 #undef SG_COMPRESS_INL_H

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/cli.h"
 
+#include <fmt/core.h>
 #include <signal.h>
 #include <unistd.h>
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // demo: pictures from built-in sources, or of every file in a folder, alone and on a contact sheet.
 #include <dirent.h>
+#include <fmt/core.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cstdio>
 
 #include "base/error.h"

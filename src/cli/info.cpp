@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/info.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/text/text.h"
 #include "base/text/utf8.h"
 #include "data/lattice.h"

@@ -2,7 +2,9 @@
 // The one file that sees CLI11.
 #include "cli/options.h"
 
+#include <fmt/core.h>
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 
 #include "base/error.h"

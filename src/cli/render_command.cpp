@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // render, run, open and convert: each makes a PipelineFile and hands it on.
+#include <fmt/core.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstdio>

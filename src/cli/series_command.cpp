@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // render and run of a time series: one numbered picture per step, the next step read or computed while one is drawn.
+#include <fmt/core.h>
+
 #include <cstdio>
 #include <exception>
 #include <mutex>

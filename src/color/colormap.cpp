@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "color/colormap.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <mutex>
 
 #include "base/error.h"

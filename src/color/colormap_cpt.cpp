@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // GMT colour palette tables. Slices "z0 colour z1 colour [annotation] [;label]", categories "key colour [;label]", the colours B, F
 // and N, and the comments COLOR_MODEL, RANGE, HARD_HINGE, SOFT_HINGE, HINGE. Source: GMT manual, "Of colors and color legends".
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/error.h"
 #include "base/text/text.h"
 #include "color/colormap_formats.h"

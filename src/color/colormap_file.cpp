@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "color/colormap_file.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/error.h"
 #include "base/file/file.h"
 #include "base/text/text.h"

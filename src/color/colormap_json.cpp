@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Colour maps in JSON: ParaView's (RGBPoints in a ColorSpace, or IndexedColors with Annotations, NanColor) and niivue's (lists R, G,
 // B, A over I from 0 to 255, and the values min and max).
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
+
+#include <algorithm>
 
 #include "base/error.h"
 #include "base/text/text.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "color/colormap_nodes.h"
 
+#include <algorithm>
 #include <numbers>
 
 #include "color/cie.h"

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "color/parse_color.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/error.h"
 #include "base/text/text.h"
 

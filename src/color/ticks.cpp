@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // nice_ticks: round numbers, and texts that tell them apart.
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/text/text.h"
 #include "color/color_scale.h"
 

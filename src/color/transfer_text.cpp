@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "color/transfer_text.h"
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/text/text.h"
 #include "color/colormap_nodes.h"

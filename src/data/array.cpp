@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data/array.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <new>
 
 #include "base/huge_allocator.h"

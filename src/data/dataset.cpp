@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data/dataset.h"
 
+#include <fmt/core.h>
+
 #include "data/field_component.h"
 
 #include "base/error.h"

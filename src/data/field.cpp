@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data/field.h"
 
+#include <fmt/core.h>
+
 #include <atomic>
 #include <unordered_map>
 #include <unordered_set>

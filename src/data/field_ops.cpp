@@ -3,6 +3,7 @@
 
 #include "data/field_component.h"
 
+#include <algorithm>
 #include <cmath>
 #include <type_traits>
 

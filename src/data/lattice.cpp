@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data/lattice.h"
 
+#include <algorithm>
+
 namespace sg {
 
 bool is_lattice(const Mesh& mesh) {

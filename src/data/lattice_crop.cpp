@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data/lattice_crop.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <cstring>
 
 #include "base/error.h"

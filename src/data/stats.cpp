@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // field_stats: one streaming pass per array. Minimum and maximum do not depend on the order, so neither does the result.
+#include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <limits>
 
 #include "base/parallel.h"
 #include "data/field.h"

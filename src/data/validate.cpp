@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // validate(): nothing that passes here can make a kernel read outside its arrays.
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <atomic>
 
 #include "base/parallel.h"

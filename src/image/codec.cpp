@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/codec.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
 #include <turbojpeg.h>
 #include <webp/encode.h>
 

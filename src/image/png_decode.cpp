@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
 #include <png.h>
 
+#include <algorithm>
 #include <csetjmp>
 
 #include "base/bytes.h"

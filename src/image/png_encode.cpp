@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // PNG (ISO/IEC 15948): rows are filtered and deflated in stripes of fixed size on all threads. A stripe ends with a sync flush, so
 // that the stripes, one after the other, are one deflate stream; each is an IDAT chunk of its own.
+#include <fmt/core.h>
 #include <zlib.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
 
 #include "base/error.h"
 #include "base/parallel.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/webm.h"
 
+#include <fmt/core.h>
+
 #include <bit>
 #include <cmath>
 #include <cstdint>

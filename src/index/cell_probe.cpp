@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "index/cell_probe.h"
 
+#include <algorithm>
+
 #include "data/cells/cell_topology.h"
 #include "index/triangle.h"
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The tree from boxes. Large nodes are split one after the other by all threads; what is left becomes one task per subtree. Every choice
 // depends on the boxes alone, so the tree is the same for any number of threads.
+#include <cstring>
+
 #include "base/parallel.h"
 #include "index/cell_tree.h"
 

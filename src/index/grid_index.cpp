@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "index/grid_index.h"
 
+#include <algorithm>
+
 #include "index/cell_probe.h"
 
 namespace sg {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "index/minmax_octree.h"
 
+#include <algorithm>
+
 #include "base/parallel.h"
 
 namespace sg {

@@ -2,6 +2,8 @@
 // The table of formats and the choice among them.
 #include "io/formats.h"
 
+#include <fmt/core.h>
+
 #include <set>
 
 #include "base/file/file.h"

@@ -44,7 +44,7 @@ struct WriteOptions {
   std::string encoding = "appended";  ///< VTK XML: ascii, base64, appended (raw)
   std::string compression = "none";   ///< VTK XML: none, zlib, lz4, lzma; NRRD: none, gzip; Zarr: lz4 (for none too), zstd, zlib
   bool binary = true;                 ///< STL, PLY
-  int pieces = 1;                     ///< parallel VTK XML and .vtm: cut each mesh into that many (see in_pieces in filter/mesh/piece.h)
+  int pieces = 1;                     ///< parallel VTK XML and .vtm: cut each mesh into that many (see in_pieces, mesh/select/piece.h)
   int chunk = 64;                     ///< Zarr: samples along each axis of a chunk
 };
 

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/plausible.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/error.h"
 #include "base/text/text.h"
 #include "data/memory/memory_budget.h"

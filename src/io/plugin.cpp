@@ -2,6 +2,7 @@
 #include "io/plugin.h"
 
 #include <dlfcn.h>
+#include <fmt/core.h>
 #include <sys/stat.h>
 #include <unistd.h>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/reading_budget.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "base/file/file.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The memory that all arrays of one file may take together.
 #pragma once
+#include <cstdint>
 #include <string>
 
 #include "data/memory/memory_budget.h"

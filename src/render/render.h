@@ -19,7 +19,7 @@ struct RenderOptions {
 };
 
 /// Throws Error(usage) when the frames of a picture of that size, and the image that is made of them, are more than may be taken
-/// (data/memory_budget.h).
+/// (data/memory/memory_budget.h).
 void check_picture_memory(int width, int height, int frames);
 
 /// Surfaces, lines, points and volumes in one picture: opaque ones by depth, translucent ones and volumes in depth order,

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/look.h"
 
+#include <fmt/core.h>
+
 #include "base/text/text.h"
 #include "data/cells/mesh_dimension.h"
 #include "data/lattice.h"

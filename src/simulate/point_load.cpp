@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulate/point_load.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace sg {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulate/scalar_fields.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
 
 namespace sg {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every mistake: one clear line, the documented exit code, nothing left behind.
+#include <algorithm>
 #include <filesystem>
 #include <limits>
 

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A recipe out of a stranger's picture: it writes nothing but the picture, and reads only what the user allows.
+#include <fmt/core.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "base/file/file.h"

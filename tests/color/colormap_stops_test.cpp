@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Stops of colour stay where they are stated: in text, in files, and about a hinge.
+#include <fmt/core.h>
+
 #include "base/text/text.h"
 #include "color/colormap_file.h"
 #include "color/colormap_formats.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "color/colormap.h"
 
+#include <algorithm>
 #include <set>
 
 #include "color/cie.h"

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data/field.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <chrono>
 
 #include "support/property.h"

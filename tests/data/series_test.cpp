@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data/series.h"
 
+#include <algorithm>
+
 #include "support/test.h"
 
 using namespace sg;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Damaged HDF5 files: read or refused, never a crash. What the library itself cannot stand is kept from it (see h5_data.h, guarded.h).
+#include <fmt/core.h>
 #include <sys/stat.h>
 
 #include <cstdlib>

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <numeric>
+
 #include "samples.h"
 
 using namespace sg;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The VTKHDF, XDMF and ENZO files of the data folder against what other readers say of them.
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
+
+#include <algorithm>
 
 #include "samples.h"
 

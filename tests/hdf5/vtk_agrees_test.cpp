@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What VTK's own reader makes of our files; needs python3-vtk9.
+#include <fmt/core.h>
+
 #include <cstdio>
 #include <cstdlib>
 

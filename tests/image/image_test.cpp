@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "image/image.h"
 
+#include <algorithm>
 #include <bit>
+#include <limits>
 
 #include "base/parallel.h"
 #include "support/test.h"

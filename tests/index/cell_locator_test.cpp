@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "index/cell_locator.h"
 
+#include <algorithm>
 #include <atomic>
 
 #include "base/parallel.h"

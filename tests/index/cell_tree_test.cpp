@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "index/cell_tree.h"
 
+#include <cstring>
 #include <set>
 
 #include "base/parallel.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One small mesh of each kind for searching, and the search that looks at every cell.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "index/minmax_bricks.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "base/parallel.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "index/minmax_octree.h"
 
+#include <algorithm>
+#include <cstring>
 #include <set>
 
 #include "base/parallel.h"

@@ -2,6 +2,7 @@
 // The seeds of the fuzz target are read whole, cut, and with bytes changed.
 #include "corpus.h"
 
+#include <algorithm>
 #include <map>
 
 #include "base/random.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Helpers of the file tests: texts written to a temporary file and read back, and damage done to them.
 #pragma once
+#include <cstring>
 #include <string>
 
 #include "base/file/file.h"

@@ -2,6 +2,7 @@
 // What a writer cannot keep, it says: random data are written in every format and read again, and each difference was in a warning.
 #include "io/write_losses.h"
 
+#include <algorithm>
 #include <map>
 
 #include "data/cells/point_positions.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Analytic sources against what their formulas must satisfy.
+#include <algorithm>
 #include <cmath>
 
 #include "data/lattice.h"

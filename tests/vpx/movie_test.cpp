@@ -5,6 +5,7 @@
 #include <vpx/vp8dx.h>
 #include <vpx/vpx_decoder.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdlib>

@@ -2,6 +2,7 @@
 #include "base/file/partial_file.h"
 
 #include <fcntl.h>
+#include <fmt/core.h>
 #include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Parameters for people and as JSON schema.
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/schema/schema.h"
 #include "base/text/text.h"
 

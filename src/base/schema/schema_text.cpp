@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Text as one way to state parameters.
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/schema/schema.h"
 #include "base/text/text.h"

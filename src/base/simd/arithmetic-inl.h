@@ -9,6 +9,7 @@
 #endif
 
 #include <cmath>
+#include <cstddef>
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::simd::HWY_NAMESPACE {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/text/text.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <cctype>
 #include <charconv>
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data/cells/cell_reader.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <bit>
 #include <optional>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data/cells/mesh_dimension.h"
 
+#include <algorithm>
 #include <span>
 
 #include "data/lattice.h"

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Numbering of the nodes of Lagrange and Bezier cells, as VTK files hold them since file version 2.
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "data/cells/cell_topology.h"
 

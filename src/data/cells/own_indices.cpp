@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data/cells/own_indices.h"
 
+#include <cstring>
+
 #include "base/file/mapped_watch.h"
 #include "base/parallel.h"
 

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data/cells/point_cells.h"
 
+#include <fmt/core.h>
+
+#include <numeric>
+
 #include "base/error.h"
 #include "data/cells/cell_reader.h"
 

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Curved and many-sided 2D cells as triangles, curves as segments.
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/error.h"
 #include "data/cells/cell_topology.h"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // ByteCache: things that can be made again, kept up to a number of bytes; the one not used for longest goes first.
 #pragma once
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <list>

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/field/join_fields.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <cstring>
 #include <set>
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/flow_parts.h"
 
+#include <algorithm>
+
 #include "base/parallel.h"
 #include "data/cells/mesh_dimension.h"
 

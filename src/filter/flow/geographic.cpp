@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/geographic.h"
 
+#include <fmt/core.h>
+
 #include "base/parallel.h"
 #include "base/text/text.h"
 #include "data/cells/point_positions.h"

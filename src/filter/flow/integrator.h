@@ -2,6 +2,8 @@
 // One step of an ordinary differential equation x' = v(x, t), by the classic explicit schemes and a symplectic one. A *flow* is explained
 // in flow_field.h; here only its velocity is asked for.
 #pragma once
+#include <cstdint>
+
 #include "base/schema/enum_words.h"
 #include "base/vec.h"
 

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/line_mesh.h"
 
+#include <fmt/core.h>
+
+#include <numeric>
+
 #include "base/parallel.h"
 #include "data/trusted.h"
 

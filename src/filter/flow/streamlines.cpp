@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/streamlines.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/random.h"
 #include "data/trusted.h"
 #include "filter/flow/geographic.h"

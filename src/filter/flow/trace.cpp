@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/trace.h"
 
+#include <fmt/core.h>
+
 #include "base/parallel.h"
 #include "filter/flow/trace_line.h"
 

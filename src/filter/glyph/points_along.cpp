@@ -2,6 +2,8 @@
 // Even spacing along lines, for barbs on streamlines (Pilar, Ware 2013).
 #include "filter/glyph/points_along.h"
 
+#include <algorithm>
+
 #include <fmt/core.h>
 
 #include "base/error.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Places along lines, and who is near. Internal to filter/glyph.
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <unordered_map>
 

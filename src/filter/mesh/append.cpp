@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/mesh/append.h"
 
+#include <fmt/core.h>
+
+#include <cstring>
 #include <unordered_set>
 
 #include "base/error.h"

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/mesh/merge_points.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <numeric>
 #include <unordered_map>
 
 #include "base/error.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/mesh/surface.h"
 
+#include <algorithm>
+
 #include "base/parallel.h"
 #include "data/cells/cell_topology.h"
 #include "filter/mesh/faces/faces.h"

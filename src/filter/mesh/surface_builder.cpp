@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/mesh/surface_builder.h"
 
+#include <algorithm>
+
 #include "base/parallel.h"
 #include "data/field_ops.h"
 #include "filter/mesh/select/id_set.h"

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/mesh/tessellate_cells.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <memory>
+#include <tuple>
 #include <unordered_map>
 
 #include "base/error.h"

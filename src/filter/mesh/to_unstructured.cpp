@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/mesh/to_unstructured.h"
 
+#include <numeric>
+
 #include "filter/mesh/select/extract.h"
 
 namespace sg {

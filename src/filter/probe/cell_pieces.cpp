@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/probe/cell_pieces.h"
 
+#include <algorithm>
+
 #include "data/cells/cell_topology.h"
 
 namespace sg {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/probe/cell_slabs.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "base/parallel.h"
 

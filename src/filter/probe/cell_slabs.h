@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which cells of a mesh reach which layers of an axis-aligned grid: the work list of scan conversion.
 #pragma once
+#include <algorithm>
 #include <vector>
 
 #include "base/context.h"

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/probe/field_sampler.h"
 
+#include <algorithm>
+#include <cstring>
+
 namespace sg {
 
 FieldSampler::FieldSampler(const Dataset& from, size_t count) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // FieldSampler: the point and cell fields of a dataset at places in its cells, filled in from any thread in any order.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <vector>
 

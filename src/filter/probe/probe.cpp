@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/probe/probe.h"
 
+#include <fmt/core.h>
+
+#include <numeric>
+
 #include "data/lattice.h"
 #include "filter/mesh/surface_builder.h"
 #include "filter/probe/sample.h"

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Averages that keep integrals: every solid cell is cut along the grid, and what each part holds goes to its grid cell.
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/error.h"
 #include "base/parallel.h"
 #include "filter/probe/cell_pieces.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Scan conversion: slab by slab of a grid's layers, each by one thread. First every cell claims the points that it holds, then the fields
 // are evaluated row by row. A tetrahedron claims rows at a time: its barycentric coordinates are linear along them.
+#include <algorithm>
 #include <mutex>
 
 #include "base/parallel.h"

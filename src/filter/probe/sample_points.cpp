@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fields at points in any place. Meshes of cells need no tree for it: the points are sorted into buckets of a coarse grid, and each cell
 // claims those that it holds, cells in ascending order. Buckets are worked on in slabs, each by one thread.
+#include <algorithm>
+
 #include "base/parallel.h"
 #include "filter/probe/cell_slabs.h"
 #include "filter/probe/place_writer.h"

@@ -2,6 +2,8 @@
 // Cuts a tetrahedron along the planes of a grid. What comes out are tetrahedra again, each within one grid cell; they fill the first one
 // exactly.
 #pragma once
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/vec.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/scalar/isolines.h"
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "data/cells/cell_reader.h"
 #include "data/field_ops.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/segment/dice.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
 #include <map>
 #include <unordered_map>

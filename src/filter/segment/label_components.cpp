@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/segment/label_components.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 #include "base/parallel.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/segment/region_grow.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/stats/table_to_points.h"
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/text/text.h"
 #include "data/field_ops.h"

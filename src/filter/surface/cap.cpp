@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/surface/cap.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <numeric>
+
 #include "base/error.h"
 #include "data/field_ops.h"
 #include "filter/surface/polygons.h"

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/surface/clean.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <unordered_map>
 
 #include "base/error.h"

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/surface/polygons.h"
 
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
 #include "base/error.h"
 #include "base/parallel.h"
 #include "data/cells/cell_topology.h"

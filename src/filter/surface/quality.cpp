@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/surface/quality.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <numeric>
+
 #include "base/error.h"
 #include "base/parallel.h"
 #include "data/cells/cell_reader.h"

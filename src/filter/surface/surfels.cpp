@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/surface/surfels.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cstring>
+
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/text/text.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/tensor/stress_measures.h"
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "filter/surface/normals.h"
 #include "filter/tensor/tensor_shape.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/tensor/sym_tensor.h"
 
+#include <algorithm>
+
 namespace sg {
 
 namespace {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "index/span/spans.h"
 
+#include <algorithm>
 #include <numeric>
 
 #include "base/error.h"

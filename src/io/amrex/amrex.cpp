@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // AMReX and BoxLib plotfiles: all levels as one AmrGrid, with the cells that a finer level covers marked.
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/bytes.h"
 #include "base/file/file.h"
 #include "base/parallel.h"

@@ -6,7 +6,9 @@
 //            Level_0/Cell_D_*  FABs: a line of text (number format, box, components), then the numbers, one component after the other
 #pragma once
 #include <array>
+#include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/vec.h"

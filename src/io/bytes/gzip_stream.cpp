@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/bytes/gzip_stream.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include <zlib.h>
 
 #include "base/error.h"

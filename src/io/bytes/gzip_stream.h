@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// gzip (or zlib) from front to back in little memory: for parts of large files. Whole files are faster with unpack() of io/inflate.h.
+// gzip (or zlib) from front to back in little memory: for parts of large files. Whole files are faster with unpack() of io/bytes/inflate.h.
 #pragma once
 #include <cstddef>
 #include <memory>

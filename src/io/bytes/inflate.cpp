@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/bytes/inflate.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+
 #include <bzlib.h>
 #include <libdeflate.h>
 

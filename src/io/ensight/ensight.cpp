@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // EnSight Gold: a case file, a geometry and one file per variable. Source: EnSight User Manual, "EnSight Gold Casefile Format".
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/text/text.h"
 #include "io/ensight/variables.h"
 #include "io/formats.h"

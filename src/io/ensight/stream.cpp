@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/ensight/stream.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
 #include "base/bytes.h"
 #include "base/parallel.h"
 #include "base/text/text.h"

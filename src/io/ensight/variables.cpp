@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/ensight/variables.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/parallel.h"
 #include "base/text/text.h"
 #include "io/mesh/unread.h"

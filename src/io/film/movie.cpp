@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/film/movie.h"
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/file/file.h"
 #include "io/film/ffmpeg_pipe.h"

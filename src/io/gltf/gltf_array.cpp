@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Accessors: strided bytes, sparse replacements, normalized integers.
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/bytes.h"
 #include "base/parallel.h"
 #include "io/gltf/gltf_document.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/gltf/gltf_bytes.h"
 
+#include <fmt/core.h>
+
 #include "base/bytes.h"
 #include "base/file/file_fence.h"
 #include "io/formats.h"

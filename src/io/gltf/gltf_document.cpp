@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/gltf/gltf_document.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include <nlohmann/json.hpp>
 
 #include "base/bytes.h"

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // glTF 2.0: every primitive of every mesh that a node of the scene places becomes a surface, its points and normals moved by the
 // node. One primitive gives a surface, several a Collection of them. Textures, animations and skins are left out.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cstring>
+
 #include "base/parallel.h"
 #include "io/formats.h"
 #include "io/gltf/gltf_document.h"

@@ -2,6 +2,7 @@
 // Surfaces and point clouds as glTF 2.0: one node and mesh per dataset, with a primitive for its triangles, lines and vertices each.
 // Point fields other than normals, texture coordinates and colours become attributes _NAME; glTF has no cell fields. A .gltf holds
 // its buffer as a data: URI.
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "base/file/file.h"

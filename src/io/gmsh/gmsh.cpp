@@ -2,6 +2,10 @@
 // Gmsh .msh: all elements (of every dimension, in file order) as cells; "physical" and "entity" (and "partition") as cell fields, the
 // names of physical groups as notes. Data sections become fields; those of element nodes that differ between elements open the mesh
 // there. Values that a section does not give are NaN.
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/file/file.h"
 #include "base/text/text.h"
 #include "io/formats.h"

@@ -2,6 +2,10 @@
 // Sections of .msh files, versions 2.x, 4.0 and 4.1. Source: Gmsh reference manual, "File formats".
 #include "io/gmsh/msh_file.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/bytes.h"
 #include "base/text/text.h"
 #include "io/gmsh/elements.h"

@@ -12,7 +12,7 @@ constexpr int deepest = 200;
 
 size_t rounded(size_t bytes) { return (bytes + apart - 1) / apart * apart; }
 
-// Stand-ins for values that were not read (io/unread.h) hold one number for all.
+// Stand-ins for values that were not read (io/mesh/unread.h) hold one number for all.
 bool is_one_number(const Array& a) { return a.count() > 1 && a.stride_bytes() == 0 && a.component_stride_bytes() == 0; }
 
 bool alike(const Array& a, const Array& b) {

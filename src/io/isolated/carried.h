@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Data as bytes that another process understands: numbers and texts one after the other, arrays by the place where they lie. For
-// processes of one program (io/isolated.h), never for files: neither byte order nor layout is kept from version to version.
+// processes of one program (io/isolated/isolated.h), never for files: neither byte order nor layout is kept from version to version.
 #pragma once
+#include <cstring>
 #include <map>
 
 #include "data/dataset.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/mesh/blanking.h"
 
+#include <algorithm>
+
 #include "base/parallel.h"
 #include "data/dataset.h"
 

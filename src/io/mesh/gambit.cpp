@@ -2,6 +2,8 @@
 // GAMBIT neutral files (.neu): nodes, linear elements, groups with their materials ("Material Type"), and sets of nodes with boundary
 // conditions ("Boundary Condition": the number of the set from 1, 0 = none). Sets of element sides are left out. Source: GAMBIT
 // neutral file format, Fluent Inc.
+#include <fmt/core.h>
+
 #include "base/file/file.h"
 #include "base/text/text.h"
 #include "io/formats.h"

@@ -3,6 +3,10 @@
 // nx x ny (x nz) values at the Gauss-Lobatto points. The points stay where they are, so that values are those of the file; each element
 // becomes (nx-1)(ny-1)(nz-1) linear cells with its number in "element". Elements share no points: fields may jump between them. Steps
 // without positions take those of the first step. Source: the Nek5000 documentation, "Field files", and the files.
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/bytes.h"
 #include "base/file/file.h"
 #include "base/file/file_fence.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/mesh/node_order.h"
 
+#include <algorithm>
+
 namespace sg {
 
 namespace {

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // AVS UCD (.inp), ASCII and binary: nodes, cells with a material, node and cell data with units. Model data are left out.
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/bytes.h"
 #include "base/file/file.h"
 #include "base/text/text.h"

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/mesh/unread.h"
 
+#include <algorithm>
+#include <limits>
+
 namespace sg {
 
 Array unread_values(ElementType type, size_t count, int components) {

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shape functions of MFEM's elements at the nodes of ours. A nodal basis is found from its nodes: with V the matrix of some basis of
 // the same polynomials (products of Legendre polynomials, well conditioned up to order 10) at the nodes, N(x) = V^-T phi(x).
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/error.h"
 #include "io/mfem/element.h"
 #include "io/text/mesh_text.h"

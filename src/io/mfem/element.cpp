@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/mfem/element.h"
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/text/text.h"
 #include "io/text/mesh_text.h"

@@ -2,6 +2,8 @@
 // A mesh and its grid functions as Lagrange cells. All spaces are sampled at the equidistant nodes of the highest order among them,
 // element by element; nodes of neighbours that lie on the same vertex, edge or face become one point where position and all values
 // agree. So periodic meshes open where they must, and discontinuous fields keep their jumps.
+#include <algorithm>
+
 #include "base/error.h"
 #include "base/parallel.h"
 #include "io/mfem/mesh_file.h"

@@ -2,6 +2,8 @@
 // MFEM: meshes ("*.mesh", with the grid functions "*.gf" beside them), grid functions (with the mesh beside them), and what GLVis
 // saves ("*.saved": a mesh and a grid function in one file). Elements become Lagrange cells of the highest order among positions and
 // fields, NURBS patches rational Bezier cells; "attribute" is a cell field. Boundary elements are left out.
+#include <fmt/core.h>
+
 #include <algorithm>
 
 #include "base/file/file.h"

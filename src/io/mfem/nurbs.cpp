@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The text of NURBS meshes: patches by their corners, knot vectors by edges, and control points either numbered over the whole mesh
 // (vertices, then the insides of edges, faces and patches) or patch by patch.
+#include <fmt/core.h>
+
 #include "base/text/text.h"
 #include "io/mfem/mesh_file.h"
 

@@ -2,6 +2,9 @@
 // NURBS patches as rational Bezier cells, one per box of knot spans. The control points of a span are values of the blossom (polar
 // form) of the spline [Ramshaw 1987]: point j of the span [a, b] is f(a, ..., a, b, ..., b) with j times b. All cells get the highest
 // order of the mesh: raising the degree of a Bezier curve changes nothing about it.
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <map>
 
 #include "base/bytes.h"

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Non-conforming meshes (a tree of refined elements; the leaves are the mesh) and meshes that are made from a few numbers.
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/text/text.h"
 #include "io/mfem/mesh_file.h"
 

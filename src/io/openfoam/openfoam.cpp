@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // OpenFOAM cases: a folder with constant/polyMesh, time folders with fields, perhaps cut into processor* folders and regions.
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/file/file.h"
 #include "base/text/text.h"
 #include "data/field_ops.h"

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/plot3d/layout.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
 #include "base/bytes.h"
 #include "base/parallel.h"
 #include "io/text/number_text.h"

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // PLOT3D: a grid file, and beside it a solution (q) and a function file. Layout: see layout.h.
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cstring>
 
 #include "base/file/file_fence.h"
 #include "base/text/text.h"

@@ -2,6 +2,8 @@
 // HDF5 containers by their signature; what they hold is for the readers (plug-in hdf5) to see.
 #include "io/formats.h"
 
+#include <cstring>
+
 namespace sg {
 
 bool sniff_hdf5(std::span<const std::byte> head) {

@@ -2,6 +2,8 @@
 // How the files of the netCDF and CGNS plug-ins begin. HDF5 is the shell of both: extensions tell them apart.
 #include "io/formats.h"
 
+#include <cstring>
+
 namespace sg {
 
 namespace {

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // How to know the volumes that plug-ins read: DICOM ("gdcm"), OpenVDB ("openvdb").
+#include <algorithm>
+#include <cstring>
+
 #include "base/file/file.h"
 #include "base/file/file_fence.h"
 #include "io/formats.h"

@@ -3,6 +3,11 @@
 // take texture coordinates or normals of another number than their vertex, every corner becomes a point of its own (as in VTK);
 // otherwise the vertices are the points. "GroupIds" (f32) counts the g statements, "MaterialIds" (i32) numbers the materials;
 // their names are notes.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <numeric>
+
 #include "base/file/file.h"
 #include "base/parallel.h"
 #include "base/text/text.h"

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/surface/obj_parse.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
 #include "base/error.h"
 #include "base/text/text.h"
 #include "io/text/text_scan.h"

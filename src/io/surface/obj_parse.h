@@ -2,6 +2,7 @@
 // The statements of one chunk of an OBJ file. Chunks are parsed independently; references that depend on what stands before
 // the chunk (negative indices, groups, materials) are kept relative and resolved when all chunks are known.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>

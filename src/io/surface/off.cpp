@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // OFF and its variants COFF, NOFF, STOFF, CNOFF, ..., as text and binary (big-endian): vertices with normals, colours and texture
 // coordinates, faces with colours. Source: Geomview manual, "OFF Files".
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/bytes.h"
 #include "base/file/file.h"
 #include "io/formats.h"

@@ -3,6 +3,10 @@
 // blue [alpha] "RGB" or "RGBA", s t (u v, texture_u texture_v) "TCoords"; every other scalar keeps its name. Lists other than
 // the faces' vertex indices are skipped. Edges are read as lines where there are no faces. Our own files keep the names of fields in
 // comments ("field vertex nx 3 Wall normals": three properties from nx on).
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/bytes.h"
 #include "base/parallel.h"
 #include "base/text/text.h"

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/surface/ply_body.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "base/bytes.h"
 #include "base/parallel.h"
 #include "base/text/text.h"

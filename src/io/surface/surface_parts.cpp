@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/surface/surface_parts.h"
 
+#include <fmt/core.h>
+
+#include <cstring>
+
 #include "base/parallel.h"
 
 namespace sg {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // .bpt: Bezier patches as text. The number of patches; for each its degrees "u v" and (u+1)(v+1) control points, v fastest.
 // Patches become Bezier quads that share nothing; degrees may differ.
+#include <fmt/core.h>
+
 #include "base/file/file.h"
 #include "data/cells/cell_topology.h"
 #include "io/formats.h"

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Delimited text (RFC 4180, and what people write): commas, tabs, semicolons, bars, colons or blanks; quotes; UTF-8 or UTF-16.
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/file/file.h"
 #include "base/text/text.h"
 #include "data/cells/point_positions.h"

@@ -2,6 +2,10 @@
 // GML graphs: a Collection of the tables "nodes" and "edges"; each key of a node or edge is a column. Values are numbers, strings
 // and lists of them: keys of nested lists are joined by a point ("graphics.x"). Source: M. Himsolt, "GML: A portable Graph File
 // Format", 1997.
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/file/file.h"
 #include "base/text/text.h"
 #include "io/formats.h"

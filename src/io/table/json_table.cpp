@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tables as JSON: a list of objects (one per row), an object of equally long lists (one per column), several lists of objects under
 // names (a Collection of tables), or a grid as {"width", "height", "values"}.
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "base/file/file.h"

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/table/table_columns.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <unordered_map>
 
 #include "base/text/text.h"

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tecplot ASCII: ordered zones become curvilinear grids, finite-element zones unstructured meshes; several zones a collection. Zones of
 // different solution times are steps. Values are f32 unless the zone says DOUBLE.
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/file/file.h"
 #include "base/text/text.h"
 #include "io/formats.h"

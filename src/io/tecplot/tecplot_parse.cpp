@@ -3,6 +3,8 @@
 // their ZONE. Source: Tecplot 360 Data Format Guide, "ASCII Data".
 #include "io/tecplot/tecplot_parse.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 #include "base/bytes.h"

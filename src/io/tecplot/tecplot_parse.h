@@ -2,6 +2,7 @@
 // Zones of a Tecplot ASCII file.
 #pragma once
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>

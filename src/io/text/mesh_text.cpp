@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/text/mesh_text.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "data/cells/cell_topology.h"
 #include "io/text/text_scan.h"
 

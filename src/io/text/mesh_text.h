@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What readers of unstructured meshes share: words and numbers of a text one after the other, and lists of cells that grow.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>

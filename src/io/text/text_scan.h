@@ -2,6 +2,7 @@
 // Numbers and lines in large texts, fast: in-place scanning of numbers, and chunks of a text that end at line ends, so that
 // they can be read in parallel. Nothing here allocates per number or looks at the locale.
 #pragma once
+#include <algorithm>
 #include <charconv>
 #include <cstdint>
 #include <cstring>

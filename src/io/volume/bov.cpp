@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // BOV, "brick of values": a text header of KEY: VALUE lines beside one or several raw files. Source: VisIt, "Getting Data Into VisIt",
 // chapter 3. Also a raw file that is called .bov and says its size in its name only.
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/bytes.h"
 #include "base/file/file_fence.h"
 #include "base/parallel.h"

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/volume/brick.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <atomic>
 
 #include "base/bytes.h"

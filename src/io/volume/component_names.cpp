@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/volume/component_names.h"
 
+#include <algorithm>
 #include <cctype>
 #include <unordered_map>
 

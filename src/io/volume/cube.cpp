@@ -2,6 +2,10 @@
 // Gaussian cube: two lines of title, atoms, and numbers on a grid (its third axis fastest) whose axes may be skewed. Lengths are in
 // Bohr, in Angstrom where the counts of the grid are negative. A negative number of atoms tells that orbitals follow, several numbers a
 // point. Gives two parts, "grid" and "atoms".
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/bytes.h"
 #include "base/file/file.h"
 #include "base/parallel.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Axis directions of medical volumes.
 #pragma once
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/vec.h"
 

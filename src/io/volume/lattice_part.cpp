@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/volume/lattice_part.h"
 
+#include <algorithm>
+#include <cstring>
+
 #include "base/parallel.h"
 #include "data/lattice_crop.h"
 

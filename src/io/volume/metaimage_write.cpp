@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // MetaImage: .mha with the numbers behind the header, .mhd with a .raw or .zraw file beside it.
+#include <fmt/core.h>
 #include <libdeflate.h>
 
 #include "base/file/file.h"

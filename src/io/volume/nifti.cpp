@@ -2,6 +2,10 @@
 // NIfTI-1, NIfTI-2 and Analyze 7.5: .nii, .nii.gz and pairs of .hdr and .img (each may end in .gz).
 // The fourth axis is time (or the directions of a diffusion series): one volume is read at a time. The fifth holds components.
 // Stored numbers become value = slope * stored + intercept. Reference: the NIfTI-1 and NIfTI-2 header definitions.
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/bytes.h"
 #include "base/file/file.h"
 #include "base/parallel.h"

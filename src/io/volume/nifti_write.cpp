@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // NIfTI-1 as one file, packed by gzip when the name ends in .gz. The grid goes into the sform; several components become the fifth
 // axis, colours of 8 bits RGB voxels.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cstring>
+
 #include "base/file/file.h"
 #include "base/text/text.h"
 #include "io/bytes/inflate.h"

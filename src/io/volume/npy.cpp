@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // NumPy's .npy (versions 1 to 3): one array. The last axis of a[k][j][i] is x, as in stacks of pictures; a fourth axis behind them
 // holds components. Memory order (C or Fortran) does not change which number is where.
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/bytes.h"
 #include "base/file/file.h"
 #include "base/parallel.h"

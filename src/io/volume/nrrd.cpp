@@ -2,6 +2,10 @@
 // NRRD (nearly raw raster data): attached and detached headers. The header is read in nrrd_header.cpp; here its axes become a
 // grid and one point field. The field is named by the key "field name" that we write, else as VTK names it: ImageFile for raw data,
 // ImageScalars for all other encodings.
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/bytes.h"
 #include "base/file/file_fence.h"
 #include "base/parallel.h"

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // PNG and JPEG pictures as grids of one layer, y upwards: point (0,0) is the lower left pixel. Folders of pictures of one size, in the
 // order of their names (numbers count), become volumes.
+#include <fmt/core.h>
 #include <png.h>
 #include <turbojpeg.h>
 
+#include <algorithm>
 #include <csetjmp>
 
 #include "base/bytes.h"

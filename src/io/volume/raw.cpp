@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Raw bricks: numbers without a header, described by the caller.
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/bytes.h"
 #include "io/formats.h"
 #include "io/volume/brick.h"

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // SLC, the volumes of VolVis: a header in text that ends with 'X', a small picture, then the slices of bytes, each alone packed by
 // run lengths (a byte with the top bit set and n below: n bytes follow; without: the next byte n times; 0 ends).
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/bytes.h"
 #include "base/file/file.h"
 #include "base/parallel.h"

@@ -3,6 +3,9 @@
 // A box names the cells of a patch at its level; the patch itself is a file of image data.
 #include "io/vtk/vtk_amr.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <map>
 #include <set>
 

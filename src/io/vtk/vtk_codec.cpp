@@ -5,7 +5,9 @@
 #include <lz4.h>
 #include <lzma.h>
 
+#include <algorithm>
 #include <atomic>
+#include <cstring>
 
 #include "base/error.h"
 #include "base/parallel.h"

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files that name other files: VTK multiblock (.vtm, .vtmb, .vtpc, .vtpd) and ParaView's time series (.pvd), reading.
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <cstdlib>
 #include <map>
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writing of files that name others: collections as .vtm, overlapping AMR as .vthb.
 // Parts first, then the file that names them.
+#include <fmt/core.h>
+
 #include "base/text/text.h"
 #include "io/formats.h"
 #include "io/vtk/vtk_amr.h"

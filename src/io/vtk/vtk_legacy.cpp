@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Legacy VTK files ("# vtk DataFile Version 1.0" to 5.1): a header of three lines, then keywords with their numbers.
 // Format: VTK User's Guide, "Simple legacy formats"; versions 5.x as VTK 9 writes them.
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/bytes.h"
 #include "base/text/text.h"
 #include "io/formats.h"

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/vtk/vtk_legacy_text.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <charconv>
 
 #include "base/bytes.h"

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writing of parallel VTK XML files: the pieces of one mesh in files of their own, then the file that names them.
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <climits>
 
 #include "base/text/text.h"

@@ -2,6 +2,10 @@
 // XDMF: grids, their attributes, collections in space and in time.
 #include "io/xdmf/xdmf.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/text/text.h"
 #include "io/formats.h"
 #include "io/text/text_scan.h"

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // XDMF: the XML tree, its references and includes.
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/text/text.h"
 #include "io/text/text_scan.h"
 #include "io/xdmf/xdmf.h"

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // XDMF: Function items. "$0 + $1" and the like number by number, in double; JOIN puts its arguments side by side.
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/text/text.h"
 #include "io/text/text_scan.h"
 #include "io/xdmf/xdmf.h"

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // XDMF: the values of DataItems.
+#include <fmt/core.h>
+
 #include "base/bytes.h"
 #include "base/file/file_fence.h"
 #include "base/text/text.h"

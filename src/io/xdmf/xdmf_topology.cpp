@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // XDMF: topologies and geometries. Nodes of cells are in VTK's order.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <numeric>
+
 #include "base/bytes.h"
 #include "base/text/text.h"
 #include "io/vtk/vtk_cells.h"

@@ -2,6 +2,7 @@
 #include "io/zarr/zarr_codec.h"
 
 #include <blosc.h>
+#include <fmt/core.h>
 #include <libdeflate.h>
 #include <lz4.h>
 #include <zstd.h>

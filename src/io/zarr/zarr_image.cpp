@@ -2,6 +2,8 @@
 // The description of an image: axes, levels, channels.
 #include "io/zarr/zarr_image.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 

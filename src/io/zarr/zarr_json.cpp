@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
+
+#include <cstdint>
 
 #include "base/file/file.h"
 #include "io/zarr/zarr_json.h"

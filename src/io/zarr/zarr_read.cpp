@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Zarr folders as datasets: whole, a part, or, when that is more than memory holds, the finest level that fits with a way to the rest.
+#include <fmt/core.h>
 #include <unistd.h>
+
+#include <algorithm>
+#include <numeric>
 
 #include "base/file/file.h"
 #include "base/text/text.h"

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where slabs come from: files and datasets.
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/file/file.h"
 #include "io/formats.h"

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/file/gradient_images.h"
 
+#include <fmt/core.h>
+
+#include <cstring>
+
 #include "base/error.h"
 #include "base/parallel.h"
 #include "io/io.h"

@@ -2,6 +2,9 @@
 // From YAML to PipelineFile, collecting all mistakes, and back.
 #include "pipeline/file/pipeline_file.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <map>
 
 #include "base/file/file.h"

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // From a PipelineFile to a Graph.
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <map>
 
 #include "base/file/file.h"

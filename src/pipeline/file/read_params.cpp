@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/file/read_params.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+
 namespace sg {
 
 void describe(Schema& s, ReadParams& p) {

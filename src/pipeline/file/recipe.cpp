@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The recipe inside a picture: the pipeline as YAML, the version, and a hash of each input.
+#include <fmt/core.h>
 #include <xxhash.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <set>
 

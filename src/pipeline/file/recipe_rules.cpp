@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a recipe may not do. The fence around the process (base/file_fence.h) holds whatever is overlooked here; these rules say it before
+// What a recipe may not do. The fence around the process (file/file_fence.h) holds whatever is overlooked here; these rules say it before
 // anything runs, step by step.
+#include <fmt/core.h>
+
 #include <map>
 
 #include "base/file/file.h"

@@ -2,10 +2,12 @@
 // Built from the parser's events, not from its nodes: an alias is seen before it is followed.
 #include "pipeline/file/yaml_tree.h"
 
+#include <fmt/core.h>
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/exceptions.h>
 #include <yaml-cpp/parser.h>
 
+#include <algorithm>
 #include <sstream>
 
 #include "base/error.h"

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/graph/cache.h"
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <list>
 #include <map>
 #include <mutex>
 #include <set>
+#include <tuple>
 #include <unordered_map>
 
 namespace sg {

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Running a plan: from the targets up, each step when it is first asked for.
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "pipeline/file/read_part.h"
 #include "pipeline/graph/graph_state.h"
 #include "pipeline/graph/series_input.h"

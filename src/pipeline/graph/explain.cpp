@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // What an evaluation would do, and what that may cost.
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/text/text.h"
 #include "data/lattice.h"
 #include "pipeline/file/read_part.h"

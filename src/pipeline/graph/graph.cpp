@@ -2,6 +2,9 @@
 // Building a graph and finding the mistakes in it.
 #include "pipeline/graph/graph.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <atomic>
 #include <unordered_set>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/graph/key.h"
 
+#include <fmt/core.h>
 #include <sys/stat.h>
 #include <xxhash.h>
 

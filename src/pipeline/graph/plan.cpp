@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // From targets to steps: requests go up, keys come down.
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <map>
 
 #include "base/text/text.h"

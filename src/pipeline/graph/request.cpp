@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/graph/request.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/text/text.h"
 
 namespace sg {

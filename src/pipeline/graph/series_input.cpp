@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/graph/series_input.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <set>
 
 #include "base/text/text.h"

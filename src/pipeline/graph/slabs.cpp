@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/graph/slabs.h"
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/text/text.h"
 #include "pipeline/operation/operation.h"

@@ -34,7 +34,7 @@ struct Operation {
   int min_inputs = 1, max_inputs = 1;  ///< max_inputs -1 = any number
   ParamSet (*make_params)() = nullptr;
   Data (*run)(const std::vector<Data>& inputs, const ParamSet& params, Context& context) = nullptr;
-  /// Takes the whole time series of its first input, see pipeline/series_input.h; null: it takes one moment. A parameter `time` that is
+  /// Takes the whole time series of its first input, see graph/series_input.h; null: it takes one moment. A parameter `time` that is
   /// left open follows the request, a parameter `times` (a word) says which times to take where the input has none of its own.
   Data (*run_series)(const Series& series, const std::vector<Data>& others, const ParamSet& params, Context& context) = nullptr;
   /// What it needs of its inputs to answer `wanted`; null = everything, at the same time.

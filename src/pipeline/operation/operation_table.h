@@ -59,7 +59,7 @@ Data run_filter(F f, std::string_view name, const std::vector<Data>& inputs, con
     const DatasetPtr second = single_dataset(inputs[1], name);
     return map_parts(inputs[0], name, context, [&](const DatasetPtr& d, Context& part) -> Data { return f(d, second, p, part); });
   } else {
-    static_assert(takes_part<P, F>, "see the shapes in pipeline/operation_table.h");
+    static_assert(takes_part<P, F>, "see the shapes in pipeline/operation/operation_table.h");
     return map_parts(inputs[0], name, context, [&](const DatasetPtr& d, Context& part) -> Data { return f(d, p, part); });
   }
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/picture/picture.h"
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/file/file.h"
 #include "base/text/text.h"

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures of volumes that memory does not hold: one at once, finer ones as long as there is time.
+#include <fmt/core.h>
+
 #include <condition_variable>
 #include <mutex>
 #include <thread>

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is shown when nothing is said.
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/file/file.h"
 #include "pipeline/picture/picture_parts.h"

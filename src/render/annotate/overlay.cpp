@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/annotate/overlay.h"
 
+#include <fmt/core.h>
 #include <pango/pangocairo.h>
 
 #include <algorithm>
+#include <cstring>
+#include <tuple>
 
 #include "base/error.h"
 #include "base/parallel.h"

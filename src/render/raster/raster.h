@@ -21,7 +21,7 @@ namespace sg {
 /// layout permits (packed f32 positions, 32-bit triangles).
 class PreparedScene;
 using PreparedScenePtr = std::shared_ptr<const PreparedScene>;
-struct RenderTextures;  ///< see render/texture/textures.h
+struct RenderTextures;  ///< see render/raster/lic/textures.h
 /// Throws Error(usage) for an unknown field and for items whose mesh is of the wrong kind.
 PreparedScenePtr prepare_scene(const Scene& scene, Context& context);
 

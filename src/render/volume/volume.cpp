@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/volume/volume.h"
 
+#include <fmt/core.h>
+
 #include <optional>
 
 #include "base/error.h"

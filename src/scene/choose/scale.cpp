@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/choose/scale.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <charconv>
 #include <map>
 

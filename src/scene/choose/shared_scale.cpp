@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/choose/shared_scale.h"
 
+#include <algorithm>
+
 #include "color/parse_color.h"
 #include "scene/choose/scale.h"
 

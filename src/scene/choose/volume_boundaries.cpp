@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/choose/volume_boundaries.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/choose/volume_extent.h"
 
+#include <fmt/core.h>
+
 #include "base/parallel.h"
 #include "base/text/text.h"
 #include "data/lattice.h"

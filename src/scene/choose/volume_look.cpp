@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/choose/volume_look.h"
 
+#include <fmt/core.h>
+
 #include "base/text/text.h"
 #include "data/field_ops.h"
 #include "data/lattice.h"

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The one place that knows all ways to show.
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "scene/show/glyphs.h"
 #include "scene/show/labels.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/show/labels.h"
 
+#include <fmt/core.h>
+
 #include "base/text/text.h"
 #include "color/parse_color.h"
 #include "data/cells/point_positions.h"

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A volume's look as words.
+#include <fmt/core.h>
+
 #include "base/schema/schema.h"
 #include "base/text/text.h"
 #include "color/parse_color.h"

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The declaration of the words, and what can be said about them without data.
+#include <fmt/core.h>
+
 #include "base/text/text.h"
 #include "color/transfer_text.h"
 #include "scene/show/volume.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data/cells/shape/cell_map.h"
 
+#include <algorithm>
+
 #include "cell_cases.h"
 #include "support/test.h"
 

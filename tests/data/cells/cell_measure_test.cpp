@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lengths, areas, volumes, integrals and gradients of cells.
+#include <algorithm>
+
 #include "cell_cases.h"
 #include "data/cells/shape/cell_map.h"
 #include "support/test.h"

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cells without a reference map: polygons, polyhedra, prisms, strips, poly-lines; mean value coordinates.
+#include <algorithm>
+
 #include "cell_cases.h"
 #include "data/cells/shape/cell_map.h"
 #include "data/cells/shape/mean_value.h"

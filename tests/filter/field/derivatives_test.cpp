@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/field/derivatives/derivatives.h"
 
+#include <algorithm>
+#include <cstring>
+
 #include "base/parallel.h"
 #include "data/cells/cell_reader.h"
 #include "data/cells/point_positions.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/field/calc/calc.h"
 
+#include <cstring>
+
 #include "base/parallel.h"
 #include "filter/field/calc/units.h"
 #include "support/test.h"

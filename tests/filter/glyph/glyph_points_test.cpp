@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Places for glyphs, along lines too, and trails.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 

@@ -5,6 +5,7 @@
 #include "support/test.h"
 
 #include <cmath>
+#include <cstring>
 
 #include "base/parallel.h"
 #include "base/random.h"

@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+#include <tuple>
+
 #include "filter/mesh/select/extract_ids.h"
 
 #include "filter/field/derivatives/gradient.h"

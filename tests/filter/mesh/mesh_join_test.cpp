@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // components, merge_points, append: how cells hang together.
+#include <numeric>
+
 #include "filter/mesh/append.h"
 #include "filter/mesh/merge_points.h"
 #include "filter/mesh/select/components.h"

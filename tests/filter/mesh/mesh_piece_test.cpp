@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/mesh/select/piece.h"
 
+#include <numeric>
 #include <set>
 
 #include "data/lattice.h"

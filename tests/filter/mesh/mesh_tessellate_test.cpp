@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/mesh/tessellate_cells.h"
 
+#include <numeric>
 #include <set>
 
 #include "data/cells/shape/cell_map.h"

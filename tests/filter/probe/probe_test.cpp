@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/probe/probe.h"
 
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+
 #include "base/parallel.h"
 #include "base/random.h"
 #include "filter/probe/resample.h"

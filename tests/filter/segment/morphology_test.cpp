@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/segment/morphology.h"
 
+#include <algorithm>
+
 #include "base/random.h"
 #include "filter/segment/distance_map.h"
 #include "filter/segment/label_components.h"

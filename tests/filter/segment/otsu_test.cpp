@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/segment/otsu.h"
 
+#include <algorithm>
+
 #include "base/random.h"
 #include "filter/segment/dice.h"
 #include "segment_support.h"

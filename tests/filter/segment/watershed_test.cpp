@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/segment/watershed.h"
 
+#include <algorithm>
+
 #include "base/random.h"
 #include "filter/segment/region_grow.h"
 #include "segment_support.h"

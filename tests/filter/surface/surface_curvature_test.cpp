@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <doctest/doctest.h>
 
+#include <numeric>
+
 #include "filter/mesh/mesh_meshes.h"
 #include "filter/scalar/contour/contour.h"
 #include "filter/surface/curvature.h"

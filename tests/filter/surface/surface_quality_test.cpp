@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <doctest/doctest.h>
 
+#include <numeric>
+
 #include "base/parallel.h"
 #include "filter/mesh/mesh_meshes.h"
 #include "filter/surface/quality.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Analytic shapes as surfaces: sphere, torus, box, cylinder, disc.
 #pragma once
+#include <algorithm>
 #include <map>
 
 #include "data/dataset.h"

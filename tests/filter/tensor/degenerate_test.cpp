@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
 #include "filter/tensor/degenerate/degenerate_face.h"
 #include "filter/tensor/degenerate/degenerate_lines.h"
 #include "filter/tensor/degenerate/degenerate_points.h"

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
 #include "filter/tensor/diffusion/tensor_fit.h"
 
 #include "base/file/file.h"

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
 #include "filter/tensor/tensor_measures.h"
 
 #include "filter/tensor/stress_measures.h"

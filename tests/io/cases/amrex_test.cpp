@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // AMReX plotfiles: two levels in 2D and 3D, FABs with a border, both widths and orders, and bad input.
+#include <fmt/core.h>
+
 #include "case_files.h"
 
 using namespace sg;

@@ -3,6 +3,8 @@
 #pragma once
 #include <sys/stat.h>
 
+#include <algorithm>
+#include <cstring>
 #include <map>
 #include <set>
 

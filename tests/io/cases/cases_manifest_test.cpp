@@ -2,6 +2,8 @@
 // The EnSight, OpenFOAM, PLOT3D, AMReX and BOV files of the data folder against what VTK and others say of them.
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+
 #include "case_files.h"
 #include "data/lattice.h"
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // EnSight Gold: one model written in all five forms, time in files and in one file, and bad input.
+#include <fmt/core.h>
+
 #include <cmath>
 
 #include "base/bytes.h"

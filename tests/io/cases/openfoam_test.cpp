@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // OpenFOAM: one mesh of every shape, written as text and as bytes of every width and order; patches, times, processors, bad input.
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "case_files.h"
 #include "data/cells/cell_topology.h"
 #include "io/bytes/inflate.h"

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // PLOT3D: every combination of byte order, records, precision, dimensions, blanking and number of grids is found from the length.
+#include <fmt/core.h>
+
 #include "case_files.h"
 
 using namespace sg;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files that another program writes while they are read: told, never a crash, never a picture of half a file.
 #include <fcntl.h>
+#include <fmt/core.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files that are small and ask for much: entities of entities, bombs of packed zeros, lists in lists, files that name themselves, and
 // files whose pieces are gone.
+#include <fmt/core.h>
 #include <zlib.h>
+
+#include <cstring>
 
 #include "io/bytes/inflate.h"
 #include "io/corpus.h"

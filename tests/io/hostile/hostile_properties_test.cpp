@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What holds for every file of every format, however it was damaged or changes meanwhile. Seeds are those of the fuzz target.
+#include <fmt/core.h>
 #include <sys/resource.h>
 
 #include <chrono>

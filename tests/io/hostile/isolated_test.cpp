@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <cstring>
 
 #include "base/file/file.h"
 #include "base/parallel.h"

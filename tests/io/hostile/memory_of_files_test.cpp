@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Small files that ask for much memory: refused before it is taken, with what it would take and the word that allows it.
+#include <fmt/core.h>
 #include <zlib.h>
 
+#include <cstring>
 #include <filesystem>
 
 #include "base/file/file.h"

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // AVS UCD, Tecplot ASCII, GAMBIT neutral and nek5000.
+#include <fmt/core.h>
+
 #include <algorithm>
+#include <cstring>
 
 #include "data/cells/shape/cell_map.h"
 #include "mesh_robust.h"

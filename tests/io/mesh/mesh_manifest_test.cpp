@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every Gmsh, MFEM, GLVis, UCD, Tecplot, GAMBIT, nek5000 and OFF file of the data folder against what other readers say of it.
+#include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
 #include "base/file/file.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Small files of ours, cut and damaged: reading them gives data or an Error, never anything else.
 #pragma once
+#include <algorithm>
+
 #include "base/file/file.h"
 #include "io/io.h"
 #include "support/test.h"

@@ -2,7 +2,11 @@
 // Curved elements of every shape, order and collection: the file is written here, by MFEM's numbering as its documentation and its
 // lists of nodes tell it (written down once more, independently of the reader), with the nodes on a known map; the cells must be
 // that map everywhere, across faces that two elements see from different corners too.
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include "data/cells/shape/cell_map.h"

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "data/cells/cell_topology.h"
 #include "data/cells/shape/cell_map.h"
 #include "io/mfem/element.h"

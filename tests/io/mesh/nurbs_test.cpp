@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "data/cells/shape/cell_map.h"
 #include "mesh_robust.h"
 

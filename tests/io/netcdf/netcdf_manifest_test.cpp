@@ -2,6 +2,7 @@
 // Every Exodus II, netCDF, MINC and CGNS file of the data folder against what other readers say of it.
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <map>
 
 #include "base/text/text.h"

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
 #include "data/cells/shape/cell_map.h"
 #include "io/io_files.h"
 #include "io/mesh/mesh_robust.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/text/text_scan.h"
 
+#include <fmt/core.h>
+
 #include <cstdlib>
 
 #include "io/io_files.h"

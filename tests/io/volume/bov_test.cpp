@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // BOV: headers, bricklets, packed data, bricks without a header, and bad input.
+#include <fmt/core.h>
+
 #include "io/bytes/inflate.h"
 #include "io/cases/case_files.h"
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include "io/io_files.h"
 
 #include "io/bytes/inflate.h"

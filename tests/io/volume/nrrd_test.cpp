@@ -1,4 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cstring>
+
 #include "io/io_files.h"
 
 #include "data/lattice.h"

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A region of a volume file equals the same part cut from the whole, for every way of storing.
+#include <fmt/core.h>
+
 #include "data/lattice.h"
 #include "data/lattice_crop.h"
 #include "io/bytes/inflate.h"

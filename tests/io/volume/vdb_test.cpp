@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include "data/lattice.h"
 #include "data/lattice_crop.h"
 #include "io/io_files.h"

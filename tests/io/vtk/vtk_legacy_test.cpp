@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Legacy VTK files: each dataset kind and attribute, old and new cell lists, text and big-endian bytes, bad input.
+#include <algorithm>
+#include <cstring>
+#include <tuple>
+
 #include "base/file/file.h"
 #include "base/parallel.h"
 #include "io/formats.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every VTK file of the data folder against what other readers say of it (manifest.json).
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>

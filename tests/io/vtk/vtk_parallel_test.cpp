@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Parallel VTK XML files: pieces in files of their own, with and without ghosts.
+#include <tuple>
+
 #include "data/lattice.h"
 #include "data/lattice_crop.h"
 #include "io/vtk/vtk_samples.h"

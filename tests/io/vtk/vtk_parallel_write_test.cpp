@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writing of parallel VTK XML files: pieces of grids by their extents, of other meshes one after the other.
+#include <algorithm>
+
 #include "data/lattice.h"
 #include "data/lattice_crop.h"
 #include "io/vtk/vtk_samples.h"

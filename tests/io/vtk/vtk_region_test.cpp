@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // VTK XML lattices in part: regions, strides, named fields, headers. What is not asked for is not read.
+#include <algorithm>
+
 #include "data/lattice_crop.h"
 #include "io/vtk/vtk_samples.h"
 

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // XDMF without HDF5: inline and binary data.
+#include <fmt/core.h>
+
+#include <tuple>
+
 #include "io/io_files.h"
 
 using namespace sg;

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Zarr folders that are damaged or hostile: an Error each, never a crash, and no memory for what is not there.
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <blosc.h>
+#include <fmt/core.h>
 #include <sys/stat.h>
 #include <zstd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <filesystem>

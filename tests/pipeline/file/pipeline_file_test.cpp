@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/file/pipeline_file.h"
 
+#include <cstring>
+
 #include "base/file/file.h"
 #include "base/random.h"
 #include "base/text/text.h"

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cstring>
+
 #include "data/memory/memo.h"
 #include "pipeline/graph/graph.h"
 #include "support/test.h"

@@ -2,6 +2,7 @@
 #include "pipeline/graph/graph.h"
 #include "pipeline/file/read_part.h"
 
+#include <algorithm>
 #include <atomic>
 #include <thread>
 

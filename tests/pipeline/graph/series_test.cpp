@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include "base/file/file.h"
 #include "data/dataset.h"
 #include "pipeline/graph/graph.h"

@@ -2,6 +2,8 @@
 // Every operation of this build with what nobody means to give it: it answers or throws sg::Error, soon, without asking for gigabytes.
 // SG_HOSTILE_ALL=1: also curved solids of many nodes, and series of every mesh. SG_HOSTILE_ONLY=OPERATION: that one alone, all
 // of its cases, each told before it runs and with its time.
+#include <algorithm>
+
 #include "pipeline/hostile/hostile_inputs.h"
 
 #include <fmt/format.h>

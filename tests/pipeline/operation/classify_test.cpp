@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/segment/classify.h"
 
+#include <algorithm>
+
 #include "base/random.h"
 #include "filter/segment/dice.h"
 #include "filter/segment/segment_support.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/operation/operation.h"
 
+#include <algorithm>
+
 #include "pipeline/operation/test_operations.h"
 #include "support/test.h"
 

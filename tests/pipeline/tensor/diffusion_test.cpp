@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Diffusion tensors of real images.
+#include <fmt/core.h>
+
 #include "filter/tensor/diffusion/tensor_fit.h"
 #include "filter/tensor/lines/tractography.h"
 #include "filter/tensor/tensor_measures.h"

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Media that jump: steps of opacity and of colour, and ramps so narrow that they are as good as steps, against brute force.
+#include <fmt/core.h>
+
 #include "color/transfer_text.h"
 #include "support/property.h"
 #include "volume_brute_force.h"

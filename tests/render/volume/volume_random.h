@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Random volumes for property tests: fields, transfer functions, views and meshes, each with what is true of it (volume_truth.h).
 #pragma once
+#include <fmt/core.h>
+
 #include "color/transfer_text.h"
 #include "data/cells/point_positions.h"
 #include "index/locator_meshes.h"

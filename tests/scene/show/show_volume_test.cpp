@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
 #include "scene/show/volume.h"
 
 #include "color/parse_color.h"

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shape functions of the linear cells, in closed form: they are what most meshes are made of.
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "data/cells/shape/cell_basis.h"
 

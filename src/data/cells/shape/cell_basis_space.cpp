@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Quadratic (serendipity) families and pyramids: each is given by its nodes and its space of functions, and the shape functions
 // follow from both. A space restricted to a face is that of the face's 2D type, so neighbouring cells of any type fit.
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/error.h"
 #include "data/cells/cell_topology.h"
 #include "data/cells/shape/cell_basis.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data/cells/shape/cell_inverse.h"
 
+#include <algorithm>
+
 #include "data/cells/cell_topology.h"
 
 namespace sg {

@@ -2,6 +2,10 @@
 // Opening a cell, its forward map, and where a point lies in it.
 #include "data/cells/shape/cell_map.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/error.h"
 #include "data/cells/shape/cell_map_geometry.h"
 #include "data/cells/shape/mean_value.h"

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Interpolation weights, gradients and integrals of the open cell.
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/error.h"
 #include "data/cells/shape/cell_map.h"
 #include "data/cells/shape/cell_map_geometry.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Gauss-Legendre quadrature of the reference elements; simplices and pyramids are boxes with collapsed sides (Duffy 1982).
+#include <algorithm>
 #include <map>
 #include <mutex>
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data/cells/shape/cell_shape.h"
 
+#include <algorithm>
 #include <map>
 #include <mutex>
+#include <tuple>
 
 #include "base/error.h"
 #include "data/cells/cell_topology.h"

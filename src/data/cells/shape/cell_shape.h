@@ -3,7 +3,7 @@
 //
 // Reference coordinates are VTK's: curves, quads and hexahedra on [0,1]^d; triangles r,s >= 0, r+s <= 1; tetrahedra r+s+t <= 1;
 // wedges triangle(r,s) x [0,1](t); pyramids square base (r,s) in [0,1]^2 at t=0, apex (1/2,1/2,1). Bezier cells: Bernstein polynomials;
-// with rational weights w_k: N_k w_k / sum_j N_j w_j. Polygons and polyhedra have no reference map: see data/cell_map.h.
+// with rational weights w_k: N_k w_k / sum_j N_j w_j. Polygons and polyhedra have no reference map: see data/cells/shape/cell_map.h.
 #pragma once
 #include <array>
 #include <memory>

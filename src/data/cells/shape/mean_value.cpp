@@ -2,6 +2,7 @@
 #include "data/cells/shape/mean_value.h"
 
 #include <algorithm>
+#include <tuple>
 
 #include "data/cells/cell_topology.h"
 #include "data/cells/shape/cell_inverse.h"

@@ -2,6 +2,7 @@
 // Mean value coordinates of polygons (Floater 2003; Hormann, Floater 2006 for non-convex ones) and of closed triangle meshes
 // (Ju, Schaefer, Warren 2005), and the winding number of a triangle mesh. All reproduce linear functions and sum to 1.
 #pragma once
+#include <cstdint>
 #include <span>
 #include <vector>
 

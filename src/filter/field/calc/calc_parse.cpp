@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Recursive descent from text to instructions; sizes and units are checked here, so that running is arithmetic alone.
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <numbers>
 
 #include "base/error.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/field/calc/units.h"
 
+#include <algorithm>
+
 #include "base/text/text.h"
 
 namespace sg {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/field/derivatives/derivatives.h"
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/parallel.h"
 #include "data/lattice.h"

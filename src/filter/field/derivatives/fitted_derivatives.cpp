@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/field/derivatives/fitted_derivatives.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <atomic>
 #include <functional>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/field/derivatives/gradient_rows.h"
 
+#include <algorithm>
+
 namespace sg {
 
 namespace {

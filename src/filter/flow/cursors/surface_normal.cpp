@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/cursors/surface_normal.h"
 
+#include <algorithm>
+
 #include "data/cells/shape/cell_shape.h"
 
 namespace sg {

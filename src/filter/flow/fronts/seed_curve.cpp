@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/fronts/seed_curve.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 
 #include "filter/flow/lines/line_frames.h"

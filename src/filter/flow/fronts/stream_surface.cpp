@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/fronts/stream_surface.h"
 
+#include <fmt/core.h>
+
 #include "base/parallel.h"
 #include "filter/flow/fronts/default_curve.h"
 #include "filter/flow/fronts/front.h"

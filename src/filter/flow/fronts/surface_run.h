@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // What path, streak and time surfaces share: the run over a curve of seeds, and points as they are collected. Internal to filter/flow.
 #pragma once
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "filter/flow/fronts/unsteady_surfaces.h"
 
 namespace sg {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/fronts/unsteady_surfaces.h"
 
+#include <fmt/core.h>
+
 #include "base/text/text.h"
 #include "filter/flow/fronts/default_curve.h"
 #include "filter/flow/fronts/sheet.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/lines/even_streamlines.h"
 
+#include <fmt/core.h>
+
 #include <deque>
 #include <unordered_map>
 

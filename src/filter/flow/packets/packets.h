@@ -7,6 +7,7 @@
 // with trace_line() to 1e-6 of the mesh's size, as far as the flow does not pull neighbours apart. Adaptive steps are worked out in f64:
 // the rounding of f32 is a good part of the errors that they watch, and other steps make other lines at the kinks between cells.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <functional>

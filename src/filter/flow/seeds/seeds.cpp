@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/seeds/seeds.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
+#include <numeric>
 
 #include "base/random.h"
 #include "data/cells/mesh_dimension.h"

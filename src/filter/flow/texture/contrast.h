@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The grey values of a texture: from averages to [0, 1].
 #pragma once
+#include <cstdint>
 #include <span>
 
 #include "base/context.h"

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/topology/critical_points.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
+#include <tuple>
 
 #include "base/parallel.h"
 #include "filter/flow/seeds/noise_speed.h"

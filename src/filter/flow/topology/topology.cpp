@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/topology/topology.h"
 
+#include <fmt/core.h>
+
 #include "filter/flow/topology/border_edges.h"
 
 namespace sg {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/unsteady/flat_advance.h"
 
+#include <algorithm>
+
 namespace sg::lattice_advance {
 
 std::optional<Job> job_of(const UnsteadyFlow& flow, const TraceOptions& options) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/unsteady/streak_front.h"
 
+#include <algorithm>
+
 #include "base/parallel.h"
 
 namespace sg {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/unsteady/timelines.h"
 
+#include <fmt/core.h>
+
 #include "base/parallel.h"
 #include "filter/flow/unsteady/advance_one.h"
 

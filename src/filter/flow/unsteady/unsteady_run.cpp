@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/unsteady/unsteady_run.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <cstring>
 
 #include "base/parallel.h"

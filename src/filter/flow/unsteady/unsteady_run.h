@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the operations on unsteady flows share: their parameters, the way through a series, and lines as a dataset.
 #pragma once
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>

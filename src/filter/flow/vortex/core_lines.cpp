@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/vortex/core_lines.h"
 
+#include <algorithm>
+
 #include "base/parallel.h"
 #include "data/cells/cell_reader.h"
 #include "filter/flow/eigen_general.h"

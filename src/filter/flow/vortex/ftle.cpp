@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/vortex/ftle.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/parallel.h"
 #include "data/memory/memory_budget.h"
 #include "filter/flow/flow_parts.h"

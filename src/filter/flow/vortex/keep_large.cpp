@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/vortex/keep_large.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "data/cells/cell_reader.h"
 #include "filter/mesh/select/extract.h"
 

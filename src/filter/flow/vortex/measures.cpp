@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/vortex/measures.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/parallel.h"
 #include "filter/field/derivatives/gradient.h"
 #include "filter/flow/eigen_general.h"

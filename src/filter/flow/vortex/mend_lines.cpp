@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/vortex/mend_lines.h"
 
+#include <algorithm>
 #include <set>
 
 #include "base/union_find.h"

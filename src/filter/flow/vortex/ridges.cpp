@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/vortex/ridges.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/parallel.h"
 #include "data/cells/mesh_dimension.h"
 #include "data/field_ops.h"

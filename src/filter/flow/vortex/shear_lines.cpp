@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/vortex/shear_lines.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/parallel.h"
 #include "filter/mesh/append.h"
 #include "filter/tensor/lines/hyperstreamlines.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One cell of any linear kind and one or two levels of a function: the pieces that are kept.
 #pragma once
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <span>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Clips lattices: sides of points, whole and cut cells, kept points and cut edges are bits of rows, 64 at a time; a number is a count of
 // bits. Only cut cells are looked at one by one: once to find their case and count its pieces, once to write them by that case.
+#include <algorithm>
 #include <atomic>
 
 #include "base/error.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/mesh/faces/face_matching.h"
 
+#include <algorithm>
 #include <atomic>
 #include <bit>
 

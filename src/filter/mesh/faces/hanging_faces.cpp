@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/mesh/faces/hanging_faces.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "base/parallel.h"

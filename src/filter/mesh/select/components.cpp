@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/mesh/select/components.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <tuple>
+
 #include "base/error.h"
 #include "base/union_find.h"
 #include "data/cells/cell_reader.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/mesh/select/crop.h"
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "data/lattice_crop.h"
 

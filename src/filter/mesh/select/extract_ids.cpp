@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/mesh/select/extract_ids.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cctype>
 #include <unordered_set>

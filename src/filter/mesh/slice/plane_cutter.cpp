@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/mesh/slice/plane_cutter.h"
 
+#include <algorithm>
+
 namespace sg::detail {
 
 double PlaneField::share(int64_t key) const {

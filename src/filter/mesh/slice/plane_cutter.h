@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One cell and a plane: where its edges cross, and how the crossings join to polygons.
 #pragma once
+#include <algorithm>
 #include <functional>
 #include <vector>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the parts of slice() share.
 #pragma once
+#include <algorithm>
 #include <functional>
 
 #include "base/context.h"

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include "base/parallel.h"
 #include "filter/mesh/slice/slice_impl.h"
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A plane through a lattice whose rows are straight: along a row of points the side changes once at most, so that a row is one number,
 // the cut edges of a row are runs, and the number of a vertex is the row's first plus a difference. No search, nothing is stored per point.
+#include <algorithm>
+#include <tuple>
+
 #include "base/error.h"
 #include "base/huge_allocator.h"
 #include "base/parallel.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/scalar/contour/amr_leaves.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 
 namespace sg {

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/scalar/contour/contour.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
+#include <tuple>
 
 #include "base/parallel.h"
 #include "base/text/text.h"

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/scalar/contour/contour_amr.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "base/parallel.h"
 #include "data/field_ops.h"

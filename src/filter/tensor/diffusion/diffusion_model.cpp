@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/tensor/diffusion/diffusion_model.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cstring>
+
 #include "base/error.h"
 
 namespace sg {

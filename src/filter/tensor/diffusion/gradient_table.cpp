@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/tensor/diffusion/gradient_table.h"
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/file/file.h"
 #include "base/text/text.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/tensor/diffusion/tensor_fit.h"
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/parallel.h"
 #include "filter/tensor/diffusion/diffusion_model.h"

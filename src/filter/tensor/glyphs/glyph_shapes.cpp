@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/tensor/glyphs/glyph_shapes.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 
 namespace sg {

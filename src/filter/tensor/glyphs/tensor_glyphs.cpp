@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/tensor/glyphs/tensor_glyphs.h"
 
+#include <fmt/core.h>
+
 #include <map>
 
 #include "base/error.h"

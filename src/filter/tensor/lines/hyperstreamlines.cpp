@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/tensor/lines/hyperstreamlines.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/error.h"
 #include "data/cells/point_positions.h"
 #include "data/field_ops.h"

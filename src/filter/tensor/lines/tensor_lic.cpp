@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/tensor/lines/tensor_lic.h"
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "filter/flow/texture/surface/surface_convolution.h"
 #include "filter/mesh/surface.h"

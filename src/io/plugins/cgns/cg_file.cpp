@@ -2,7 +2,9 @@
 #include "io/plugins/cgns/cg_file.h"
 
 #include <cgns_io.h>
+#include <fmt/core.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "base/bytes.h"

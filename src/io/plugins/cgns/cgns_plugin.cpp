@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The CGNS plug-in: bases, their zones and time steps.
+#include <fmt/core.h>
+
 #include "base/parallel.h"
 #include "io/isolated/isolated.h"
 #include "io/plugin.h"

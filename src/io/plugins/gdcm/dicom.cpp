@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // DICOM: a folder of slices, or one file. Slices are grouped by series (and by size and orientation, so that scouts stay apart), ordered
 // by position along their normal, and become uniform grids in the patient's space (left-posterior-superior, mm).
+#include <fmt/core.h>
+
+#include <tuple>
+
 #include "base/bytes.h"
 #include "base/error.h"
 #include "base/file/file.h"

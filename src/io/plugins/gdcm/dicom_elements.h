@@ -2,6 +2,7 @@
 // The elements of a DICOM file (PS3.5): every length is checked against the file, nothing is copied. GDCM is only given what has
 // passed here, because it asks for memory before it looks whether a file can fill it.
 #pragma once
+#include <cstdint>
 #include <map>
 #include <span>
 #include <string>

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // ENZO output: grids of the hierarchy as an AMR grid, their fields from the HDF5 files beside it, in CGS units where the parameter
 // file gives factors.
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/file/file_fence.h"
 #include "base/text/text.h"
 #include "io/io.h"

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/plugins/hdf5/h5.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/bytes.h"
 #include "base/error.h"
 #include "base/file/file_fence.h"

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/plugins/hdf5/h5_data.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include <libdeflate.h>
 
 #include "base/bytes.h"

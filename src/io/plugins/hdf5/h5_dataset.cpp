@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Datasets: shape, what the file can back, where the numbers lie.
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/bytes.h"
 #include "base/error.h"
 #include "base/text/text.h"

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/plugins/hdf5/h5_pack.h"
 
+#include <algorithm>
+#include <cstring>
+
 #include <libdeflate.h>
 
 #include "base/error.h"

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // VTKHDF: overlapping AMR. Groups Level0, Level1, ... hold the spacing, the boxes and the fields of all boxes one after the other.
+#include <fmt/core.h>
+
 #include "base/bytes.h"
 #include "io/mesh/amr_cover.h"
 #include "io/plugins/hdf5/vtkhdf.h"

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // VTKHDF: unstructured grids and polygonal data. Partitions lie one after the other in every array, each numbering its points from 0;
 // they are merged here. In a series, tables in Steps say which partitions, points, cells and ids belong to a step.
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/bytes.h"
 #include "io/plugins/hdf5/vtkhdf.h"
 #include "io/vtk/vtk_cells.h"

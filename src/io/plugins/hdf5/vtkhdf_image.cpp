@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // VTKHDF: image data. Arrays have the dimensions (z, y, x[, components]), in series with the step in front; of a region only its
 // block is read.
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/bytes.h"
 #include "data/lattice_crop.h"
 #include "io/plugins/hdf5/vtkhdf.h"

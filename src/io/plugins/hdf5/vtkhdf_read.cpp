@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // VTKHDF files: the choice of the kind, time steps, fields, blocks.
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/bytes.h"
 #include "base/text/text.h"
 #include "io/plugins/hdf5/vtkhdf.h"

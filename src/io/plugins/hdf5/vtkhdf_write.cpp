@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // VTKHDF files, writing: uniform grids, unstructured and surface meshes, point clouds, AMR grids; one partition, one step. Version 1.0
 // where that has the kind (so that VTK 9.1 reads it), else 2.0, 2.5 with polyhedra.
+#include <fmt/core.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <cstring>
+#include <numeric>
 
 #include "base/file/partial_file.h"
 #include "base/text/text.h"

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/plugins/netcdf/cf.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cstring>
+
 #include "base/parallel.h"
 #include "base/text/text.h"
 #include "data/lattice.h"

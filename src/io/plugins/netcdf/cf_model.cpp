@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <tuple>
+
 #include "base/text/text.h"
 #include "io/plugins/netcdf/cf.h"
 

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/plugins/netcdf/exodus.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/text/text.h"
 #include "io/mesh/unread.h"
 

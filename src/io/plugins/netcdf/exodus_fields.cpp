@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Exodus II: variables, maps and points of an object.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cstring>
+
 #include "base/parallel.h"
 #include "io/mesh/unread.h"
 #include "io/plugins/netcdf/exodus.h"

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Exodus II: the cells of blocks and sets, on the nodes that they use.
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/bytes.h"
 #include "base/parallel.h"
 #include "io/plugins/netcdf/exodus.h"

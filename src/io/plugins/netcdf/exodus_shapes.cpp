@@ -3,6 +3,10 @@
 // of a TET11, say) are left out.
 #include "io/plugins/netcdf/exodus_shapes.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/error.h"
 #include "base/text/text.h"
 

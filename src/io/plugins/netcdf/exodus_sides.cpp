@@ -2,6 +2,10 @@
 // Exodus II: side sets, lists of (element, side) as cells of one dimension less.
 #include "io/plugins/netcdf/exodus.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+
 namespace sg::nc {
 
 // What the sides of one set become.

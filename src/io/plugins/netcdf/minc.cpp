@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/plugins/netcdf/minc.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cstring>
+#include <tuple>
+
 #include <netcdf.h>
 
 #include "base/parallel.h"

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The classic netCDF header, walked once: the library takes zeros for what a cut file lacks, and believes every count.
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/bytes.h"
 #include "base/file/file.h"
 #include "io/plugins/netcdf/nc_file.h"

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/plugins/netcdf/nc_file.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #ifdef SG_QUIET_HDF5
 #include <hdf5.h>
 #endif

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
 #include "base/bytes.h"
 #include "base/error.h"
 #include "base/file/file.h"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
 #include <openvdb/tools/Dense.h>
 
 #include <cerrno>

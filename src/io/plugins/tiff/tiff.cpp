@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // TIFF through libtiff: one page is a grid of one layer, pages of one size are a volume; y upwards. 8 to 64 bits, whole or float, as
 // stored; bits, palettes and packed colours become RGB.
+#include <fmt/core.h>
 #include <tiffio.h>
 
 #include "base/bytes.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // VP9 through libvpx: constant quality, the same packets for any number of threads.
+#include <fmt/core.h>
 #include <vpx/vp8cx.h>
 #include <vpx/vpx_encoder.h>
 

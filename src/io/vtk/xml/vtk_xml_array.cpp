@@ -3,9 +3,12 @@
 //   plain       [bytes] numbers
 //   compressed  [blocks] [bytes per block] [bytes of the last, 0 = full] [compressed bytes of each block]... block block ...
 // with [x] of header_type. In base64 the header of a compressed array is a padded stream of its own.
+#include <fmt/core.h>
 #include <sys/mman.h>
 
+#include <algorithm>
 #include <atomic>
+#include <tuple>
 
 #include "base/bytes.h"
 #include "base/parallel.h"

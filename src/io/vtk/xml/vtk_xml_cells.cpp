@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // VTK XML unstructured grids and polygonal data: pieces are joined to one mesh, in their order.
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/bytes.h"
 #include "io/vtk/vtk_cells.h"
 #include "io/vtk/xml/vtk_xml_pieces.h"

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "io/vtk/xml/vtk_xml_encode.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cstring>
+
 #include "base/parallel.h"
 #include "base/text/utf8.h"
 #include "io/vtk/vtk_numbers.h"

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The fields of VTK XML pieces: which there are, and their numbers, piece after piece.
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/bytes.h"
 #include "base/parallel.h"
 #include "base/text/text.h"

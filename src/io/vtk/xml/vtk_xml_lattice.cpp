@@ -2,6 +2,10 @@
 // VTK XML image data, rectilinear and structured grids. Pieces are boxes of the whole extent; they share the layer of
 // points where they touch. The grid that is read is the smallest box with all pieces, or the part of it that is asked for
 // (ReadOptions::region); of the pieces only what lies in that part is read.
+#include <fmt/core.h>
+
+#include <algorithm>
+
 #include "base/bytes.h"
 #include "base/parallel.h"
 #include "io/vtk/vtk_cells.h"

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // VTK XML files, reading: the choice of the kind, and parallel files, which name the files of their pieces.
 // Format: VTK User's Guide, "XML file formats".
+#include <fmt/core.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <set>
 
 #include "base/file/file_fence.h"

@@ -1,5 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // VTK XML files, writing: one piece that holds the whole dataset.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <numeric>
+
 #include "base/parallel.h"
 #include "base/text/text.h"
 #include "data/lattice.h"

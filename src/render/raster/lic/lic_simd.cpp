@@ -2,6 +2,8 @@
 // The two loops of image-space LIC over whole planes: which neighbours belong together, and noise along lines. No fused multiply-add.
 #include "render/raster/lic/surface_lic.h"
 
+#include <algorithm>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/raster/lic/lic_simd.cpp"
 #include <hwy/foreach_target.h>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Clipping against the near plane and the guard band (Sutherland & Hodgman 1974), and what is said once per triangle.
+#include <algorithm>
 #include <cmath>
 
 #include "render/raster/triangles/kernels.h"

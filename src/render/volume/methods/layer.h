@@ -31,7 +31,7 @@ Layer slices(const LayerInput& input);
 Layer shear_warp(const LayerInput& input);
 // fourier.cpp
 Layer fourier(const LayerInput& input);
-// cells/project.cpp: tetrahedra of any mesh by cell projection
+// engines/tets/project.cpp: tetrahedra of any mesh by cell projection
 Layer project_cells(const LayerInput& input);
 
 }  // namespace sg::volume

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/fronts/stream_surface.h"
 
+#include <algorithm>
+#include <cstring>
 #include <functional>
 #include <map>
 #include <set>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/fronts/unsteady_surfaces.h"
 
+#include <algorithm>
+#include <cstring>
 #include <set>
 
 #include "base/parallel.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/lines/tubes.h"
 
+#include <cstring>
+
 #include "base/parallel.h"
 #include "filter/flow/lines/line_frames.h"
 #include "filter/surface/mass_properties.h"

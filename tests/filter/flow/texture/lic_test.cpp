@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/texture/lic.h"
 
+#include <algorithm>
+
 #include "filter/mesh/to_unstructured.h"
 #include "texture_support.h"
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
 #include "filter/flow/texture/advect.h"
 #include "filter/flow/texture/spot_noise.h"
 #include "texture_support.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Particles in the plane, side by side in the lanes of vectors, against the general way.
+#include <fmt/core.h>
 #include <hwy/targets.h>
 
 #include <cstring>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/vortex/core_lines.h"
 
+#include <cstring>
+
 #include "base/parallel.h"
 #include "filter/flow/flow_support.h"
 #include "filter/flow/vortex/parallel_vectors.h"

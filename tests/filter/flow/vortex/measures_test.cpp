@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/vortex/measures.h"
 
+#include <algorithm>
+#include <cstring>
+
 #include "base/parallel.h"
 #include "base/random.h"
 #include "filter/flow/eigen_general.h"

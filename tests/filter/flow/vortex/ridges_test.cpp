@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/flow/vortex/ridges.h"
 
+#include <algorithm>
+#include <cstring>
+
 #include "base/parallel.h"
 #include "filter/flow/flow_support.h"
 #include "support/test.h"

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Inside and outside make up the whole, where values are stepped: many corners have the very value that is clipped by.
+#include <fmt/core.h>
+
 #include <cmath>
 
 #include "base/random.h"

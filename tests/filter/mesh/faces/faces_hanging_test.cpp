@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Faces of non-conforming meshes: hanging faces are inside. Octrees of bent hexahedra are counted cell by cell on their finest grid.
+#include <algorithm>
 #include <map>
 
 #include "data/cells/shape/cell_map.h"

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Contours: what is carried, left out and refused.
+#include <tuple>
+
 #include "filter/cell_meshes.h"
 
 using namespace sg;

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Contours asked for again and again: an index answers, and nobody can tell from the result.
+#include <algorithm>
+#include <cstring>
+
 #include "base/parallel.h"
 #include "base/random.h"
 #include "data/memory/memo.h"

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a medium does within one cell: cubics of the length across knots of opacity and of colour, against an integral in tiny steps.
+#include <fmt/core.h>
+
 #include "color/transfer_text.h"
 #include "render/volume/rays/integrate.h"
 #include "render/volume/volume_support.h"

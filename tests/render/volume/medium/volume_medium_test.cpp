@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a medium says about its own colours: integrators trust it.
+#include <fmt/core.h>
+
 #include "color/transfer_text.h"
 #include "render/volume/medium/medium.h"
 #include "render/volume/volume_support.h"

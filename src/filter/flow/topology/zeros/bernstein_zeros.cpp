@@ -2,6 +2,7 @@
 #include "filter/flow/topology/zeros/bernstein_zeros.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <numeric>
 
 namespace sg {

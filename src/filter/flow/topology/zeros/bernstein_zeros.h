@@ -2,6 +2,7 @@
 // All zeros of a system of 2 or 3 polynomials in a box, triangle, tetrahedron or prism.
 #pragma once
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 

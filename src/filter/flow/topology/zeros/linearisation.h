@@ -2,6 +2,7 @@
 // The flow near a critical point: eigenvalues, eigenvectors, class and index of its velocity gradient (Helman, Hesselink 1991).
 #pragma once
 #include <array>
+#include <cstdint>
 #include <string_view>
 
 #include "base/vec.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/scalar/contour/cells/cell_cases.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Contours of unstructured and surface meshes, cell by cell. A cut edge is known by its two point numbers, so that cells of
 // different kinds share it; the edges of all cells are numbered afterwards (contour_edges.h).
+#include <fmt/core.h>
+
 #include <cmath>
 
 #include "base/parallel.h"

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filter/scalar/contour/cells/contour_curved.h"
 
+#include <fmt/core.h>
+
+#include <algorithm>
 #include <bit>
 #include <cmath>
+#include <tuple>
 
 #include "base/parallel.h"
 #include "data/cells/cell_topology.h"

@@ -7,6 +7,8 @@
 #define SG_CONTOUR_LIST_INL
 #endif
 #include <bit>
+#include <cstddef>
+#include <cstdint>
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::contouring::HWY_NAMESPACE {

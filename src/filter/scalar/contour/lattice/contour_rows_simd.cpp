@@ -3,6 +3,7 @@
 // Writing takes a vector for the numbers of a cell's edges and shuffles it into all of its triangles at once.
 #include "filter/scalar/contour/lattice/contour_rows.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <memory>

@@ -2,6 +2,7 @@
 // Surfels of axis-parallel uniform grids, one cell per lane. No fused multiply-add: every target gives the same bits.
 #include "filter/scalar/contour/lattice/contour_surfels.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/bits.h"

@@ -2,6 +2,7 @@
 #include "render/volume/engines/bricks/brick_lattice.h"
 
 #include <cmath>
+#include <cstring>
 
 #include "index/brick_row.h"
 #include "render/volume/sources/bricks/brick_store.h"

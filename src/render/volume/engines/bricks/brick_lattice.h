@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A leaf of the tree as a lattice of its own, with a margin: what packets of rays draw (lattice/packets.h).
+// A leaf of the tree as a lattice of its own, with a margin: what packets of rays draw (engines/packets/packets.h).
 #pragma once
 #include "data/bricked.h"
 #include "render/volume/sources/bricks/brick_tree.h"

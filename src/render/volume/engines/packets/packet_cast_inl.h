@@ -7,6 +7,8 @@
 #define SG_PACKET_CAST_INL_H
 #endif
 
+#include <cstdint>
+
 #include "render/volume/engines/packets/packets_inl.h"
 
 HWY_BEFORE_NAMESPACE();

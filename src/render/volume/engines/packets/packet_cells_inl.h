@@ -135,7 +135,7 @@ class PacketCells : public RayLanes<D, T, Axes> {
       if (hn::AllFalse(d, look)) return;
       if (m.any_abrupt()) abrupt = hn::AndNot(same, medium.abrupt(first, last));
     }
-    // The errors of optics/integrate.cpp, Pieces::whole.
+    // The errors of rays/integrate.cpp, Pieces::whole.
     const F pass = sum.pass, depth = hn::Mul(length, most), taken = hn::Min(one, depth), range = hn::Sub(hi, lo);
     const F color_slope = hn::Set(d, m.color_slope());
     const F widths = hn::Mul(range, hn::Set(d, 1 / m.color_width())), change = hn::Min(one, hn::Mul(range, color_slope));
@@ -256,7 +256,7 @@ class PacketCells : public RayLanes<D, T, Axes> {
   }
 
   /// Where a cubic that goes one way from s to end, and from a to b, has a value, to `close`, for the lanes that ask: as Pieces::meets of
-  /// optics/integrate.cpp.
+  /// rays/integrate.cpp.
   static HWY_NOINLINE F enclosed(const Cubic<D>& f, F s, F end, F a, F b, F value, F close, M asking) {
     const D d;
     const F zero = hn::Zero(d), half = hn::Set(d, 0.5f);
@@ -299,7 +299,7 @@ class PacketCells : public RayLanes<D, T, Axes> {
     F narrower, change[3];
     bool any_change;
   };
-  /// Pieces::segment of optics/integrate.cpp. `line`: of the medium on which the part lies; null: that of each value. `lit(at, share,
+  /// Pieces::segment of rays/integrate.cpp. `line`: of the medium on which the part lies; null: that of each value. `lit(at, share,
   /// spread, r, g, b)` lights the colours and the share of what is mirrored, at the share `at` of the part.
   template <class Lit>
   HWY_INLINE void segment(M look, F here, F part, F depth, const F tau[3], F a, F b, F middle, F weight, const I* line, const Lit& lit) {

@@ -208,7 +208,7 @@ class DetailCells : public RayLanes<D, T, Axes> {
     return hn::Add(second(a, b, c), second(c, e, g));
   }
 
-  /// overlooks() of optics/integrate.cpp, for five samples.
+  /// overlooks() of rays/integrate.cpp, for five samples.
   struct AxisSamples {
     const F* at[5];
     float narrow;

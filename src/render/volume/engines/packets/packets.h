@@ -45,7 +45,7 @@ struct PacketPlan {
 inline bool whole_power(const Material& m) { return m.power >= 0 && m.power <= 4096 && m.power == float(int(m.power)); }
 
 /// May this volume be drawn by `march_tile`: affine, linear between samples, a linear transfer table, no hidden cells, offsets
-/// of 32 bits? The others go by single rays (optics/cast.h).
+/// of 32 bits? The others go by single rays (rays/cast.h).
 bool in_packets(const PacketPlan& plan);
 
 /// Draws the pixels [x0, x1) x [y0, y1): fixed steps of volume.step, or the maximum, behind nothing and before what is in the frame

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The integral within a tolerance along packets of rays: optics/integrate.cpp for a uniform grid, one ray per vector lane. Every lane has
+// The integral within a tolerance along packets of rays: rays/integrate.cpp for a uniform grid, one ray per vector lane. Every lane has
 // its own place: it leaps over what draws nothing, strides where the field is as good as straight, and crosses the other cells one by one.
 #include "render/volume/engines/packets/packet_rays.h"
 

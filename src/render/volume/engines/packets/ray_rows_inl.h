@@ -8,6 +8,8 @@
 #define SG_RAY_ROWS_INL_H
 #endif
 
+#include <cstdint>
+
 #include "render/volume/engines/packets/packet_around_inl.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // LeafLattice: the field in a box whose faces and edges are split by finer neighbours, as trilinear little boxes.
 #pragma once
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <vector>

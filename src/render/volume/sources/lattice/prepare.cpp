@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // VolumeItem -> Volume: checks, geometry, samples, index.
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/parallel.h"
 #include "data/field_ops.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples of a lattice made ready for a reconstruction kernel (filter/field/reconstruction.h), and the sums over its support.
+// Samples of a lattice made ready for a reconstruction kernel (filter/field/sampling/reconstruction.h), and the sums over its support.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/volume/sources/lattice/reconstructed_ray.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
 
 #include "render/volume/sources/lattice/box_walk.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reconstruction kernels and gradients on rays: V10-V12, against sums over the kernels, and at holes and borders.
 #include <cstdio>
+#include <tuple>
 
 #include "color/cie.h"
 #include "filter/field/sampling/reconstruction.h"
