@@ -3,8 +3,6 @@
 
 #include <fmt/core.h>
 
-#include <optional>
-
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/random.h"
@@ -12,22 +10,16 @@
 #include "render/composite/background.h"
 #include "render/shade/lamp.h"
 #include "render/volume/effects/effects.h"
-#include "render/volume/engines/bricks/brick_packets.h"
-#include "render/volume/engines/packets/detail_table.h"
-#include "render/volume/engines/packets/packets.h"
-#include "render/volume/engines/tets/tet_rays.h"
+#include "render/volume/engines/engine.h"
 #include "render/volume/methods/layers.h"
 #include "render/volume/natural_units.h"
 #include "render/volume/prepare_cast.h"
 #include "render/volume/rays/split_rays.h"
-#include "render/volume/sources/cells/cell_source.h"
-#include "render/volume/sources/lattice/reconstructed_ray.h"
 
 namespace sg::volume {
 
 namespace {
 
-constexpr int tile = 16;  // pixels; rays of a tile meet the same voxels
 constexpr int block = 4;  // tiles across and down that one thread draws, so that what they share stays in its cache
 
 struct Picture {
@@ -112,115 +104,13 @@ void pixel(const Picture& picture, int x, int y, Scratch& s) {
     picture.frame.depth[p] = float(first_depth + state.surface * per_length), picture.frame.ids[p] = state.surface_id;
 }
 
-/// One volume alone, in the fastest way that can draw it.
-class Alone {
- public:
-  Alone(const Picture& picture, Context& context) : picture_(picture) {
-    if (picture.volumes.size() != 1) return;
-    const CastVolume& v = picture.volumes[0];
-    const VolumeItem& item = *v.item;
-    if (v.effects || v.averaged) return;
-    const bool composite = item.mode == RayFunction::composite, by_tolerance = composite && !(v.step > 0);
-    if (v.detail && !(by_tolerance && picture.lattices[0] && picture.lattices[0]->affine && DetailTable::fits(item, *v.detail))) return;
-    const bool post = composite && item.sampling.classify == "post" && !item.sampling.jitter;
-    const auto plan_for = [&](const Volume& volume) {
-      plan_.emplace(PacketPlan{volume, picture.projection, picture.knobs, {}, v.material, v.medium.get(), v.budget, float(v.source->edge)});
-      if (picture.shaded) plan_->lamps = picture.lamps;
-    };
-    if (picture.lattices[0]) {
-      if (wants_reconstruction(item.sampling)) return;
-      const Volume& lattice = *picture.lattices[0];
-      plan_for(lattice);
-      plan_->clip = item.clip;
-      const bool leaps = picture.knobs.skip_empty && lattice.any_empty;
-      const auto ahead = [&] { return SpaceAhead(lattice.distance, lattice.fine().dims, Ways::of(picture.projection, lattice.to_q)); };
-      const bool in_steps = post || item.mode == RayFunction::maximum;
-      if (by_tolerance && in_tolerant_packets(*plan_)) {
-        packets_ = cast_tile;
-        if (v.detail) {
-          plan_->detail = &detail_.emplace(item, *v.detail, double(v.source->base));
-          if (leaps) plan_->ahead = &ahead_.emplace(ahead());
-        } else if (lattice.affine) {
-          sums_.emplace(*v.medium);
-          auto bends = bends_of(item, lattice);
-          if (leaps) passages_.emplace(std::move(bends), ahead());
-          else passages_.emplace(std::move(bends));
-          plan_->sums = &*sums_, plan_->passages = &*passages_;
-        } else {
-          uneven_.emplace(lattice);
-          plan_->uneven = &*uneven_;
-          if (leaps) plan_->ahead = &ahead_.emplace(ahead());
-        }
-      } else if (!by_tolerance && in_steps && in_packets(*plan_)) {
-        packets_ = march_tile;
-        if (post && leaps) plan_->ahead = &ahead_.emplace(ahead());
-      }
-    } else if (!item.clip.empty()) {
-      return;
-    } else if (const auto* bricks = dynamic_cast<const BrickedSource*>(v.source.get())) {
-      stage_ = brick_stage(*bricks, item, v.id, v.unit, v.per_scale);
-      plan_for(stage_);
-      if ((by_tolerance || post) && picture.knobs.bricks_in_packets && BrickPackets::fits(*bricks, item, *plan_, !by_tolerance))
-        bricks_.emplace(*bricks, stage_, *plan_, !by_tolerance, context);
-    } else if (by_tolerance && !bricked_of(*item.data) && TetRays::fits(cell_volume_of(*v.source))) {
-      tets_.emplace(cell_volume_of(*v.source), picture.projection, *v.medium, context, v.budget.stop_below, float(v.budget.tolerance));
-      if (item.shaded) tets_->light(picture.lamps, item.light, v.per_scale);
-    }
-  }
-
-  /// Draws a tile; false when it has to go by single rays.
-  bool in_blocks() const { return packets_ || bricks_; }  ///< may `draw` take more than a tile at once?
-  bool draw(int x0, int y0, int x1, int y1) const {
-    if (packets_) packets_(*plan_, x0, y0, x1, y1, picture_.frame);
-    else if (bricks_) bricks_->draw(x0, y0, x1, y1, picture_.frame);
-    else if (tets_) draw_tets(x0, y0, x1, y1);
-    return packets_ || bricks_ || tets_;
-  }
-  /// Depth at which the ray of a pixel leaves the box of the volume, but for rounding; -infinity where it misses. For `in_blocks`.
-  float leaves(int x, int y) const {
-    const Projection& p = picture_.projection;
-    const Projection::Ray ray = p.ray(x + 0.5, y + 0.5);
-    const Course c = course(plan_->volume, ray.origin, ray.direction, -HUGE_VAL, HUGE_VAL);
-    if (!(c.leave > c.enter)) return -HUGE_VALF;
-    return float((dot(ray.origin - p.eye, p.forward) + c.leave * dot(ray.direction, p.forward)) * (1 - 2e-6));
-  }
-
- private:
-  void draw_tets(int x0, int y0, int x1, int y1) const {
-    Frame& frame = picture_.frame;
-    float limit[TetRays::tile * TetRays::tile];
-    TetRays::Pixel found[TetRays::tile * TetRays::tile];
-    const int width = x1 - x0;
-    const auto place = [&](int x, int y) { return size_t(y) * size_t(frame.width) + size_t(x); };
-    for (int y = y0; y < y1; ++y)
-      for (int x = x0; x < x1; ++x)
-        limit[(y - y0) * width + x - x0] = std::min(float(picture_.projection.far_plane), frame.depth[place(x, y)]);
-    tets_->draw(x0, y0, width, y1 - y0, limit, found);
-    for (int y = y0; y < y1; ++y)
-      for (int x = x0; x < x1; ++x) {
-        const TetRays::Pixel& from = found[(y - y0) * width + x - x0];
-        const size_t p = place(x, y);
-        float* out = &frame.rgba[4 * p];
-        Gathered sum{from.r, from.g, from.b, from.transmittance};
-        sum.behind(out);
-        out[0] = sum.r, out[1] = sum.g, out[2] = sum.b, out[3] = 1 - sum.transmittance;
-        if (from.half == from.half && !(frame.depth[p] < HUGE_VALF)) frame.depth[p] = from.half, frame.ids[p] = picture_.volumes[0].id;
-      }
-  }
-
-  const Picture& picture_;
-  std::optional<PacketPlan> plan_;
-  std::optional<MediumSums> sums_;
-  std::optional<UnevenAxes> uneven_;
-  std::optional<DetailTable> detail_;
-  std::optional<Passages> passages_;
-  std::optional<SpaceAhead> ahead_;
-  void (*packets_)(const PacketPlan&, int, int, int, int, Frame&) = nullptr;
-  Volume stage_;  // of bricks
-  std::optional<BrickPackets> bricks_;
-  std::optional<TetRays> tets_;
-};
-static_assert(tile == TetRays::tile);
+/// Depth at which the ray of a pixel leaves the box of a volume, but for rounding; -infinity where it misses.
+float leaves(const Projection& p, const Volume& volume, int x, int y) {
+  const Projection::Ray ray = p.ray(x + 0.5, y + 0.5);
+  const Course c = course(volume, ray.origin, ray.direction, -HUGE_VAL, HUGE_VAL);
+  if (!(c.leave > c.enter)) return -HUGE_VALF;
+  return float((dot(ray.origin - p.eye, p.forward) + c.leave * dot(ray.direction, p.forward)) * (1 - 2e-6));
+}
 
 /// Where a volume asks for shadows, all composited volumes cast them, on each other and on surfaces; surfaces on volumes.
 void shadow_lamps(const Scene& scene, Picture& picture, const Box3& drawn, Context& context) {
@@ -264,7 +154,7 @@ void reach_ends(const BrickedVolume& bricks, Volume& v) {
 }
 
 // Packets where no pixel has fragments inside the volume: those behind it come first. The other pixels go by single rays.
-void draw_among(const Picture& picture, const Alone& alone, int x0, int y0, int x1, int y1, Scratch& scratch) {
+void draw_among(const Picture& picture, const TileEngine& engine, int x0, int y0, int x1, int y1, Scratch& scratch) {
   struct Pixel {
     int x, y;
     float depth;
@@ -276,7 +166,7 @@ void draw_among(const Picture& picture, const Alone& alone, int x0, int y0, int 
       const size_t p = size_t(y) * size_t(frame.width) + size_t(x);
       const size_t first = picture.fragments.start[p], last = picture.fragments.start[p + 1];
       if (first == last) continue;
-      if (alone.leaves(x, y) > picture.fragments.fragments[first].depth) {  // the nearest is the first
+      if (leaves(picture.projection, *engine.blocks(), x, y) > picture.fragments.fragments[first].depth) {  // the nearest is the first
         single.push_back({x, y, frame.depth[p]});
         frame.depth[p] = -HUGE_VALF;
         continue;
@@ -287,7 +177,7 @@ void draw_among(const Picture& picture, const Alone& alone, int x0, int y0, int 
       sum.behind(out);
       out[0] = sum.r, out[1] = sum.g, out[2] = sum.b, out[3] = 1 - sum.transmittance;
     }
-  alone.draw(x0, y0, x1, y1);
+  engine.draw(x0, y0, x1, y1, frame);
   for (const Pixel& s : single) {
     frame.depth[size_t(s.y) * size_t(frame.width) + size_t(s.x)] = s.depth;
     pixel(picture, s.x, s.y, scratch);
@@ -344,7 +234,9 @@ void cast_volumes(const Scene& scene, const Projection& projection, const Fragme
   if (picture.volumes.empty()) return composite_fragments(fragments, frame, context);
   picture.lamps = lamps_of(lights_of(scene), projection);
   add_effects(scene, picture, context);
-  const Alone alone(picture, context);
+  std::unique_ptr<TileEngine> engine;
+  if (picture.volumes.size() == 1)
+    engine = engine_for({picture.volumes[0], picture.lattices[0].get(), projection, picture.lamps, picture.shaded, knobs, context});
   const int across = (frame.width + tile - 1) / tile, down = (frame.height + tile - 1) / tile;
   const int blocks_across = (across + block - 1) / block, blocks_down = (down + block - 1) / block;
   parallel_for(
@@ -353,18 +245,18 @@ void cast_volumes(const Scene& scene, const Projection& projection, const Fragme
         Scratch scratch{{}, Caster(picture.volumes), {}};
         const auto draw = [&](int tx0, int ty0, int tx1, int ty1) {
           const int x0 = tx0 * tile, y0 = ty0 * tile, x1 = std::min(tx1 * tile, frame.width), y1 = std::min(ty1 * tile, frame.height);
-          if (!any_fragments(fragments, frame, x0, y0, x1, y1) && alone.draw(x0, y0, x1, y1)) return;
+          if (engine && !any_fragments(fragments, frame, x0, y0, x1, y1)) return engine->draw(x0, y0, x1, y1, frame);
           for (int y = y0; y < y1; ++y)
             for (int x = x0; x < x1; ++x) pixel(picture, x, y, scratch);
         };
         for (size_t b = begin; b < end; ++b) {
           const int tx0 = int(b) % blocks_across * block, ty0 = int(b) / blocks_across * block;
           const int tx1 = std::min(tx0 + block, across), ty1 = std::min(ty0 + block, down);
-          if (!knobs.wanted && alone.in_blocks()) {
+          if (!knobs.wanted && engine && engine->blocks()) {
             const int x1 = std::min(tx1 * tile, frame.width), y1 = std::min(ty1 * tile, frame.height);
             if (any_fragments(fragments, frame, tx0 * tile, ty0 * tile, x1, y1))
-              draw_among(picture, alone, tx0 * tile, ty0 * tile, x1, y1, scratch);
-            else alone.draw(tx0 * tile, ty0 * tile, x1, y1);
+              draw_among(picture, *engine, tx0 * tile, ty0 * tile, x1, y1, scratch);
+            else engine->draw(tx0 * tile, ty0 * tile, x1, y1, frame);
             continue;
           }
           for (int ty = ty0; ty < ty1; ++ty)
@@ -374,10 +266,6 @@ void cast_volumes(const Scene& scene, const Projection& projection, const Fragme
       },
       &context);
 }
-
-}  // namespace
-
-namespace {
 
 void composite_natural(const Scene& scene, const Projection& projection, const FragmentLists& fragments, Frame& frame, Context& context,
                        const Knobs& knobs) {

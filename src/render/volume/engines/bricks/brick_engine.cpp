@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Volumes that memory does not hold, by packets of rays.
+#include <optional>
+
+#include "render/volume/engines/bricks/brick_packets.h"
+#include "render/volume/engines/engine.h"
+
+namespace sg::volume {
+
+namespace {
+
+class BrickEngine : public TileEngine {
+ public:
+  BrickEngine(const EngineInput& in, const BrickedSource& source)
+      : stage_(brick_stage(source, in.item(), in.volume.id, in.volume.unit, in.volume.per_scale)), plan_{stage_,
+                                                                                                         in.projection,
+                                                                                                         in.knobs,
+                                                                                                         {},
+                                                                                                         in.volume.material,
+                                                                                                         in.volume.medium.get(),
+                                                                                                         in.volume.budget,
+                                                                                                         float(in.volume.source->edge)} {
+    if (in.shaded) plan_.lamps = in.lamps;
+  }
+  /// False where packets do not fit.
+  bool read(const EngineInput& in, const BrickedSource& source) {
+    if (!BrickPackets::fits(source, in.item(), plan_, !in.by_tolerance())) return false;
+    packets_.emplace(source, stage_, plan_, !in.by_tolerance(), in.context);
+    return true;
+  }
+  void draw(int x0, int y0, int x1, int y1, Frame& frame) const override { packets_->draw(x0, y0, x1, y1, frame); }
+  const Volume* blocks() const override { return &stage_; }
+
+ private:
+  Volume stage_;
+  PacketPlan plan_;
+  std::optional<BrickPackets> packets_;
+};
+
+}  // namespace
+
+std::unique_ptr<TileEngine> brick_engine(const EngineInput& in) {
+  const auto* source = dynamic_cast<const BrickedSource*>(in.volume.source.get());
+  if (!source || in.lattice || in.volume.detail || !in.item().clip.empty() || !in.knobs.bricks_in_packets) return nullptr;
+  if (!in.by_tolerance() && !in.by_samples()) return nullptr;
+  auto engine = std::make_unique<BrickEngine>(in, *source);
+  return engine->read(in, *source) ? std::move(engine) : nullptr;
+}
+
+}  // namespace sg::volume
