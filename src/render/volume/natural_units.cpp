@@ -41,7 +41,7 @@ double size_of(const Dataset& d, const Field& f, int component) {
 double size_of(const VolumeItem& item, const Field& field) {
   const double all = size_of(*item.data, field, item.component);
   // The axis of these is not the values'.
-  if (item.mode == RayFunction::sum || item.mode == RayFunction::distance || item.mode == RayFunction::accumulate) return all;
+  if (info_of(item.mode).collects()) return all;
   double told = std::max(std::abs(item.color.lo), std::abs(item.color.hi));
   for (const Vec2& p : item.opacity.points) told = std::max(told, std::abs(p.x));
   for (double l : item.levels) told = std::max(told, std::abs(l));
@@ -174,8 +174,8 @@ void scale(VolumeItem& item, double value, double length) {
   item.data = scaled(item.data, fields, length);
   // The axis of colours and opacity: values, values times lengths, or lengths.
   double shown = value;
-  if (item.mode == RayFunction::sum) shown = value * length;
-  if (item.mode == RayFunction::distance || item.mode == RayFunction::accumulate) shown = length;
+  if (info_of(item.mode).axis == RayFunctionInfo::Axis::value_times_length) shown = value * length;
+  if (info_of(item.mode).axis == RayFunctionInfo::Axis::length) shown = length;
   scale_colors(item.color, shown), scale_places(item.opacity, shown);
   for (double& l : item.levels) l *= value;
   item.unit_distance *= length, item.sampling.step *= length;

@@ -19,10 +19,6 @@ namespace sg::volume {
 
 namespace {
 
-bool needs_level(RayFunction f) {
-  return f == RayFunction::first_hit || f == RayFunction::distance || f == RayFunction::accumulate || f == RayFunction::isosurface;
-}
-
 std::unique_ptr<RaySource> source_of(const VolumeItem& item, std::shared_ptr<const Volume> lattice, const Projection& projection,
                                      double coarser, Context& context, Range& reach) {
   if (auto bricked = lattice ? nullptr : bricked_source(item, projection, context.memory_limit / 2, context, coarser)) {
@@ -85,7 +81,7 @@ void check(const VolumeItem& item) {
   if (!(item.unit_distance >= 0) || !std::isfinite(item.unit_distance))
     fail_usage(fmt::format("the unit distance {} is no length", item.unit_distance), "volume",
                "give a length above 0, or 0 for 1/100 of the diagonal");
-  if (needs_level(item.mode) && item.levels.empty())
+  if (info_of(item.mode).needs_level && item.levels.empty())
     fail_usage("this ray function needs a value to look for", "volume", "name one with levels=");
   const auto& points = item.opacity.points;
   if (points.empty()) fail_usage("the opacity has no points", "volume", "give at least one: {value, opacity}");
@@ -134,7 +130,7 @@ CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<con
     plan.lo = std::min({plan.lo, item.color.lo, item.color.hi, item.opacity.points.front().x});
     plan.hi = std::max({plan.hi, item.color.lo, item.color.hi, item.opacity.points.back().x});
   }
-  if (item.mode == RayFunction::sum || item.mode == RayFunction::distance || item.mode == RayFunction::accumulate) {
+  if (info_of(item.mode).collects()) {
     // These have values of their own, which need not be those of the field.
     const double span = std::abs(item.color.hi - item.color.lo);
     plan.lo = std::min(item.color.lo, item.color.hi) - span, plan.hi = std::max(item.color.lo, item.color.hi) + span, plan.base = 0;
@@ -163,19 +159,19 @@ CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<con
   for (double l : item.levels) v.levels->push_back(l - base);
   const VolumeLight& light = item.light;
   v.material = material_of(light, item.shaded);
-  switch (item.mode) {
-    case RayFunction::composite:
+  using Skips = RayFunctionInfo::Skips;
+  switch (info_of(item.mode).skips) {
+    case Skips::nothing: break;
+    case Skips::transparent:
       if (v.detail && v.detail->ink > 0) break;  // strokes are seen where nothing else is
       if (v.detail) source.invisible = {clear_transfer, v.transfer.get()};
       else source.invisible = {clear_medium, v.medium.get()};
       break;
-    case RayFunction::first_hit:
-    case RayFunction::accumulate: source.invisible = {below_level, v.levels.get()}; break;
-    case RayFunction::isosurface:
+    case Skips::below_level: source.invisible = {below_level, v.levels.get()}; break;
+    case Skips::without_level:
       // Where values are constant around their samples, a surface may lie between two bricks.
       if (item.color.labels.empty()) source.invisible = {without_level, v.levels.get()};
       break;
-    default: break;
   }
   // A fixed step counts with the length on which there is a volume, whether that draws anything or not.
   if (!knobs.skip_empty || (v.step > 0 && item.mode == RayFunction::composite && !v.detail)) source.invisible = {};

@@ -123,7 +123,7 @@ void shadow_lamps(const Scene& scene, Picture& picture, const Box3& drawn, Conte
   picture.shadows.resize(directions.size()), picture.scene = &scene;
   picture.darkest = float(deepest->item->light.shadows);
   for (const CastVolume& v : picture.volumes) {
-    if (v.item->mode != RayFunction::composite && v.item->mode != RayFunction::maximum_difference) continue;
+    if (!info_of(v.item->mode).absorbs) continue;
     const auto maps = light_maps(*v.item, *v.source, v.extinction(), directions, &context);
     for (size_t i = 0; i < maps.size(); ++i) picture.shadows[i].volumes.push_back(maps[i]);
   }

@@ -46,7 +46,9 @@ void take_collected_range(VolumeItem& item, bool choose_range, bool choose_map) 
   ColorScale& s = item.color;
   const Dataset& d = *item.data;
   const double diagonal = d.bounds().diagonal();
-  if (item.mode == RayFunction::sum) {
+  const RayFunctionInfo& info = info_of(item.mode);
+  if (!info.collects()) return;
+  if (info.axis == RayFunctionInfo::Axis::value_times_length) {
     s.title = "sum of " + s.title;
     if (choose_range) {
       const Field& f = d.fields().require(item.field, item.association);
@@ -54,14 +56,12 @@ void take_collected_range(VolumeItem& item, bool choose_range, bool choose_map) 
       r.add({0, 0});
       if (r.lo < r.hi) s.lo = r.lo, s.hi = r.hi;
     }
-  } else if (item.mode == RayFunction::distance || item.mode == RayFunction::accumulate) {
+  } else {
     const std::string level = item.levels.empty() ? "" : short_number(item.levels[0]);
     s.title = item.mode == RayFunction::distance ? fmt::format("distance to {} = {}", s.title, level)
                                                  : fmt::format("length with {} \u2265 {}", s.title, level);
     s.unit.clear();
     if (choose_range) s.lo = 0, s.hi = diagonal > 0 ? diagonal : 1;
-  } else {
-    return;
   }
   s.kind = ScaleKind::linear;
   s.labels.clear(), s.label_names.clear(), s.limits.clear();

@@ -9,6 +9,7 @@
 #include "color/transfer_function.h"
 #include "data/dataset.h"
 #include "scene/items/material.h"
+#include "scene/items/ray_function.h"
 
 namespace sg {
 
@@ -20,33 +21,6 @@ constexpr auto enum_words(VolumeMethod) {
   using enum VolumeMethod;
   return std::array{Word{"ray", ray},     Word{"splat", splat},           Word{"slices", slices},
                     Word{"cells", cells}, Word{"shear_warp", shear_warp}, Word{"fourier", fourier}};
-}
-
-/// What a ray collects. Values are those of the field; lengths are world lengths.
-enum class RayFunction {
-  composite,           ///< emission and absorption (Max 1995)
-  maximum,             ///< the largest value
-  minimum,             ///< the smallest value
-  average,             ///< integral of the value over the ray / length inside the volume
-  sum,                 ///< integral of the value over the ray: an X-ray picture, in value times length
-  first_hit,           ///< the place where the value first reaches `level`, lit
-  distance,            ///< distance from where the ray enters the volume to that place, through the colour scale
-  accumulate,          ///< length of the ray on which the value is at least `level`, through the colour scale
-  isosurface,          ///< the surfaces value = levels, lit, each with the opacity of its value
-  maximum_difference,  ///< MIDA: compositing that lets new maxima shine through (Bruckner, Groeller 2009)
-};
-constexpr auto enum_words(RayFunction) {
-  using enum RayFunction;
-  return std::array{Word{"composite", composite},
-                    Word{"maximum", maximum},
-                    Word{"minimum", minimum},
-                    Word{"average", average},
-                    Word{"sum", sum},
-                    Word{"first_hit", first_hit},
-                    Word{"distance", distance},
-                    Word{"accumulate", accumulate},
-                    Word{"isosurface", isosurface},
-                    Word{"maximum_difference", maximum_difference}};
 }
 
 /// How finely a ray looks.

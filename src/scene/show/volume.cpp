@@ -131,10 +131,6 @@ void take_second_axis(const VolumeShow& p, const Fields& fields, const ColorScal
   }
 }
 
-bool needs_level(RayFunction f) {
-  return f == RayFunction::first_hit || f == RayFunction::distance || f == RayFunction::accumulate || f == RayFunction::isosurface;
-}
-
 // The value at which something begins, when nobody says.
 void choose_level(const Field& field, VolumeItem& item, Context& context) {
   const Range r = item.data->range(field, field.components() > 1 ? item.component : 0);
@@ -158,8 +154,7 @@ void choose_transfer(const VolumeShow& p, const Field& field, VolumeItem& item, 
     item.opacity.points = {{std::min(r.lo, before), 0.35}, {before, 0.35}, {last, 1}, {std::max(r.hi, last), 1}};
     return;
   }
-  const bool composites = item.mode == RayFunction::composite || item.mode == RayFunction::maximum_difference;
-  if (!composites && item.mode != RayFunction::maximum) {  // what is collected is drawn as it is
+  if (!info_of(item.mode).classifies) {  // what is collected is drawn as it is
     item.opacity.points = {{item.color.lo, 1}};
     return;
   }
@@ -180,7 +175,7 @@ void choose_transfer(const VolumeShow& p, const Field& field, VolumeItem& item, 
     context.info(fmt::format("no borders of materials stand out in '{}'; opacity comes from its histogram", field.name));
   }
   const std::string why = choose_volume_look(*item.data, field, p.coloring, item, p.transfer == "auto");
-  if (composites) context.info(why);
+  if (info_of(item.mode).absorbs) context.info(why);
 }
 
 std::string title_of_second(const TransferDetail& detail) {
@@ -197,9 +192,7 @@ std::string title_of_second(const TransferDetail& detail) {
 // What the legend shows: what the ray collects, and for those that composite the opacity.
 Legend legend_of(const VolumeItem& item) {
   Legend legend(item.detail.color_by_second ? item.detail.second_color : item.color);
-  const RayFunction f = item.mode;
-  if (f == RayFunction::composite || f == RayFunction::isosurface || f == RayFunction::maximum_difference)
-    legend.volume = VolumeLegend{item.opacity, item.detail, item.color, title_of_second(item.detail)};
+  if (info_of(item.mode).shows_opacity) legend.volume = VolumeLegend{item.opacity, item.detail, item.color, title_of_second(item.detail)};
   return legend;
 }
 
@@ -271,7 +264,7 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const VolumeSho
     plain.component = item.component;
     item.color = choose_scale(*input, *fields.opacity, plain, context);
   }
-  if (needs_level(item.mode) && item.levels.empty()) choose_level(*fields.opacity, item, context);
+  if (info_of(item.mode).needs_level && item.levels.empty()) choose_level(*fields.opacity, item, context);
   take_second_axis(p, fields, colors, item, context);
   if (!p.widgets.empty()) {
   } else if (!p.opacity) choose_transfer(p, *fields.opacity, item, context);

@@ -12,8 +12,7 @@ void join_volumes(std::span<Item> items, const VolumeItem& model, uint32_t group
   VolumeItem look = model;
   const double part = model.data->bounds().diagonal(), whole = all.diagonal();
   if (!(look.unit_distance > 0)) look.unit_distance = 0.01 * whole;
-  const bool collects = look.mode == RayFunction::sum || look.mode == RayFunction::distance || look.mode == RayFunction::accumulate;
-  if (collects && part > 0) look.color.hi = look.color.lo + (look.color.hi - look.color.lo) * whole / part;
+  if (info_of(look.mode).collects() && part > 0) look.color.hi = look.color.lo + (look.color.hi - look.color.lo) * whole / part;
   for (Item& item : items)
     if (auto* v = std::get_if<VolumeItem>(&item)) {
       v->color = look.color, v->opacity = look.opacity, v->detail = look.detail;

@@ -34,7 +34,7 @@ void check_light(const VolumeItem& item) {
   const auto& names = style_names();
   if (std::find(names.begin(), names.end(), l.style) == names.end())
     fail_usage(fmt::format("unknown style '{}'", l.style), "volume", "give none, silhouette, tone or hatch");
-  if ((l.shadows > 0 || l.occlusion > 0) && item.mode != RayFunction::composite && item.mode != RayFunction::maximum_difference)
+  if ((l.shadows > 0 || l.occlusion > 0) && !info_of(item.mode).absorbs)
     fail_usage("shadows and occlusion are those of emission and absorption; this ray function has none", "volume",
                "use mode=composite, or leave out shadows= and occlusion=");
   if (!(l.ink >= 0 && l.ink < 1)) fail_usage(fmt::format("ink {} is no opacity", l.ink), "volume", "give a number from 0 to below 1");

@@ -15,22 +15,6 @@ namespace sg::volume {
 
 namespace {
 
-const char* name_of(RayFunction f) {
-  switch (f) {
-    case RayFunction::composite: return "composite";
-    case RayFunction::maximum: return "maximum";
-    case RayFunction::minimum: return "minimum";
-    case RayFunction::average: return "average";
-    case RayFunction::sum: return "sum";
-    case RayFunction::first_hit: return "first_hit";
-    case RayFunction::distance: return "distance";
-    case RayFunction::accumulate: return "accumulate";
-    case RayFunction::isosurface: return "isosurface";
-    case RayFunction::maximum_difference: return "maximum_difference";
-  }
-  return "?";
-}
-
 [[noreturn]] void refuse(const Limits& limits, const std::string& what) {
   fail_usage(fmt::format("method={} cannot draw {}", limits.method, what), "volume", "method=ray can");
 }
@@ -39,8 +23,8 @@ void check(const LayerInput& input, const Limits& limits) {
   const VolumeItem& item = input.item;
   if (std::find(limits.modes.begin(), limits.modes.end(), item.mode) == limits.modes.end()) {
     std::string can;
-    for (const RayFunction f : limits.modes) can += (can.empty() ? "" : ", ") + std::string(name_of(f));
-    fail_usage(fmt::format("method={} cannot draw mode={}", limits.method, name_of(item.mode)), "volume",
+    for (const RayFunction f : limits.modes) can += (can.empty() ? "" : ", ") + std::string(word_of(f));
+    fail_usage(fmt::format("method={} cannot draw mode={}", limits.method, word_of(item.mode)), "volume",
                fmt::format("it draws {}; method=ray draws all", can));
   }
   if (item.data && !item.data->as<UniformGrid>() && !item.data->as<RectilinearGrid>())

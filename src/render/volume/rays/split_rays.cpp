@@ -229,7 +229,7 @@ std::vector<RaySlab> ray_slabs(const Scene& scene, const Projection& p) {
   for (const Item& item : scene.items) {
     const VolumeItem* v = rays_through(item);
     if (!v) continue;
-    whole = whole || (v->mode != RayFunction::composite && v->mode != RayFunction::isosurface);
+    whole = whole || !info_of(v->mode).in_parts;
     if (v->sampling.antialias != "split") continue;
     if (bricked_of(*v->data))
       fail_usage("antialias=split is for volumes in memory; this one is drawn from a file whose levels are means of cells already",
