@@ -9,6 +9,16 @@
 
 namespace sg {
 
+namespace {
+
+std::string what_a_ray_collects() {
+  std::string help = "What a ray collects.";
+  for (const RayFunctionInfo& f : ray_functions) help += fmt::format(" {}: {}.", f.name, f.about);
+  return help;
+}
+
+}  // namespace
+
 void describe(Schema& s, VolumeShow& p) {
   describe(s, p.coloring);
   std::string presets;
@@ -43,7 +53,7 @@ void describe(Schema& s, VolumeShow& p) {
     "OPACITY COLOR'. Places as in opacity; second=gradient unless stated.");
   s("unit", p.unit, "World length to which opacity refers; 0 is a hundredth of the diagonal.").at_least(0);
   s("method", p.method, "The algorithm; ray is the reference.");
-  s("mode", p.mode, "What a ray collects.");
+  s("mode", p.mode, what_a_ray_collects());
   s("levels", p.levels, "Values of first_hit, distance and accumulate (one), and isosurface; default: the strongest border of materials.")
       .unit("@field");
   s("shaded", p.shaded, "Light the volume by the gradient of the field.");
