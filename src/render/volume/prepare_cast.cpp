@@ -30,11 +30,11 @@ std::unique_ptr<RaySource> source_of(const VolumeItem& item, std::shared_ptr<con
     return bricked;
   }
   const VolumeSampling& sampling = item.sampling;
-  if (!lattice && sampling.kernel != "linear")
-    fail_usage(fmt::format("kernel '{}' joins the samples of uniform and rectilinear grids; this is a {} mesh", sampling.kernel,
+  if (!lattice && sampling.kernel != Kernel::linear)
+    fail_usage(fmt::format("kernel '{}' joins the samples of uniform and rectilinear grids; this is a {} mesh", word_of(sampling.kernel),
                            item.data->kind()),
                "volume", "leave kernel=linear, or resample to a grid first");
-  if (sampling.antialias == "mip")
+  if (sampling.antialias == VolumeAntialias::mip)
     if (auto means = mip_source(item, lattice.get(), projection, context)) return means;
   if (!lattice) {
     auto cells = cell_source(item, context);
@@ -151,7 +151,7 @@ CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<con
   if (v.step > 0 && diagonal / v.step > 1e7)
     fail_usage(fmt::format("a step of {} takes {:.3g} samples through a volume of size {}", v.step, diagonal / v.step, diagonal), "volume",
                "give a longer step");
-  if (v.step > 0 && item.sampling.classify == "table" && item.mode == RayFunction::composite && !v.detail)
+  if (v.step > 0 && item.sampling.classify == VolumeClassify::table && item.mode == RayFunction::composite && !v.detail)
     v.table = std::make_unique<Preintegrated>(*v.medium, Preintegrated::Plan{float(plan.lo - base), float(plan.hi - base), float(v.step)},
                                               &context);
   v.per_scale = range.lo < range.hi ? float(1 / (0.002 * (range.hi - range.lo))) : 1;

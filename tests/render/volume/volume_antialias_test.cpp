@@ -37,7 +37,7 @@ TEST_CASE("volume antialias: a far checkerboard in perspective is nearer to many
     const std::vector<double> truth = reduced(draw(scene_of({v}), fine), 8);
     const double plain = rms(reduced(draw(scene_of({v}), p), 1), truth);
     VolumeItem means = v;
-    means.sampling.antialias = "mip";
+    means.sampling.antialias = VolumeAntialias::mip;
     const double averaged = rms(reduced(draw(scene_of({means}), p), 1), truth);
     CAPTURE(plain);
     CAPTURE(averaged);
@@ -54,7 +54,7 @@ TEST_CASE("volume antialias: near by, nothing changes; integers with a base and 
   VolumeItem v = item(grid(cube(17, -1, 1), [](Vec3 p) { return p.x + 2 * p.y; }), grey(-3, 3), {{{-3, 0}, {3, 0.9}}});
   const Projection near_by = perspective_view(32, 32, 120, {1, 2, 4}, {0, 0, 0});
   const Frame plain = draw(scene_of({v}), near_by);
-  v.sampling.antialias = "mip";
+  v.sampling.antialias = VolumeAntialias::mip;
   CHECK(same_bytes(plain, draw(scene_of({v}), near_by)));
   // A smooth field is the same from afar, whatever its numbers are stored as.
   UniformGrid g = cube(65, -1, 1);
@@ -64,7 +64,7 @@ TEST_CASE("volume antialias: near by, nothing changes; integers with a base and 
                       grey(29870, 30130), {{{29870, 0}, {30130, 0.9}}});
   const Projection far_off = perspective_view(16, 16, 60, {1, 2, 8}, {0, 0, 0});
   const Frame exact = draw(scene_of({w}), far_off);
-  w.sampling.antialias = "mip";
+  w.sampling.antialias = VolumeAntialias::mip;
   const Frame averaged = draw(scene_of({w}), far_off);
   CHECK_FALSE(same_bytes(exact, averaged));
   CHECK(largest_difference(exact, averaged) < 0.02f);
@@ -73,7 +73,7 @@ TEST_CASE("volume antialias: near by, nothing changes; integers with a base and 
 TEST_CASE("volume antialias: what has no means of cells is refused in words") {
   const Projection far_off = perspective_view(8, 8, 10, {0, 0, 9}, {0, 0, 0});
   const auto refused = [&](VolumeItem v, const char* word) {
-    v.sampling.antialias = "mip";
+    v.sampling.antialias = VolumeAntialias::mip;
     try {
       draw(scene_of({v}), far_off);
       FAIL("not refused");
@@ -83,7 +83,7 @@ TEST_CASE("volume antialias: what has no means of cells is refused in words") {
   };
   VolumeItem v = item(grid(cube(17, -1, 1), [](Vec3 p) { return p.x; }), grey(-1, 1), {{{-1, 0}, {1, 0.9}}});
   VolumeItem sharp = v;
-  sharp.sampling.kernel = "bspline";
+  sharp.sampling.kernel = Kernel::bspline;
   refused(sharp, "kernel");
   RectilinearGrid r;
   r.x = r.y = r.z = Array::from_vector(std::vector<double>{0, 1, 3});

@@ -173,8 +173,8 @@ TEST_CASE("volume: small fixed steps keep a step of colour where it is") {
   for (const double at : {0.50003, 0.3333, 0.1251}) {
     const auto data = grid(cube(3, 0, 1), [](Vec3 p) { return p.z; });
     const ColorScale color = stops(fmt::format("0:red,{0}:red,{0}:blue,1:blue", at).c_str(), 0, 1);
-    for (const char* classify : {"post", "integrated"}) {
-      INFO(at, " ", std::string(classify));
+    for (const VolumeClassify classify : {VolumeClassify::post, VolumeClassify::integrated}) {
+      INFO(at, " ", word_of(classify));
       VolumeItem v = item(data, color, curve({{0, 0.5}}));
       v.sampling.step = 1.0 / 8192, v.sampling.classify = classify;
       const Frame f = look(scene_of({v}), 0.513, 0.517);

@@ -240,7 +240,7 @@ TEST_CASE("volume light: silhouettes are darker and denser by their formula") {
   VolumeItem v = item(grid(cube(65, -1, 1), [](Vec3 p) { return 1 - length(p); }), one_color({0.5f, 0.25f, 0.75f}), {});
   v.opacity.points = {{0, 0.1}};
   v.mode = RayFunction::isosurface, v.levels = {0.2};
-  v.light.style = "silhouette";
+  v.light.style = LightStyle::silhouette;
   for (double x : {0.05, 0.4, 0.7, 0.77}) {
     const Frame f = look(lit_from(v, {0, 0, 1}), x, 0);
     const double facing = std::sqrt(1 - x * x / 0.64), rim = std::pow(1 - facing, 3);
@@ -251,7 +251,7 @@ TEST_CASE("volume light: silhouettes are darker and denser by their formula") {
   // A soft ball: the share of colour falls and the opacity rises against the plain one, at the rim only.
   VolumeItem soft = fog(grid(cube(33, -1.5, 1.5), ball));
   VolumeItem rimmed = soft;
-  rimmed.light.style = "silhouette";
+  rimmed.light.style = LightStyle::silhouette;
   const auto pixel = [](const VolumeItem& i, double x) { return look(lit_from(i, {0, 0, 1}), x, 0).rgba; };
   const auto plain_rim = pixel(soft, 0.7), dark_rim = pixel(rimmed, 0.7), plain_middle = pixel(soft, 0.013), middle = pixel(rimmed, 0.013);
   CHECK(dark_rim[3] > 1.5f * plain_rim[3]);
@@ -263,7 +263,7 @@ TEST_CASE("volume light: tones go from cool to warm with the light") {
   VolumeItem v = item(grid(cube(65, -1, 1), [](Vec3 p) { return 1 - length(p); }), one_color({0.4f, 0.4f, 0.4f}), {});
   v.opacity.points = {{0, 1}};
   v.mode = RayFunction::isosurface, v.levels = {0.2};
-  v.light.style = "tone", v.light.specular = 0;
+  v.light.style = LightStyle::tone, v.light.specular = 0;
   const Scene s = lit_from(v, {1, 0, 0});
   const auto at = [&](double x) {
     const Frame f = look(s, x, 0);
@@ -280,7 +280,7 @@ TEST_CASE("volume light: hatching leaves lit paper white, inks the dark, and its
   VolumeItem v = item(grid(cube(33, -1, 1), [](Vec3 p) { return p.z; }), one_color({0.8f, 0.8f, 0.8f}), {});
   v.opacity.points = {{0, 1}};
   v.mode = RayFunction::isosurface, v.levels = {0.2};
-  v.light.style = "hatch";
+  v.light.style = LightStyle::hatch;
   const auto row = [&](Vec3 towards, const Projection& view) {
     const Frame f = draw(lit_from(v, towards), view);
     std::vector<float> out;
@@ -305,7 +305,7 @@ TEST_CASE("volume light: hatching leaves lit paper white, inks the dark, and its
 }
 
 TEST_CASE("volume light: every effect gives the same bytes for any number of threads and for a second picture") {
-  for (const char* style : {"none", "silhouette", "tone", "hatch"}) {
+  for (const LightStyle style : {LightStyle::none, LightStyle::silhouette, LightStyle::tone, LightStyle::hatch}) {
     VolumeItem v = fog(grid(cube(20, -1.5, 1.5), ball));
     v.shaded = true;
     v.light.shadows = 0.9, v.light.occlusion = 0.8, v.light.depth_cue = 0.5, v.light.style = style;
@@ -324,7 +324,7 @@ TEST_CASE("volume light: every effect gives the same bytes for any number of thr
 TEST_CASE("volume light: steps and joint volumes are lit like the tolerant integral") {
   VolumeItem v = fog(grid(cube(33, -1.5, 1.5), ball));
   v.shaded = true;
-  v.light.shadows = 1, v.light.depth_cue = 0.5, v.light.style = "silhouette";
+  v.light.shadows = 1, v.light.depth_cue = 0.5, v.light.style = LightStyle::silhouette;
   const Projection view = parallel_view(16, 16, 6);
   const Frame whole = draw(scene_of({v}), view);
   VolumeItem steps = v;
@@ -334,7 +334,7 @@ TEST_CASE("volume light: steps and joint volumes are lit like the tolerant integ
   CHECK(largest_difference(whole, draw(scene_of({v, nothing}), view)) < 0.01f);
 }
 
-TEST_CASE("volume light: shares outside 0..1, unknown styles and shadows of maxima are refused") {
+TEST_CASE("volume light: shares outside 0..1 and shadows of maxima are refused") {
   const auto refused = [](auto change) {
     VolumeItem v = even_fog(1);
     change(v);
@@ -343,6 +343,5 @@ TEST_CASE("volume light: shares outside 0..1, unknown styles and shadows of maxi
   refused([](VolumeItem& v) { v.light.shadows = 1.5; });
   refused([](VolumeItem& v) { v.light.occlusion = -0.1; });
   refused([](VolumeItem& v) { v.light.depth_cue = NAN; });
-  refused([](VolumeItem& v) { v.light.style = "shiny"; });
   refused([](VolumeItem& v) { v.light.shadows = 1, v.mode = RayFunction::maximum; });
 }

@@ -98,10 +98,10 @@ TEST_CASE("volume words: everything about sampling, light and method reaches the
   CHECK_FALSE(v.shaded);
   CHECK(v.sampling.tolerance == 0.01);
   CHECK(v.sampling.step == 0.05);
-  CHECK(v.sampling.classify == "integrated");
+  CHECK(v.sampling.classify == VolumeClassify::integrated);
   CHECK(v.sampling.jitter);
-  CHECK(v.sampling.kernel == "bspline");
-  CHECK(v.sampling.gradient == "sobel");
+  CHECK(v.sampling.kernel == Kernel::bspline);
+  CHECK(v.sampling.gradient == GradientKind::sobel);
   CHECK(v.light.ambient == 0.3);
   CHECK(v.light.diffuse == 0.5);
   CHECK(v.light.specular == 0.1);
@@ -109,7 +109,7 @@ TEST_CASE("volume words: everything about sampling, light and method reaches the
   CHECK(v.light.shadows == 0.5);
   CHECK(v.light.occlusion == 0.25);
   CHECK(v.light.depth_cue == 0.75);
-  CHECK(v.light.style == "tone");
+  CHECK(v.light.style == LightStyle::tone);
   REQUIRE(v.clip.size() == 7);
   CHECK(v.clip[0].normal == Vec3{1, 0, 0});
   CHECK(v.clip[0].offset == 0.5);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/context.h"
+#include "base/schema/enum_words.h"
 
 namespace sg {
 
@@ -22,6 +23,12 @@ enum class Kernel : uint8_t {
   gaussian,        ///< exp(-t^2 / (2 0.6^2)) less its value at 2, where it ends; weights divided by their sum
   sinc,            ///< Lanczos window of radius 3, sinc(t) sinc(t/3): Duchon 1979; weights divided by their sum
 };
+constexpr auto enum_words(Kernel) {
+  using enum Kernel;
+  return std::array{Word{"nearest", nearest},   Word{"linear", linear},   Word{"catmull_rom", catmull_rom},
+                    Word{"mitchell", mitchell}, Word{"bspline", bspline}, Word{"bspline_smooth", bspline_smooth},
+                    Word{"gaussian", gaussian}, Word{"sinc", sinc}};
+}
 constexpr int most_taps = 6;
 
 struct KernelTraits {

@@ -12,11 +12,6 @@ namespace sg::volume {
 
 namespace {
 
-const std::vector<std::string>& style_names() {
-  static const std::vector<std::string> names{"none", "silhouette", "tone", "hatch"};
-  return names;
-}
-
 void check_share(double value, const char* name) {
   if (!(value >= 0 && value <= 1)) fail_usage(fmt::format("{} {} is no share", name, value), "volume", "give a number from 0 to 1");
 }
@@ -25,20 +20,17 @@ void check_share(double value, const char* name) {
 
 bool has_effects(const VolumeItem& item) {
   const VolumeLight& l = item.light;
-  return l.shadows > 0 || l.occlusion > 0 || l.depth_cue > 0 || l.style != "none";
+  return l.shadows > 0 || l.occlusion > 0 || l.depth_cue > 0 || l.style != LightStyle::none;
 }
 
 void check_light(const VolumeItem& item) {
   const VolumeLight& l = item.light;
   check_share(l.shadows, "shadows"), check_share(l.occlusion, "occlusion"), check_share(l.depth_cue, "depth_cue");
-  const auto& names = style_names();
-  if (std::find(names.begin(), names.end(), l.style) == names.end())
-    fail_usage(fmt::format("unknown style '{}'", l.style), "volume", "give none, silhouette, tone or hatch");
   if ((l.shadows > 0 || l.occlusion > 0) && !info_of(item.mode).absorbs)
     fail_usage("shadows and occlusion are those of emission and absorption; this ray function has none", "volume",
                "use mode=composite, or leave out shadows= and occlusion=");
   if (!(l.ink >= 0 && l.ink < 1)) fail_usage(fmt::format("ink {} is no opacity", l.ink), "volume", "give a number from 0 to below 1");
-  if (l.ink > 0 && l.style != "silhouette" && l.style != "hatch")
+  if (l.ink > 0 && l.style != LightStyle::silhouette && l.style != LightStyle::hatch)
     fail_usage("ink is that of silhouettes and strokes", "volume", "add style=silhouette or style=hatch, or leave out ink=");
 }
 
@@ -65,8 +57,7 @@ std::shared_ptr<const LightEffects> light_effects(const VolumeItem& item, const 
   LightEffects e;
   const VolumeLight& l = item.light;
   e.shadows = float(l.shadows), e.occlusion = float(l.occlusion), e.depth_cue = float(l.depth_cue);
-  const auto& names = style_names();
-  e.style = LightStyle(std::find(names.begin(), names.end(), l.style) - names.begin());
+  e.style = l.style;
   if (l.shadows > 0) e.lamps = lamps;
   if (l.occlusion > 0)
     e.around = item.data->memo().keep("volume occlusion", Recent<Occlusion>(), 0)->get(extinction_key(item, extinction), 2, [&] {

@@ -14,8 +14,6 @@
 
 namespace sg::volume {
 
-enum class LightStyle { none, silhouette, tone, hatch };
-
 /// What stands between a lamp and the places of a scene: all composited volumes, and the opaque surfaces.
 struct LampShadows {
   std::vector<std::shared_ptr<const LightMap>> volumes;
@@ -56,7 +54,7 @@ struct LightEffects {
 
 /// Does the item ask for any of them?
 bool has_effects(const VolumeItem& item);
-/// Throws Error(usage) for shares outside 0..1, an unknown style, and shadows or occlusion of what is not composited.
+/// Throws Error(usage) for shares outside 0..1, and shadows or occlusion of what is not composited.
 void check_light(const VolumeItem& item);
 
 /// The light that the volume takes from each lamp. Kept with its dataset: those of one picture, at most 32 MiB per lamp (8 MiB where a

@@ -29,7 +29,7 @@ struct EngineInput {
   bool composite() const { return item().mode == RayFunction::composite; }
   bool by_tolerance() const { return composite() && !(volume.step > 0); }
   /// In fixed steps, classified sample by sample.
-  bool by_samples() const { return composite() && item().sampling.classify == "post" && !item().sampling.jitter; }
+  bool by_samples() const { return composite() && item().sampling.classify == VolumeClassify::post && !item().sampling.jitter; }
 };
 
 class TileEngine {

@@ -136,7 +136,7 @@ void append_numbers(std::string& key, std::initializer_list<double> numbers) {
 }
 
 std::string extinction_key(const VolumeItem& item, const Extinction& extinction) {
-  std::string key = item.field + '|' + item.sampling.kernel + '|';
+  std::string key = item.field + '|' + std::string(word_of(item.sampling.kernel)) + '|';
   append_numbers(key, {double(int(item.association)), double(item.component), double(item.color.labels.empty())});
   for (const ClipPlane& p : item.clip) append_numbers(key, {p.normal.x, p.normal.y, p.normal.z, p.offset});
   key += '|';
@@ -144,7 +144,7 @@ std::string extinction_key(const VolumeItem& item, const Extinction& extinction)
     for (float f : {l.lo, l.hi, l.origin, l.at, l.slope, l.curve, l.twist}) key.append(reinterpret_cast<const char*>(&f), sizeof f);
   if (!extinction.detail) return key;
   const TransferDetail& d = item.detail;
-  key += d.second_field + '|' + item.sampling.gradient + '|';
+  key += d.second_field + '|' + std::string(word_of(item.sampling.gradient)) + '|';
   append_numbers(key, {double(int(d.second)), extinction.detail->unit});
   for (const auto& p : d.second_factor.points) append_numbers(key, {p.x, p.y});
   for (const TransferWidget& w : d.widgets) append_numbers(key, {double(int(w.shape)), w.lo, w.hi, w.second_lo, w.second_hi, w.opacity});

@@ -371,7 +371,8 @@ Layer splat(const LayerInput& input, const SplatOptions& options) {
   if (stage.empty) return layer;
   const bool composite = input.item.mode == RayFunction::composite, whole = composite && options.order == SplatOptions::Order::whole;
   using Classify = SplatOptions::Classify;
-  bool after = options.classify == Classify::as_item ? input.item.sampling.classify != "pre" : options.classify == Classify::after;
+  bool after =
+      options.classify == Classify::as_item ? input.item.sampling.classify != VolumeClassify::pre : options.classify == Classify::after;
   after = !composite || (after && !whole && !stage.volume.nearest);  // the mean of two labels is none
   const Footprints footprints(stage);
   const SplatList list(stage, footprints, composite && !after);

@@ -37,12 +37,12 @@ void check(const LayerInput& input, const Limits& limits) {
                "--camera projection=parallel, or method=ray");
   if (!limits.clip && !item.clip.empty()) refuse(limits, "clipped volumes");
   if (!item.detail.plain()) refuse(limits, "transfer functions of two dimensions");
-  if (item.sampling.kernel != "linear") refuse(limits, fmt::format("with kernel={}", item.sampling.kernel));
-  if (item.sampling.classify == "table") refuse(limits, "with classify=table");
-  if (item.sampling.antialias != "none") refuse(limits, "means of cells (antialias)");
+  if (item.sampling.kernel != Kernel::linear) refuse(limits, fmt::format("with kernel={}", word_of(item.sampling.kernel)));
+  if (item.sampling.classify == VolumeClassify::table) refuse(limits, "with classify=table");
+  if (item.sampling.antialias != VolumeAntialias::none) refuse(limits, "means of cells (antialias)");
   if (item.light.shadows > 0) refuse(limits, "shadows");
   if (item.light.occlusion > 0) refuse(limits, "ambient occlusion");
-  if (item.light.style != "none" && !item.light.style.empty()) refuse(limits, fmt::format("in style={}", item.light.style));
+  if (item.light.style != LightStyle::none) refuse(limits, fmt::format("in style={}", word_of(item.light.style)));
   if (!limits.depth_cue && item.light.depth_cue > 0) refuse(limits, "a depth cue");
   if (input.opaque.width != input.projection.width || input.opaque.height != input.projection.height)
     fail_internal("the opaque frame has another size than the projection");

@@ -85,9 +85,10 @@ struct Caster::Active {
     const Lit* lit = look.lit ? &steps.lit : nullptr;
     if (volume->table)
       composite_segment(look, steps.from, steps.covered, volume->table->at(steps.first, steps.last, float(steps.covered)), lit, state);
-    else if (volume->item->sampling.classify == "integrated")
+    else if (volume->item->sampling.classify == VolumeClassify::integrated)
       composite_straight(look, steps.from, steps.from + steps.covered, steps.first, steps.last, lit, state);
-    else if (volume->item->sampling.classify == "pre") composite_optics(look, steps.from, steps.covered, steps.optics, lit, state);
+    else if (volume->item->sampling.classify == VolumeClassify::pre)
+      composite_optics(look, steps.from, steps.covered, steps.optics, lit, state);
     else composite_sample(look, steps.from, steps.covered, steps.value, lit, state);
   }
 
@@ -109,7 +110,7 @@ struct Caster::Active {
 
   void take_sample(const Stretch& s, double t) {
     steps.value = s.value(t);
-    const bool before = volume->item->sampling.classify == "pre";
+    const bool before = volume->item->sampling.classify == VolumeClassify::pre;
     if (before) steps.optics = classified_before(s, t, steps.value);
     if (look.lit && (before || volume->table || !look.medium.clear(steps.value, steps.value))) steps.lit = light_on(look, *walker, s, t);
   }

@@ -74,7 +74,7 @@ class SplitRays {
       : slabs_(slabs), scene_(scene), projection_(projection), fragments_(fragments), frame_(frame), knobs_(knobs), cast_(cast) {
     for (Item& item : scene_.items)
       if (auto* v = std::get_if<VolumeItem>(&item)) {
-        v->sampling.antialias = "none", v->sampling.tolerance /= double(slabs.size());
+        v->sampling.antialias = VolumeAntialias::none, v->sampling.tolerance /= double(slabs.size());
         dark_ = std::min(dark_, float(0.2 * v->sampling.tolerance));
         if (!first_id_) first_id_ = uint32_t(&item - scene_.items.data()) + 1;
       }
@@ -230,7 +230,7 @@ std::vector<RaySlab> ray_slabs(const Scene& scene, const Projection& p) {
     const VolumeItem* v = rays_through(item);
     if (!v) continue;
     whole = whole || !info_of(v->mode).in_parts;
-    if (v->sampling.antialias != "split") continue;
+    if (v->sampling.antialias != VolumeAntialias::split) continue;
     if (bricked_of(*v->data))
       fail_usage("antialias=split is for volumes in memory; this one is drawn from a file whose levels are means of cells already",
                  "volume", "leave antialias=none, or allow more --memory");

@@ -144,21 +144,21 @@ TEST_CASE("volume shadows: a volume takes light from a surface behind it and fro
 
 TEST_CASE("volume shadows: ink draws the rim of what is clear itself") {
   VolumeItem v = item(grid(cube(33, -1.5, 1.5), [](Vec3 p) { return std::exp(-3 * dot(p, p)); }), one_color({1, 0, 0}), {{{0, 0}}});
-  v.light.style = "silhouette";
+  v.light.style = LightStyle::silhouette;
   CHECK(look(scene_of({v}), 0, 0).rgba[3] == 0);
   v.light.ink = 0.8;
   const Frame middle = look(scene_of({v}), 0.01, 0.02), rim = look(scene_of({v}), 0.9, 0.02);
   CHECK(rim.rgba[3] > 0.3f);
   CHECK(middle.rgba[3] < 0.3f * rim.rgba[3]);
   CHECK(rim.rgba[0] < 1e-3f);  // black
-  v.light.style = "hatch";
+  v.light.style = LightStyle::hatch;
   const Projection view = parallel_view(24, 24, 8);
   double most = 0;
   const Frame hatched = draw(scene_of({v}), view);
   for (size_t i = 3; i < hatched.rgba.size(); i += 4) most = std::max(most, double(hatched.rgba[i]));
   CHECK(most > 0.2);
-  v.light.style = "none";
+  v.light.style = LightStyle::none;
   CHECK_THROWS_AS(look(scene_of({v})), Error);
-  v.light.style = "silhouette", v.light.ink = 1;
+  v.light.style = LightStyle::silhouette, v.light.ink = 1;
   CHECK_THROWS_AS(look(scene_of({v})), Error);
 }

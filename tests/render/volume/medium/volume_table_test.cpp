@@ -111,7 +111,7 @@ TEST_CASE("table: a picture by it sees a spike that steps miss, and is the close
   double depth = 0;
   for (int i = 0; i < 200000; ++i) depth += -std::log(1 - 0.9 * (i + 0.5) / 200000) / 200000 * 0.04 / 0.02;
   for (const double step : {0.3, 0.07, 0.011}) {
-    v.sampling.step = step, v.sampling.classify = "table";
+    v.sampling.step = step, v.sampling.classify = VolumeClassify::table;
     CHECK(-std::log(1 - double(look(scene_of({v})).rgba[3])) == Approx(depth).epsilon(1e-2));
   }
   VolumeItem w = item(grid(cube(17, -1, 1), [](Vec3 p) { return std::sin(3 * p.x) * std::cos(2 * p.y) + 0.3 * p.z; }), grey(-1.3, 1.3),
@@ -120,9 +120,9 @@ TEST_CASE("table: a picture by it sees a spike that steps miss, and is the close
   const Projection view = parallel_view(20, 20, 9, {0.2, -0.4, -1});
   for (bool shaded : {false, true}) {
     w.shaded = shaded;
-    w.sampling.classify = "integrated";
+    w.sampling.classify = VolumeClassify::integrated;
     const Frame closed = draw(scene_of({w}), view);
-    w.sampling.classify = "table";
+    w.sampling.classify = VolumeClassify::table;
     CHECK(largest_difference(closed, draw(scene_of({w}), view)) < 1.0f / 128);
   }
 }

@@ -159,7 +159,7 @@ TEST_CASE("slices: what cannot be sliced is refused in words, and a flat or empt
   CHECK(refused(v, p, sliced(), "shadows"));
   v = smooth_item(9), v.detail.second = SecondAxis::gradient;
   CHECK(refused(v, p, sliced(), "two dimensions"));
-  v = smooth_item(9), v.sampling.kernel = "bspline";
+  v = smooth_item(9), v.sampling.kernel = Kernel::bspline;
   CHECK(refused(v, p, sliced(), "bspline"));
   v = smooth_item(9), v.sampling.step = 1e-6;
   CHECK(refused(v, p, sliced(), "longer step"));

@@ -105,10 +105,10 @@ TEST_CASE("steps: pre-integrated classification is exact for a linear field at a
   for (int i = 0; i < 200000; ++i) depth += -std::log(1 - 0.9 * (i + 0.5) / 200000) / 200000 * 0.04 / 0.02;
   for (const double step : {0.3, 0.07, 0.011}) {
     INFO("step " << step);
-    v.sampling.step = step, v.sampling.classify = "integrated";
+    v.sampling.step = step, v.sampling.classify = VolumeClassify::integrated;
     CHECK(-std::log(1 - double(look(scene_of({v})).rgba[3])) == Approx(depth).epsilon(5e-3));
   }
-  v.sampling.classify = "post", v.sampling.step = 0.3;
+  v.sampling.classify = VolumeClassify::post, v.sampling.step = 0.3;
   CHECK(std::abs(-std::log(1 - double(look(scene_of({v})).rgba[3]) + 1e-9) - depth) > 0.1);
   v.sampling.step = 0.0004;
   CHECK(-std::log(1 - double(look(scene_of({v})).rgba[3])) == Approx(depth).epsilon(2e-2));
@@ -117,7 +117,7 @@ TEST_CASE("steps: pre-integrated classification is exact for a linear field at a
 TEST_CASE("steps: classified before interpolation, a spike between two samples is not seen, and samples on a spike are spread") {
   const DatasetPtr d = grid(cube(5, -1, 1), [](Vec3 p) { return p.z; });  // samples at multiples of 1/2
   VolumeItem v = item(d, one_color({1, 1, 1}), {{{-1, 0}, {0.1, 0}, {0.2, 0.5}, {0.3, 0}, {1, 0}}});
-  v.sampling.step = 0.001, v.sampling.classify = "pre";
+  v.sampling.step = 0.001, v.sampling.classify = VolumeClassify::pre;
   CHECK(look(scene_of({v})).rgba[3] == 0);
   v.opacity.points = {{-1, 0}, {-0.1, 0}, {0, 0.5}, {0.1, 0}, {1, 0}};
   // Opacity 1/2 at z = 0, falling linearly to 0 at +-1/2: depth = 2 * integral over half a cell of -log(1 - s/2) ds/2.

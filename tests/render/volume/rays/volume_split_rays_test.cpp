@@ -35,7 +35,7 @@ double rms(const Frame& a, const std::vector<double>& truth) {
   for (size_t i = 0; i < truth.size(); ++i) sum += (double(a.rgba[i]) - truth[i]) * (double(a.rgba[i]) - truth[i]);
   return std::sqrt(sum / double(truth.size()));
 }
-Frame with(const VolumeItem& v, const char* antialias, const Projection& p) {
+Frame with(const VolumeItem& v, VolumeAntialias antialias, const Projection& p) {
   VolumeItem other = v;
   other.sampling.antialias = antialias;
   return draw(scene_of({other}), p);
@@ -74,7 +74,7 @@ TEST_CASE("volume split rays: nearer to many rays a pixel than one ray and than 
       v.shaded = c.shaded, v.unit_distance = 0.1;
       const Projection p = perspective_view(12, 10, c.data == cells ? 9 : 16, eye, {0, 0, 0});
       const std::vector<double> truth = many_rays(scene_of({v}), p, 20);
-      const double one = rms(with(v, "none", p), truth), split = rms(with(v, "split", p), truth);
+      const double one = rms(with(v, VolumeAntialias::none, p), truth), split = rms(with(v, VolumeAntialias::split, p), truth);
       CAPTURE(c.data->kind());
       CAPTURE(c.shaded);
       CAPTURE(eye.z);
@@ -82,7 +82,7 @@ TEST_CASE("volume split rays: nearer to many rays a pixel than one ray and than 
       CAPTURE(split);
       CHECK(split < 0.1 * one);
       if (c.data == lattice && c.step == 0) {
-        const double means = rms(with(v, "mip", p), truth);
+        const double means = rms(with(v, VolumeAntialias::mip, p), truth);
         CAPTURE(means);
         CHECK(split < 0.1 * means);
       }
@@ -91,7 +91,7 @@ TEST_CASE("volume split rays: nearer to many rays a pixel than one ray and than 
 
 TEST_CASE("volume split rays: every slab has rays less than a cell apart, and none twice as many as that takes") {
   VolumeItem v = item(grid(cube(33, -1, 1), bands), grey(0, 1), spikes());  // cells of 1/16
-  v.sampling.antialias = "split";
+  v.sampling.antialias = VolumeAntialias::split;
   const Scene scene = scene_of({v});
   const Projection p = perspective_view(16, 16, 20, {0, 0, 5}, {0, 0, 0});
   const auto slabs = volume::ray_slabs(scene, p);
@@ -105,7 +105,7 @@ TEST_CASE("volume split rays: every slab has rays less than a cell apart, and no
   // Near by, one ray a pixel; the same bytes.
   const Projection near_by = perspective_view(24, 24, 200, {0, 0, 5}, {0, 0, 0});
   CHECK(volume::ray_slabs(scene, near_by).empty());
-  CHECK(same_bytes(with(v, "none", near_by), with(v, "split", near_by)));
+  CHECK(same_bytes(with(v, VolumeAntialias::none, near_by), with(v, VolumeAntialias::split, near_by)));
   // Parallel views and whole rays: as many everywhere.
   const auto parallel = volume::ray_slabs(scene, parallel_view(16, 16, 5));
   REQUIRE(parallel.size() == 1);
@@ -116,8 +116,8 @@ TEST_CASE("volume split rays: every slab has rays less than a cell apart, and no
   REQUIRE(whole.size() == 1);
   CHECK(whole[0].finer == 8);
   VolumeItem plain = m;
-  plain.sampling.antialias = "none";
-  CHECK(rms(with(m, "split", p), many_rays(scene_of({plain}), p, 8)) < 1e-6);
+  plain.sampling.antialias = VolumeAntialias::none;
+  CHECK(rms(with(m, VolumeAntialias::split, p), many_rays(scene_of({plain}), p, 8)) < 1e-6);
 }
 
 TEST_CASE("volume split rays: surfaces, sheets and picks stay where they are") {
@@ -126,7 +126,7 @@ TEST_CASE("volume split rays: surfaces, sheets and picks stay where they are") {
   const Projection p = perspective_view(16, 16, 48, {0.2, 0.1, 12}, {0, 0, 0});
   REQUIRE(volume::ray_slabs(scene_of({[&] {
                               VolumeItem s = v;
-                              s.sampling.antialias = "split";
+                              s.sampling.antialias = VolumeAntialias::split;
                               return s;
                             }()}),
                             p)
@@ -139,7 +139,7 @@ TEST_CASE("volume split rays: surfaces, sheets and picks stay where they are") {
         if (sheet < surface) sheets.fragments.push_back({sheet, {0.1f, 0.2f, 0.3f, 0.4f}, 7});
         sheets.start.push_back(uint32_t(sheets.fragments.size()));
       }
-      const auto picture = [&](const char* antialias) {
+      const auto picture = [&](VolumeAntialias antialias) {
         VolumeItem s = v;
         s.sampling.antialias = antialias;
         Frame frame(p.width, p.height);
@@ -154,7 +154,7 @@ TEST_CASE("volume split rays: surfaces, sheets and picks stay where they are") {
       };
       CAPTURE(surface);
       CAPTURE(sheet);
-      const Frame one = picture("none"), split = picture("split");
+      const Frame one = picture(VolumeAntialias::none), split = picture(VolumeAntialias::split);
       CHECK(largest_difference(one, split) < 0.002f);
       for (size_t i = 0; i < one.pixels(); ++i) {
         REQUIRE(one.ids[i] == split.ids[i]);
@@ -166,7 +166,7 @@ TEST_CASE("volume split rays: surfaces, sheets and picks stay where they are") {
 
 TEST_CASE("volume split rays: the same bytes for any number of threads; a window is a part of the picture") {
   VolumeItem v = item(grid(cube(65, -1, 1), bands), grey(0, 1), spikes());
-  v.sampling.antialias = "split", v.shaded = true;
+  v.sampling.antialias = VolumeAntialias::split, v.shaded = true;
   const Projection p = perspective_view(40, 30, 60, {1, 1.2, 2.2}, {0, 0, 0});
   const int threads = thread_count();
   set_thread_count(1);
@@ -189,7 +189,7 @@ TEST_CASE("volume split rays: refused for volumes that memory does not hold") {
   const DatasetPtr data = grid(cube(17, -1, 1), bands);
   attach_bricked(*data, std::make_shared<BrickedVolume>());
   VolumeItem v = item(data, grey(0, 1), spikes());
-  v.sampling.antialias = "split";
+  v.sampling.antialias = VolumeAntialias::split;
   CHECK_THROWS_WITH_AS(volume::ray_slabs(scene_of({v}), perspective_view(8, 8, 10, {0, 0, 9}, {0, 0, 0})),
                        doctest::Contains("means of cells already"), Error);
 }

@@ -174,7 +174,7 @@ std::unique_ptr<RayField> CellSource::walker() const { return std::make_unique<C
 std::unique_ptr<RaySource> cell_source(const VolumeItem& item, Context& context) {
   auto source = std::make_unique<CellSource>();
   source->volume = make_cell_volume(item, context);
-  source->lit = item.shaded || item.light.shadows > 0 || item.light.occlusion > 0 || item.light.style != "none";
+  source->lit = item.shaded || item.light.shadows > 0 || item.light.occlusion > 0 || item.light.style != LightStyle::none;
   source->base = source->volume.base;
   source->bounds = source->volume.mesh->bounds;
   source->edge = source->volume.mesh->edge > 0 ? source->volume.mesh->edge : 1;

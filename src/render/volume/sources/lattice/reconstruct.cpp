@@ -12,13 +12,6 @@
 
 namespace sg::volume {
 
-GradientKind gradient_kind_of(std::string_view name) {
-  static const std::vector<std::string> names{"central", "sobel", "intermediate", "analytic"};
-  for (size_t i = 0; i < names.size(); ++i)
-    if (names[i] == name) return GradientKind(i);
-  fail_usage(fmt::format("there is no gradient '{}'", name), "volume", unknown_name_hint(name, names));
-}
-
 TapPolynomials::TapPolynomials(Kernel kernel) : taps_(2 * traits(kernel).radius) {
   degree_ = traits(kernel).degree < 0 ? 9 : std::max(1, traits(kernel).degree);
   // Newton's interpolation at Chebyshev points, multiplied out; x = f - 1/2.

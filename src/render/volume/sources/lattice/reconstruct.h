@@ -11,16 +11,6 @@
 
 namespace sg::volume {
 
-/// How gradients are estimated. All are products of three rows of weights on the samples.
-enum class GradientKind : uint8_t {
-  central,       ///< half the difference of the field one sample further and one before
-  sobel,         ///< the same, averaged by 1 2 1 across each other axis (Sobel 1968 in 3x3x3; Zucker and Hummel 1981 weight otherwise)
-  intermediate,  ///< the difference of the field half a sample further and half before (Bentum, Lichtenbelt, Malzbender 1996)
-  analytic,      ///< the derivative of the kernel: that of the very field that is drawn
-};
-/// Throws Error(usage) with a guess at what was meant.
-GradientKind gradient_kind_of(std::string_view name);
-
 /// What a kernel reads instead of the volume's samples.
 struct Reconstruction {
   Kernel kernel = Kernel::linear;

@@ -277,15 +277,18 @@ class ReconstructedSource final : public RaySource {
 
 }  // namespace
 
-bool wants_reconstruction(const VolumeSampling& sampling) { return sampling.kernel != "linear" || sampling.gradient != "central"; }
+bool wants_reconstruction(const VolumeSampling& sampling) {
+  return sampling.kernel != Kernel::linear || sampling.gradient != GradientKind::central;
+}
 
 std::unique_ptr<RaySource> reconstructed_source(std::shared_ptr<const Volume> volume, const VolumeSampling& sampling, Memo* memo,
                                                 Range* reach) {
-  const Kernel kernel = kernel_of(sampling.kernel, "volume");
-  const GradientKind gradient = gradient_kind_of(sampling.gradient);
+  const Kernel kernel = sampling.kernel;
+  const GradientKind gradient = sampling.gradient;
   std::shared_ptr<const Reconstruction> field;
   // The samples are kept in the same memo, so that their address tells them.
-  const std::string name = fmt::format("volume reconstruction: {} {}", sampling.kernel, static_cast<const void*>(volume->samples.get()));
+  const std::string name =
+      fmt::format("volume reconstruction: {} {}", word_of(sampling.kernel), static_cast<const void*>(volume->samples.get()));
   if (memo) field = memo->find<Reconstruction>(name);
   if (!field) {
     Reconstruction made = reconstruct(*volume, kernel);

@@ -357,8 +357,8 @@ TEST_CASE("bricked: kernels and second fields that bricks do not have are refuse
   };
   const auto error = [&] { return error_of(shot); };
   CHECK(shot().rgba.size() == 64);
-  item.sampling.kernel = "bspline";
+  item.sampling.kernel = Kernel::bspline;
   CHECK(error().find("linear kernel") != std::string::npos);
-  item.sampling.kernel = "linear", item.detail.second = SecondAxis::field, item.detail.second_field = "g";
+  item.sampling.kernel = Kernel::linear, item.detail.second = SecondAxis::field, item.detail.second_field = "g";
   CHECK(error().find("no second field") != std::string::npos);
 }

@@ -192,7 +192,7 @@ std::vector<Case> cases() {
   hit.shaded = true;
   all.push_back({"first hit, lit", hit, nullptr});
   VolumeItem steps = fog;
-  steps.sampling.step = 0.01, steps.sampling.classify = "integrated";
+  steps.sampling.step = 0.01, steps.sampling.classify = VolumeClassify::integrated;
   all.push_back({"steps, integrated", steps, [=](double f0, double g, double l) { return composited(fog, f0, g, l); }});
   return all;
 }

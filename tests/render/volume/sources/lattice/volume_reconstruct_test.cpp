@@ -20,9 +20,9 @@ namespace {
 constexpr Kernel kernels[] = {Kernel::nearest, Kernel::linear,         Kernel::catmull_rom, Kernel::mitchell,
                               Kernel::bspline, Kernel::bspline_smooth, Kernel::gaussian,    Kernel::sinc};
 
-VolumeSampling sampling(Kernel k, const char* gradient = "central") {
+VolumeSampling sampling(Kernel k, GradientKind gradient = GradientKind::central) {
   VolumeSampling s;
-  s.kernel = traits(k).name, s.gradient = gradient, s.tolerance = 1.0 / 4096;
+  s.kernel = k, s.gradient = gradient, s.tolerance = 1.0 / 4096;
   return s;
 }
 std::unique_ptr<RaySource> source(const DatasetPtr& data, const VolumeSampling& s, Association association = Association::point) {
@@ -336,10 +336,10 @@ TEST_CASE("reconstruction: gradients of even slopes are exact, on turned and on 
   fields.add({"f", Association::point, Array::from_vector(values).converted(ElementType::f32), "", Role::scalars});
   const DatasetPtr uneven = make_dataset(r, fields);
   for (Kernel k : kernels)
-    for (const char* gradient : {"central", "sobel", "intermediate", "analytic"}) {
-      if (k == Kernel::nearest && *gradient != 'c' && *gradient != 's') continue;  // steps have no slope
-      if (!traits(k).linear && *gradient == 'a') continue;                         // nor do these have an even one
-      INFO(traits(k).name, ", ", std::string(gradient));
+    for (GradientKind gradient : {GradientKind::central, GradientKind::sobel, GradientKind::intermediate, GradientKind::analytic}) {
+      if (k == Kernel::nearest && gradient != GradientKind::central && gradient != GradientKind::sobel) continue;  // steps have no slope
+      if (!traits(k).linear && gradient == GradientKind::analytic) continue;  // nor do these have an even one
+      INFO(traits(k).name, ", ", word_of(gradient));
       const auto a = source(even, sampling(k, gradient)), b = source(uneven, sampling(k, gradient));
       for (int i = 0; i < 20; ++i) {
         const Vec3 u{random_unit(1, uint64_t(i)), random_unit(2, uint64_t(i)), random_unit(3, uint64_t(i))};
@@ -362,7 +362,7 @@ TEST_CASE("reconstruction: gradients converge with order 2, by every estimator (
     const double by_r = ml_alpha * std::sin(c * std::cos(M_PI * r / 2)) * c * std::sin(M_PI * r / 2) * (M_PI / 2) / (2 * (1 + ml_alpha));
     return Vec3{by_r * p.x / r, by_r * p.y / r, -std::cos(M_PI * p.z / 2) * (M_PI / 2) / (2 * (1 + ml_alpha))};
   };
-  const auto rms = [&](size_t n, Kernel k, const char* gradient) {
+  const auto rms = [&](size_t n, Kernel k, GradientKind gradient) {
     const auto s = source(grid(cube(n, -1, 1), f), sampling(k, gradient));
     double sum = 0;
     const int points = 600;
@@ -374,18 +374,23 @@ TEST_CASE("reconstruction: gradients converge with order 2, by every estimator (
     }
     return std::sqrt(sum / points);
   };
-  const std::tuple<Kernel, const char*, double> ways[] = {
-      {Kernel::linear, "central", 2},          {Kernel::catmull_rom, "central", 2},   {Kernel::linear, "sobel", 2},
-      {Kernel::linear, "intermediate", 2},     {Kernel::mitchell, "intermediate", 2}, {Kernel::catmull_rom, "analytic", 2},
-      {Kernel::bspline_smooth, "analytic", 2}, {Kernel::bspline, "analytic", 3},      {Kernel::linear, "analytic", 1}};
+  const std::tuple<Kernel, GradientKind, double> ways[] = {{Kernel::linear, GradientKind::central, 2},
+                                                           {Kernel::catmull_rom, GradientKind::central, 2},
+                                                           {Kernel::linear, GradientKind::sobel, 2},
+                                                           {Kernel::linear, GradientKind::intermediate, 2},
+                                                           {Kernel::mitchell, GradientKind::intermediate, 2},
+                                                           {Kernel::catmull_rom, GradientKind::analytic, 2},
+                                                           {Kernel::bspline_smooth, GradientKind::analytic, 2},
+                                                           {Kernel::bspline, GradientKind::analytic, 3},
+                                                           {Kernel::linear, GradientKind::analytic, 1}};
   for (const auto& [k, gradient, order] : ways) {
-    INFO(traits(k).name, ", ", std::string(gradient));
+    INFO(traits(k).name, ", ", word_of(gradient));
     const double p = std::log2(rms(49, k, gradient) / rms(97, k, gradient));
     CHECK(std::abs(p - order) < 0.2);
   }
   // At full frequency and 40^3 the estimators differ as they should: the spline's own derivative is the best, Sobel smooths most.
   const DatasetPtr data = grid(cube(40, -1, 1), marschner_lobb);
-  const auto error = [&](Kernel k, const char* gradient) {
+  const auto error = [&](Kernel k, GradientKind gradient) {
     const auto s = source(data, sampling(k, gradient));
     double sum = 0;
     for (int i = 0; i < 500; ++i) {
@@ -395,9 +400,9 @@ TEST_CASE("reconstruction: gradients converge with order 2, by every estimator (
     }
     return std::sqrt(sum / 500);
   };
-  CHECK(error(Kernel::bspline, "analytic") < error(Kernel::linear, "intermediate"));
-  CHECK(error(Kernel::linear, "intermediate") < error(Kernel::linear, "central"));
-  CHECK(error(Kernel::linear, "central") < error(Kernel::linear, "sobel"));
+  CHECK(error(Kernel::bspline, GradientKind::analytic) < error(Kernel::linear, GradientKind::intermediate));
+  CHECK(error(Kernel::linear, GradientKind::intermediate) < error(Kernel::linear, GradientKind::central));
+  CHECK(error(Kernel::linear, GradientKind::central) < error(Kernel::linear, GradientKind::sobel));
 }
 
 TEST_CASE("reconstruction: a cell draws where its corners have values, and beside holes what rises evenly goes on") {
@@ -486,7 +491,7 @@ TEST_CASE("reconstruction: pictures do not depend on passing over empty bricks, 
     for (RayFunction mode : {RayFunction::composite, RayFunction::isosurface}) {
       VolumeItem v = item(data, grey(0, 1.5), OpacityCurve{});
       v.opacity.points = {{0.5, 0}, {0.6, 0.5}, {0.7, 0}, {2, 0.9}};
-      v.sampling.kernel = traits(k).name, v.sampling.gradient = "analytic", v.mode = mode, v.levels = {0.62}, v.shaded = true;
+      v.sampling.kernel = k, v.sampling.gradient = GradientKind::analytic, v.mode = mode, v.levels = {0.62}, v.shaded = true;
       v.unit_distance = 0.1;
       const Scene scene = scene_of({v});
       const Projection view = perspective_view(16, 16, 19, {1.9, 1.4, 2.6}, {0, 0, 0});
@@ -513,7 +518,7 @@ TEST_CASE("reconstruction: the picture lies within the tolerance of brute force"
     VolumeItem v = item(data, grey(-0.5, 1.5), OpacityCurve{});
     // Knots beyond the data, where lobes reach.
     v.opacity.points = {{-0.3, 0.7}, {-0.1, 0}, {0.4, 0}, {0.6, 0.3}, {1.02, 0}, {1.1, 0.9}};
-    v.sampling.kernel = traits(k).name;
+    v.sampling.kernel = k;
     const Reference truth = reference(data, dims, k);
     for (int ray = 0; ray < 4; ++ray) {
       const double x = 1.27 + 1.1 * ray, y = 7.83 - 0.9 * ray;
@@ -534,10 +539,11 @@ TEST_CASE("reconstruction: the picture lies within the tolerance of brute force"
 TEST_CASE("reconstruction: unknown names and meshes without samples in rows are refused") {
   const DatasetPtr data = noise({4, 4, 4});
   VolumeItem v = item(data, grey(0, 1), constant_opacity(1));
-  v.sampling.kernel = "cubic";
-  CHECK_THROWS_WITH_AS(look(scene_of({v})), doctest::Contains("no kernel 'cubic'"), Error);
-  v.sampling.kernel = "linear", v.sampling.gradient = "sobell";
-  CHECK_THROWS_WITH_AS(look(scene_of({v})), doctest::Contains("sobel"), Error);
+  VolumeSampling sampling;
+  Schema schema;
+  describe(schema, sampling);
+  CHECK_THROWS_WITH_AS(set_param(schema, "kernel", "cubic", "volume"), doctest::Contains("kernel"), Error);
+  CHECK_THROWS_WITH_AS(set_param(schema, "gradient", "sobell", "volume"), doctest::Contains("sobel"), Error);
   CurvilinearGrid g;
   g.dims = {2, 2, 2};
   std::vector<float> xyz;
@@ -546,6 +552,6 @@ TEST_CASE("reconstruction: unknown names and meshes without samples in rows are 
   FieldSet fields;
   fields.add({"f", Association::point, Array::from_vector(std::vector<float>(8, 1.0f)), "", Role::scalars});
   VolumeItem bent = item(make_dataset(g, fields), grey(0, 1), constant_opacity(1));
-  bent.sampling.kernel = "bspline";
+  bent.sampling.kernel = Kernel::bspline;
   CHECK_THROWS_WITH_AS(look(scene_of({bent})), doctest::Contains("resample"), Error);
 }
