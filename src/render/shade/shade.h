@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // From visible triangles to colours: where the ray of a pixel meets its triangle, with what normal, value and light. Internal to raster/.
 #pragma once
+#include "render/prepare/eye_view.h"
 #include "render/prepare/prepared.h"
-#include "render/raster/triangles/kernels.h"
 
 namespace sg::raster {
 

@@ -10,8 +10,8 @@
 #pragma once
 #include <vector>
 
-#include "render/volume/engines/tets/eye_space.h"
 #include "render/volume/medium/medium.h"
+#include "render/volume/sources/cells/eye_space.h"
 
 namespace sg::volume {
 

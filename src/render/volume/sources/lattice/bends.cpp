@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "render/volume/sources/lattice/empty_space.h"
+#include "render/volume/sources/lattice/space/empty_space.h"
 #include "render/volume/sources/lattice/samples.h"
 
 namespace sg::volume {
