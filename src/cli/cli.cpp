@@ -15,6 +15,7 @@
 #include "base/file/partial_file.h"
 #include "base/parallel.h"
 #include "base/text/utf8.h"
+#include "base/vector_width.h"
 #include "cli/info.h"
 #include "cli/say.h"
 #include "cli/spool.h"
@@ -108,10 +109,12 @@ int dispatch_command(const Options& o, Context& context) {
 
 int cli_main(int argc, char** argv) {
   try {
+    cap_vector_width();
     const Options o = parse_options(argc, argv);
     if (o.threads > 0) set_thread_count(o.threads);
     Context context;
     connect(context, o);
+    context.log(LogLevel::debug, "vector code for " + vector_target());
     if (o.read_anywhere) allow_reading_anywhere();
     interruptible = &context;
     catch_signals();

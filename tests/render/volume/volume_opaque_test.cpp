@@ -14,7 +14,6 @@ namespace {
 DatasetPtr one_cell(bool tets) {
   DatasetPtr data = grid(cube(2, 0, 1), [](Vec3 p) { return p.z; });
   if (tets) {
-    const UniformGrid g = cube(2, 0, 1);
     UnstructuredMesh m;
     std::vector<double> xyz;
     for (int c = 0; c < 8; ++c)

@@ -13,8 +13,8 @@
 #include "render/volume/medium/ray_state.h"
 #include "render/volume/medium/transfer.h"
 #include "render/volume/sources/lattice/bends.h"
-#include "render/volume/sources/lattice/space/empty_space.h"
 #include "render/volume/sources/lattice/kernels.h"
+#include "render/volume/sources/lattice/space/empty_space.h"
 #include "scene/scene.h"
 
 namespace sg::volume {
