@@ -206,8 +206,10 @@ class Pieces {
     const float beyond = std::max(hi - std::max(a, b), std::min(a, b) - lo);
     const bool abrupt = medium.any_abrupt() && medium.abrupt(lo, hi);
     double turn[3] = {2, 2, 2};
-    if (beyond > 0 && (abrupt || pass * beyond * length * slope > 0.1f * allowed)) turn[turns(s.b, turn)] = 2;
-    close_ = abrupt ? 0 : 0.05f * allowed / std::max(pass * (length * slope + taken * (hi > lo ? recolor / (hi - lo) : 0)), 1e-30f);
+    // What is wrong by how far a value lies beside a knot: of tau, and of colours.
+    const float spoilt = pass * (length * slope + taken * (hi > lo ? recolor / (hi - lo) : 0));
+    if (beyond > 0 && (abrupt || beyond * spoilt > 0.1f * allowed)) turn[turns(s.b, turn)] = 2;
+    close_ = abrupt ? 0 : 0.05f * allowed / std::max(spoilt, 1e-30f);
     error *= pass;
     const float parts = std::max(std::sqrt(error / allowed), std::sqrt(std::sqrt(uneven / allowed)));
     const float n = std::clamp(std::ceil(parts), 1.0f, 1024.0f);
