@@ -38,9 +38,7 @@ int main(int argc, char** argv) {
     const sg::Cells cells = warm.cells();
     std::printf("%zu of %zu cells; the first triangle has %g, %g, %g K\n", warm.cell_count(), sheet.cell_count(),
                 t[size_t(cells.ids.get(0))], t[size_t(cells.ids.get(1))], t[size_t(cells.ids.get(2))]);
-    const sg::Data area = warm.run("integrate");
-    for (const sg::Field& column : area.fields())
-      std::printf("%s = %g %s\n", column.name.c_str(), column.values.get(0), column.unit.c_str());
+    std::printf("area %g\n", warm.run("integrate").field("measure").values.get(0));
 
     sg::Scene().show(warm).show(sheet, "outline").render(800, 600).write(argc > 1 ? argv[1] : "own_arrays.png");
   } catch (const sg::Error& e) {
