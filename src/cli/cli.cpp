@@ -72,7 +72,7 @@ void catch_signals() {
 constexpr size_t most_piped = size_t(1) << 30;
 
 Options with_streams(Options o, const Context& context) {
-  if (o.command == "ops" || o.command == "demo") return o;
+  if (o.command == "ops" || o.command == "demo" || o.command == "complete" || o.command == "completions") return o;
   for (std::string& path : o.inputs) path = spooled(path, o.memory ? o.memory : most_piped, context);
   return o;
 }
@@ -98,8 +98,10 @@ int dispatch_command(const Options& o, Context& context) {
     std::string_view name;
     int (*run)(const Options&, Context&);
   };
-  static constexpr Command commands[] = {{"info", run_info}, {"render", run_render}, {"convert", run_convert},   {"run", run_pipeline_file},
-                                         {"open", run_open}, {"ops", run_ops},       {"colormap", run_colormap}, {"demo", run_demo}};
+  static constexpr Command commands[] = {{"info", run_info},         {"render", run_render}, {"convert", run_convert},
+                                         {"run", run_pipeline_file}, {"open", run_open},     {"ops", run_ops},
+                                         {"colormap", run_colormap}, {"demo", run_demo},     {"completions", run_completions},
+                                         {"complete", run_complete}, {"man", run_man}};
   for (const Command& c : commands)
     if (c.name == o.command) return c.run(o, context);
   return 0;  // --help or --version: all is said
