@@ -1,6 +1,27 @@
 # SPDX-License-Identifier: Apache-2.0
 # One static library per folder of src/, one test program per folder of tests/.
 
+# base and image know no data; all others start from the headers of data, which nearly every file includes.
+function(sg_use_pch target)
+  if(NOT SG_PCH)
+    return()
+  endif()
+  if(target STREQUAL sg_base)
+    target_precompile_headers(sg_base PRIVATE ${CMAKE_SOURCE_DIR}/src/base/pch.h)
+  elseif(target STREQUAL sg_data)
+    target_precompile_headers(sg_data PRIVATE ${CMAKE_SOURCE_DIR}/src/data/pch.h)
+  elseif(target STREQUAL sg_image)
+    target_precompile_headers(sg_image REUSE_FROM sg_base)
+  else()
+    target_precompile_headers(${target} REUSE_FROM sg_data)
+  endif()
+endfunction()
+
+# What has no inner loops worth the time of the optimiser.
+function(sg_quick_to_compile target)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+endfunction()
+
 # sg_layer(NAME [LAYERS lower...] [LIBS public...] [PRIVATE private...])
 function(sg_layer name)
   cmake_parse_arguments(A "" "" "LAYERS;LIBS;PRIVATE" ${ARGN})
@@ -14,13 +35,7 @@ function(sg_layer name)
   target_include_directories(sg_${name} PUBLIC ${CMAKE_SOURCE_DIR}/src)
   list(TRANSFORM A_LAYERS PREPEND sg_)
   target_link_libraries(sg_${name} PUBLIC ${A_LAYERS} ${A_LIBS} PRIVATE ${A_PRIVATE})
-  if(SG_PCH)
-    if(name STREQUAL base)
-      target_precompile_headers(sg_base PRIVATE ${CMAKE_SOURCE_DIR}/src/base/pch.h)
-    else()
-      target_precompile_headers(sg_${name} REUSE_FROM sg_base)
-    endif()
-  endif()
+  sg_use_pch(sg_${name})
 endfunction()
 
 # sg_plugin(NAME LIBS libraries... [INCLUDES folders...]): a shared object from src/io/plugins/NAME with its own copy of the layers it uses.
@@ -35,11 +50,17 @@ function(sg_plugin name)
   target_link_libraries(plugin_${name} PRIVATE sg_io ${A_LIBS})
   target_include_directories(plugin_${name} SYSTEM PRIVATE ${A_INCLUDES})
   target_link_options(plugin_${name} PRIVATE -Wl,--as-needed -Wl,--gc-sections -Wl,--exclude-libs,ALL)
-  if(SG_PCH)
-    target_precompile_headers(plugin_${name} REUSE_FROM sg_base)
-  endif()
+  sg_use_pch(plugin_${name})
   add_dependencies(sightglass plugin_${name})
   set_property(GLOBAL APPEND PROPERTY SG_PLUGINS plugin_${name})
+endfunction()
+
+# Tests are compiled more often than they run: a third less time than with -O3.
+function(sg_test_options target)
+  sg_quick_to_compile(${target})
+  if(SG_PCH)
+    target_precompile_headers(${target} REUSE_FROM sg_test_support)
+  endif()
 endfunction()
 
 # A program test_NAME for each folder tests/NAME; tests/support is shared.
@@ -48,6 +69,11 @@ function(sg_tests)
   add_library(sg_test_support STATIC ${support})
   target_include_directories(sg_test_support PUBLIC ${CMAKE_SOURCE_DIR}/tests ${CMAKE_SOURCE_DIR}/src)
   target_link_libraries(sg_test_support PUBLIC sg_data)
+  sg_quick_to_compile(sg_test_support)
+  if(SG_PCH)
+    target_precompile_headers(sg_test_support PRIVATE ${CMAKE_SOURCE_DIR}/tests/support/pch.h)
+    set_source_files_properties(${CMAKE_SOURCE_DIR}/tests/support/main.cpp PROPERTIES SKIP_PRECOMPILE_HEADERS ON)  # it implements doctest
+  endif()
   # One file knows where things are, so that all others compile to the same object in every checkout.
   set_source_files_properties(${CMAKE_SOURCE_DIR}/tests/support/test.cpp PROPERTIES COMPILE_DEFINITIONS
       "SG_SOURCE_DIR=\"${CMAKE_SOURCE_DIR}\";SG_BINARY_DIR=\"${CMAKE_BINARY_DIR}\"")
@@ -61,9 +87,7 @@ function(sg_tests)
     if(sources)
       add_executable(test_${name} ${sources})
       target_link_libraries(test_${name} PRIVATE sg_test_support sg_${name})
-      if(SG_PCH)
-        target_precompile_headers(test_${name} REUSE_FROM sg_base)
-      endif()
+      sg_test_options(test_${name})
     endif()
   endforeach()
   get_property(plugins GLOBAL PROPERTY SG_PLUGINS)

@@ -1,14 +1,39 @@
 # SPDX-License-Identifier: Apache-2.0
-# ccache and mold where they are installed; neither is needed.
+# ccache and mold where they are installed; neither is needed, -DSG_CCACHE=OFF does without.
 find_program(SG_CCACHE ccache)
 if(SG_CCACHE)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
       CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
       CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} CCACHE_NOHASHDIR=1 CCACHE_PCH_EXTSUM=1 ${SG_CCACHE})
-  # The precompiled header differs in every build folder, though its content does not: ccache is told what it stands for.
-  file(SHA256 ${CMAKE_SOURCE_DIR}/src/base/pch.h pch_sum)
-  file(WRITE ${CMAKE_BINARY_DIR}/CMakeFiles/sg_base.dir/cmake_pch.hxx.gch.sum
-       "${pch_sum} ${CMAKE_CXX_COMPILER_VERSION} ${CMAKE_BUILD_TYPE} ${SG_SANITIZE}\n")
+  # The precompiled headers differ in every build folder, though their content does not: ccache is told what they stand for, which is the
+  # text of all headers that they may include. CMake runs again when one of them changes, before anything is compiled.
+  foreach(target IN ITEMS sg_base sg_data sg_test_support)
+    set(queue ${CMAKE_SOURCE_DIR}/src/base/pch.h)
+    if(target STREQUAL sg_data)
+      set(queue ${CMAKE_SOURCE_DIR}/src/data/pch.h)
+    elseif(target STREQUAL sg_test_support)
+      set(queue ${CMAKE_SOURCE_DIR}/tests/support/pch.h)
+    endif()
+    set(pch_text)
+    while(queue)
+      list(POP_FRONT queue header)
+      if(NOT header IN_LIST pch_text AND EXISTS ${header})
+        list(APPEND pch_text ${header})
+        file(STRINGS ${header} includes REGEX "^#include \"")
+        foreach(include IN LISTS includes)
+          string(REGEX REPLACE ".*\"(.*)\".*" "\\1" include "${include}")
+          list(APPEND queue ${CMAKE_SOURCE_DIR}/src/${include} ${CMAKE_SOURCE_DIR}/tests/${include})
+        endforeach()
+      endif()
+    endwhile()
+    set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${pch_text})
+    set(pch_sum "${target} ${CMAKE_CXX_COMPILER_VERSION} ${CMAKE_BUILD_TYPE} ${SG_SANITIZE}\n")
+    foreach(header IN LISTS pch_text)
+      file(SHA256 ${header} sum)
+      string(APPEND pch_sum "${sum}\n")
+    endforeach()
+    file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/CMakeFiles/${target}.dir/cmake_pch.hxx.gch.sum CONTENT "${pch_sum}" @ONLY)
+  endforeach()
   add_compile_options($<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
 endif()
 find_program(SG_MOLD mold)

@@ -4,22 +4,26 @@
 
 say() { printf '%s\n' "$*" >&2; }
 
-# Packages of packages.txt that are not installed.
+# Lists of packages; ./test adds those of the tests.
+package_lists=(packages.txt)
+
+wanted_packages() { sed 's/#.*//' "${package_lists[@]}" | tr -s ' \n' '\n' | grep . | sort -u; }
+
+# Packages of the lists that are not installed.
 missing_packages() {
-  local wanted have
-  wanted=$(sed 's/#.*//' packages.txt | tr -s ' \n' '\n' | grep . | sort)
+  local have
   have=$(dpkg-query -W -f '${Package} ${db:Status-Status}\n' 2>/dev/null | awk '$2 == "installed" {print $1}' | sort -u)
-  comm -23 <(printf '%s\n' "$wanted") <(printf '%s\n' "$have")
+  comm -23 <(wanted_packages) <(printf '%s\n' "$have")
 }
 
 install_packages() {
-  # A stamp makes the common case (nothing to do) free of the package manager.
+  # A stamp makes the common case (nothing to do) free of the package manager: it holds the lists that were installed.
   local stamp="$build/packages.ok"
-  if [ -f "$stamp" ] && [ "$stamp" -nt packages.txt ]; then return; fi
+  if [ -f "$stamp" ] && [ -z "$(comm -23 <(wanted_packages) "$stamp")" ]; then return; fi
   if ! command -v apt-get >/dev/null || ! command -v dpkg-query >/dev/null; then
     if command -v cmake >/dev/null && command -v ninja >/dev/null && [ -n "${SG_NO_INSTALL:-}" ]; then return; fi
     say "This system has no apt-get. Install what corresponds to these Debian packages, then run again with SG_NO_INSTALL=1:"
-    sed 's/#.*//' packages.txt | grep . >&2
+    wanted_packages >&2
     exit 2
   fi
   local missing
@@ -42,22 +46,43 @@ install_packages() {
       exit 2
     fi
   fi
-  touch "$stamp"
+  wanted_packages >"$stamp"
 }
 
-# build TARGET...: configures when needed and builds, showing what went wrong and nothing else.
+# Runs ninja TARGET... and tells how far it is: on a terminal each percent of its steps, elsewhere each tenth one.
+ninja_with_progress() {
+  local terminal=0
+  if [ -t 2 ]; then terminal=1; fi
+  NINJA_STATUS='[%f/%t] ' ninja -C "$build" "$@" 2>&1 | tee "$build/build.log" | awk -v terminal="$terminal" '
+    match($0, /^\[[0-9]+\/[0-9]+\]/) {
+      split(substr($0, 2, RLENGTH - 2), n, "/")
+      if (n[2] < 20) next  # a few files are quick
+      percent = int(100 * n[1] / n[2])
+      if (percent == last) next
+      if (terminal) printf "\rBuilding: %3d %%", percent
+      else if (int(percent / 10) > int(last / 10)) printf "Building: %d %%\n", percent
+      last = percent
+      said = 1
+      fflush()
+    }
+    END { if (terminal && said) printf "\r\033[K" }' >&2
+  return "${PIPESTATUS[0]}"
+}
+
+# build_targets TARGET...: configures when needed and builds; tells progress, and what went wrong. SG_CMAKE: further options of a first
+# configuration, e.g. SG_CMAKE="-DSG_PCH=OFF -DSG_WERROR=ON".
 build_targets() {
   mkdir -p "$build"
   install_packages
   if [ ! -f "$build/build.ninja" ]; then
-    if ! cmake -G Ninja -S . -B "$build" -DCMAKE_BUILD_TYPE=Release >"$build/configure.log" 2>&1; then
+    # shellcheck disable=SC2086
+    if ! cmake -G Ninja -S . -B "$build" -DCMAKE_BUILD_TYPE=Release ${SG_CMAKE:-} >"$build/configure.log" 2>&1; then
       cat "$build/configure.log" >&2
       exit 4
     fi
-    say "Building (a first build takes some minutes)..."
   fi
-  if ! ninja -C "$build" "$@" >"$build/build.log" 2>&1; then
-    grep -E -A 12 'FAILED|error' "$build/build.log" | head -n 80 >&2
+  if ! ninja_with_progress "$@"; then
+    grep -a -E -A 12 'FAILED|error' "$build/build.log" | head -n 80 >&2
     say "The build failed; the whole log is $build/build.log"
     exit 4
   fi

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one precompiled header: the standard headers that nearly every file uses, nothing else.
+// The precompiled header of base and image, and the start of the others (data/pch.h): standard headers that nearly every file uses.
 #pragma once
 #include <algorithm>
 #include <array>

@@ -15,6 +15,7 @@
 #include "base/file/partial_file.h"
 #include "base/parallel.h"
 #include "base/text/utf8.h"
+#include "base/vector_width.h"
 #include "cli/info.h"
 #include "cli/say.h"
 #include "cli/spool.h"
@@ -71,7 +72,7 @@ void catch_signals() {
 constexpr size_t most_piped = size_t(1) << 30;
 
 Options with_streams(Options o, const Context& context) {
-  if (o.command == "ops" || o.command == "demo") return o;
+  if (o.command == "ops" || o.command == "demo" || o.command == "complete" || o.command == "completions") return o;
   for (std::string& path : o.inputs) path = spooled(path, o.memory ? o.memory : most_piped, context);
   return o;
 }
@@ -97,8 +98,10 @@ int dispatch_command(const Options& o, Context& context) {
     std::string_view name;
     int (*run)(const Options&, Context&);
   };
-  static constexpr Command commands[] = {{"info", run_info}, {"render", run_render}, {"convert", run_convert},   {"run", run_pipeline_file},
-                                         {"open", run_open}, {"ops", run_ops},       {"colormap", run_colormap}, {"demo", run_demo}};
+  static constexpr Command commands[] = {{"info", run_info},         {"render", run_render}, {"convert", run_convert},
+                                         {"run", run_pipeline_file}, {"open", run_open},     {"ops", run_ops},
+                                         {"colormap", run_colormap}, {"demo", run_demo},     {"completions", run_completions},
+                                         {"complete", run_complete}, {"man", run_man}};
   for (const Command& c : commands)
     if (c.name == o.command) return c.run(o, context);
   return 0;  // --help or --version: all is said
@@ -108,10 +111,12 @@ int dispatch_command(const Options& o, Context& context) {
 
 int cli_main(int argc, char** argv) {
   try {
+    cap_vector_width();
     const Options o = parse_options(argc, argv);
     if (o.threads > 0) set_thread_count(o.threads);
     Context context;
     connect(context, o);
+    context.log(LogLevel::debug, "vector code for " + vector_target());
     if (o.read_anywhere) allow_reading_anywhere();
     interruptible = &context;
     catch_signals();

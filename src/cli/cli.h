@@ -20,6 +20,9 @@ int run_open(const Options& o, Context& context);
 int run_ops(const Options& o, Context& context);
 int run_colormap(const Options& o, Context& context);
 int run_demo(const Options& o, Context& context);
+int run_completions(const Options& o, Context& context);
+int run_complete(const Options& o, Context& context);
+int run_man(const Options& o, Context& context);
 
 /// Does the name of the output number its pictures ("out_{n}.png")?
 bool is_numbered(const std::string& output);

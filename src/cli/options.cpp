@@ -210,28 +210,17 @@ const char* const overview =
     "  sightglass open PICTURE.png                                   make a picture again from the recipe inside it\n"
     "  sightglass ops [NAME] [--json]                                operations and their parameters\n"
     "  sightglass colormap [NAME or FILE[:NAME]]                 colour maps and their lightness analysis\n"
-    "  sightglass demo                                               some pictures of what it can do, into out/\n\n"
+    "  sightglass demo                                               some pictures of what it can do, into out/\n"
+    "  sightglass completions bash|zsh|fish                          completion of commands, operations and parameters for a shell\n"
+    "  sightglass man                                                the manual page: sightglass man | man -l -\n\n"
     "Each command has --help. Exit codes: 0 done, 2 usage, 3 data, 4 internal.\n";
 
-}  // namespace
+const std::vector<std::string> commands = {
+    "render", "info",     "convert",     "run", "ops",     "open",
+    "demo",   "colormap", "completions", "man", "complete"};  // the last one is for completions alone
 
-Options parse_options(int argc, char** argv) {
-  Options o;
-  static const std::vector<std::string> commands = {"render", "info", "convert", "run", "ops", "open", "demo", "colormap"};
-  const std::string first = argc > 1 ? argv[1] : "--help";
-  if (first == "--help" || first == "-h" || first == "help") {
-    std::fputs(overview, stdout);
-    return o;
-  }
-  if (first == "--version") {
-    std::printf("sightglass %s\n", SG_VERSION);
-    return o;
-  }
-  if (std::find(commands.begin(), commands.end(), first) == commands.end())
-    fail_usage(fmt::format("unknown command '{}'", first), "sightglass", unknown_name_hint(first, commands));
-
-  RawText raw;
-  CLI::App a{"", first};
+// The flags and arguments of a command.
+void declare(const std::string& first, CLI::App& a, Options& o, RawText& raw) {
   a.set_help_flag("-h,--help", "This text");
   add_common(a, o, raw);
   if (first == "render") {
@@ -281,12 +270,44 @@ Options parse_options(int argc, char** argv) {
     a.add_option("name", o.inputs, "Colour map; NAME_r is its reverse");
     a.add_option("-o,--output", o.output, "Write a picture of the map");
     a.add_flag("--json", o.json, "For programs");
+  } else if (first == "completions") {
+    a.description("Prints the completion of a shell: source <(sightglass completions bash); installed packages have it in place.");
+    a.add_option("shell", o.inputs, "bash, zsh or fish")->required()->expected(1)->check(CLI::IsMember({"bash", "zsh", "fish"}));
+  } else if (first == "man") {
+    a.description("Prints the manual page in troff.");
   } else {
     a.description("Renders some pictures of what Sightglass can do.");
     a.add_option("folder", o.inputs, "Render every file in this folder onto the sheet instead")->expected(0, 1);
     a.add_option("-o,--out", o.output, "Folder; default out/");
     a.add_option("--sheet", o.sheet, "All pictures on one sheet: file to write");
   }
+}
+
+}  // namespace
+
+Options parse_options(int argc, char** argv) {
+  Options o;
+  const std::string first = argc > 1 ? argv[1] : "--help";
+  if (first == "--help" || first == "-h" || first == "help") {
+    std::fputs(overview, stdout);
+    return o;
+  }
+  if (first == "--version") {
+    std::printf("sightglass %s\n", SG_VERSION);
+    return o;
+  }
+  if (std::find(commands.begin(), commands.end(), first) == commands.end())
+    fail_usage(fmt::format("unknown command '{}'", first), "sightglass",
+               unknown_name_hint(first, std::vector<std::string>(commands.begin(), commands.end() - 1)));
+
+  if (first == "complete") {  // its words are those of another command, flags too
+    o.command = first;
+    o.inputs.assign(argv + 2, argv + argc);
+    return o;
+  }
+  RawText raw;
+  CLI::App a{"", first};
+  declare(first, a, o, raw);
   try {
     std::vector<std::string> args(argv + 2, argv + argc);
     std::reverse(args.begin(), args.end());  // CLI11 takes them from the back
@@ -302,6 +323,35 @@ Options parse_options(int argc, char** argv) {
   if (o.series) o.inputs = {series_path(std::move(o.inputs), true)};
   o.command = first;
   return o;
+}
+
+std::vector<CommandDoc> command_docs() {
+  std::vector<CommandDoc> docs;
+  for (const std::string& name : commands) {
+    if (name == "complete") continue;
+    Options o;
+    RawText raw;
+    CLI::App a{"", name};
+    declare(name, a, o, raw);
+    CommandDoc doc{name, a.get_description(), {}, {}, {}};
+    for (const CLI::Option* option : a.get_options()) {
+      std::vector<std::string> choices;  // CLI11 tells of them in the text of the type: "TEXT:{a,b}"
+      const std::string type = option->get_type_name();
+      const size_t open = type.find('{'), close = type.find('}');
+      if (open != type.npos && close != type.npos)
+        for (const std::string_view c : split(std::string_view(type).substr(open + 1, close - open - 1), ',')) choices.emplace_back(c);
+      if (option->get_positional()) {
+        doc.input = option->get_description(), doc.words = choices;
+        continue;
+      }
+      FlagDoc flag{{}, option->get_items_expected_max() > 0, option->get_description(), choices};
+      for (const std::string& s : option->get_snames()) flag.names.push_back("-" + s);
+      for (const std::string& l : option->get_lnames()) flag.names.push_back("--" + l);
+      doc.flags.push_back(std::move(flag));
+    }
+    docs.push_back(std::move(doc));
+  }
+  return docs;
 }
 
 }  // namespace sg

@@ -9,7 +9,7 @@
 namespace sg {
 
 struct Options {
-  std::string command;               ///< render, info, convert, run, ops, open, demo, colormap
+  std::string command;               ///< render, info, convert, run, ops, open, demo, colormap, completions, complete, man
   std::vector<std::string> inputs;   ///< files, or what the command names
   std::vector<std::string> filters;  ///< each one -f: operation and key=value words
   std::vector<std::string> shows;    ///< each one --show
@@ -34,5 +34,21 @@ struct Options {
 
 /// Parses; for --help and --version prints to stdout and sets command to "". Throws Error(usage).
 Options parse_options(int argc, char** argv);
+
+/// A flag of a command, as the man page and completions tell of it.
+struct FlagDoc {
+  std::vector<std::string> names;  ///< "-o", "--output"
+  bool takes_value = false;
+  std::string doc;
+  std::vector<std::string> choices;  ///< of its value; empty = others
+};
+struct CommandDoc {
+  std::string name, doc;
+  std::string input;               ///< what it takes beside flags: "File to read"; "" = nothing
+  std::vector<std::string> words;  ///< ... where these are all
+  std::vector<FlagDoc> flags;
+};
+/// Every command of the help, from the same declarations that parse_options() reads.
+std::vector<CommandDoc> command_docs();
 
 }  // namespace sg

@@ -258,8 +258,7 @@ class Sink {
 PipelineFile with_looks(const PipelineFile& plain, PipelineFile first, const PictureOptions& options, Context& context) {
   std::vector<std::string> notes;
   std::vector<Data> looked;
-  if (first.show.empty()) choose_looks(first, options, options.cache, looked, notes, context);
-  else add_coloring(first, options.coloring);
+  choose_looks(first, options, options.cache, looked, notes, context);
   for (size_t i = 0; i < plain.steps.size(); ++i) first.steps[i].words = plain.steps[i].words;  // without its time
   return first;
 }

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <type_traits>
 
+#include "base/nearest_whole.h"
 #include "base/parallel.h"
-#include "data/nearest_whole.h"
 
 namespace sg {
 

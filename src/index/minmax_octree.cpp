@@ -2,6 +2,7 @@
 #include "index/minmax_octree.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/parallel.h"
 

@@ -3,6 +3,7 @@
 // at the others.
 #pragma once
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 

@@ -3,9 +3,11 @@
 
 #include <dlfcn.h>
 #include <fmt/core.h>
+#include <sys/auxv.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <climits>
 #include <cstdlib>
 #include <mutex>
 
@@ -36,28 +38,43 @@ const Package& package_of(std::string_view plugin) {
   fail_internal(fmt::format("plug-in '{}' has no package", plugin));
 }
 
-// Where plug-ins are looked for: the environment's folder alone, else beside the program and in the installation's lib. A folder or file
-// that anybody may write, or that belongs to somebody who neither runs nor owns the program, is passed over with a word: what lies there
-// would run as this user.
-std::vector<std::string> plugin_folders() {
-  std::vector<std::string> folders;
-  if (const char* set = std::getenv("SIGHTGLASS_PLUGINS")) return {std::string(set) + "/"};
-  char program[4096];
-  const ssize_t n = ::readlink("/proc/self/exe", program, sizeof program);
-  if (n > 0) {
-    const std::string here = folder_of(std::string_view(program, size_t(n)));
-    folders.push_back(here + "plugins/");
-    folders.push_back(here + "../lib/sightglass/");
+// The file that this code runs from: the program, or the library that a program of somebody else's loaded.
+struct OwnFile {
+  std::string path;  // "" when it is not known
+  bool library = false;
+};
+OwnFile own_file() {
+  const auto module_of = [](const void* at) {
+    Dl_info info{};
+    return ::dladdr(at, &info) ? info : Dl_info{};
+  };
+  const Dl_info ours = module_of(reinterpret_cast<const void*>(&set_plugin_memory));
+  const bool in_program = ours.dli_fbase == module_of(reinterpret_cast<const void*>(::getauxval(AT_ENTRY))).dli_fbase;
+  char path[PATH_MAX];
+  if (in_program || !ours.dli_fname) {  // its dli_fname is the first word of the command
+    const ssize_t n = ::readlink("/proc/self/exe", path, sizeof path);
+    return {n > 0 ? std::string(path, size_t(n)) : "", false};
   }
-  return folders;
+  return {::realpath(ours.dli_fname, path) ? path : "", true};
 }
 
-bool may_be_trusted(const std::string& path) {
+// Where plug-ins are looked for: the environment's folder alone; else beside the program, in the installation's lib (from bin/), and beside
+// the installed library (lib/, or one folder below: lib/x86_64-linux-gnu). A folder or file that anybody may write, or that belongs to
+// somebody who neither runs nor owns the program or library, is passed over with a word: what lies there would run as this user.
+std::vector<std::string> plugin_folders(const OwnFile& own) {
+  if (const char* set = std::getenv("SIGHTGLASS_PLUGINS")) return {std::string(set) + "/"};
+  if (own.path.empty()) return {};
+  const std::string here = folder_of(own.path);
+  if (own.library) return {here + "plugins/", here + "sightglass/", here + "../sightglass/"};
+  return {here + "plugins/", here + "../lib/sightglass/"};
+}
+
+bool may_be_trusted(const std::string& path, const std::string& own) {
   struct stat st {
-  }, program{};
+  }, ours{};
   if (::stat(path.c_str(), &st) != 0) return false;
-  const bool ours = st.st_uid == 0 || st.st_uid == ::geteuid() || (::stat("/proc/self/exe", &program) == 0 && st.st_uid == program.st_uid);
-  return ours && !(st.st_mode & S_IWOTH);
+  const bool known = st.st_uid == 0 || st.st_uid == ::geteuid() || (::stat(own.c_str(), &ours) == 0 && st.st_uid == ours.st_uid);
+  return known && !(st.st_mode & S_IWOTH);
 }
 
 struct Loaded {
@@ -70,11 +87,12 @@ struct Loaded {
 Loaded load(std::string_view name) {
   const Package& package = package_of(name);
   const std::string file = fmt::format("sightglass_{}.so", name);
+  const OwnFile own = own_file();
   std::string tried;
-  for (const std::string& folder : plugin_folders()) {
+  for (const std::string& folder : plugin_folders(own)) {
     tried += (tried.empty() ? "" : ", ") + folder;
     if (!file_exists(folder + file)) continue;
-    if (!may_be_trusted(folder) || !may_be_trusted(folder + file)) {
+    if (!may_be_trusted(folder, own.path) || !may_be_trusted(folder + file, own.path)) {
       tried += " (passed over: others may write there)";
       continue;
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Readers that need a heavy library live in plug-ins, shared objects beside the program, loaded when a file asks for them. A
+// Readers that need a heavy library live in plug-ins, shared objects beside the program or the library, loaded when a file asks for them. A
 // missing plug-in, or one whose library is missing, gives an error that names the package to install.
 //
 // A plug-in is a folder src/io/plugins/NAME, built by sg_plugin(NAME ...). It exports one function:

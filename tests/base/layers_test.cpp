@@ -28,10 +28,14 @@ std::string check(const std::string& root, bool& passed) {
 /// A checkout with one good file, and one more file.
 std::string checkout_with(const std::string& name, const std::string& file, const std::string& text) {
   const std::string root = test::temp_folder() + name;
-  for (const char* folder : {"", "/src", "/src/base", "/src/data", "/src/filter", "/src/filter/flow", "/src/oddities", "/tests"})
+  for (const char* folder : {"", "/src", "/src/base", "/src/data", "/src/filter", "/src/filter/flow", "/src/oddities", "/src/scene",
+                             "/src/scene/choose", "/src/render", "/src/render/shade", "/src/render/attic", "/src/render/volume",
+                             "/src/render/raster", "/src/render/raster/marks", "/tests"})
     ::mkdir((root + folder).c_str(), 0755);
   write_file(root + "/src/base/error.h", "// SPDX-License-Identifier: Apache-2.0\n#include <string>\n");
   write_file(root + "/src/filter/flow/a.h", "// SPDX-License-Identifier: Apache-2.0\n#include \"base/error.h\"\n");
+  write_file(root + "/src/scene/look.h", "// SPDX-License-Identifier: Apache-2.0\n");
+  write_file(root + "/src/render/raster/marks/m.h", "// SPDX-License-Identifier: Apache-2.0\n");
   write_file(root + "/" + file, text);
   return root;
 }
@@ -61,6 +65,12 @@ TEST_CASE("check_layers: each violation is found and named with its line" * doct
       {"src/oddities/x.h", "", "folder 'oddities' has no place"},
       {"src/data/x.cpp", "#include <iostream>\n#include \"base/error.h\"\n#include \"data/x.cpp\"\n", ""},
       {"tests/x.cpp", "#include \"x.h\"\n", ""},
+      {"src/render/shade/x.h", "#include \"render/raster/marks/m.h\"\n",
+       "src/render/shade/x.h:2: includes \"render/raster/marks/m.h\", but raster/marks stands below it"},
+      {"src/render/volume/x.h", "#include \"render/raster/marks/m.h\"\n", ""},
+      {"src/render/attic/x.h", "#include \"render/raster/marks/m.h\"\n", "render/attic/x.h has no place in the order"},
+      {"src/scene/choose/x.h", "#include \"scene/look.h\"\n", "but look stands below it"},
+      {"tests/x.cpp", "// fmt::\nint x = fmt::format();\n", "tests/x.cpp:3: uses fmt without an include"},
   };
   int i = 0;
   for (const Case& c : cases) {
@@ -75,6 +85,10 @@ TEST_CASE("check_layers: each violation is found and named with its line" * doct
   CHECK(
       check(checkout_with("layers_spdx", "tests/x.cpp", "int x;\n"), passed).find("tests/x.cpp:1: the first line must be the SPDX line") !=
       std::string::npos);
+  CHECK_FALSE(passed);
+  std::string crowded;
+  for (int i = 0; i < 26; ++i) crowded = checkout_with("layers_crowded", "src/data/x" + std::to_string(i) + ".h", spdx);
+  CHECK(check(crowded, passed).find("src/data:1: holds 26 sources flat, more than 25") != std::string::npos);
   CHECK_FALSE(passed);
   check("/nowhere", passed);
   CHECK_FALSE(passed);

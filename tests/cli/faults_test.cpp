@@ -135,7 +135,7 @@ TEST_CASE("temporary files: links planted under the names that were used are not
   for (const std::string e : {"vdb", "vti", "vtkhdf", "mp4"})
     for (const std::string& tail : {std::string(".partial"), ".partial." + e, ".partial." + e + ".log", std::string(".partial-1-0")})
       fs::create_symlink(victim, folder + "out." + e + tail);
-  for (const std::string& e : {"vdb", "vti", "vtkhdf"}) {
+  for (const std::string e : {"vdb", "vti", "vtkhdf"}) {
     std::vector<pid_t> children;
     for (int i = 0; i < 3; ++i) children.push_back(start({"convert", "--source", "hydrogen size=40", "-o", "out." + e}, folder));
     std::vector<int> statuses;

@@ -197,7 +197,7 @@ TEST_CASE("pipes in the place of any file: refused at once, in words") {
 TEST_CASE("streams: info <(command) and /dev/stdin read what can be told from its content, up to the memory allowed") {
   const std::string here = test::temp_folder() + "streams/";
   fs::create_directories(here);
-  for (const std::string& name : {"a.vti", "a.nrrd", "a.ply", "a.npy", "a.vdb", "a.vtkhdf", "a.mha"}) {
+  for (const std::string name : {"a.vti", "a.nrrd", "a.ply", "a.npy", "a.vdb", "a.vtkhdf", "a.mha"}) {
     INFO(name);
     const auto made = sightglass({"convert", "--source", name == "a.ply" ? "superquadric" : "hydrogen size=5", "-o", here + name});
     if (made.status != 0) continue;  // no plug-in here, or no such source

@@ -2,6 +2,8 @@
 // The declarations, and the checks that every value passes, from whichever door.
 #include "base/schema/schema.h"
 
+#include <utility>
+
 #include <fmt/core.h>
 
 #include "base/error.h"

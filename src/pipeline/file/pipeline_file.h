@@ -10,6 +10,7 @@
 //   picture: {size: 1280x720, camera: {direction: [1, 0.5, 0.3]}, output: out.png}
 // The picture of a series: output: out_{n}.png or film.webm, times: "0:10:101" (default: all of the file), fps: 25.
 #pragma once
+#include <map>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -52,7 +53,7 @@ struct PipelineFile {
 
 /// The words that may stand in a file, for "did you mean". An empty list lets everything pass.
 struct PipelineVocabulary {
-  std::vector<std::string> show{"surface", "volume", "lines", "points", "labels", "glyphs", "outline"};
+  std::vector<std::string> show{"auto", "surface", "volume", "lines", "points", "labels", "glyphs", "outline"};
   std::vector<std::string> picture{"size", "camera", "output", "background", "background_top", "transparent", "title", "legend", "axes"};
 };
 
@@ -77,7 +78,12 @@ struct PipelineGraph {
   std::vector<NodeId> show;                           ///< of each show, in file order
   NodeId last = -1;                                   ///< of the last step
 };
+/// Results at hand by the names of their steps, which then do not run; a null dataset: it is above others at hand and not asked for.
+using StepResults = std::map<std::string, Data>;
+/// The operation of a step whose numbers came from the memory of a program that used the library: a recipe names it, and only with its
+/// result at hand is it good for anything.
+inline constexpr std::string_view memory_step = "memory";
 /// Throws one Error with all mistakes of the file and its operations, each with "origin:line".
-PipelineGraph build_graph(const PipelineFile& file, GraphOptions options = {});
+PipelineGraph build_graph(const PipelineFile& file, GraphOptions options = {}, const StepResults& results = {});
 
 }  // namespace sg

@@ -18,8 +18,8 @@ namespace {
 
 class GraphBuilder {
  public:
-  GraphBuilder(const PipelineFile& file, GraphOptions options)
-      : file_(file), options_(options), built_{Graph(std::move(options)), {}, {}, -1} {}
+  GraphBuilder(const PipelineFile& file, GraphOptions options, const StepResults& results)
+      : file_(file), options_(options), results_(results), built_{Graph(std::move(options)), {}, {}, -1} {}
 
   PipelineGraph build() {
     for (const PipelineFile::Step& step : file_.steps) all_names_.push_back(step.name);
@@ -51,7 +51,11 @@ class GraphBuilder {
   }
 
   void add(const PipelineFile::Step& step) {
-    const NodeId node = step.operation == "read" ? add_read(step) : add_operation(step);
+    const auto result = results_.find(step.name);
+    const NodeId node = result != results_.end()        ? built_.graph.add_data(result->second, {}, step.name)
+                        : step.operation == memory_step ? add_memory(step)
+                        : step.operation == "read"      ? add_read(step)
+                                                        : add_operation(step);
     line_of_.push_back(step.line);
     if (!nodes_.emplace(step.name, node).second) mistake(step.line, fmt::format("there are two steps '{}'", step.name));
     built_.nodes.emplace_back(step.name, node);
@@ -72,6 +76,13 @@ class GraphBuilder {
     }
     if (!step.from.empty()) mistake(step.line, fmt::format("step '{}': read takes no input", step.name));
     return built_.graph.add_read(series_beside(file_.origin, params.path), options, step.name);
+  }
+
+  NodeId add_memory(const PipelineFile::Step& step) {
+    mistake(step.line, fmt::format("step '{}': its numbers ({}) were in the memory of the program that made this, not in a file; have it "
+                                   "write them and read that file, then its pictures can be made again",
+                                   step.name, word_value(step.words, "data").value_or("not described")));
+    return built_.graph.add_data(DatasetPtr(), "mistake", step.name);
   }
 
   NodeId add_operation(const PipelineFile::Step& step) {
@@ -116,6 +127,7 @@ class GraphBuilder {
 
   const PipelineFile& file_;
   GraphOptions options_;
+  const StepResults& results_;
   PipelineGraph built_;
   std::map<std::string, NodeId> nodes_;
   std::vector<std::string> all_names_;
@@ -125,6 +137,8 @@ class GraphBuilder {
 
 }  // namespace
 
-PipelineGraph build_graph(const PipelineFile& file, GraphOptions options) { return GraphBuilder(file, std::move(options)).build(); }
+PipelineGraph build_graph(const PipelineFile& file, GraphOptions options, const StepResults& results) {
+  return GraphBuilder(file, std::move(options), results).build();
+}
 
 }  // namespace sg

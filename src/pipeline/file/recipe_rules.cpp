@@ -86,8 +86,11 @@ void check_recipe(const PipelineFile& recipe, const std::string& picture_path) {
   Rules rules(picture_path);
   for (const auto& step : recipe.steps)
     rules.look(fmt::format("step '{}'", step.name), step.line, units_of_step(step.operation), step.words);
-  for (const auto& show : recipe.show)
-    rules.look(fmt::format("show {}", show.kind), show.line, units_of(find_show(show.kind).make_params().schema), show.words);
+  for (const auto& show : recipe.show) {
+    ColoringParams coloring;
+    rules.look(fmt::format("show {}", show.kind), show.line,
+               units_of(show.kind == auto_show ? schema_of(coloring) : find_show(show.kind).make_params().schema), show.words);
+  }
   rules.finish();
 }
 

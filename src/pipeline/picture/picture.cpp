@@ -38,7 +38,7 @@ void parse_size(const std::string& text, int& width, int& height) {
 
 PipelineVocabulary picture_vocabulary() {
   PipelineVocabulary v;
-  v.show.clear();
+  v.show = {std::string(auto_show)};
   for (const ShowKind& k : show_kinds()) v.show.emplace_back(k.name);
   v.picture = {"camera", "output", "times", "fps"};
   PictureParams p;
@@ -85,6 +85,7 @@ std::vector<StatedShow> stated_shows(const PipelineFile& file) {
   std::vector<StatedShow> shows;
   std::string problems;
   for (const auto& s : file.show) {
+    if (s.kind == auto_show) continue;
     try {
       const ShowKind& kind = find_show(s.kind);
       shows.push_back({&kind, show_params(kind, s.words)});
@@ -172,17 +173,12 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
   const auto cache = options.cache ? options.cache : std::make_shared<Cache>(0);
   std::vector<Data> held;
   Picture picture;
-  Look look;
-  if (file.show.empty()) {
-    look = choose_looks(file, options, cache, held, picture.notes, context);
-  } else {
-    add_coloring(file, options.coloring);
-  }
+  Look look = choose_looks(file, options, cache, held, picture.notes, context);
   const std::vector<StatedShow> shows = stated_shows(file);
 
   GraphOptions graph_options;
   graph_options.cache = cache;
-  const PipelineGraph built = build_graph(file, graph_options);
+  const PipelineGraph built = build_graph(file, graph_options, options.results);
   std::vector<Target> targets;
   for (NodeId node : built.show) targets.push_back({node, {}});
   const std::vector<Data> results = built.graph.evaluate(targets, context);

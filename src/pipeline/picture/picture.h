@@ -43,12 +43,16 @@ struct PictureDraft {
   double most = 0, mean = 0;  ///< of full scale: change from the picture with voxels of about twice that size, an estimate of the error
 };
 
+/// Under `show`, in the place of a way: it is chosen from the data. Takes the words of ColoringParams.
+inline constexpr std::string_view auto_show = "auto";
+
 struct PictureOptions {
   std::shared_ptr<Cache> cache;  ///< shared between pictures; null = one of its own
   /// For volumes that memory does not hold: gets a picture at once, then finer ones; the final one is returned alone. Not called for
   /// others.
   std::function<void(const Picture&, const PictureDraft&)> on_draft;
   std::optional<std::chrono::steady_clock::time_point> until;  ///< with on_draft: then the finest picture so far is returned
+  StepResults results;                                         ///< at hand, see build_graph()
   std::vector<std::string> coloring;  ///< words added to every way to show that colours by a field ("field=T", "map=ember")
 };
 

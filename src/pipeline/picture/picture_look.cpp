@@ -8,11 +8,6 @@
 
 namespace sg {
 
-void add_coloring(PipelineFile& file, const std::vector<std::string>& words) {
-  for (auto& s : file.show)
-    if (find_show(s.kind).coloring) s.words.insert(s.words.end(), words.begin(), words.end());
-}
-
 std::string origin_of(const PipelineFile& file, std::string step) {
   for (int hops = 0; hops < 1000; ++hops) {
     size_t at = file.steps.size();
@@ -127,50 +122,69 @@ void fail_no_mesh(const Data& data, const std::string& where) {
                          numbers[0], numbers[1]));
 }
 
+namespace {
+
+// What suits the result of a step, as entries under `show`; the filter that it needs is added to the steps.
+Look choose_for(const PipelineFile::Show& wanted, const Data& data, PipelineFile& file, std::vector<PipelineFile::Show>& shows) {
+  const std::string& end = wanted.of;
+  // The largest part speaks for all; one with values before one with a mask or a numbering alone.
+  DatasetPtr largest;
+  bool has_values = false;
+  for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) {
+    const Field* f = automatic_field(*d);
+    const bool values = f && f->role != Role::labels;
+    if (!largest || (values && !has_values) || (values == has_values && d->point_count() > largest->point_count()))
+      largest = d, has_values = values;
+  });
+  if (!largest) fail_no_mesh(data, file_name_of(origin_of(file, end)));
+  const std::string stated = word_value(wanted.words, "field").value_or("");
+  if (!stated.empty()) largest->fields().require(stated);
+  const std::string field = stated.empty() ? made_field(file, end, *largest) : stated;
+  std::vector<std::string> coloring = wanted.words;
+  if (field != stated) coloring.push_back("field=" + field);
+  const Look look = choose_look(*largest, field, extension_of(origin_of(file, end)));
+  std::string result = end;
+  if (!look.filter.empty()) {
+    result = free_name(file, look.filter[0]);
+    file.steps.push_back({result, look.filter[0], {look.filter.begin() + 1, look.filter.end()}, {end}, 0});
+  }
+  for (const Look::Show& s : look.shows) {
+    const ShowKind& kind = show_kind(s.type);
+    std::vector<std::string> words = changed_words(s.params);
+    if (kind.coloring) words.insert(words.end(), coloring.begin(), coloring.end());
+    shows.push_back({std::string(kind.name), words, s.of_input ? end : result, 0});
+  }
+  return look;
+}
+
+}  // namespace
+
 Look choose_looks(PipelineFile& file, const PictureOptions& options, const std::shared_ptr<Cache>& cache, std::vector<Data>& held,
                   std::vector<std::string>& notes, Context& context) {
+  if (file.show.empty())
+    for (const std::string& end : open_ends(file)) file.show.push_back({std::string(auto_show), {}, end, 0});
+  for (auto& s : file.show)
+    if (s.kind == auto_show || find_show(s.kind).coloring) s.words.insert(s.words.end(), options.coloring.begin(), options.coloring.end());
+  const auto open = std::count_if(file.show.begin(), file.show.end(), [](const auto& s) { return s.kind == auto_show; });
+  if (open == 0) return {};
   GraphOptions graph_options;
   graph_options.cache = cache;
-  const PipelineGraph built = build_graph(file, graph_options);
-  const std::string stated = word_value(options.coloring, "field").value_or("");
+  const PipelineGraph built = build_graph(file, graph_options, options.results);
   Look first;
-  bool have = false;
-  const std::vector<std::string> ends = open_ends(file);
-  for (const std::string& end : ends) {
-    NodeId node = built.last;
-    for (const auto& [name, id] : built.nodes)
-      if (name == end) node = id;
-    const Data data = held.emplace_back(built.graph.evaluate(node, {}, context));
-    // The largest part speaks for all; one with values before one with a mask or a numbering alone.
-    DatasetPtr largest;
-    bool has_values = false;
-    for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) {
-      const Field* f = automatic_field(*d);
-      const bool values = f && f->role != Role::labels;
-      if (!largest || (values && !has_values) || (values == has_values && d->point_count() > largest->point_count()))
-        largest = d, has_values = values;
-    });
-    if (!largest) fail_no_mesh(data, file_name_of(origin_of(file, end)));
-    if (!stated.empty()) largest->fields().require(stated);
-    const std::string field = stated.empty() ? made_field(file, end, *largest) : stated;
-    std::vector<std::string> coloring = options.coloring;
-    if (field != stated) coloring.push_back("field=" + field);
-    const Look look = choose_look(*largest, field, extension_of(origin_of(file, end)));
-    notes.push_back(ends.size() > 1 ? fmt::format("{}: {}", file_name_of(origin_of(file, end)), look.reason) : look.reason);
-    std::string result = end;
-    if (!look.filter.empty()) {
-      result = free_name(file, look.filter[0]);
-      file.steps.push_back({result, look.filter[0], {look.filter.begin() + 1, look.filter.end()}, {end}, 0});
+  std::vector<PipelineFile::Show> shows;
+  for (size_t i = 0; i < file.show.size(); ++i) {
+    PipelineFile::Show wanted = file.show[i];
+    if (wanted.of.empty()) wanted.of = built.nodes.back().first;  // steps may follow
+    if (wanted.kind != auto_show) {
+      shows.push_back(std::move(wanted));
+      continue;
     }
-    for (const Look::Show& s : look.shows) {
-      const ShowKind& kind = show_kind(s.type);
-      std::vector<std::string> words = changed_words(s.params);
-      if (kind.coloring) words.insert(words.end(), coloring.begin(), coloring.end());
-      file.show.push_back({std::string(kind.name), words, s.of_input ? end : result, 0});
-    }
-    if (!have) first = look;
-    have = true;
+    const Data data = held.emplace_back(built.graph.evaluate(built.show[i], {}, context));
+    const Look look = choose_for(wanted, data, file, shows);
+    notes.push_back(open > 1 ? fmt::format("{}: {}", file_name_of(origin_of(file, wanted.of)), look.reason) : look.reason);
+    if (first.shows.empty()) first = look;
   }
+  file.show = std::move(shows);
   return first;
 }
 

@@ -29,12 +29,12 @@ StatedPicture stated_in(const PipelineFile& file);
 /// Throws Error(usage) for data without a mesh; of tables it says how to make points.
 [[noreturn]] void fail_no_mesh(const Data& data, const std::string& where);
 
-/// Adds the words of ColoringParams to every way to show that colours by a field.
-void add_coloring(PipelineFile& file, const std::vector<std::string>& words);
 /// The file a step's data comes from, for hints by extension; "" for sources.
 std::string origin_of(const PipelineFile& file, std::string step);
-/// Chooses how to show every step that nobody takes as input, adding steps and shows to the file. Returns the view of the first.
-/// `held` keeps what was looked at, so that the cache finds it again and nothing is computed twice.
+/// Adds options.coloring to every way to show that colours by a field, and puts what suits the data in the place of every `auto` show (when
+/// nothing is shown: of every step that nobody takes as input), adding steps to the file where needed. Returns the look of the first
+/// `auto`; one without shows where there is none. `held` keeps what was looked at, so that the cache finds it again and nothing is computed
+/// twice.
 Look choose_looks(PipelineFile& file, const PictureOptions& options, const std::shared_ptr<Cache>& cache, std::vector<Data>& held,
                   std::vector<std::string>& notes, Context& context);
 

@@ -11,7 +11,7 @@
 #include "data/lattice.h"
 #include "filter/mesh/faces/faces.h"
 #include "filter/mesh/surface.h"
-#include "render/raster/glyphs/glyphs.h"
+#include "render/prepare/glyph_set.h"
 
 namespace sg {
 

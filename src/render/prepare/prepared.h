@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the rasterizer draws from: flat arrays per item. Internal to raster/.
+// What the rasterizer draws from: flat arrays per item. Internal to rendering.
 #pragma once
 #include <cstdint>
 #include <memory>
 #include <vector>
 
-#include "render/raster/raster.h"
+#include "render/prepare/prepare.h"
 
 namespace sg {
 

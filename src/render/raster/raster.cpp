@@ -8,11 +8,11 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "render/raster/discs/discs.h"
+#include "render/raster/fragments.h"
 #include "render/raster/glyphs/glyphs.h"
 #include "render/raster/lic/textures.h"
 #include "render/raster/marks/marks.h"
 #include "render/raster/triangles/bins.h"
-#include "render/raster/triangles/fragments.h"
 #include "render/raster/triangles/key_plane.h"
 #include "render/shade/shade.h"
 

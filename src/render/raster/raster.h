@@ -13,18 +13,12 @@
 #include "base/context.h"
 #include "image/image.h"
 #include "render/composite/fragments.h"
+#include "render/prepare/prepare.h"
 #include "scene/scene.h"
 
 namespace sg {
 
-/// Triangles, normals and colours of a scene, ready to be drawn from any camera. Shares the arrays of the datasets where their
-/// layout permits (packed f32 positions, 32-bit triangles).
-class PreparedScene;
-using PreparedScenePtr = std::shared_ptr<const PreparedScene>;
 struct RenderTextures;  ///< see render/raster/lic/textures.h
-/// Throws Error(usage) for an unknown field and for items whose mesh is of the wrong kind.
-PreparedScenePtr prepare_scene(const Scene& scene, Context& context);
-
 /// Draws the surface, line and point items of the scene at the frame's size (volumes are left out). The frame comes in
 /// cleared (rgba 0, depth infinity, ids 0) and gets opaque colour (alpha 1), depth and ids; the result lists what is translucent and
 /// not hidden by an opaque surface. `pixel_scale`: pixels of this frame per pixel of the final picture (supersampling), for widths.

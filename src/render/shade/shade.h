@@ -3,8 +3,8 @@
 #pragma once
 #include <span>
 
+#include "render/prepare/eye_view.h"
 #include "render/prepare/prepared.h"
-#include "render/raster/triangles/kernels.h"
 #include "render/shade/lamp.h"
 
 namespace sg::raster {

@@ -2,6 +2,8 @@
 // Deferred shading, one pixel per vector lane. No fused multiply-add and no libm: every target gives the same bits.
 #include "render/shade/shade.h"
 
+#include "base/vector_targets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/shade/shade_simd.cpp"
 #include <hwy/foreach_target.h>

@@ -3,14 +3,10 @@
 #pragma once
 #include "base/context.h"
 #include "render/volume/rays/cast.h"
+#include "render/volume/sources/item_checks.h"
 #include "render/volume/sources/lattice/lattice_volume.h"
 
 namespace sg::volume {
-
-/// The field that an item shows. Throws Error(usage) for what is no scalar field of points or cells.
-const Field& field_of(const VolumeItem& item);
-/// Throws Error(usage) for lengths, tolerances and levels that are none.
-void check(const VolumeItem& item);
 
 /// `lattice` is the prepared volume of a uniform or rectilinear grid, else null and the mesh is read by cells.
 CastVolume prepare_cast(const VolumeItem& item, uint32_t id, std::shared_ptr<const Volume> lattice, const Projection& projection,

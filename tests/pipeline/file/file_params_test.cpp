@@ -55,7 +55,7 @@ TEST_CASE("parameters: those that write a file say so, and so do those that read
 }
 
 TEST_CASE("recipes: a parameter that writes a file is found in every step and way to show") {
-  for (const std::string& word : {"save=x", "save =x", " save=x", "save"}) {
+  for (const std::string word : {"save=x", "save =x", " save=x", "save"}) {
     PipelineFile f;
     f.steps = {{"a", "hydrogen", {}, {}, 1}};
     f.show = {{"volume", {word}, "", 2}};

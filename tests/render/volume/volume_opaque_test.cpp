@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Very dense media: what opacity says is what is drawn, however thin.
+#include <fmt/core.h>
+
 #include "color/cie.h"
 #include "color/transfer_text.h"
 #include "render/volume/engines/tets/tet_rays.h"
@@ -14,7 +16,6 @@ namespace {
 DatasetPtr one_cell(bool tets) {
   DatasetPtr data = grid(cube(2, 0, 1), [](Vec3 p) { return p.z; });
   if (tets) {
-    const UniformGrid g = cube(2, 0, 1);
     UnstructuredMesh m;
     std::vector<double> xyz;
     for (int c = 0; c < 8; ++c)
@@ -90,4 +91,64 @@ TEST_CASE("volume: opacities below 1 have their own extinction, however large") 
       CHECK(alpha_through({{{0.5, 0}, {0.5, 0.75}, {0.5 + thin, 0.75}, {0.5 + thin, 0}}}, thin, single) ==
             doctest::Approx(0.75).epsilon(0.02));
     }
+}
+
+namespace {
+
+/// Red of rays along z through a cell, from its top down or from its bottom up, as all engines draw it; and its farthest from `want`.
+double farthest(VolumeItem v, bool tets, bool up, double want) {
+  v.data = one_cell(tets), v.unit_distance = 1;
+  const Projection view = parallel_view(5, 5, 6, {0, 0, up ? 1.0 : -1.0}, {0, 1, 0}, {0.513, 0.487, 0.5});
+  double worst = 0;
+  for (const VolumeMethod method : {VolumeMethod::ray, VolumeMethod::cells}) {
+    if (method == VolumeMethod::cells && !tets) continue;
+    v.method = method;
+    for (const bool single : {false, true}) {
+      const Frame f = draw(scene_of({v}), view, {}, single ? by_single_rays(view) : FragmentLists{});
+      for (size_t i = 0; i < 25; ++i) worst = std::max(worst, std::abs(double(f.rgba[4 * i]) - want));
+    }
+  }
+  return worst;
+}
+
+ColorScale stops(const std::string& text) {
+  ColorScale scale;
+  scale.lo = 0, scale.hi = 1;
+  parse_color_stops(text, scale, true);
+  return scale;
+}
+
+}  // namespace
+
+TEST_CASE("volume: what is opaque shows its front, though colours rise and fall behind it") {
+  for (const bool tets : {false, true})
+    for (int i = 0; i <= 40; ++i) {
+      const double bright = 0.8 + 0.004 * i;
+      INFO(bright, std::string(tets ? ", tetrahedra" : ""));
+      VolumeItem v = item(nullptr, stops(fmt::format("0:#000000,{}:#ffffff,1:#c0c0c0", bright)), {{{0, 1}, {1, 1}}});
+      CHECK(farthest(v, tets, false, srgb_to_linear(192 / 255.0)) < 1.0 / 512 + 1e-4);
+    }
+}
+
+TEST_CASE("volume: what is opaque from a value on shows the colour of that value, to a fine tolerance") {
+  for (const bool tets : {false, true})
+    for (int i = 0; i <= 20; ++i) {
+      const double begin = 0.5 + 0.0017 * i;
+      INFO(begin, std::string(tets ? ", tetrahedra" : ""));
+      VolumeItem v = item(nullptr, stops("0:#000000,1:#ffffff"), {{{0, 0}, {begin, 0}, {begin + 1e-3, 1}, {1, 1}}});
+      v.sampling.tolerance = 1.0 / 4096;
+      // The ramp takes about a thousandth of the light on its way to that colour.
+      CHECK(farthest(v, tets, true, srgb_to_linear(begin + 1e-3)) < 1.0 / 4096 + 1e-4);
+    }
+}
+
+TEST_CASE("volume: what is opaque in one of two volumes is seen through the haze of the other") {
+  for (int i = 0; i <= 110; ++i) {
+    const double depth = 2 + 0.1 * i;
+    INFO(depth);
+    VolumeItem haze = item(one_cell(false), one_color({0, 0, 0}), constant_opacity(depth));
+    VolumeItem wall = item(one_cell(false), one_color({1, 1, 1}), {{{0, 1}, {0.5, 1}, {0.5, 0}, {1, 0}}});
+    const Projection view = parallel_view(1, 1, 1, {0, 0, -1}, {0, 1, 0}, {0.513, 0.417, 0});
+    CHECK(std::abs(double(draw(scene_of({haze, wall}), view).rgba[0]) - std::exp(-0.5 * depth)) < 1.0 / 512);
+  }
 }

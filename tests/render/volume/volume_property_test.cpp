@@ -86,15 +86,15 @@ Worst compare(const std::vector<RandomVolume>& volumes, const Scene& scene, cons
   const Frame frame = draw(scene, view, {}, single ? by_single_rays(view) : FragmentLists());
   std::vector<TrueLight> lights;
   for (const RandomVolume& v : volumes) lights.push_back(light_of(v, view, scene));
-  // With all values so much higher.
-  const auto truth = [&](const Projection::Ray& ray, double higher) {
+  // With all values so much higher, and surfaces turned so far away.
+  const auto truth = [&](const Projection::Ray& ray, double higher, double away) {
     // From the middle of the picture's volumes on, so that lengths keep their digits.
     double from = HUGE_VAL, to = -HUGE_VAL;
     std::vector<TrueVolume> along;
     for (size_t i = 0; i < volumes.size(); ++i) {
       TrueVolume v = volumes[i].along(ray.origin, ray.direction);
       v.transfer = &volumes[i].transfer, v.knots = volumes[i].transfer.knots();
-      if (volumes[i].item.shaded) v.light = &lights[i];
+      if (volumes[i].item.shaded) v.light = &lights[i], lights[i].edge_on = away;
       if (higher != 0) v.value = [value = v.value, off = higher * (volumes[i].hi - volumes[i].lo)](double t) { return value(t) + off; };
       for (double t : v.ends) from = std::min(from, t), to = std::max(to, t);
       along.push_back(std::move(v));
@@ -110,12 +110,13 @@ Worst compare(const std::vector<RandomVolume>& volumes, const Scene& scene, cons
       const Projection::Ray ray = view.ray(x + 0.5, y + 0.5);
       const float* seen = &frame.rgba[4 * (size_t(y) * size_t(view.width) + size_t(x))];
       Worst here;
-      here.add(x, y, truth(ray, 0), seen, allowed);
-      // A value that just meets a step, or just does not, as near as floats tell.
-      for (const double higher : {-0x1p-22, 0x1p-22}) {
+      here.add(x, y, truth(ray, 0, 0), seen, allowed);
+      // A value that just meets a step, or just does not, as near as floats tell; and a surface that is seen from exactly beside it.
+      using Beside = std::pair<double, double>;
+      for (const auto& [higher, away] : {Beside{-0x1p-22, 0}, {0x1p-22, 0}, {0, -0x1p-20}, {0, 0x1p-20}}) {
         if (here.over == 0) break;
         Worst beside;
-        beside.add(x, y, truth(ray, higher), seen, allowed);
+        beside.add(x, y, truth(ray, higher, away), seen, allowed);
         if (beside.over == 0) here = beside;
       }
       worst.over += here.over;
@@ -184,6 +185,9 @@ TEST_CASE("volume: steep colours of solid surfaces stay within the tolerance whe
 
 // Found by another seed: a value whose turn lies just inside of the end of a scale that draws nothing beyond.
 TEST_CASE("volume: the end of a scale with clamp=false is sharp") { composited(555000003487, kinds, false, 7); }
+
+// Found by another seed, in packets: what a value that turns within a cell meets beyond both ends.
+TEST_CASE("volume: colours that kink where a value turns stay within a fine tolerance") { composited(555000006547, kinds, false, 7); }
 
 // Found by other seeds, packets and single rays: ramps that bent values meet, thin volumes, dense cells, colours that kink within strides,
 // faces of cells in the middle of short strides.

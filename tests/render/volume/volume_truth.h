@@ -100,6 +100,7 @@ struct TrueLight {
   double ambient, diffuse, specular, power;
   std::vector<TrueLamp> lamps;
   double surface_from;  ///< length of the gradient from which on there is a surface
+  double edge_on = 0;   ///< cosine of ray and gradient above which the other side is seen: 0, or as near to it as floats tell
 };
 
 /// A volume along one ray.
@@ -169,7 +170,7 @@ class TrueRay {
       const double size = length(g);
       if (!(size > 0)) continue;
       const double surface = std::min(1.0, size / l.surface_from);
-      const Vec3 normal = g * ((dot(g, direction_) > 0 ? -1 : 1) / size);
+      const Vec3 normal = g * ((dot(g, direction_) > l.edge_on * size ? -1 : 1) / size);
       double diffuse = 0, specular = 0;
       for (const TrueLamp& lamp : l.lamps) {
         const double e = dot(normal, lamp.towards);

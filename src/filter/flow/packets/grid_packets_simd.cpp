@@ -3,7 +3,8 @@
 // lane are loaded as four rows of two points and reduced along y, z and x in vectors of four.
 #include "filter/flow/packets/packets.h"
 
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
+#include "base/vector_targets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "filter/flow/packets/grid_packets_simd.cpp"
 #include <hwy/foreach_target.h>

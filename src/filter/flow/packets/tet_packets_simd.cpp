@@ -3,7 +3,8 @@
 // lanes are tested at once, and those whose place lies outside walk on, one face at a time.
 #include "filter/flow/packets/packets.h"
 
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
+#include "base/vector_targets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "filter/flow/packets/tet_packets_simd.cpp"
 #include <hwy/foreach_target.h>

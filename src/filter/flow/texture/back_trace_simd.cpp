@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/vector_targets.h"
 #include "filter/flow/texture/back_trace.h"
 
 #undef HWY_TARGET_INCLUDE

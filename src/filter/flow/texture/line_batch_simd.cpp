@@ -3,6 +3,7 @@
 // one hide behind the sums of the other. No fused multiply-add: the same bytes on every machine.
 #include <algorithm>
 
+#include "base/vector_targets.h"
 #include "filter/flow/texture/line_batch.h"
 
 #undef HWY_TARGET_INCLUDE

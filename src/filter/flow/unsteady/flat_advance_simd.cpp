@@ -5,6 +5,8 @@
 // UnsteadyCursor.
 #include "filter/flow/unsteady/flat_advance.h"
 
+#include "base/vector_targets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "filter/flow/unsteady/flat_advance_simd.cpp"
 #include <hwy/foreach_target.h>

@@ -4,6 +4,8 @@
 // the same bits. The scalar reference is advance_one() over an UnsteadyCursor.
 #include "filter/flow/unsteady/lattice_advance.h"
 
+#include "base/vector_targets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "filter/flow/unsteady/lattice_advance_simd.cpp"
 #include <hwy/foreach_target.h>

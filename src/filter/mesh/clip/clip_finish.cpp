@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/nearest_whole.h"
 #include "base/parallel.h"
 #include "data/field_ops.h"
 #include "data/lattice.h"
-#include "data/nearest_whole.h"
 #include "data/trusted.h"
 #include "filter/mesh/clip/clip_impl.h"
 #include "filter/mesh/surface_builder.h"

@@ -2,6 +2,7 @@
 #include "filter/tensor/glyphs/glyph_shapes.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "base/error.h"
 

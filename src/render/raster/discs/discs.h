@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Oriented discs (surfels): each pixel shows the nearest disc that its ray meets, with the disc's own normal. Internal to raster/.
 #pragma once
-#include <atomic>
-
+#include "render/raster/triangles/kernels.h"
 #include "render/shade/shade.h"
 
 namespace sg::raster {
@@ -22,14 +21,6 @@ void draw_discs_one_by_one(const DiscJob& job, size_t begin, size_t end);  ///< 
 /// Whether the discs at the end of the list lie nearer to the viewer than those at its beginning, by a few of both: then drawing from the
 /// end hides more of the others before they are looked at.
 bool last_is_nearer(const DiscJob& job, size_t count);
-
-/// The minimum does not depend on the order in which threads come.
-inline void keep_nearer(uint64_t* slot, uint64_t key) {
-  std::atomic_ref<uint64_t> a(*slot);
-  uint64_t seen = a.load(std::memory_order_relaxed);
-  while (key < seen && !a.compare_exchange_weak(seen, key, std::memory_order_relaxed)) {
-  }
-}
 
 /// Like shade(), for the pixels of a disc item; `triangle` of the batch holds the disc. Depth comes from the keys.
 void shade_discs(const PreparedItem& item, const EyeView& view, const std::vector<Lamp>& lights, const uint64_t* keys, ShadeBatch& b);

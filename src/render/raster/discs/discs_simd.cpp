@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/vector_targets.h"
 #include "render/raster/discs/discs.h"
 
 #undef HWY_TARGET_INCLUDE

@@ -5,6 +5,8 @@
 //   and hold a pixel's centre, in a list --(full vectors of them)--> keys
 #include "render/raster/glyphs/glyphs.h"
 
+#include "base/vector_targets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/raster/glyphs/glyphs_simd.cpp"
 #include <hwy/foreach_target.h>

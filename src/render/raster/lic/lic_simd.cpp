@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "base/vector_targets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/raster/lic/lic_simd.cpp"
 #include <hwy/foreach_target.h>

@@ -3,6 +3,8 @@
 // multiply-add and no libm: every target gives the same bits.
 #include "render/raster/lic/surface_lic.h"
 
+#include "base/vector_targets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/raster/lic/vectors_simd.cpp"
 #include <hwy/foreach_target.h>

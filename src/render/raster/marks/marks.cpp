@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "render/raster/glyphs/glyphs.h"
+#include "render/prepare/glyph_set.h"
 #include "render/shade/blinn_phong.h"
 #include "render/shade/illuminated.h"
 

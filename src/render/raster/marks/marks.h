@@ -3,6 +3,7 @@
 #pragma once
 #include <vector>
 
+#include "render/raster/triangles/kernels.h"
 #include "render/shade/shade.h"
 
 namespace sg::raster {

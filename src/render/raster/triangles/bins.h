@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "render/raster/triangles/kernels.h"
 #include "render/shade/shade.h"
 
 namespace sg::raster {

@@ -1,35 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // The rasterizer's inner loops: plain data in, plain data out. Internal to raster/.
 #pragma once
+#include <atomic>
 #include <cstdint>
 #include <vector>
 
-#include "scene/camera.h"
+#include "render/prepare/eye_view.h"
 
 namespace sg::raster {
 
 constexpr int subpixels = 256;        ///< steps of the vertex grid per pixel
 constexpr float guard_band = 524288;  ///< pixels; triangles that reach beyond are clipped, so that edge functions fit 64 bits
-
-/// A camera over positions relative to one origin, in f32. The eye is split in two so that position - eye loses nothing.
-struct EyeView {
-  float hi[3], lo[3];
-  float right[3], up[3], forward[3];
-  float scale, center_x, center_y, near_plane, far_plane;
-  bool parallel;
-  int width, height;
-};
-EyeView eye_view(const Projection& p, Vec3 origin);
-
-struct EyePoint {
-  float x, y, z;
-};
-/// The same operations in the same order as the vector code, so that a clipped triangle meets its unclipped neighbours.
-inline EyePoint to_eye(const EyeView& v, const float* p) {
-  const float dx = (p[0] - v.hi[0]) - v.lo[0], dy = (p[1] - v.hi[1]) - v.lo[1], dz = (p[2] - v.hi[2]) - v.lo[2];
-  return {dx * v.right[0] + dy * v.right[1] + dz * v.right[2], dx * v.up[0] + dy * v.up[1] + dz * v.up[2],
-          dx * v.forward[0] + dy * v.forward[1] + dz * v.forward[2]};
-}
 
 /// Pixel grid position and what is linear on the picture: 1/z in perspective, z in parallel.
 struct ScreenPoint {
@@ -60,6 +41,14 @@ void clip_triangle(const EyeView& v, const float* a, const float* b, const float
 constexpr uint64_t empty_key(float far_plane) { return uint64_t(__builtin_bit_cast(uint32_t, far_plane)) << 32 | 0xFFFFFFFFu; }
 inline uint64_t depth_key(float depth, uint32_t primitive) { return uint64_t(__builtin_bit_cast(uint32_t, depth)) << 32 | primitive; }
 inline float key_depth(uint64_t key) { return __builtin_bit_cast(float, uint32_t(key >> 32)); }
+
+/// The minimum does not depend on the order in which threads come.
+inline void keep_nearer(uint64_t* slot, uint64_t key) {
+  std::atomic_ref<uint64_t> a(*slot);
+  uint64_t seen = a.load(std::memory_order_relaxed);
+  while (key < seen && !a.compare_exchange_weak(seen, key, std::memory_order_relaxed)) {
+  }
+}
 
 /// Triangles begin..end of one item: small ones (at most `small` pixels wide and high) are drawn into `keys` with an atomic minimum,
 /// the others are appended to `large`. keys: one per pixel of the picture.

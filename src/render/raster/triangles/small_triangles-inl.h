@@ -8,7 +8,6 @@
 #define SG_RASTER_SMALL_TRIANGLES_INL
 #endif
 #include "base/compress_inl.h"
-#include "render/raster/discs/discs.h"
 #include "render/raster/triangles/kernels.h"
 
 HWY_BEFORE_NAMESPACE();

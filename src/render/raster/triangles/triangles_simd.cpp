@@ -2,6 +2,10 @@
 // Triangles to visibility keys, one triangle per vector lane. No fused multiply-add: every target gives the same bits.
 #include "render/raster/triangles/kernels.h"
 
+#include <algorithm>
+
+#include "base/vector_targets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/raster/triangles/triangles_simd.cpp"
 #include <hwy/foreach_target.h>

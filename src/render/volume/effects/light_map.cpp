@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "render/volume/rays/integrate.h"
 
 namespace sg::volume {
 

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/volume/rays/functions.h"
-#include "render/volume/rays/integrate.h"
+#include "render/volume/medium/cubic.h"
+#include "render/volume/medium/detail.h"
 
 namespace sg::volume {
 

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "color/color_scale.h"
-#include "render/volume/sources/lattice/kernels.h"
 
 namespace sg::volume {
 
@@ -19,6 +18,12 @@ double minus_log_one_minus(double x);
 
 /// alpha of a segment of `length` when its opacity per unit length is given by `density` = -log(1-opacity)/unit.
 inline float segment_alpha(float density, double length) { return float(1 - exp_negative(double(density) * length)); }
+
+/// A linear transfer table, as Transfer::index reads it.
+struct LinearTable {
+  float first, per_axis;
+  int count;
+};
 
 /// Entries 1..count sample the values between the ends of the curve and the colour scale, evenly on the scale's axis (linear,
 /// or for log and symlog a piecewise-linear logarithm that is read off the bits of the float); 0 is below, count+1 above and

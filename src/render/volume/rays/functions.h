@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "render/volume/medium/cubic.h"
 #include "render/volume/medium/stretch.h"
 #include "scene/items/volume_item.h"
 
@@ -16,14 +17,6 @@ struct Found {
   double first = 0;
   uint64_t cell = 0;  ///< Stretch::cell there
 };
-
-/// Places f in [0,1], ascending, at which the cubic with Bernstein coefficients b passes `level`; a cubic that lies in the level
-/// altogether has none. Touching counts once. Returns their number (at most 3).
-int crossings(const float b[4], float level, double f[3]);
-/// The places in (0,1) where the derivative is zero, ascending (at most 2).
-int turns(const float b[4], double f[2]);
-/// Value of the cubic, in double.
-double bernstein(const float b[4], double f);
 
 /// Every function reads a ray that has been started, from near to far. Values are stored ones, lengths world lengths.
 Found largest(RayField& ray);   ///< the nearest of equals

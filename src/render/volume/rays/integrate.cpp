@@ -15,20 +15,6 @@
 
 namespace sg::volume {
 
-Stretch part_of(const Stretch& s, double from, double to) {
-  const double length = s.to - s.from;
-  const float a = float((from - s.from) / length), b = float((to - s.from) / length);
-  // The blossom of the cubic: b0 = f(a,a,a), b1 = f(a,a,b), b2 = f(a,b,b), b3 = f(b,b,b).
-  const auto blossom = [&s](float u, float v, float w) {
-    float p[4] = {s.b[0], s.b[1], s.b[2], s.b[3]};
-    const float at[3] = {u, v, w};
-    for (int level = 0; level < 3; ++level)
-      for (int i = 0; i < 3 - level; ++i) p[i] += at[level] * (p[i + 1] - p[i]);
-    return p[0];
-  };
-  return {from, to, {blossom(a, a, a), blossom(a, a, b), blossom(a, b, b), blossom(b, b, b)}, s.cell};
-}
-
 namespace {
 
 Lit light_on(const Look& look, RayField& walker, const Stretch& s, double t, Vec3f& gradient) {
@@ -42,85 +28,6 @@ Lit light_on(const Look& look, RayField& walker, const Stretch& s, double t, Vec
 Lit light_on(const Look& look, RayField& walker, const Stretch& s, double t) {
   Vec3f gradient;
   return light_on(look, walker, s, t, gradient);
-}
-
-DetailPlace place_at(const Detail& detail, const Stretch& s, double t, RayField& walker) {
-  DetailPlace p;
-  SecondDerivatives h;
-  p.value = s.value(t);
-  switch (detail.axis) {
-    case SecondAxis::none: break;
-    case SecondAxis::gradient: p.second = length(walker.gradient(s, t)); break;
-    case SecondAxis::field: p.second = walker.second(s, t); break;
-    case SecondAxis::second_derivative: p.second = walker.bend(s, t, h) ? second_derivative_along(walker.gradient(s, t), h) : NAN; break;
-    case SecondAxis::curvature: p.second = walker.bend(s, t, h) ? mean_curvature(walker.gradient(s, t), h) : NAN; break;
-  }
-  p.sample = detail.transfer.at(p.value, p.second);
-  if (!(p.sample.opacity < 1)) p.tau = p.sample.opacity >= 1 ? detail.most_tau : 0;
-  else if (p.sample.opacity > 0) p.tau = std::min(float(minus_log_one_minus(double(p.sample.opacity)) / detail.unit), detail.most_tau);
-  return p;
-}
-
-namespace {
-
-/// Samples of one axis of a transfer function at the begin, the middle and the end of a part.
-struct AxisSamples {
-  using Edges = std::vector<TransferFunction::Edge>;
-  float a, m, b;
-  const Edges& edges;
-  const TransferFunction& f;
-  bool (TransferFunction::*misses)(float lo, float hi, float apart) const;
-
-  /// A parabola through them goes an eighth of its second difference beyond them at most; other curves somewhat more.
-  float beyond() const { return 0.5f * std::abs(a - 2 * m + b); }
-  /// May a line of the curve lie between two of them, or beyond them all an edge with more opacity than that?
-  bool overlook(float opacity) const {
-    const auto [lo, hi] = std::minmax({a, m, b});
-    const float far = beyond();
-    // Lines are looked for as far beside the samples as these lie apart: the length of a gradient turns sharply where it is small.
-    const float apart = std::max(std::abs(a - m), std::abs(m - b)), reach = apart + far;
-    return (f.*misses)(lo - reach, hi + reach, apart) || std::any_of(edges.begin(), edges.end(), [&](const auto& e) {
-             return e.steep * far > opacity && ((e.at > lo - far && e.at <= lo) || (e.at >= hi && e.at < hi + far));
-           });
-  }
-  bool cross_edge() const {
-    const auto [lo, hi] = std::minmax({a, m, b});
-    return std::any_of(edges.begin(), edges.end(), [&](const auto& e) { return e.at >= lo && e.at <= hi; });
-  }
-};
-
-}  // namespace
-
-bool overlooks(const Detail& detail, double length, const DetailPlace& a, const DetailPlace& m, const DetailPlace& b) {
-  const TransferFunction& f = detail.transfer;
-  const AxisSamples value{a.value, m.value, b.value, f.edges(), f, &TransferFunction::misses};
-  const AxisSamples second{a.second, m.second, b.second, f.second_edges(), f, &TransferFunction::misses_second};
-  const auto faint = float(overlooked_depth * detail.unit / length);
-  // What begins over one axis may end over the other.
-  const bool both = value.cross_edge() && second.cross_edge();
-  if (!both && !value.overlook(faint) && !second.overlook(faint)) return false;
-  const auto [lo, hi] = std::minmax({a.value, m.value, b.value});
-  return !f.clear(lo - value.beyond(), hi + value.beyond());
-}
-
-namespace {
-
-double depth_between(const Detail& detail, const Stretch& s, RayField& walker, double from, double to, const DetailPlace& a,
-                     const DetailPlace& b, int cuts) {
-  const double middle = 0.5 * (from + to), length = to - from;
-  const DetailPlace m = place_at(detail, s, middle, walker);
-  const double simpson = length / 6 * double(a.tau + 4 * m.tau + b.tau), rough = length / 4 * double(a.tau + 2 * m.tau + b.tau);
-  const bool agree = std::abs(simpson - rough) <= 1e-3 * std::max(1.0, simpson) && !overlooks(detail, length, a, m, b);
-  if (cuts >= 6 || (cuts > 0 && agree)) return simpson;
-  return depth_between(detail, s, walker, from, middle, a, m, cuts + 1) + depth_between(detail, s, walker, middle, to, m, b, cuts + 1);
-}
-
-}  // namespace
-
-double optical_depth(const Detail& detail, const Stretch& s, RayField& walker) {
-  const float lo = s.lowest(), hi = s.highest();
-  if (!(lo <= hi) || detail.transfer.clear(lo, hi)) return 0;
-  return depth_between(detail, s, walker, s.from, s.to, place_at(detail, s, s.from, walker), place_at(detail, s, s.to, walker), 0);
 }
 
 namespace {
@@ -289,8 +196,10 @@ class Pieces {
     const float beyond = std::max(hi - std::max(a, b), std::min(a, b) - lo);
     const bool abrupt = medium.any_abrupt() && medium.abrupt(lo, hi);
     double turn[3] = {2, 2, 2};
-    if (beyond > 0 && (abrupt || pass * beyond * length * slope > 0.1f * allowed)) turn[turns(s.b, turn)] = 2;
-    close_ = abrupt ? 0 : 0.05f * allowed / std::max(pass * (length * slope + taken * (hi > lo ? recolor / (hi - lo) : 0)), 1e-30f);
+    // What is wrong by how far a value lies beside a knot: of tau, and of colours.
+    const float spoilt = pass * (length * slope + taken * (hi > lo ? recolor / (hi - lo) : 0));
+    if (beyond > 0 && (abrupt || beyond * spoilt > 0.1f * allowed)) turn[turns(s.b, turn)] = 2;
+    close_ = abrupt ? 0 : 0.05f * allowed / std::max(spoilt, 1e-30f);
     error *= pass;
     const float parts = std::max(std::sqrt(error / allowed), std::sqrt(std::sqrt(uneven / allowed)));
     const float n = std::clamp(std::ceil(parts), 1.0f, 1024.0f);

@@ -7,12 +7,13 @@
 #pragma once
 #include <vector>
 
-#include "color/transfer_function.h"
+#include "render/volume/medium/cubic.h"
+#include "render/volume/medium/detail.h"
 #include "render/volume/medium/medium.h"
 #include "render/volume/medium/preintegrated.h"
+#include "render/volume/medium/ray_state.h"
 #include "render/volume/medium/stretch.h"
 #include "render/volume/rays/light_model.h"
-#include "render/volume/rays/ray_state.h"
 
 namespace sg::volume {
 
@@ -22,29 +23,6 @@ struct Budget {
   double length = 1;             ///< world length of the longest ray through the volume
   float stop_below = 0;          ///< a ray ends when less than this share of the light passes
 };
-
-/// A medium that depends on more than the value: it is sampled, see composite().
-struct Detail {
-  const TransferFunction& transfer;
-  SecondAxis axis;
-  double unit;     ///< world length to which opacity refers
-  float most_tau;  ///< stands for that of opacity 1
-  float ink = 0;   ///< extinction that silhouettes and strokes have of their own (Lit::ink of it)
-};
-
-/// Optical depth of what samples of such a medium may overlook in a part.
-constexpr float overlooked_depth = 1.0f / 8192;
-
-/// A place of such a medium. `sample`: its straight colour and opacity.
-struct DetailPlace {
-  float tau = 0, value = 0, second = 0;
-  TransferFunction::Sample sample{};
-};
-/// At t of a stretch; what it depends on is asked of the walker.
-DetailPlace place_at(const Detail& detail, const Stretch& stretch, double t, RayField& walker);
-/// Optical depth of a stretch, by Simpson's rule on parts that are halved until it agrees with the trapezoid rule to 1e-3 (absolute, or of
-/// the depth of the part) and no line of the curves may lie between its samples, 6 times at most: an estimate, no bound.
-double optical_depth(const Detail& detail, const Stretch& stretch, RayField& walker);
 
 /// What a volume is made of and how it is lit.
 struct Look {
@@ -83,8 +61,5 @@ struct Joint {
   Stretch stretch;
 };
 void composite_joint(const std::vector<Joint>& joint, RayState& state);
-
-/// The part of a stretch between two places.
-Stretch part_of(const Stretch& stretch, double from, double to);
 
 }  // namespace sg::volume

@@ -5,9 +5,6 @@
 
 namespace sg::volume {
 
-/// May these places, such a length apart from the first to the last, have missed something that is drawn between them?
-bool overlooks(const Detail& detail, double length, const DetailPlace& a, const DetailPlace& m, const DetailPlace& b);
-
 /// A place of such a medium, lit.
 struct Place : DetailPlace {
   Vec3f glow;  ///< tau times colour

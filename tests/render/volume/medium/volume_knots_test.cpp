@@ -36,6 +36,8 @@ struct Cell {
 
 constexpr double threshold = 5;  // of scales about zero
 
+const std::vector<TrueTransfer::Stop> kinked{{0, {0, 0, 0}}, {0.24, {1, 0.8, 0.6}}, {0.4, {0, 0, 0}}, {1, {0, 0, 0}}};
+
 int byte(double x) { return int(x * 255 + 0.5); }
 
 TrueTransfer transfer_of(const Cell& c) {
@@ -89,7 +91,8 @@ std::array<double, 4> in_pieces(const Cell& c, double tolerance) {
 
 TEST_CASE("volume: cells in which the value bends, turns and meets knots are right to the tolerance, thin or dense") {
   const std::vector<TrueTransfer::Stop> plain{{0, {0.94, 0.24, 0.04}}, {1, {0.94, 0.24, 0.04}}},
-      ramp{{0, {0.13, 0.67, 0.2}}, {1, {0.9, 0.31, 0.8}}}, tent{{0, {0.75, 0.29, 0.41}}, {0.5, {0.92, 0.99, 0.78}}, {1, {0.5, 0.02, 0.84}}};
+      ramp{{0, {0.13, 0.67, 0.2}}, {1, {0.9, 0.31, 0.8}}}, step{kinked},
+      tent{{0, {0.75, 0.29, 0.41}}, {0.5, {0.92, 0.99, 0.78}}, {1, {0.5, 0.02, 0.84}}};
   const Cell cells[] = {
       {"a ramp that a value with a sharp bend meets",
        {1.62f, 1.0f, 0.87f, 0.81f},
@@ -110,6 +113,13 @@ TEST_CASE("volume: cells in which the value bends, turns and meets knots are rig
       {"a faint step in a thin volume", {0.3f, 0.75f, 0.7f, 0.32f}, {{0, 0}, {0.45, 0}, {0.45, 0.14}, {1, 0.14}}, plain, 0, 1, 1},
       {"colours end within the values", {0.9f, 0.7f, 0.3f, 0.05f}, {{0, 0.7}, {1, 0.7}}, ramp, 0.45, 1, 1},
       {"colours kink", {0.9f, 0.7f, 0.3f, 0.1f}, {{0, 0.7}, {1, 0.7}}, tent, 0, 1, 0.4},
+      {"colours kink beyond both ends of the value, which turns there",
+       {0.23795f, 0.24295f, 0.24345f, 0.23945f},
+       {{0, 0.5}, {1, 0.5}},
+       step,
+       0,
+       1,
+       1},
       {"a logarithmic scale over some octaves", {1, 30, 60, 100}, {{1, 0.5}, {100, 0.5}}, ramp, 1, 100, 1, ScaleKind::log},
       {"a logarithmic scale about zero", {-40, -10, 30, 50}, {{-50, 0.5}, {50, 0.5}}, ramp, -50, 50, 1, ScaleKind::symlog},
   };

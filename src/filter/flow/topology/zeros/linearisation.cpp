@@ -2,6 +2,7 @@
 #include "filter/flow/topology/zeros/linearisation.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "filter/flow/eigen_general.h"
 

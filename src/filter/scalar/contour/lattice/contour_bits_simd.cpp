@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/vector_targets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "filter/scalar/contour/lattice/contour_bits_simd.cpp"
 #include <hwy/foreach_target.h>

@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "base/bits.h"
+#include "base/vector_targets.h"
 #include "filter/scalar/contour/cells/cell_cases.h"
 #include "filter/scalar/contour/cells/trilinear_cell.h"
 

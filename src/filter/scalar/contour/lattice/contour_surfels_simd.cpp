@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/bits.h"
+#include "base/vector_targets.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "filter/scalar/contour/lattice/contour_surfels_simd.cpp"

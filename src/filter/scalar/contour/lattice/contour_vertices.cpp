@@ -4,8 +4,8 @@
 #include <cmath>
 #include <type_traits>
 
+#include "base/nearest_whole.h"
 #include "base/parallel.h"
-#include "data/nearest_whole.h"
 #include "filter/scalar/contour/lattice/contour_vertices.h"
 
 namespace sg::contouring {

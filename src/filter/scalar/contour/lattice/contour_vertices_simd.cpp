@@ -4,6 +4,8 @@
 // are far from the cache are waited for together. No fused multiply-add: every target gives the same bits.
 #include "filter/scalar/contour/lattice/contour_vertices.h"
 
+#include "base/vector_targets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "filter/scalar/contour/lattice/contour_vertices_simd.cpp"
 #include <hwy/foreach_target.h>

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "render/composite/over.h"
-#include "render/volume/prepare_cast.h"
+#include "render/volume/sources/item_checks.h"
 
 namespace sg::volume {
 

@@ -143,7 +143,8 @@ class PacketCells : public RayLanes<D, T, Axes> {
     const F recolored = hn::Mul(taken, hn::Min(hn::Set(d, 1e6f), hn::Mul(bend, color_slope))), tilt = hn::Mul(length, slope);
     const F deep = hn::Mul(hn::Mul(depth, tilt), hn::Mul(range, hn::Set(d, 0.05f)));
     const F deeper = hn::Min(hn::Set(d, 1.0f / 6), hn::Mul(hn::Mul(depth, depth), hn::Set(d, 1.0f / 360)));
-    F error = hn::Mul(hn::Mul(taken, hn::Set(d, 0.25f * tolerance)), hn::Mul(widths, widths));
+    const F front = mul_add(hn::Min(depth, hn::Set(d, 8.0f)), hn::Set(d, 0.0625f * tolerance), hn::Set(d, 0.25f * tolerance));
+    F error = hn::Mul(hn::Mul(taken, front), hn::Mul(widths, widths));
     error = mul_add(change, hn::Min(one, deep), error);
     error = hn::Mul(mul_add(recolored, deeper, error), pass);
     const F fourth = mul_add(hn::Abs(f.e), hn::Add(range, range), hn::Mul(bend, bend));
@@ -160,7 +161,7 @@ class PacketCells : public RayLanes<D, T, Axes> {
       const F spoilt = hn::Mul(pass, mul_add(taken, color_slope, tilt));
       close = hn::IfThenElseZero(hn::Not(abrupt), hn::Div(hn::Mul(allowed, hn::Set(d, 0.05f)), hn::Max(spoilt, hn::Set(d, 1e-30f))));
       const F beyond = hn::Max(hn::Sub(hi, hn::Max(f.a, f.last)), hn::Sub(hn::Min(f.a, f.last), lo));
-      turning = hn::Or(abrupt, hn::AndNot(same, hn::Gt(hn::Mul(hn::Mul(pass, beyond), tilt), hn::Mul(allowed, hn::Set(d, 0.1f)))));
+      turning = hn::Or(abrupt, hn::AndNot(same, hn::Gt(hn::Mul(beyond, spoilt), hn::Mul(allowed, hn::Set(d, 0.1f)))));
       any_turn = !hn::AllFalse(d, hn::And(look, turning));
     }
     constexpr int most_kinks = shaded ? CellLight<D, T, Axes>::most_jumps : 0;

@@ -2,7 +2,8 @@
 // The integral within a tolerance where opacity hangs on the gradient, too: packets of rays through a uniform grid, cell by cell.
 #include "render/volume/engines/packets/packet_rays.h"
 
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
+#include "base/vector_targets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/volume/engines/packets/packets_detail.cpp"
 #include <hwy/foreach_target.h>

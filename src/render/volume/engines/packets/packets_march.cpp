@@ -4,11 +4,10 @@
 #include <array>
 #include <memory>
 
+#include "base/vector_targets.h"
 #include "render/volume/engines/packets/cache_rows.h"
 #include "render/volume/engines/packets/packet_rays.h"
 
-// Targets without gathers of their own share one version.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/volume/engines/packets/packets_march.cpp"
 #include <hwy/foreach_target.h>

@@ -3,8 +3,8 @@
 // Bricks are visited from those that promise most on, as long as they promise more than what was found.
 #include "render/volume/engines/packets/packet_rays.h"
 
-// Targets without gathers of their own share one version.
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
+#include "base/vector_targets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/volume/engines/packets/packets_maximum.cpp"
 #include <hwy/foreach_target.h>

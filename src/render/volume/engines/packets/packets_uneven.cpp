@@ -3,7 +3,8 @@
 // know how long they are.
 #include "render/volume/engines/packets/packet_rays.h"
 
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
+#include "base/vector_targets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/volume/engines/packets/packets_uneven.cpp"
 #include <hwy/foreach_target.h>

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "render/volume/sources/lattice/bends.h"
-#include "render/volume/sources/lattice/space_ahead.h"
+#include "render/volume/sources/lattice/space/space_ahead.h"
 
 namespace sg::volume {
 

@@ -7,9 +7,9 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "render/volume/engines/tets/eye_space.h"
 #include "render/volume/methods/layer.h"
 #include "render/volume/rays/integrate.h"
+#include "render/volume/sources/cells/eye_space.h"
 
 namespace sg::volume {
 

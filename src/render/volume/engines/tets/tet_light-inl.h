@@ -304,7 +304,7 @@ HWY_ATTR inline void gather_lit(const TetMedium& medium, const Lighting& lightin
     F to = hn::IfThenElse(hn::Ge(end, one), way.back, Lighting::mixed(way.front, way.back, end));
     const M fine = hn::And(more, finest(hn::Sub(end, at)));
     const bool any_fine = !hn::AllFalse(d, fine);
-    if (any_fine) end_at_knot(medium, at, from, slice, fine, end, to);
+    const F share = any_fine ? end_at_knot(medium, at, from, slice, fine, end, to) : hn::Sub(end, at);
     const Surface m = lighting.between(first, last, hn::Mul(half, hn::Add(at, end)));
     // Its ends are lit as what lies between them: kinks lie in no part.
     const M side = hn::Gt(m.along, zero);
@@ -315,7 +315,7 @@ HWY_ATTR inline void gather_lit(const TetMedium& medium, const Lighting& lightin
     }
     Surface b = lighting.straight(first, last, end);
     lighting.shine_beside(b, m);
-    const F length = hn::Mul(way.length, hn::Sub(end, at));
+    const F length = hn::Mul(way.length, share);
     LinePart p = means<Ask::moment>(medium, from, to, slice(from), slice(to), more);
     const M good = hn::Or(fine, fair(p, length, sum.pass, a, m, b));
     if (any_fine) without_order(fine, p);

@@ -55,6 +55,7 @@ struct Colors {
 /// The means of tau and of tau times colour over part of one line of the medium, and the colours at its ends.
 struct LinePart {
   F tau, r, g, b, front[3], back[3];
+  F beside;  ///< over several lines: by how much the mean colour lies beside those at the ends, at most; else 0
   F uneven;  ///< if asked for: how far tau departs from its mean, relative; 1 over several lines
   F moment;  ///< if asked for: the mean of tau times the share of the way
 };
@@ -79,6 +80,7 @@ HWY_INLINE HWY_ATTR LinePart part_of_line(const TetMedium& m, I line, F lo, F fr
   const F x0 = hn::Sub(from, lo), x1 = hn::Sub(to, lo), middle = hn::Mul(hn::Set(d, 0.5f), hn::Add(x0, x1)), width = hn::Sub(to, from);
   const F per_tau = column(m, line, 6), bend = hn::Mul(hn::Mul(hn::Mul(width, width), per_tau), hn::Set(d, 1.0f / 12));
   LinePart p;
+  p.beside = hn::Zero(d);
   p.tau = hn::Max(hn::Add(column(m, line, 2), hn::Mul(per_tau, middle)), hn::Zero(d));
   F* const mean[3] = {&p.r, &p.g, &p.b};
   for (int k = 0; k < 3; ++k) {
@@ -165,6 +167,15 @@ HWY_ATTR inline LinePart means(const TetMedium& m, F f0, F f1, I slice0, I slice
     for (int k = 0; k < 4; ++k) *mean[k] = hn::Add(*mean[k], hn::IfThenElseZero(more, hn::Mul(whole[k], per)));
   }
   for (int k = 0; k < 3; ++k) r.front[k] = a.front[k], r.back[k] = hn::IfThenElse(same, a.back[k], b.back[k]);
+  // Colours may have risen and fallen again.
+  const F per_tau = hn::Div(one, hn::Max(r.tau, hn::Set(d, 1e-37f)));
+  const F* const glow[3] = {&r.r, &r.g, &r.b};
+  r.beside = zero;
+  for (int k = 0; k < 3; ++k) {
+    const F c = hn::Mul(*glow[k], per_tau);
+    r.beside = hn::Max(r.beside, hn::Max(hn::Abs(hn::Sub(c, r.front[k])), hn::Abs(hn::Sub(c, r.back[k]))));
+  }
+  r.beside = hn::IfThenElseZero(hn::AndNot(same, hn::Gt(r.tau, zero)), r.beside);
   if constexpr (ask != Ask::means) r.uneven = hn::IfThenElse(same, a.uneven, one);
   if constexpr (ask == Ask::moment) {
     const F behind = hn::Mul(share1, hn::Add(hn::Mul(hn::Sub(one, share1), b.tau), hn::Mul(share1, b.moment)));
@@ -181,16 +192,19 @@ HWY_ATTR inline LinePart means(const TetMedium& m, F f0, F f1, I slice0, I slice
 }
 
 /// The finest parts end where lines do: what is as good as opaque hides what lies a millionth of an edge behind. Moves the end of parts in
-/// the lanes of `fine`, and the value `to` there.
-HWY_NOINLINE HWY_ATTR void end_at_knot(const TetMedium& m, F at, F from, const Slice& slice, M fine, F& end, F& to) {
+/// the lanes of `fine`, and the value `to` there. Returns the share of the way that the parts take, which the value tells where places are
+/// too near to each other for that.
+HWY_NOINLINE HWY_ATTR F end_at_knot(const TetMedium& m, F at, F from, const Slice& slice, M fine, F& end, F& to) {
   const D d;
-  const F change = hn::Sub(to, from), zero = hn::Zero(d), hair = hn::Set(d, 0x1p-22f);
+  const F change = hn::Sub(to, from), zero = hn::Zero(d), hair = hn::Set(d, 0x1p-22f), whole = hn::Sub(end, at);
   F lo, hi;
   line_of(m, from, slice(from), hn::Not(hn::Lt(change, zero)), fine, lo, hi);
   const F knot = hn::IfThenElse(hn::Gt(change, zero), hi, lo), way = hn::Sub(knot, from);
-  const F cut = hn::Add(at, hn::Mul(hn::Sub(end, at), hn::Div(way, hn::IfThenElse(hn::Ne(change, zero), change, hn::Set(d, 1.0f)))));
-  const M ends = hn::And(hn::And(fine, hn::Ne(change, zero)), hn::And(hn::Gt(cut, hn::Add(at, hair)), hn::Lt(cut, hn::Sub(end, hair))));
+  const F share = hn::Mul(whole, hn::Div(way, hn::IfThenElse(hn::Ne(change, zero), change, hn::Set(d, 1.0f))));
+  const F cut = hn::Add(at, share);
+  const M ends = hn::And(hn::And(fine, hn::Ne(change, zero)), hn::And(hn::Gt(share, zero), hn::Lt(cut, hn::Sub(end, hair))));
   end = hn::IfThenElse(ends, cut, end), to = hn::IfThenElse(ends, knot, to);
+  return hn::IfThenElse(ends, share, whole);
 }
 
 /// Parts that are not cut any more.
@@ -215,9 +229,9 @@ HWY_ATTR inline void behind(const LinePart& p, F length, M on, Colors& sum) {
   sum.pass = hn::Sub(sum.pass, hn::Mul(share, f.alpha));
 }
 
-/// The largest change of a channel from end to end.
+/// The largest change of a channel from end to end, or to the mean in between.
 HWY_ATTR inline F color_change(const LinePart& p) {
-  F change = hn::Zero(D());
+  F change = p.beside;
   for (int k = 0; k < 3; ++k) change = hn::Max(change, hn::Abs(hn::Sub(p.back[k], p.front[k])));
   return change;
 }
@@ -237,8 +251,7 @@ HWY_ATTR inline void gather(const TetMedium& m, F f0, F f1, F length, I slice0, 
     F to = hn::IfThenElse(hn::Ge(end, one), f1, hn::Add(f0, hn::Mul(hn::Sub(f1, f0), end)));
     const M fine = hn::And(more, finest(hn::Sub(end, at)));
     const bool any_fine = !hn::AllFalse(d, fine);
-    if (any_fine) end_at_knot(m, at, from, slice, fine, end, to);
-    const F share = hn::Sub(end, at);
+    const F share = any_fine ? end_at_knot(m, at, from, slice, fine, end, to) : hn::Sub(end, at);
     LinePart p = means<Ask::uneven>(m, from, to, slice(from), slice(to), more);
     const F depth = hn::Mul(p.tau, hn::Mul(length, share));
     // What the formula does not have: of uneven tau, a 12th of the depth and half at most.

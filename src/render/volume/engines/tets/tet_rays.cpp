@@ -28,14 +28,17 @@ Sample sample_on(const Medium& medium, int line, float v) { return {v, {medium.l
 /// Appends the ends of pieces after a, up to and with b, on which a line of the medium is straight.
 void refine(const Medium& medium, int line, const Sample& a, const Sample& b, float accuracy, float faint, int depth,
             std::vector<Sample>& out) {
+  // Values between are rounded, so that what changes within few floats is never told straighter.
+  const float far = std::max(std::abs(a.value), std::abs(b.value)), width = b.value - a.value;
+  const float rounded = width > 0 ? std::min(1.0f, (std::nextafter(far, HUGE_VALF) - far) / width) : 0;
   const auto straight = [&](float share) {
     const float v = a.value + share * (b.value - a.value);
     const Optics m = sample_on(medium, line, v).at;
     const auto off = [&](float x, float y, float z) { return std::abs(x + share * (y - x) - z); };
-    if (off(a.at.tau, b.at.tau, m.tau) > accuracy * std::max(m.tau, faint)) return false;
+    if (off(a.at.tau, b.at.tau, m.tau) > accuracy * std::max(m.tau, faint) + rounded * std::abs(b.at.tau - a.at.tau)) return false;
     if (a.at.tau == 0 && b.at.tau == 0 && m.tau == 0) return true;
     for (int k = 0; k < 3; ++k)
-      if (off(a.at.color[k], b.at.color[k], m.color[k]) > accuracy) return false;
+      if (off(a.at.color[k], b.at.color[k], m.color[k]) > accuracy + rounded * std::abs(b.at.color[k] - a.at.color[k])) return false;
     return true;
   };
   const float middle = a.value + 0.5f * (b.value - a.value);

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "render/shade/lamp.h"
-#include "render/volume/engines/tets/eye_space.h"
 #include "render/volume/medium/medium.h"
+#include "render/volume/sources/cells/eye_space.h"
 
 namespace sg::volume {
 

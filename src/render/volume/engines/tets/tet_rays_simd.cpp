@@ -2,6 +2,7 @@
 // The walk of 16 rays through tetrahedra, and what they gather (no fused multiply-add: the same bits everywhere).
 #include <optional>
 
+#include "base/vector_targets.h"
 #include "render/volume/engines/tets/project.h"
 #include "render/volume/sources/cells/tet_walk.h"
 

@@ -3,7 +3,7 @@
 #pragma once
 #include <mutex>
 
-#include "render/volume/engines/bricks/brick_lattice.h"
+#include "render/volume/sources/bricks/brick_lattice.h"
 #include "render/volume/sources/bricks/brick_store.h"
 #include "render/volume/sources/bricks/bricked_source.h"
 

@@ -6,7 +6,7 @@
 
 #include "data/bricked.h"
 #include "data/memory/byte_cache.h"
-#include "render/volume/engines/bricks/brick_lattice.h"
+#include "render/volume/sources/bricks/brick_lattice.h"
 #include "render/volume/sources/bricks/brick_tree.h"
 
 namespace sg::volume {

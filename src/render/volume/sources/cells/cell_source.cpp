@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "render/volume/sources/cells/cell_source.h"
 
-#include "render/volume/engines/tets/eye_space.h"
-#include "render/volume/rays/integrate.h"
+#include "render/volume/medium/cubic.h"
 #include "render/volume/sources/cells/cell_value.h"
+#include "render/volume/sources/cells/eye_space.h"
 #include "render/volume/sources/cells/tet_walk.h"
 
 namespace sg::volume {

@@ -12,7 +12,7 @@
 #include "filter/field/derivatives/gradient.h"
 #include "filter/mesh/tessellate_cells.h"
 #include "filter/scalar/contour/contour_amr.h"
-#include "render/volume/prepare_cast.h"
+#include "render/volume/sources/item_checks.h"
 
 namespace sg::volume {
 

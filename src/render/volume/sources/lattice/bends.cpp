@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "render/volume/sources/lattice/empty_space.h"
 #include "render/volume/sources/lattice/samples.h"
+#include "render/volume/sources/lattice/space/empty_space.h"
 
 namespace sg::volume {
 

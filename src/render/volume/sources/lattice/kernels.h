@@ -37,12 +37,6 @@ struct ShadePlan {
   float per_scale;       ///< 1 / change per cell from which on there is a surface
 };
 
-/// A linear transfer table, as Transfer::index reads it.
-struct LinearTable {
-  float first, per_axis;
-  int count;
-};
-
 struct Kernels {
   /// Trilinear values at places in u (clamped to the lattice); NaN where a corner is NaN.
   void (*sample)(const Voxels& voxels, const float* ux, const float* uy, const float* uz, float* values);

@@ -2,6 +2,8 @@
 // The kernels with gathers, for volumes whose offsets fit 32 bits; the same bits as kernels.cpp (no fused multiply-add).
 #include "render/volume/sources/lattice/kernels.h"
 
+#include "base/vector_targets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/volume/sources/lattice/kernels_simd.cpp"
 #include <hwy/foreach_target.h>

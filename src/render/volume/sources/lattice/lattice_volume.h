@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "index/minmax_bricks.h"
+#include "render/volume/medium/ray_state.h"
 #include "render/volume/medium/transfer.h"
-#include "render/volume/rays/ray_state.h"
 #include "render/volume/sources/lattice/bends.h"
-#include "render/volume/sources/lattice/empty_space.h"
 #include "render/volume/sources/lattice/kernels.h"
+#include "render/volume/sources/lattice/space/empty_space.h"
 #include "scene/scene.h"
 
 namespace sg::volume {

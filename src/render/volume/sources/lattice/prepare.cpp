@@ -7,7 +7,7 @@
 #include "data/field_ops.h"
 #include "data/lattice.h"
 #include "data/memory/memo.h"
-#include "render/volume/prepare_cast.h"
+#include "render/volume/sources/item_checks.h"
 #include "render/volume/sources/lattice/lattice_volume.h"
 
 namespace sg::volume {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Leaps over empty space: how long they may be for rays of each octant, and that they leave nothing out.
-#include "render/volume/sources/lattice/space_ahead.h"
+#include "render/volume/sources/lattice/space/space_ahead.h"
 
 #include "render/volume/volume_support.h"
 

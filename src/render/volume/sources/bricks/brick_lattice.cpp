@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/volume/engines/bricks/brick_lattice.h"
+#include "render/volume/sources/bricks/brick_lattice.h"
 
 #include <cmath>
 #include <cstring>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/volume/engines/tets/eye_space.h"
+#include "render/volume/sources/cells/eye_space.h"
 
 #include "base/error.h"
 #include "base/parallel.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/volume/sources/lattice/space_ahead.h"
+#include "render/volume/sources/lattice/space/space_ahead.h"
 
 #include <algorithm>
 

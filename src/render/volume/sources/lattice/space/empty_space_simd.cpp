@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/volume/sources/lattice/empty_space_simd.h"
+#include "render/volume/sources/lattice/space/empty_space_simd.h"
 
 #include <algorithm>
 #include <cstring>
 
-#define HWY_DISABLED_TARGETS (HWY_SSSE3 | HWY_SSE4 | HWY_AVX3_DL)
+#include "base/vector_targets.h"
+
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "render/volume/sources/lattice/empty_space_simd.cpp"
+#define HWY_TARGET_INCLUDE "render/volume/sources/lattice/space/empty_space_simd.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 

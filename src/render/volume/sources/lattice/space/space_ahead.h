@@ -2,7 +2,7 @@
 // How far there is nothing before a ray, by the octant that it goes to: what lies behind it does not shorten its leaps.
 #pragma once
 #include "base/vec.h"
-#include "render/volume/sources/lattice/empty_space.h"
+#include "render/volume/sources/lattice/space/empty_space.h"
 #include "scene/camera.h"
 
 namespace sg::volume {

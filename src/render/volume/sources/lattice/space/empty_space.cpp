@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/volume/sources/lattice/empty_space.h"
+#include "render/volume/sources/lattice/space/empty_space.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "index/brick_row.h"
-#include "render/volume/sources/lattice/empty_space_simd.h"
+#include "render/volume/sources/lattice/space/empty_space_simd.h"
 
 namespace sg::volume {
 

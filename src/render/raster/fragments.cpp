@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "render/raster/triangles/fragments.h"
+#include "render/raster/fragments.h"
 
 #include <fmt/core.h>
 

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// Private to the library: what the values of sightglass.h hold, and how errors and parameters cross over.
+#pragma once
+#include <new>
+#include <optional>
+
+#include "api/sightglass.h"
+#include "base/context.h"
+#include "base/error.h"
+#include "base/schema/schema.h"
+#include "data/dataset.h"
+#include "image/image.h"
+#include "pipeline/file/pipeline_file.h"
+
+namespace sightglass {
+
+/// How data came to be: a step of a pipeline and those above it.
+struct Made {
+  std::string operation;           ///< "read", a source, an operation; memory_step: numbers of the caller's
+  std::vector<std::string> words;  ///< what was stated
+  std::vector<std::shared_ptr<const Made>> inputs;
+  std::weak_ptr<const Data::Held> memory;  ///< of memory_step, as long as somebody holds them
+};
+
+struct Data::Held {
+  sg::Data data;
+  std::shared_ptr<const Made> made;
+};
+struct Array::Held {
+  sg::Array array;
+};
+struct Context::State {
+  sg::Context core;
+};
+struct Image::Held {
+  sg::Image image;
+  sg::PipelineFile file;  ///< completed with what was chosen
+  std::vector<std::string> notes;
+};
+
+/// What leaves the library is sightglass::Error alone.
+template <class F>
+decltype(auto) guarded(F&& f) {
+  try {
+    return f();
+  } catch (const sg::Error& e) {
+    throw Error(Error::Kind(int(e.kind())), e.what(), e.problem(), e.where(), e.hint());
+  } catch (const std::bad_alloc&) {
+    const char* const problem = "not enough memory";
+    throw Error(Error::Kind::data, std::string(problem) + "; use a smaller region or fewer fields", problem, "",
+                "use a smaller region or fewer fields");
+  } catch (const Error&) {
+    throw;
+  } catch (const std::exception& e) {
+    throw Error(Error::Kind::internal, std::string("internal error: ") + e.what(), e.what(), "", "");
+  }
+}
+
+/// Sets each; all mistakes in one Error(usage).
+void set_values(sg::Schema& schema, const Params& params, std::string_view owner);
+/// "name=value" of those that were stated.
+std::vector<std::string> stated_words(const sg::Schema& schema);
+
+/// Throws Error(usage) for empty Data.
+const Data::Held& held_by(const Data& data);
+/// From what an operation of `made` gave.
+Data make_data(sg::Data data, std::shared_ptr<const Made> made);
+/// From the caller's numbers.
+Data data_from_memory(sg::DatasetPtr data);
+
+/// Data as steps of a pipeline file: those above come first, each once.
+class StepsOf {
+ public:
+  /// The name of the step that makes it.
+  std::string add(const std::shared_ptr<const Made>& made);
+  sg::PipelineFile file;
+
+ private:
+  std::vector<std::pair<const Made*, std::string>> names_;
+};
+
+}  // namespace sightglass

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+// Reading, computing, running operations and writing.
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "api/held.h"
+#include "api/write_params.h"
+#include "filter/mesh/select/piece.h"
+#include "io/file_series.h"
+#include "io/io.h"
+#include "pipeline/file/read_params.h"
+#include "pipeline/graph/graph.h"
+#include "pipeline/operation/operation.h"
+
+namespace sightglass {
+
+namespace {
+
+std::string absolute(const std::string& path) {
+  return sg::map_series(path, [](const std::string& part) {
+    std::error_code error;
+    const auto whole = std::filesystem::absolute(part, error);
+    return error ? part : whole.lexically_normal().string();
+  });
+}
+
+// Has it other values at other times, for operations that follow time?
+bool varies(const Made& made, sg::Context& context) {
+  if (made.operation == "read") {
+    sg::ReadParams params;
+    sg::Schema schema = sg::schema_of(params);
+    sg::set_params(schema, made.words, "read");
+    return !params.time && params.step < 0 && sg::file_times(params.path, sg::read_options(params), context).size() > 1;
+  }
+  if (made.operation == sg::memory_step) return false;
+  if (made.inputs.empty()) {
+    const sg::ParamSet params = sg::make_params(sg::find_operation(made.operation), made.words);
+    const sg::ParamDecl* time = params.schema.find("time");
+    return time && !time->stated;
+  }
+  return std::any_of(made.inputs.begin(), made.inputs.end(), [&](const auto& input) { return varies(*input, context); });
+}
+
+// The numbers of memory steps by the names of the steps.
+void add_memory(const std::shared_ptr<const Made>& made, StepsOf& steps, sg::StepResults& results) {
+  for (const auto& input : made->inputs) add_memory(input, steps, results);
+  if (made->operation != sg::memory_step) return;
+  const auto held = made->memory.lock();
+  if (!held)
+    sg::fail_usage("follows time, and of what lies above it numbers from memory are gone (" + made->words.at(0) + ")", "run()",
+                   "keep the Data that hold them");
+  results[steps.add(made)] = held->data;
+}
+
+// An operation that follows time, on all steps of what lies above it.
+sg::Data run_over_time(const std::shared_ptr<const Made>& made, sg::Context& context) {
+  StepsOf steps;
+  steps.add(made);
+  sg::StepResults results;
+  add_memory(made, steps, results);
+  const sg::PipelineGraph built = sg::build_graph(steps.file, {}, results);
+  return built.graph.evaluate(built.last, {}, context);
+}
+
+sg::Data run_now(const sg::Operation& operation, const sg::ParamSet& params, const std::vector<const Data::Held*>& inputs,
+                 sg::Context& context) {
+  sg::GraphOptions options;
+  options.cache_limit = 0;
+  sg::Graph graph(options);
+  std::vector<sg::NodeId> nodes;
+  for (const Data::Held* held : inputs) nodes.push_back(graph.add_data(held->data));
+  const sg::NodeId last = graph.add_operation(operation, params, nodes, std::string(operation.name));
+  return graph.evaluate(last, {}, context);
+}
+
+Data run_on(std::string_view name, const Params& stated, const std::vector<const Data*>& inputs, const Context& context) {
+  const sg::Operation& operation = sg::find_operation(name);
+  const sg::ParamSet params = operation.make_params();
+  set_values(const_cast<sg::Schema&>(params.schema), stated, operation.name);
+  auto made = std::make_shared<Made>();
+  made->operation = operation.name;
+  made->words = stated_words(params.schema);
+  std::vector<const Data::Held*> held;
+  for (const Data* d : inputs) held.push_back(&held_by(*d)), made->inputs.push_back(held.back()->made);
+  sg::Context& core = context.state().core;
+  const bool over_time = operation.run_series && !held.empty() && varies(*held[0]->made, core);
+  return make_data(over_time ? run_over_time(made, core) : run_now(operation, params, held, core), made);
+}
+
+}  // namespace
+
+Data read(const std::string& path, const Params& params, const Context& context) {
+  return guarded([&] {
+    sg::ReadParams p;
+    sg::Schema schema = sg::schema_of(p);
+    set_values(schema, params, "read");
+    p.path = path;
+    const sg::ReadOptions options = sg::read_options(p);
+    sg::Data data = sg::read_data(path, options, context.state().core);
+    auto made = std::make_shared<Made>();
+    made->operation = "read";
+    made->words = sg::read_words(absolute(path), options);
+    return make_data(std::move(data), std::move(made));
+  });
+}
+
+std::vector<double> times(const std::string& path, const Context& context) {
+  return guarded([&] { return sg::file_times(path, {}, context.state().core); });
+}
+
+Data source(std::string_view name, const Params& params, const Context& context) {
+  return guarded([&] { return run_on(name, params, {}, context); });
+}
+
+Data Data::run(std::string_view operation, const Params& params, const Context& context) const {
+  return guarded([&] { return run_on(operation, params, {this}, context); });
+}
+
+Data Data::run(std::string_view operation, const Params& params, const std::vector<Data>& others, const Context& context) const {
+  return guarded([&] {
+    std::vector<const Data*> inputs{this};
+    for (const Data& d : others) inputs.push_back(&d);
+    return run_on(operation, params, inputs, context);
+  });
+}
+
+void Data::write(const std::string& path, const Params& params, const Context& context) const {
+  guarded([&] {
+    WriteParams p;
+    sg::Schema schema = sg::schema_of(p);
+    set_values(schema, params, "write");
+    sg::Context& core = context.state().core;
+    const sg::WriteOptions options = write_options(p);
+    sg::write_data(path, sg::in_pieces(held_by(*this).data, options.pieces, core), options, core);
+  });
+}
+
+}  // namespace sightglass

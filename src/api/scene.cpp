@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is to be seen, and pictures of it.
+#include <fmt/format.h>
+
+#include "api/held.h"
+#include "image/codec.h"
+#include "pipeline/picture/picture.h"
+#include "scene/camera_params.h"
+#include "scene/choose/coloring.h"
+#include "scene/show/show.h"
+
+namespace sightglass {
+
+struct Scene::State {
+  struct Shown {
+    Data data;
+    std::string way;
+    std::vector<std::string> words;
+  };
+  std::vector<Shown> shown;
+  std::vector<std::string> camera, picture;  // words
+};
+
+namespace {
+
+// What is stated for a way to show, checked.
+std::vector<std::string> words_of_show(std::string_view way, const Params& params) {
+  if (way == sg::auto_show) {
+    sg::ColoringParams coloring;
+    sg::Schema schema = sg::schema_of(coloring);
+    set_values(schema, params, way);
+    return stated_words(schema);
+  }
+  const sg::ShowKind& kind = sg::find_show(way);
+  sg::ParamSet set = kind.make_params();
+  set_values(set.schema, params, way);
+  if (kind.check) kind.check(set);
+  return stated_words(set.schema);
+}
+
+template <class P>
+std::vector<std::string> checked_words(const Params& params, std::string_view owner) {
+  P p;
+  sg::Schema schema = sg::schema_of(p);
+  set_values(schema, params, owner);
+  return stated_words(schema);
+}
+
+}  // namespace
+
+Scene::Scene() : state_(std::make_shared<State>()) {}
+
+Scene& Scene::show(const Data& data) { return show(data, sg::auto_show); }
+
+Scene& Scene::show(const Data& data, std::string_view way, const Params& params) {
+  return guarded([&]() -> Scene& {
+    held_by(data);
+    State next = *state_;
+    next.shown.push_back({data, std::string(way), words_of_show(way, params)});
+    state_ = std::make_shared<const State>(std::move(next));
+    return *this;
+  });
+}
+
+Scene& Scene::camera(const Params& params) {
+  return guarded([&]() -> Scene& {
+    State next = *state_;
+    for (const std::string& w : checked_words<sg::CameraParams>(params, "camera")) next.camera.push_back("camera." + w);
+    state_ = std::make_shared<const State>(std::move(next));
+    return *this;
+  });
+}
+
+Scene& Scene::picture(const Params& params) {
+  return guarded([&]() -> Scene& {
+    State next = *state_;
+    for (std::string& w : checked_words<sg::PictureParams>(params, "picture")) next.picture.push_back(std::move(w));
+    state_ = std::make_shared<const State>(std::move(next));
+    return *this;
+  });
+}
+
+Image Scene::render(int width, int height, const Context& context) const {
+  return guarded([&] {
+    if (state_->shown.empty()) sg::fail_usage("there is nothing to show", "Scene::render()", "call show() first");
+    StepsOf steps;
+    sg::PictureOptions options;
+    std::vector<sg::PipelineFile::Show> shows;
+    for (const State::Shown& s : state_->shown) {
+      const Data::Held& held = held_by(s.data);
+      const std::string step = steps.add(held.made);
+      options.results[step] = held.data;
+      shows.push_back({s.way, s.words, step, 0});
+    }
+    sg::PipelineFile file = std::move(steps.file);
+    // What is shown is at hand, so nothing above it runs.
+    for (const auto& step : file.steps) options.results.try_emplace(step.name, sg::DatasetPtr());
+    file.show = std::move(shows);
+    file.picture = state_->picture;
+    file.picture.insert(file.picture.end(), state_->camera.begin(), state_->camera.end());
+    file.picture.push_back(fmt::format("size={}x{}", width, height));
+    sg::Picture picture = sg::make_picture(file, options, context.state().core);
+    return Image(std::make_shared<const Image::Held>(Image::Held{std::move(picture.image), std::move(file), std::move(picture.notes)}));
+  });
+}
+
+Image::Image(std::shared_ptr<const Held> held) : held_(std::move(held)) {}
+int Image::width() const { return held_->image.width; }
+int Image::height() const { return held_->image.height; }
+int Image::channels() const { return held_->image.channels; }
+std::span<const uint8_t> Image::pixels() const { return held_->image.pixels; }
+const std::vector<std::string>& Image::notes() const { return held_->notes; }
+
+std::string Image::recipe() const {
+  return guarded([&] { return sg::emit_pipeline(held_->file); });
+}
+
+void Image::write(const std::string& path) const {
+  guarded([&] {
+    sg::Image image = held_->image;
+    sg::attach_recipe(image, held_->file, path);
+    sg::write_image(path, image);
+  });
+}
+
+std::vector<uint8_t> Image::png() const {
+  return guarded([&] {
+    sg::Image image = held_->image;
+    sg::attach_recipe(image, held_->file, "");
+    return sg::encode_png(image);
+  });
+}
+
+}  // namespace sightglass

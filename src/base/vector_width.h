@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// How wide the vectors are that this process computes with. Results never depend on it; SG_SIMD in the environment lets anyone check.
+#pragma once
+#include <string>
+
+namespace sg {
+
+/// Caps the vector width as SG_SIMD says: `avx2` leaves out AVX-512, `baseline` everything beyond what each machine of the family has;
+/// unset or empty: no cap. Before the first vector code runs; not thread-safe. Throws Error(usage) for other words.
+void cap_vector_width();
+
+/// The instruction set that vector code runs on, by Highway's name: "AVX3" (AVX-512), "AVX2", "SSE2", ...
+std::string vector_target();
+
+}  // namespace sg

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+// The library for C++ programs: operations with typed values, scenes, pictures and their recipes.
+
+#include "api/sightglass.h"
+#include "base/file/file.h"
+#include "image/codec.h"
+#include "pipeline/picture/picture.h"
+#include "support/test.h"
+
+using namespace sightglass;
+
+namespace {
+
+std::string refused(const std::function<void()>& f) {
+  try {
+    f();
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "";
+}
+
+bool holds(const std::string& text, std::string_view part) { return text.find(part) != text.npos; }
+
+Data ball(int n) { return source("sphere", {{"size", n}}); }
+
+}  // namespace
+
+TEST_CASE("library: the area of a contour that was asked for by typed values is that of the sphere") {
+  const Data surface = ball(48).run("contour", {{"values", 0.0}, {"normals", false}});
+  CHECK(surface.kind() == "surface");
+  const Data measured = surface.run("mass_properties");
+  const Box b = surface.bounds();
+  const double r = (b.hi[0] - b.lo[0]) / 2;
+  CHECK(measured.kind() == "table");
+  CHECK(measured.field("area").values.get(0) == doctest::Approx(4 * 3.14159265358979 * r * r).epsilon(0.01));
+}
+
+TEST_CASE("library: the schema's errors: unknown names, ranges, choices and types, all of one call together") {
+  const Data grid = ball(8);
+  CHECK(holds(refused([&] { grid.run("contuor"); }), "did you mean 'contour'?"));
+  CHECK(holds(refused([&] { grid.run("contour", {{"valeus", 1}}); }), "did you mean 'values'?"));
+  const std::string several = refused([&] { grid.run("contour", {{"normals", "perhaps"}, {"tolerance", -1}}); });
+  CHECK(holds(several, "contour normals"));
+  CHECK(holds(several, "contour tolerance"));
+  CHECK(holds(refused([&] { grid.run("contour", {{"field", "nosuch"}}); }), "'nosuch' not found"));
+  CHECK(holds(refused([&] { grid.run("probe"); }), "probe"));
+  CHECK(holds(refused([] { source("sphere", {{"size", 1e99}}); }), "size"));
+  CHECK(holds(refused([&] { Scene().show(grid, "surfaec"); }), "did you mean 'surface'?"));
+  CHECK(holds(refused([&] { Scene().show(grid, "surface", {{"opacity", 7}}); }), "opacity"));
+  CHECK(holds(refused([&] { Scene().camera({{"view", "frnt"}}); }), "did you mean 'front'?"));
+  CHECK(holds(refused([&] { Scene().picture({{"tilte", "x"}}); }), "did you mean 'title'?"));
+  CHECK(holds(refused([] { Scene().render(10, 10); }), "show()"));
+  CHECK(holds(refused([&] { grid.write("/nowhere/x.vti"); }), "/nowhere"));
+  CHECK(holds(refused([&] { grid.write("x.vti", {{"encoding", "asci"}}); }), "did you mean 'ascii'?"));
+}
+
+TEST_CASE("library: text and typed values come to the same bytes") {
+  const Data grid = ball(16);
+  const auto typed = grid.run("contour", {{"values", {-0.1, 0.2}}, {"normals", false}});
+  const auto text = grid.run("contour", {{"values", std::vector<double>{-0.1, 0.2}}, {"normals", false}});
+  CHECK(typed.points().numbers() == text.points().numbers());
+}
+
+TEST_CASE("library: a picture is the one that its recipe makes, byte for byte") {
+  const std::string folder = sg::test::temp_folder(), file = folder + "ball.vti", picture = folder + "ball.png";
+  ball(24).write(file);
+  const Data surface = read(file).run("contour", {{"values", 0}}).run("smooth");
+  const Image image = Scene().show(surface).camera({{"azimuth", 30}}).picture({{"title", "Ball"}}).render(200, 150);
+  CHECK(image.width() == 200);
+  CHECK(image.pixels().size() == size_t(200 * 150 * image.channels()));
+  CHECK(!image.notes().empty());
+  image.write(picture);
+  const sg::Image found = sg::read_png(picture);
+  std::vector<std::string> changed;
+  sg::PipelineFile recipe = sg::recipe_in(found, picture, changed);
+  CHECK(changed.empty());
+  sg::Context context;
+  CHECK(sg::make_picture(recipe, {}, context).image.pixels == found.pixels);
+  CHECK(std::equal(found.pixels.begin(), found.pixels.end(), image.pixels().begin(), image.pixels().end()));
+}
+
+TEST_CASE("library: numbers from memory are named in the recipe, and making the picture again is refused with a reason") {
+  const Data grid = uniform_grid({4, 4, 4}).with_point_field("f", std::vector<float>(64, 1.0f));
+  const Image image = Scene().show(grid, "outline").render(64, 48);
+  CHECK(holds(image.recipe(), "memory:"));
+  CHECK(holds(image.recipe(), "uniform 4x4x4"));
+  sg::PipelineFile recipe = sg::parse_pipeline(image.recipe(), "recipe", sg::picture_vocabulary());
+  sg::Context context;
+  try {
+    sg::make_picture(recipe, {}, context);
+    CHECK(false);
+  } catch (const sg::Error& e) {
+    CHECK(holds(e.what(), "memory of the program"));
+    CHECK(!holds(e.what(), "mistakes"));  // one, not what follows from it
+  }
+}
+
+TEST_CASE("library: several data in one scene, chosen and stated, keep what each was told") {
+  const Data grid = ball(16), surface = grid.run("contour", {{"values", 0}});
+  const Image image =
+      Scene().show(surface).show(grid, "outline").show(grid.run("slice", {{"axis", "z"}}), "auto", {{"map", "ember"}}).render(64, 48);
+  const std::string recipe = image.recipe();
+  CHECK(holds(recipe, "contour"));
+  CHECK(holds(recipe, "outline"));
+  CHECK(holds(recipe, "map: ember"));
+  CHECK(!holds(recipe, "auto"));
+}
+
+TEST_CASE("library: a scene that is changed leaves its copies alone") {
+  const Data grid = ball(8);
+  Scene one;
+  one.show(grid, "outline");
+  Scene two = one;
+  two.picture({{"title", "two"}});
+  CHECK(!holds(one.render(32, 32).recipe(), "two"));
+  CHECK(holds(two.render(32, 32).recipe(), "two"));
+}
+
+TEST_CASE("library: operations that follow time read the steps of the file; of numbers at hand they have one") {
+  const std::string folder = sg::test::temp_folder();
+  // A uniform wind along x whose speed is the number of the step: by time t a particle has moved t*t/2.
+  for (int step = 0; step < 3; ++step) {
+    std::vector<float> wind;
+    for (int i = 0; i < 9 * 3 * 3; ++i) wind.insert(wind.end(), {float(step), 0, 0});
+    uniform_grid({9, 3, 3}).with_point_field("wind", Array(std::move(wind), 3)).write(folder + "wind_" + std::to_string(step) + ".vti");
+  }
+  const std::string series = folder + "wind_{n}.vti";
+  CHECK(times(series) == std::vector<double>{0, 1, 2});
+  const Data flow = read(series), seed = point_cloud(std::vector<double>{1, 1, 1});
+  const Data path = flow.run("pathlines", {{"field", "wind"}}, {seed});
+  CHECK(path.bounds().hi[0] == doctest::Approx(3).epsilon(1e-3));
+}
+
+TEST_CASE("library: work tells of its progress and ends when it is cancelled") {
+  Context context;
+  double last = -1;
+  context.on_progress([&](double f, std::string_view) { last = f; });
+  ball(16).run("contour", {{"values", 0}}, context);
+  CHECK(last == 1);
+  context.cancel();
+  try {
+    ball(16).run("contour", {{"values", 0}}, context);
+    CHECK(false);
+  } catch (const Error& e) {
+    CHECK(e.kind() == Error::Kind::cancelled);
+  }
+}
+
+TEST_CASE("library: help of an operation is that of the program") {
+  CHECK(holds(help("contour"), "values"));
+  CHECK(holds(help(), "streamlines"));
+  CHECK(holds(refused([] { help("nosuch"); }), "unknown operation"));
+}
