@@ -4,6 +4,7 @@
 #include <dirent.h>
 #include <fcntl.h>
 #include <fmt/core.h>
+#include <linux/futex.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
@@ -19,6 +20,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 
 #include "base/error.h"
 #include "base/serial.h"
@@ -63,6 +65,33 @@ void wait_a_little(int process, int milliseconds) {
   ::poll(&ends, 1, milliseconds);
 }
 
+/// Is every thread of a process in a wait without end for a lock of the process itself? Then nobody will ever wake it.
+bool waits_for_itself(pid_t process) {
+  const std::string folder = fmt::format("/proc/{}/task", process);
+  DIR* tasks = ::opendir(folder.c_str());
+  bool any = false, all = tasks != nullptr;
+  while (const dirent* task = all ? ::readdir(tasks) : nullptr) {
+    if (task->d_name[0] == '.') continue;
+    any = true, all = false;
+    if (std::FILE* f = std::fopen(fmt::format("{}/{}/syscall", folder, task->d_name).c_str(), "r")) {
+      long call = -1;
+      unsigned long word = 0, what = 0, value = 0, until = 1;
+      if (std::fscanf(f, "%ld %lx %lx %lx %lx", &call, &word, &what, &value, &until) == 5 && call == SYS_futex) {
+        const unsigned long kind = what & FUTEX_CMD_MASK;
+        all = (kind == FUTEX_WAIT || kind == FUTEX_WAIT_BITSET) && (what & FUTEX_PRIVATE_FLAG) != 0 && until == 0;
+      }
+      std::fclose(f);
+    }
+  }
+  if (tasks) ::closedir(tasks);
+  return any && all;
+}
+
+/// Looks one after the other at which it does that before it counts: threads may wake each other in between.
+constexpr int most_looks = 5;
+/// Starts of a child, of which each may meet a lock that is held.
+constexpr int most_starts = 20;
+
 }  // namespace
 
 ChildLimits reading_limits(size_t file_bytes) {
@@ -104,7 +133,10 @@ void become_child(const ChildLimits& limits) {
   if (const int nowhere = ::open("/dev/null", O_WRONLY); nowhere >= 0) ::dup2(nowhere, 1), ::dup2(nowhere, 2);
 }
 
-int wait_for_child(pid_t child, const ChildLimits& limits, const std::string& path, const Context& context) {
+namespace {
+
+/// run_child() for one child. Sets `stuck`, where that is asked for, when it had to be killed because it waits for itself.
+int wait_for(pid_t child, const ChildLimits& limits, const std::string& path, const Context& context, bool* stuck) {
   const auto begin = std::chrono::steady_clock::now();
 #ifdef SYS_pidfd_open
   const int process = int(::syscall(SYS_pidfd_open, child, 0));
@@ -112,17 +144,22 @@ int wait_for_child(pid_t child, const ChildLimits& limits, const std::string& pa
   const int process = -1;
 #endif
   bool late = false;
-  int status = 0;
+  int status = 0, looks = 0;
   for (;;) {
     const pid_t r = ::waitpid(child, &status, WNOHANG);
     if (r == child || (r < 0 && errno != EINTR)) break;
     late = seconds_since(begin) > limits.wall;
-    if (late || context.cancelled()) ::kill(child, SIGKILL);
+    if (stuck && seconds_since(begin) > 0.1) {
+      looks = waits_for_itself(child) ? looks + 1 : 0;
+      *stuck = looks >= most_looks;
+    }
+    if (late || context.cancelled() || (stuck && *stuck)) ::kill(child, SIGKILL);
     wait_a_little(process, 20);
   }
   if (process >= 0) ::close(process);
   context.check();
   if (late) fail_time("by the clock", limits.wall, path);
+  if (stuck && *stuck) return status;
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM) fail_time("by the clock", limits.wall, path);
   // The processor's limit ends a child by SIGXCPU, or by SIGKILL where both limits are one; nobody else but the system short of memory
   // kills it so.
@@ -130,6 +167,25 @@ int wait_for_child(pid_t child, const ChildLimits& limits, const std::string& pa
     fail_time("of the processor", limits.processor, path);
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXFSZ) fail_child_memory(limits, path);
   return status;
+}
+
+}  // namespace
+
+int run_child(const ChildLimits& limits, const std::string& path, const Context& context, const std::function<void()>& work) {
+  for (int start = 1;; ++start) {
+    // The child must not say again what the parent has still to say.
+    std::fflush(nullptr);
+    const pid_t child = ::fork();
+    if (child < 0) fail_data(fmt::format("no process for reading can be started: {}", std::strerror(errno)), path);
+    if (child == 0) {
+      become_child(limits);
+      work();
+      ::_exit(0);
+    }
+    bool stuck = false;
+    const int status = wait_for(child, limits, path, context, start < most_starts ? &stuck : nullptr);
+    if (!stuck) return status;
+  }
 }
 
 void fail_child_memory(const ChildLimits& limits, const std::string& path) {

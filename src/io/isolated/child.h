@@ -4,6 +4,7 @@
 #pragma once
 #include <sys/types.h>
 
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -28,9 +29,14 @@ size_t bytes_at(const std::string& path);
 /// In the child, first of all: one thread, the system's answers to signals, no core, no output, and the limits.
 void become_child(const ChildLimits& limits);
 
-/// Waits until `child` ends, and kills it when the context is cancelled or when it has outlived its time; then throws Error(cancelled), or
-/// Error(data) naming `path` and what was exceeded. Returns waitpid()'s status otherwise.
-int wait_for_child(pid_t child, const ChildLimits& limits, const std::string& path, const Context& context);
+/// Runs `work` in a child (after become_child(); it should end by _exit(), and ends with 0 where it returns) and waits until that ends.
+/// Returns waitpid()'s status. Kills it when the context is cancelled or when it has outlived its time; then throws Error(cancelled), or
+/// Error(data) naming `path` and what was exceeded.
+///
+/// A child has copies of all locks, but only one thread: those that another thread of this process holds at the fork (a scheduler's, a
+/// library's own) stay locked in it for ever. A child whose threads all wait for locks of its own is started again, so `work` may run more
+/// than once, from its begin.
+int run_child(const ChildLimits& limits, const std::string& path, const Context& context, const std::function<void()>& work);
 
 /// What is thrown for a child that ran out of its memory.
 [[noreturn]] void fail_child_memory(const ChildLimits& limits, const std::string& path);

@@ -47,8 +47,8 @@ bool write_result(int fd, const CarryWriter& w) {
 }
 
 // What the child does; never returns to the caller's code.
-[[noreturn]] void work(int fd, const std::function<Data(Context&)>& read, const ChildLimits& limits, size_t memory_limit) {
-  become_child(limits);
+[[noreturn]] void work(int fd, const std::function<Data(Context&)>& read, size_t memory_limit) {
+  if (::ftruncate(fd, 0) != 0 || ::lseek(fd, 0, SEEK_SET) != 0) ::_exit(end_bad);  // what another start has left
   auto* w = new CarryWriter;  // nothing is destroyed here: destructors of libraries may wait for threads that this process lacks
   auto* logs = new std::vector<std::pair<LogLevel, std::string>>;
   auto* c = new Context;
@@ -96,14 +96,6 @@ struct FileState {
   bool known;
 };
 
-// Started after all that the parent has to say is said: the child must not say it again.
-pid_t start(const std::string& path) {
-  std::fflush(nullptr);
-  const pid_t child = ::fork();
-  if (child < 0) fail_data(fmt::format("no process for reading can be started: {}", std::strerror(errno)), path);
-  return child;
-}
-
 // What lies in the shared memory.
 Data take_result(int fd, const std::string& path, Context& context) {
   struct stat s {};
@@ -146,9 +138,7 @@ Data read_isolated(const std::string& path, const ChildLimits& limits, const std
   const int fd = ::memfd_create("sightglass", MFD_CLOEXEC);
   if (fd < 0) fail_data("no memory can be shared with a process that reads it", path);
   const std::shared_ptr<const void> closer(nullptr, [fd](const void*) { ::close(fd); });
-  const pid_t child = start(path);
-  if (child == 0) work(fd, read, limits, context.memory_limit);
-  const int status = wait_for_child(child, limits, path, context);
+  const int status = run_child(limits, path, context, [&] { work(fd, read, context.memory_limit); });
   state.check();
   if (WIFEXITED(status) && WEXITSTATUS(status) == end_no_memory) fail_child_memory(limits, path);
   return take_result(fd, path, context);
@@ -178,9 +168,7 @@ std::vector<double> times_isolated(const std::string& path, const std::function<
 
 void try_in_child(const std::string& path, std::string_view library, const std::function<void()>& read) {
   const ChildLimits limits = reading_limits(bytes_at(path));
-  const pid_t child = start(path);
-  if (child == 0) {
-    become_child(limits);
+  const int status = run_child(limits, path, Context(), [&] {
     try {
       read();
     } catch (const std::bad_alloc&) {
@@ -188,8 +176,7 @@ void try_in_child(const std::string& path, std::string_view library, const std::
     } catch (...) {  // said again, and heard, in the parent
     }
     ::_exit(end_good);
-  }
-  const int status = wait_for_child(child, limits, path, Context());
+  });
   if (WIFEXITED(status) && WEXITSTATUS(status) == end_no_memory) fail_child_memory(limits, path);
   if (!WIFEXITED(status) || WEXITSTATUS(status) != end_good)
     fail_data(fmt::format("the {} library does not survive reading it", library), path, "the file is damaged");

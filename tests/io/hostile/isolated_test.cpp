@@ -5,9 +5,12 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
+#include <mutex>
+#include <thread>
 
 #include "base/file/file.h"
 #include "base/parallel.h"
@@ -251,4 +254,29 @@ TEST_CASE("netcdf, cgns, tiff: files are opened in processes of their own alone"
     });
     CHECK(n > 0);
   }
+}
+
+TEST_CASE("isolated: a lock that another thread holds when the child begins stays locked there, so the child begins again") {
+  std::mutex lock;
+  std::atomic<bool> held = false;
+  std::thread other([&] {
+    const std::lock_guard guard(lock);
+    held = true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  });
+  while (!held) std::this_thread::yield();
+  Context context;
+  const auto begin = std::chrono::steady_clock::now();
+  const Data data = read_isolated(
+      small_file(), enough,
+      [&](Context&) -> Data {
+        const std::lock_guard guard(lock);
+        auto t = std::make_shared<Table>();
+        t->columns.push_back({"x", Association::whole, Array::from_vector(std::vector<double>{7}), "", Role::none});
+        return TablePtr(t);
+      },
+      context);
+  other.join();
+  CHECK(std::get<TablePtr>(data)->columns[0].array.get(0) == 7);
+  CHECK(std::chrono::steady_clock::now() - begin < std::chrono::seconds(20));
 }

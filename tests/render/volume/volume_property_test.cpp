@@ -288,6 +288,11 @@ TEST_CASE("volume: beyond opacity 1 tetrahedra keep their colours") {
   for (uint64_t seed : {96000170061}) opaque_along_cells(seed);
 }
 
+// Found by another seed: colours on a symmetric logarithm bend at its octaves, and the front of what is deep shows all of that.
+TEST_CASE("volume: colours on a logarithmic axis stay within the tolerance in front of what is nearly opaque") {
+  opaque_along_cells(660100000696);
+}
+
 namespace {
 
 void projected(uint64_t seed) {

@@ -141,19 +141,14 @@ Decoded decode(const DicomPicture& p) {
   char* out = static_cast<char*>(shared) + sizeof(Result);
 
   const ChildLimits limits = reading_limits(room);  // unpacking goes through a few copies of the pixels
-  const pid_t child = ::fork();
-  if (child < 0) fail_data("no process for decoding can be started", p.path);
-  if (child == 0) {
-    become_child(limits);
+  run_child(limits, p.path, Context(), [&] {
     try {
       decode_here(minimal, p, *r, out, room);
     } catch (const std::exception& e) {
       say(*r, e.what());
     } catch (...) {
     }
-    ::_exit(0);
-  }
-  wait_for_child(child, limits, p.path, Context());
+  });
   if (r->state != 1)
     fail_data(fmt::format("its pixels (transfer syntax {}) cannot be decoded: {}", d.transfer_syntax,
                           r->state == 2 ? r->message : "they are damaged"),

@@ -215,8 +215,10 @@ Data read_all(const std::string& path, const ReadOptions& options, Context& cont
   start_openvdb();
   Collection all;
   try {
+    // Grids end with the process: the library empties their trees by several threads, which a reading process lacks.
+    const auto& grids = *new auto(load_grids(path, options));
     std::vector<openvdb::GridBase::ConstPtr> volumes;
-    for (const auto& g : load_grids(path, options)) {
+    for (const auto& g : grids) {
       context.check();
       if (is_vdb_points(*g)) all.parts.push_back({g->getName().empty() ? "points" : g->getName(), vdb_points(*g, path, options, context)});
       else volumes.push_back(g);

@@ -181,8 +181,9 @@ class Pieces {
     const float depth = length * most, recolored = std::min(1e6f, hi > lo ? bend / (hi - lo) * colors : 0);
     // The colour at the middle of a bend is a third of its height beside the mean, and all of it beside what a straight line has at the
     // front.
-    float error = taken * (0.25f * tolerance) * widths * widths * (1 + 0.25f * std::min(depth, 8.0f));
-    if (!medium.linear() && std::floor(medium.axis(lo)) != std::floor(medium.axis(hi))) error += taken * recolor * (1.0f / 12);
+    const float shown = taken * (1 + 0.25f * std::min(depth, 8.0f));
+    float error = shown * (0.25f * tolerance) * widths * widths;
+    if (!medium.linear() && std::floor(medium.axis(lo)) != std::floor(medium.axis(hi))) error += shown * recolor * (1.0f / 12);
     error += change * std::min(1.0f, 0.05f * length * depth * slope * (hi - lo));
     error += taken * recolored * std::min(1.0f / 6, depth * depth * (1.0f / 360));
     // Where tau rises Simpson's rule has the mean colour of a value that bends wrong by a 120th of the fourth power's factor in their
