@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The precompiled header of base and image, and the start of the others (data/pch.h): standard headers that nearly every file uses.
+// The precompiled header of base and image, and the start of the others (cmake/data_pch.h): standard headers that nearly every file uses.
 #pragma once
 #include <algorithm>
 #include <array>

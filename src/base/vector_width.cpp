@@ -5,6 +5,7 @@
 
 #include <hwy/targets.h>
 
+#include <cstdint>
 #include <cstdlib>
 #include <string_view>
 

@@ -51,7 +51,7 @@ Array component(const Numbers& n, const Layout& l, size_t at, size_t points, boo
 }
 
 /// Three components that lie one after the other; of two the third is 0.
-Array vectors(const Numbers& n, const Layout& l, size_t at, size_t points) {
+Array vectors_of(const Numbers& n, const Layout& l, size_t at, size_t points) {
   const ElementType type = n.type(l);
   std::byte* out = nullptr;
   Array a = Array::make_raw(type, points, 3, &out);
@@ -66,7 +66,7 @@ DatasetParts read_grid(const Numbers& n, const Layout& l, size_t g, const ReadOp
   CurvilinearGrid m;
   m.dims = l.sizes[g];
   const size_t points = m.dims[0] * m.dims[1] * m.dims[2];
-  m.points.xyz = vectors(n, l, l.begin[g], points);
+  m.points.xyz = vectors_of(n, l, l.begin[g], points);
   if (l.iblank) {
     const size_t at = l.begin[g] + points * size_t(l.dimensions) * n.real_size(l);
     std::vector<int32_t> blank(points);
@@ -121,7 +121,7 @@ void add_solution(const Numbers& n, const Layout& l, size_t g, const ReadOptions
   auto add = [&](const char* name, Array a, Role role) { d.fields.add({name, Association::point, std::move(a), "", role}); };
   if (is_wanted(o.fields, "Density")) add("Density", component(n, l, first, points, o.header_only), Role::scalars);
   if (is_wanted(o.fields, "Momentum"))
-    add("Momentum", o.header_only ? unread_values(n.type(l), points, 3) : vectors(n, l, first + points * real, points), Role::vectors);
+    add("Momentum", o.header_only ? unread_values(n.type(l), points, 3) : vectors_of(n, l, first + points * real, points), Role::vectors);
   if (is_wanted(o.fields, "StagnationEnergy"))
     add("StagnationEnergy", component(n, l, first + (k + 1) * points * real, points, o.header_only), Role::none);
   add_derived(o, d);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws a tile by packets of one kind, for any type of samples.
+// Draws a tile by packets of one kind, for one type of samples.
 #if defined(SG_PACKET_CAST_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef SG_PACKET_CAST_INL_H
 #undef SG_PACKET_CAST_INL_H
@@ -32,16 +32,6 @@ template <template <class, class, bool> class Packet, class D, class T>
 HWY_INLINE void cast_as(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
   if (plan.volume.shaded) cast_all<Packet, D, T, true>(plan, x0, y0, x1, y1, frame);
   else cast_all<Packet, D, T, false>(plan, x0, y0, x1, y1, frame);
-}
-template <template <class, class, bool> class Packet, class D>
-HWY_INLINE void cast_with(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
-  switch (plan.volume.voxels.array.type()) {
-    case ElementType::u8: return cast_as<Packet, D, uint8_t>(plan, x0, y0, x1, y1, frame);
-    case ElementType::i8: return cast_as<Packet, D, int8_t>(plan, x0, y0, x1, y1, frame);
-    case ElementType::u16: return cast_as<Packet, D, uint16_t>(plan, x0, y0, x1, y1, frame);
-    case ElementType::i16: return cast_as<Packet, D, int16_t>(plan, x0, y0, x1, y1, frame);
-    default: return cast_as<Packet, D, float>(plan, x0, y0, x1, y1, frame);
-  }
 }
 
 }  // namespace sg::volume::HWY_NAMESPACE

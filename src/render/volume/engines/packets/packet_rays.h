@@ -36,9 +36,18 @@ void put(const PacketPlan& plan, const RayPacket& rays, const PacketResult& resu
 /// Draws the maximum; the same contract as march_tile.
 void maximum_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame);
 
+// The others for one type of samples, T; each is an object file of its own.
+/// march_tile() but for the maximum.
+template <class T>
+void march_even_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame);
+/// cast_tile() for uniform grids.
+template <class T>
+void cast_even_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame);
 /// cast_tile() for rectilinear grids: plan.uneven.
+template <class T>
 void cast_uneven_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame);
 /// cast_tile() where opacity hangs on the gradient, too: plan.detail.
+template <class T>
 void cast_detail_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame);
 
 }  // namespace sg::volume

@@ -8,6 +8,11 @@
 #include "render/volume/engines/packets/cache_rows.h"
 #include "render/volume/engines/packets/packet_rays.h"
 
+// The build compiles this file once for each type of samples (cmake/packets.cmake).
+#ifndef SG_SAMPLES
+#define SG_SAMPLES float
+#endif
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/volume/engines/packets/packets_march.cpp"
 #include <hwy/foreach_target.h>
@@ -425,27 +430,21 @@ HWY_NOINLINE void march_all(const PacketPlan& plan, int x0, int y0, int x1, int 
     }
 }
 
-template <class D>
-HWY_INLINE void march_with(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
-  const bool shaded = plan.volume.shaded;
-  switch (plan.volume.voxels.array.type()) {
-    case ElementType::u8: return (shaded ? march_all<D, uint8_t, true> : march_all<D, uint8_t, false>)(plan, x0, y0, x1, y1, frame);
-    case ElementType::i8: return (shaded ? march_all<D, int8_t, true> : march_all<D, int8_t, false>)(plan, x0, y0, x1, y1, frame);
-    case ElementType::u16: return (shaded ? march_all<D, uint16_t, true> : march_all<D, uint16_t, false>)(plan, x0, y0, x1, y1, frame);
-    case ElementType::i16: return (shaded ? march_all<D, int16_t, true> : march_all<D, int16_t, false>)(plan, x0, y0, x1, y1, frame);
-    default: return (shaded ? march_all<D, float, true> : march_all<D, float, false>)(plan, x0, y0, x1, y1, frame);
-  }
-}
+namespace {
 
 void march_in_packets(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
-  march_with<hn::CappedTag<float, most_lanes>>(plan, x0, y0, x1, y1, frame);
+  (plan.volume.shaded ? march_all<hn::CappedTag<float, most_lanes>, SG_SAMPLES, true>
+                      : march_all<hn::CappedTag<float, most_lanes>, SG_SAMPLES, false>)(plan, x0, y0, x1, y1, frame);
 }
 
 #if HWY_ONCE
 void march_singly(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
-  march_with<hn::CappedTag<float, 1>>(plan, x0, y0, x1, y1, frame);
+  (plan.volume.shaded ? march_all<hn::CappedTag<float, 1>, SG_SAMPLES, true>
+                      : march_all<hn::CappedTag<float, 1>, SG_SAMPLES, false>)(plan, x0, y0, x1, y1, frame);
 }
 #endif
+
+}  // namespace
 
 }  // namespace sg::volume::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -455,38 +454,12 @@ namespace sg::volume {
 
 HWY_EXPORT(march_in_packets);
 
-bool in_packets(const PacketPlan& plan) {
-  const Volume& v = plan.volume;
-  const size_t bytes = v.voxels.array.bytes();
-  const bool offsets_fit = bytes >= 4 && bytes < (size_t(1) << 31) && v.voxels.array.count() < (size_t(1) << 29);
-  return v.affine && v.direct && offsets_fit && plan.lamps.size() <= PacketPlan::most_lamps && whole_power(plan.material);
-}
-
-void put(const PacketPlan& plan, const RayPacket& rays, const PacketResult& result, int lanes, Frame& frame) {
-  for (int n = 0; n < lanes; ++n) {
-    if (!rays.inside[n] || !(rays.length[n] > 0)) continue;
-    const size_t p = rays.pixel[n];
-    float* out = &frame.rgba[4 * p];
-    if (plan.half) {
-      out[0] += result.r[n], out[1] += result.g[n], out[2] += result.b[n], out[3] = 1 - result.transmittance[n];
-      if (result.surface[n] >= 0 && rays.before[n] >= 0.5f && plan.half[p] == HUGE_VALF)
-        plan.half[p] = float(rays.first_depth[n] + result.surface[n] * rays.per_length[n]);
-      continue;
-    }
-    Gathered sum{result.r[n], result.g[n], result.b[n], result.transmittance[n]};
-    sum.behind(out);
-    out[0] = sum.r, out[1] = sum.g, out[2] = sum.b, out[3] = 1 - sum.transmittance;
-    // A volume that hides what is behind it can be picked.
-    if (result.surface[n] >= 0 && !(frame.depth[p] < HUGE_VALF))
-      frame.depth[p] = float(rays.first_depth[n] + result.surface[n] * rays.per_length[n]), frame.ids[p] = plan.volume.id;
-  }
-}
-
-void march_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
-  if (plan.volume.mode == VolumeItem::Mode::maximum) return maximum_tile(plan, x0, y0, x1, y1, frame);
+template <class T>
+void march_even_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
   if (plan.knobs.simd) return HWY_DYNAMIC_DISPATCH(march_in_packets)(plan, x0, y0, x1, y1, frame);
   return HWY_STATIC_DISPATCH(march_singly)(plan, x0, y0, x1, y1, frame);
 }
+template void march_even_tile<SG_SAMPLES>(const PacketPlan&, int, int, int, int, Frame&);
 
 }  // namespace sg::volume
 #endif

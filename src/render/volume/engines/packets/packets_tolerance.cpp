@@ -7,6 +7,11 @@
 
 #include "base/vector_targets.h"
 
+// The build compiles this file once for each type of samples (cmake/packets.cmake).
+#ifndef SG_SAMPLES
+#define SG_SAMPLES float
+#endif
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/volume/engines/packets/packets_tolerance.cpp"
 #include <hwy/foreach_target.h>
@@ -309,15 +314,19 @@ class TolerantPacket : CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>> {
   M lit_;  // the lanes for which it is the place where they are
 };
 
+namespace {
+
 void cast_in_packets(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
-  cast_with<TolerantPacket, hn::CappedTag<float, most_lanes>>(plan, x0, y0, x1, y1, frame);
+  cast_as<TolerantPacket, hn::CappedTag<float, most_lanes>, SG_SAMPLES>(plan, x0, y0, x1, y1, frame);
 }
 
 #if HWY_ONCE
 void cast_singly(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
-  cast_with<TolerantPacket, hn::CappedTag<float, 1>>(plan, x0, y0, x1, y1, frame);
+  cast_as<TolerantPacket, hn::CappedTag<float, 1>, SG_SAMPLES>(plan, x0, y0, x1, y1, frame);
 }
 #endif
+
+}  // namespace
 
 }  // namespace sg::volume::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -327,20 +336,12 @@ namespace sg::volume {
 
 HWY_EXPORT(cast_in_packets);
 
-bool in_tolerant_packets(const PacketPlan& plan) {
-  const Volume& v = plan.volume;
-  const size_t bytes = v.voxels.array.bytes();
-  const bool offsets_fit = bytes >= 4 && bytes < (size_t(1) << 31) && v.voxels.array.count() < (size_t(1) << 29);
-  return v.direct && (v.affine || UnevenAxes::fits(v)) && plan.medium->linear() && offsets_fit &&
-         plan.lamps.size() <= PacketPlan::most_lamps && whole_power(plan.material);
-}
-
-void cast_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
-  if (plan.uneven) return cast_uneven_tile(plan, x0, y0, x1, y1, frame);
-  if (plan.detail) return cast_detail_tile(plan, x0, y0, x1, y1, frame);
+template <class T>
+void cast_even_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
   if (plan.knobs.simd) return HWY_DYNAMIC_DISPATCH(cast_in_packets)(plan, x0, y0, x1, y1, frame);
   return HWY_STATIC_DISPATCH(cast_singly)(plan, x0, y0, x1, y1, frame);
 }
+template void cast_even_tile<SG_SAMPLES>(const PacketPlan&, int, int, int, int, Frame&);
 
 }  // namespace sg::volume
 #endif
