@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Parameters for people and as JSON schema.
+#include "base/schema/field_kinds.h"
 #include "base/schema/schema.h"
 #include "base/text/text.h"
 
@@ -26,6 +27,7 @@ std::string params_help(const Schema& schema) {
   std::string r;
   for (const ParamDecl& d : schema.decls()) {
     std::string facts(param_type(d));
+    if (d.ref.type() == ParamType::field) facts = field_kinds_text(d.field_);
     if (!d.choices_.empty()) facts = d.ref.optional() ? "auto" : "";
     for (const std::string& c : d.choices_) facts += (facts.empty() ? "" : "|") + c;
     if (std::string t = range_text(d); !t.empty()) facts += ", " + t;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/context.h"
+#include "base/schema/enum_words.h"
 
 namespace sg {
 
@@ -22,10 +23,15 @@ enum class Kernel : uint8_t {
   gaussian,        ///< exp(-t^2 / (2 0.6^2)) less its value at 2, where it ends; weights divided by their sum
   sinc,            ///< Lanczos window of radius 3, sinc(t) sinc(t/3): Duchon 1979; weights divided by their sum
 };
+constexpr auto enum_words(Kernel) {
+  using enum Kernel;
+  return std::array{Word{"nearest", nearest},   Word{"linear", linear},   Word{"catmull_rom", catmull_rom},
+                    Word{"mitchell", mitchell}, Word{"bspline", bspline}, Word{"bspline_smooth", bspline_smooth},
+                    Word{"gaussian", gaussian}, Word{"sinc", sinc}};
+}
 constexpr int most_taps = 6;
 
 struct KernelTraits {
-  std::string_view name;
   int radius;         ///< the kernel is 0 from there on; 2 * radius samples have a share of each place
   bool interpolates;  ///< passes through the samples (bspline: after bspline_coefficients)
   bool linear;        ///< a field that rises evenly is kept
@@ -33,7 +39,6 @@ struct KernelTraits {
   int degree;         ///< of the polynomial in each cell, per axis; -1 = none
 };
 const KernelTraits& traits(Kernel k);
-std::vector<std::string> kernel_names();
 /// Throws Error(usage), with a guess at what was meant, naming `who`.
 Kernel kernel_of(std::string_view name, std::string_view who);
 
