@@ -15,7 +15,7 @@ void describe_grid(Schema& s, GridParams& p) {
   s("size", p.size, "Points along the longest side.").range(2, 65536);
   s("dims", p.dims, "Points per axis, three numbers; default: from size.").range(1, 65536);
   s("bounds", p.bounds, "The box as x0,x1,y0,y1,z0,z1; default: the source's own.");
-  s("type", p.type, "Number type of the fields.").choices({"f32", "f64"});
+  s("type", p.type, "Number type of the fields.");
 }
 
 UniformGrid analytic_grid(const GridParams& p, const Box3& own, const char* source, const Context& context) {
@@ -48,9 +48,9 @@ UniformGrid analytic_grid(const GridParams& p, const Box3& own, const char* sour
     if (!multiply(points, uint64_t(n), points) || points > (uint64_t(1) << 40))
       fail_usage("the grid has more points than memory could hold", source, "ask for a smaller size");
   }
-  if (context.memory_limit && points * (p.type == "f64" ? 8 : 4) > context.memory_limit)
-    fail_usage(fmt::format("one field of {} needs more than the memory limit of {}", human_bytes(points * (p.type == "f64" ? 8 : 4)),
-                           human_bytes(context.memory_limit)),
+  if (context.memory_limit && points * (p.type == FieldType::f64 ? 8 : 4) > context.memory_limit)
+    fail_usage(fmt::format("one field of {} needs more than the memory limit of {}",
+                           human_bytes(points * (p.type == FieldType::f64 ? 8 : 4)), human_bytes(context.memory_limit)),
                source, "ask for a smaller size");
   return g;
 }

@@ -12,12 +12,19 @@
 
 namespace sg {
 
+/// Number type of the fields.
+enum class FieldType { f32, f64 };
+constexpr auto enum_words(FieldType) {
+  using enum FieldType;
+  return std::array{Word{"f32", f32}, Word{"f64", f64}};
+}
+
 /// A uniform grid of points over a box.
 struct GridParams {
   int size = 64;               ///< points along the longest side; the others follow, so that the spacing is as equal as whole numbers allow
   std::vector<int64_t> dims;   ///< points per axis; wins over size
   std::vector<double> bounds;  ///< x0,x1,y0,y1,z0,z1; empty: the source's own
-  std::string type = "f32";
+  FieldType type = FieldType::f32;
 };
 void describe_grid(Schema& s, GridParams& p);
 
@@ -31,7 +38,7 @@ Field analytic_field(const UniformGrid& grid, const GridParams& p, std::string n
                      const Context& context, F&& f) {
   const size_t nx = grid.dims[0], ny = grid.dims[1], rows = ny * grid.dims[2], n = nx * rows;
   std::byte* out = nullptr;
-  const bool wide = p.type == "f64";
+  const bool wide = p.type == FieldType::f64;
   Array a = Array::make_raw(wide ? ElementType::f64 : ElementType::f32, n, components, &out);
   parallel_for(
       rows, 16,

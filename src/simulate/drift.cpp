@@ -66,7 +66,7 @@ void fill(const UniformGrid& g, const DriftParams& p, T* out, const Context& con
 
 DatasetPtr drift(const DriftParams& p, Context& context) {
   const UniformGrid grid = analytic_grid(p.grid, {{0, -80, 0}, {360, 80, 30}}, "drift", context);
-  const bool wide = p.grid.type == "f64";
+  const bool wide = p.grid.type == FieldType::f64;
   std::byte* out = nullptr;
   Array values = Array::make_raw(wide ? ElementType::f64 : ElementType::f32, grid.dims[0] * grid.dims[1] * grid.dims[2], 1, &out);
   if (wide) fill(grid, p, reinterpret_cast<double*>(out), context);

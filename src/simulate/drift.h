@@ -9,7 +9,7 @@ namespace sg {
 /// u(y, z) = speed cos(3y) exp((z - 30)/12) degrees per time: f(x, y, z, t) = f0(x - u t, y, z), so df/dt + u df/dx = 0 exactly while the
 /// shear winds the waves up. f0 = exp((z - 30)/12) (0.5 cos 4x cos 3y + 0.3 cos(9x + 5y) cos^2 y + 0.2 cos(17x - 8y) cos^2 y).
 struct DriftParams {
-  GridParams grid{.size = 181, .dims = {}, .bounds = {}, .type = "f32"};
+  GridParams grid{.size = 181, .dims = {}, .bounds = {}, .type = FieldType::f32};
   double speed = 12, time = 0;
 };
 void describe(Schema& s, DriftParams& p);

@@ -17,7 +17,7 @@ DatasetPtr abc(const AbcParams& p, Context& context);
 /// Double gyre of Shadden, Lekien, Marsden 2005 on [0,2]x[0,1] at one time: u = -pi A sin(pi f) cos(pi y),
 /// v = pi A cos(pi f) sin(pi y) df/dx, f = eps sin(w t) x^2 + (1 - 2 eps sin(w t)) x. Fields "velocity" (w = 0) and "stream function".
 struct DoubleGyreParams {
-  GridParams grid{.size = 129, .dims = {}, .bounds = {}, .type = "f32"};
+  GridParams grid{.size = 129, .dims = {}, .bounds = {}, .type = FieldType::f32};
   double amplitude = 0.1, epsilon = 0.25, period = 10, time = 0;
 };
 void describe(Schema& s, DoubleGyreParams& p);
@@ -28,7 +28,7 @@ Vec3 double_gyre_velocity(const DoubleGyreParams& p, Vec3 position, double time)
 /// Taylor-Green vortices u = U(cos x sin y, -sin x cos y, 0), decaying as exp(-2 viscosity t), an exact solution of the Navier-Stokes
 /// equations with density 1 and p = -U^2 (cos 2x + cos 2y)/4, on [0,2pi]^2 (any z range by `bounds`).
 struct TaylorGreenParams {
-  GridParams grid{.size = 65, .dims = {}, .bounds = {}, .type = "f32"};
+  GridParams grid{.size = 65, .dims = {}, .bounds = {}, .type = FieldType::f32};
   double viscosity = 0.1, time = 0;
 };
 void describe(Schema& s, TaylorGreenParams& p);

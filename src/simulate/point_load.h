@@ -10,7 +10,7 @@ namespace sg {
 /// Fields: "stress" (9 components, rows xx xy xz ...), "von Mises stress", both in units of force per length^2. NaN at the origin and above
 /// the surface (z < 0), where there is no material.
 struct PointLoadParams {
-  GridParams grid{.size = 41, .dims = {}, .bounds = {}, .type = "f32"};
+  GridParams grid{.size = 41, .dims = {}, .bounds = {}, .type = FieldType::f32};
   double load = 1;
   double poisson = 0.25;
 };

@@ -8,7 +8,7 @@ namespace sg {
 /// The test signal of Marschner and Lobb 1994, nearly all of it just below the Nyquist frequency of a 40^3 grid on [-1,1]^3:
 /// (1 - sin(pi z/2) + alpha (1 + rho(sqrt(x^2+y^2)))) / (2 (1+alpha)), rho(r) = cos(2 pi fm cos(pi r/2)). Values in [0,1].
 struct MarschnerLobbParams {
-  GridParams grid{.size = 40, .dims = {}, .bounds = {}, .type = "f32"};
+  GridParams grid{.size = 40, .dims = {}, .bounds = {}, .type = FieldType::f32};
   double frequency = 6;
   double alpha = 0.25;
 };

@@ -92,7 +92,7 @@ DatasetPtr tissue_phantom(const TissuePhantomParams& p, Context& context) {
   Array truth_array = Array::make<uint8_t>(n, 1, &truth), bias_array = Array::make<float>(n, 1, &bias), fraction_array[3];
   for (int t = 0; t < 3; ++t) fraction_array[t] = Array::make<float>(n, 1, &fraction[t]);
   std::byte* signal = nullptr;
-  const bool wide = p.grid.type == "f64";
+  const bool wide = p.grid.type == FieldType::f64;
   Array signal_array = Array::make_raw(wide ? ElementType::f64 : ElementType::f32, n, 1, &signal);
   const double sigma = p.noise / 100 * p.means[3];
   parallel_for(

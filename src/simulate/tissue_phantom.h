@@ -8,7 +8,7 @@ namespace sg {
 /// Fluid, gray and white matter in a head of about 124 x 156 x 116 mm: a folded gray ribbon of 3 to 6 mm around white matter with two
 /// ventricles (fluid) and two nuclei (gray), fluid outside, nothing around it.
 struct TissuePhantomParams {
-  GridParams grid{.size = 128, .dims = {}, .bounds = {}, .type = "f32"};
+  GridParams grid{.size = 128, .dims = {}, .bounds = {}, .type = FieldType::f32};
   double noise = 5;
   double bias = 40;
   std::vector<double> means{0, 30, 70, 100};

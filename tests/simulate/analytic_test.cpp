@@ -32,14 +32,14 @@ struct Sampled {
   }
 };
 
-GridParams grid(int n, std::vector<double> bounds = {}) { return {n, {}, std::move(bounds), "f64"}; }
+GridParams grid(int n, std::vector<double> bounds = {}) { return {n, {}, std::move(bounds), FieldType::f64}; }
 
 }  // namespace
 
 TEST_CASE("sources: size, dims, bounds and type make the grid") {
   Context c;
   DoubleGyreParams g;
-  g.grid = {.size = 21, .dims = {}, .bounds = {}, .type = "f64"};
+  g.grid = {.size = 21, .dims = {}, .bounds = {}, .type = FieldType::f64};
   auto d = double_gyre(g, c);
   CHECK(d->as<UniformGrid>()->dims == std::array<size_t, 3>{21, 11, 1});
   CHECK(d->fields().require("velocity").array.type() == ElementType::f64);

@@ -25,7 +25,7 @@ namespace sg {
 /// The fields that a parameter of type FieldName takes.
 struct FieldKinds {
   bool points = true, cells = true;                                    ///< where its values are
-  bool scalars = true, vectors = true, tensors = true, others = true;  ///< components: 1; 3; 6 or 9; any other number
+  bool scalars = true, vectors = true, tensors = true, others = true;  ///< of 1; 2 or 3; 3, 4, 6, 7 or 9; any other number
   friend bool operator==(const FieldKinds&, const FieldKinds&) = default;
 };
 namespace fields {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/schema/field_kinds.h"
 #include "base/schema/schema.h"
 #include "base/text/text.h"
 
@@ -30,6 +31,7 @@ std::string params_help(const Schema& schema) {
   std::string r;
   for (const ParamDecl& d : schema.decls()) {
     std::string facts(param_type(d));
+    if (d.ref.type() == ParamType::field) facts = field_kinds_text(d.field_);
     if (!d.choices_.empty()) facts = d.ref.optional() ? "auto" : "";
     for (const std::string& c : d.choices_) facts += (facts.empty() ? "" : "|") + c;
     if (std::string t = range_text(d); !t.empty()) facts += ", " + t;

@@ -23,7 +23,7 @@ struct MagnitudeParams {
   std::string name = "";
 };
 inline void describe(Schema& s, MagnitudeParams& p) {
-  s("field", p.field, "Field of several components; default: the active vector.");
+  s("field", p.field, "Field of several components; default: the active vector.").takes({.scalars = false});
   s("name", p.name, "Name of the result; default: the field's name and '_magnitude'.");
 }
 /// Length of each tuple (Euclidean) as a field of its own beside the others: f64 for 64-bit fields, else f32; same unit; NaN stays.

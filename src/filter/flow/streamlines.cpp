@@ -15,7 +15,7 @@
 namespace sg {
 
 void describe(Schema& s, StreamlinesParams& p) {
-  s("field", p.field, "Velocity: a point or cell field of 2 or 3 components; default: the active vectors.");
+  s("field", p.field, "Velocity: a point or cell field of 2 or 3 components; default: the active vectors.").takes(fields::vectors);
   s("direction", p.direction, "Along the flow, against it, or both from each seed, as one line.");
   describe(s, p.integration);
   describe(s, p.stop);

@@ -88,9 +88,9 @@ bool looks_like_degrees(const Box3& box) {
 
 void describe(Schema& s, BarbParams& p) {
   s("unit", p.unit, "barbs: unit of the vectors; auto: that of the field, else m/s. m/s, km/h, mph, ft/s or kn.");
-  s("hemisphere", p.hemisphere, "barbs: the side of the strokes; latitude: by the sign of the latitude of each place.")
-      .choices({"latitude", "north", "south"});
-  s("latitude", p.latitude, "barbs: point field of latitudes in degrees; default: y, where the data looks like degrees.");
+  s("hemisphere", p.hemisphere, "barbs: the side of the strokes; latitude: by the sign of the latitude of each place.");
+  s("latitude", p.latitude, "barbs: point field of latitudes in degrees; default: y, where the data looks like degrees.")
+      .takes(fields::scalars);
 }
 
 BarbStrokes barb_strokes(int knots) {
@@ -153,7 +153,7 @@ DatasetPtr barb_places(const DatasetPtr& data, const std::string& vectors, const
     fail_usage(fmt::format("field '{}' has {} components", v.name, v.components()), "glyphs: barbs", "a wind has 2 or 3");
   const double factor = factor_of(v, p, context);
   Array latitude;
-  if (p.hemisphere == "latitude") {
+  if (p.hemisphere == BarbHemisphere::latitude) {
     if (!p.latitude.empty()) {
       const Field& f = data->fields().require(p.latitude.name, Association::point);
       if (f.components() != 1) fail_usage(fmt::format("field '{}' has {} components", f.name, f.components()), "glyphs: latitude");
@@ -176,7 +176,7 @@ DatasetPtr barb_places(const DatasetPtr& data, const std::string& vectors, const
         const double speed = length(w);
         Mat3 m;
         if (speed > 0) m = turn_to(w, Vec3{0, 0, 1});
-        const bool southern = p.hemisphere == "south" || (!latitude.empty() && latitude.view<double>()[i] < 0);
+        const bool southern = p.hemisphere == BarbHemisphere::south || (!latitude.empty() && latitude.view<double>()[i] < 0);
         choice[i] = std::isfinite(speed) ? barb_shape(speed * factor, southern) : -1;
         for (size_t k = 0; k < 9; ++k) frame[9 * i + k] = m.m[k / 3][k % 3];
       }

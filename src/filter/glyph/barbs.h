@@ -10,9 +10,16 @@
 
 namespace sg {
 
+/// The side of the strokes; latitude: by the sign of the latitude of each place.
+enum class BarbHemisphere { latitude, north, south };
+constexpr auto enum_words(BarbHemisphere) {
+  using enum BarbHemisphere;
+  return std::array{Word{"latitude", latitude}, Word{"north", north}, Word{"south", south}};
+}
+
 struct BarbParams {
   std::string unit = "auto";
-  std::string hemisphere = "latitude";
+  BarbHemisphere hemisphere = BarbHemisphere::latitude;
   FieldName latitude = {};
 };
 void describe(Schema& s, BarbParams& p);

@@ -79,15 +79,15 @@ GlyphPointsParams placement(const Dataset& d, const GlyphParams& p, const Field*
     if (most < double(fitting)) fitting = std::max<int64_t>(int64_t(most), 60);  // not for a box beyond doubles
   }
   q.count = p.count > 0 ? p.count : fitting;
-  q.mode = p.place;
-  if (q.mode == "auto") q.mode = p.count == 0 && p.spacing == 0 && d.point_count() <= size_t(q.count) ? "all" : "even";
-  if (q.mode == "all" && vectors && vectors->association == Association::cell) q.mode = "cells";
-  how = q.mode == "even"    ? "placed evenly"
-        : q.mode == "all"   ? "at all points"
-        : q.mode == "cells" ? "one a cell"
-        : q.mode == "lines" ? "along the lines"
-        : q.mode == "every" ? fmt::format("at every {}th point", q.every)
-                            : "placed " + q.mode;
+  const bool all_fit = p.count == 0 && p.spacing == 0 && d.point_count() <= size_t(q.count);
+  q.mode = p.place.value_or(all_fit ? GlyphPlaces::all : GlyphPlaces::even);
+  if (q.mode == GlyphPlaces::all && vectors && vectors->association == Association::cell) q.mode = GlyphPlaces::cells;
+  how = q.mode == GlyphPlaces::even    ? "placed evenly"
+        : q.mode == GlyphPlaces::all   ? "at all points"
+        : q.mode == GlyphPlaces::cells ? "one a cell"
+        : q.mode == GlyphPlaces::lines ? "along the lines"
+        : q.mode == GlyphPlaces::every ? fmt::format("at every {}th point", q.every)
+                                       : fmt::format("placed {}", word_of(q.mode));
   return q;
 }
 
@@ -127,7 +127,7 @@ constexpr double faint = 0.02;  // of the largest: hardly seen
 // Where most of the data is still, places enough that about as many glyphs are seen as were meant.
 DatasetPtr place(const DatasetPtr& data, GlyphPointsParams q, bool may_add, const Field* vectors, Context& context) {
   DatasetPtr places = glyph_points(data, q, context);
-  if (!may_add || !vectors || q.mode != "even") return places;
+  if (!may_add || !vectors || q.mode != GlyphPlaces::even) return places;
   for (int round = 0; round < 2; ++round) {
     const std::vector<double> lengths = size_factors(*places, vectors->name);
     if (lengths.empty()) return places;
@@ -201,8 +201,10 @@ void choose_size(const Dataset& input, const GlyphParams& p, bool in_pixels, int
 }  // namespace
 
 void describe(Schema& s, GlyphParams& p) {
-  s("vectors", p.vectors, "Field of 2 or 3 components that the glyphs point along; default: the active vectors; 'none' for none.");
-  s("frames", p.frames, "Point field of 9 numbers, a matrix by rows that turns and stretches the shape, in place of vectors.");
+  s("vectors", p.vectors, "Field of 2 or 3 components that the glyphs point along; default: the active vectors; 'none' for none.")
+      .takes(fields::vectors);
+  s("frames", p.frames, "Point field of 9 numbers, a matrix by rows that turns and stretches the shape, in place of vectors.")
+      .takes(fields::tensors);
   describe(s, p.shape);
   s("scale", p.scale, "What sizes show: length (of the vector), constant, or the name of a scalar field; auto: length, barbs constant.");
   s("size", p.size, "Length of the largest glyph; 0: about the distance of the places. Barbs in pictures: pixels.")
@@ -210,8 +212,7 @@ void describe(Schema& s, GlyphParams& p) {
       .at_least(0);
   s("factor", p.factor, "Length of a glyph of value 1, in place of size; 0: by size.").at_least(0);
   s("place", p.place,
-    "Where: all points, every n-th, evenly, cells, random, apart (no overlap), lines (along them); auto: evenly, all of few.")
-      .choices({"auto", "all", "every", "even", "cells", "random", "apart", "lines"});
+    "Where: all points, every n-th, evenly, cells, random, apart (no overlap), lines (along them); auto: evenly, all of few.");
   s("count", p.count, "About how many glyphs, placed evenly or at random; 0: chosen.").range(0, 1e9);
   s("every", p.every, "place=every: one of so many points.").range(1, 1e12);
   s("seed", p.seed, "place=random: another number gives other places.");
@@ -231,10 +232,10 @@ ChosenGlyphs choose_glyphs(const DatasetPtr& data, const GlyphParams& given, boo
   std::string how;
   GlyphPointsParams places = placement(*data, p, vectors, flat_axis, out.barbs, how);
   const double size_given = p.size > 0 ? p.size : 0;
-  if (places.mode == "apart" && size_given > 0 && !in_pixels && places.spacing == 0) places.spacing = size_given;
+  if (places.mode == GlyphPlaces::apart && size_given > 0 && !in_pixels && places.spacing == 0) places.spacing = size_given;
   out.data = place(data, places, p.count == 0 && p.spacing == 0 && !out.barbs, vectors, context);
   if (vectors) out.vectors = out.rule.vectors = vectors->name;
-  if (places.mode == "lines" && vectors == nullptr && p.vectors.empty() && p.frames.empty()) out.rule.vectors = "tangent";
+  if (places.mode == GlyphPlaces::lines && vectors == nullptr && p.vectors.empty() && p.frames.empty()) out.rule.vectors = "tangent";
   out.rule.frames = p.frames.name;
   if (flat_axis >= 0 && out.flat)
     out.rule.normal = Vec3{flat_axis == 0 ? 1.0 : 0.0, flat_axis == 1 ? 1.0 : 0.0, flat_axis == 2 ? 1.0 : 0.0};

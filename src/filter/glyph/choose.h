@@ -13,7 +13,7 @@ struct GlyphParams {
   GlyphShapeParams shape;
   std::string scale = "auto";
   double size = 0, factor = 0;
-  std::string place = "auto";
+  std::optional<GlyphPlaces> place;
   int64_t count = 0, every = 10, seed = 1;
   double spacing = 0;
   BarbParams barbs;

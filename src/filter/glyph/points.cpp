@@ -346,13 +346,13 @@ double typical_spacing(const Dataset& d, size_t places) {
 
 DatasetPtr glyph_points(const DatasetPtr& data, const GlyphPointsParams& p, Context& context) {
   const Box3& box = data->bounds();
-  if (p.mode == "all") return chosen(data, visible_points(*data, 1));
-  if (p.mode == "every") return chosen(data, visible_points(*data, p.every));
-  if (p.mode == "cells") return cell_middles(data, context);
-  if (p.mode == "lines") return points_along_lines(data, p);
+  if (p.mode == GlyphPlaces::all) return chosen(data, visible_points(*data, 1));
+  if (p.mode == GlyphPlaces::every) return chosen(data, visible_points(*data, p.every));
+  if (p.mode == GlyphPlaces::cells) return cell_middles(data, context);
+  if (p.mode == GlyphPlaces::lines) return points_along_lines(data, p);
   if (box.empty()) return chosen(data, {});
-  if (p.mode == "random") return random_places(data, p, box, context);
-  if (p.mode == "apart") return apart_places(data, p, box);
+  if (p.mode == GlyphPlaces::random) return random_places(data, p, box, context);
+  if (p.mode == GlyphPlaces::apart) return apart_places(data, p, box);
   return fills_its_box(*data, box) ? even_inside(data, p, box, context) : even_points(data, p, box);
 }
 

@@ -7,8 +7,16 @@
 
 namespace sg {
 
+/// Where glyphs stand, see glyph_points().
+enum class GlyphPlaces { all, every, even, cells, random, apart, lines };
+constexpr auto enum_words(GlyphPlaces) {
+  using enum GlyphPlaces;
+  return std::array{Word{"all", all},       Word{"every", every}, Word{"even", even},  Word{"cells", cells},
+                    Word{"random", random}, Word{"apart", apart}, Word{"lines", lines}};
+}
+
 struct GlyphPointsParams {
-  std::string mode = "even";
+  GlyphPlaces mode = GlyphPlaces::even;
   int64_t count = 2000, every = 10, seed = 1;
   double spacing = 0, separation = 0.5;
   FieldName diameter = {};
@@ -19,8 +27,7 @@ inline void describe(Schema& s, GlyphPointsParams& p) {
   s("mode", p.mode,
     "all points; every n-th point; even: about `count` places on a grid in space; cells: the middle of each cell; random; apart: points "
     "whose "
-    "glyphs do not overlap, large ones first; lines: along the lines of a mesh at even spacing.")
-      .choices({"all", "every", "even", "cells", "random", "apart", "lines"});
+    "glyphs do not overlap, large ones first; lines: along the lines of a mesh at even spacing.");
   s("count", p.count, "even, random: about how many places.").range(1, 1e9);
   s("every", p.every, "every: take the first point of so many.").range(1, 1e12);
   s("seed", p.seed, "random: another number gives other places.");
@@ -29,7 +36,7 @@ inline void describe(Schema& s, GlyphPointsParams& p) {
       .unit("length")
       .at_least(0);
   s("separation", p.separation, "lines: places nearer than this share of the spacing to one before are left out; 0 keeps all.").range(0, 1);
-  s("diameter", p.diameter, "apart: point field of sizes (of vectors: their lengths), times `scale`.");
+  s("diameter", p.diameter, "apart: point field of sizes (of vectors: their lengths), times `scale`.").takes(fields::on_points);
   s("scale", p.scale, "apart: factor on the field of diameters.").positive();
   s("view", p.view, "apart: direction of sight; glyphs do not overlap on a picture seen along it. Default: not in space.");
 }

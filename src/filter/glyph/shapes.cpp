@@ -172,8 +172,7 @@ void describe(Schema& s, GlyphShapeParams& p) {
   s("shape", p.shape,
     "arrow, cone, needle, line (hedgehog), arrow2d (flat), cylinder, disc, sphere, cube, superquadric, barbs, or a file with a surface.");
   s("sides", p.sides, "Sides of round shapes.").range(3, 256);
-  s("anchor", p.anchor, "What stands at the point; auto: the tail of what points somewhere, the middle of what does not.")
-      .choices({"auto", "tail", "middle", "tip"});
+  s("anchor", p.anchor, "What stands at the point; auto: the tail of what points somewhere, the middle of what does not.");
   s("tip_length", p.tip_length, "Length of an arrow's tip; its whole length is 1.").range(0, 1);
   s("tip_radius", p.tip_radius, "Radius of an arrow's tip.").range(0, 10);
   s("shaft_radius", p.shaft_radius, "Radius of an arrow's shaft.").range(0, 10);
@@ -217,9 +216,9 @@ DatasetPtr glyph_shape_mesh(const GlyphShapeParams& p, Context& context) {
     }
     shape = from_file(p.shape, context);
   }
-  if (p.anchor == "auto") return shape;
+  if (!p.anchor) return shape;
   const Box3& box = shape->bounds();
-  const double at = p.anchor == "tail" ? box.lo.x : p.anchor == "tip" ? box.hi.x : 0.5 * (box.lo.x + box.hi.x);
+  const double at = *p.anchor == GlyphAnchor::tail ? box.lo.x : *p.anchor == GlyphAnchor::tip ? box.hi.x : 0.5 * (box.lo.x + box.hi.x);
   return at == 0 ? shape : shifted_shape(shape, -at);
 }
 

@@ -11,11 +11,18 @@
 
 namespace sg {
 
+/// What of a shape stands at the point.
+enum class GlyphAnchor { tail, middle, tip };
+constexpr auto enum_words(GlyphAnchor) {
+  using enum GlyphAnchor;
+  return std::array{Word{"tail", tail}, Word{"middle", middle}, Word{"tip", tip}};
+}
+
 /// Which shape, and how finely it is made.
 struct GlyphShapeParams {
   std::string shape = "arrow";
   int sides = 12;
-  std::string anchor = "auto";
+  std::optional<GlyphAnchor> anchor;
   double tip_length = 0.35, tip_radius = 0.14, shaft_radius = 0.05;
   double alpha = 1, beta = 1;
 };
@@ -29,7 +36,7 @@ std::span<const std::string_view> glyph_shape_names();
 ///                                        one segment (drawn with constant width)
 ///   cylinder, sphere, cube, superquadric -1/2 to 1/2 along x and across it; disc: of diameter 1 across x, flat
 ///   a file                               its longest edge of the box is 1, the middle of the box at 0
-/// `anchor`: tail, middle or tip stands at the point ("auto": as listed). Solids are closed and their faces look outward.
+/// `anchor`: tail, middle or tip stands at the point (without: as listed). Solids are closed and their faces look outward.
 /// superquadric: (cos^beta p, sgn sin^alpha t sin^beta p, cos^alpha t sin^beta p) / 2 about the x axis (Barr 1981, Kindlmann 2004).
 /// Throws Error(usage) for an unknown name with a hint, Error(data) for files that cannot be read.
 DatasetPtr glyph_shape_mesh(const GlyphShapeParams& p, Context& context);

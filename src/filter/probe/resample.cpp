@@ -50,7 +50,7 @@ UniformGrid resample_grid(const Dataset& input, const ResampleParams& p) {
 
 DatasetPtr resample(const DatasetPtr& input, const ResampleParams& p, Context& context) {
   const UniformGrid grid = resample_grid(*input, p);
-  if (p.mode == "conservative") return resample_conservative(input, grid, p.tolerance, context);
+  if (p.mode == ResampleMode::conservative) return resample_conservative(input, grid, p.tolerance, context);
   const Mesh mesh = grid;
   const Lattice lattice(mesh);
   FieldSampler sampler(*input, lattice.view().points());

@@ -7,19 +7,24 @@
 
 namespace sg {
 
+enum class ResampleMode { linear, conservative };
+constexpr auto enum_words(ResampleMode) {
+  using enum ResampleMode;
+  return std::array{Word{"linear", linear}, Word{"conservative", conservative}};
+}
+
 struct ResampleParams {
   std::vector<int64_t> dims;
   int64_t size = 128;
   std::vector<double> bounds;
-  std::string mode = "linear";
+  ResampleMode mode = ResampleMode::linear;
   double tolerance = 1e-3;
 };
 inline void describe(Schema& s, ResampleParams& p) {
   s("dims", p.dims, "Points along x, y and z; default: from size.").at_least(1);
   s("size", p.size, "Points along the longest axis, the others in proportion.").range(2, 1e6);
   s("bounds", p.bounds, "Box as xmin,xmax,ymin,ymax,zmin,zmax; default: that of the mesh.").unit("length");
-  s("mode", p.mode, "linear: values at the grid's points. conservative: averages over the grid's cells that keep integrals.")
-      .choices({"linear", "conservative"});
+  s("mode", p.mode, "linear: values at the grid's points. conservative: averages over the grid's cells that keep integrals.");
   s("tolerance", p.tolerance,
     "Conservative mode: how far, in parts of its size, a curved cell may lie from the straight pieces that stand for it.")
       .range(1e-6, 1);

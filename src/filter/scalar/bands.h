@@ -17,7 +17,7 @@ struct BandsParams {
   bool outside = true;
 };
 inline void describe(Schema& s, BandsParams& p) {
-  s("field", p.field, "Point field; default: the active scalar.");
+  s("field", p.field, "Point field; default: the active scalar.").takes(fields::on_points);
   s("component", p.component, "Component of the field; -1: the only one, or the magnitude.").at_least(-1);
   s("values", p.values, "Borders between bands; default: equal bands over the field's range.").unit("@field");
   s("count", p.count, "Number of bands when no values are given.").range(1, 100000);

@@ -32,7 +32,7 @@ struct IsolinesParams {
   int count = 10;
 };
 inline void describe(Schema& s, IsolinesParams& p) {
-  s("field", p.field, "Point field; default: the active scalar.");
+  s("field", p.field, "Point field; default: the active scalar.").takes(fields::on_points);
   s("component", p.component, "Of a field with several: 0, 1, ..., x, y, z, or magnitude.");
   s("values", p.values, "Values of the lines; default: evenly spaced within the range.").unit("@field");
   s("count", p.count, "Number of lines when no values are given.").range(1, 100000);

@@ -15,8 +15,8 @@
 namespace sg {
 
 void describe(Schema& s, ClassifyParams& p) {
-  s("field", p.field, "Field of intensities; default: the active scalar.");
-  s("mask", p.mask, "Only samples where this field is not zero are classified; default: all.");
+  s("field", p.field, "Field of intensities; default: the active scalar.").takes(fields::scalars);
+  s("mask", p.mask, "Only samples where this field is not zero are classified; default: all.").takes(fields::scalars);
   s("classes", p.classes, "Number of tissues.").range(1, 16);
   s("background", p.background, "One more class, darker than all tissues, is nothing.");
   s("partial_volume", p.partial_volume, "Samples may be mixes of two classes next to each other in intensity.");

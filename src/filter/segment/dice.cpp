@@ -14,8 +14,8 @@
 namespace sg {
 
 void describe(Schema& s, DiceParams& p) {
-  s("field", p.field, "Label field to judge.");
-  s("truth", p.truth, "Label field that is right.");
+  s("field", p.field, "Label field to judge.").takes(fields::scalars);
+  s("truth", p.truth, "Label field that is right.").takes(fields::scalars);
 }
 
 namespace {

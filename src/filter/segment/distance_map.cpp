@@ -127,7 +127,8 @@ void distance_transform(const uint8_t* set, const std::array<std::vector<double>
 }
 
 void describe(Schema& s, DistanceMapParams& p) {
-  s("field", p.field, "Point or cell field that tells the set; default: the first label field, else the active scalar.");
+  s("field", p.field, "Point or cell field that tells the set; default: the first label field, else the active scalar.")
+      .takes(fields::scalars);
   s("min", p.min, "Smallest value of the set; default with max: no limit.").unit("@field");
   s("max", p.max, "Largest value of the set; default with min: no limit.").unit("@field");
   s("both_sides", p.both_sides, "Negative distances inside the set.");

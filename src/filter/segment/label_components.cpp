@@ -12,7 +12,7 @@
 namespace sg {
 
 void describe(Schema& s, LabelComponentsParams& p) {
-  s("field", p.field, "Field of labels; default: the first label field, else the active scalar.");
+  s("field", p.field, "Field of labels; default: the first label field, else the active scalar.").takes(fields::scalars);
   s("background", p.background, "Label that is nothing.");
   s("labels", p.labels, "Only these labels; default: all but the background.");
   s("connectivity", p.connectivity, "Neighbours in space: 6 (faces), 18 (and edges) or 26 (and corners).").range(6, 26);

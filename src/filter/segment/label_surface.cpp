@@ -11,7 +11,7 @@
 namespace sg {
 
 void describe(Schema& s, LabelSurfaceParams& p) {
-  s("field", p.field, "Field of labels; default: the first label field, else the active scalar.");
+  s("field", p.field, "Field of labels; default: the first label field, else the active scalar.").takes(fields::scalars);
   s("background", p.background, "Label that is nothing.");
   s("labels", p.labels, "Only these labels; default: all but the background.");
   s("smooth", p.smooth, "Smooth surfaces instead of the boxes of the voxels.");

@@ -15,8 +15,8 @@
 namespace sg {
 
 void describe(Schema& s, MorphologyParams& p) {
-  s("field", p.field, "Field of labels; default: the first label field, else the active scalar.");
-  s("operation", p.operation, "What to do.").choices({"erode", "dilate", "open", "close", "fill"});
+  s("field", p.field, "Field of labels; default: the first label field, else the active scalar.").takes(fields::scalars);
+  s("operation", p.operation, "What to do.");
   s("radius", p.radius, "Radius of the ball; default: the largest spacing of the grid.").unit("length").at_least(0);
   s("background", p.background, "Label that is nothing.");
   s("labels", p.labels, "Only these labels are the set; the others stay as they are; default: all but the background.");
@@ -89,7 +89,7 @@ DatasetPtr morphology(const DatasetPtr& in, const MorphologyParams& p, Context& 
   for (size_t a = 0; a < 3; ++a)
     if (image.dims[a] > 1) least = std::min(least, image.spacing(a));
   if (p.radius) radius = *p.radius;
-  if (p.operation != "fill" && radius < least && least < HUGE_VAL)
+  if (p.operation != Morphology::fill && radius < least && least < HUGE_VAL)
     context.warn(fmt::format("morphology: a ball of radius {} reaches no neighbour; the nearest are {} away", short_number(radius),
                              short_number(least)));
 
@@ -101,15 +101,15 @@ DatasetPtr morphology(const DatasetPtr& in, const MorphologyParams& p, Context& 
     });
   });
   Mask result;
-  if (p.operation == "erode") result = work.shrunk(set, radius);
-  else if (p.operation == "dilate") result = work.grown(set, radius);
-  else if (p.operation == "open") result = work.grown(work.shrunk(set, radius), radius);
-  else if (p.operation == "close") result = work.shrunk(work.grown(set, radius), radius);
+  if (p.operation == Morphology::erode) result = work.shrunk(set, radius);
+  else if (p.operation == Morphology::dilate) result = work.grown(set, radius);
+  else if (p.operation == Morphology::open) result = work.grown(work.shrunk(set, radius), radius);
+  else if (p.operation == Morphology::close) result = work.shrunk(work.grown(set, radius), radius);
   else result = work.filled(set, p.max_size);
 
   Plane<float> squared(n);
   Plane<uint32_t> nearest(n);
-  const bool adds = p.operation != "erode" && p.operation != "open";
+  const bool adds = p.operation != Morphology::erode && p.operation != Morphology::open;
   if (adds) distance_transform(set.data(), image.at, squared.data(), nearest.data(), context);
   std::byte* bytes = nullptr;
   Field out{p.name.empty() ? image.field.name : p.name, image.field.association, Array::make_raw(image.field.array.type(), n, 1, &bytes),
@@ -135,8 +135,8 @@ DatasetPtr morphology(const DatasetPtr& in, const MorphologyParams& p, Context& 
           return Change{a.added + b.added, a.removed + b.removed};
         });
   });
-  const std::string ball = p.operation == "fill" ? "" : fmt::format(", ball of radius {}", short_number(radius));
-  context.info(fmt::format("morphology: {}{}: {} samples added, {} removed", p.operation, ball, change.added, change.removed));
+  const std::string ball = p.operation == Morphology::fill ? "" : fmt::format(", ball of radius {}", short_number(radius));
+  context.info(fmt::format("morphology: {}{}: {} samples added, {} removed", word_of(p.operation), ball, change.added, change.removed));
   return with_field(in, std::move(out));
 }
 

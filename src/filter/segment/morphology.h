@@ -7,9 +7,15 @@
 
 namespace sg {
 
+enum class Morphology { erode, dilate, open, close, fill };
+constexpr auto enum_words(Morphology) {
+  using enum Morphology;
+  return std::array{Word{"erode", erode}, Word{"dilate", dilate}, Word{"open", open}, Word{"close", close}, Word{"fill", fill}};
+}
+
 struct MorphologyParams {
   FieldName field;
-  std::string operation = "open";
+  Morphology operation = Morphology::open;
   std::optional<double> radius;
   double background = 0;
   std::vector<int64_t> labels;

@@ -13,7 +13,7 @@
 namespace sg {
 
 void describe(Schema& s, OtsuParams& p) {
-  s("field", p.field, "Point or cell field to split; default: the active scalar.");
+  s("field", p.field, "Point or cell field to split; default: the active scalar.").takes(fields::scalars);
   s("classes", p.classes, "Number of classes.").range(2, 64);
   s("bins", p.bins, "Bins of the histogram of floating-point values.").range(2, 1 << 16);
   s("name", p.name, "Name of the label field.");

@@ -13,7 +13,7 @@
 namespace sg {
 
 void describe(Schema& s, RegionGrowParams& p) {
-  s("field", p.field, "Field of values; default: the active scalar.");
+  s("field", p.field, "Field of values; default: the active scalar.").takes(fields::scalars);
   s("seeds", p.seeds, "Places where regions begin: x,y,z of each.").unit("length");
   s("min", p.min, "Smallest value of the region.").unit("@field");
   s("max", p.max, "Largest value of the region.").unit("@field");

@@ -16,8 +16,8 @@
 namespace sg {
 
 void describe(Schema& s, WatershedParams& p) {
-  s("field", p.field, "Field to flood; default: the active scalar.");
-  s("markers", p.markers, "Label field whose labels grow; default: the minima of the field.");
+  s("field", p.field, "Field to flood; default: the active scalar.").takes(fields::scalars);
+  s("markers", p.markers, "Label field whose labels grow; default: the minima of the field.").takes(fields::scalars);
   s("gradient", p.gradient, "Floods the length of the gradient of the field.");
   s("min_depth", p.min_depth, "Minima that are not deeper than this are no basins of their own.").unit("@field").at_least(0);
   s("connectivity", p.connectivity, "Neighbours in space: 6 (faces), 18 (and edges) or 26 (and corners).").range(6, 26);

@@ -42,7 +42,7 @@ std::vector<int64_t> good_cells(const DatasetPtr& d, const CleanParams& p, Count
   CellReader reader(d);
   std::vector<double> size;
   if (p.flat) {
-    const Array a = quality(d, {{"size"}}, ctx)->fields().require("size", Association::cell).array;
+    const Array a = quality(d, {{CellMeasure::size}}, ctx)->fields().require("size", Association::cell).array;
     size.assign(a.view<double>().data, a.view<double>().data + a.count());
   }
   const double length = d->bounds().diagonal();

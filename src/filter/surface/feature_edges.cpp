@@ -112,7 +112,7 @@ DatasetPtr zero_set(const DatasetPtr& surface, const SilhouetteParams& p, Contex
   const Field* normal = surface->fields().with_role(Role::normals);
   DatasetPtr s = surface;
   if (!normal || normal->association != Association::point || normal->components() != 3) {
-    s = normals(surface, {.feature_angle = 180, .orient = "consistent"}, ctx);
+    s = normals(surface, {.feature_angle = 180, .orient = Facing::consistent}, ctx);
     normal = &s->fields().require("Normals", Association::point);
   }
   const std::string normals_name = normal->name;

@@ -105,9 +105,9 @@ DatasetPtr normals(const DatasetPtr& in, const NormalsParams& p, Context& ctx) {
   SurfaceMesh mesh = *s->as<SurfaceMesh>();
   const std::vector<Vec3> at = positions(mesh.points);
   Edges edges = edges_of_polygons(cells_view(mesh.polygons), at.size());
-  if (p.orient != "keep" || p.flip) {
+  if (p.orient != Facing::keep || p.flip) {
     Orientation o;
-    if (p.orient != "keep") o = orientation(cells_view(mesh.polygons), edges, at, p.orient == "outward");
+    if (p.orient != Facing::keep) o = orientation(cells_view(mesh.polygons), edges, at, p.orient == Facing::outward);
     else o.flip.assign(mesh.polygons.size(), 0);
     if (o.one_sided > 0) ctx.warn(fmt::format("normals: {} pieces are one-sided and cannot be oriented", o.one_sided));
     if (o.flipped > 0) ctx.info(fmt::format("normals: {} polygons were turned round", o.flipped));

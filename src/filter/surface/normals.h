@@ -7,9 +7,16 @@
 
 namespace sg {
 
+/// Which way polygons face.
+enum class Facing { keep, consistent, outward };
+constexpr auto enum_words(Facing) {
+  using enum Facing;
+  return std::array{Word{"keep", keep}, Word{"consistent", consistent}, Word{"outward", outward}};
+}
+
 struct NormalsParams {
   double feature_angle = 30;
-  std::string orient = "consistent";
+  Facing orient = Facing::consistent;
   bool flip = false;
   bool cell_normals = false;
 };
@@ -19,8 +26,7 @@ inline void describe(Schema& s, NormalsParams& p) {
     ".obj) part the surface: clean first.")
       .range(0, 180)
       .unit("deg");
-  s("orient", p.orient, "keep: as the polygons are; consistent: neighbours agree; outward: closed pieces also face outward.")
-      .choices({"keep", "consistent", "outward"});
+  s("orient", p.orient, "keep: as the polygons are; consistent: neighbours agree; outward: closed pieces also face outward.");
   s("flip", p.flip, "Turns all polygons and normals round.");
   s("cell_normals", p.cell_normals, "Adds the normal of each polygon as cell field 'Cell normals'.");
 }

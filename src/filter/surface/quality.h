@@ -10,13 +10,23 @@
 
 namespace sg {
 
-struct QualityParams {
-  std::vector<std::string> measures = {"scaled_jacobian"};
-};
-inline void describe(Schema& s, QualityParams& p) {
-  s("measures", p.measures, "What to measure, one cell field each.")
-      .choices({"scaled_jacobian", "aspect_ratio", "edge_ratio", "min_angle", "max_angle", "skew", "equiangle_skew", "size"});
+enum class CellMeasure { scaled_jacobian, aspect_ratio, edge_ratio, min_angle, max_angle, skew, equiangle_skew, size };
+constexpr auto enum_words(CellMeasure) {
+  using enum CellMeasure;
+  return std::array{Word{"scaled_jacobian", scaled_jacobian},
+                    Word{"aspect_ratio", aspect_ratio},
+                    Word{"edge_ratio", edge_ratio},
+                    Word{"min_angle", min_angle},
+                    Word{"max_angle", max_angle},
+                    Word{"skew", skew},
+                    Word{"equiangle_skew", equiangle_skew},
+                    Word{"size", size}};
 }
+
+struct QualityParams {
+  std::vector<CellMeasure> measures = {CellMeasure::scaled_jacobian};
+};
+inline void describe(Schema& s, QualityParams& p) { s("measures", p.measures, "What to measure, one cell field each."); }
 
 /// Cell fields (f64) by the measures' names, after the Verdict library's definitions (Stimpson, Ernst, Knupp, Pebay, Thompson 2007):
 ///   scaled_jacobian  smallest determinant of the unit edges at a corner, 1 for the equilateral or right-angled ideal, below 0 inside out

@@ -13,7 +13,7 @@ struct SurfelsParams {
   double size = 1;
 };
 inline void describe(Schema& s, SurfelsParams& p) {
-  s("field", p.field, "Point field; default: the active scalar.");
+  s("field", p.field, "Point field; default: the active scalar.").takes(fields::point_scalars);
   s("value", p.value, "Where the surface lies; default: the middle of the range.").unit("@field");
   s("size", p.size, "Radius of the discs in half diagonals of a cell; 1 leaves no holes.").positive();
 }

@@ -45,8 +45,7 @@ void describe(Schema& s, StressMeasuresParams& p) {
   describe_tensors(s, p.tensors);
   s("measures", p.measures,
     "von_mises; tresca (the largest less the least principal stress); mean (negative of the pressure); max_shear; principal: the three "
-    "principal stresses; directions: their unit vectors.")
-      .choices({"von_mises", "tresca", "mean", "max_shear", "principal", "directions"});
+    "principal stresses; directions: their unit vectors.");
 }
 
 void describe(Schema& s, TractionParams& p) {
@@ -70,14 +69,14 @@ DatasetPtr stress_measures(const DatasetPtr& in, const StressMeasuresParams& p, 
   auto scalar = [&](std::string name, auto f) {
     parts.fields.add(field_beside(t, std::move(name), 1, unit, Role::none, ctx, [&](size_t i, double* v) { *v = f(principal[i]); }));
   };
-  for (const std::string& m : p.measures) {
-    if (m == "von_mises") scalar("von Mises stress", [](const Eigen3& e) { return von_mises_of(e.value); });
-    if (m == "tresca") scalar("Tresca stress", [](const Eigen3& e) { return e.value[0] - e.value[2]; });
-    if (m == "mean") scalar("mean stress", [](const Eigen3& e) { return mean_of(e.value); });
-    if (m == "max_shear") scalar("maximum shear stress", [](const Eigen3& e) { return (e.value[0] - e.value[2]) / 2; });
+  for (const StressMeasure m : p.measures) {
+    if (m == StressMeasure::von_mises) scalar("von Mises stress", [](const Eigen3& e) { return von_mises_of(e.value); });
+    if (m == StressMeasure::tresca) scalar("Tresca stress", [](const Eigen3& e) { return e.value[0] - e.value[2]; });
+    if (m == StressMeasure::mean) scalar("mean stress", [](const Eigen3& e) { return mean_of(e.value); });
+    if (m == StressMeasure::max_shear) scalar("maximum shear stress", [](const Eigen3& e) { return (e.value[0] - e.value[2]) / 2; });
     for (int k = 0; k < 3; ++k) {
-      if (m == "principal") scalar(fmt::format("principal stress {}", k + 1), [k](const Eigen3& e) { return e.value[k]; });
-      if (m == "directions")
+      if (m == StressMeasure::principal) scalar(fmt::format("principal stress {}", k + 1), [k](const Eigen3& e) { return e.value[k]; });
+      if (m == StressMeasure::directions)
         parts.fields.add(field_beside(t, fmt::format("principal direction {}", k + 1), 3, "", Role::none, ctx, [&](size_t i, double* v) {
           const Vec3 d = principal[i].vector[k];
           v[0] = d.x, v[1] = d.y, v[2] = d.z;

@@ -5,9 +5,16 @@
 
 namespace sg {
 
+enum class StressMeasure { von_mises, tresca, mean, max_shear, principal, directions };
+constexpr auto enum_words(StressMeasure) {
+  using enum StressMeasure;
+  return std::array{Word{"von_mises", von_mises}, Word{"tresca", tresca},       Word{"mean", mean},
+                    Word{"max_shear", max_shear}, Word{"principal", principal}, Word{"directions", directions}};
+}
+
 struct StressMeasuresParams {
   TensorSource tensors;
-  std::vector<std::string> measures = {"von_mises", "tresca", "mean", "principal"};
+  std::vector<StressMeasure> measures = {StressMeasure::von_mises, StressMeasure::tresca, StressMeasure::mean, StressMeasure::principal};
 };
 void describe(Schema& s, StressMeasuresParams& p);
 

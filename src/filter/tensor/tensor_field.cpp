@@ -14,40 +14,40 @@ namespace sg {
 namespace {
 
 struct Order {
-  std::string_view name;
+  TensorOrder name;
   int components;
   TensorPlaces place;
 };
 constexpr Order orders[] = {
-    {"rows", 9, {0, 4, 8, 1, 5, 2, 3, 7, 6}},        {"vtk", 6, {0, 1, 2, 3, 4, 5, -1, -1, -1}},
-    {"upper", 6, {0, 3, 5, 1, 4, 2, -1, -1, -1}},    {"lower", 6, {0, 2, 5, 1, 4, 3, -1, -1, -1}},
-    {"voigt", 6, {0, 1, 2, 5, 3, 4, -1, -1, -1}},    {"abaqus", 6, {0, 1, 2, 3, 5, 4, -1, -1, -1}},
-    {"masked", 7, {1, 4, 6, 2, 5, 3, -1, -1, -1}},   {"rows", 4, {0, 3, -1, 1, -1, -1, 2, -1, -1}},
-    {"plane", 3, {0, 1, -1, 2, -1, -1, -1, -1, -1}},
+    {TensorOrder::rows, 9, {0, 4, 8, 1, 5, 2, 3, 7, 6}},        {TensorOrder::vtk, 6, {0, 1, 2, 3, 4, 5, -1, -1, -1}},
+    {TensorOrder::upper, 6, {0, 3, 5, 1, 4, 2, -1, -1, -1}},    {TensorOrder::lower, 6, {0, 2, 5, 1, 4, 3, -1, -1, -1}},
+    {TensorOrder::voigt, 6, {0, 1, 2, 5, 3, 4, -1, -1, -1}},    {TensorOrder::abaqus, 6, {0, 1, 2, 3, 5, 4, -1, -1, -1}},
+    {TensorOrder::masked, 7, {1, 4, 6, 2, 5, 3, -1, -1, -1}},   {TensorOrder::rows, 4, {0, 3, -1, 1, -1, -1, 2, -1, -1}},
+    {TensorOrder::plane, 3, {0, 1, -1, 2, -1, -1, -1, -1, -1}},
 };
 
-const Order& order_of(const Field& f, const std::string& name, std::string_view who) {
+const Order& order_of(const Field& f, std::optional<TensorOrder> name, std::string_view who) {
   const int n = f.components();
   for (const Order& o : orders)
-    if (o.components == n && (name == "auto" || name == o.name)) return o;
-  if (name == "auto")
+    if (o.components == n && (!name || name == o.name)) return o;
+  if (!name)
     fail_usage(fmt::format("field '{}' has {} component{}, which is no tensor", f.name, n, n == 1 ? "" : "s"), std::string(who),
                "tensors have 9 components (rows), 6 (symmetric), 7 (with a mask), in 2D 4 or 3");
-  fail_usage(fmt::format("field '{}' has {} components, which the order '{}' does not fit", f.name, n, name), std::string(who),
+  fail_usage(fmt::format("field '{}' has {} components, which the order '{}' does not fit", f.name, n, word_of(*name)), std::string(who),
              "rows: 9 or 4; vtk, upper, lower, voigt, abaqus: 6; masked: 7; plane: 3");
 }
 
 }  // namespace
 
 void describe_tensors(Schema& s, TensorSource& p) {
-  s("field", p.field, "Tensor field of 9, 7, 6, 4 or 3 components; default: the one marked as tensors, else the first of such a size.");
+  s("field", p.field, "Tensor field of 9, 7, 6, 4 or 3 components; default: the one marked as tensors, else the first of such a size.")
+      .takes(fields::tensors);
   s("order", p.order,
     "Order of the components. rows: xx xy xz yx ...; vtk: xx yy zz xy yz xz; upper: xx xy xz yy yz zz; lower: xx xy yy xz yz zz; voigt: "
-    "xx yy zz yz xz xy; abaqus: xx yy zz xy xz yz; masked: a confidence, then upper; plane: xx yy xy. auto: rows, or vtk for 6.")
-      .choices({"auto", "rows", "vtk", "upper", "lower", "voigt", "abaqus", "masked", "plane"});
+    "xx yy zz yz xz xy; abaqus: xx yy zz xy xz yz; masked: a confidence, then upper; plane: xx yy xy. auto: rows, or vtk for 6.");
 }
 
-TensorPlaces tensor_places(const Field& f, const std::string& order, std::string_view who) { return order_of(f, order, who).place; }
+TensorPlaces tensor_places(const Field& f, std::optional<TensorOrder> order, std::string_view who) { return order_of(f, order, who).place; }
 
 const Field* find_tensors(const Dataset& d, const FieldName& name) {
   if (!name.empty()) return &d.fields().require(name.name);

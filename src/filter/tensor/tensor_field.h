@@ -8,13 +8,14 @@
 #include "base/schema/schema.h"
 #include "data/dataset.h"
 #include "filter/tensor/sym_tensor.h"
+#include "filter/tensor/tensor_order.h"
 
 namespace sg {
 
 /// Which field holds tensors, and in what order it holds their numbers; part of the parameters of every tensor operation.
 struct TensorSource {
   FieldName field;
-  std::string order = "auto";
+  std::optional<TensorOrder> order;
 };
 void describe_tensors(Schema& s, TensorSource& p);
 
@@ -48,7 +49,7 @@ TensorField read_point_tensors(const DatasetPtr& d, const TensorSource& source, 
 /// Where a tuple of the field holds xx yy zz xy yz xz, then yx zy zx; -1: zero (the first six) or symmetric (the last three).
 using TensorPlaces = std::array<int, 9>;
 /// By the table above. Throws Error(usage) naming `who` when the number of components fits no tensor or not the order.
-TensorPlaces tensor_places(const Field& f, const std::string& order, std::string_view who);
+TensorPlaces tensor_places(const Field& f, std::optional<TensorOrder> order, std::string_view who);
 
 /// The field that read_tensors takes; null when there is none.
 const Field* find_tensors(const Dataset& d, const FieldName& name);

@@ -22,67 +22,66 @@ bool is_negative(const double* l, int dimension) {
   return least < -1e-6 * std::max(std::abs(l[0]), std::abs(least));  // what rounding to f32 leaves of 0
 }
 
-void treat_negative(double* l, const std::string& how) {
-  if (how == "clip")
+void treat_negative(double* l, NegativeEigenvalues how) {
+  if (how == NegativeEigenvalues::clip)
     for (int k = 0; k < 3; ++k) l[k] = std::max(l[k], 0.0);
-  if (how == "absolute") {
+  if (how == NegativeEigenvalues::absolute) {
     for (int k = 0; k < 3; ++k) l[k] = std::abs(l[k]);
     std::sort(l, l + 3, std::greater<>());
   }
-  if (how == "nan") l[0] = l[1] = l[2] = NAN;
+  if (how == NegativeEigenvalues::nan) l[0] = l[1] = l[2] = NAN;
 }
 
-double measure_2d(const std::string& m, const double* l) {
-  if (m == "FA") return fractional_anisotropy_2d(l);
-  if (m == "MD") return (l[0] + l[1]) / 2;
-  if (m == "trace") return l[0] + l[1];
-  if (m == "determinant") return l[0] * l[1];
+double measure_2d(TensorMeasure m, const double* l) {
+  if (m == TensorMeasure::FA) return fractional_anisotropy_2d(l);
+  if (m == TensorMeasure::MD) return (l[0] + l[1]) / 2;
+  if (m == TensorMeasure::trace) return l[0] + l[1];
+  if (m == TensorMeasure::determinant) return l[0] * l[1];
   return std::hypot(l[0], l[1]);
 }
 
-double measure_3d(const std::string& m, const double* l, bool by_trace) {
-  if (m == "FA") return fractional_anisotropy(l);
-  if (m == "MD") return mean_of(l);
-  if (m == "RA") return relative_anisotropy(l);
-  if (m == "mode") return tensor_mode(l);
-  if (m == "cl") return westin_of(l, by_trace).linear;
-  if (m == "cp") return westin_of(l, by_trace).planar;
-  if (m == "cs") return westin_of(l, by_trace).spherical;
-  if (m == "trace") return l[0] + l[1] + l[2];
-  if (m == "determinant") return l[0] * l[1] * l[2];
+double measure_3d(TensorMeasure m, const double* l, bool by_trace) {
+  if (m == TensorMeasure::FA) return fractional_anisotropy(l);
+  if (m == TensorMeasure::MD) return mean_of(l);
+  if (m == TensorMeasure::RA) return relative_anisotropy(l);
+  if (m == TensorMeasure::mode) return tensor_mode(l);
+  if (m == TensorMeasure::cl) return westin_of(l, by_trace).linear;
+  if (m == TensorMeasure::cp) return westin_of(l, by_trace).planar;
+  if (m == TensorMeasure::cs) return westin_of(l, by_trace).spherical;
+  if (m == TensorMeasure::trace) return l[0] + l[1] + l[2];
+  if (m == TensorMeasure::determinant) return l[0] * l[1] * l[2];
   return norm_of(l);
 }
 
-bool is_diffusion(const std::string& m) { return m != "trace" && m != "determinant" && m != "norm"; }
+bool is_diffusion(TensorMeasure m) { return m != TensorMeasure::trace && m != TensorMeasure::determinant && m != TensorMeasure::norm; }
 
-std::string unit_of(const std::string& m, const std::string& unit) {
-  return m == "MD" || m == "trace" || m == "norm" ? unit : m == "determinant" && !unit.empty() ? "(" + unit + ")^3" : "";
+std::string unit_of(TensorMeasure m, const std::string& unit) {
+  return m == TensorMeasure::MD || m == TensorMeasure::trace || m == TensorMeasure::norm ? unit
+         : m == TensorMeasure::determinant && !unit.empty()                              ? "(" + unit + ")^3"
+                                                                                         : "";
 }
 
 }  // namespace
 
 void describe(Schema& s, TensorEigenParams& p) {
   describe_tensors(s, p.tensors);
-  s("vectors", p.vectors, "Which eigenvectors to add beside the eigenvalues.").choices({"all", "first", "none"});
+  s("vectors", p.vectors, "Which eigenvectors to add beside the eigenvalues.");
 }
 
 void describe(Schema& s, TensorMeasuresParams& p) {
   describe_tensors(s, p.tensors);
   s("measures", p.measures,
     "FA: fractional anisotropy; MD: mean diffusivity; RA: relative anisotropy (0 to 1.414); mode: 1 line-like, -1 disc-like; cl, cp, cs: "
-    "linear, planar, spherical (Westin); trace; determinant; norm.")
-      .choices({"FA", "MD", "RA", "mode", "cl", "cp", "cs", "trace", "determinant", "norm"});
+    "linear, planar, spherical (Westin); trace; determinant; norm.");
   s("westin", p.westin,
-    "Normalisation of cl, cp, cs. trace: (l1-l2)/t, 2(l2-l3)/t, 3 l3/t with t = l1+l2+l3; largest: (l1-l2)/l1, (l2-l3)/l1, l3/l1.")
-      .choices({"trace", "largest"});
-  s("negative", p.negative, "What becomes of negative eigenvalues: kept, clipped to 0, their absolute value, or nan for the whole tensor.")
-      .choices({"keep", "clip", "absolute", "nan"});
+    "Normalisation of cl, cp, cs. trace: (l1-l2)/t, 2(l2-l3)/t, 3 l3/t with t = l1+l2+l3; largest: (l1-l2)/l1, (l2-l3)/l1, l3/l1.");
+  s("negative", p.negative, "What becomes of negative eigenvalues: kept, clipped to 0, their absolute value, or nan for the whole tensor.");
 }
 
 void describe(Schema& s, DirectionColorsParams& p) {
   describe_tensors(s, p.tensors);
   s("eigenvector", p.eigenvector, "Which eigenvector gives the direction; 1 belongs to the largest eigenvalue.").range(1, 3);
-  s("weight", p.weight, "What darkens the colour: FA, the linear measure cl, or nothing.").choices({"FA", "cl", "none"});
+  s("weight", p.weight, "What darkens the colour: FA, the linear measure cl, or nothing.");
   s("gamma", p.gamma, "The weight is taken to the power 1/gamma: larger is brighter.").positive();
 }
 
@@ -94,7 +93,7 @@ void warn_negative(size_t count, size_t all, const TensorField& t, std::string_v
 
 DatasetPtr tensor_eigen(const DatasetPtr& in, const TensorEigenParams& p, Context& ctx) {
   const TensorField t = read_tensors(*in, p.tensors, "tensor_eigen", ctx);
-  const int n = t.dimension, vectors = p.vectors == "all" ? n : p.vectors == "first" ? 1 : 0;
+  const int n = t.dimension, vectors = p.vectors == EigenvectorsKept::all ? n : p.vectors == EigenvectorsKept::first ? 1 : 0;
   std::vector<Array> arrays;
   std::vector<Field> fields;
   // One decomposition a tensor: all results of a tuple side by side, then seen as fields of their own.
@@ -133,12 +132,13 @@ DatasetPtr tensor_eigen(const DatasetPtr& in, const TensorEigenParams& p, Contex
 DatasetPtr tensor_measures(const DatasetPtr& in, const TensorMeasuresParams& p, Context& ctx) {
   const TensorField t = read_tensors(*in, p.tensors, "tensor_measures", ctx);
   if (p.measures.empty()) fail_usage("measures names none", "tensor_measures", "FA, MD, RA, mode, cl, cp, cs, trace, determinant, norm");
-  const bool by_trace = p.westin == "trace";
+  const bool by_trace = p.westin == WestinNorm::trace;
   bool diffusion = false;
-  for (const std::string& m : p.measures) {
+  for (const TensorMeasure m : p.measures) {
     diffusion |= is_diffusion(m);
-    if (t.dimension == 2 && (m == "RA" || m == "mode" || m[0] == 'c'))
-      fail_usage(fmt::format("'{}' is not defined for the 2D tensors of '{}'", m, t.field.name), "tensor_measures",
+    if (t.dimension == 2 &&
+        (m == TensorMeasure::RA || m == TensorMeasure::mode || m == TensorMeasure::cl || m == TensorMeasure::cp || m == TensorMeasure::cs))
+      fail_usage(fmt::format("'{}' is not defined for the 2D tensors of '{}'", word_of(m), t.field.name), "tensor_measures",
                  "2D: FA, MD, trace, determinant, norm");
   }
   std::vector<Eigen3> eigen(t.d.size());
@@ -156,11 +156,12 @@ DatasetPtr tensor_measures(const DatasetPtr& in, const TensorMeasuresParams& p, 
       },
       [](size_t a, size_t b) { return a + b; }, &ctx);
   warn_negative(negative, t.d.size(), t, "tensor_measures",
-                p.negative == "keep" ? "kept (FA may exceed 1); negative=clip, absolute or nan treats them" : "negative=" + p.negative,
+                p.negative == NegativeEigenvalues::keep ? "kept (FA may exceed 1); negative=clip, absolute or nan treats them"
+                                                        : fmt::format("negative={}", word_of(p.negative)),
                 ctx);
   std::vector<Field> fields;
-  for (const std::string& m : p.measures)
-    fields.push_back(field_beside(t, m, 1, unit_of(m, t.field.unit), Role::none, ctx, [&](size_t i, double* v) {
+  for (const TensorMeasure m : p.measures)
+    fields.push_back(field_beside(t, std::string(word_of(m)), 1, unit_of(m, t.field.unit), Role::none, ctx, [&](size_t i, double* v) {
       *v = t.dimension == 2 ? measure_2d(m, eigen[i].value) : measure_3d(m, eigen[i].value, by_trace);
     }));
   return with_added(in, std::move(fields));
@@ -184,8 +185,8 @@ DatasetPtr direction_colors(const DatasetPtr& in, const DirectionColorsParams& p
         for (size_t i = begin; i < end; ++i) {
           const Eigen3 e = t.eigen(i);
           double w = 1;
-          if (p.weight == "FA") w = t.dimension == 2 ? fractional_anisotropy_2d(e.value) : fractional_anisotropy(e.value);
-          if (p.weight == "cl") w = t.dimension == 2 ? (e.value[0] - e.value[1]) / e.value[0] : westin_of(e.value, true).linear;
+          if (p.weight == ColorWeight::FA) w = t.dimension == 2 ? fractional_anisotropy_2d(e.value) : fractional_anisotropy(e.value);
+          if (p.weight == ColorWeight::cl) w = t.dimension == 2 ? (e.value[0] - e.value[1]) / e.value[0] : westin_of(e.value, true).linear;
           direction_color(e.vector[p.eigenvector - 1], std::pow(std::clamp(w, 0.0, 1.0), 1 / p.gamma), out + 3 * i);
         }
       },

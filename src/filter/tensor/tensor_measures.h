@@ -5,9 +5,15 @@
 
 namespace sg {
 
+enum class EigenvectorsKept { all, first, none };
+constexpr auto enum_words(EigenvectorsKept) {
+  using enum EigenvectorsKept;
+  return std::array{Word{"all", all}, Word{"first", first}, Word{"none", none}};
+}
+
 struct TensorEigenParams {
   TensorSource tensors;
-  std::string vectors = "all";
+  EigenvectorsKept vectors = EigenvectorsKept::all;
 };
 void describe(Schema& s, TensorEigenParams& p);
 
@@ -16,11 +22,34 @@ void describe(Schema& s, TensorEigenParams& p);
 /// largest component is positive. NaN tensors give NaN. f64 for 64-bit fields, else f32.
 DatasetPtr tensor_eigen(const DatasetPtr& in, const TensorEigenParams& p, Context& ctx);
 
+/// See tensor_shape.h for the formulas.
+enum class TensorMeasure { FA, MD, RA, mode, cl, cp, cs, trace, determinant, norm };
+constexpr auto enum_words(TensorMeasure) {
+  using enum TensorMeasure;
+  return std::array{Word{"FA", FA},     Word{"MD", MD},       Word{"RA", RA},
+                    Word{"mode", mode}, Word{"cl", cl},       Word{"cp", cp},
+                    Word{"cs", cs},     Word{"trace", trace}, Word{"determinant", determinant},
+                    Word{"norm", norm}};
+}
+/// What cl, cp and cs are divided by: the trace, or the largest eigenvalue.
+enum class WestinNorm { trace, largest };
+constexpr auto enum_words(WestinNorm) {
+  using enum WestinNorm;
+  return std::array{Word{"trace", trace}, Word{"largest", largest}};
+}
+/// What becomes of negative eigenvalues: clip: 0; nan: the whole tensor.
+enum class NegativeEigenvalues { keep, clip, absolute, nan };
+constexpr auto enum_words(NegativeEigenvalues) {
+  using enum NegativeEigenvalues;
+  return std::array{Word{"keep", keep}, Word{"clip", clip}, Word{"absolute", absolute}, Word{"nan", nan}};
+}
+
 struct TensorMeasuresParams {
   TensorSource tensors;
-  std::vector<std::string> measures = {"FA", "MD", "RA", "mode", "cl", "cp", "cs"};
-  std::string westin = "trace";
-  std::string negative = "keep";
+  std::vector<TensorMeasure> measures = {TensorMeasure::FA, TensorMeasure::MD, TensorMeasure::RA, TensorMeasure::mode,
+                                         TensorMeasure::cl, TensorMeasure::cp, TensorMeasure::cs};
+  WestinNorm westin = WestinNorm::trace;
+  NegativeEigenvalues negative = NegativeEigenvalues::keep;
 };
 void describe(Schema& s, TensorMeasuresParams& p);
 
@@ -30,10 +59,16 @@ void describe(Schema& s, TensorMeasuresParams& p);
 /// have FA, MD, trace, determinant and norm in the plane. Throws Error(usage) for others of a 2D field.
 DatasetPtr tensor_measures(const DatasetPtr& in, const TensorMeasuresParams& p, Context& ctx);
 
+enum class ColorWeight { FA, cl, none };
+constexpr auto enum_words(ColorWeight) {
+  using enum ColorWeight;
+  return std::array{Word{"FA", FA}, Word{"cl", cl}, Word{"none", none}};
+}
+
 struct DirectionColorsParams {
   TensorSource tensors;
   int eigenvector = 1;
-  std::string weight = "FA";
+  ColorWeight weight = ColorWeight::FA;
   double gamma = 1;
 };
 void describe(Schema& s, DirectionColorsParams& p);

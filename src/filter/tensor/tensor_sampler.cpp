@@ -82,13 +82,13 @@ int dimension_of_cells(const DatasetPtr& d) {
   return most;
 }
 
-TensorSampler::TensorSampler(const DatasetPtr& dataset, const TensorSource& source, const std::string& interpolation, std::string who,
+TensorSampler::TensorSampler(const DatasetPtr& dataset, const TensorSource& source, TensorInterpolation interpolation, std::string who,
                              Context& ctx)
     : dataset_(dataset), tensors_(read_point_tensors(dataset, source, who, ctx)), dimension_(dimension_of_cells(dataset)) {
   if (dimension_ < 2)
     fail_usage(fmt::format("there is nothing between the points of a {} mesh whose cells have dimension {}", dataset->kind(), dimension_),
                who, "a grid, or cells of surfaces or volume");
-  logarithmic_ = interpolation == "log";
+  logarithmic_ = interpolation == TensorInterpolation::log;
   if (logarithmic_) take_logarithms(tensors_, who, ctx);
   locator_ = std::make_unique<const CellLocator>(dataset, ctx);
 }

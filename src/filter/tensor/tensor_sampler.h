@@ -5,6 +5,7 @@
 #include <span>
 
 #include "filter/tensor/tensor_field.h"
+#include "filter/tensor/tensor_interpolation.h"
 #include "index/cell_locator.h"
 
 namespace sg {
@@ -14,9 +15,9 @@ namespace sg {
 /// tensor counts by its part in the surface: two eigenvectors lie in it, the third is its normal.
 class TensorSampler {
  public:
-  /// `interpolation`: "components" or "log". For log, eigenvalues below 1e-6 of the largest of the field count as that, with one warning.
+  /// For log, eigenvalues below 1e-6 of the largest of the field count as that, with one warning.
   /// Throws Error(usage) naming `who` for what read_tensors refuses and for meshes without cells of surfaces or volume.
-  TensorSampler(const DatasetPtr& dataset, const TensorSource& source, const std::string& interpolation, std::string who, Context& ctx);
+  TensorSampler(const DatasetPtr& dataset, const TensorSource& source, TensorInterpolation interpolation, std::string who, Context& ctx);
 
   const DatasetPtr& dataset() const { return dataset_; }
   const TensorField& tensors() const { return tensors_; }

@@ -13,7 +13,7 @@ struct GradientImagesParams {
 };
 inline void describe(Schema& s, GradientImagesParams& p) {
   s("path", p.path, "File with a series of volumes, like a 4D NIfTI image.").unit("file");
-  s("field", p.field, "Field of one component; default: the active scalar.");
+  s("field", p.field, "Field of one component; default: the active scalar.").takes(fields::scalars);
 }
 
 /// The mesh of the first step with one field "images" that has a component per step, in the field's own element type, and the fields of the

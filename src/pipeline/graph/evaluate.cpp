@@ -7,6 +7,7 @@
 #include "pipeline/file/read_part.h"
 #include "pipeline/graph/graph_state.h"
 #include "pipeline/graph/series_input.h"
+#include "pipeline/operation/check_fields.h"
 
 namespace sg {
 
@@ -89,9 +90,17 @@ class Evaluation {
     return with_context(doing, [&] {
       if (auto* read = std::get_if<ReadNode>(&node.what)) return read_file(*read, s, part);
       const Operation& operation = *std::get<OperationNode>(node.what).found;
-      if (s.series < 0) return operation.run(inputs, s.params, part);
-      return operation.run_series(SeriesInput::open(graph_, node, plan_.steps[size_t(s.series)].request, s.params, part), inputs, s.params,
-                                  part);
+      if (s.series < 0) {
+        check_fields(operation.name, s.params.schema, inputs);
+        return operation.run(inputs, s.params, part);
+      }
+      Series series = SeriesInput::open(graph_, node, plan_.steps[size_t(s.series)].request, s.params, part);
+      series.load = [&, load = std::move(series.load)](size_t step) {
+        Data data = load(step);
+        check_fields(operation.name, s.params.schema, std::span(&data, 1));
+        return data;
+      };
+      return operation.run_series(series, inputs, s.params, part);
     });
   }
 

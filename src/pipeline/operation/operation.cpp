@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/text/text.h"
+#include "pipeline/operation/check_fields.h"
 #include "pipeline/operation/operation_table.h"
 
 namespace sg {
@@ -31,7 +32,9 @@ Data run_operation(const Operation& operation, const std::vector<Data>& inputs, 
   if (n < operation.min_inputs || (operation.max_inputs >= 0 && n > operation.max_inputs))
     fail_usage(fmt::format("takes {} input{}, not {}", operation.min_inputs, operation.min_inputs == 1 ? "" : "s", n),
                std::string(operation.name));
-  return operation.run(inputs, make_params(operation, words), context);
+  const ParamSet params = make_params(operation, words);
+  check_fields(operation.name, params.schema, inputs);
+  return operation.run(inputs, params, context);
 }
 
 Request upstream_request(const Operation& operation, const ParamSet& params, const Request& wanted) {

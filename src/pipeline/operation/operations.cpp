@@ -112,8 +112,8 @@ Request request_of_slice(const ParamSet& params, const Request& wanted) {
   Request r = detail::request_carried(params, wanted);
   const auto& p = params.as<SliceParams>();
   if (!p.function.empty()) return Request{};
-  if (!p.positions.empty() || (p.planes != "none" && !p.planes.empty())) return r;
-  int axis = p.axis == "x" ? 0 : p.axis == "y" ? 1 : p.axis == "z" ? 2 : -1;
+  if (!p.positions.empty() || p.planes != CutPlanes::none) return r;
+  int axis = axis_number(p.axis);
   std::optional<double> at = p.position;
   if (axis < 0 && p.origin)
     for (int a = 0; a < 3; ++a)

@@ -26,7 +26,7 @@ DatasetPtr sample() {
   return make_dataset(g, std::move(f));
 }
 
-double value(const std::string& expr, size_t i = 1, int c = 0, const std::string& on = "auto") {
+double value(const std::string& expr, size_t i = 1, int c = 0, std::optional<CalcPlace> on = {}) {
   Context ctx;
   return calc(sample(), {expr, "r", on}, ctx)->fields().require("r").array.get(i, c);
 }
@@ -35,7 +35,7 @@ std::string error(const std::string& expr) {
 }
 const Field result(const std::string& expr) {
   Context ctx;
-  return calc(sample(), {expr, "r", "auto"}, ctx)->fields().require("r");
+  return calc(sample(), {expr, "r", {}}, ctx)->fields().require("r");
 }
 
 }  // namespace
@@ -78,7 +78,7 @@ TEST_CASE("calc: coordinates of points and of cell centres") {
   CHECK(value("x", 3) == 6);
   CHECK(value("position", 2, 0) == 4);
   CHECK(value("rho * x", 1) == 20 * 3);  // the middle of the second cell
-  CHECK(value("x", 0, 0, "cell") == 1);
+  CHECK(value("x", 0, 0, CalcPlace::cell) == 1);
 }
 
 TEST_CASE("calc: f32 in gives f32 out, f64 stays, integers of 32 bits become f64") {
@@ -103,7 +103,7 @@ TEST_CASE("calc: units go through products, powers and roots; unequal sums lose 
   Context ctx;
   std::string said;
   ctx.on_log = [&](LogLevel, std::string_view t) { said = t; };
-  CHECK(calc(sample(), {"T + velocity.x", "r", "auto"}, ctx)->fields().require("r").unit == "");
+  CHECK(calc(sample(), {"T + velocity.x", "r", {}}, ctx)->fields().require("r").unit == "");
   CHECK(said.find("'K' and 'm/s'") != std::string::npos);
 }
 
@@ -147,7 +147,7 @@ TEST_CASE("calc: NaN goes through, and any number of threads gives the same byte
   std::vector<DatasetPtr> r;
   for (const int threads : {1, 8}) {
     set_thread_count(threads);
-    r.push_back(calc(d, {"sin(v)*x + v^3", "r", "auto"}, ctx));
+    r.push_back(calc(d, {"sin(v)*x + v^3", "r", {}}, ctx));
   }
   set_thread_count(0);
   const Array &a = r[0]->fields().require("r").array, &b = r[1]->fields().require("r").array;

@@ -7,6 +7,7 @@
 #include "filter/field/sampling/gaussian_smooth.h"
 #include "filter/field/sampling/reconstruction.h"
 #include "filter/field/sampling/resize.h"
+#include "support/params.h"
 #include "support/test.h"
 
 using namespace sg;
@@ -36,8 +37,8 @@ TEST_CASE("resize: what rises evenly stays so, up and down, for points and cells
   Context context;
   for (Association association : {Association::point, Association::cell})
     for (std::array<int64_t, 3> to : {std::array<int64_t, 3>{17, 9, 7}, {5, 4, 3}, {9, 13, 4}})
-      for (const char* kernel : {"linear", "catmull_rom", "mitchell", "bspline", "bspline_smooth"}) {
-        INFO(std::string(kernel), " ", to[0]);
+      for (const Kernel kernel : {Kernel::linear, Kernel::catmull_rom, Kernel::mitchell, Kernel::bspline, Kernel::bspline_smooth}) {
+        INFO(word_of(kernel), " ", to[0]);
         const DatasetPtr out = resize(grid_of({9, 7, 5}, plane, ElementType::f64, association), {{to[0], to[1], to[2]}, kernel}, context);
         const auto& g = *out->as<UniformGrid>();
         CHECK(g.dims == std::array<size_t, 3>{size_t(to[0]), size_t(to[1]), size_t(to[2])});
@@ -62,14 +63,14 @@ TEST_CASE("resize: the same dims give the same values back when the kernel inter
   uint64_t seed = 0;
   const DatasetPtr bytes = grid_of(
       {6, 5, 4}, [&](Vec3) { return std::floor(256 * random_unit(9, seed++)); }, ElementType::u8);
-  for (const char* kernel : {"nearest", "linear", "catmull_rom", "bspline", "sinc"}) {
+  for (const Kernel kernel : {Kernel::nearest, Kernel::linear, Kernel::catmull_rom, Kernel::bspline, Kernel::sinc}) {
     const Array out = f_of(resize(bytes, {{6, 5, 4}, kernel}, context));
     REQUIRE(out.type() == ElementType::u8);
     for (size_t i = 0; i < out.count(); ++i) CHECK(out.get(i) == f_of(bytes).get(i));
   }
   const DatasetPtr labels = grid_of(
       {6, 5, 4}, [](Vec3 p) { return p.x < 1 ? 3 : 9; }, ElementType::i32, Association::point, Role::labels);
-  const Array l = f_of(resize(labels, {{23}, "bspline"}, context));
+  const Array l = f_of(resize(labels, {{23}, Kernel::bspline}, context));
   CHECK(l.type() == ElementType::i32);
   for (size_t i = 0; i < l.count(); ++i) CHECK((l.get(i) == 3 || l.get(i) == 9));
 }
@@ -79,7 +80,7 @@ TEST_CASE("resize: fewer samples take the mean of many instead of missing some")
   // Every second sample is 1: half of them on average, whatever the phase.
   int n = 0;
   const DatasetPtr stripes = grid_of({65, 1, 1}, [&](Vec3) { return double(n++ % 2); });
-  const Array out = f_of(resize(stripes, {{9, 1, 1}, "mitchell"}, context));
+  const Array out = f_of(resize(stripes, {{9, 1, 1}, Kernel::mitchell}, context));
   for (size_t i = 1; i + 1 < out.count(); ++i) CHECK(out.get(i) == doctest::Approx(0.5).epsilon(0.02));
 }
 
@@ -91,7 +92,7 @@ TEST_CASE("resize: a hole stays a hole of its size, and its neighbours go on eve
         return p == Vec3{2, 4, 8} ? NAN : plane(p);
       },
       ElementType::f32);
-  const DatasetPtr out = resize(holed, {{17, 17, 17}, "catmull_rom"}, context);
+  const DatasetPtr out = resize(holed, {{17, 17, 17}, Kernel::catmull_rom}, context);
   size_t missing = 0, wrong = 0, n = 0;
   for (size_t k = 0; k < 17; ++k)
     for (size_t j = 0; j < 17; ++j)
@@ -107,14 +108,14 @@ TEST_CASE("resize: a hole stays a hole of its size, and its neighbours go on eve
 TEST_CASE("resize: bad requests say what would be right") {
   Context context;
   const DatasetPtr flat = grid_of({5, 5, 1}, plane);
-  CHECK_THROWS_WITH_AS(resize(flat, {{5, 5}, "linear"}, context), doctest::Contains("one or three"), Error);
-  CHECK_THROWS_WITH_AS(resize(flat, {{5, 5, 4}, "linear"}, context), doctest::Contains("axis z"), Error);
-  CHECK_THROWS_WITH_AS(resize(flat, {{5, 1, 1}, "linear"}, context), doctest::Contains("axis y"), Error);
-  CHECK_THROWS_WITH_AS(resize(flat, {{5, 5, 1}, "linaer"}, context), doctest::Contains("linear"), Error);
-  CHECK_THROWS_AS(resize(flat, {{1 << 20, 1 << 20, 1}, "linear"}, context), Error);
+  CHECK_THROWS_WITH_AS(resize(flat, {{5, 5}, Kernel::linear}, context), doctest::Contains("one or three"), Error);
+  CHECK_THROWS_WITH_AS(resize(flat, {{5, 5, 4}, Kernel::linear}, context), doctest::Contains("axis z"), Error);
+  CHECK_THROWS_WITH_AS(resize(flat, {{5, 1, 1}, Kernel::linear}, context), doctest::Contains("axis y"), Error);
+  CHECK_THROWS_WITH_AS(test::params_of<ResizeParams>({"kernel=linaer"}), doctest::Contains("linear"), Error);
+  CHECK_THROWS_AS(resize(flat, {{1 << 20, 1 << 20, 1}, Kernel::linear}, context), Error);
   PointCloud cloud;
   cloud.points.xyz = Array::from_vector(std::vector<float>(3), 3);
-  CHECK_THROWS_WITH_AS(resize(make_dataset(cloud, FieldSet{}), {{5}, "linear"}, context), doctest::Contains("resample"), Error);
+  CHECK_THROWS_WITH_AS(resize(make_dataset(cloud, FieldSet{}), {{5}, Kernel::linear}, context), doctest::Contains("resample"), Error);
 }
 
 TEST_CASE("gaussian_smooth: a wave loses exp(-(k sigma)^2/2) of its height, along each axis in world lengths") {
@@ -150,9 +151,9 @@ TEST_CASE("gaussian_smooth and resize: the same bytes with any number of threads
   const DatasetPtr in = grid_of(
       {70, 60, 50}, [](Vec3 p) { return std::sin(3 * p.x) + p.y * p.z; }, ElementType::f32);
   set_thread_count(1);
-  const Array a = f_of(gaussian_smooth(in, {{}, {1.5}, ""}, context)), b = f_of(resize(in, {{90, 30, 77}, "bspline"}, context));
+  const Array a = f_of(gaussian_smooth(in, {{}, {1.5}, ""}, context)), b = f_of(resize(in, {{90, 30, 77}, Kernel::bspline}, context));
   set_thread_count(8);
-  const Array c = f_of(gaussian_smooth(in, {{}, {1.5}, ""}, context)), d = f_of(resize(in, {{90, 30, 77}, "bspline"}, context));
+  const Array c = f_of(gaussian_smooth(in, {{}, {1.5}, ""}, context)), d = f_of(resize(in, {{90, 30, 77}, Kernel::bspline}, context));
   set_thread_count(0);
   CHECK(std::equal(a.raw(), a.raw() + a.bytes(), c.raw()));
   CHECK(std::equal(b.raw(), b.raw() + b.bytes(), d.raw()));

@@ -59,7 +59,7 @@ TEST_CASE("derivative meshes: those of a linear flow are exact in every kind of 
       CAPTURE(cells);
       Context context;
       const Association on = cells ? Association::cell : Association::point;
-      const DatasetPtr m = vortex_measures(d, {{"u"}, {"vorticity", "divergence"}}, context);
+      const DatasetPtr m = vortex_measures(d, {{"u"}, {VortexMeasure::vorticity, VortexMeasure::divergence}}, context);
       const DatasetPtr own = curl(divergence(d, {{"u"}, "d"}, context), {{"u"}, "c"}, context);
       const FieldSet &a = m->fields(), &b = own->fields();
       const Field &div = a.require("divergence", on), &rot = a.require("vorticity", on), &d_own = b.require("d", on),

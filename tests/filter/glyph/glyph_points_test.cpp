@@ -64,7 +64,7 @@ DatasetPtr two_lines() {
 
 TEST_CASE("glyph_points: even places fill a box with about the asked number, values interpolated") {
   for (const auto& dims : {std::array<size_t, 3>{12, 12, 12}, {40, 30, 1}}) {
-    const DatasetPtr p = run(box_grid(dims[0], dims[1], dims[2]), {.mode = "even", .count = 900});
+    const DatasetPtr p = run(box_grid(dims[0], dims[1], dims[2]), {.mode = GlyphPlaces::even, .count = 900});
     CHECK(p->point_count() > 700);
     CHECK(p->point_count() < 1150);
     const Array& x = p->fields().require("x", Association::point).array;
@@ -73,18 +73,18 @@ TEST_CASE("glyph_points: even places fill a box with about the asked number, val
     CHECK(p->fields().find("cell", Association::point) != nullptr);
   }
   // Scattered points: one a box, so places are some of the points.
-  const DatasetPtr s = run(scattered(5000), {.mode = "even", .count = 300});
+  const DatasetPtr s = run(scattered(5000), {.mode = GlyphPlaces::even, .count = 300});
   CHECK(s->point_count() > 280);
   CHECK(s->point_count() < 320);
 }
 
 TEST_CASE("glyph_points: all, every and cells give the points and middles that they say") {
   const DatasetPtr g = box_grid(5, 4, 3);
-  CHECK(run(g, {.mode = "all"})->point_count() == 60);
-  const DatasetPtr every = run(g, {.mode = "every", .every = 7});
+  CHECK(run(g, {.mode = GlyphPlaces::all})->point_count() == 60);
+  const DatasetPtr every = run(g, {.mode = GlyphPlaces::every, .every = 7});
   CHECK(every->point_count() == 9);
   CHECK(every->fields().require("x").array.get(1) == doctest::Approx(0.5));  // point 7 is the third of its row
-  const DatasetPtr cells = run(g, {.mode = "cells"});
+  const DatasetPtr cells = run(g, {.mode = GlyphPlaces::cells});
   CHECK(cells->point_count() == 24);
   CHECK(place(cells, 0).x == doctest::Approx(0.125));
   CHECK(cells->fields().require("cell", Association::point).array.get(23) == 23);
@@ -93,7 +93,7 @@ TEST_CASE("glyph_points: all, every and cells give the points and middles that t
   std::vector<uint8_t> ghost(60);
   ghost[0] = ghost[59] = ghost_hidden_point;
   hidden.point_ghost = Array::from_vector(ghost);
-  CHECK(run(make_dataset(hidden), {.mode = "all"})->point_count() == 58);
+  CHECK(run(make_dataset(hidden), {.mode = GlyphPlaces::all})->point_count() == 58);
 }
 
 TEST_CASE("glyph_points: random places are uniform by area and the same for a seed and any number of threads") {
@@ -103,29 +103,29 @@ TEST_CASE("glyph_points: random places are uniform by area and the same for a se
   m.polygons = {Array::from_vector(std::vector<int32_t>{0, 1, 2, 3, 4, 5}), {}, 3};
   const DatasetPtr d = make_dataset(Mesh(std::move(m)));
   set_thread_count(1);
-  const DatasetPtr one = run(d, {.mode = "random", .count = 8000});
+  const DatasetPtr one = run(d, {.mode = GlyphPlaces::random, .count = 8000});
   set_thread_count(8);
-  const DatasetPtr eight = run(d, {.mode = "random", .count = 8000});
+  const DatasetPtr eight = run(d, {.mode = GlyphPlaces::random, .count = 8000});
   set_thread_count(0);
   size_t first = 0;
   for (size_t i = 0; i < 8000; ++i) first += place(one, i).x < 4;
   CHECK(std::abs(double(first) - 2000) < 4 * std::sqrt(8000 * 0.25 * 0.75));
   const Array &a = one->as<PointCloud>()->points.xyz, &b = eight->as<PointCloud>()->points.xyz;
   CHECK(std::memcmp(a.raw(), b.raw(), a.bytes()) == 0);
-  const DatasetPtr other = run(d, {.mode = "random", .count = 8000, .seed = 2});
+  const DatasetPtr other = run(d, {.mode = GlyphPlaces::random, .count = 8000, .seed = 2});
   CHECK(std::memcmp(a.raw(), other->as<PointCloud>()->points.xyz.raw(), a.bytes()) != 0);
-  const DatasetPtr solid = run(box_grid(6, 6, 6), {.mode = "random", .count = 500});
+  const DatasetPtr solid = run(box_grid(6, 6, 6), {.mode = GlyphPlaces::random, .count = 500});
   CHECK(solid->point_count() == 500);
   size_t left = 0;
   for (size_t i = 0; i < 500; ++i) left += place(solid, i).x < 0.5;
   CHECK(std::abs(double(left) - 250) < 4 * std::sqrt(125.0));
-  CHECK(run(scattered(100), {.mode = "random", .count = 30})->point_count() == 30);
+  CHECK(run(scattered(100), {.mode = GlyphPlaces::random, .count = 30})->point_count() == 30);
 }
 
 TEST_CASE("glyph_points: places apart never overlap, in space or as seen, and leave no room for another") {
   const DatasetPtr all = scattered(3000);
   for (const bool seen : {false, true}) {
-    GlyphPointsParams p{.mode = "apart", .diameter = {"size"}};
+    GlyphPointsParams p{.mode = GlyphPlaces::apart, .diameter = {"size"}};
     if (seen) p.view = Vec3{0, 0, -2};
     const DatasetPtr kept = run(all, p);
     const Array& size = kept->fields().require("size").array;
@@ -148,16 +148,16 @@ TEST_CASE("glyph_points: places apart never overlap, in space or as seen, and le
 }
 
 TEST_CASE("glyph_points: along lines at even spacing, with tangents, and not beside a place on another line") {
-  const DatasetPtr p = run(two_lines(), {.mode = "lines", .spacing = 2, .separation = 0});
+  const DatasetPtr p = run(two_lines(), {.mode = GlyphPlaces::lines, .spacing = 2, .separation = 0});
   REQUIRE(p->point_count() == 6 + 2);
   for (size_t i = 0; i < 6; ++i) CHECK(place(p, i).x == doctest::Approx(2.0 * double(i)));
   CHECK(place(p, 6).x == doctest::Approx(0.5));
   CHECK(p->fields().require("time").array.get(1) == doctest::Approx(2));
   CHECK(p->fields().require("line", Association::point).array.get(7) == 8);
   CHECK(p->fields().require("tangent").array.get(3, 0) == 1);
-  CHECK(run(two_lines(), {.mode = "lines", .spacing = 2})->point_count() == 6);  // the other line is too near
-  CHECK(error_of([] { run(box_grid(3, 3, 1), {.mode = "lines"}); }).find("has no lines") != std::string::npos);
-  CHECK(error_of([] { run(two_lines(), {.mode = "lines", .spacing = 1e-200}); }).find("a larger spacing") != std::string::npos);
+  CHECK(run(two_lines(), {.mode = GlyphPlaces::lines, .spacing = 2})->point_count() == 6);  // the other line is too near
+  CHECK(error_of([] { run(box_grid(3, 3, 1), {.mode = GlyphPlaces::lines}); }).find("has no lines") != std::string::npos);
+  CHECK(error_of([] { run(two_lines(), {.mode = GlyphPlaces::lines, .spacing = 1e-200}); }).find("a larger spacing") != std::string::npos);
 }
 
 TEST_CASE("trails: the stretch before a time, cut exactly, with ages and heads") {

@@ -75,7 +75,7 @@ TEST_CASE("glyph shapes: solids are closed, look outward and have the volume of 
   }
   Context context;
   GlyphShapeParams p;
-  p.anchor = "tip";
+  p.anchor = GlyphAnchor::tip;
   CHECK(glyph_shape_mesh(p, context)->bounds().hi.x == doctest::Approx(0));
   p.shape = "arow";
   CHECK(error_of([&] { glyph_shape_mesh(p, context); }).find("did you mean 'arrow'") != std::string::npos);
@@ -118,7 +118,7 @@ TEST_CASE("glyphs: geometry has a copy at each point with a vector, fields of th
   }
   const DatasetPtr d = cloud(xyz, v);
   GlyphsParams p;
-  p.place = "all", p.shape.shape = "cube";
+  p.place = GlyphPlaces::all, p.shape.shape = "cube";
   Context context;
   set_thread_count(1);
   const DatasetPtr one = glyphs(d, p, context);
@@ -180,8 +180,8 @@ TEST_CASE("barbs: units become knots, the hemisphere follows latitude, no wind i
   const DatasetPtr earth = cloud({0, 45, 0, 30, -45, 0, 60, 0, 0, 90, 10, 0}, {15, -20, 15, -20, 0, 0, NAN, 1}, 2, "m/s");
   CHECK(numbers(earth) == std::vector{10, 110, 0, -1});
   CHECK(numbers(earth, {.unit = "kn"}) == std::vector{5, 105, 0, -1});
-  CHECK(numbers(earth, {.hemisphere = "north"}) == std::vector{10, 10, 0, -1});
-  CHECK(numbers(earth, {.hemisphere = "south"}) == std::vector{110, 110, 0, -1});
+  CHECK(numbers(earth, {.hemisphere = BarbHemisphere::north}) == std::vector{10, 10, 0, -1});
+  CHECK(numbers(earth, {.hemisphere = BarbHemisphere::south}) == std::vector{110, 110, 0, -1});
   CHECK(numbers(cloud({0, 1, 0, 1, -1, 0}, {15, -20, 15, -20}, 2, "kn")) == std::vector{5, 5});  // no degrees
   const DatasetPtr placed = barb_places(earth, "v", {}, context);
   GlyphRule rule;

@@ -39,16 +39,16 @@ DatasetPtr grid(Vec3 origin) {
 TEST_CASE("extract: cells by their numbers, by a field of ids, by their points, and the others") {
   const DatasetPtr d = grid({0, 0, 0});
   Context ctx;
-  const DatasetPtr some = extract(d, {{5, 500}, "cell", {}, false}, ctx);
+  const DatasetPtr some = extract(d, {{5, 500}, IdsOf::cell, {}, false}, ctx);
   CHECK(some->cell_count() == 2);
   CHECK(some->fields().require("block").array.get(1) == 500 / 64);
-  CHECK(extract(d, {{5, 500}, "cell", {}, true}, ctx)->cell_count() == 510);
-  CHECK(extract(d, {{2, 3}, "cell", {"block"}, false}, ctx)->cell_count() == 128);
-  CHECK(extract(d, {{0}, "point", {}, false}, ctx)->cell_count() == 1);
-  CHECK(extract(d, {{364}, "point", {}, false}, ctx)->cell_count() == 8);  // the middle
-  CHECK(test::error_of([&] { extract(d, {{512}, "cell", {}, false}, ctx); }).find("0 to 511") != std::string::npos);
-  CHECK(test::error_of([&] { extract(d, {{}, "cell", {}, false}, ctx); }).find("no numbers") != std::string::npos);
-  CHECK(test::error_of([&] { extract(d, {{1}, "cell", {"r"}, false}, ctx); }).size() > 0);
+  CHECK(extract(d, {{5, 500}, IdsOf::cell, {}, true}, ctx)->cell_count() == 510);
+  CHECK(extract(d, {{2, 3}, IdsOf::cell, {"block"}, false}, ctx)->cell_count() == 128);
+  CHECK(extract(d, {{0}, IdsOf::point, {}, false}, ctx)->cell_count() == 1);
+  CHECK(extract(d, {{364}, IdsOf::point, {}, false}, ctx)->cell_count() == 8);  // the middle
+  CHECK(test::error_of([&] { extract(d, {{512}, IdsOf::cell, {}, false}, ctx); }).find("0 to 511") != std::string::npos);
+  CHECK(test::error_of([&] { extract(d, {{}, IdsOf::cell, {}, false}, ctx); }).find("no numbers") != std::string::npos);
+  CHECK(test::error_of([&] { extract(d, {{1}, IdsOf::cell, {"r"}, false}, ctx); }).size() > 0);
 }
 
 TEST_CASE("extract: by region, type, level and block") {
@@ -63,7 +63,7 @@ TEST_CASE("extract: by region, type, level and block") {
   p.all_points = true, p.invert = true;
   CHECK(extract(d, p, ctx)->cell_count() == 256);
   p = {};
-  p.region.axis = "x";
+  p.region.axis = CutAxis::x;
   CHECK(extract(d, p, ctx)->cell_count() == 256);
   p.ids = {0, 7};
   CHECK(extract(d, p, ctx)->cell_count() == 1);

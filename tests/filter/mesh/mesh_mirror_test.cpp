@@ -274,7 +274,7 @@ TEST_CASE("transform: tensors, gradients and axial vectors follow their laws, co
   CHECK(list(out, "ints") == List{-2, 2, 3});
   CHECK(list(out, "seven") == List{1, 1, 2, 3, 5, 6, 9});
   CHECK(list(transform(in, {.scale = {-1, 1, 1}}, ctx), "vorticity") == List{1, -2, -3});
-  p.fields.keep = {"stress", "plain"}, p.fields.turn = {"seven"}, p.fields.order = "upper";
+  p.fields.keep = {"stress", "plain"}, p.fields.turn = {"seven"}, p.fields.order = TensorOrder::upper;
   const DatasetPtr other = transform(in, p, ctx);
   CHECK(list(other, "stress") == List{1, 2, 3, 2, 5, 6, 3, 6, 9});
   CHECK(list(other, "plain") == List{1, 2, 3});
@@ -407,7 +407,7 @@ TEST_CASE("property: normals of a surface made before or after a transform are t
       CAPTURE(seed);
       Random random(seed + 4000);
       const Moved map = random_map(random, true);
-      const NormalsParams p{.feature_angle = 180, .orient = "keep"};
+      const NormalsParams p{.feature_angle = 180, .orient = Facing::keep};
       const DatasetPtr a = transform(normals(in, p, ctx), map.params, ctx), b = normals(transform(in, map.params, ctx), p, ctx);
       CHECK(distance(values(b, "Normals"), values(a, "Normals")) < 1e-5);
     }

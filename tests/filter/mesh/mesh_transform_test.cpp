@@ -153,7 +153,7 @@ TEST_CASE("mesh operations: parameters are set from text and have help") {
   SliceParams slice_params;
   Schema s = schema_of(slice_params);
   set_params(s, {"axis=y", "position=0.25", "origin=1,2,3"}, "slice");
-  CHECK(slice_params.axis == "y");
+  CHECK(slice_params.axis == CutAxis::y);
   CHECK(slice_params.position == 0.25);
   CHECK(slice_params.origin->z == 3);
   CHECK(error_of([&] { set_params(s, {"axis=q"}, "slice"); }).find("slice") != std::string::npos);

@@ -232,8 +232,9 @@ TEST_CASE("probe and resample: wrong parameters are refused with what would be r
   CHECK(grid({.bounds = {0, 1, 2, 1, 0, 1}}).find("bounds of y") != std::string::npos);
   CHECK(grid({.dims = {4, 4, 4}, .bounds = {0, 1, 0, 1, 0, 0}}).find("no extent") != std::string::npos);
   CHECK(grid({.dims = {100000, 100000, 1000}}).find("10^12") != std::string::npos);
-  CHECK(grid({.dims = {4, 4, 1}, .mode = "conservative"}).find("2 points or more") != std::string::npos);
-  CHECK(error_of([&] { resample(ball(6, false), {.mode = "conservative"}, context); }).find("mode=linear") != std::string::npos);
+  CHECK(grid({.dims = {4, 4, 1}, .mode = ResampleMode::conservative}).find("2 points or more") != std::string::npos);
+  CHECK(error_of([&] { resample(ball(6, false), {.mode = ResampleMode::conservative}, context); }).find("mode=linear") !=
+        std::string::npos);
   CHECK(error_of([&] { resample(cloud(0), {}, context); }).find("no finite extent") != std::string::npos);
 }
 
@@ -295,7 +296,7 @@ TEST_CASE("resample, conservative: the sum over the grid is the integral over th
       }
     }
     Context context;
-    ResampleParams params{.dims = {9, 7, 8}, .mode = "conservative"};
+    ResampleParams params{.dims = {9, 7, 8}, .mode = ResampleMode::conservative};
     Box3 b = source->bounds();
     b.lo += Vec3(-0.1, -0.1, -0.1), b.hi += Vec3(0.1, 0.1, 0.1);  // curved cells bulge
     params.bounds = {b.lo.x, b.hi.x, b.lo.y, b.hi.y, b.lo.z, b.hi.z};
@@ -312,7 +313,7 @@ TEST_CASE("resample, conservative: inside the mesh, a linear field has the value
   for (const char* what : {"tetra", "hexahedron", "polyhedron"}) {
     const DatasetPtr source = with_fields(block_cells(what, 4, what == std::string("tetra") ? 0.25 : 0.0).dataset());
     Context context;
-    const DatasetPtr r = resample(source, {.dims = {8, 9, 10}, .mode = "conservative"}, context);
+    const DatasetPtr r = resample(source, {.dims = {8, 9, 10}, .mode = ResampleMode::conservative}, context);
     const auto& g = *r->as<UniformGrid>();
     double error = 0, gap = 0;
     for (size_t i = 0; i < r->cell_count(); ++i) {
@@ -328,13 +329,13 @@ TEST_CASE("resample, conservative: inside the mesh, a linear field has the value
 TEST_CASE("resample, conservative: parts in a box are what lies in the box, and NaN spreads") {
   DatasetParts parts = with_fields(uniform({11, 11, 11}, false))->parts();
   Context context;
-  const DatasetPtr r =
-      resample(make_dataset(parts), {.dims = {2, 2, 2}, .bounds = {0, 0.5, 0, 0.25, 0, 0.125}, .mode = "conservative"}, context);
+  const DatasetPtr r = resample(make_dataset(parts),
+                                {.dims = {2, 2, 2}, .bounds = {0, 0.5, 0, 0.25, 0, 0.125}, .mode = ResampleMode::conservative}, context);
   CHECK(r->fields().require("f").array.get(0) == doctest::Approx(linear({0.25, 0.125, 0.0625})).epsilon(1e-13));
   std::vector<double> f(1331, 1);
   f[0] = NAN;
   parts.fields.add({"f", Association::point, Array::from_vector(f), "", Role::none});
-  const DatasetPtr n = resample(make_dataset(parts), {.dims = {3, 3, 3}, .mode = "conservative"}, context);
+  const DatasetPtr n = resample(make_dataset(parts), {.dims = {3, 3, 3}, .mode = ResampleMode::conservative}, context);
   CHECK(std::isnan(n->fields().require("f").array.get(0)));
   CHECK(n->fields().require("f").array.get(7) == doctest::Approx(1));
 }
@@ -348,7 +349,7 @@ TEST_CASE("probe and resample: the same bytes with 1 and 8 threads") {
     for (int t = 0; t < 2; ++t) {
       set_thread_count(t ? 8 : 1);
       results[t] = {probe(points, source, {}, context), resample(source, {.size = 40}, context),
-                    resample(source, {.size = 12, .mode = "conservative"}, context)};
+                    resample(source, {.size = 12, .mode = ResampleMode::conservative}, context)};
     }
     set_thread_count(0);
     for (size_t i = 0; i < 3; ++i) CHECK(same_fields(*results[0][i], *results[1][i]));

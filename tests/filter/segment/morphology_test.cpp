@@ -14,7 +14,7 @@ using test::image_of;
 
 namespace {
 
-DatasetPtr morph(const DatasetPtr& d, const char* operation, double radius) {
+DatasetPtr morph(const DatasetPtr& d, Morphology operation, double radius) {
   MorphologyParams p;
   p.operation = operation, p.radius = radius;
   Context context;
@@ -82,28 +82,29 @@ TEST_CASE("morphology: a sample grows to the ball of the radius in units of leng
   const Vec3 h{1, 0.5, 2};
   const auto d = image_of<int16_t>(
       {21, 41, 11}, [&](Vec3 p) { return p == h * Vec3(10, 20, 5) ? 7.0 : 0.0; }, h);
-  const auto r = morph(d, "dilate", 4);
+  const auto r = morph(d, Morphology::dilate, 4);
   size_t expected = 0;
   for (int z = -5; z <= 5; ++z)
     for (int y = -20; y <= 20; ++y)
       for (int x = -10; x <= 10; ++x) expected += length(h * Vec3(x, y, z)) <= 4;
   CHECK(count(r, "v", 7) == expected);
   CHECK(array_of(r, "v").type() == ElementType::i16);
-  CHECK(count(morph(r, "erode", 4), "v", 7) == 1);
+  CHECK(count(morph(r, Morphology::erode, 4), "v", 7) == 1);
 }
 
 TEST_CASE("morphology: opening removes threads and keeps balls, closing closes gaps, both are idempotent and ordered") {
   const auto shape = [](Vec3 p) { return length(p - Vec3(12, 12, 12)) <= 8 || (p.y == 12 && p.z == 12) ? 1.0 : 0.0; };
   const auto d = image_of<uint8_t>({40, 25, 25}, shape);
-  const auto open = morph(d, "open", 2);
+  const auto open = morph(d, Morphology::open, 2);
   CHECK(array_of(open, "v").get(35 + 40 * (12 + 25 * 12)) == 0);
   CHECK(array_of(open, "v").get(12 + 40 * (12 + 25 * 12)) == 1);
   const auto slit = image_of<uint8_t>({25, 25, 9}, [](Vec3 p) { return p.x == 12 ? 0.0 : p.x < 12 ? 2.0 : 3.0; });
-  CHECK(count(morph(slit, "close", 1.5), "v", 0) == 0);
-  CHECK(count(morph(slit, "open", 3), "v", 2) == 12 * 25 * 9);  // the border of the image does not erode
+  CHECK(count(morph(slit, Morphology::close, 1.5), "v", 0) == 0);
+  CHECK(count(morph(slit, Morphology::open, 3), "v", 2) == 12 * 25 * 9);  // the border of the image does not erode
 
   const auto noise = image_of<uint8_t>({24, 24, 24}, [](Vec3 p) { return hash(p, 9) < 0.6 ? 1.0 : 0.0; });
-  const auto opened = morph(noise, "open", 1), closed = morph(noise, "close", 1), again = morph(opened, "open", 1);
+  const auto opened = morph(noise, Morphology::open, 1), closed = morph(noise, Morphology::close, 1),
+             again = morph(opened, Morphology::open, 1);
   size_t outside = 0, changed = 0;
   for (size_t i = 0; i < noise->point_count(); ++i) {
     outside += array_of(opened, "v").get(i) > array_of(noise, "v").get(i) || array_of(noise, "v").get(i) > array_of(closed, "v").get(i);
@@ -120,7 +121,7 @@ TEST_CASE("morphology: holes are filled with the label around them, unless they 
   };
   const auto d = image_of<float>({21, 21, 21}, shell);
   MorphologyParams p;
-  p.operation = "fill";
+  p.operation = Morphology::fill;
   Context context;
   const auto filled = morphology(d, p, context);
   CHECK(array_of(filled, "v").get(10 + 21 * (10 + 21 * 10)) == 4);
@@ -134,12 +135,12 @@ TEST_CASE("morphology: holes are filled with the label around them, unless they 
 
 TEST_CASE("morphology: samples without a value stay, and intensities are no labels") {
   const auto d = image_of<float>({5, 5, 1}, [](Vec3 p) { return p.x == 2 ? double(NAN) : p.x < 2 ? 1.0 : 0.0; });
-  const auto r = morph(d, "dilate", 10);
+  const auto r = morph(d, Morphology::dilate, 10);
   CHECK(std::isnan(array_of(r, "v").get(2)));
   CHECK(array_of(r, "v").get(4) == 1);
-  CHECK(count(morph(d, "erode", 1), "v", 1) == 10);
+  CHECK(count(morph(d, Morphology::erode, 1), "v", 1) == 10);
   const auto grey = image_of<float>({5, 5, 1}, [](Vec3 p) { return p.x * 0.3; });
-  CHECK(test::error_of([&] { morph(grey, "open", 1); }).find("no label field") != std::string::npos);
+  CHECK(test::error_of([&] { morph(grey, Morphology::open, 1); }).find("no label field") != std::string::npos);
 }
 
 TEST_CASE("label components: faces, edges and corners, in space and in the plane") {

@@ -72,7 +72,7 @@ TEST_CASE("normals: neighbours are made to agree, closed pieces to face outward"
   for (size_t t = 0; t < inside_out.ids.size() / 3; ++t) std::swap(inside_out.ids[3 * t], inside_out.ids[3 * t + 1]);
   const DatasetPtr kept = normals(inside_out.dataset(), {.feature_angle = 180}, ctx);
   CHECK(dot(normal_of(*kept, 0), kept->as<SurfaceMesh>()->points.at(0)) < -0.9);
-  const DatasetPtr out = normals(inside_out.dataset(), {.feature_angle = 180, .orient = "outward"}, ctx);
+  const DatasetPtr out = normals(inside_out.dataset(), {.feature_angle = 180, .orient = Facing::outward}, ctx);
   CHECK(dot(normal_of(*out, 0), out->as<SurfaceMesh>()->points.at(0)) > 0.9);
   CHECK(test::meshes::measure(*out->as<SurfaceMesh>()).volume > 3);
   const DatasetPtr flipped = normals(sphere(2).dataset(), {.feature_angle = 180, .flip = true}, ctx);
@@ -81,7 +81,7 @@ TEST_CASE("normals: neighbours are made to agree, closed pieces to face outward"
   Builder far = sphere(1, 1, {5, 0, 0});
   for (size_t t = 0; t < far.ids.size() / 3; ++t) std::swap(far.ids[3 * t], far.ids[3 * t + 1]);
   const DatasetPtr two = append({Data(sphere(1).dataset()), Data(far.dataset())}, {}, ctx);
-  const DatasetPtr turned = normals(two, {.feature_angle = 180, .orient = "outward"}, ctx);
+  const DatasetPtr turned = normals(two, {.feature_angle = 180, .orient = Facing::outward}, ctx);
   CHECK(test::meshes::measure(*turned->as<SurfaceMesh>()).volume ==
         doctest::Approx(2 * test::meshes::measure(sphere(1).mesh()).volume).epsilon(1e-9));
 }

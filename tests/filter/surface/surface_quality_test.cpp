@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "filter/mesh/mesh_meshes.h"
 #include "filter/surface/quality.h"
+#include "support/params.h"
 #include "support/test.h"
 #include "surface_shapes.h"
 
@@ -27,7 +28,7 @@ DatasetPtr one_cell(CellType type, const std::vector<Vec3>& at) {
 
 double value(const DatasetPtr& d, const std::string& measure, size_t cell = 0) {
   Context ctx;
-  return quality(d, {{measure}}, ctx)->fields().require(measure, Association::cell).array.get(cell);
+  return quality(d, {{*value_of_word<CellMeasure>(measure)}}, ctx)->fields().require(measure, Association::cell).array.get(cell);
 }
 
 const double h3 = std::sqrt(3.0) / 2;
@@ -118,7 +119,7 @@ TEST_CASE("quality: degenerate cells are bad, not a crash; types without a measu
   CHECK(std::isnan(value(line, "scaled_jacobian")));
   CHECK(value(line, "size") == doctest::Approx(5));
   Context ctx;
-  CHECK(test::error_of([&] { quality(flat, {{"scaled_jacobean"}}, ctx); }).find("scaled_jacobian") != std::string::npos);
+  CHECK(test::error_of([&] { test::params_of<QualityParams>({"measures=scaled_jacobean"}); }).find("scaled_jacobian") != std::string::npos);
   CHECK(test::error_of([&] { quality(flat, {{}}, ctx); }).find("nothing") != std::string::npos);
   PointCloud cloud;
   cloud.points.xyz = Array::from_vector(std::vector<double>{0, 0, 0}, 3);
@@ -132,9 +133,11 @@ TEST_CASE("quality: every mesh kind: sizes add up, and threads do not matter") {
        {uniform_box(3, 4, 5), solid_box(CellType::tetra, 2), solid_box(CellType::polyhedron, 2), solid_box(CellType::wedge, 2),
         solid_box(CellType::pyramid, 2), solid_box(CellType::quadratic_hexahedron, 1), solid_box(CellType::lagrange_tetra, 1, 3)}) {
     set_thread_count(1);
-    const DatasetPtr q = quality(d, {{"size", "edge_ratio", "scaled_jacobian", "min_angle"}}, ctx);
+    const DatasetPtr q =
+        quality(d, {{CellMeasure::size, CellMeasure::edge_ratio, CellMeasure::scaled_jacobian, CellMeasure::min_angle}}, ctx);
     set_thread_count(8);
-    const DatasetPtr again = quality(d, {{"size", "edge_ratio", "scaled_jacobian", "min_angle"}}, ctx);
+    const DatasetPtr again =
+        quality(d, {{CellMeasure::size, CellMeasure::edge_ratio, CellMeasure::scaled_jacobian, CellMeasure::min_angle}}, ctx);
     set_thread_count(0);
     double sum = 0;
     const Field& size = q->fields().require("size", Association::cell);

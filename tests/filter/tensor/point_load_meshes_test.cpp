@@ -50,7 +50,7 @@ TEST_CASE("point load meshes: on the axis s_zz = -3P/(2 pi z^2), s_xx = (1-2 nu)
     CAPTURE(kind.name);
     Context context;
     HyperstreamlinesParams p;
-    p.eigenvector = 3, p.section = "line", p.seeds = {0, 0, 2.5};
+    p.eigenvector = 3, p.section = TensorSection::line, p.seeds = {0, 0, 2.5};
     const DatasetPtr l = hyperstreamlines(loaded(kind, 8, 1, {0, 0, 2.5}), p, context);
     const auto& points = l->as<SurfaceMesh>()->points;
     REQUIRE(points.count() > 6);
@@ -124,7 +124,7 @@ TEST_CASE("point load meshes: the surface is free of traction, and cuts of every
     if (kind.name.find(' ') != std::string::npos && kind.name.find("bent") != 0) continue;  // curved cells are cut by pieces of them
     // The cut z = 2 pushes as the closed form does, and its force is the integral of it.
     SliceParams cut;
-    cut.axis = "z", cut.position = 2.0;
+    cut.axis = CutAxis::z, cut.position = 2.0;
     const DatasetPtr plane = traction(slice(loaded(kind, 8, 1, {0, 0, 2.03}), cut, context), {}, context);
     const Array &n = plane->fields().require("normal traction").array, &shear = plane->fields().require("shear stress").array;
     const auto& mesh = *plane->as<SurfaceMesh>();

@@ -135,7 +135,8 @@ TEST_CASE("tensor_fit: a grid of images; frames turn directions into the world, 
   Mat3 mirrored = g.direction, mirror;
   mirror.m[0][0] = -1;
   mirrored = g.direction * mirror;
-  for (const auto& [frame, turn] : {std::pair("world", Mat3()), std::pair("voxel", g.direction), std::pair("fsl", mirrored)}) {
+  for (const auto& [frame, turn] :
+       {std::pair(GradientFrame::world, Mat3()), std::pair(GradientFrame::voxel, g.direction), std::pair(GradientFrame::fsl, mirrored)}) {
     TensorFitParams p;
     p.frame = frame;
     const DatasetPtr out = tensor_fit(in, p, context);
@@ -173,7 +174,7 @@ TEST_CASE("tensor_fit: text files of gradients in rows or columns, images as sin
   }
   fields.add({"brain", Association::point, Array::from_vector(std::vector<uint8_t>{1, 0, 1, 1}), "", Role::labels});
   const DatasetPtr in = make_dataset(g, fields);
-  p.frame = "world", p.mask = {"brain"}, p.min_signal = 5;
+  p.frame = GradientFrame::world, p.mask = {"brain"}, p.min_signal = 5;
   p.bvals = text_file("bvals", bvals + "\n");
   for (const std::string& text : {rows[0] + "\n" + rows[1] + "\n" + rows[2] + "\n", columns}) {
     p.bvecs = text_file("bvecs", text);
@@ -213,7 +214,7 @@ TEST_CASE("tensor_fit: the same bytes for 1 and 8 threads") {
   const auto [a, b] = with_threads([&] {
     Listener l;
     TensorFitParams p;
-    p.method = "positive";
+    p.method = DiffusionFit::positive;
     const DatasetPtr r = tensor_fit(in, p, l.context);
     CHECK(l.notes.find("400 of 2000 tensors were not positive") != std::string::npos);
     CHECK(l.warnings.empty());

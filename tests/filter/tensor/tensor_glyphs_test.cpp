@@ -144,7 +144,7 @@ TEST_CASE("tensor_glyphs: strides, counts, cells, masks and what gets none") {
   CHECK(l.notes.find("one at every 5. point along each axis") != std::string::npos);
   // The longest axis is the distance.
   CHECK(few->fields().require("eigenvalue 1").array.get(0) == 3);
-  p.scale = "eigenvalues";
+  p.scale = TensorScale::eigenvalues;
   const DatasetPtr scaled = tensor_glyphs(grid, p, l.context);
   const Box3 first = [&] {
     Box3 b;
@@ -176,9 +176,9 @@ TEST_CASE("tensor_glyphs: strides, counts, cells, masks and what gets none") {
 TEST_CASE("tensor_glyphs: sizes by eigenvalue, normalized and by logarithm; colours by direction, by sign, by any field") {
   Context context;
   const DatasetPtr in = tensor_points({diagonal(100, 0, 0), diagonal(10, 0, 0), diagonal(1, 0, 0), diagonal(1, 0, 0)});
-  auto lengths = [&](const char* scale) {
+  auto lengths = [&](std::optional<TensorScale> scale) {
     TensorGlyphsParams p;
-    p.shape = "cuboid", p.scale = scale;
+    p.shape = TensorShape::cuboid, p.scale = scale;
     const DatasetPtr g = tensor_glyphs(in, p, context);
     std::vector<double> r;
     for (size_t i = 0; i < 4; ++i) {
@@ -188,13 +188,13 @@ TEST_CASE("tensor_glyphs: sizes by eigenvalue, normalized and by logarithm; colo
     }
     return r;
   };
-  const auto e = lengths("eigenvalues"), n = lengths("normalized"), l = lengths("log");
+  const auto e = lengths(TensorScale::eigenvalues), n = lengths(TensorScale::normalized), l = lengths(TensorScale::log);
   CHECK(e[0] / e[1] == doctest::Approx(10).epsilon(1e-4));
   CHECK(n[0] / n[2] == doctest::Approx(1).epsilon(1e-4));
   CHECK(l[0] > l[1]);
   CHECK(l[1] > l[2]);
   CHECK(l[0] / l[2] < 10);
-  CHECK(lengths("auto") == l);
+  CHECK(lengths({}) == l);
   TensorGlyphsParams p;
   const DatasetPtr g = tensor_glyphs(in, p, context);
   CHECK(g->fields().require("direction").role == Role::colors);
@@ -214,7 +214,7 @@ TEST_CASE("tensor_glyphs: sizes by eigenvalue, normalized and by logarithm; colo
 TEST_CASE("tensor_glyphs: the same bytes for 1 and 8 threads") {
   const DatasetPtr grid = tensor_grid({9, 9, 9}, {0, 0, 0}, {2, 2, 2},
                                       [](Vec3 p) { return rotated(diagonal(3, 2, p.x - 1), random_rotation(uint64_t(8 * p.y))); });
-  for (const char* shape : {"superquadric", "reynolds", "cylinder"}) {
+  for (const TensorShape shape : {TensorShape::superquadric, TensorShape::reynolds, TensorShape::cylinder}) {
     const auto [a, b] = with_threads([&] {
       Context c;
       TensorGlyphsParams p;
@@ -250,7 +250,7 @@ TEST_CASE("tensor_glyphs: a long and narrow box gets fewer and larger glyphs, an
   CHECK(width(0) == doctest::Approx(1 / 1.6).epsilon(1e-4));
   CHECK(width(4 + 5 * 4) == doctest::Approx(1).epsilon(1e-4));
   CHECK(l.notes.find("1.6 times") != std::string::npos);
-  p.scale = "eigenvalues";
+  p.scale = TensorScale::eigenvalues;
   const DatasetPtr asked = tensor_glyphs(mixed, p, l.context);
   Box3 b;
   for (size_t i = 0; i < nv; ++i) b.add(asked->as<SurfaceMesh>()->points.at(i));

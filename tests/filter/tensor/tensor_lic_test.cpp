@@ -289,7 +289,7 @@ TEST_CASE("tensor_lic: isotropic tensors keep the noise or are gray, and the tex
   CHECK(noise == r->point_count());
   const View<float> measure = r->fields().require("in-plane anisotropy", Association::point).array.view<float>();
   CHECK(measure[77] < 1e-12f);
-  p.isotropic = "gray";
+  p.isotropic = IsotropicLook::gray;
   r = run(same, p);
   for (size_t i = 0; i < r->point_count(); ++i) REQUIRE(lic_of(r)[i] == 0.5f);
   // Zero tensors too.
@@ -312,7 +312,7 @@ TEST_CASE("tensor_lic: isotropic tensors keep the noise or are gray, and the tex
   CHECK(r->fields().require("in-plane anisotropy", Association::point).array.view<float>()[40] == doctest::Approx(0.4));
   CHECK(column_variance(r, 0) > 0.06);  // plain noise has 1/12
   CHECK(column_variance(r, 48) < 0.01);
-  f.isotropic = "gray";
+  f.isotropic = IsotropicLook::gray;
   const DatasetPtr gray = run(growing, f);
   CHECK(column_variance(gray, 1) < 1e-4);
   for (int j = 0; j <= n; ++j) CHECK(lic_of(gray)[size_t(j * (n + 1) + 40)] == lic_of(r)[size_t(j * (n + 1) + 40)]);
@@ -347,7 +347,7 @@ TEST_CASE("tensor_lic: NaN tensors are neutral, lines end there; flat grids and 
 
 TEST_CASE("tensor_lic: 1 and 8 threads give the same bytes") {
   const DatasetPtr d = globe(12, [](Vec3 p) { return outer({std::sin(3 * p.z), p.x, p.y}) + outer({p.z, 0.3, 0}, -0.5); });
-  for (const std::string isotropic : {"noise", "gray"}) {
+  for (const IsotropicLook isotropic : {IsotropicLook::noise, IsotropicLook::gray}) {
     TensorLicParams p;
     p.density = 80, p.steps = 8, p.isotropic = isotropic, p.fade = 0.3;
     const auto [one, eight] = with_threads([&] { return run(d, p); });

@@ -108,13 +108,13 @@ TEST_CASE("hyperstreamlines: the section of a constant tensor is an ellipse with
   }
   CHECK(widest[0] == doctest::Approx(1).epsilon(1e-4));
   CHECK(widest[1] == doctest::Approx(1).epsilon(1e-4));
-  p.section = "cross";
+  p.section = TensorSection::cross;
   const DatasetPtr cross_of = hyperstreamlines(mesh, p, context);
   CHECK(cross_of->point_count() == tube->point_count() / 6);
   CHECK(std::abs(dot(point(cross_of, 1) - point(cross_of, 0), e.vector[1])) == doctest::Approx(0.04).epsilon(1e-4));
   CHECK(std::abs(dot(point(cross_of, 3) - point(cross_of, 2), e.vector[2])) == doctest::Approx(0.02).epsilon(1e-4));
   // Bounded and raised sections keep their meaning.
-  p.section = "ellipse", p.max_radius = 0.01;
+  p.section = TensorSection::ellipse, p.max_radius = 0.01;
   Listener l;
   CHECK(hyperstreamlines(mesh, p, l.context)->bounds().diagonal() < tube->bounds().diagonal());
   CHECK(l.notes.find("sections are scaled down to max_radius 0.01") != std::string::npos);
@@ -142,7 +142,7 @@ TEST_CASE("hyperstreamlines: circles close with the sign kept, radii stay; the o
       tensor_grid({2, 2, 2}, {-2, -2, -2}, {2, 2, 2}, [](Vec3 q) { return SymTensor{1 + q.y, 1 - q.y, -50, q.x, 0, 0}; });
   auto end_of = [&](double step) {
     HyperstreamlinesParams s = lines_from({1, 0.3, 0});
-    s.step = step, s.max_length = 0.8, s.direction = "forward";
+    s.step = step, s.max_length = 0.8, s.direction = LineDirection::forward;
     const DatasetPtr l = hyperstreamlines(cell, s, context);
     return point(l, l->point_count() - 1);
   };
@@ -215,14 +215,14 @@ TEST_CASE("hyperstreamlines: fields of the input go along, and the seeds of a se
   const DatasetPtr mesh = make_dataset(std::move(parts));
   const DatasetPtr seeds = tensor_points({{}, {}});  // (0,0,0) and (1,0,0)
   HyperstreamlinesParams p = lines_from({});
-  p.section = "ellipse";
+  p.section = TensorSection::ellipse;
   const DatasetPtr l = hyperstreamlines(mesh, seeds, p, context);
   double worst = 0;
   for (size_t i = 0; i < l->point_count(); ++i) worst = std::max(worst, std::abs(value(l, "x", i) - point(l, i).x));
   CHECK(worst < 0.001);  // caps stand across x
   CHECK(l->fields().require("x").unit == "m");
   CHECK(value(l, "seed", l->cell_count() - 1) == 1);
-  p.section = "line", p.eigenvector = 3;
+  p.section = TensorSection::line, p.eigenvector = 3;
   CHECK(hyperstreamlines(mesh, seeds, p, context)->cell_count() == 2);
 }
 
@@ -230,7 +230,8 @@ TEST_CASE("tensor lines: log-Euclidean interpolation keeps the determinant betwe
   Listener l;
   const DatasetPtr mesh =
       tensor_grid({2, 2, 2}, {0, 0, 0}, {1, 1, 1}, [](Vec3 p) { return p.x < 0.5 ? diagonal(4, 1, 1) : diagonal(1, 4, 1); });
-  const TensorSampler components(mesh, {}, "components", "test", l.context), logs(mesh, {}, "log", "test", l.context);
+  const TensorSampler components(mesh, {}, TensorInterpolation::components, "test", l.context),
+      logs(mesh, {}, TensorInterpolation::log, "test", l.context);
   TensorCursor a(components), b(logs);
   SymTensor d;
   REQUIRE(a.tensor({0.5, 0.5, 0.5}, d));
@@ -241,11 +242,12 @@ TEST_CASE("tensor lines: log-Euclidean interpolation keeps the determinant betwe
   CHECK(!a.tensor({2, 0, 0}, d));
   CHECK(l.warnings.empty());
   const DatasetPtr bad = tensor_grid({2, 2, 2}, {0, 0, 0}, {1, 1, 1}, [](Vec3 p) { return diagonal(1, p.x - 0.5, 1); });
-  const TensorSampler raised(bad, {}, "log", "test", l.context);
+  const TensorSampler raised(bad, {}, TensorInterpolation::log, "test", l.context);
   CHECK(l.warnings.find("4 of 8 tensors have no logarithm") != std::string::npos);
   const DatasetPtr none = tensor_grid({2, 2, 2}, {0, 0, 0}, {1, 1, 1}, [](Vec3) { return diagonal(-1, -1, -1); });
-  CHECK(error_of([&] { TensorSampler(none, {}, "log", "test", l.context); }).find("no tensor of 'tensor' has a positive eigenvalue") !=
-        std::string::npos);
+  CHECK(error_of([&] {
+          TensorSampler(none, {}, TensorInterpolation::log, "test", l.context);
+        }).find("no tensor of 'tensor' has a positive eigenvalue") != std::string::npos);
 }
 
 TEST_CASE("tractography: fibres on a ring keep their radius, end at low anisotropy and at sharp turns") {

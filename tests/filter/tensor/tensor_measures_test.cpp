@@ -15,7 +15,8 @@ double value(const DatasetPtr& d, const std::string& field, size_t i = 0, int c 
 
 TensorMeasuresParams all_measures() {
   TensorMeasuresParams p;
-  p.measures = {"FA", "MD", "RA", "mode", "cl", "cp", "cs", "trace", "determinant", "norm"};
+  p.measures.clear();
+  for (const auto& w : enum_words(TensorMeasure())) p.measures.push_back(w.value);
   return p;
 }
 
@@ -58,7 +59,7 @@ TEST_CASE("tensor_measures: line, disc and ball have the extreme values; both of
   CHECK(value(d, "cl", 0) == 1);
   CHECK(value(d, "cp", 1) == 1);
   CHECK(value(d, "cs", 2) == 1);
-  p.westin = "largest";
+  p.westin = WestinNorm::largest;
   const DatasetPtr l = tensor_measures(in, p, context);
   CHECK(value(l, "cl", 4) == doctest::Approx(1.0 / 3));
   CHECK(value(l, "cp", 4) == doctest::Approx(1.0 / 3));
@@ -69,23 +70,23 @@ TEST_CASE("tensor_measures: line, disc and ball have the extreme values; both of
 TEST_CASE("tensor_measures: negative eigenvalues are counted once and treated as asked") {
   const DatasetPtr in = tensor_points({diagonal(1, .5, -.2), diagonal(1, .5, .2), diagonal(1, -.5, -.6)});
   TensorMeasuresParams p;
-  p.measures = {"FA", "MD"};
-  for (const char* how : {"keep", "clip", "absolute", "nan"}) {
+  p.measures = {TensorMeasure::FA, TensorMeasure::MD};
+  for (const auto& how : enum_words(NegativeEigenvalues())) {
     Listener l;
-    p.negative = how;
+    p.negative = how.value;
     const DatasetPtr d = tensor_measures(in, p, l.context);
     CHECK(l.warnings.find("2 of 3 tensors of 'tensor' have negative eigenvalues") != std::string::npos);
     CHECK(std::count(l.warnings.begin(), l.warnings.end(), '\n') == 1);
     const double md = value(d, "MD");
-    if (p.negative == "keep") CHECK(md == doctest::Approx(1.3 / 3));
-    if (p.negative == "clip") CHECK(md == doctest::Approx(.5));
-    if (p.negative == "absolute") CHECK(md == doctest::Approx(1.7 / 3));
-    if (p.negative == "nan") CHECK(std::isnan(md));
+    if (p.negative == NegativeEigenvalues::keep) CHECK(md == doctest::Approx(1.3 / 3));
+    if (p.negative == NegativeEigenvalues::clip) CHECK(md == doctest::Approx(.5));
+    if (p.negative == NegativeEigenvalues::absolute) CHECK(md == doctest::Approx(1.7 / 3));
+    if (p.negative == NegativeEigenvalues::nan) CHECK(std::isnan(md));
     CHECK(value(d, "MD", 1) == doctest::Approx(1.7 / 3));
-    if (p.negative == "clip") CHECK(value(d, "FA", 2) == doctest::Approx(1));
+    if (p.negative == NegativeEigenvalues::clip) CHECK(value(d, "FA", 2) == doctest::Approx(1));
   }
   Listener l;
-  p.measures = {"trace"};
+  p.measures = {TensorMeasure::trace};
   tensor_measures(in, p, l.context);
   CHECK(l.warnings.empty());  // a trace may well be negative
 }
@@ -111,7 +112,7 @@ TEST_CASE("tensor fields: every order of components gives the same tensor") {
     FieldSet fields;
     fields.add({"s", Association::point, Array::from_vector(v, int(v.size())), "Pa", Role::none});
     TensorEigenParams p;
-    p.tensors.order = order;
+    p.tensors.order = value_of_word<TensorOrder>(order);
     const DatasetPtr d = tensor_eigen(make_dataset(cloud, fields), p, context);
     for (int k = 0; k < 3; ++k) {
       CHECK(value(d, fmt::format("eigenvalue {}", k + 1)) == doctest::Approx(want[k]).epsilon(1e-12));
@@ -141,7 +142,7 @@ TEST_CASE("tensor fields: 2D tensors have two eigenvalues in the plane, a mask h
   CHECK(value(d, "eigenvalue 2") == doctest::Approx(1));
   CHECK(d->fields().find("eigenvalue 3") == nullptr);
   TensorMeasuresParams m;
-  m.tensors.field = {"flat"}, m.measures = {"FA", "MD"};
+  m.tensors.field = {"flat"}, m.measures = {TensorMeasure::FA, TensorMeasure::MD};
   CHECK(value(tensor_measures(in, m, l.context), "FA") == doctest::Approx(2 / std::sqrt(10.0)));
   CHECK(l.warnings.empty());
   p.tensors.field = {"masked"};
@@ -172,7 +173,7 @@ TEST_CASE("tensor operations name what is wrong with their input") {
   CHECK(error_of([&] { tensor_eigen(in, p, context); }).find("did you mean 'five'") != std::string::npos);
   p.tensors.field = {"w"};
   CHECK(error_of([&] { tensor_eigen(in, p, context); }).find("lies on the whole") != std::string::npos);
-  p.tensors.field = {"v"}, p.tensors.order = "voigt";
+  p.tensors.field = {"v"}, p.tensors.order = TensorOrder::voigt;
   CHECK(error_of([&] { tensor_eigen(in, p, context); }).find("which the order 'voigt' does not fit") != std::string::npos);
   TensorMeasuresParams m;
   m.tensors.field = {"v"};  // as xx yy xy
@@ -203,7 +204,8 @@ TEST_CASE("direction_colors: axes are red, green and blue, dark where nothing is
 TEST_CASE("stress_measures: tension, shear and pressure have their textbook values") {
   Context context;
   StressMeasuresParams p;
-  p.measures = {"von_mises", "tresca", "mean", "max_shear", "principal", "directions"};
+  p.measures.clear();
+  for (const auto& w : enum_words(StressMeasure())) p.measures.push_back(w.value);
   for (uint64_t seed = 0; seed < 10; ++seed) {
     const Mat3 r = random_rotation(seed);
     const SymTensor shear{0, 0, 0, 5, 0, 0};

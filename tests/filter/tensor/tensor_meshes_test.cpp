@@ -114,7 +114,7 @@ TEST_CASE("tensor meshes: signals without noise give the tensor back in every ki
       parts.fields.add({"bvec", Association::whole, Array::from_vector(std::move(g), 3), "", Role::none});
       Context context;
       TensorFitParams p;
-      p.frame = "world", p.field.name = "images";
+      p.frame = GradientFrame::world, p.field.name = "images";
       const DatasetPtr fit = tensor_fit(make_dataset(std::move(parts)), p, context);
       double right[9], worst = 0;
       write(d, right);
@@ -193,7 +193,7 @@ TEST_CASE("tensor meshes: hyperstreamlines turn with their eigenvector and never
     Context context;
     const DatasetPtr mesh = tensors_on(kind.make(12, 1), ring);
     HyperstreamlinesParams p = line_from({0.62, 0.03, kind.flat ? 0 : 0.1}, 1);
-    p.max_length = 5, p.direction = "forward";
+    p.max_length = 5, p.direction = LineDirection::forward;
     const DatasetPtr l = hyperstreamlines(mesh, p, context);
     const size_t n = l->point_count();
     REQUIRE(n > 12);

@@ -22,7 +22,7 @@ TEST_CASE("operations: help of one operation is made from its declaration") {
         "  Multiplies a field.\n"
         "\n"
         "Parameters (key=value):\n"
-        "  field  Field to scale; default: the active scalar. [field]\n"
+        "  field  Field to scale; default: the active scalar. [any field of points or cells]\n"
         "  by     Factor. [number, from -1000 to 1000, in units of 'field', default 2]\n"
         "  mode   How. [plain|fancy, default plain]\n");
   CHECK(ops_help("whole", test::operations()) == "whole (parts filter)\n  Passes everything on.\n\nIt has no parameters.\n");

@@ -43,7 +43,7 @@ TEST_CASE("one voxel: eigenvalues, eigenvectors, FA, MD, mode and S0 agree with 
   const DatasetPtr in = images(one + "voxel_D7.nii.gz");
   CHECK(in->fields().require("images").components() == 7);
   TensorFitParams p;
-  p.method = "linear";
+  p.method = DiffusionFit::linear;
   const DatasetPtr d = tensor_eigen(tensor_measures(tensor_fit(in, p, l.context), {}, l.context), {}, l.context);
   for (int k = 1; k <= 3; ++k) {
     CHECK(value(d, fmt::format("eigenvalue {}", k)) == doctest::Approx(fsl_number(fmt::format("dti_L{}.nii.gz", k))).epsilon(1e-4));
@@ -81,7 +81,7 @@ TEST_CASE("a block of a brain: plausible diffusivities, positive tensors, cohere
   TensorFitParams p;
   const DatasetPtr in = images(brain), weighted = tensor_fit(in, p, l.context);
   CHECK(l.warnings.find("28 of 1000 tensors have negative eigenvalues") != std::string::npos);
-  p.method = "positive";
+  p.method = DiffusionFit::positive;
   l.warnings.clear();
   const DatasetPtr positive = tensor_fit(in, p, l.context), d = tensor_measures(positive, {}, l.context);
   CHECK(l.warnings.empty());

@@ -16,7 +16,7 @@ using namespace sg::test;
 TEST_CASE("point load: on the axis the stress is Boussinesq's; von Mises agrees with the source's own field") {
   Context context;
   PointLoadParams load;
-  load.grid.type = "f64", load.grid.size = 11, load.load = 2, load.poisson = 0.3;
+  load.grid.type = FieldType::f64, load.grid.size = 11, load.load = 2, load.poisson = 0.3;
   const DatasetPtr in = point_load(load, context);
   const DatasetPtr d = stress_measures(in, {}, context);
   const Array &mine = d->fields().require("von Mises stress").array, &own = in->fields().require("von Mises stress").array;
@@ -56,9 +56,9 @@ TEST_CASE("point load: div s = 0 with order 2, and every horizontal cut carries 
 
   Context context;
   PointLoadParams load;
-  load.grid.type = "f64", load.grid.bounds = {-8, 8, -8, 8, 0.5, 1.5}, load.grid.dims = {161, 161, 3};
+  load.grid.type = FieldType::f64, load.grid.bounds = {-8, 8, -8, 8, 0.5, 1.5}, load.grid.dims = {161, 161, 3};
   SliceParams cut;
-  cut.axis = "z", cut.position = 1.0;
+  cut.axis = CutAxis::z, cut.position = 1.0;
   const DatasetPtr plane = slice(point_load(load, context), cut, context);
   const DatasetPtr t = traction(plane, {}, context);
   const Array& n = t->fields().require("normal traction").array;
@@ -98,9 +98,9 @@ TEST_CASE("notch_stress_fixed: von Mises and the first component agree with the 
 TEST_CASE("point load: the line of compression on the axis is straight with Boussinesq's stress; for nu = 1/2 all are rays from the load") {
   Context context;
   PointLoadParams load;
-  load.grid.type = "f64", load.grid.size = 41;
+  load.grid.type = FieldType::f64, load.grid.size = 41;
   HyperstreamlinesParams p;
-  p.eigenvector = 3, p.section = "line", p.seeds = {0, 0, 1};
+  p.eigenvector = 3, p.section = TensorSection::line, p.seeds = {0, 0, 1};
   const DatasetPtr axis = hyperstreamlines(point_load(load, context), p, context);
   const auto& line = *axis->as<SurfaceMesh>();
   const Array& value = axis->fields().require("eigenvalue").array;
@@ -133,13 +133,13 @@ TEST_CASE("notch_stress_fixed: lines of tension run from end to end, cuts have d
   Listener l;
   const DatasetPtr in = std::get<DatasetPtr>(read_data(data_file("tensors/notch_stress_fixed.vtk"), {}, l.context));
   HyperstreamlinesParams p;
-  p.section = "line", p.seeds = {0.2, 0.05, 0.0051, 0.1, 0.03, 0.0051};
+  p.section = TensorSection::line, p.seeds = {0.2, 0.05, 0.0051, 0.1, 0.03, 0.0051};
   const DatasetPtr lines = hyperstreamlines(in, p, l.context);
   REQUIRE(lines->cell_count() == 2);
   CHECK(lines->bounds().size().x > 0.39);
   CHECK(lines->range(lines->fields().require("eigenvalue")).hi <= in->range(in->fields().require("Nodal Stress-normed")).hi * 1.01);
   SliceParams cut;
-  cut.axis = "z", cut.position = 0.0051;
+  cut.axis = CutAxis::z, cut.position = 0.0051;
   const DatasetPtr points = degenerate_points(slice(in, cut, l.context), {}, l.context);
   CHECK(points->point_count() >= 4);
   const DatasetPtr glyphs = tensor_glyphs(in, {}, l.context);

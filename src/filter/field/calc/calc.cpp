@@ -199,9 +199,9 @@ class Machine {
 };
 
 // Where the expression is computed: where its fields are.
-Association place_of(const DatasetPtr& in, const Program& program, const std::string& on) {
+Association place_of(const DatasetPtr& in, const Program& program, std::optional<CalcPlace> on) {
   std::optional<Association> found;
-  if (on != "auto") found = on == "cell" ? Association::cell : Association::point;
+  if (on) found = *on == CalcPlace::cell ? Association::cell : Association::point;
   for (const std::string& name : program.fields) {
     const bool at_points = in->fields().find(name, Association::point), at_cells = in->fields().find(name, Association::cell);
     if (found && (*found == Association::point ? at_points : at_cells)) continue;
@@ -242,8 +242,8 @@ DatasetPtr calc(const DatasetPtr& in, const CalcParams& p, Context& ctx) {
   const Program program = calc_detail::parse(
       p.expr,
       [&](std::string_view name) -> calc_detail::Symbol {
-        for (const Association a :
-             {p.on == "cell" ? Association::cell : Association::point, p.on == "cell" ? Association::point : Association::cell})
+        for (const Association a : {p.on == CalcPlace::cell ? Association::cell : Association::point,
+                                    p.on == CalcPlace::cell ? Association::point : Association::cell})
           if (const Field* f = in->fields().find(name, a)) return {true, f->components(), Unit::of(f->unit)};
         return {};
       },

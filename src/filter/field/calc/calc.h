@@ -10,10 +10,17 @@
 
 namespace sg {
 
+/// Where the result is.
+enum class CalcPlace { point, cell };
+constexpr auto enum_words(CalcPlace) {
+  using enum CalcPlace;
+  return std::array{Word{"point", point}, Word{"cell", cell}};
+}
+
 struct CalcParams {
   std::string expr;
   std::string name = "result";
-  std::string on = "auto";
+  std::optional<CalcPlace> on;
 };
 
 inline void describe(Schema& s, CalcParams& p) {
@@ -22,7 +29,7 @@ inline void describe(Schema& s, CalcParams& p) {
     "and "
     "functions are listed below.");
   s("name", p.name, "Name of the new field.");
-  s("on", p.on, "Where: auto follows the fields of the expression (points when it has none).").choices({"auto", "point", "cell"});
+  s("on", p.on, "Where: auto follows the fields of the expression (points when it has none).");
 }
 
 /// Adds a field computed from others, tuple by tuple, in double; the result is f32 when every field used is f32 or a small

@@ -44,7 +44,7 @@ std::vector<AxisSum> gaussian_sums(const std::vector<double>& at, double sigma) 
 }  // namespace
 
 void describe(Schema& s, GaussianSmoothParams& p) {
-  s("field", p.field, "Scalar point or cell field; default: the active scalar.");
+  s("field", p.field, "Scalar point or cell field; default: the active scalar.").takes(fields::scalars);
   s("sigma", p.sigma, "Standard deviation: one number or one per axis of the grid; default: the mean distance of neighbours.")
       .unit("length")
       .at_least(0);

@@ -14,9 +14,8 @@ namespace sg {
 namespace {
 
 constexpr KernelTraits all[] = {
-    {"nearest", 1, true, false, false, 0},    {"linear", 1, true, true, false, 1}, {"catmull_rom", 2, true, true, false, 3},
-    {"mitchell", 2, false, true, false, 3},   {"bspline", 2, true, true, true, 3}, {"bspline_smooth", 2, false, true, false, 3},
-    {"gaussian", 2, false, false, false, -1}, {"sinc", 3, true, false, false, -1},
+    {1, true, false, false, 0}, {1, true, true, false, 1},  {2, true, true, false, 3},    {2, false, true, false, 3},
+    {2, true, true, true, 3},   {2, false, true, false, 3}, {2, false, false, false, -1}, {3, true, false, false, -1},
 };
 constexpr double sigma = 0.6, gauss_end = 2;
 
@@ -30,16 +29,11 @@ double sinc_slope(double t) {
 
 const KernelTraits& traits(Kernel k) { return all[size_t(k)]; }
 
-std::vector<std::string> kernel_names() {
-  std::vector<std::string> names;
-  for (const KernelTraits& t : all) names.emplace_back(t.name);
-  return names;
-}
-
 Kernel kernel_of(std::string_view name, std::string_view who) {
-  for (size_t i = 0; i < std::size(all); ++i)
-    if (all[i].name == name) return Kernel(i);
-  fail_usage(fmt::format("there is no kernel '{}'", name), std::string(who), unknown_name_hint(name, kernel_names()));
+  if (const auto k = value_of_word<Kernel>(name)) return *k;
+  std::vector<std::string> names;
+  for (const auto& w : enum_words(Kernel())) names.emplace_back(w.word);
+  fail_usage(fmt::format("there is no kernel '{}'", name), std::string(who), unknown_name_hint(name, names));
 }
 
 double bc_spline(double b, double c, double t) {

@@ -32,7 +32,6 @@ constexpr auto enum_words(Kernel) {
 constexpr int most_taps = 6;
 
 struct KernelTraits {
-  std::string_view name;
   int radius;         ///< the kernel is 0 from there on; 2 * radius samples have a share of each place
   bool interpolates;  ///< passes through the samples (bspline: after bspline_coefficients)
   bool linear;        ///< a field that rises evenly is kept
@@ -40,7 +39,6 @@ struct KernelTraits {
   int degree;         ///< of the polynomial in each cell, per axis; -1 = none
 };
 const KernelTraits& traits(Kernel k);
-std::vector<std::string> kernel_names();
 /// Throws Error(usage), with a guess at what was meant, naming `who`.
 Kernel kernel_of(std::string_view name, std::string_view who);
 

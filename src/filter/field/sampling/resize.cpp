@@ -175,13 +175,13 @@ Dims wanted_dims(const Dims& from, const std::vector<int64_t>& wanted) {
 
 void describe(Schema& s, ResizeParams& p) {
   s("dims", p.dims, "Points along x, y and z, or one number along the longest axis.").at_least(1);
-  s("kernel", p.kernel, "What joins the samples.").choices(kernel_names());
+  s("kernel", p.kernel, "What joins the samples.");
 }
 
 DatasetPtr resize(const DatasetPtr& in, const ResizeParams& p, Context& context) {
   if (!in->as<UniformGrid>() && !in->as<RectilinearGrid>())
     fail_usage(fmt::format("works on uniform and rectilinear grids, not on a {} mesh", in->kind()), "resize", "use resample");
-  const Kernel kernel = kernel_of(p.kernel, "resize");
+  const Kernel kernel = p.kernel;
   const Dims from = lattice_dims(in->mesh()), to = wanted_dims(from, p.dims);
   double bytes = 40;  // a point: where it comes from
   for (const Field& f : in->fields()) bytes = std::max(bytes, 40 + double(f.components()) * 24);

@@ -4,12 +4,13 @@
 #include "base/context.h"
 #include "base/schema/schema.h"
 #include "data/dataset.h"
+#include "filter/field/sampling/reconstruction.h"
 
 namespace sg {
 
 struct ResizeParams {
   std::vector<int64_t> dims;
-  std::string kernel = "catmull_rom";
+  Kernel kernel = Kernel::catmull_rom;
 };
 void describe(Schema& s, ResizeParams& p);
 

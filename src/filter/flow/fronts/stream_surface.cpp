@@ -14,7 +14,7 @@
 namespace sg {
 
 void describe(Schema& s, StreamSurfaceParams& p) {
-  s("field", p.field, "Velocity: a point or cell field of 2 or 3 components; default: the active vectors.");
+  s("field", p.field, "Velocity: a point or cell field of 2 or 3 components; default: the active vectors.").takes(fields::vectors);
   describe(s, p.curve);
   s("direction", p.direction, "Along the flow, against it, or both.");
   s("front", p.front, "What the places of a front have in common: the length they have gone, or the time.");

@@ -15,7 +15,7 @@ namespace sg {
 namespace {
 
 void describe_shared(Schema& s, UnsteadySurfaceParams& p) {
-  s("field", p.field, "Velocity: a point or cell field of 2 or 3 components; default: the active vectors.");
+  s("field", p.field, "Velocity: a point or cell field of 2 or 3 components; default: the active vectors.").takes(fields::vectors);
   s("times", p.times, "Time steps, FIRST:LAST:COUNT or a list; default: those of the file.").unit("time");
   s("start", p.start, "When it begins; default: the first time of the series.").unit("time");
   s("time", p.time, "When it ends; default: the last time of the series.").unit("time");

@@ -14,7 +14,7 @@
 namespace sg {
 
 void describe(Schema& s, EvenStreamlinesParams& p) {
-  s("field", p.field, "Velocity: a point or cell field of 2 or 3 components; default: the active vectors.");
+  s("field", p.field, "Velocity: a point or cell field of 2 or 3 components; default: the active vectors.").takes(fields::vectors);
   s("spacing", p.spacing, "Distance between lines; default: a 50th of the mesh's diagonal (in space a 20th).").unit("length").positive();
   s("test", p.test, "How near a line may come to others before it ends, in spacings.").range(0.05, 1);
   s("min_length", p.min_length, "Shortest line that is kept, in spacings.").at_least(0);

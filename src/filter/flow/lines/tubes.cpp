@@ -14,7 +14,7 @@ namespace sg {
 
 void describe(Schema& s, TubesParams& p) {
   s("radius", p.radius, "Radius of the tubes; default: a 300th of the lines' diagonal, less where they crowd.").unit("length").positive();
-  s("radius_field", p.radius_field, "Point field that widens the tubes, from the radius to ratio times it.");
+  s("radius_field", p.radius_field, "Point field that widens the tubes, from the radius to ratio times it.").takes(fields::on_points);
   s("ratio", p.ratio, "Largest radius over smallest, with a radius_field.").range(1, 1e6);
   s("sides", p.sides, "Points around.").range(3, 1000);
   s("caps", p.caps, "Closes the ends.");
@@ -22,9 +22,10 @@ void describe(Schema& s, TubesParams& p) {
 
 void describe(Schema& s, RibbonsParams& p) {
   s("width", p.width, "Width of the ribbons; default: a 75th of the lines' diagonal, less where they crowd.").unit("length").positive();
-  s("width_field", p.width_field, "Point field that widens the ribbons, from the width to ratio times it.");
+  s("width_field", p.width_field, "Point field that widens the ribbons, from the width to ratio times it.").takes(fields::on_points);
   s("ratio", p.ratio, "Largest width over smallest, with a width_field.").range(1, 1e6);
   s("rotation", p.rotation, "Point field of angles by which they turn about their line; default: 'rotation', where there is one.")
+      .takes(fields::point_scalars)
       .unit("rad");
   s("normal", p.normal, "Direction that the ribbons face where they begin; default: any.");
 }

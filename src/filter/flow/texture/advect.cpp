@@ -14,7 +14,7 @@ namespace sg {
 using namespace texture;
 
 void describe(Schema& s, AdvectParams& p) {
-  s("field", p.field, "Vector field that carries; default: the active vectors.");
+  s("field", p.field, "Vector field that carries; default: the active vectors.").takes(fields::vectors);
   s("carry", p.carry, "Point fields that are carried, of the second input where there is one; default: all scalars and colours.");
   s("time", p.time, "How long; negative: backwards. Default: until the fastest place has gone a tenth of the longest side.").unit("time");
   s("steps", p.steps, "Steps of the paths; 0: as many as keep a step below a cell of the data.").range(0, 1e6);

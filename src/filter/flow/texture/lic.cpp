@@ -19,7 +19,7 @@ namespace sg {
 using namespace texture;
 
 void describe(Schema& s, LicParams& p) {
-  s("field", p.field, "Vector field along which is averaged; default: the active vectors.");
+  s("field", p.field, "Vector field along which is averaged; default: the active vectors.").takes(fields::vectors);
   s("length", p.length, "How far the average reaches along the flow, each way; default: 20, sparse dots in solid data 30.")
       .unit("pixels")
       .range(0, 4096);
@@ -36,7 +36,8 @@ void describe(Schema& s, LicParams& p) {
       .range(0, 1);
   s("grain", p.grain, "Size of the grains of the noise; 0: 1, sparse dots in solid data 2.").unit("pixels").range(0, 256);
   s("seed", p.seed, "Another number, another noise.");
-  s("image", p.image, "Field of the second input that is smeared along the flow in place of noise; default: its active scalar or colours.");
+  s("image", p.image, "Field of the second input that is smeared along the flow in place of noise; default: its active scalar or colours.")
+      .takes(fields::on_points);
   s("contrast", p.contrast,
     "none: plain averages. stretch: a hundredth of the pixels black, a hundredth white. equalise: all greys alike.");
   s("passes", p.passes, "2: the texture is sharpened and averaged once more, for finer and clearer lines.").range(1, 4);

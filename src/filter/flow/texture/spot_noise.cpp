@@ -14,7 +14,7 @@ namespace sg {
 using namespace texture;
 
 void describe(Schema& s, SpotNoiseParams& p) {
-  s("field", p.field, "Vector field that shapes the spots; default: the active vectors.");
+  s("field", p.field, "Vector field that shapes the spots; default: the active vectors.").takes(fields::vectors);
   s("radius", p.radius, "Radius of a spot where nothing flows.").unit("pixels").range(1, 200);
   s("stretch", p.stretch, "How many radii longer a spot is where the flow is fastest; it gets as much thinner.").range(0, 20);
   s("density", p.density, "How many spots lie over a pixel, in the mean.").range(0.1, 50);

@@ -214,7 +214,7 @@ DatasetPtr orbits_dataset(const std::vector<Orbit>& orbits) {
 }
 
 void describe(Schema& s, ClosedOrbitsParams& p) {
-  s("field", p.field, "Velocity; default: the active vectors.");
+  s("field", p.field, "Velocity; default: the active vectors.").takes(fields::vectors);
   s("max_steps", p.max_steps, "Most steps of the lines that look for orbits.").range(1, 1e9);
   s("tolerance", p.tolerance, "Error of one step of these lines, in sizes of the local cell.").positive();
   s("isolated", p.isolated,

@@ -235,7 +235,7 @@ CriticalPoints find_critical_points(const FlowParts& flow, const CriticalOptions
 }
 
 void describe(Schema& s, CriticalPointsParams& p) {
-  s("field", p.field, "Velocity; default: the active vectors.");
+  s("field", p.field, "Velocity; default: the active vectors.").takes(fields::vectors);
   describe(s, p.options);
 }
 

@@ -242,7 +242,7 @@ DatasetPtr separatrices_dataset(const std::vector<Separatrix>& lines) {
 }
 
 void describe(Schema& s, SeparatricesParams& p) {
-  s("field", p.field, "Velocity; default: the active vectors.");
+  s("field", p.field, "Velocity; default: the active vectors.").takes(fields::vectors);
   describe(s, p.critical);
   s("offset", p.offset, "How far from the saddle tracing begins, in diagonals of its cell.").positive();
   s("border", p.border, "Also from places where the flow touches the border from inside, leaves a wall or comes to one (flat meshes).");

@@ -8,7 +8,7 @@
 namespace sg {
 
 void describe(Schema& s, TopologyParams& p) {
-  s("field", p.field, "Velocity; default: the active vectors.");
+  s("field", p.field, "Velocity; default: the active vectors.").takes(fields::vectors);
   describe(s, p.critical);
   s("separatrices", p.separatrices, "Trace the lines that part regions of different flow.");
   s("orbits", p.orbits, "Look for periodic orbits (flat meshes).");

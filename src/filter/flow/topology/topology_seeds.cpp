@@ -80,7 +80,7 @@ void solid_pattern(const CriticalPoint& c, double r, int64_t n, std::vector<Vec3
 }  // namespace
 
 void describe(Schema& s, TopologySeedsParams& p) {
-  s("field", p.field, "Velocity; default: the active vectors.");
+  s("field", p.field, "Velocity; default: the active vectors.").takes(fields::vectors);
   describe(s, p.critical);
   s("count", p.count, "Seeds around each critical point.").range(1, 1e6);
   s("radius", p.radius, "How far the patterns reach, as a part of the way to the nearest other critical point.").positive();

@@ -14,7 +14,7 @@
 namespace sg {
 
 void describe(Schema& s, UnsteadyParams& p, const std::string& start, const std::string& time) {
-  s("field", p.field, "Velocity: a point or cell field of 2 or 3 components; default: the active vectors.");
+  s("field", p.field, "Velocity: a point or cell field of 2 or 3 components; default: the active vectors.").takes(fields::vectors);
   s("times", p.times,
     "Time steps, FIRST:LAST:COUNT or a list; default: those of the file. Sources that can be computed for any time need it.")
       .unit("time");

@@ -16,7 +16,7 @@
 namespace sg {
 
 void describe(Schema& s, FtleParams& p) {
-  s("field", p.field, "Velocity; default: the active vector.");
+  s("field", p.field, "Velocity; default: the active vector.").takes(fields::vectors);
   s("duration", p.duration,
     "How long places are carried; negative: back in time. Default: as long as the series lasts, or in a steady flow until "
     "the mean speed has gone a tenth of the mesh's diagonal.")

@@ -16,7 +16,8 @@ namespace sg {
 namespace {
 
 struct Measure {
-  std::string_view word, name;
+  VortexMeasure measure;
+  std::string_view name;
   int components;
   void (*write)(const VortexMeasures& m, double* to);
 };
@@ -27,32 +28,26 @@ void number(const VortexMeasures& m, double* to) {
 }
 
 constexpr Measure table[] = {
-    {"vorticity", "vorticity", 3,
+    {VortexMeasure::vorticity, "vorticity", 3,
      [](const VortexMeasures& m, double* to) { to[0] = m.vorticity.x, to[1] = m.vorticity.y, to[2] = m.vorticity.z; }},
-    {"vorticity_magnitude", "vorticity magnitude", 1, number<&VortexMeasures::vorticity_magnitude>},
-    {"q", "Q", 1, number<&VortexMeasures::q>},
-    {"lambda2", "lambda2", 1, number<&VortexMeasures::lambda2>},
-    {"delta", "delta", 1, number<&VortexMeasures::delta>},
-    {"swirling_strength", "swirling strength", 1, number<&VortexMeasures::swirling_strength>},
-    {"helicity", "helicity", 1, number<&VortexMeasures::helicity>},
-    {"normalized_helicity", "normalized helicity", 1, number<&VortexMeasures::normalized_helicity>},
-    {"strain", "strain rate", 1, number<&VortexMeasures::strain>},
-    {"divergence", "divergence", 1, number<&VortexMeasures::divergence>},
-    {"okubo_weiss", "Okubo-Weiss", 1, number<&VortexMeasures::okubo_weiss>},
-    {"kinematic_vorticity", "kinematic vorticity", 1, number<&VortexMeasures::kinematic_vorticity>},
+    {VortexMeasure::vorticity_magnitude, "vorticity magnitude", 1, number<&VortexMeasures::vorticity_magnitude>},
+    {VortexMeasure::q, "Q", 1, number<&VortexMeasures::q>},
+    {VortexMeasure::lambda2, "lambda2", 1, number<&VortexMeasures::lambda2>},
+    {VortexMeasure::delta, "delta", 1, number<&VortexMeasures::delta>},
+    {VortexMeasure::swirling_strength, "swirling strength", 1, number<&VortexMeasures::swirling_strength>},
+    {VortexMeasure::helicity, "helicity", 1, number<&VortexMeasures::helicity>},
+    {VortexMeasure::normalized_helicity, "normalized helicity", 1, number<&VortexMeasures::normalized_helicity>},
+    {VortexMeasure::strain, "strain rate", 1, number<&VortexMeasures::strain>},
+    {VortexMeasure::divergence, "divergence", 1, number<&VortexMeasures::divergence>},
+    {VortexMeasure::okubo_weiss, "Okubo-Weiss", 1, number<&VortexMeasures::okubo_weiss>},
+    {VortexMeasure::kinematic_vorticity, "kinematic vorticity", 1, number<&VortexMeasures::kinematic_vorticity>},
 };
-
-std::vector<std::string> words() {
-  std::vector<std::string> all;
-  for (const Measure& m : table) all.emplace_back(m.word);
-  return all;
-}
 
 }  // namespace
 
 void describe(Schema& s, VortexMeasuresParams& p) {
-  s("field", p.field, "Velocity; default: the active vector.");
-  s("measures", p.measures, "Which fields to make.").choices(words());
+  s("field", p.field, "Velocity; default: the active vector.").takes(fields::vectors);
+  s("measures", p.measures, "Which fields to make.");
 }
 
 VortexMeasures vortex_measures_of(const Mat3& j, Vec3 u) {
@@ -109,10 +104,8 @@ Array velocity_gradients(const DatasetPtr& in, const Field& velocity, Context& c
 DatasetPtr vortex_measures(const DatasetPtr& in, const VortexMeasuresParams& p, Context& context) {
   const Field velocity = flow_field_of(*in, p.field.name, "vortex_measures");
   std::vector<const Measure*> asked;
-  for (const std::string& word : p.measures) {
-    const auto m = std::find_if(std::begin(table), std::end(table), [&](const Measure& t) { return t.word == word; });
-    if (m == std::end(table))
-      fail_usage(fmt::format("there is no measure '{}'", word), "vortex_measures", unknown_name_hint(word, words()));
+  for (const VortexMeasure measure : p.measures) {
+    const auto m = std::find_if(std::begin(table), std::end(table), [&](const Measure& t) { return t.measure == measure; });
     if (std::find(asked.begin(), asked.end(), &*m) == asked.end()) asked.push_back(&*m);
   }
   const Array gradients = velocity_gradients(in, velocity, context);

@@ -9,9 +9,41 @@
 
 namespace sg {
 
+/// See VortexMeasures.
+enum class VortexMeasure {
+  vorticity,
+  vorticity_magnitude,
+  q,
+  lambda2,
+  delta,
+  swirling_strength,
+  helicity,
+  normalized_helicity,
+  strain,
+  divergence,
+  okubo_weiss,
+  kinematic_vorticity
+};
+constexpr auto enum_words(VortexMeasure) {
+  using enum VortexMeasure;
+  return std::array{Word{"vorticity", vorticity},
+                    Word{"vorticity_magnitude", vorticity_magnitude},
+                    Word{"q", q},
+                    Word{"lambda2", lambda2},
+                    Word{"delta", delta},
+                    Word{"swirling_strength", swirling_strength},
+                    Word{"helicity", helicity},
+                    Word{"normalized_helicity", normalized_helicity},
+                    Word{"strain", strain},
+                    Word{"divergence", divergence},
+                    Word{"okubo_weiss", okubo_weiss},
+                    Word{"kinematic_vorticity", kinematic_vorticity}};
+}
+
 struct VortexMeasuresParams {
   FieldName field;
-  std::vector<std::string> measures{"vorticity", "q", "lambda2", "swirling_strength", "helicity"};
+  std::vector<VortexMeasure> measures{VortexMeasure::vorticity, VortexMeasure::q, VortexMeasure::lambda2, VortexMeasure::swirling_strength,
+                                      VortexMeasure::helicity};
 };
 void describe(Schema& s, VortexMeasuresParams& p);
 

@@ -21,7 +21,7 @@
 namespace sg {
 
 void describe(Schema& s, RidgesParams& p) {
-  s("field", p.field, "Scalar field of points; default: the active scalar.");
+  s("field", p.field, "Scalar field of points; default: the active scalar.").takes(fields::point_scalars);
   s("kind", p.kind, "Crests or troughs.");
   s("limit", p.limit, "Ridges: only where the field is at least this; valleys: at most. Default: no limit.").unit("@field");
   s("smooth", p.smooth, "Standard deviation, in cells, of the Gaussian that uniform and rectilinear grids are averaged with before.")

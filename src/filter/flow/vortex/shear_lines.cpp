@@ -50,8 +50,8 @@ DatasetPtr one_family(const DatasetPtr& in, int sign, const ShearLinesParams& p,
   DatasetParts parts = in->parts();
   parts.fields.add({scratch, Association::point, std::move(tensors), "", Role::tensors});
   HyperstreamlinesParams h;
-  h.tensors.field = {scratch}, h.tensors.order = "vtk";
-  h.count = p.count, h.section = "line", h.max_length = p.max_length.value_or(in->bounds().diagonal());
+  h.tensors.field = {scratch}, h.tensors.order = TensorOrder::vtk;
+  h.count = p.count, h.section = TensorSection::line, h.max_length = p.max_length.value_or(in->bounds().diagonal());
   h.min_gap = 0.05;  // where neighbours' directions cancel there is none
   DatasetParts lines = hyperstreamlines(make_dataset(std::move(parts)), h, context)->parts();
   for (const char* name : {"eigenvalue", "eigenvalue 1", "eigenvalue 2", "eigenvalue 3", scratch})

@@ -143,16 +143,16 @@ Array numbers_of(const Dataset& in, const FieldName& name, int component, std::s
 
 // `part(outside)`: one side.
 template <class Part>
-Data both_sides(const DatasetPtr& in, const std::string& keep, bool surface, Context& ctx, Part&& part) {
+Data both_sides(const DatasetPtr& in, ClipSide keep, bool surface, Context& ctx, Part&& part) {
   auto side = [&](bool outside) { return result(in, surface, "clip", ctx, [&] { return part(outside); }); };
-  if (keep != "both") return side(keep == "outside");
+  if (keep != ClipSide::both) return side(keep == ClipSide::outside);
   auto r = std::make_shared<Collection>();
   r->parts.push_back({"inside", side(false)});
   r->parts.push_back({"outside", side(true)});
   return CollectionPtr(r);
 }
 
-Data both_sides(Job job, const std::string& keep, bool surface) {
+Data both_sides(Job job, ClipSide keep, bool surface) {
   return both_sides(job.in, keep, surface, job.context, [&](bool outside) {
     job.keep.outside = outside;
     return clip_mesh(job);
@@ -175,8 +175,8 @@ Data clip(const DatasetPtr& in, const DatasetPtr& surface, const ClipParams& p, 
   const bool flat = in->as<SurfaceMesh>() != nullptr;
   const DatasetPtr mesh = prepared(in, p.tolerance, "clip", ctx);
   if (!p.field.empty() || p.value) {
-    const bool shape = surface || p.origin || p.position || (p.axis != "none" && !p.axis.empty()) || !p.sphere.empty() ||
-                       !p.cylinder.empty() || !p.box.empty() || !p.quadric.empty() || !p.function.empty();
+    const bool shape = surface || p.origin || p.position || p.axis != CutAxis::none || !p.sphere.empty() || !p.cylinder.empty() ||
+                       !p.box.empty() || !p.quadric.empty() || !p.function.empty();
     if (shape) fail_usage("a shape and a field are both given", "clip", "one of them at a time");
     const Field* field = nullptr;
     Job job{mesh, numbers_of(*mesh, p.field, p.component, "clip", &field), {}, {}, ctx};

@@ -5,21 +5,27 @@
 
 namespace sg {
 
+/// Which side stays.
+enum class ClipSide { inside, outside, both };
+constexpr auto enum_words(ClipSide) {
+  using enum ClipSide;
+  return std::array{Word{"inside", inside}, Word{"outside", outside}, Word{"both", both}};
+}
+
 struct ClipParams : ImplicitParams {
   FieldName field = {};
   int component = -1;
   std::optional<double> value = {};
-  std::string keep = "inside";
+  ClipSide keep = ClipSide::inside;
 };
 inline void describe(Schema& s, ClipParams& p) {
   describe_implicit(s, p);
-  s("field", p.field, "Clips by the values of a point field in place of a shape.");
+  s("field", p.field, "Clips by the values of a point field in place of a shape.").takes(fields::on_points);
   s("component", p.component, "Component of the field; -1: the magnitude of a field of several.").at_least(-1);
   s("value", p.value,
     "With field (or alone, by the active scalar): what lies inside has at least this value; default: the middle of the range.")
       .unit("@field");
-  s("keep", p.keep, "inside: behind the plane, in the shape, or at least the value; outside: the rest; both: a collection of the two.")
-      .choices({"inside", "outside", "both"});
+  s("keep", p.keep, "inside: behind the plane, in the shape, or at least the value; outside: the rest; both: a collection of the two.");
   describe_curved_tolerance(s, p.tolerance);
 }
 
@@ -45,7 +51,7 @@ struct IsovolumeParams {
   double tolerance = 1e-3;
 };
 inline void describe(Schema& s, IsovolumeParams& p) {
-  s("field", p.field, "Point field; default: the active scalar.");
+  s("field", p.field, "Point field; default: the active scalar.").takes(fields::on_points);
   s("component", p.component, "Component of the field; -1: the magnitude of a field of several.").at_least(-1);
   s("min", p.min, "Smallest value that is kept; default: no limit.").unit("@field");
   s("max", p.max, "Largest value that is kept; default: no limit.").unit("@field");

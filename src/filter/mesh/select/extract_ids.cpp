@@ -21,12 +21,13 @@ std::vector<uint8_t> chosen(const DatasetPtr& in, const ExtractParams& p, size_t
   if (p.by.empty()) {
     for (const int64_t id : p.ids) {
       if (id < 0 || size_t(id) >= count)
-        fail_usage(fmt::format("there is no {} {}", p.of, id), "extract ids", count ? fmt::format("0 to {}", count - 1) : "there are none");
+        fail_usage(fmt::format("there is no {} {}", word_of(p.of), id), "extract ids",
+                   count ? fmt::format("0 to {}", count - 1) : "there are none");
       yes[size_t(id)] = 1;
     }
     return yes;
   }
-  const Association on = p.of == "cell" && !in->as<PointCloud>() ? Association::cell : Association::point;
+  const Association on = p.of == IdsOf::cell && !in->as<PointCloud>() ? Association::cell : Association::point;
   const Field& f = in->fields().require(p.by.name, on);
   if (f.components() != 1)
     fail_usage(fmt::format("field '{}' has {} components", f.name, f.components()), "extract by", "ids are single numbers");
@@ -39,7 +40,7 @@ std::vector<uint8_t> chosen(const DatasetPtr& in, const ExtractParams& p, size_t
 }
 
 bool has_region(const ImplicitParams& p) {
-  return p.origin || p.position || (p.axis != "none" && !p.axis.empty()) || !p.sphere.empty() || !p.cylinder.empty() || !p.box.empty() ||
+  return p.origin || p.position || p.axis != CutAxis::none || !p.sphere.empty() || !p.cylinder.empty() || !p.box.empty() ||
          !p.quadric.empty() || !p.function.empty();
 }
 
@@ -110,7 +111,7 @@ DatasetPtr extract(const DatasetPtr& in, const ExtractParams& p, Context& ctx) {
   if (p.ids.empty() && !region && p.types.empty() && p.levels.empty())
     fail_usage("no numbers are given", "extract ids", "like ids=3,7,12; or a region (box=...), types, levels");
   const bool cloud = in->as<PointCloud>();
-  const bool by_points = p.of == "point" && !cloud;
+  const bool by_points = p.of == IdsOf::point && !cloud;
   const size_t cells = cloud ? in->point_count() : in->cell_count();
   std::vector<uint8_t> yes(cells, 1);
   if (!p.ids.empty()) {

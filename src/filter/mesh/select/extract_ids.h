@@ -5,9 +5,15 @@
 
 namespace sg {
 
+enum class IdsOf { cell, point };
+constexpr auto enum_words(IdsOf) {
+  using enum IdsOf;
+  return std::array{Word{"cell", cell}, Word{"point", point}};
+}
+
 struct ExtractParams {
   std::vector<int64_t> ids;
-  std::string of = "cell";
+  IdsOf of = IdsOf::cell;
   FieldName by = {};
   bool invert = false;
   ImplicitParams region = {};
@@ -18,8 +24,9 @@ struct ExtractParams {
 };
 inline void describe(Schema& s, ExtractParams& p) {
   s("ids", p.ids, "Numbers of cells or points, counted from 0; or values of the field `by`.");
-  s("of", p.of, "What the numbers are of; cells of chosen points are those that use one of them.").choices({"cell", "point"});
-  s("by", p.by, "Field of whole numbers that holds the ids (global ids, block or material numbers); default: the places in the file.");
+  s("of", p.of, "What the numbers are of; cells of chosen points are those that use one of them.");
+  s("by", p.by, "Field of whole numbers that holds the ids (global ids, block or material numbers); default: the places in the file.")
+      .takes(fields::scalars);
   s("invert", p.invert, "Keeps the others.");
   describe_implicit(s, p.region);
   s("all_points", p.all_points, "With a region: a cell is chosen when all of its points lie in it (behind the plane), not just one.");

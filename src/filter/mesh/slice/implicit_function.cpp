@@ -52,15 +52,14 @@ double radius(double r, std::string_view who, std::string_view what) {
 
 ImplicitFunction plane_of(const ImplicitParams& p, const Dataset& in, std::string_view who) {
   const Box3& bounds = in.bounds();
-  const bool shorthand = p.axis != "none" && !p.axis.empty();
+  const bool shorthand = p.axis != CutAxis::none;
   if (p.position && !shorthand)
     fail_usage("position needs an axis", std::string(who), fmt::format("write axis=z position={}", short_number(*p.position)));
   if (shorthand && p.origin)
     fail_usage("axis and origin say the same thing twice", std::string(who), "give axis and position, or origin and normal");
   Vec3 origin = p.origin.value_or(bounds.empty() ? Vec3() : bounds.center()), normal = p.normal;
   if (shorthand) {
-    const int a = p.axis == "x" ? 0 : p.axis == "y" ? 1 : p.axis == "z" ? 2 : -1;
-    if (a < 0) fail_usage(fmt::format("'{}' is no axis", p.axis), fmt::format("{} axis", who), "x, y, z or none");
+    const int a = axis_number(p.axis);
     normal = {};
     normal[a] = 1;
     if (p.position) origin[a] = *p.position;
@@ -75,7 +74,7 @@ ImplicitFunction expression(const std::string& text, const DatasetPtr& in, Conte
   CalcParams p;
   p.expr = text;
   p.name = "f";
-  p.on = "point";
+  p.on = CalcPlace::point;
   auto at_places = [p](std::span<const Vec3> at, std::span<double> out) {
     std::vector<double> xyz;
     for (const Vec3& v : at) xyz.insert(xyz.end(), {v.x, v.y, v.z});
@@ -171,7 +170,7 @@ ImplicitFunction implicit_function(const ImplicitParams& p, const DatasetPtr& in
     if (!list->empty()) given.push_back(name);
   if (!p.function.empty()) given.push_back("function");
   if (surface) given.push_back("a second mesh");
-  if (p.origin || p.position || (p.axis != "none" && !p.axis.empty())) given.push_back("a plane");
+  if (p.origin || p.position || p.axis != CutAxis::none) given.push_back("a plane");
   if (given.size() > 1) fail_usage(fmt::format("{} and {} are both given", given[0], given[1]), std::string(who), "one shape at a time");
   if (surface) return distance_from(surface, who, ctx);
   if (!p.function.empty()) return with_context(fmt::format("{} function", who), [&] { return expression(p.function, in, ctx); });

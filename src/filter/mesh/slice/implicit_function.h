@@ -11,15 +11,31 @@
 
 namespace sg {
 
+enum class CutAxis { none, x, y, z };
+constexpr auto enum_words(CutAxis) {
+  using enum CutAxis;
+  return std::array{Word{"none", none}, Word{"x", x}, Word{"y", y}, Word{"z", z}};
+}
+/// Several planes at once, across these axes.
+enum class CutPlanes { none, xyz, xy, xz, yz, x, y, z };
+constexpr auto enum_words(CutPlanes) {
+  using enum CutPlanes;
+  return std::array{Word{"none", none}, Word{"xyz", xyz}, Word{"xy", xy}, Word{"xz", xz},
+                    Word{"yz", yz},     Word{"x", x},     Word{"y", y},   Word{"z", z}};
+}
+
+/// 0 to 2; -1: none.
+constexpr int axis_number(CutAxis axis) { return int(axis) - 1; }
+
 struct ImplicitParams {
   std::optional<Vec3> origin = {};
   Vec3 normal{0, 0, 1};
-  std::string axis = "none";
+  CutAxis axis = CutAxis::none;
   std::optional<double> position = {};
   std::vector<double> sphere = {}, cylinder = {}, box = {}, quadric = {};
   std::string function = {};
   // Several planes at once: slice only.
-  std::string planes = "none";
+  CutPlanes planes = CutPlanes::none;
   std::vector<double> positions = {};
   double tolerance = 1e-3;  // slice and clip
 };
@@ -35,7 +51,7 @@ inline void describe_curved_tolerance(Schema& s, double& tolerance) {
 inline void describe_implicit(Schema& s, ImplicitParams& p) {
   s("origin", p.origin, "A point of the plane; default: the middle of the mesh.");
   s("normal", p.normal, "Direction across the plane.");
-  s("axis", p.axis, "Short for a normal along x, y or z.").choices({"none", "x", "y", "z"});
+  s("axis", p.axis, "Short for a normal along x, y or z.");
   s("position", p.position, "With axis: the coordinate along it at which the plane lies; default: the middle.");
   s("sphere", p.sphere, "A sphere in place of the plane: x,y,z of its centre and its radius.");
   s("cylinder", p.cylinder, "An endless cylinder: x,y,z of a point of its axis, the axis' direction, its radius.");

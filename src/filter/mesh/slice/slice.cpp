@@ -372,21 +372,20 @@ DatasetPtr slice_one(const DatasetPtr& in, const DatasetPtr& surface, const Impl
 // The planes that the parameters ask for, one after the other.
 std::vector<ImplicitParams> planes_of(const Dataset& in, const SliceParams& p) {
   std::vector<ImplicitParams> r;
-  const bool several = p.planes != "none" && !p.planes.empty();
+  const bool several = p.planes != CutPlanes::none;
   if (several && !p.positions.empty()) fail_usage("planes and positions are both given", "slice", "one of them at a time");
   if (!p.positions.empty()) {
-    if (p.axis == "none" || p.axis.empty()) fail_usage("positions need an axis", "slice", "like axis=z positions=1,2,3");
+    if (p.axis == CutAxis::none) fail_usage("positions need an axis", "slice", "like axis=z positions=1,2,3");
     if (p.position) fail_usage("position and positions are both given", "slice", "one of them at a time");
     for (const double x : p.positions) r.emplace_back(p).position = x;
   } else if (several) {
-    if (p.axis != "none" && !p.axis.empty()) fail_usage("planes and axis are both given", "slice", "one of them at a time");
+    if (p.axis != CutAxis::none) fail_usage("planes and axis are both given", "slice", "one of them at a time");
     const Box3& box = in.bounds();
     const Vec3 middle = p.origin.value_or(box.empty() ? Vec3() : box.center());
-    for (const char a : p.planes) {
-      if (a < 'x' || a > 'z') fail_usage(fmt::format("'{}' is no list of axes", p.planes), "slice planes", "like planes=xyz");
+    for (const char a : word_of(p.planes)) {
       ImplicitParams& plane = r.emplace_back(p);
       plane.origin.reset();
-      plane.axis = std::string(1, a);
+      plane.axis = CutAxis(1 + a - 'x');
       plane.position = middle[a - 'x'];
     }
   }

@@ -9,8 +9,7 @@ using SliceParams = ImplicitParams;
 
 inline void describe(Schema& s, SliceParams& p) {
   describe_implicit(s, p);
-  s("planes", p.planes, "Several planes at once through the origin (the middle): xyz is the view of three planes.")
-      .choices({"none", "xyz", "xy", "xz", "yz", "x", "y", "z"});
+  s("planes", p.planes, "Several planes at once through the origin (the middle): xyz is the view of three planes.");
   s("positions", p.positions, "With axis: several parallel planes at these coordinates.");
   describe_curved_tolerance(s, p.tolerance);
 }

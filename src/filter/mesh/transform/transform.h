@@ -39,8 +39,7 @@ inline void describe(Schema& s, TransformParams& p) {
   s("axial", p.fields.axial,
     "Fields of axial vectors, which a mirror turns the other way and a scale leaves as long, by name; those named curl(...) and vorticity "
     "are known.");
-  s("order", p.fields.order, "Order of the components of tensors, as tensor operations have it; auto: rows, or vtk for 6.")
-      .choices({"auto", "rows", "vtk", "upper", "lower", "voigt", "abaqus", "masked", "plane"});
+  s("order", p.fields.order, "Order of the components of tensors, as tensor operations have it; auto: rows, or vtk for 6.");
 }
 
 /// p' = center + rotate(scale * (p - center)) + translate, or matrix * p. A uniform grid stays one when its axes stay at

@@ -58,7 +58,7 @@ FieldLaw named_law(const Field& f, const FieldLawParams& p) {
     return n == 9 || n == 4 ? FieldLaw::vector_gradient : tensor_size(n) ? FieldLaw::hessian : FieldLaw::gradient;
   if (listed(p.axial, f.name)) return FieldLaw::axial;
   if (f.role == Role::normals && n == 3) return FieldLaw::normal;
-  if (tensor_size(n) || (n == 3 && p.order == "plane")) return tensor_law(f);
+  if (tensor_size(n) || (n == 3 && p.order == TensorOrder::plane)) return tensor_law(f);
   return vector_law(f);
 }
 
@@ -126,16 +126,16 @@ Array changed_vectors(const Field& f, FieldLaw law, const Maps& maps, const Cont
 }
 
 // An order that is said is for the fields of its size.
-bool order_fits(const std::string& order, int n) {
-  if (order == "rows") return n == 9 || n == 4;
-  if (order == "masked") return n == 7;
-  if (order == "plane") return n == 3;
+bool order_fits(std::optional<TensorOrder> order, int n) {
+  if (order == TensorOrder::rows) return n == 9 || n == 4;
+  if (order == TensorOrder::masked) return n == 7;
+  if (order == TensorOrder::plane) return n == 3;
   return n == 6;
 }
 
 Array changed_tensors(const Field& f, const FieldLawParams& p, const Maps& maps, const Context& ctx) {
   const int n = f.components();
-  const TensorPlaces places = tensor_places(f, order_fits(p.order, n) ? p.order : "auto", "transform");
+  const TensorPlaces places = tensor_places(f, order_fits(p.order, n) ? p.order : std::nullopt, "transform");
   const bool leaves = n < 6 && (leaves_plane(maps.left) || leaves_plane(maps.right));
   const TensorPlaces to = leaves ? TensorPlaces{0, 4, 8, 1, 5, 2, 3, 7, 6} : places;
   return changed(f.array, leaves ? 9 : n, ctx, [&](const double* in, double* out) {
@@ -194,7 +194,7 @@ void transform_fields(const Dataset& d, const Mat3& linear, const FieldLawParams
     if (law == FieldLaw::none) continue;
     const Maps maps = maps_of(law, linear);
     FieldLawParams order = p;
-    if (f.components() == 3 && f.role == Role::tensors && p.order == "auto") order.order = "plane";
+    if (f.components() == 3 && f.role == Role::tensors && !p.order) order.order = TensorOrder::plane;
     Array a = is_tensor(law) ? changed_tensors(f, order, maps, ctx) : changed_vectors(f, law, maps, ctx);
     if (a.components() != f.components())
       ctx.info(fmt::format("transform: '{}' leaves the plane and gets {} components", f.name, a.components()));

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which fields a transform changes, and how.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/context.h"
 #include "data/dataset.h"
+#include "filter/tensor/tensor_order.h"
 
 namespace sg {
 
@@ -24,7 +26,7 @@ enum class FieldLaw : uint8_t {
 struct FieldLawParams {
   bool unmarked = true;
   std::vector<std::string> turn, keep, gradients, axial;
-  std::string order = "auto";  ///< of the components of tensors, as TensorSource has it
+  std::optional<TensorOrder> order;  ///< of the components of tensors, as TensorSource has it
 };
 
 /// The law of a field of `d`. Marked as normals, vectors or tensors: by that, and the names "gradient(", "hessian(", "curl(" and

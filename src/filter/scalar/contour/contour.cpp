@@ -23,8 +23,7 @@ void describe(Schema& s, ContourParams& p) {
   s("normals", p.normals, "Unit normals from the field's gradient.");
   s("topology", p.topology,
     "On grids: the surface of the trilinear function in each cell, or marching cubes' fixed table with values at or above the isovalue "
-    "apart on every face.")
-      .choices({"trilinear", "fixed"});
+    "apart on every face.");
   s("from_cells", p.from_cells, "Take a cell field, averaged to the points.");
   s("tolerance", p.tolerance, "Curved cells: largest distance of the triangles from the surface, as a share of the mesh's diagonal.")
       .positive();
@@ -304,9 +303,7 @@ DatasetPtr contour(const DatasetPtr& given, const ContourParams& params, Context
   for (double v : values)
     if (!std::isfinite(v)) fail_usage(fmt::format("{} is no isovalue", v), "contour values", "give finite numbers");
 
-  const bool trilinear = params.topology == "trilinear";
-  if (!trilinear && params.topology != "fixed")
-    fail_usage(fmt::format("there is no topology '{}'", params.topology), "contour topology", "trilinear or fixed");
+  const bool trilinear = params.topology == ContourTopology::trilinear;
   Job job{*input, choose_samples(field, component), params.normals, false, trilinear, true, choose_origin(input->bounds()), context};
   for (const Field& f : input->fields()) job.cells = job.cells || f.association == Association::cell;
   if (has_curved_cells(*input))

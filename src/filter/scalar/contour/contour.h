@@ -10,13 +10,20 @@
 
 namespace sg {
 
+/// On grids: of the surface in a cell.
+enum class ContourTopology { trilinear, fixed };
+constexpr auto enum_words(ContourTopology) {
+  using enum ContourTopology;
+  return std::array{Word{"trilinear", trilinear}, Word{"fixed", fixed}};
+}
+
 struct ContourParams {
   FieldName field;
   std::vector<double> values;
   bool normals = true;
   double tolerance = 1e-3;
   std::string component;
-  std::string topology = "trilinear";  ///< or "fixed"
+  ContourTopology topology = ContourTopology::trilinear;
   bool from_cells = false;
 };
 void describe(Schema& s, ContourParams& p);

@@ -9,6 +9,10 @@
 namespace sg {
 
 enum class DiffusionFit : uint8_t { linear, weighted, positive };
+constexpr auto enum_words(DiffusionFit) {
+  using enum DiffusionFit;
+  return std::array{Word{"linear", linear}, Word{"weighted", weighted}, Word{"positive", positive}};
+}
 
 struct DiffusionResult {
   SymTensor d{NAN, NAN, NAN, NAN, NAN, NAN};  ///< mm^2/s

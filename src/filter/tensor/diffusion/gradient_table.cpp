@@ -91,11 +91,11 @@ GradientTable read_gradients(const Dataset& d, const std::string& bvals, const s
   return t;
 }
 
-void turn_to_world(GradientTable& t, const Dataset& d, const std::string& frame) {
+void turn_to_world(GradientTable& t, const Dataset& d, GradientFrame frame) {
   const auto* grid = d.as<UniformGrid>();
-  if (frame == "world" || !grid) return;
+  if (frame == GradientFrame::world || !grid) return;
   const Mat3& axes = grid->direction;
-  const double flip = frame == "fsl" && determinant(axes) * grid->spacing.x * grid->spacing.y * grid->spacing.z > 0 ? -1 : 1;
+  const double flip = frame == GradientFrame::fsl && determinant(axes) * grid->spacing.x * grid->spacing.y * grid->spacing.z > 0 ? -1 : 1;
   for (Vec3& g : t.g) g = axes * Vec3(flip * g.x, g.y, g.z);
 }
 

@@ -4,10 +4,18 @@
 #include <string>
 #include <vector>
 
+#include "base/schema/enum_words.h"
 #include "base/vec.h"
 #include "data/dataset.h"
 
 namespace sg {
+
+/// What directions are relative to, see turn_to_world().
+enum class GradientFrame { fsl, voxel, world };
+constexpr auto enum_words(GradientFrame) {
+  using enum GradientFrame;
+  return std::array{Word{"fsl", fsl}, Word{"voxel", voxel}, Word{"world", world}};
+}
 
 struct GradientTable {
   std::vector<double> b;  ///< s/mm^2
@@ -23,6 +31,6 @@ GradientTable read_gradients(const Dataset& d, const std::string& bvals, const s
 
 /// Turns directions into the world of the grid. `frame`: world: they are that already; voxel: along the axes of the image; fsl: along the
 /// axes of the image, with x the other way when the axes are right-handed (FSL's rule for images that are stored left to right).
-void turn_to_world(GradientTable& t, const Dataset& d, const std::string& frame);
+void turn_to_world(GradientTable& t, const Dataset& d, GradientFrame frame);
 
 }  // namespace sg

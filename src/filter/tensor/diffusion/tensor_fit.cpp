@@ -95,13 +95,11 @@ void describe(Schema& s, TensorFitParams& p) {
       .unit("file");
   s("frame", p.frame,
     "What the directions are relative to. fsl: the axes of the image, x turned where they are right-handed, as FSL's files are; voxel: the "
-    "axes of the image; world: x, y, z of the mesh.")
-      .choices({"fsl", "voxel", "world"});
+    "axes of the image; world: x, y, z of the mesh.");
   s("b0", p.b0, "Volumes with b up to this count as without gradient where they have no direction.").at_least(0).unit("s/mm^2");
   s("method", p.method,
     "Least squares of the logarithms: linear; weighted by the squared signals; positive: weighted, with a Cholesky factor where the tensor "
-    "would have eigenvalues of zero or below.")
-      .choices({"linear", "weighted", "positive"});
+    "would have eigenvalues of zero or below.");
   s("mask", p.mask, "Field beside the images that is above 0 where tensors are wanted.");
   s("min_signal", p.min_signal, "No tensor where the mean signal without gradient is below this.").unit("@field");
   s("name", p.name, "Name of the tensor field.");
@@ -112,9 +110,6 @@ DatasetPtr tensor_fit(const DatasetPtr& in, const TensorFitParams& p, Context& c
   const Images images = images_of(*in, p, gradients.size());
   turn_to_world(gradients, *in, p.frame);
   const DiffusionModel model(gradients);
-  const DiffusionFit method = p.method == "linear"     ? DiffusionFit::linear
-                              : p.method == "weighted" ? DiffusionFit::weighted
-                                                       : DiffusionFit::positive;
   Array mask;
   if (!p.mask.empty()) mask = in->fields().require(p.mask.name, images.association).array;
   const size_t n = images.count(), volumes = gradients.size();
@@ -128,7 +123,7 @@ DatasetPtr tensor_fit(const DatasetPtr& in, const TensorFitParams& p, Context& c
         for (size_t i = begin; i < end; ++i) {
           for (size_t v = 0; v < volumes; ++v) signal[v] = images.arrays[v].get(i);
           DiffusionResult f;
-          if ((mask.empty() || mask.get(i) > 0) && wanted(signal, gradients, p)) f = own.fit(signal, method);
+          if ((mask.empty() || mask.get(i) > 0) && wanted(signal, gradients, p)) f = own.fit(signal, p.method);
           c.none += std::isnan(f.s0), c.raised += f.raised;
           const Eigen3 e = eigen_of(f.d);
           c.negative += e.value[2] < -1e-9 * std::abs(e.value[0]);

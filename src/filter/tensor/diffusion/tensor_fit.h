@@ -4,6 +4,8 @@
 #include "base/context.h"
 #include "base/schema/schema.h"
 #include "data/dataset.h"
+#include "filter/tensor/diffusion/diffusion_model.h"
+#include "filter/tensor/diffusion/gradient_table.h"
 
 namespace sg {
 
@@ -11,9 +13,9 @@ struct TensorFitParams {
   FieldName field;
   std::vector<std::string> fields;
   std::string bvals, bvecs;
-  std::string frame = "fsl";
+  GradientFrame frame = GradientFrame::fsl;
   double b0 = 50;
-  std::string method = "weighted";
+  DiffusionFit method = DiffusionFit::weighted;
   FieldName mask;
   std::optional<double> min_signal;
   std::string name = "tensor";

@@ -10,8 +10,6 @@ namespace sg {
 
 namespace {
 
-constexpr const char* shape_names[] = {"ellipsoid", "cuboid", "cylinder", "superquadric", "reynolds", "hwy"};
-
 struct Axes {
   Vec3 x, y, z;    // right-handed; z is the axis of symmetry
   double a, b, c;  // half lengths along them
@@ -46,12 +44,6 @@ double power(double x, double p) { return x < 0 ? -std::pow(-x, p) : std::pow(x,
 Vec3 combine(const Axes& a, double x, double y, double z) { return a.x * x + a.y * y + a.z * z; }
 
 }  // namespace
-
-TensorShape tensor_shape(const std::string& name) {
-  for (int i = 0; i < 6; ++i)
-    if (name == shape_names[i]) return TensorShape(i);
-  fail_internal("no tensor glyph is called " + name);
-}
 
 GlyphPattern::GlyphPattern(TensorShape shape, int resolution, double gamma, double min_ratio)
     : shape_(shape), rows_(std::max(resolution, 2)), gamma_(gamma), min_ratio_(min_ratio) {

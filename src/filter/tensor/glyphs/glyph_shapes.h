@@ -3,16 +3,19 @@
 #pragma once
 #include <array>
 #include <cstdint>
-#include <string>
 #include <vector>
 
+#include "base/schema/enum_words.h"
 #include "filter/tensor/sym_tensor.h"
 
 namespace sg {
 
 enum class TensorShape : uint8_t { ellipsoid, cuboid, cylinder, superquadric, reynolds, hwy };
-/// Throws an internal Error for a word that is none of them.
-TensorShape tensor_shape(const std::string& name);
+constexpr auto enum_words(TensorShape) {
+  using enum TensorShape;
+  return std::array{Word{"ellipsoid", ellipsoid},       Word{"cuboid", cuboid},     Word{"cylinder", cylinder},
+                    Word{"superquadric", superquadric}, Word{"reynolds", reynolds}, Word{"hwy", hwy}};
+}
 
 /// One vertex: place and normal in space relative to the tensor's place, and the direction whose n.s.n colours it.
 struct GlyphVertex {

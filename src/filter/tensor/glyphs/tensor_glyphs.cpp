@@ -218,19 +218,19 @@ std::vector<double> factors(const Chosen& c, TensorShape shape, const TensorGlyp
   std::vector<double> sorted = m;
   std::sort(sorted.begin(), sorted.end());
   const double most = sorted.back(), median = sorted[sorted.size() / 2], half = p.size * c.spacing / 2;
-  std::string scale = p.scale;
   double longest = most;  // larger ones are drawn as if they were that large
-  if (scale == "auto") {
-    scale = most > (c.with_negative == 0 ? 5 : 2.5) * median ? "log" : "eigenvalues";
-    if (scale == "eigenvalues" && c.with_negative == 0) longest = std::min(most, 1.6 * median);
-    ctx.info(fmt::format("tensor_glyphs: scale={}; the largest eigenvalue is {:.3g} times the median{}", scale, most / median,
+  const bool wide = most > (c.with_negative == 0 ? 5 : 2.5) * median;
+  const TensorScale scale = p.scale.value_or(wide ? TensorScale::log : TensorScale::eigenvalues);
+  if (!p.scale) {
+    if (scale == TensorScale::eigenvalues && c.with_negative == 0) longest = std::min(most, 1.6 * median);
+    ctx.info(fmt::format("tensor_glyphs: scale={}; the largest eigenvalue is {:.3g} times the median{}", word_of(scale), most / median,
                          longest < most ? "; those above 1.6 times it are drawn as that" : ""));
   }
   const double low = median > 0 ? median / 50 : most;
   for (size_t i = 0; i < m.size(); ++i) {
     if (!(m[i] > 0)) f[i] = 0;
-    else if (scale == "eigenvalues") f[i] = half / std::max(m[i], longest);
-    else if (scale == "normalized") f[i] = half / m[i];
+    else if (scale == TensorScale::eigenvalues) f[i] = half / std::max(m[i], longest);
+    else if (scale == TensorScale::normalized) f[i] = half / m[i];
     else f[i] = half * std::log1p(m[i] / low) / std::log1p(most / low) / m[i];
   }
   return f;
@@ -308,8 +308,7 @@ Array repeated(const Chosen& c, size_t nv, int components, F&& f) {
 void describe(Schema& s, TensorGlyphsParams& p) {
   describe_tensors(s, p.tensors);
   s("shape", p.shape,
-    "Surface for a tensor: half axes by the eigenvalues, or lobes by the normal (reynolds) or shear stress (hwy) across each direction.")
-      .choices({"ellipsoid", "cuboid", "cylinder", "superquadric", "reynolds", "hwy"});
+    "Surface for a tensor: half axes by the eigenvalues, or lobes by the normal (reynolds) or shear stress (hwy) across each direction.");
   s("gamma", p.gamma, "Sharpness of the edges of superquadrics; 0: ellipsoids.").at_least(0);
   s("min_ratio", p.min_ratio, "Half axes below this share of the longest count as that, so that thin ones are seen; not for lobes.")
       .range(0, 1);
@@ -319,8 +318,7 @@ void describe(Schema& s, TensorGlyphsParams& p) {
   s("min_fa", p.min_fa, "No glyphs where the fractional anisotropy is below this.").range(0, 10);
   s("scale", p.scale,
     "Sizes by the eigenvalues, by their logarithm, or normalized (all alike large); auto: log where the largest is more than 5 times the "
-    "median (with negative ones 2.5 times), else eigenvalues, of positive tensors up to 1.6 times the median.")
-      .choices({"auto", "eigenvalues", "log", "normalized"});
+    "median (with negative ones 2.5 times), else eigenvalues, of positive tensors up to 1.6 times the median.");
   s("size", p.size, "Length of the longest glyph as a share of the distance between glyphs.").positive();
   s("factor", p.factor, "Half axis = absolute eigenvalue times this, in place of scale and size.").positive();
   s("color", p.color,
@@ -332,7 +330,7 @@ void describe(Schema& s, TensorGlyphsParams& p) {
 
 DatasetPtr tensor_glyphs(const DatasetPtr& in, const TensorGlyphsParams& p, Context& ctx) {
   const TensorField t = read_tensors(*in, p.tensors, "tensor_glyphs", ctx);
-  const TensorShape shape = tensor_shape(p.shape);
+  const TensorShape shape = p.shape;
   const bool lobes = shape == TensorShape::reynolds || shape == TensorShape::hwy, shear = shape == TensorShape::hwy;
   std::string color = p.color;
   const bool named = color != "auto" && color != "direction" && color != "FA" && color != "sign" && color != "none";

@@ -1,20 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tensor glyphs as surfaces.
 #pragma once
+#include "filter/tensor/glyphs/glyph_shapes.h"
 #include "filter/tensor/tensor_field.h"
 
 namespace sg {
 
+/// What sizes show.
+enum class TensorScale { eigenvalues, log, normalized };
+constexpr auto enum_words(TensorScale) {
+  using enum TensorScale;
+  return std::array{Word{"eigenvalues", eigenvalues}, Word{"log", log}, Word{"normalized", normalized}};
+}
+
 struct TensorGlyphsParams {
   TensorSource tensors;
-  std::string shape = "superquadric";
+  TensorShape shape = TensorShape::superquadric;
   double gamma = 3;
   double min_ratio = 0.1;
   int64_t count = 0;
   int64_t stride = 0;
   FieldName mask;
   double min_fa = 0;
-  std::string scale = "auto";
+  std::optional<TensorScale> scale;
   double size = 1;
   std::optional<double> factor;
   std::string color = "auto";

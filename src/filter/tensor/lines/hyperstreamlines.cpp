@@ -59,11 +59,9 @@ void describe(Schema& s, HyperstreamlinesParams& p) {
   s("eigenvector", p.eigenvector, "Which eigenvector to follow; 1 belongs to the largest eigenvalue, 3 to the smallest.").range(1, 3);
   s("seeds", p.seeds, "Where lines begin: x,y,z,x,y,z,...; default: the points of a second input, else an even lattice.");
   s("count", p.count, "About how many seeds an even lattice in the box of the data has.").range(1, 1e7);
-  s("direction", p.direction, "The way from a seed; the sign of an eigenvector is a convention (largest component positive).")
-      .choices({"both", "forward", "backward"});
+  s("direction", p.direction, "The way from a seed; the sign of an eigenvector is a convention (largest component positive).");
   s("section", p.section,
-    "What is drawn around the line: an ellipse or a cross whose half axes are the other two eigenvalues, or the line alone.")
-      .choices({"ellipse", "cross", "line"});
+    "What is drawn around the line: an ellipse or a cross whose half axes are the other two eigenvalues, or the line alone.");
   s("factor", p.factor, "Half axis of the section = absolute eigenvalue times this; default: from the values and the size of the data.")
       .positive();
   s("max_radius", p.max_radius, "Larger sections are scaled down to this, ratio kept; default: 3 % of the diagonal of the data.")
@@ -79,8 +77,7 @@ void describe(Schema& s, HyperstreamlinesParams& p) {
   s("min_gap", p.min_gap, "A line ends where its eigenvalue is closer to the next one than this share of the largest absolute eigenvalue.")
       .range(0, 1);
   s("min_eigenvalue", p.min_eigenvalue, "A line ends where the absolute value of its eigenvalue is below this.").at_least(0);
-  s("interpolation", p.interpolation, "Between the points: components of the tensor, or its logarithm (positive tensors only).")
-      .choices({"components", "log"});
+  s("interpolation", p.interpolation, "Between the points: components of the tensor, or its logarithm (positive tensors only).");
   s("fields", p.fields, "Fields of the input to carry along the lines; default: all but the tensors.");
 }
 
@@ -92,9 +89,7 @@ DatasetPtr hyperstreamlines(const DatasetPtr& in, const DatasetPtr& second, cons
   const double diagonal = in->bounds().diagonal();
   TensorLineOptions o;
   o.eigenvector = p.eigenvector - 1;
-  o.direction = p.direction == "both"      ? TensorLineOptions::Direction::both
-                : p.direction == "forward" ? TensorLineOptions::Direction::forward
-                                           : TensorLineOptions::Direction::backward;
+  o.direction = p.direction;
   o.step = p.step, o.max_length = p.max_length.value_or(4 * diagonal), o.max_steps = p.max_steps;
   o.min_gap = p.min_gap, o.min_eigenvalue = p.min_eigenvalue;
   const TensorLines lines = trace_tensor_lines(sampler, seeds, o, ctx);
@@ -106,13 +101,13 @@ DatasetPtr hyperstreamlines(const DatasetPtr& in, const DatasetPtr& second, cons
   size_t repeat = 1;
   std::vector<int64_t> line_of_cell;
   Array normals;
-  if (p.section == "line") {
+  if (p.section == TensorSection::line) {
     parts.mesh = lines_as_mesh(lines);
     for (size_t l = 0; l < lines.lines(); ++l)
       if (lines.begin[l + 1] - lines.begin[l] > 1) line_of_cell.push_back(int64_t(l));
   } else {
     SectionOptions s;
-    s.shape = p.section == "cross" ? SectionOptions::Shape::cross : SectionOptions::Shape::ellipse;
+    s.shape = p.section == TensorSection::cross ? SectionOptions::Shape::cross : SectionOptions::Shape::ellipse;
     const double usual = usual_half_axis(lines, o.eigenvector);
     s.factor = p.factor.value_or(usual > 0 ? 0.012 * diagonal / usual : 1);
     s.max_radius = p.max_radius.value_or(0.03 * diagonal);

@@ -1,17 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 // Hyperstreamlines: lines along one eigenvector whose section shows the other two (Delmarcelle, Hesselink 1993).
 #pragma once
+#include "filter/tensor/lines/tensor_lines.h"
 #include "filter/tensor/tensor_field.h"
+#include "filter/tensor/tensor_interpolation.h"
 
 namespace sg {
+
+/// What is drawn around a line.
+enum class TensorSection { ellipse, cross, line };
+constexpr auto enum_words(TensorSection) {
+  using enum TensorSection;
+  return std::array{Word{"ellipse", ellipse}, Word{"cross", cross}, Word{"line", line}};
+}
 
 struct HyperstreamlinesParams {
   TensorSource tensors;
   int eigenvector = 1;
   std::vector<double> seeds;
   int64_t count = 64;
-  std::string direction = "both";
-  std::string section = "ellipse";
+  LineDirection direction = LineDirection::both;
+  TensorSection section = TensorSection::ellipse;
   std::optional<double> factor, max_radius, min_radius;
   int sides = 16;
   double step = 0.25;
@@ -19,7 +28,7 @@ struct HyperstreamlinesParams {
   int64_t max_steps = 10000;
   double min_gap = 1e-5;
   double min_eigenvalue = 0;
-  std::string interpolation = "components";
+  TensorInterpolation interpolation = TensorInterpolation::components;
   std::vector<std::string> fields;
 };
 void describe(Schema& s, HyperstreamlinesParams& p);

@@ -25,8 +25,7 @@ void describe(Schema& s, TensorLicParams& p) {
     "Anisotropy |a - b| / (|a| + |b|) of the two eigenvalues in the surface from which on the texture is full; it fades below, where the "
     "direction means little. 0: full everywhere.")
       .range(0, 1);
-  s("isotropic", p.isotropic, "What it fades to: noise (lines get shorter, down to grains) or gray (no contrast).")
-      .choices({"noise", "gray"});
+  s("isotropic", p.isotropic, "What it fades to: noise (lines get shorter, down to grains) or gray (no contrast).");
   s("seed", p.seed, "Number of the noise.");
 }
 
@@ -34,7 +33,7 @@ namespace {
 
 /// What is no tensor of this surface is refused before work is done; the name of the field.
 std::string accepted(const Dataset& surface, const TensorSource& source, Context& ctx) {
-  if (const Field* f = find_tensors(surface, source.field); f && f->role == Role::vectors && source.order == "auto")
+  if (const Field* f = find_tensors(surface, source.field); f && f->role == Role::vectors && !source.order)
     fail_usage(fmt::format("field '{}' holds vectors, not tensors", f->name), "tensor_lic",
                "surface_lic follows vectors; order=plane takes three components as a tensor in the xy-plane");
   const TensorField t = read_tensors(surface, source, "tensor_lic", ctx);
@@ -82,7 +81,7 @@ DatasetPtr tensor_lic(const DatasetPtr& in, const TensorLicParams& p, Context& c
     for (SymTensor& d : t.d) d = d * -1.0;
   const SurfaceAxisWalk walk(r, t.d, per_triangle, longest_piece(r, p.step));
   const SurfaceConvolution lines{p.steps, p.step, p.kernel, p.stretch, p.seed};
-  const bool gray = p.isotropic == "gray";
+  const bool gray = p.isotropic == IsotropicLook::gray;
   Array lic = convolve_surface(r, walk, lines, gray ? std::span<const float>() : std::span<const float>(part), ctx);
   if (gray) {
     const View<float> v = lic.view<float>();

@@ -6,6 +6,13 @@
 
 namespace sg {
 
+/// What the texture fades to where tensors have no direction.
+enum class IsotropicLook { noise, gray };
+constexpr auto enum_words(IsotropicLook) {
+  using enum IsotropicLook;
+  return std::array{Word{"noise", noise}, Word{"gray", gray}};
+}
+
 struct TensorLicParams {
   TensorSource tensors;
   int eigenvector = 1;
@@ -15,7 +22,7 @@ struct TensorLicParams {
   LineFade kernel = LineFade::hann;
   bool stretch = true;
   double fade = 0.05;
-  std::string isotropic = "noise";
+  IsotropicLook isotropic = IsotropicLook::noise;
   int64_t seed = 1;
 };
 void describe(Schema& s, TensorLicParams& p);

@@ -123,9 +123,9 @@ Line trace_one(TensorCursor& cursor, Vec3 seed, const TensorLineOptions& o, int 
   l.seed = seed;
   if (!cursor.eigen(seed, l.eigen) || refused(l.eigen, o, dimension)) return l;
   l.there = true;
-  if (o.direction != TensorLineOptions::Direction::backward) l.front = trace_half(cursor, seed, l.eigen, 1, o, dimension);
+  if (o.direction != LineDirection::backward) l.front = trace_half(cursor, seed, l.eigen, 1, o, dimension);
   const bool closed = l.front.stop == TensorStop::closed;
-  if (o.direction != TensorLineOptions::Direction::forward && !closed) l.back = trace_half(cursor, seed, l.eigen, -1, o, dimension);
+  if (o.direction != LineDirection::forward && !closed) l.back = trace_half(cursor, seed, l.eigen, -1, o, dimension);
   return l;
 }
 

@@ -12,9 +12,15 @@ enum class TensorStop : uint8_t { outside, length, steps, degenerate, eigenvalue
 /// "outside", "length", ...
 std::string_view tensor_stop_name(TensorStop s);
 
+enum class LineDirection : uint8_t { both, forward, backward };
+constexpr auto enum_words(LineDirection) {
+  using enum LineDirection;
+  return std::array{Word{"both", both}, Word{"forward", forward}, Word{"backward", backward}};
+}
+
 struct TensorLineOptions {
   int eigenvector = 0;  ///< 0 belongs to the largest eigenvalue
-  enum class Direction : uint8_t { forward, backward, both } direction = Direction::both;
+  LineDirection direction = LineDirection::both;
   double step = 0.25;         ///< in cell lengths
   double max_length = 1e300;  ///< of each of the two halves
   int64_t max_steps = 10000;  ///< of each half

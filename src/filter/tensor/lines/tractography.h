@@ -2,6 +2,7 @@
 // Tractography: paths of nerve fibres along the main direction of diffusion (deterministic; Basser et al. 2000, Mori et al. 1999).
 #pragma once
 #include "filter/tensor/tensor_field.h"
+#include "filter/tensor/tensor_interpolation.h"
 
 namespace sg {
 
@@ -16,7 +17,7 @@ struct TractographyParams {
   double step = 0.25;
   double min_length = 0;
   std::optional<double> max_length;
-  std::string interpolation = "components";
+  TensorInterpolation interpolation = TensorInterpolation::components;
 };
 void describe(Schema& s, TractographyParams& p);
 

@@ -8,6 +8,7 @@
 #include "base/random.h"
 #include "filter/flow/eigen_general.h"
 #include "filter/flow/flow_support.h"
+#include "support/params.h"
 #include "support/test.h"
 
 using namespace sg;
@@ -85,7 +86,8 @@ TEST_CASE("vortex measures: the curl of the ABC flow is the flow itself, with or
   double last = 0;
   for (const size_t n : {17, 33, 65}) {
     Context context;
-    const DatasetPtr d = vortex_measures(abc_grid(n), {{}, {"vorticity", "divergence", "normalized_helicity"}}, context);
+    const DatasetPtr d = vortex_measures(
+        abc_grid(n), {{}, {VortexMeasure::vorticity, VortexMeasure::divergence, VortexMeasure::normalized_helicity}}, context);
     const Field &w = d->fields().require("vorticity"), &u = d->fields().require("velocity");
     double worst = 0;
     for (size_t i = 0; i < d->point_count(); ++i)
@@ -107,5 +109,5 @@ TEST_CASE("vortex measures: the same bytes for any number of threads; unknown wo
     const Array &a = one->fields().require(name).array, &b = many->fields().require(name).array;
     CHECK(std::memcmp(a.raw(), b.raw(), a.bytes()) == 0);
   }
-  CHECK(test::error_of([&] { vortex_measures(in, {{}, {"lambda_2"}}, context); }).find("lambda2") != std::string::npos);
+  CHECK(test::error_of([&] { test::params_of<VortexMeasuresParams>({"measures=lambda_2"}); }).find("lambda2") != std::string::npos);
 }

@@ -90,7 +90,7 @@ DatasetPtr bent_mesh(const std::string& kind, int n, double bend, Random& random
 // A random shape or the values of the points.
 ClipParams random_cut(Random& random, int n) {
   ClipParams p;
-  p.keep = "both";
+  p.keep = ClipSide::both;
   const auto place = [&] { return Vec3(random.in(0, n), random.in(0, n), random.in(0, n)); };
   const Vec3 o = place(), d(random.in(-1, 1), random.in(-1, 1), random.in(0.1, 1));
   switch (random.whole(0, 3)) {
@@ -115,7 +115,7 @@ TEST_CASE("clip: a pyramid with a bent base keeps its volume") {
   for (const Vec3 normal : {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(1, 2, 0.5)})
     for (const double at : {0.21, 0.35, 0.5, 0.66}) {
       ClipParams p;
-      p.origin = normal * (at / dot(normal, normal) * (normal.x + normal.y + normal.z)), p.normal = normal, p.keep = "both";
+      p.origin = normal * (at / dot(normal, normal) * (normal.x + normal.y + normal.z)), p.normal = normal, p.keep = ClipSide::both;
       const Data both = clip(pyramid, p, ctx);
       CHECK(std::fabs(volume(part(both, 0)) + volume(part(both, 1)) - whole) < 1e-12 * whole);
     }
@@ -166,7 +166,7 @@ TEST_CASE("clip: parts of curved cells come as near to the whole as the toleranc
   for (const double tolerance : {1e-1, 1e-2, 1e-3, 1e-4}) {
     CAPTURE(tolerance);
     ClipParams p;
-    p.normal = {1, 0.3, 0.2}, p.keep = "both", p.tolerance = tolerance;
+    p.normal = {1, 0.3, 0.2}, p.keep = ClipSide::both, p.tolerance = tolerance;
     const Data both = clip(curved, p, ctx);
     const double error = std::fabs(volume(part(both, 0)) + volume(part(both, 1)) - whole) / whole;
     CHECK(error < 4 * tolerance);

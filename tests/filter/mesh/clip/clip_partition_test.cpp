@@ -41,7 +41,7 @@ struct Misses {
 };
 Misses misses(const DatasetPtr& d, ClipParams p) {
   Context ctx;
-  p.keep = "both";
+  p.keep = ClipSide::both;
   const auto both = std::get<CollectionPtr>(clip(d, p, ctx));
   const size_t n = d->cell_count();
   const std::vector<double> whole = volumes(d, n, false), in = volumes(std::get<DatasetPtr>(both->parts[0].data), n, true),
@@ -276,7 +276,7 @@ TEST_CASE("clip: a box cuts surfaces that lie in its faces, curved cells, AMR an
   CHECK(misses(meshes::solid_box(CellType::hexahedron, 3), p).sum < 1e-12);
   PointCloud cloud{{Array::from_vector(std::vector<double>{0.1, 0, 0, 0.1, 0.5, 1, 0.3, 0.2, 0.5, 0.3, 0.6, 0.5, 0.09, 0.2, 0.2}, 3), {}}};
   CHECK(std::get<DatasetPtr>(clip(make_dataset(cloud), p, ctx))->point_count() == 3);
-  p.keep = "outside";
+  p.keep = ClipSide::outside;
   CHECK(std::get<DatasetPtr>(clip(make_dataset(cloud), p, ctx))->point_count() == 2);
   // Hidden cells stay out, and fields, names and points of both parts are those of the input.
   const DatasetPtr grid = to_unstructured(meshes::uniform_box(5, 5, 5), {}, ctx);

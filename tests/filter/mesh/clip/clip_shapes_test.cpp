@@ -51,7 +51,7 @@ TEST_CASE("property: clips by small curved shapes leave no piece inside out, and
     else if (shape == 1)
       p.quadric = {random.in(0, 4), 1, random.in(-1, 4), random.in(-1, 1), 0, 0, center.x, center.y, 0, -radius * radius};
     else p.cylinder = {center.x, center.y, center.z, random.in(-1, 1), random.in(-1, 1), random.in(-1, 1), radius};
-    p.keep = "both";
+    p.keep = ClipSide::both;
     DatasetPtr whole = d;
     if (random.chance(0.2)) {  // the same by values at the points alone
       p.sphere.clear(), p.cylinder.clear(), p.quadric.clear();

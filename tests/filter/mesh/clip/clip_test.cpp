@@ -35,7 +35,7 @@ double measure(const DatasetPtr& d) {
 
 std::pair<DatasetPtr, DatasetPtr> halves(const DatasetPtr& d, ClipParams p) {
   Context ctx;
-  p.keep = "both";
+  p.keep = ClipSide::both;
   const auto c = std::get<CollectionPtr>(clip(d, p, ctx));
   REQUIRE(c->parts.size() == 2);
   return {std::get<DatasetPtr>(c->parts[0].data), std::get<DatasetPtr>(c->parts[1].data)};
@@ -130,7 +130,7 @@ TEST_CASE("clip: pieces share their faces with whole cells and with each other")
       CAPTURE(kind);
       ClipParams p;
       p.value = 0.0;
-      for (const char* keep : {"inside", "outside"}) {
+      for (const ClipSide keep : {ClipSide::inside, ClipSide::outside}) {
         p.keep = keep;
         check_joined(std::get<DatasetPtr>(clip(solid_mesh(kind, 4, 1.0, f), p, ctx)), 0);
       }
@@ -152,7 +152,7 @@ TEST_CASE("clip: a sphere's volume converges with order 2 on every mesh, its poi
   }
   CHECK(std::log2(error[0] / error[1]) > 1.8);
   CHECK(std::log2(error[0] / error[1]) < 2.2);
-  p.keep = "both";
+  p.keep = ClipSide::both;
   for (const std::string& kind : solid_kinds()) {
     const DatasetPtr mesh = solid_mesh(kind, 5, 1.0, [](Vec3 x) { return x.x; });
     const auto [in, out] = halves(mesh, p);
@@ -222,7 +222,7 @@ TEST_CASE("clip: concave polygons by a plane, curved cells, AMR, a closed mesh, 
   u.points.xyz = Array::from_vector(std::vector<double>{0, 0, 0, 3, 0, 0, 3, 3, 0, 2, 3, 0, 2, 1, 0, 1, 1, 0, 1, 3, 0, 0, 3, 0}, 3);
   u.polygons = {Array::from_vector(std::vector<int32_t>{0, 1, 2, 3, 4, 5, 6, 7}), {}, 8};
   ClipParams p;
-  p.axis = "y", p.position = 2;
+  p.axis = CutAxis::y, p.position = 2;
   const auto [below, above] = halves(make_dataset(u), p);
   CHECK(above->cell_count() == 2);
   CHECK(measure(above) == doctest::Approx(2));
@@ -350,14 +350,14 @@ TEST_CASE("slice: three planes in one word, and several along an axis") {
   Context ctx;
   const DatasetPtr box = box_lattice(0, 9, [](Vec3 x) { return x.x; });
   SliceParams p;
-  p.planes = "xyz";
+  p.planes = CutPlanes::xyz;
   const DatasetPtr three = slice(box, p, ctx);
   CHECK(measure(three) == doctest::Approx(12).epsilon(1e-12));
   CHECK(three->range(three->fields().require("plane")).hi == 2);
   p = {};
-  p.axis = "z", p.positions = {-0.5, 0.1, 0.2, 5};
+  p.axis = CutAxis::z, p.positions = {-0.5, 0.1, 0.2, 5};
   CHECK(measure(slice(box, p, ctx)) == doctest::Approx(12).epsilon(1e-12));
-  p.axis = "none";
+  p.axis = CutAxis::none;
   CHECK(error_of([&] { slice(box, p, ctx); }).find("need an axis") != std::string::npos);
 }
 
@@ -412,7 +412,7 @@ TEST_CASE("clip: tetrahedra, alone or among other cells, and rows of a lattice a
   p.value = 0.0;
   for (const DatasetPtr& d :
        {solid_mesh("tetra", 14, 1.0, [](Vec3 x) { return noise(x); }), box_lattice(1, 70, [](Vec3 x) { return noise(x); })})
-    for (const char* keep : {"inside", "outside"}) {
+    for (const ClipSide keep : {ClipSide::inside, ClipSide::outside}) {
       p.keep = keep;
       set_thread_count(1);
       const DatasetPtr a = std::get<DatasetPtr>(clip(d, p, ctx));

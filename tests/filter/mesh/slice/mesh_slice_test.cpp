@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "filter/mesh/mesh_meshes.h"
+#include "support/params.h"
 #include "support/test.h"
 
 using namespace sg;
@@ -130,10 +131,10 @@ TEST_CASE("slice: a non-convex polyhedron gives several polygons of the right ar
   m.faces = {Array::from_vector(faces), Array::from_vector(offsets), 0};
   const DatasetPtr d = make_dataset(m);
   Context ctx;
-  const DatasetPtr two = slice(d, {.axis = "y", .position = 2}, ctx);
+  const DatasetPtr two = slice(d, {.axis = CutAxis::y, .position = 2}, ctx);
   CHECK(two->cell_count() == 2);
   CHECK(measure(surface(two)).vector_area.y == doctest::Approx(2));
-  const DatasetPtr whole = slice(d, {.axis = "z", .position = 0.25}, ctx);
+  const DatasetPtr whole = slice(d, {.axis = CutAxis::z, .position = 0.25}, ctx);
   CHECK(whole->cell_count() == 1);
   CHECK(measure(surface(whole)).area == doctest::Approx(9));
   CHECK(measure(surface(slice(d, {.origin = Vec3(2.5, 2, 0.5), .normal = {0, 1, 0.1}}, ctx))).area == doctest::Approx(2 * std::sqrt(1.01)));
@@ -198,7 +199,7 @@ TEST_CASE("slice: flat cells give lines, curves give vertices") {
   CHECK(total == doctest::Approx(0.6 * std::sqrt(2.0)));
   CHECK(linear_error(*flat, surface(flat).points) < 1e-6);
   CHECK(flat->fields().require("original_cell").array.count() == flat->cell_count());
-  const DatasetPtr dots = slice(uniform_box(5, 0, 0), {.axis = "x"}, ctx);
+  const DatasetPtr dots = slice(uniform_box(5, 0, 0), {.axis = CutAxis::x}, ctx);
   CHECK(surface(dots).vertices.size() == 1);
   CHECK(surface(dots).points.at(0).x == doctest::Approx(0.5));
   SurfaceMesh s;
@@ -206,7 +207,7 @@ TEST_CASE("slice: flat cells give lines, curves give vertices") {
   s.lines = {Array::from_vector(std::vector<int32_t>{0, 4, 3}), {}, 3};
   s.polygons = {Array::from_vector(std::vector<int32_t>{0, 1, 2, 3}), {}, 4};
   s.strips = {Array::from_vector(std::vector<int32_t>{1, 4, 2, 5}), {}, 4};
-  const DatasetPtr mixed = slice(make_dataset(s), {.axis = "y", .position = 0.5}, ctx);
+  const DatasetPtr mixed = slice(make_dataset(s), {.axis = CutAxis::y, .position = 0.5}, ctx);
   CHECK(surface(mixed).vertices.size() == 1);
   CHECK(surface(mixed).lines.size() == 3);
 }
@@ -232,7 +233,7 @@ TEST_CASE("slice: AMR leaves are cut once, ghost cells never") {
     const DatasetPtr cut = slice(amr, {.origin = plane.origin, .normal = plane.normal}, ctx);
     CHECK(std::abs(measure(surface(cut)).area - plane.area) < 1e-12);
   }
-  const DatasetPtr middle = slice(amr, {.axis = "z", .position = 0.4}, ctx);
+  const DatasetPtr middle = slice(amr, {.axis = CutAxis::z, .position = 0.4}, ctx);
   CHECK(middle->cell_count() == 12 + 16);
   CHECK(middle->fields().require("original_cell").array.get(27) >= 64);
 
@@ -266,7 +267,7 @@ TEST_CASE("slice: a plane beside the mesh gives an empty surface with its fields
   Context ctx;
   std::string note;
   ctx.on_log = [&](LogLevel, std::string_view t) { note = t; };
-  const DatasetPtr cut = slice(uniform_box(2, 2, 2), {.axis = "z", .position = 7}, ctx);
+  const DatasetPtr cut = slice(uniform_box(2, 2, 2), {.axis = CutAxis::z, .position = 7}, ctx);
   CHECK(cut->cell_count() == 0);
   CHECK(cut->fields().find("f", Association::point) != nullptr);
   CHECK(cut->fields().find("c", Association::cell) != nullptr);
@@ -281,8 +282,8 @@ TEST_CASE("slice: mistakes say what would be right") {
   CHECK(error_of([&] { slice(box, {.normal = {0, 0, 0}}, ctx); }).find("normal is zero") != std::string::npos);
   CHECK(error_of([&] { slice(box, {.normal = {NAN, 0, 0}}, ctx); }).find("not finite") != std::string::npos);
   CHECK(error_of([&] { slice(box, {.position = 1}, ctx); }).find("position needs an axis") != std::string::npos);
-  CHECK(error_of([&] { slice(box, {.origin = Vec3(), .axis = "x"}, ctx); }).find("twice") != std::string::npos);
-  CHECK(error_of([&] { slice(box, {.axis = "w"}, ctx); }).find("no axis") != std::string::npos);
+  CHECK(error_of([&] { slice(box, {.origin = Vec3(), .axis = CutAxis::x}, ctx); }).find("twice") != std::string::npos);
+  CHECK(error_of([&] { test::params_of<SliceParams>({"axis=w"}); }).find("x, y") != std::string::npos);
   const DatasetPtr cloud = make_dataset(PointCloud{{Array::from_vector(std::vector<float>(3), 3), {}}});
   CHECK(error_of([&] { slice(cloud, {}, ctx); }).find("point cloud") != std::string::npos);
 }

@@ -147,7 +147,7 @@ TEST_CASE("clip: AMR inside and outside a box have its volume and the rest, wher
         REQUIRE(in->fields().require("f").array.get(i) == doctest::Approx(1 + 2 * x.x - x.y + 3 * x.z).epsilon(1e-9));
       }
       ClipParams q = p;
-      q.keep = "outside";
+      q.keep = ClipSide::outside;
       CHECK(volume(std::get<DatasetPtr>(clip(d, q, context))) == doctest::Approx(8 - whole).epsilon(1e-9));
     }
   }

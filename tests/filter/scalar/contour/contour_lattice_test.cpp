@@ -4,6 +4,7 @@
 #include "base/random.h"
 #include "filter/scalar/contour/contour_support.h"
 #include "filter/scalar/contour/known_surfaces.h"
+#include "support/params.h"
 
 using namespace sg;
 using namespace sg::test;
@@ -137,24 +138,24 @@ TEST_CASE("contour: counts, Euler numbers and closedness are the same on all kin
 
 TEST_CASE("contour: tunnels, deciders and ties come out the same on all kinds of grids") {
   for (const char* kind : kinds) {
-    auto surface = [&](std::vector<double> v, std::array<size_t, 3> n, const char* topology) {
+    auto surface = [&](std::vector<double> v, std::array<size_t, 3> n, ContourTopology topology) {
       ContourParams p;
       p.values = {0};
       p.topology = topology;
       return Surface(run(as_kind(grid_of<double>(n, std::move(v)), kind), p));
     };
-    const Surface tunnel = surface({9, -1, -1, -1, -1, -1, -1, 9}, {2, 2, 2}, "trilinear");
+    const Surface tunnel = surface({9, -1, -1, -1, -1, -1, -1, 9}, {2, 2, 2}, ContourTopology::trilinear);
     CHECK(tunnel.euler() == 0);
     CHECK(tunnel.components() == 1);
-    const Surface discs = surface({1, -1, -1, -1, -1, -1, -1, 1}, {2, 2, 2}, "trilinear");
+    const Surface discs = surface({1, -1, -1, -1, -1, -1, -1, 1}, {2, 2, 2}, ContourTopology::trilinear);
     CHECK(discs.euler() == 2);
     CHECK(discs.components() == 2);
-    CHECK(surface({9, -1, -1, -1, -1, -1, -1, 9}, {2, 2, 2}, "fixed").components() == 2);
-    CHECK(surface({3, -1, -1, 3, -1, -1, -1, -1}, {2, 2, 2}, "trilinear").components() == 1);
-    CHECK(surface({3, -1, -1, 3, -1, -1, -1, -1}, {2, 2, 2}, "fixed").components() == 2);
-    CHECK(surface({1, -3, -3, 1, -1, -1, -1, -1}, {2, 2, 2}, "trilinear").components() == 2);
+    CHECK(surface({9, -1, -1, -1, -1, -1, -1, 9}, {2, 2, 2}, ContourTopology::fixed).components() == 2);
+    CHECK(surface({3, -1, -1, 3, -1, -1, -1, -1}, {2, 2, 2}, ContourTopology::trilinear).components() == 1);
+    CHECK(surface({3, -1, -1, 3, -1, -1, -1, -1}, {2, 2, 2}, ContourTopology::fixed).components() == 2);
+    CHECK(surface({1, -3, -3, 1, -1, -1, -1, -1}, {2, 2, 2}, ContourTopology::trilinear).components() == 2);
     const Box3 box{{0, 0, 0}, {1, 1, 2}};
-    CHECK(surface({13, -1, -1, -7, -1, 1, 7, -7, 15, -9, -3, -1}, {2, 2, 3}, "trilinear").faults(box) == 0);
+    CHECK(surface({13, -1, -1, -7, -1, 1, 7, -7, 15, -9, -3, -1}, {2, 2, 3}, ContourTopology::trilinear).faults(box) == 0);
   }
 }
 
@@ -319,9 +320,7 @@ TEST_CASE("contour: bad values, bad words and grids with nothing in them") {
     CHECK(error_of([&] { run(d, p); }).find("finite") != std::string::npos);
   }
   p.values = {0};
-  p.topology = "classic";
-  CHECK(error_of([&] { run(d, p); }).find("trilinear or fixed") != std::string::npos);
-  p.topology = "trilinear";
+  CHECK(error_of([&] { test::params_of<ContourParams>({"topology=classic"}); }).find("trilinear, fixed") != std::string::npos);
   p.values = {-7, 0, 9};  // two of three are out of range
   const auto c = run(d, p);
   CHECK(c->cell_count() == contour_at(d, 0)->cell_count());

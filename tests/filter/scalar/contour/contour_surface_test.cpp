@@ -140,13 +140,13 @@ TEST_CASE("contour: random closed grids are watertight, manifold and oriented") 
           if (j + 1 < n[1]) cut += in(i, j, k) != in(i, j + 1, k);
           if (k + 1 < n[2]) cut += in(i, j, k) != in(i, j, k + 1);
         }
-    for (const std::string topology : {"fixed", "trilinear"}) {
+    for (const ContourTopology topology : {ContourTopology::fixed, ContourTopology::trilinear}) {
       Context context;
       ContourParams params;
       params.values = {0};
       params.topology = topology;
       const Surface s(contour(grid_of(n, v), params, context));
-      if (topology == "fixed") CHECK(s.points.size() == cut);
+      if (topology == ContourTopology::fixed) CHECK(s.points.size() == cut);
       else CHECK(s.points.size() > cut);
       CHECK(s.faults() == 0);
       CHECK(s.every_point_used());

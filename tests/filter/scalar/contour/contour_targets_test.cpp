@@ -94,7 +94,7 @@ TEST_CASE("contour: the cells that bits alone count are counted as the table doe
     for (size_t c = 0; c < 8; ++c)
       if (p >> c & 1) v[4 * p + 1 + (c & 1) + 1024 * (1 + (c >> 1 & 1) + 4 * (1 + (c >> 2)))] = 1;
   const DatasetPtr d = test::grid_of<float>({1024, 4, 4}, v);
-  for (const char* topology : {"trilinear", "fixed"}) {
+  for (const ContourTopology topology : {ContourTopology::trilinear, ContourTopology::fixed}) {
     Context context;
     ContourParams p;
     p.values = {0.5};

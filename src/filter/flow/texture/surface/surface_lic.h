@@ -18,7 +18,7 @@ struct SurfaceLicParams {
   int64_t seed = 1;
 };
 inline void describe(Schema& s, SurfaceLicParams& p) {
-  s("field", p.field, "Vector field to follow, on points or cells; default: the active vectors.");
+  s("field", p.field, "Vector field to follow, on points or cells; default: the active vectors.").takes(fields::vectors);
   s("density", p.density,
     "Samples along the diagonal of the data's box: triangles are split until their edges are no longer than the diagonal divided by this; "
     "0 keeps the triangles of the mesh. Default: 400, or fewer where that would make more than 150 000 to 300 000 triangles.")

@@ -154,7 +154,7 @@ Reference reference(const DatasetPtr& data, std::array<size_t, 3> dims, Kernel k
 
 TEST_CASE("reconstruction: shares sum to 1 and their derivatives to 0 and are their slopes (V11)") {
   for (Kernel k : kernels) {
-    INFO(traits(k).name);
+    INFO(word_of(k));
     for (int i = 0; i <= 100; ++i) {
       const double f = i / 100.0, h = 1e-6, g = std::clamp(f, h, 1 - h);
       double w[most_taps], d[most_taps], lo[most_taps], hi[most_taps], sum = 0, change = 0;
@@ -192,7 +192,7 @@ TEST_CASE("reconstruction: BC splines keep straight lines just when B + 2C = 1, 
 
 TEST_CASE("reconstruction: traits tell which kernels interpolate and which keep straight lines") {
   for (Kernel k : kernels) {
-    INFO(traits(k).name);
+    INFO(word_of(k));
     const int taps = 2 * traits(k).radius, zero = traits(k).radius - 1;
     double w[most_taps];
     kernel_weights(k, 0, w);
@@ -201,7 +201,7 @@ TEST_CASE("reconstruction: traits tell which kernels interpolate and which keep 
     double first = 0;
     for (int j = 0; j < taps; ++j) first += w[j] * (j - zero);
     CHECK((std::abs(first - 0.3) < 1e-12) == traits(k).linear);
-    CHECK((kernel_of(traits(k).name, "test") == k));
+    CHECK((kernel_of(word_of(k), "test") == k));
   }
   CHECK_THROWS_WITH_AS(kernel_of("catmul_rom", "volume"), doctest::Contains("catmull_rom"), Error);
 }
@@ -227,7 +227,7 @@ TEST_CASE("reconstruction: errors on the signal of Marschner and Lobb are those 
                                                 {Kernel::mitchell, {0.0324, 0.0863}},
                                                 {Kernel::bspline_smooth, {0.0478, 0.0916}}};
   for (const auto& [k, truth] : expected) {
-    INFO(traits(k).name);
+    INFO(word_of(k));
     const Errors e = errors(*source(data, sampling(k)));
     CHECK(std::abs(e.rms / truth.rms - 1) < 0.03);
     CHECK(std::abs(e.most / truth.most - 1) < 0.03);
@@ -239,7 +239,7 @@ TEST_CASE("reconstruction: prints the table of errors of docs/reconstruction.md"
   std::printf("| kernel | RMS | largest |\n|---|---|---|\n");
   for (Kernel k : kernels) {
     const Errors e = errors(*source(data, sampling(k)), 120, 120);
-    std::printf("| %s | %.4f | %.4f |\n", std::string(traits(k).name).c_str(), e.rms, e.most);
+    std::printf("| %s | %.4f | %.4f |\n", std::string(word_of(k)).c_str(), e.rms, e.most);
   }
 }
 
@@ -249,7 +249,7 @@ TEST_CASE("reconstruction: every kernel's field along slanted rays is the sum ov
     const DatasetPtr data = noise(dims, type);
     const double range = type == ElementType::u8 ? 200 : 1;
     for (Kernel k : kernels) {
-      INFO(traits(k).name);
+      INFO(word_of(k));
       const auto s = source(data, sampling(k));
       const Reference truth = reference(data, dims, k);
       const Vec3 d = normalize(Vec3{0.9, 0.61, 0.73});
@@ -270,7 +270,7 @@ TEST_CASE("reconstruction: the integral along a ray is that of the field") {
   const std::array<size_t, 3> dims{12, 12, 12};
   const DatasetPtr data = noise(dims);
   for (Kernel k : kernels) {
-    INFO(traits(k).name);
+    INFO(word_of(k));
     const auto s = source(data, sampling(k));
     const Reference truth = reference(data, dims, k);
     auto walker = s->walker();
@@ -289,7 +289,7 @@ TEST_CASE("reconstruction: interpolating kernels pass through the samples") {
   const DatasetPtr data = noise(dims);
   const Array& a = data->fields().require("f").array;
   for (Kernel k : kernels) {
-    INFO(traits(k).name);
+    INFO(word_of(k));
     const auto s = source(data, sampling(k));
     double worst = 0;
     for (size_t i = 0; i < a.count(); ++i) {
@@ -339,7 +339,7 @@ TEST_CASE("reconstruction: gradients of even slopes are exact, on turned and on 
     for (GradientKind gradient : {GradientKind::central, GradientKind::sobel, GradientKind::intermediate, GradientKind::analytic}) {
       if (k == Kernel::nearest && gradient != GradientKind::central && gradient != GradientKind::sobel) continue;  // steps have no slope
       if (!traits(k).linear && gradient == GradientKind::analytic) continue;  // nor do these have an even one
-      INFO(traits(k).name, ", ", word_of(gradient));
+      INFO(word_of(k), ", ", word_of(gradient));
       const auto a = source(even, sampling(k, gradient)), b = source(uneven, sampling(k, gradient));
       for (int i = 0; i < 20; ++i) {
         const Vec3 u{random_unit(1, uint64_t(i)), random_unit(2, uint64_t(i)), random_unit(3, uint64_t(i))};
@@ -384,7 +384,7 @@ TEST_CASE("reconstruction: gradients converge with order 2, by every estimator (
                                                            {Kernel::bspline, GradientKind::analytic, 3},
                                                            {Kernel::linear, GradientKind::analytic, 1}};
   for (const auto& [k, gradient, order] : ways) {
-    INFO(traits(k).name, ", ", word_of(gradient));
+    INFO(word_of(k), ", ", word_of(gradient));
     const double p = std::log2(rms(49, k, gradient) / rms(97, k, gradient));
     CHECK(std::abs(p - order) < 0.2);
   }
@@ -419,7 +419,7 @@ TEST_CASE("reconstruction: a cell draws where its corners have values, and besid
   ghost[1 + 8 * (1 + 8 * 1)] = ghost_hidden_cell;
   const DatasetPtr data = make_dataset(std::move(parts));
   for (Kernel k : kernels) {
-    INFO(traits(k).name);
+    INFO(word_of(k));
     const auto s = source(data, sampling(k));
     int drawn = 0, wrong = 0;
     double off = 0;
@@ -446,7 +446,7 @@ TEST_CASE("reconstruction: a cell without a value takes nothing of its neighbour
   fields.add({"f", Association::cell, Array::from_vector(v), "", Role::scalars});
   const DatasetPtr data = make_dataset(g, fields);
   for (Kernel k : kernels) {
-    INFO(traits(k).name);
+    INFO(word_of(k));
     const auto s = source(data, sampling(k), Association::cell);
     const auto all = stretches(*s->walker(), {2.4, 2.6, -3}, {0, 0, 1});
     double length = 0, off = 0;
@@ -466,7 +466,7 @@ TEST_CASE("reconstruction: grids one sample thick, of two samples and without an
     std::array<size_t, 3> doubled = dims;
     for (size_t& n : doubled) n = std::max<size_t>(n, 2);
     for (Kernel k : kernels) {
-      INFO(traits(k).name);
+      INFO(word_of(k));
       const auto s = source(data, sampling(k));
       // Along the thin axis the field is constant: that of the sheet.
       const Vec3 p{dims[0] > 1 ? 0.37 * double(dims[0] - 1) : 0.2, dims[1] > 1 ? 0.61 * double(dims[1] - 1) : -0.3,
@@ -514,7 +514,7 @@ TEST_CASE("reconstruction: the picture lies within the tolerance of brute force"
   const std::array<size_t, 3> dims{10, 10, 10};
   const DatasetPtr data = noise(dims);
   for (Kernel k : kernels) {
-    INFO(traits(k).name);
+    INFO(word_of(k));
     VolumeItem v = item(data, grey(-0.5, 1.5), OpacityCurve{});
     // Knots beyond the data, where lobes reach.
     v.opacity.points = {{-0.3, 0.7}, {-0.1, 0}, {0.4, 0}, {0.6, 0.3}, {1.02, 0}, {1.1, 0.9}};
