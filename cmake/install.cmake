@@ -25,6 +25,7 @@ function(sg_told file)
   set_property(GLOBAL APPEND PROPERTY SG_TOLD ${made})
 endfunction()
 sg_told(sightglass.1 man)
+sg_told(operations.h ops --cpp)
 sg_told(completions/sightglass completions bash)
 sg_told(completions/_sightglass completions zsh)
 sg_told(completions/sightglass.fish completions fish)
@@ -36,7 +37,7 @@ install(TARGETS libsightglass LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 if(plugins)
   install(TARGETS ${plugins} LIBRARY DESTINATION lib/sightglass)  # where src/io/plugin.cpp looks
 endif()
-install(FILES src/api/sightglass.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/sightglass)
+install(FILES src/api/sightglass.h ${CMAKE_BINARY_DIR}/told/operations.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/sightglass)
 
 # The packages for CMake and pkg-config, with paths relative to themselves.
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/sightglass)

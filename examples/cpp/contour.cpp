@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A dataset built from numbers in memory, its contour, and a picture of both: contour OUT.png
-#include <sightglass/sightglass.h>
+#include <sightglass/operations.h>
 
 #include <cmath>
 #include <cstdio>
@@ -20,11 +20,11 @@ int main(int argc, char** argv) {
     const sg::Data grid =
         sg::uniform_grid({n, n, n}, {step, step, step}, {-1, -1, -1}).with_point_field("potential", std::move(potential), "V");
 
-    const sg::Data surfaces = grid.run("contour", {{"field", "potential"}, {"values", {-2, -1, 1, 2}}});
+    const sg::Data surfaces = grid.run(sg::ops::Contour{.field = "potential", .values = {-2, -1, 1, 2}});
     std::printf("%s\n", surfaces.summary().c_str());
 
     sg::Scene scene;
-    scene.show(surfaces, "surface", {{"field", "potential"}, {"opacity", 0.6}}).show(grid, "outline");
+    scene.show(surfaces, sg::shows::Surface{.field = "potential", .opacity = 0.6}).show(grid, "outline");
     scene.camera({{"azimuth", 20}}).picture({{"title", "Two charges"}});
     scene.render(800, 600).write(argc > 1 ? argv[1] : "contour.png");
   } catch (const sg::Error& e) {

@@ -267,6 +267,16 @@ class SIGHTGLASS_API Data {
   Data run(std::string_view operation, const Params& params = {}, const Context& context = {}) const;
   Data run(std::string_view operation, const Params& params, const std::vector<Data>& others, const Context& context = {}) const;
 
+  /// The same with a struct of sightglass/operations.h: run(sg::ops::Contour{.values = {0.5}}).
+  template <class P>
+  requires requires(const P& p) { P::operation_name, p.stated_params(); }
+  Data run(const P& p, const Context& context = {}) const { return run(P::operation_name, p.stated_params(), context); }
+  template <class P>
+  requires requires(const P& p) { P::operation_name, p.stated_params(); }
+  Data run(const P& p, const std::vector<Data>& others, const Context& context = {}) const {
+    return run(P::operation_name, p.stated_params(), others, context);
+  }
+
   /// The extension chooses the format. Parameters: encoding, compression, ascii, pieces, chunk. Nothing is ever half written.
   void write(const std::string& path, const Params& params = {}, const Context& context = {}) const;
 
@@ -285,6 +295,9 @@ SIGHTGLASS_API Data read(const std::string& path, const Params& params = {}, con
 SIGHTGLASS_API std::vector<double> times(const std::string& path, const Context& context = {});
 /// Data that are computed: "gyroid", "abc", ... (the sources of `sightglass ops`).
 SIGHTGLASS_API Data source(std::string_view name, const Params& params = {}, const Context& context = {});
+template <class P>
+requires requires(const P& p) { P::operation_name, p.stated_params(); }
+Data source(const P& p, const Context& context = {}) { return source(P::operation_name, p.stated_params(), context); }
 
 // Meshes from memory. Arrays are used where they lie. Throws Error(data) for lists of ids that lead outside, and for sizes that differ.
 /// Point (i,j,k) lies at origin + spacing * (i,j,k); x is fastest. A dimension of 1 makes it flat.
@@ -334,6 +347,10 @@ class SIGHTGLASS_API Scene {
   /// "surface", "volume", "lines", "points", "labels", "glyphs" or "outline" (`sightglass ops surface`); "auto" chooses, and takes the
   /// parameters of colours: field, map, range, scale, ...
   Scene& show(const Data& data, std::string_view way, const Params& params = {});
+  /// The same with a struct of sightglass/operations.h: show(data, sg::shows::Surface{.opacity = 0.5}).
+  template <class P>
+  requires requires(const P& p) { P::way_name, p.stated_params(); }
+  Scene& show(const Data& data, const P& p) { return show(data, P::way_name, p.stated_params()); }
   /// `sightglass ops camera`: view, direction, azimuth, zoom, ... What is not said follows from the data.
   Scene& camera(const Params& params);
   /// `sightglass ops picture`: title, background, legend, axes, triad, samples, ...

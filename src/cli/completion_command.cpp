@@ -175,6 +175,8 @@ _sightglass() {
   while IFS= read -r word; do
     if [[ $word == "$cur"* ]]; then COMPREPLY+=("${word:drop}"); fi
   done < <("${words[0]/#\~/$HOME}" complete "${words[@]:1}" 2>/dev/null)
+  # A second one in quotes, or Readline would close them behind the first.
+  if [[ -n $quote && ${#COMPREPLY[@]} -eq 1 ]]; then COMPREPLY+=("${COMPREPLY[0]} "); fi
   for word in ${COMPREPLY[@]+"${COMPREPLY[@]}"}; do
     if [[ $word == *= || -n $quote ]]; then compopt -o nospace; fi
     if [[ -z $quote && $word == *' '* ]]; then compopt -o filenames; fi

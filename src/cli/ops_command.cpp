@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/text/text.h"
 #include "cli/cli.h"
+#include "cli/cpp_header.h"
 #include "pipeline/file/read_params.h"
 #include "pipeline/picture/picture.h"
 #include "scene/camera_params.h"
@@ -66,6 +67,10 @@ void print_all() {
 }  // namespace
 
 int run_ops(const Options& o, Context&) {
+  if (o.cpp) {
+    std::fputs(cpp_header().c_str(), stdout);
+    return 0;
+  }
   if (o.inputs.empty()) {
     if (o.json) std::fputs(all_json().c_str(), stdout);
     else print_all();

@@ -265,6 +265,7 @@ void declare(const std::string& first, CLI::App& a, Options& o, RawText& raw) {
     a.description("Lists operations, or explains one.");
     a.add_option("name", o.inputs, "Operation, way to show, 'camera' or 'picture'");
     a.add_flag("--json", o.json, "For programs: JSON schema of the parameters");
+    a.add_flag("--cpp", o.cpp, "For C++ programs: all operations and ways to show as structs (sightglass/operations.h)");
   } else if (first == "colormap") {
     a.description("Lists colour maps, or prints the lightness analysis of one.");
     a.add_option("name", o.inputs, "Colour map; NAME_r is its reverse");

@@ -28,7 +28,7 @@ struct Options {
   int threads = 0;
   size_t memory = 0;
   bool read_anywhere = false;  ///< files and recipes may name any file
-  bool json = false, quick = false, all_times = false, quiet = false, verbose = false, explain = false, recipe = false,
+  bool json = false, cpp = false, quick = false, all_times = false, quiet = false, verbose = false, explain = false, recipe = false,
        series = false;  ///< series: all inputs are one
 };
 
