@@ -29,13 +29,6 @@ double sinc_slope(double t) {
 
 const KernelTraits& traits(Kernel k) { return all[size_t(k)]; }
 
-Kernel kernel_of(std::string_view name, std::string_view who) {
-  if (const auto k = value_of_word<Kernel>(name)) return *k;
-  std::vector<std::string> names;
-  for (const auto& w : enum_words(Kernel())) names.emplace_back(w.word);
-  fail_usage(fmt::format("there is no kernel '{}'", name), std::string(who), unknown_name_hint(name, names));
-}
-
 double bc_spline(double b, double c, double t) {
   t = std::abs(t);
   if (t >= 2) return 0;

@@ -39,8 +39,6 @@ struct KernelTraits {
   int degree;         ///< of the polynomial in each cell, per axis; -1 = none
 };
 const KernelTraits& traits(Kernel k);
-/// Throws Error(usage), with a guess at what was meant, naming `who`.
-Kernel kernel_of(std::string_view name, std::string_view who);
 
 /// The family of Mitchell and Netravali 1988 and its derivative: piecewise cubic, 0 for |t| >= 2.
 double bc_spline(double b, double c, double t);
