@@ -103,7 +103,7 @@ void make_inputs(const std::string& folder) {
     const std::string path = folder + "/" + name;
     if (file_exists(path)) return;
     WriteOptions options;
-    options.compression = compression;
+    options.compression = value_of_word<Compression>(compression);
     write_data(path, make(), options, context);
   };
   write("f256_raw.vti", [] { return field_grid(256); });

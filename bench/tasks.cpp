@@ -71,7 +71,7 @@ Task writing(const std::string& folder) {
             return [=] {
               Context context;
               WriteOptions o;
-              o.compression = "zlib";
+              o.compression = Compression::zlib;
               write_data(folder + "/ours_zlib.vti", grid, o, context);
               return double(grid->point_count());
             };

@@ -5,11 +5,10 @@
 #include <filesystem>
 
 #include "api/held.h"
-#include "api/write_params.h"
 #include "filter/mesh/select/piece.h"
 #include "io/file_series.h"
 #include "io/io.h"
-#include "pipeline/file/read_params.h"
+#include "io/options.h"
 #include "pipeline/graph/graph.h"
 #include "pipeline/operation/operation.h"
 
@@ -31,7 +30,7 @@ bool varies(const Made& made, sg::Context& context) {
     sg::ReadParams params;
     sg::Schema schema = sg::schema_of(params);
     sg::set_params(schema, made.words, "read");
-    return !params.time && params.step < 0 && sg::file_times(params.path, sg::read_options(params), context).size() > 1;
+    return !params.options.time && params.options.step < 0 && sg::file_times(params.path, params.options, context).size() > 1;
   }
   if (made.operation == sg::memory_step) return false;
   if (made.inputs.empty()) {
@@ -95,12 +94,11 @@ Data read(const std::string& path, const Params& params, const Context& context)
     sg::ReadParams p;
     sg::Schema schema = sg::schema_of(p);
     set_values(schema, params, "read");
-    p.path = path;
-    const sg::ReadOptions options = sg::read_options(p);
-    sg::Data data = sg::read_data(path, options, context.state().core);
+    sg::check(p.options);
+    sg::Data data = sg::read_data(path, p.options, context.state().core);
     auto made = std::make_shared<Made>();
     made->operation = "read";
-    made->words = sg::read_words(absolute(path), options);
+    made->words = sg::read_words(absolute(path), p.options);
     return make_data(std::move(data), std::move(made));
   });
 }
@@ -127,11 +125,12 @@ Data Data::run(std::string_view operation, const Params& params, const std::vect
 
 void Data::write(const std::string& path, const Params& params, const Context& context) const {
   guarded([&] {
-    WriteParams p;
-    sg::Schema schema = sg::schema_of(p);
-    set_values(schema, params, "write");
+    const sg::Format& format = sg::find_format(path, {});
+    sg::WriteOptions options;
+    sg::Schema schema;
+    if (format.describe_write) format.describe_write(schema, options);
+    set_values(schema, params, std::string(format.name) + " writer");
     sg::Context& core = context.state().core;
-    const sg::WriteOptions options = write_options(p);
     sg::write_data(path, sg::in_pieces(held_by(*this).data, options.pieces, core), options, core);
   });
 }

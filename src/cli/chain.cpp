@@ -10,7 +10,8 @@
 #include "base/file/file.h"
 #include "base/text/text.h"
 #include "io/file_series.h"
-#include "pipeline/file/read_params.h"
+#include "io/options.h"
+#include "pipeline/file/pipeline_file.h"
 #include "pipeline/operation/operation.h"
 #include "scene/camera_params.h"
 
@@ -38,10 +39,9 @@ struct Words {
   /// The same for a word that the operation has too (calc on=cell): what is one of its choices and no step stays with it.
   template <class IsStep>
   std::string take_unless_own(std::string_view key, IsStep&& is_step) {
-    const ParamDecl* own = nullptr;
-    ParamSet params;
-    for (const Operation& o : operations())
-      if (o.name == first) params = o.make_params(), own = params.schema.find(key);
+    const Operation* op = known_operation(first);
+    const ParamSet params = op ? op->make_params() : ParamSet();
+    const ParamDecl* own = params.schema.find(key);
     std::vector<std::string> kept;
     if (own)
       for (const std::string& w : rest)
@@ -152,7 +152,7 @@ class Chains {
 PipelineFile pipeline_of(const Options& o) {
   if (o.inputs.empty() == o.source.empty())
     fail_usage(o.inputs.empty() ? "name a file to read, or a source to compute with --source" : "name files or a --source, not both",
-               "sightglass " + o.command, fmt::format("see: sightglass {} --help", o.command));
+               fmt::format("sightglass {}", word_of(o.command)), fmt::format("see: sightglass {} --help", word_of(o.command)));
   Chains chains(o);
   for (size_t i = 0; i < o.inputs.size(); ++i)
     chains.add({o.inputs.size() == 1 ? "input" : fmt::format("input{}", i + 1), "read", read_words(o.inputs[i], o.read), {}, 0});

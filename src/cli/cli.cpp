@@ -72,7 +72,8 @@ void catch_signals() {
 constexpr size_t most_piped = size_t(1) << 30;
 
 Options with_streams(Options o, const Context& context) {
-  if (o.command == "ops" || o.command == "demo" || o.command == "complete" || o.command == "completions") return o;
+  if (o.command == Command::ops || o.command == Command::demo || o.command == Command::complete || o.command == Command::completions)
+    return o;
   for (std::string& path : o.inputs) path = spooled(path, o.memory ? o.memory : most_piped, context);
   return o;
 }
@@ -94,17 +95,21 @@ void connect(Context& context, const Options& o) {
 }
 
 int dispatch_command(const Options& o, Context& context) {
-  struct Command {
-    std::string_view name;
-    int (*run)(const Options&, Context&);
-  };
-  static constexpr Command commands[] = {{"info", run_info},         {"render", run_render}, {"convert", run_convert},
-                                         {"run", run_pipeline_file}, {"open", run_open},     {"ops", run_ops},
-                                         {"colormap", run_colormap}, {"demo", run_demo},     {"completions", run_completions},
-                                         {"complete", run_complete}, {"man", run_man}};
-  for (const Command& c : commands)
-    if (c.name == o.command) return c.run(o, context);
-  return 0;  // --help or --version: all is said
+  switch (o.command) {
+    case Command::none: return 0;
+    case Command::render: return run_render(o, context);
+    case Command::info: return run_info(o, context);
+    case Command::convert: return run_convert(o, context);
+    case Command::run: return run_pipeline_file(o, context);
+    case Command::open: return run_open(o, context);
+    case Command::ops: return run_ops(o, context);
+    case Command::colormap: return run_colormap(o, context);
+    case Command::demo: return run_demo(o, context);
+    case Command::completions: return run_completions(o, context);
+    case Command::complete: return run_complete(o, context);
+    case Command::man: return run_man(o, context);
+  }
+  return 0;
 }
 
 }  // namespace

@@ -3,8 +3,6 @@
 #pragma once
 #include "base/context.h"
 #include "cli/options.h"
-#include "pipeline/file/pipeline_file.h"
-#include "pipeline/picture/picture.h"
 
 namespace sg {
 
@@ -23,17 +21,5 @@ int run_demo(const Options& o, Context& context);
 int run_completions(const Options& o, Context& context);
 int run_complete(const Options& o, Context& context);
 int run_man(const Options& o, Context& context);
-
-/// Does the name of the output number its pictures ("out_{n}.png")?
-bool is_numbered(const std::string& output);
-/// Which pictures of a series, and where they go.
-struct SeriesRequest {
-  std::string output;  ///< numbered, or a film
-  std::string times;   ///< as --times says; "" = those of the file
-  double fps = 25;
-};
-/// One picture per time step, all with the looks and colours of one; the next step is loaded while one is drawn. Of `o` the limits and
-/// --quiet are read.
-int render_series(PipelineFile plain, const SeriesRequest& request, const PictureOptions& options, const Options& o, Context& context);
 
 }  // namespace sg

@@ -16,6 +16,7 @@
 #include "cli/say.h"
 #include "color/colormap_file.h"
 #include "image/codec.h"
+#include "io/formats.h"
 #include "pipeline/picture/picture.h"
 #include "render/annotate/contact_sheet.h"
 
@@ -83,7 +84,7 @@ std::vector<Demo> demos() {
 
 PipelineFile pipeline_of_demo(const Demo& d) {
   Options o;
-  o.command = "demo";
+  o.command = Command::demo;
   o.source = d.source;
   for (const char* f : d.filters) o.filters.emplace_back(f);
   for (const char* s : d.shows) o.shows.emplace_back(s);
@@ -127,7 +128,7 @@ void find_files(const std::string& folder, std::vector<std::string>& found) {
     const std::string ext = extension_of(path);
     bool known = false;
     for (const Format& f : formats())
-      for (std::string_view e : words(f.extensions)) known = known || (e == ext && f.name != "raw brick");
+      for (std::string_view e : words(f.extensions)) known = known || (e == ext && f.read != read_raw);
     if (known) found.push_back(path);
   }
 }

@@ -7,61 +7,43 @@
 #include "base/text/text.h"
 #include "cli/cli.h"
 #include "cli/cpp_header.h"
-#include "pipeline/file/read_params.h"
-#include "pipeline/picture/picture.h"
-#include "scene/camera_params.h"
-#include "scene/show/show.h"
+#include "pipeline/catalog/catalog.h"
 
 namespace sg {
 
 namespace {
 
-// Parameter groups that are no operations.
-struct Group {
-  std::string_view name, sentence;
-  std::string (*help)();
-  std::string (*json)();
-};
-template <class P>
-constexpr Group group(std::string_view name, std::string_view sentence) {
-  return {name, sentence,
-          [] {
-            P p;
-            return params_help(schema_of(p));
-          },
-          [] {
-            P p;
-            return params_json(schema_of(p));
-          }};
+std::string formats_line(const std::vector<CatalogEntry>& all, EntryKind kind) {
+  std::string r;
+  for (const CatalogEntry& e : all)
+    if (e.kind == kind) r += (r.empty() ? "  " : ", ") + e.name;
+  return r + "\n";
 }
-constexpr Group groups[] = {
-    group<ReadParams>("read", "Reads a file (a step of pipeline files)."),
-    group<CameraParams>("camera", "Where the picture is taken from (--camera)."),
-    group<PictureParams>("picture", "Size, background and annotations (--picture)."),
-};
 
-std::string all_json() {
-  std::string r = ops_json();
-  while (!r.empty() && (r.back() == '\n' || r.back() == '}')) r.pop_back();
-  r += ",\"show\":[";
-  bool first = true;
-  for (const ShowKind& k : show_kinds()) {
-    r += fmt::format("{}{{\"name\":\"{}\",\"sentence\":{},\"params\":{}}}", first ? "" : ",", k.name, json_string(k.sentence),
-                     params_json(k.make_params().schema));
-    first = false;
+std::string overview(const std::vector<CatalogEntry>& all) {
+  std::string shows = "\nways to show (--show)\n", others = "\nother parameters\n";
+  for (const CatalogEntry& e : all) {
+    const std::string line = fmt::format("  {:<16} {}\n", e.name, e.sentence);
+    switch (e.kind) {
+      case EntryKind::source:
+      case EntryKind::operation:
+      case EntryKind::reader:
+      case EntryKind::writer: break;
+      case EntryKind::show: shows += line; break;
+      case EntryKind::read:
+      case EntryKind::camera:
+      case EntryKind::picture:
+      case EntryKind::film: others += line; break;
+    }
   }
-  r += "]";
-  for (const Group& g : groups) r += fmt::format(",\"{}\":{}", g.name, g.json());
-  return r + "}\n";
+  return ops_help() + shows + others + "\nformats that are read\n" + formats_line(all, EntryKind::reader) + "\nformats that are written\n" +
+         formats_line(all, EntryKind::writer) + "\nsightglass ops NAME lists the parameters of one.\n";
 }
 
-void print_all() {
-  std::fputs(ops_help().c_str(), stdout);
-  std::printf("\nways to show (--show)\n");
-  for (const ShowKind& k : show_kinds()) std::printf("  %-16s %s\n", std::string(k.name).c_str(), std::string(k.sentence).c_str());
-  std::printf("\nother parameters\n");
-  for (const Group& g : groups) std::printf("  %-16s %s\n", std::string(g.name).c_str(), std::string(g.sentence).c_str());
-  std::printf("\nsightglass ops NAME lists the parameters of one.\n");
+std::string explained(const CatalogEntry& e) {
+  const std::string params = params_help(e.schema);
+  return fmt::format("{}: {}\n{}{}", e.name, e.sentence, params.empty() ? "  It has no parameters.\n" : params,
+                     e.operation ? words_help(*e.operation) : "");
 }
 
 }  // namespace
@@ -71,36 +53,15 @@ int run_ops(const Options& o, Context&) {
     std::fputs(cpp_header().c_str(), stdout);
     return 0;
   }
-  if (o.inputs.empty()) {
-    if (o.json) std::fputs(all_json().c_str(), stdout);
-    else print_all();
-    return 0;
-  }
+  const std::vector<CatalogEntry> all = catalog();
+  if (o.inputs.empty()) std::fputs((o.json ? catalog_json(all) : overview(all)).c_str(), stdout);
   for (const std::string& name : o.inputs) {
-    bool done = false;
-    auto print = [&](std::string_view sentence, const std::string& help, const std::string& json, const std::string& more = {}) {
-      if (o.json) std::printf("{\"name\":%s,\"params\":%s%s}\n", json_string(name).c_str(), json.c_str(), more.c_str());
-      else std::printf("%s: %s\n%s", name.c_str(), std::string(sentence).c_str(), help.c_str());
-      done = true;
-    };
-    for (const ShowKind& k : show_kinds())
-      if (k.name == name) {
-        const ParamSet params = k.make_params();
-        print(k.sentence, params_help(params.schema), params_json(params.schema));
-      }
-    for (const Group& g : groups)
-      if (g.name == name) print(g.sentence, g.help(), g.json());
-    for (const Operation& op : operations())
-      if (op.name == name) {
-        const ParamSet params = op.make_params();
-        print(op.sentence, params_help(params.schema) + (o.json ? std::string() : words_help(op)), params_json(params.schema),
-              op.words ? ",\"words\":" + words_json(op) : "");
-      }
-    if (done) continue;
+    bool found = false;
+    for (const CatalogEntry& e : all)
+      if (equal_ignoring_case(e.name, name)) std::fputs((o.json ? entry_json(e) + "\n" : explained(e)).c_str(), stdout), found = true;
+    if (found) continue;
     std::vector<std::string> names;
-    for (const Operation& op : operations()) names.emplace_back(op.name);
-    for (const ShowKind& k : show_kinds()) names.emplace_back(k.name);
-    for (const Group& g : groups) names.emplace_back(g.name);
+    for (const CatalogEntry& e : all) names.push_back(e.name);
     fail_usage(fmt::format("unknown operation '{}'", name), "sightglass ops", unknown_name_hint(name, names));
   }
   return 0;

@@ -10,17 +10,57 @@
 #include "base/error.h"
 #include "base/text/text.h"
 #include "io/file_series.h"
+#include "io/options.h"
+#include "pipeline/film/film_params.h"
+#include "pipeline/picture/picture.h"
+#include "scene/choose/coloring.h"
 
 namespace sg {
 
 namespace {
 
+// What is parsed behind CLI11.
 struct RawText {
-  std::string dims, type, spacing, endian = "little", memory, within;
-  std::string time, region, stride, fields, piece;  // of any file: which part of it
-  size_t header = 0;
-  int components = 1;
+  std::string memory, within, piece;
 };
+
+// The flag of a parameter where it is not the parameter's own name. "": it has none; '!' in front: a switch that makes it false.
+struct FlagName {
+  std::string_view param, flag, about = {};  // about: of a switch
+};
+constexpr FlagName reading_flags[] = {{"times", "series-times"}, {"big_endian", ""}, {"piece", ""}, {"pieces", ""}, {"ghost_levels", ""}};
+constexpr FlagName writing_flags[] = {{"binary", "!ascii", "Numbers as text."}};
+
+std::string flag_of(std::string_view param, std::span<const FlagName> names) {
+  for (const FlagName& n : names)
+    if (n.param == param) return std::string(n.flag);
+  std::string flag(param);
+  std::replace(flag.begin(), flag.end(), '_', '-');
+  return flag;
+}
+
+std::string_view about_of(const ParamDecl& d) {
+  for (const FlagName& n : writing_flags)
+    if (n.param == d.name) return n.about;
+  return d.doc;
+}
+
+std::string bare(const std::string& flag) { return flag.starts_with('!') ? flag.substr(1) : flag; }
+
+// A flag made of a declaration. `given` gets the text.
+template <class Given>
+CLI::Option* add_flag(CLI::App& a, const ParamDecl& d, const std::string& flag, const std::string& about, Given given) {
+  if (flag.starts_with('!'))
+    return a.add_flag_callback(
+        "--" + bare(flag), [given] { given("false"); }, about);
+  return a.add_option_function<std::string>("--" + flag, given, about)->type_name(std::string(param_type(d)));
+}
+
+template <class P>
+std::string doc_of(std::string_view param) {
+  P p;
+  return schema_of(p).find(param)->doc;
+}
 
 void add_common(CLI::App& a, Options& o, RawText& raw) {
   a.add_option("--threads", o.threads, "Worker threads; 0 = all cores");
@@ -32,22 +72,42 @@ void add_common(CLI::App& a, Options& o, RawText& raw) {
 }
 
 void add_reading(CLI::App& a, Options& o, RawText& raw) {
-  a.add_option("--time", raw.time, "Time series: the step nearest to this time");
+  // The declarations bound to what is read, under the names of the flags, so that mistakes are told by these.
+  const auto schema = std::make_shared<Schema>(schema_of(o.read));
+  for (ParamDecl& d : schema->decls()) {
+    const std::string flag = flag_of(d.name, reading_flags);
+    if (flag.empty()) continue;
+    d.name = "--" + flag;
+    add_flag(a, d, flag, d.doc, [schema, name = d.name](const std::string& text) { set_param(*schema, name, text, ""); });
+  }
   a.add_flag("--series", o.series, "The files are one series in time (like 'flow_*.vtk' in quotes, or flow_{n}.vtk, which need no flag)");
-  a.add_option("--series-times", o.read.times, "Times of the files of a series: START:STEP, like 0:0.5, or a list");
-  a.add_option("--step", o.read.step, "Time series: this step, counted from 0")->check(CLI::NonNegativeNumber);
-  a.add_option("--fields", raw.fields, "Read only these fields, like T,velocity");
-  a.add_option("--region", raw.region, "Grids: read points i0,i1,j0,j1,k0,k1 only");
-  a.add_option("--stride", raw.stride, "Grids: read every n-th point, like 2 or 2,2,1");
   a.add_option("--piece", raw.piece, "Read one piece of several, like 0/4, or 0/4/1 with a layer of ghost cells");
-  a.add_option("--csv-header", o.read.csv_header, "Delimited text: whether the first line names the columns; auto: by its cells")
-      ->check(CLI::IsMember({"auto", "yes", "no"}));
-  a.add_option("--dims", raw.dims, "Raw brick: size, like 256,256,128");
-  a.add_option("--type", raw.type, "Raw brick: element type: u8 i8 u16 i16 u32 i32 f32 f64");
-  a.add_option("--spacing", raw.spacing, "Raw brick: distance of samples, like 1,1,2");
-  a.add_option("--endian", raw.endian, "Raw brick: byte order")->check(CLI::IsMember({"little", "big"}));
-  a.add_option("--header", raw.header, "Raw brick: bytes to skip");
-  a.add_option("--components", raw.components, "Raw brick: numbers per sample")->check(CLI::PositiveNumber);
+  a.add_option_function<std::string>(
+       "--endian", [&o](const std::string& order) { o.read.raw_big_endian = order == "big"; }, "Raw bricks: byte order")
+      ->check(CLI::IsMember({"little", "big"}));
+}
+
+// A flag for each option that some writer has, with the formats that take it.
+void add_writing(CLI::App& a, Options& o) {
+  struct Flag {
+    ParamDecl decl;
+    std::string formats;
+  };
+  std::vector<Flag> flags;
+  WriteOptions any;
+  for (const Format& f : formats()) {
+    if (!f.describe_write) continue;
+    Schema schema;
+    f.describe_write(schema, any);
+    for (const ParamDecl& d : schema.decls()) {
+      const auto have = std::find_if(flags.begin(), flags.end(), [&](const Flag& x) { return x.decl.name == d.name; });
+      if (have == flags.end()) flags.push_back({d, std::string(f.name)});
+      else have->formats += fmt::format(", {}", f.name);
+    }
+  }
+  for (const auto& [d, formats] : flags)
+    add_flag(a, d, flag_of(d.name, writing_flags), fmt::format("{}: {}", formats, about_of(d)),
+             [&o, name = d.name](const std::string& text) { o.written.push_back(name + "=" + text); });
 }
 
 void add_pipeline(CLI::App& a, Options& o) {
@@ -61,46 +121,43 @@ void add_pipeline(CLI::App& a, Options& o) {
   a.add_flag("--explain", o.explain, "Print the plan and what it will cost, run nothing");
 }
 
-void add_series(CLI::App& a, Options& o) {
-  a.add_option(
-      "--times", o.times,
-      "With {n} in the output, or a film: the times to draw, like 0:10:101 (first:last:count), 0,0.5,1 or 0:114 (the steps of the file in "
-      "between); default: all of the file. A parameter written as {t} takes the time");
-  a.add_option("--fps", o.fps, "Films: pictures per second")->check(CLI::Range(0.1, 1000.0))->each([&o](const std::string&) {
-    o.fps_stated = true;
-  });
+void add_film(CLI::App& a, Options& o) {
+  FilmParams params;
+  const Schema film = schema_of(params);
+  for (const ParamDecl& d : film.decls()) {
+    if (d.name == "output") continue;  // -o
+    add_flag(a, d, d.name, d.doc, [&o, name = d.name](const std::string& text) {
+      FilmParams checked;
+      Schema schema = schema_of(checked);
+      schema.find(name)->name = "--" + name;
+      set_param(schema, "--" + name, text, "");
+      o.film.push_back(name + "=" + text);
+    });
+  }
 }
+
+void add_size(CLI::App& a, Options& o) { a.add_option("--size", o.size, doc_of<PictureParams>("size")); }
+
+void add_output(CLI::App& a, Options& o) { a.add_option("-o,--output", o.output, doc_of<FilmParams>("output") + " Or .png, .jpg, .webp."); }
 
 void add_picture(CLI::App& a, Options& o, RawText& raw) {
   a.add_option("--show", o.shows, "How to show it: 'surface|volume|lines|points|labels|outline key=value ...'; may be repeated")
       ->allow_extra_args(false);
-  a.add_option("--field", o.field, "Field to colour by");
-  a.add_option("--map", o.map, "Colour map (see: sightglass colormap), or a file: FILE.cpt, FILE.json:NAME, FILE.css:NAME");
-  a.add_option("--scale", o.scale, "linear, log or symlog");
+  a.add_option("--field", o.field, doc_of<ColoringParams>("field"));
+  a.add_option("--map", o.map, doc_of<ColoringParams>("map"));
+  a.add_option("--scale", o.scale, doc_of<ColoringParams>("scale"));
   a.add_option("--camera", o.camera, "'top', 'front', 'iso', or key=value words: 'azimuth=30 elevation=10 zoom=1.5'");
-  a.add_option("--size", o.size, "Pixels, like 1920x1080");
-  a.add_option("--title", o.title, "Text above the picture");
-  a.add_option("--background", o.background, "Colour, or 'transparent'");
+  add_size(a, o);
+  a.add_option("--title", o.title, doc_of<PictureParams>("title"));
+  a.add_option("--background", o.background, doc_of<PictureParams>("background"));
   a.add_option("--picture", o.picture, "Further key=value of the picture (see: sightglass ops picture)")->allow_extra_args(false);
-  add_series(a, o);
+  add_film(a, o);
   a.add_flag("--progressive", o.progressive,
              "Volumes that memory does not hold: write a coarse picture at once, and finer ones in its place until it is the final one");
   a.add_option(
       "--within", raw.within,
       "Volumes that memory does not hold: the best picture that is ready after this time, like 2s or 500ms, with its level and error");
-  a.add_option("-o,--output", o.output,
-               "Picture to write: .png .jpg .webp; {n} in its name numbers the pictures of a time series; .webm, .mp4: a film of them");
-}
-
-Vec3 triple(const std::string& text, const char* option, double least) {
-  const auto parts = split(text, ',');
-  Vec3 v;
-  for (int i = 0; i < 3; ++i) {
-    const auto x = parts.size() == 3 ? parse_double(parts[size_t(i)]) : std::nullopt;
-    if (!x || !(*x >= least)) fail_usage(fmt::format("'{}' is not three positive numbers", text), option, "like 256,256,128");
-    v[i] = *x;
-  }
-  return v;
+  add_output(a, o);
 }
 
 std::vector<size_t> whole_numbers(const std::string& text, char separator, const char* option, const char* hint) {
@@ -113,59 +170,18 @@ std::vector<size_t> whole_numbers(const std::string& text, char separator, const
   return out;
 }
 
-void finish_parts(const RawText& raw, ReadOptions& r) {
-  if (!raw.time.empty()) {
-    r.time = parse_double(raw.time);
-    if (!r.time) fail_usage(fmt::format("'{}' is no number", raw.time), "--time", "like 0.25");
-  }
-  for (std::string_view name : split(raw.fields, ','))
-    if (!name.empty()) r.fields.emplace_back(name);
-  if (!raw.region.empty()) {
-    const auto n = whole_numbers(raw.region, ',', "--region", "like 0,99,0,99,20,40");
-    if (n.size() != 6) fail_usage(fmt::format("'{}' is not six numbers", raw.region), "--region", "like 0,99,0,99,20,40");
-    for (size_t a = 0; a < 3; ++a) {
-      r.region.lo[a] = n[2 * a], r.region.hi[a] = n[2 * a + 1];
-      if (r.region.lo[a] > r.region.hi[a])
-        fail_usage(fmt::format("'{}' ends before it begins", raw.region), "--region", "first,last along x, y, z");
-    }
-  }
-  if (!raw.stride.empty()) {
-    const auto n = whole_numbers(raw.stride, ',', "--stride", "like 2 or 2,2,1");
-    if (n.size() != 1 && n.size() != 3)
-      fail_usage(fmt::format("'{}' is not one or three numbers", raw.stride), "--stride", "like 2 or 2,2,1");
-    for (size_t a = 0; a < 3; ++a) {
-      r.region.stride[a] = n[n.size() == 3 ? a : 0];
-      if (r.region.stride[a] == 0) fail_usage("a stride of 0", "--stride", "1 reads every point");
-    }
-  }
+void finish_raw(const RawText& raw, Options& o) {
   if (!raw.piece.empty()) {
     const auto n = whole_numbers(raw.piece, '/', "--piece", "like 0/4");
     if (n.size() < 2 || n.size() > 3 || n[0] >= n[1] || n[1] > 1000000 || (n.size() == 3 && n[2] > 1000))
       fail_usage(fmt::format("'{}' is not a piece of several", raw.piece), "--piece", "like 0/4: pieces count from 0");
-    r.piece = int(n[0]), r.pieces = int(n[1]), r.ghost_levels = n.size() == 3 ? int(n[2]) : 0;
+    o.read.piece = int(n[0]), o.read.pieces = int(n[1]), o.read.ghost_levels = n.size() == 3 ? int(n[2]) : 0;
   }
-}
-
-void finish_raw(const RawText& raw, Options& o) {
-  finish_parts(raw, o.read);
+  if (!o.read.raw_type.empty() && o.read.raw_dims[0] == 0)
+    fail_usage("--type describes a raw brick, whose size is missing", "--dims", "like --dims 256,256,128");
+  check(o.read);
   if (o.threads < 0 || o.threads > 4096)
     fail_usage(fmt::format("{} is no number of threads", o.threads), "--threads", "from 0 (all cores) to 4096");
-  if (!raw.dims.empty()) {
-    const Vec3 d = triple(raw.dims, "--dims", 1);
-    for (int i = 0; i < 3; ++i) {
-      if (d[i] != std::floor(d[i]) || d[i] > 1e9)
-        fail_usage(fmt::format("'{}' is not three whole numbers", raw.dims), "--dims", "like 256,256,128");
-      o.read.raw_dims[size_t(i)] = size_t(d[i]);
-    }
-    if (raw.type.empty()) fail_usage("a raw brick needs its element type too", "--type", "one of u8 i8 u16 i16 u32 i32 u64 i64 f32 f64");
-  } else if (!raw.type.empty()) {
-    fail_usage("--type describes a raw brick, whose size is missing", "--dims", "like --dims 256,256,128");
-  }
-  if (!raw.spacing.empty()) o.read.raw_spacing = triple(raw.spacing, "--spacing", 1e-300);
-  o.read.raw_type = raw.type;
-  o.read.raw_big_endian = raw.endian == "big";
-  o.read.raw_header = raw.header;
-  o.read.raw_components = raw.components;
   if (!raw.within.empty()) {
     std::string_view number = raw.within;
     const double unit = number.ends_with("ms") ? 1e-3 : 1;
@@ -215,76 +231,105 @@ const char* const overview =
     "  sightglass man                                                the manual page: sightglass man | man -l -\n\n"
     "Each command has --help. Exit codes: 0 done, 2 usage, 3 data, 4 internal.\n";
 
-const std::vector<std::string> commands = {
-    "render", "info",     "convert",     "run", "ops",     "open",
-    "demo",   "colormap", "completions", "man", "complete"};  // the last one is for completions alone
+void declare_render(CLI::App& a, Options& o, RawText& raw) {
+  a.add_option("input", o.inputs, "Files to read");
+  add_reading(a, o, raw), add_pipeline(a, o), add_picture(a, o, raw);
+}
+
+void declare_info(CLI::App& a, Options& o, RawText& raw) {
+  a.add_option("input", o.inputs, "Files to read");
+  a.add_flag("--json", o.json, "For programs");
+  add_pipeline(a, o);
+  a.add_flag("--quick", o.quick, "Without ranges: touches no value");
+  a.add_flag("--all-times", o.all_times, "Ranges over all steps of a series, one step in memory at a time");
+  add_reading(a, o, raw);
+}
+
+void declare_convert(CLI::App& a, Options& o, RawText& raw) {
+  a.add_option("input", o.inputs, "File to read");
+  a.add_option("-o,--output", o.output, "File to write")->required();
+  add_writing(a, o);
+  add_reading(a, o, raw), add_pipeline(a, o);
+}
+
+void declare_run(CLI::App& a, Options& o, RawText&) {
+  a.add_option("input", o.inputs, "Pipeline file (YAML)")->required();
+  add_output(a, o), add_size(a, o), add_film(a, o);
+  a.add_flag("--explain", o.explain, "Print the plan and what it will cost, run nothing");
+}
+
+void declare_open(CLI::App& a, Options& o, RawText&) {
+  a.add_option("input", o.inputs, "Picture (PNG)")->required();
+  a.add_option("-o,--output", o.output, "Write the picture here; default: NAME-again.png beside it");
+  add_size(a, o);
+  a.add_flag("--recipe", o.recipe, "Print the recipe and stop");
+}
+
+void declare_ops(CLI::App& a, Options& o, RawText&) {
+  a.add_option("name", o.inputs, "Operation, way to show, format, 'read', 'camera', 'picture' or 'film'");
+  a.add_flag("--json", o.json, "For programs: JSON schema of the parameters");
+  a.add_flag("--cpp", o.cpp, "For C++ programs: all operations and ways to show as structs (sightglass/operations.h)");
+}
+
+void declare_colormap(CLI::App& a, Options& o, RawText&) {
+  a.add_option("name", o.inputs, "Colour map; NAME_r is its reverse");
+  a.add_option("-o,--output", o.output, "Write a picture of the map");
+  a.add_flag("--json", o.json, "For programs");
+}
+
+void declare_demo(CLI::App& a, Options& o, RawText&) {
+  a.add_option("folder", o.inputs, "Render every file in this folder onto the sheet instead")->expected(0, 1);
+  a.add_option("-o,--out", o.output, "Folder; default out/");
+  a.add_option("--sheet", o.sheet, "All pictures on one sheet: file to write");
+}
+
+void declare_completions(CLI::App& a, Options& o, RawText&) {
+  a.add_option("shell", o.inputs, "bash, zsh or fish")->required()->expected(1)->check(CLI::IsMember({"bash", "zsh", "fish"}));
+}
+
+void declare_man(CLI::App&, Options&, RawText&) {}
+
+struct Declaration {
+  Command command;
+  const char* about;
+  void (*declare)(CLI::App&, Options&, RawText&);
+};
+constexpr Declaration declarations[] = {
+    {Command::render, "Makes a picture of the data. Without options it looks at the data and chooses.", declare_render},
+    {Command::info, "Says what is in a file: mesh, sizes, cell types, bounds, fields with their ranges.", declare_info},
+    {Command::convert, "Reads, filters and writes data; the extension of the output chooses the format.", declare_convert},
+    {Command::run, "Runs a pipeline file.", declare_run},
+    {Command::open, "Makes a picture again from the recipe inside it.", declare_open},
+    {Command::ops, "Lists operations, or explains one.", declare_ops},
+    {Command::colormap, "Lists colour maps, or prints the lightness analysis of one.", declare_colormap},
+    {Command::demo, "Renders some pictures of what Sightglass can do.", declare_demo},
+    {Command::completions, "Prints the completion of a shell: source <(sightglass completions bash); installed packages have it in place.",
+     declare_completions},
+    {Command::man, "Prints the manual page in troff.", declare_man},
+};
 
 // The flags and arguments of a command.
-void declare(const std::string& first, CLI::App& a, Options& o, RawText& raw) {
+void declare(const Declaration& d, CLI::App& a, Options& o, RawText& raw) {
   a.set_help_flag("-h,--help", "This text");
+  a.description(d.about);
   add_common(a, o, raw);
-  if (first == "render") {
-    a.description("Makes a picture of the data. Without options it looks at the data and chooses.");
-    a.add_option("input", o.inputs, "Files to read");
-    add_reading(a, o, raw), add_pipeline(a, o), add_picture(a, o, raw);
-  } else if (first == "info") {
-    a.description("Says what is in a file: mesh, sizes, cell types, bounds, fields with their ranges.");
-    a.add_option("input", o.inputs, "Files to read");
-    a.add_flag("--json", o.json, "For programs");
-    add_pipeline(a, o);
-    a.add_flag("--quick", o.quick, "Without ranges: touches no value");
-    a.add_flag("--all-times", o.all_times, "Ranges over all steps of a series, one step in memory at a time");
-    add_reading(a, o, raw);
-  } else if (first == "convert") {
-    a.description("Reads, filters and writes data; the extension of the output chooses the format.");
-    a.add_option("input", o.inputs, "File to read");
-    a.add_option("-o,--output", o.output, "File to write")->required();
-    a.add_option("--encoding", o.write.encoding, "VTK XML")->check(CLI::IsMember({"ascii", "base64", "appended"}));
-    a.add_option("--compression", o.write.compression, "VTK XML, NRRD, Zarr")
-        ->check(CLI::IsMember({"none", "zlib", "lz4", "lzma", "gzip", "zstd"}));
-    a.add_option("--chunk", o.write.chunk, "Zarr: samples along each axis of a chunk")->check(CLI::Range(8, 512));
-    a.add_flag("!--ascii", o.write.binary, "STL and PLY as text");
-    a.add_option("--pieces", o.write.pieces, ".pvti .pvtr .pvts .pvtu .pvtp .vtm: cut each mesh into so many files")
-        ->check(CLI::Range(1, 100000));
-    add_reading(a, o, raw), add_pipeline(a, o);
-  } else if (first == "run") {
-    a.description("Runs a pipeline file.");
-    a.add_option("input", o.inputs, "Pipeline file (YAML)")->required();
-    a.add_option("-o,--output", o.output,
-                 "Write the picture here instead; {n} in its name numbers the pictures of a time series; .webm, .mp4: a film of them");
-    a.add_option("--size", o.size, "Pixels, like 1920x1080");
-    add_series(a, o);
-    a.add_flag("--explain", o.explain, "Print the plan and what it will cost, run nothing");
-  } else if (first == "open") {
-    a.description("Makes a picture again from the recipe inside it.");
-    a.add_option("input", o.inputs, "Picture (PNG)")->required();
-    a.add_option("-o,--output", o.output, "Write the picture here; default: NAME-again.png beside it");
-    a.add_option("--size", o.size, "Pixels, like 1920x1080");
-    a.add_flag("--recipe", o.recipe, "Print the recipe and stop");
-  } else if (first == "ops") {
-    a.description("Lists operations, or explains one.");
-    a.add_option("name", o.inputs, "Operation, way to show, 'camera' or 'picture'");
-    a.add_flag("--json", o.json, "For programs: JSON schema of the parameters");
-    a.add_flag("--cpp", o.cpp, "For C++ programs: all operations and ways to show as structs (sightglass/operations.h)");
-  } else if (first == "colormap") {
-    a.description("Lists colour maps, or prints the lightness analysis of one.");
-    a.add_option("name", o.inputs, "Colour map; NAME_r is its reverse");
-    a.add_option("-o,--output", o.output, "Write a picture of the map");
-    a.add_flag("--json", o.json, "For programs");
-  } else if (first == "completions") {
-    a.description("Prints the completion of a shell: source <(sightglass completions bash); installed packages have it in place.");
-    a.add_option("shell", o.inputs, "bash, zsh or fish")->required()->expected(1)->check(CLI::IsMember({"bash", "zsh", "fish"}));
-  } else if (first == "man") {
-    a.description("Prints the manual page in troff.");
-  } else {
-    a.description("Renders some pictures of what Sightglass can do.");
-    a.add_option("folder", o.inputs, "Render every file in this folder onto the sheet instead")->expected(0, 1);
-    a.add_option("-o,--out", o.output, "Folder; default out/");
-    a.add_option("--sheet", o.sheet, "All pictures on one sheet: file to write");
-  }
+  d.declare(a, o, raw);
 }
 
 }  // namespace
+
+WriteOptions writing(const Options& o, const Format& format) {
+  WriteOptions options;
+  Schema schema;
+  if (format.describe_write) format.describe_write(schema, options);
+  std::string has;
+  for (const ParamDecl& d : schema.decls()) has += (has.empty() ? "--" : " --") + bare(flag_of(d.name, writing_flags));
+  for (const std::string& word : o.written)
+    if (const std::string param = word.substr(0, word.find('=')); !schema.find(param))
+      fail_usage(fmt::format("{} files take no --{}", format.name, bare(flag_of(param, writing_flags))), o.output,
+                 has.empty() ? "there are no such options" : "they take " + has);
+  return write_options(format, o.written);
+}
 
 Options parse_options(int argc, char** argv) {
   Options o;
@@ -297,18 +342,21 @@ Options parse_options(int argc, char** argv) {
     std::printf("sightglass %s\n", SG_VERSION);
     return o;
   }
-  if (std::find(commands.begin(), commands.end(), first) == commands.end())
-    fail_usage(fmt::format("unknown command '{}'", first), "sightglass",
-               unknown_name_hint(first, std::vector<std::string>(commands.begin(), commands.end() - 1)));
-
-  if (first == "complete") {  // its words are those of another command, flags too
-    o.command = first;
+  const auto command = value_of_word<Command>(first);
+  if (!command) {
+    std::vector<std::string> names;
+    for (const Declaration& d : declarations) names.emplace_back(word_of(d.command));
+    fail_usage(fmt::format("unknown command '{}'", first), "sightglass", unknown_name_hint(first, names));
+  }
+  if (*command == Command::complete) {  // its words are those of another command, flags too
+    o.command = *command;
     o.inputs.assign(argv + 2, argv + argc);
     return o;
   }
   RawText raw;
   CLI::App a{"", first};
-  declare(first, a, o, raw);
+  for (const Declaration& d : declarations)
+    if (d.command == *command) declare(d, a, o, raw);
   try {
     std::vector<std::string> args(argv + 2, argv + argc);
     std::reverse(args.begin(), args.end());  // CLI11 takes them from the back
@@ -322,18 +370,18 @@ Options parse_options(int argc, char** argv) {
   finish_raw(raw, o);
   if (o.series && o.inputs.empty()) fail_usage("names no files", "--series", "like --series flow_*.vtk");
   if (o.series) o.inputs = {series_path(std::move(o.inputs), true)};
-  o.command = first;
+  o.command = *command;
   return o;
 }
 
 std::vector<CommandDoc> command_docs() {
   std::vector<CommandDoc> docs;
-  for (const std::string& name : commands) {
-    if (name == "complete") continue;
+  for (const Declaration& d : declarations) {
+    const std::string name(word_of(d.command));
     Options o;
     RawText raw;
     CLI::App a{"", name};
-    declare(name, a, o, raw);
+    declare(d, a, o, raw);
     CommandDoc doc{name, a.get_description(), {}, {}, {}};
     for (const CLI::Option* option : a.get_options()) {
       std::vector<std::string> choices;  // CLI11 tells of them in the text of the type: "TEXT:{a,b}"

@@ -8,8 +8,17 @@
 
 namespace sg {
 
+enum class Command { none, render, info, convert, run, open, ops, colormap, demo, completions, complete, man };
+constexpr auto enum_words(Command) {
+  using enum Command;
+  return std::array{Word{"render", render},     Word{"info", info}, Word{"convert", convert},
+                    Word{"run", run},           Word{"open", open}, Word{"ops", ops},
+                    Word{"colormap", colormap}, Word{"demo", demo}, Word{"completions", completions},
+                    Word{"complete", complete}, Word{"man", man}};
+}
+
 struct Options {
-  std::string command;               ///< render, info, convert, run, ops, open, demo, colormap, completions, complete, man
+  Command command = Command::none;   ///< none: --help or --version, all is said
   std::vector<std::string> inputs;   ///< files, or what the command names
   std::vector<std::string> filters;  ///< each one -f: operation and key=value words
   std::vector<std::string> shows;    ///< each one --show
@@ -17,14 +26,12 @@ struct Options {
   std::string output;
   bool progressive = false;  ///< render: coarse pictures first
   double within = 0;         ///< render: seconds, 0 = no limit
-  std::string times;         ///< render: --times of a series, "" = those of the file
   std::string camera, size, title, background, field, map, scale;
   std::vector<std::string> picture;  ///< key=value for the picture, from the flags above and --picture
   ReadOptions read;
-  WriteOptions write;
-  double fps = 25;  ///< of films
-  bool fps_stated = false;
-  std::string sheet;  ///< demo: contact sheet
+  std::vector<std::string> written;  ///< convert: key=value for the writer
+  std::vector<std::string> film;     ///< key=value of FilmParams, checked
+  std::string sheet;                 ///< demo: contact sheet
   int threads = 0;
   size_t memory = 0;
   bool read_anywhere = false;  ///< files and recipes may name any file
@@ -32,7 +39,7 @@ struct Options {
        series = false;  ///< series: all inputs are one
 };
 
-/// Parses; for --help and --version prints to stdout and sets command to "". Throws Error(usage).
+/// Parses; for --help and --version prints to stdout and sets command to none. Throws Error(usage).
 Options parse_options(int argc, char** argv);
 
 /// A flag of a command, as the man page and completions tell of it.
@@ -50,5 +57,7 @@ struct CommandDoc {
 };
 /// Every command of the help, from the same declarations that parse_options() reads.
 std::vector<CommandDoc> command_docs();
+/// What the flags say of a file in this format. Throws Error(usage) for flags that it does not take.
+WriteOptions writing(const Options& o, const Format& format);
 
 }  // namespace sg

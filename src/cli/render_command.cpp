@@ -21,6 +21,8 @@
 #include "filter/mesh/select/piece.h"
 #include "image/codec.h"
 #include "io/file_series.h"
+#include "io/formats.h"
+#include "pipeline/film/film.h"
 #include "pipeline/graph/slabs.h"
 #include "pipeline/picture/picture.h"
 
@@ -128,57 +130,56 @@ int render_to(PipelineFile& file, const std::string& output, PictureOptions opti
 
 }  // namespace
 
+namespace {
+
+// The parameters of the film with what the command line says of them.
+void take_film_flags(const Options& o, FilmParams& film) {
+  Schema schema = schema_of(film);
+  set_params(schema, o.film, "film");
+}
+
+// Makes a picture, or the pictures of a film, whatever the output is.
+int render_into(PipelineFile file, const FilmParams& film, const PictureOptions& options, const Options& o, Context& context) {
+  if (is_film(film.output) && !o.explain) {
+    const FilmWritten written = write_film(std::move(file), film, options, context);
+    if (!o.quiet)
+      say(fmt::format("{}: {} pictures, times {} to {}\n", printable(written.what), written.times.size(),
+                      short_number(written.times.front()), short_number(written.times.back())));
+    return 0;
+  }
+  if (word_value(o.film, "times") && !o.explain)
+    fail_usage("several times need several pictures", "--times", "number them: -o out_{n}.png, or make a film: -o film.webm");
+  return render_to(file, film.output, options, o, context);
+}
+
+}  // namespace
+
 int run_render(const Options& o, Context& context) {
   PipelineFile file = pipeline_of(o);
   PictureOptions options;
   if (!o.field.empty()) options.coloring.push_back("field=" + o.field);
   if (!o.map.empty()) options.coloring.push_back("map=" + o.map);
   if (!o.scale.empty()) options.coloring.push_back("scale=" + o.scale);
-  if (is_numbered(o.output) && (o.progressive || o.within > 0))
+  FilmParams film;
+  take_film_flags(o, film);
+  film.output = !o.output.empty() ? o.output : (o.inputs.empty() ? file.steps[0].operation : stem_of(o.inputs[0])) + ".png";
+  if (is_film(film.output) && (o.progressive || o.within > 0))
     fail_usage("the pictures of a series are final at once", o.progressive ? "--progressive" : "--within",
                "leave it out, or make one picture");
-  if (is_numbered(o.output)) return render_series(std::move(file), {o.output, o.times, o.fps}, options, o, context);
-  if (!o.times.empty())
-    fail_usage("several times need several pictures", "--times", "number them: -o out_{n}.png, or make a film: -o film.webm");
-  const std::string output = !o.output.empty() ? o.output : (o.inputs.empty() ? file.steps[0].operation : stem_of(o.inputs[0])) + ".png";
-  return render_to(file, output, options, o, context);
+  return render_into(std::move(file), film, options, o, context);
 }
-
-namespace {
-
-// What a pipeline file says of the pictures of a series is taken out of it: each of them is one of its own.
-SeriesRequest series_in(PipelineFile& file, const std::string& output, const Options& o) {
-  SeriesRequest r{output, o.times, o.fps};
-  if (const auto stated = word_value(file.picture, "times"); stated && r.times.empty()) r.times = *stated;
-  if (const auto stated = word_value(file.picture, "fps"); stated && !o.fps_stated) {
-    const auto fps = parse_double(*stated);
-    if (!fps || !(*fps >= 0.1) || *fps > 1000) fail_usage(fmt::format("'{}' is no number from 0.1 to 1000", *stated), "fps");
-    r.fps = *fps;
-  }
-  std::erase_if(file.picture,
-                [](const std::string& w) { return w.starts_with("output=") || w.starts_with("times=") || w.starts_with("fps="); });
-  return r;
-}
-
-}  // namespace
 
 int run_pipeline_file(const Options& o, Context& context) {
   for (const std::string& path : o.inputs) {
     PipelineFile file = read_pipeline(path, picture_vocabulary());
     if (!o.size.empty()) file.picture.push_back("size=" + o.size);
-    std::string output = o.output;
-    if (output.empty()) {
-      const auto stated = word_value(file.picture, "output");
-      output = stated ? path_beside(path, *stated) : folder_of(path) + stem_of(path) + ".png";
-    }
-    const SeriesRequest series = series_in(file, output, o);
-    if (is_numbered(output) && !o.explain) {
-      render_series(std::move(file), series, {}, o, context);
-      continue;
-    }
-    if (!o.times.empty())
-      fail_usage("several times need several pictures", "--times", "number them: -o out_{n}.png, or make a film: -o film.webm");
-    render_to(file, output, {}, o, context);
+    FilmParams film;
+    film.output = stem_of(path) + ".png";
+    std::erase_if(file.picture, [&](const std::string& w) { return is_film_word(w) && word_value(o.film, w.substr(0, w.find('='))); });
+    take_film_words(file, film);
+    take_film_flags(o, film);
+    film.output = o.output.empty() ? path_beside(path, film.output) : o.output;
+    render_into(std::move(file), film, {}, o, context);
   }
   return 0;
 }
@@ -234,10 +235,10 @@ int run_info_of_pipeline(const Options& o, Context& context) {
 namespace {
 
 // Without filters a volume goes to a Zarr folder slab by slab, so that it need not fit into memory.
-int convert_slabs(const PipelineFile& file, const Options& o, Context& context) {
+int convert_slabs(const PipelineFile& file, const Options& o, const WriteOptions& write, Context& context) {
   ZarrOptions options;
-  options.chunk = size_t(o.write.chunk);
-  if (o.write.compression != "none") options.compression = o.write.compression;
+  options.chunk = size_t(write.chunk);
+  if (write.compression) options.compression = word_of(*write.compression);
   const SlabSource source = with_context(fmt::format("writing '{}'", o.output), [&] {
     return o.source.empty() ? slabs_of_file(o.inputs[0], o.read, context)
                             : slabs_of_source(file.steps[0].operation, file.steps[0].words, context);
@@ -258,12 +259,13 @@ int run_convert(const Options& o, Context& context) {
     return 0;
   }
   const std::string target = o.output.substr(0, o.output.find_last_not_of('/') + 1);
-  if (extension_of(target) == "zarr" && o.filters.empty() && o.read.pieces == 1 && o.write.pieces == 1)
-    return convert_slabs(file, o, context);
+  const Format& format = format_to_write(target);
+  const WriteOptions write = writing(o, format);
+  if (format.write == write_zarr && o.filters.empty() && o.read.pieces == 1) return convert_slabs(file, o, write, context);
   const PipelineGraph built = build_graph(file);
   check_memory(built, o);
   const Data data = built.graph.evaluate(built.last, {}, context);
-  write_data(o.output, in_pieces(data, o.write.pieces, context), o.write, context);
+  write_data(o.output, in_pieces(data, write.pieces, context), write, context);
   if (!o.quiet)
     for_each_dataset(data, [&](const std::string& part, const DatasetPtr& d) {
       say(fmt::format("{}: {}{}\n", printable(o.output), part.empty() ? "" : printable(part) + ": ", summary(*d)));

@@ -13,10 +13,25 @@
 #include "data/lattice.h"
 #include "data/lattice_crop.h"
 #include "io/file_series.h"
+#include "io/options.h"
 #include "io/plugin.h"
 #include "io/reading_budget.h"
 
 namespace sg {
+
+namespace {
+
+// A row of the table with its options.
+constexpr Format reads_with(void (*describe)(Schema&, ReadOptions&), Format f) {
+  f.describe_read = describe;
+  return f;
+}
+constexpr Format writes_with(void (*describe)(Schema&, WriteOptions&), Format f) {
+  f.describe_write = describe;
+  return f;
+}
+
+}  // namespace
 
 std::span<const Format> formats() {
   static constexpr Format table[] = {
@@ -100,19 +115,10 @@ auto with_format(std::string path, const ReadOptions& options, F&& f) {
   }
 }
 
-// Formats whose files name others, or that are folders.
-bool names_others(const Format& f) {
-  if (f.sniff_folder) return true;
-  for (const char* name : {"NRRD", "MetaImage", "EnSight Gold", "nek5000", "PLOT3D", "PLOT3D meta file", "BOV", "OpenFOAM controlDict",
-                           "parallel VTK XML", "VTK multiblock", "ParaView collection", "VTK AMR", "XDMF", "glTF", "MFEM grid function"})
-    if (f.name == name) return true;
-  return false;
-}
-
 // What was read of a file that was written meanwhile is neither its old nor its new state, whether it was understood or not.
 Data read_unchanged(const Format& f, const std::string& path, const ReadOptions& options, Context& context) {
   const uint64_t begin = mapped_watch().now();
-  ReadingBudget budget(path, names_others(f));
+  ReadingBudget budget(path, f.sniff_folder || (f.honours & names_others));
   Data data;
   try {
     data = f.read(path, options, context);
@@ -175,21 +181,28 @@ size_t chosen_step(const std::vector<double>& times, const ReadOptions& options,
   return best;
 }
 
-void write_data(const std::string& given, const Data& data, const WriteOptions& options, Context& context) {
-  std::string path = given;
-  while (path.size() > 1 && path.back() == '/') path.pop_back();  // of a format that is a folder
-  const std::string ext = extension_of(path);
+const Format& format_to_write(const std::string& path) {
   const Format* known = nullptr;
   for (const Format& f : formats())
     if (has_extension(f, path) && (!known || !known->write)) known = &f;
-  if (const Format* p = known) {
-    const Format& f = *p;
-    if (!f.write) fail_usage(fmt::format("{} files are read but not written", f.name), path, "can write: " + known_extensions(true));
-    if (options.pieces > 1 && f.write != write_vtk_parallel && f.write != write_vtk_multiblock)
+  if (!known) fail_usage(fmt::format("unknown extension '{}'", extension_of(path)), path, "can write: " + known_extensions(true));
+  if (!known->write)
+    fail_usage(fmt::format("{} files are read but not written", known->name), path, "can write: " + known_extensions(true));
+  return *known;
+}
+
+void write_data(const std::string& given, const Data& data, const WriteOptions& options, Context& context) {
+  std::string path = given;
+  while (path.size() > 1 && path.back() == '/') path.pop_back();  // of a format that is a folder
+  const Format& f = format_to_write(path);
+  if (options.pieces > 1) {
+    WriteOptions taken;
+    Schema schema;
+    if (f.describe_write) f.describe_write(schema, taken);
+    if (!schema.find("pieces"))
       fail_usage(fmt::format("{} files do not hold pieces", f.name), path, "write .pvti .pvtr .pvts .pvtu .pvtp or .vtm");
-    return with_context(fmt::format("writing '{}'", path), [&] { f.write(path, data, options, context); });
   }
-  fail_usage(fmt::format("unknown extension '{}'", ext), path, "can write: " + known_extensions(true));
+  with_context(fmt::format("writing '{}'", path), [&] { f.write(path, data, options, context); });
 }
 
 }  // namespace sg

@@ -9,9 +9,12 @@
 #include <vector>
 
 #include "base/context.h"
+#include "base/schema/enum_words.h"
 #include "data/dataset.h"
 
 namespace sg {
+
+class Schema;
 
 /// Part of a lattice: points lo..hi (inclusive, counted from 0 in the file's lattice), every stride-th along each axis.
 struct LatticeRegion {
@@ -20,6 +23,16 @@ struct LatticeRegion {
   bool whole() const { return *this == LatticeRegion(); }
   friend bool operator==(const LatticeRegion&, const LatticeRegion&) = default;
 };
+
+/// Whether the first line of delimited text names the columns.
+enum class HeaderLine {
+  automatic,  ///< by its cells
+  yes,
+  no
+};
+constexpr auto enum_words(HeaderLine) {
+  return std::array{Word{"auto", HeaderLine::automatic}, Word{"yes", HeaderLine::yes}, Word{"no", HeaderLine::no}};
+}
 
 /// What a reader may leave out. It may always give more than was asked for; read_data() then cuts what it can (see Format::honours).
 struct ReadOptions {
@@ -36,16 +49,34 @@ struct ReadOptions {
   size_t raw_header = 0;                    ///< ... bytes to skip,
   int raw_components = 1;                   ///< ... numbers per voxel,
   Vec3 raw_spacing{1, 1, 1};                ///< ... distance of voxels
-  std::string csv_header = "auto";          ///< delimited text: whether the first line names the columns: yes, no, auto (by its cells)
-  std::string times;                        ///< several files as a series (io/file_series.h): START:STEP or a list; "" = what they say
+  HeaderLine csv_header = HeaderLine::automatic;
+  std::string times;  ///< several files as a series (io/file_series.h): START:STEP or a list; "" = what they say
 };
 
+/// How VTK XML holds the bytes of arrays.
+enum class VtkEncoding {
+  ascii,
+  base64,
+  appended,  ///< as they are, behind the XML
+};
+constexpr auto enum_words(VtkEncoding) {
+  using enum VtkEncoding;
+  return std::array{Word{"ascii", ascii}, Word{"base64", base64}, Word{"appended", appended}};
+}
+
+enum class Compression { none, zlib, lz4, lzma, gzip, zstd };
+constexpr auto enum_words(Compression) {
+  using enum Compression;
+  return std::array{Word{"none", none}, Word{"zlib", zlib}, Word{"lz4", lz4}, Word{"lzma", lzma}, Word{"gzip", gzip}, Word{"zstd", zstd}};
+}
+
+/// How files are written. Which of these a format takes: Format::describe_write; the others have no effect there.
 struct WriteOptions {
-  std::string encoding = "appended";  ///< VTK XML: ascii, base64, appended (raw)
-  std::string compression = "none";   ///< VTK XML: none, zlib, lz4, lzma; NRRD: none, gzip; Zarr: lz4 (for none too), zstd, zlib
-  bool binary = true;                 ///< STL, PLY
-  int pieces = 1;                     ///< parallel VTK XML and .vtm: cut each mesh into that many (see in_pieces, mesh/select/piece.h)
-  int chunk = 64;                     ///< Zarr: samples along each axis of a chunk
+  VtkEncoding encoding = VtkEncoding::appended;
+  std::optional<Compression> compression;  ///< open: lz4 in Zarr, else none. Error(usage) for one that the format has not.
+  bool binary = true;                      ///< STL, PLY
+  int pieces = 1;  ///< parallel VTK XML and .vtm: cut each mesh into that many (see in_pieces in mesh/select/piece.h)
+  int chunk = 64;  ///< Zarr: samples along each axis of a chunk
 };
 
 /// Reads any known file. Errors name the file, the byte or line, and what was expected.
@@ -62,8 +93,8 @@ Series open_series(const std::string& path, const ReadOptions& options, Context&
 size_t chosen_step(const std::vector<double>& times, const ReadOptions& options, const std::string& path, size_t otherwise = 0);
 
 /// What a reader does itself; the rest is done behind it, on all that it read.
-/// `may_be_empty`: an empty file is right, because it only marks its folder.
-enum Honours : unsigned { honours_region = 1, honours_pieces = 2, may_be_empty = 4 };
+/// `may_be_empty`: an empty file is right, because it only marks its folder. `names_others`: a file refers to further files.
+enum Honours : unsigned { honours_region = 1, honours_pieces = 2, may_be_empty = 4, names_others = 8 };
 
 /// One format: what it is called, how to know it, how to read and write it. The table stands in formats.def.
 struct Format {
@@ -81,9 +112,14 @@ struct Format {
   /// For formats without a magic number, known by the length and all of the content; asked when no sniff accepts the content and the
   /// extension is one of the format's. `whole` is mapped: touch little of it.
   bool (*sniff_file)(std::span<const std::byte> whole) = nullptr;
+  /// Declare the options that this format takes beside those of all (io/options.h); null = none.
+  void (*describe_read)(Schema& s, ReadOptions& options) = nullptr;
+  void (*describe_write)(Schema& s, WriteOptions& options) = nullptr;
 };
 std::span<const Format> formats();
 /// The format of a file or folder, by content, then by extension. Throws Error(data) when none knows it.
 const Format& find_format(const std::string& path, const ReadOptions& options);
+/// The format that write_data() takes for a file of this name. Throws Error(usage) for an extension that no writer has.
+const Format& format_to_write(const std::string& path);
 
 }  // namespace sg

@@ -149,7 +149,7 @@ TEST_CASE("run: a pipeline file makes numbered pictures and films, of a file's s
   // What cannot be.
   CHECK(sightglass({"run", "film.yaml", "-o", "still.png", "--times", "0,1"}, f).err.find("several times need") != std::string::npos);
   write_file(f + "no.yaml", "sightglass: 1\nsteps:\n  b: {double_gyre: {time: 3}}\npicture: {times: \"0:2:3\", output: no.webm, fps: x}\n");
-  CHECK(sightglass({"run", "no.yaml"}, f).err.find("'x' is no number") != std::string::npos);
+  CHECK(sightglass({"run", "no.yaml"}, f).err.find("'x' is not a number") != std::string::npos);
   CHECK(sightglass({"run", "no.yaml", "--fps", "3"}, f).err.find("states one") != std::string::npos);
   write_file(f + "one.yaml", "sightglass: 1\nsteps:\n  in: {read: ../flow_3.vti}\n");
   const Ran one = sightglass({"run", "one.yaml", "-o", "o_{n}.png"}, f);

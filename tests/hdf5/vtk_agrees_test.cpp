@@ -93,7 +93,7 @@ TEST_CASE("vtkhdf: VTK reads the images and the cells that we write" * doctest::
   Context context;
   for (const char* compression : {"none", "zlib"}) {
     WriteOptions o;
-    o.compression = compression;
+    o.compression = value_of_word<Compression>(compression);
     UniformGrid g;
     g.dims = {21, 11, 13};
     g.origin = {1, 2, 3}, g.spacing = {0.5, 0.25, 2};

@@ -10,7 +10,7 @@ namespace {
 void write(const std::string& path, const DatasetPtr& d, const char* compression = "none") {
   Context context;
   WriteOptions o;
-  o.compression = compression;
+  o.compression = value_of_word<Compression>(compression);
   write_data(path, d, o, context);
 }
 

@@ -219,7 +219,8 @@ TEST_CASE("property: whatever a writer loses, a warning names") {
       };
       const std::string path = (getenv("SG_KEEP") ? std::string("/tmp/m3keep/") : temp_folder()) + "loss." + w.extension;
       WriteOptions options;
-      options.compression = w.compression, options.encoding = w.encoding, options.chunk = 8;
+      options.compression = value_of_word<Compression>(w.compression), options.encoding = *value_of_word<VtkEncoding>(w.encoding),
+      options.chunk = 8;
       const bool needs_scalar = std::string_view(w.extension) == "vdb";
       try {
         write_data(path, in, options, ctx);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // ParamRef: a member of a parameter struct, whatever its type, read and changed as a Value.
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -15,10 +16,11 @@
 
 namespace sg {
 
-/// Name of a field in the input; empty = the operation chooses (its help says how).
+/// Name of a field in the input; empty = the operation chooses (its help says how); "none" where it may do without one.
 struct FieldName {
   std::string name;
   bool empty() const { return name.empty(); }
+  bool none() const { return name == "none"; }
   friend bool operator==(const FieldName&, const FieldName&) = default;
 };
 
@@ -52,6 +54,12 @@ template <>
 struct ParamTraits<int> : PlainParam<int, ParamType::integer, int64_t> {};
 template <>
 struct ParamTraits<int64_t> : PlainParam<int64_t, ParamType::integer> {};
+template <>
+struct ParamTraits<size_t> {
+  static constexpr ParamType type = ParamType::integer;
+  static Value get(const size_t& v) { return int64_t(std::min<size_t>(v, INT64_MAX)); }
+  static size_t from(const Value& v) { return size_t(std::get<int64_t>(v)); }
+};
 template <>
 struct ParamTraits<double> : PlainParam<double, ParamType::number> {};
 template <>
@@ -138,6 +146,7 @@ constexpr ParamAccess make_param_access() {
   using Traits = ParamTraits<T>;
   ParamAccess a{Traits::type, MayBeOpen<T>, INT64_MIN, INT64_MAX, {}, nullptr, nullptr};
   if constexpr (std::is_same_v<T, int> || std::is_same_v<T, std::optional<int>>) a.least = INT32_MIN, a.most = INT32_MAX;
+  if constexpr (std::is_same_v<T, size_t> || std::is_same_v<T, std::optional<size_t>>) a.least = 0;
   if constexpr (HasWords<T>) a.words = words_alone<typename Traits::Enum>;
   a.get = [](const void* member) { return Traits::get(*static_cast<const T*>(member)); };
   a.set = [](void* member, const Value& v) { *static_cast<T*>(member) = Traits::from(v); };
@@ -147,14 +156,32 @@ constexpr ParamAccess make_param_access() {
 template <class T>
 inline constexpr ParamAccess param_access = make_param_access<T>();
 
+template <class View, class T>
+inline constexpr ParamAccess view_access = {
+    View::type,
+    View::optional,
+    INT64_MIN,
+    INT64_MAX,
+    {},
+    [](const void* member) { return View::get(*static_cast<const T*>(member)); },
+    [](void* member, const Value& v) { View::set(*static_cast<T*>(member), v); },
+};
+
 }  // namespace detail
 
-/// A member that outlives the reference: bool, int, int64_t, double, std::string, FieldName, Vec3, an enum with words (enum_words.h),
-/// lists of int64_t, double, std::string or such enums, and std::optional of any of these.
+/// A member that outlives the reference: bool, int, int64_t, size_t, double, std::string, FieldName, Vec3, an enum with words
+/// (enum_words.h), lists of int64_t, double, std::string or such enums, and std::optional of any of these; or a view of a member of
+/// another type.
 class ParamRef {
  public:
   template <class T>
   explicit ParamRef(T& member) : access_(&detail::param_access<T>), member_(&member) {}
+  /// `View` is a struct with `static constexpr ParamType type`, `static constexpr bool optional`, `static Value get(const T&)` and
+  /// `static void set(T&, const Value&)`.
+  template <class View, class T>
+  static ParamRef seen_as(T& member) {
+    return ParamRef(&detail::view_access<View, T>, &member);
+  }
 
   ParamType type() const { return access_->type; }
   bool optional() const { return access_->optional; }
@@ -167,6 +194,7 @@ class ParamRef {
   void set(const Value& value) const { access_->set(member_, value); }
 
  private:
+  ParamRef(const detail::ParamAccess* access, void* member) : access_(access), member_(member) {}
   const detail::ParamAccess* access_;
   void* member_;
 };

@@ -38,9 +38,9 @@ class Check {
         if (v.size() != 3) fail("three numbers like 0,0,1");
         return v;
       }
-      case ParamType::numbers: return numbers();
-      case ParamType::integers: return integers();
-      case ParamType::words: return words();
+      case ParamType::numbers: return counted(numbers());
+      case ParamType::integers: return counted(integers());
+      case ParamType::words: return counted(words());
     }
     return given_;
   }
@@ -98,6 +98,11 @@ class Check {
     fail_usage(fmt::format("'{}' is not one of the choices", word), where_, unknown_name_hint(word, decl_.choices_));
   }
 
+  template <class T>
+  std::vector<T> counted(std::vector<T> list) const {
+    if (list.size() < decl_.least_items || list.size() > decl_.most_items) fail("a list of " + items_text(decl_));
+    return list;
+  }
   std::vector<double> numbers() const {
     std::vector<double> r;
     if (auto* list = std::get_if<std::vector<double>>(&given_)) r = *list;
@@ -132,7 +137,8 @@ class Check {
 }  // namespace
 
 ParamDecl& Schema::add(std::string name, ParamRef ref, std::string doc) {
-  ParamDecl d{std::move(name), ref, std::move(doc), {}, -HUGE_VAL, HUGE_VAL, false, false, {}, {}, false};
+  ParamDecl d{std::move(name), ref, std::move(doc), {}, -HUGE_VAL, HUGE_VAL, false, false, {}, {}, 0, SIZE_MAX, false, false};
+  if (ref.least() == 0) d.lo = 0;
   for (const std::string_view w : ref.words()) d.choices_.emplace_back(w);
   return decls_.emplace_back(std::move(d));
 }
@@ -160,6 +166,12 @@ ParamSet copy_of(const ParamSet& params) {
   return copy;
 }
 
+std::string items_text(const ParamDecl& d) {
+  if (d.least_items == d.most_items) return std::to_string(d.least_items);
+  if (d.most_items == SIZE_MAX) return d.least_items > 0 ? fmt::format("at least {}", d.least_items) : "";
+  return fmt::format("{} to {}", d.least_items, d.most_items);
+}
+
 std::string range_text(const ParamDecl& d) {
   if (d.lo == -HUGE_VAL && d.hi == HUGE_VAL) return "";
   if (d.hi == HUGE_VAL) return (d.lo_open ? "above " : "at least ") + exact_number(d.lo);
@@ -176,7 +188,7 @@ void set_value(Schema& schema, std::string_view name, const Value& value, std::s
     for (const ParamDecl& d : schema.decls()) names.push_back(d.name);
     fail_usage(fmt::format("unknown parameter '{}'", name), std::string(owner), unknown_name_hint(name, names));
   }
-  decl->ref.set(Check(*decl, fmt::format("{} {}", owner, name), value, written)());
+  decl->ref.set(Check(*decl, owner.empty() ? std::string(name) : fmt::format("{} {}", owner, name), value, written)());
   decl->stated = true;
 }
 

@@ -46,7 +46,9 @@ struct ParamDecl {
   bool lo_open = false, hi_open = false;  ///< the bound itself is not allowed
   std::vector<std::string> choices_;      ///< allowed words (each element of a list); those of an enum by themselves
   FieldKinds field_;
-  bool stated = false;  ///< was set, rather than left at its default
+  size_t least_items = 0, most_items = SIZE_MAX;  ///< length of a list
+  bool required_ = false;                         ///< there is no default that would do
+  bool stated = false;                            ///< was set, rather than left at its default
 
   ParamDecl& unit(std::string u) {
     unit_ = std::move(u);
@@ -73,6 +75,16 @@ struct ParamDecl {
     field_ = kinds;
     return *this;
   }
+  ParamDecl& items(size_t least, size_t most) {
+    least_items = least, most_items = most;
+    return *this;
+  }
+  ParamDecl& items(size_t count) { return items(count, count); }
+  /// For help and JSON; that it was stated is for the operation to check.
+  ParamDecl& required() {
+    required_ = true;
+    return *this;
+  }
 };
 
 /// Collects declarations; references returned by operator() stay valid until the next call.
@@ -81,6 +93,11 @@ class Schema {
   template <class T>
   ParamDecl& operator()(std::string name, T& value, std::string doc) {
     return add(std::move(name), ParamRef(value), std::move(doc));
+  }
+  /// A view of a member of another type, see ParamRef::seen_as().
+  template <class View, class T>
+  ParamDecl& view(std::string name, T& value, std::string doc) {
+    return add(std::move(name), ParamRef::seen_as<View>(value), std::move(doc));
   }
   std::vector<ParamDecl>& decls() { return decls_; }
   const std::vector<ParamDecl>& decls() const { return decls_; }
@@ -130,7 +147,8 @@ ParamSet param_set_of(P values) {
 ParamSet copy_of(const ParamSet& params);
 
 /// Sets one parameter. Whole numbers serve as numbers, a single value as a list of one; words may differ in case. Throws Error(usage)
-/// naming `owner` (the operation), the parameter, and what would be right; the value as it was `written`, where that is given.
+/// naming `owner` (the operation; "" = the parameter's name says all), the parameter, and what would be right; the value as it was
+/// `written`, where that is given.
 void set_value(Schema& schema, std::string_view name, const Value& value, std::string_view owner, std::string_view written = {});
 
 /// The same from text, as command lines and pipeline files write it.
@@ -146,14 +164,16 @@ std::string param_text(const ParamDecl& decl);
 std::string_view param_type(const ParamDecl& decl);
 /// "above 0", "from 1 to 4"; "" without limits.
 std::string range_text(const ParamDecl& decl);
+/// "3", "1 to 3", "at least 2": how long a list may be; "" without limits.
+std::string items_text(const ParamDecl& decl);
 /// "name=value" of those whose values are not the defaults: what set_params() takes to come to the same.
 std::vector<std::string> changed_words(const ParamSet& params);
 /// All values as "name=value" lines in declaration order: the part of the cache key that is the parameters.
 std::string params_text(const Schema& schema);
 /// A table for people: name, type, default, unit, sentence.
 std::string params_help(const Schema& schema);
-/// JSON schema of the parameters (draft 2020-12): {"type":"object","properties":{...}}. Beside the standard's words, "unit" and "field"
-/// ({"on":[...],"of":[...]}: which fields are taken).
+/// JSON schema of the parameters (draft 2020-12): {"$schema":...,"type":"object","additionalProperties":false,"properties":{...}}. Beside
+/// the standard's words, "unit" and "field" ({"on":[...],"of":[...]}: which fields are taken).
 std::string params_json(const Schema& schema);
 
 }  // namespace sg

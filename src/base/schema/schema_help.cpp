@@ -34,9 +34,11 @@ std::string params_help(const Schema& schema) {
     if (d.ref.type() == ParamType::field) facts = field_kinds_text(d.field_);
     if (!d.choices_.empty()) facts = d.ref.optional() ? "auto" : "";
     for (const std::string& c : d.choices_) facts += (facts.empty() ? "" : "|") + c;
+    if (std::string t = items_text(d); !t.empty()) facts += ", " + t + " of them";
     if (std::string t = range_text(d); !t.empty()) facts += ", " + t;
     if (!d.unit_.empty()) facts += d.unit_[0] == '@' ? ", in units of '" + d.unit_.substr(1) + "'" : ", in " + d.unit_;
-    if (std::string t = param_text(d); !t.empty()) facts += ", default " + t;
+    if (d.required_) facts += ", required";
+    else if (std::string t = param_text(d); !t.empty()) facts += ", default " + t;
     r += fmt::format("  {:<{}}  {} [{}]\n", d.name, width, d.doc, facts);
   }
   return r;
@@ -84,18 +86,29 @@ std::string element_json(const ParamDecl& d) {
 }
 
 // Whether the default is a value that the schema itself allows: "" and {} stand for "chosen from the data".
-bool has_default(const Value& v) {
+bool has_default(const ParamDecl& decl) {
+  if (decl.required_) return false;
+  const Value v = decl.ref.get();
   if (auto* s = std::get_if<std::string>(&v)) return !s->empty();
   if (auto* d = std::get_if<double>(&v)) return std::isfinite(*d);
-  if (auto* list = std::get_if<std::vector<double>>(&v))
-    return std::all_of(list->begin(), list->end(), [](double x) { return std::isfinite(x); });
-  return true;
+  if (auto* list = std::get_if<std::vector<double>>(&v);
+      list && !std::all_of(list->begin(), list->end(), [](double x) { return std::isfinite(x); }))
+    return false;
+  return std::visit(
+      [&](const auto& list) {
+        if constexpr (!std::is_same_v<std::remove_cvref_t<decltype(list)>, std::string> && requires { list.size(); })
+          return list.size() >= decl.least_items && list.size() <= decl.most_items;
+        else return true;
+      },
+      v);
 }
 
 }  // namespace
 
 std::string params_json(const Schema& schema) {
-  std::string r = "{\"type\":\"object\",\"additionalProperties\":false,\"properties\":{";
+  std::string r =
+      "{\"$schema\":\"https://json-schema.org/draft/2020-12/schema\",\"type\":\"object\",\"additionalProperties\":false,\"properties\":{";
+  std::string required;
   bool first = true;
   for (const ParamDecl& d : schema.decls()) {
     const ParamType type = d.ref.type();
@@ -103,17 +116,20 @@ std::string params_json(const Schema& schema) {
     r += (first ? "" : ",") + json_string(d.name) + ":{";
     if (list) {
       r += fmt::format("\"type\":{},\"items\":{{{}}}", d.ref.optional() ? "[\"array\",\"null\"]" : "\"array\"", element_json(d));
-      if (type == ParamType::point) r += ",\"minItems\":3,\"maxItems\":3";
+      const size_t least = type == ParamType::point ? 3 : d.least_items, most = type == ParamType::point ? 3 : d.most_items;
+      if (least > 0) r += fmt::format(",\"minItems\":{}", least);
+      if (most != SIZE_MAX) r += fmt::format(",\"maxItems\":{}", most);
     } else {
       r += element_json(d);
     }
     if (type == ParamType::field) r += ",\"field\":" + field_json(d.field_);
     if (!d.unit_.empty()) r += ",\"unit\":" + json_string(d.unit_);
-    if (const Value v = d.ref.get(); has_default(v)) r += ",\"default\":" + value_json(v);
+    if (has_default(d)) r += ",\"default\":" + value_json(d.ref.get());
     r += ",\"description\":" + json_string(d.doc) + "}";
+    if (d.required_) required += (required.empty() ? "" : ",") + json_string(d.name);
     first = false;
   }
-  return r + "}}";
+  return r + "}" + (required.empty() ? "" : ",\"required\":[" + required + "]") + "}";
 }
 
 }  // namespace sg

@@ -70,7 +70,7 @@ class Parse {
 
 void set_param(Schema& schema, std::string_view name, std::string_view text, std::string_view owner) {
   const ParamDecl* decl = schema.find(name);
-  const Value value = decl ? Parse(*decl, fmt::format("{} {}", owner, name), text)() : Value{};
+  const Value value = decl ? Parse(*decl, owner.empty() ? std::string(name) : fmt::format("{} {}", owner, name), text)() : Value{};
   set_value(schema, name, value, owner, trim(text));
 }
 

@@ -185,8 +185,6 @@ TablePtr table_of(const Data& data) {
 }  // namespace
 
 Data read_csv(const std::string& path, const ReadOptions& options, Context& context) {
-  if (options.csv_header != "auto" && options.csv_header != "yes" && options.csv_header != "no")
-    fail_usage(fmt::format("'{}' does not say whether there is a header", options.csv_header), path, "yes, no or auto");
   const MappedFile file(path);
   const std::string text = text_of(file.text());
   if (text.find('\0') != text.npos) fail_data("holds bytes that are no text", path, "delimited text in UTF-8 or UTF-16");
@@ -206,7 +204,8 @@ Data read_csv(const std::string& path, const ReadOptions& options, Context& cont
   Record first, record;
   if (!next(first)) fail_data("has no line that is not empty", path, "a table has at least one row");
   bool more = next(record);
-  if (options.csv_header == "yes" || (options.csv_header == "auto" && is_header(first, more ? &record : nullptr))) {
+  if (options.csv_header == HeaderLine::yes ||
+      (options.csv_header == HeaderLine::automatic && is_header(first, more ? &record : nullptr))) {
     std::vector<std::string_view> names;
     for (size_t i = 0; i < first.cells.size(); ++i)
       names.push_back(first.in_quotes[i] ? std::string_view(first.cells[i]) : trim(first.cells[i]));

@@ -59,15 +59,16 @@ void write_metaimage(const std::string& path, const Data& data, const WriteOptio
   if (!grid)
     fail_usage(fmt::format("a MetaImage file holds a uniform grid, not a {} mesh", d->kind()), path,
                "sample it on a grid first: -f 'resample'");
-  if (options.compression != "none" && options.compression != "zlib")
-    fail_usage(fmt::format("MetaImage cannot be compressed with '{}'", options.compression), path, "none or zlib");
+  const Compression compression = options.compression.value_or(Compression::none);
+  if (compression != Compression::none && compression != Compression::zlib)
+    fail_usage(fmt::format("MetaImage cannot be compressed with '{}'", word_of(compression)), path, "none or zlib");
   WriteLosses losses(path, "MetaImage");
   const Field& f = field_to_write(*d, path, losses);
   losses.renames(f, f.name.empty() || f.name.find('\n') != std::string::npos ? "MetaImage" : trim(f.name));
   const Array a = f.array.made_packed();
   std::span<const std::byte> bytes(a.raw(), a.bytes());
   std::vector<std::byte> packed;
-  if (options.compression == "zlib") bytes = packed = pack_zlib(bytes);
+  if (compression == Compression::zlib) bytes = packed = pack_zlib(bytes);
 
   const bool apart = extension_of(path) == "mhd";
   const std::string data_path = path.substr(0, path.size() - 3) + (packed.empty() ? "raw" : "zraw");

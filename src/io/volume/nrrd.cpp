@@ -260,15 +260,16 @@ void write_nrrd(const std::string& path, const Data& data, const WriteOptions& o
   const UniformGrid* grid = d->as<UniformGrid>();
   if (!grid)
     fail_usage(fmt::format("a NRRD file holds a uniform grid, not a {} mesh", d->kind()), path, "sample it on a grid first: -f 'resample'");
-  if (options.compression != "none" && options.compression != "gzip")
-    fail_usage(fmt::format("NRRD cannot be compressed with '{}'", options.compression), path, "none or gzip");
+  const Compression compression = options.compression.value_or(Compression::none);
+  if (compression != Compression::none && compression != Compression::gzip)
+    fail_usage(fmt::format("NRRD cannot be compressed with '{}'", word_of(compression)), path, "none or gzip");
   if (extension_of(path) == "nhdr") fail_usage("detached NRRD headers are read but not written", path, "name it .nrrd");
   const UniformGrid placed = with_long_axes(*grid);
   WriteLosses losses(path, "NRRD");
   const Field& f = field_to_write(*d, path, losses);
   const Array a = f.array.made_packed();
   const std::span<const std::byte> bytes(a.raw(), a.bytes());
-  const bool gzip = options.compression == "gzip";
+  const bool gzip = compression == Compression::gzip;
   AtomicFile file(path);
   std::string header = header_text(placed, f, gzip, d->notes());
   // Raw data begin at a multiple of their element size, so that readers can map them.

@@ -78,7 +78,7 @@ SlabSource slabs_of_file(const std::string& path, const ReadOptions& options, Co
 void write_zarr(const std::string& path, const Data& data, const WriteOptions& options, Context& context) {
   ZarrOptions o;
   o.chunk = size_t(options.chunk);
-  if (options.compression != "none") o.compression = options.compression;
+  if (options.compression.value_or(Compression::none) != Compression::none) o.compression = word_of(*options.compression);
   write_zarr_slabs(path, slabs_of_dataset(single_dataset(data, "writing Zarr"), path, context), o, context);
 }
 

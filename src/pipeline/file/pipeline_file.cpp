@@ -137,9 +137,9 @@ class FileParser {
       const auto* op = one_besides(body, "from", of, "operation");
       if (!op) continue;
       step.operation = op->first.text;
-      if (step.operation == "read" && op->second.kind == Kind::scalar) step.words = {"path=" + op->second.text};
-      else if (step.operation == "read" && op->second.kind == Kind::list) add_word("path", op->second, op->second.line, "read", step.words);
-      else if (step.operation == "read" && op->second.kind != Kind::map) mistake(op->second.line, of + ": read: needs the name of a file");
+      if (step.reads() && op->second.kind == Kind::scalar) step.words = {"path=" + op->second.text};
+      else if (step.reads() && op->second.kind == Kind::list) add_word("path", op->second, op->second.line, "read", step.words);
+      else if (step.reads() && op->second.kind != Kind::map) mistake(op->second.line, of + ": read: needs the name of a file");
       else step.words = parse_words(op->second, step.operation);
       for (const auto& [k, v] : body.pairs)
         if (k.text == "from") step.from = names_in(v, of);
@@ -305,7 +305,7 @@ std::string picture_text(const std::vector<std::string>& all) {
 std::string emit_pipeline(const PipelineFile& file) {
   std::string r = "sightglass: 1\nsteps:\n";
   for (const PipelineFile::Step& s : file.steps) {
-    const bool only_path = s.operation == "read" && s.words.size() == 1 && s.words[0].starts_with("path=");
+    const bool only_path = s.reads() && s.words.size() == 1 && s.words[0].starts_with("path=");
     const std::string words = only_path ? yaml_scalar(s.words[0].substr(5)) : words_text(s.words);
     r += fmt::format("  {}: {{{}:{}{}", yaml_scalar(s.name), yaml_scalar(s.operation), words.empty() ? "" : " ", words);
     if (s.from.size() == 1) r += ", from: " + yaml_scalar(s.from[0]);

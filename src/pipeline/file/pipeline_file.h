@@ -26,9 +26,10 @@ struct PipelineFile {
   struct Step {
     std::string name;
     std::string operation;           ///< "read" or the name of an operation
-    std::vector<std::string> words;  ///< of read: those of ReadParams ("path=FullHead.mhd")
+    std::vector<std::string> words;  ///< of read: those of ReadParams in io/options.h ("path=FullHead.mhd")
     std::vector<std::string> from;   ///< names of steps further up; empty = the step before (sources: none)
     int line = 0;
+    bool reads() const { return operation == "read"; }
     friend bool operator==(const Step& a, const Step& b) {
       return a.name == b.name && a.operation == b.operation && a.words == b.words && a.from == b.from;
     }

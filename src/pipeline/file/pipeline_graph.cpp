@@ -8,8 +8,8 @@
 #include "base/file/file.h"
 #include "base/text/text.h"
 #include "io/file_series.h"
+#include "io/options.h"
 #include "pipeline/file/pipeline_file.h"
-#include "pipeline/file/read_params.h"
 #include "pipeline/graph/graph_state.h"
 
 namespace sg {
@@ -54,7 +54,7 @@ class GraphBuilder {
     const auto result = results_.find(step.name);
     const NodeId node = result != results_.end()        ? built_.graph.add_data(result->second, {}, step.name)
                         : step.operation == memory_step ? add_memory(step)
-                        : step.operation == "read"      ? add_read(step)
+                        : step.reads()                  ? add_read(step)
                                                         : add_operation(step);
     line_of_.push_back(step.line);
     if (!nodes_.emplace(step.name, node).second) mistake(step.line, fmt::format("there are two steps '{}'", step.name));
@@ -64,18 +64,18 @@ class GraphBuilder {
 
   NodeId add_read(const PipelineFile::Step& step) {
     ReadParams params;
-    ReadOptions options;
     try {
       Schema schema = schema_of(params);
       set_params(schema, step.words, "read");
-      options = read_options(params);
+      if (params.path.empty()) fail_usage("no file is named", "read path", "write read: FILE");
+      check(params.options);
     } catch (const Error& e) {
       mistake(step.line, fmt::format("step '{}': {}", step.name, e.what()));
       // A given nothing in its place: a missing file would only repeat the mistake.
       return built_.graph.add_data(DatasetPtr(), "mistake", step.name);
     }
     if (!step.from.empty()) mistake(step.line, fmt::format("step '{}': read takes no input", step.name));
-    return built_.graph.add_read(series_beside(file_.origin, params.path), options, step.name);
+    return built_.graph.add_read(series_beside(file_.origin, params.path), params.options, step.name);
   }
 
   NodeId add_memory(const PipelineFile::Step& step) {
@@ -106,9 +106,8 @@ class GraphBuilder {
   // Parameters that name files (unit "file") are relative to the pipeline file, as those of read are.
   std::vector<std::string> with_paths(const PipelineFile::Step& step) const {
     std::vector<std::string> words = step.words;
-    const auto op =
-        std::find_if(options_.operations.begin(), options_.operations.end(), [&](const Operation& o) { return o.name == step.operation; });
-    if (op == options_.operations.end()) return words;
+    const Operation* op = known_operation(step.operation, options_.operations);
+    if (!op) return words;
     const ParamSet params = op->make_params();
     for (std::string& word : words) {
       const size_t sign = word.find('=');
@@ -120,9 +119,8 @@ class GraphBuilder {
   }
 
   bool wants_input(const std::string& operation) const {
-    for (const Operation& o : options_.operations)
-      if (o.name == operation) return o.kind == OperationKind::filter;
-    return false;
+    const Operation* op = known_operation(operation, options_.operations);
+    return op && op->kind == OperationKind::filter;
   }
 
   const PipelineFile& file_;

@@ -12,6 +12,7 @@
 #include "base/text/text.h"
 #include "io/file_series.h"
 #include "pipeline/file/yaml_tree.h"
+#include "pipeline/film/film_params.h"
 #include "pipeline/graph/key.h"
 #include "pipeline/picture/picture.h"
 
@@ -89,7 +90,7 @@ void attach_recipe(Image& image, const PipelineFile& file, const std::string& pi
   const std::string folder = folder_of(picture_path);
   std::string inputs;
   for (auto& step : recipe.steps) {
-    if (step.operation != "read") continue;
+    if (!step.reads()) continue;
     const auto stated = word_value(step.words, "path");
     if (!stated) continue;
     const std::string path = series_beside(file.origin, *stated);
@@ -125,12 +126,11 @@ PipelineFile recipe_in(const Image& image, const std::string& picture_path) {
 PipelineFile recipe_in(const Image& image, const std::string& picture_path, std::vector<std::string>& changed) {
   PipelineFile file = recipe_in(image, picture_path);
   check_recipe(file, picture_path);
-  std::erase_if(file.picture,
-                [](const std::string& w) { return w.starts_with("output=") || w.starts_with("times=") || w.starts_with("fps="); });
+  std::erase_if(file.picture, is_film_word);
   // Only what the recipe reads is looked at, each once.
   std::set<std::string> read;
   for (const auto& step : file.steps)
-    if (step.operation == "read") read.insert(word_value(step.words, "path").value_or(""));
+    if (step.reads()) read.insert(word_value(step.words, "path").value_or(""));
   if (const std::string* inputs = text_in(image, "sightglass-inputs"))
     for (std::string_view line : split(*inputs, '\n')) {
       const size_t a = line.find(' '), b = a == line.npos ? line.npos : line.find(' ', a + 1);

@@ -9,7 +9,7 @@
 #include "base/file/file_fence.h"
 #include "base/text/text.h"
 #include "io/file_series.h"
-#include "pipeline/file/read_params.h"
+#include "io/options.h"
 #include "pipeline/graph/graph.h"
 #include "pipeline/picture/picture.h"
 #include "scene/show/show.h"
@@ -26,14 +26,13 @@ Units units_of(const Schema& schema) {
   return units;
 }
 
-Units units_of_step(const std::string& operation) {
-  if (operation == "read") {
+Units units_of_step(const PipelineFile::Step& step) {
+  if (step.reads()) {
     ReadParams params;
     return units_of(schema_of(params));
   }
-  for (const Operation& o : operations())
-    if (o.name == operation) return units_of(o.make_params().schema);
-  return {};  // said later, with "did you mean"
+  const Operation* op = known_operation(step.operation);
+  return op ? units_of(op->make_params().schema) : Units{};  // an unknown one is told later, with "did you mean"
 }
 
 class Rules {
@@ -84,8 +83,7 @@ class Rules {
 
 void check_recipe(const PipelineFile& recipe, const std::string& picture_path) {
   Rules rules(picture_path);
-  for (const auto& step : recipe.steps)
-    rules.look(fmt::format("step '{}'", step.name), step.line, units_of_step(step.operation), step.words);
+  for (const auto& step : recipe.steps) rules.look(fmt::format("step '{}'", step.name), step.line, units_of_step(step), step.words);
   for (const auto& show : recipe.show) {
     ColoringParams coloring;
     rules.look(fmt::format("show {}", show.kind), show.line,

@@ -12,6 +12,12 @@
 
 namespace sg {
 
+const Operation* known_operation(std::string_view name, std::span<const Operation> table) {
+  for (const Operation& o : table)
+    if (o.name == name) return &o;
+  return nullptr;
+}
+
 const Operation& find_operation(std::string_view name, std::span<const Operation> table) {
   std::vector<std::string> names;
   for (const Operation& o : table) {
@@ -117,27 +123,6 @@ std::string words_help(const Operation& operation) {
     r += fmt::format("  {:<{}}  {}\n", w.form, width, w.sentence);
   }
   return r;
-}
-
-std::string words_json(const Operation& operation) {
-  std::string r;
-  if (operation.words)
-    for (const HelpWord& w : operation.words())
-      r += fmt::format("{}{{\"group\":{},\"form\":{},\"sentence\":{}}}", r.empty() ? "" : ",", json_string(w.group), json_string(w.form),
-                       json_string(w.sentence));
-  return "[" + r + "]";
-}
-
-std::string ops_json(std::span<const Operation> table) {
-  std::string r = "{\"operations\":[";
-  for (size_t i = 0; i < table.size(); ++i) {
-    const Operation& o = table[i];
-    r += fmt::format("{}{{\"name\":{},\"kind\":\"{}\",\"family\":{},\"sentence\":{},\"version\":{},\"inputs\":[{},{}],\"params\":{}{}}}",
-                     i ? ",\n" : "\n", json_string(o.name), o.kind == OperationKind::source ? "source" : "filter", json_string(o.family),
-                     json_string(o.sentence), o.version, o.min_inputs, o.max_inputs, params_json(o.make_params().schema),
-                     o.words ? ",\"words\":" + words_json(o) : "");
-  }
-  return r + "\n]}\n";
 }
 
 }  // namespace sg

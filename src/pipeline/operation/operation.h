@@ -41,12 +41,17 @@ struct Operation {
   Request (*request)(const ParamSet& params, const Request& wanted) = nullptr;
   /// From the bytes of the inputs; null = each byte is touched once at 2 GB/s and the result is as large as the largest input.
   Estimate (*estimate)(const ParamSet& params, std::span<const uint64_t> input_bytes) = nullptr;
+  /// Its parameter `time` chooses a moment out of what its input holds whole (lines with times, ...): a film states it there, and leaves
+  /// what lies above as it is.
+  bool shows_moment = false;
   /// The language of its parameters, for help: operators and functions of expressions; null: none.
   std::vector<HelpWord> (*words)() = nullptr;
 };
 
 /// All operations of this build, in the order of operations.def.
 std::span<const Operation> operations();
+/// Null for an unknown name.
+const Operation* known_operation(std::string_view name, std::span<const Operation> table = operations());
 /// Throws Error(usage) with "did you mean" for an unknown name.
 const Operation& find_operation(std::string_view name, std::span<const Operation> table = operations());
 
@@ -61,11 +66,6 @@ Request upstream_request(const Operation& operation, const ParamSet& params, con
 std::string ops_help(std::string_view name = {}, std::span<const Operation> table = operations());
 /// Its words, each with its sentence, by group; "" when it has none.
 std::string words_help(const Operation& operation);
-/// [{"group","form","sentence"}].
-std::string words_json(const Operation& operation);
-/// {"operations":[{"name","kind","family","sentence","version","inputs":[min,max],"params":<JSON schema>}]}; those that have words:
-/// "words" too.
-std::string ops_json(std::span<const Operation> table = operations());
 
 /// Same tree with f applied to every dataset; an Error that leaves f names the part. Null results are dropped. A lone table
 /// is an Error(usage) naming `who`. In a collection, a part of points and lines alone that f refuses (Error(usage)) is left out

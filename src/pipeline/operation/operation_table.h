@@ -11,8 +11,8 @@
 //   R f(const std::vector<Data>&, const P&, Context&)              any number of inputs
 //   R f(const Series&, const P&, Context&)                         all time steps of the input, one at a time
 //   R f(const Series&, const std::vector<Data>&, const P&, Context&)  the same, and further inputs as they are
-// Behind the sentence come hooks: op_version<2>, op_inputs<1, -1>, carries_fields, needs_only_named_fields, or any callable that changes an
-// Operation&.
+// Behind the sentence come hooks: op_version<2>, op_inputs<1, -1>, carries_fields, needs_only_named_fields, shows_moment, or any callable
+// that changes an Operation&.
 #pragma once
 #include <type_traits>
 
@@ -102,6 +102,8 @@ constexpr auto op_version = [](Operation& o) { o.version = N; };
 constexpr auto carries_fields = [](Operation& o) { o.request = detail::request_carried; };
 /// Hook: the result has no field of the input; the operation reads only those its parameters name.
 constexpr auto needs_only_named_fields = [](Operation& o) { o.request = detail::request_named; };
+/// Hook: `time` chooses a moment of the input, see Operation::shows_moment.
+constexpr auto shows_moment = [](Operation& o) { o.shows_moment = true; };
 /// Hook: how many inputs a filter over a list takes; MAX -1 = any number.
 template <int MIN, int MAX>
 constexpr auto op_inputs = [](Operation& o) { o.min_inputs = MIN, o.max_inputs = MAX; };

@@ -8,6 +8,7 @@
 #include "base/text/text.h"
 #include "color/parse_color.h"
 #include "pipeline/file/transfer_file.h"
+#include "pipeline/film/film_params.h"
 #include "pipeline/picture/picture_parts.h"
 #include "scene/show/parts.h"
 #include "scene/show/volume.h"
@@ -40,19 +41,22 @@ PipelineVocabulary picture_vocabulary() {
   PipelineVocabulary v;
   v.show = {std::string(auto_show)};
   for (const ShowKind& k : show_kinds()) v.show.emplace_back(k.name);
-  v.picture = {"camera", "output", "times", "fps"};
+  v.picture = {"camera"};
+  const auto add = [&](const Schema& schema) {
+    for (const ParamDecl& d : schema.decls()) v.picture.push_back(d.name);
+  };
+  FilmParams film;
+  add(schema_of(film));
   PictureParams p;
-  const Schema schema = schema_of(p);
-  for (const ParamDecl& d : schema.decls()) v.picture.push_back(d.name);
+  add(schema_of(p));
   return v;
 }
 
 StatedPicture stated_in(const PipelineFile& file) {
-  constexpr std::string_view elsewhere[] = {"camera.", "camera=", "output=", "times=", "fps="};
   StatedPicture s;
   std::vector<std::string> words;
   for (const std::string& w : file.picture)
-    if (std::none_of(std::begin(elsewhere), std::end(elsewhere), [&](std::string_view e) { return w.starts_with(e); })) words.push_back(w);
+    if (!w.starts_with("camera.") && !w.starts_with("camera=") && !is_film_word(w)) words.push_back(w);
   Schema schema = schema_of(s.picture);
   set_params(schema, words, "picture");
   Schema camera = schema_of(s.camera);

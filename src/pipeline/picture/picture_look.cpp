@@ -15,7 +15,7 @@ std::string origin_of(const PipelineFile& file, std::string step) {
       if (file.steps[i].name == step) at = i;
     if (at == file.steps.size()) return "";
     const auto& s = file.steps[at];
-    if (s.operation == "read") return word_value(s.words, "path").value_or("");
+    if (s.reads()) return word_value(s.words, "path").value_or("");
     if (!s.from.empty()) step = s.from[0];
     else if (at > 0) step = file.steps[at - 1].name;
     else return "";
@@ -31,10 +31,9 @@ std::vector<std::string> open_ends(const PipelineFile& file) {
   for (size_t i = 0; i < file.steps.size(); ++i) {
     const auto& s = file.steps[i];
     if (!s.from.empty()) used.insert(used.end(), s.from.begin(), s.from.end());
-    else if (i > 0 && s.operation != "read") {
-      const auto names = operations();
-      const auto op = std::find_if(names.begin(), names.end(), [&](const Operation& o) { return o.name == s.operation; });
-      if (op == names.end() || op->kind == OperationKind::filter) used.push_back(file.steps[i - 1].name);
+    else if (i > 0 && !s.reads()) {
+      const Operation* op = known_operation(s.operation);
+      if (!op || op->kind == OperationKind::filter) used.push_back(file.steps[i - 1].name);
     }
   }
   for (const auto& s : file.steps)
@@ -82,7 +81,7 @@ std::string made_field(const PipelineFile& file, const std::string& end, const D
     if (file.steps[i].name == end) at = i;
   for (; at < file.steps.size(); --at) {
     const auto& s = file.steps[at];
-    if (!s.from.empty() || s.operation == "read") return "";
+    if (!s.from.empty() || s.reads()) return "";
     const auto maker = std::find_if(std::begin(makers), std::end(makers), [&](const Maker& m) { return m.operation == s.operation; });
     if (maker != std::end(makers)) {
       std::string name = maker->word.empty() ? "" : word_value(s.words, maker->word).value_or("");
@@ -94,9 +93,8 @@ std::string made_field(const PipelineFile& file, const std::string& end, const D
       const Range r = d.range(*f, f->components() > 1 ? -1 : 0);
       return r.lo < r.hi ? name : "";  // one value everywhere shows nothing
     }
-    const auto known = operations();
-    const auto op = std::find_if(known.begin(), known.end(), [&](const Operation& o) { return o.name == s.operation; });
-    if (op == known.end() || (op->family != "mesh" && op->family != "surface")) return "";  // a surface of other values
+    const Operation* op = known_operation(s.operation);
+    if (!op || (op->family != "mesh" && op->family != "surface")) return "";  // a surface of other values
   }
   return "";
 }

@@ -61,7 +61,7 @@ const Field* automatic_field(const Dataset& d) {
 }
 
 const Field* wanted_field(const Dataset& d, const ColoringParams& p) {
-  if (!p.color.empty() || p.field.name == "none") return nullptr;
+  if (!p.color.empty() || p.field.none()) return nullptr;
   if (!p.field.empty()) {
     const Field& f = d.fields().require(p.field.name);
     if (f.association == Association::whole)

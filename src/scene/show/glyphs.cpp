@@ -13,7 +13,7 @@ namespace {
 
 // The field that colours the glyphs, in the input; null for one colour.
 const Field* color_field(const Dataset& input, const GlyphsShow& p, const ChosenGlyphs& c) {
-  if (!p.coloring.color.empty() || p.coloring.field.name == "none") return nullptr;
+  if (!p.coloring.color.empty() || p.coloring.field.none()) return nullptr;
   if (!p.coloring.field.empty()) {
     const Field& f = input.fields().require(p.coloring.field.name);
     if (f.association == Association::whole)

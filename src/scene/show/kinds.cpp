@@ -71,7 +71,7 @@ const ShowKind& find_show(std::string_view name) {
 const Field* shown_field(const ShowKind& kind, const ParamSet& params, const Dataset& d) {
   if (!kind.coloring) return nullptr;
   const ColoringParams& c = *kind.coloring(params);
-  if (!c.color.empty() || c.field.name == "none") return nullptr;
+  if (!c.color.empty() || c.field.none()) return nullptr;
   if (!c.field.empty()) return d.fields().find(c.field.name);
   return kind.automatic ? kind.automatic(params, d) : automatic_field(d);
 }

@@ -22,7 +22,7 @@ void describe(Schema& s, LicShow& p) {
 }
 
 std::optional<SurfaceTexture> surface_texture_of(const Dataset& d, const LicShow& p) {
-  if (p.lic.empty() || p.lic.name == "none") return {};
+  if (p.lic.empty() || p.lic.none()) return {};
   const Field* f = d.fields().find(p.lic.name);
   if (!f && p.lic.name == "auto") {
     f = d.fields().with_role(Role::vectors);

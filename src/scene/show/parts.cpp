@@ -59,8 +59,8 @@ std::vector<Legend> show_parts(Scene& scene, const std::vector<DatasetPtr>& part
   size_t largest = 0, most = 0;  // of joined volumes: the item that speaks for all
   for (size_t i = 0; i < parts.size(); ++i) {
     const DatasetPtr& d = parts[i];
-    if (several && d->point_count() == 0) continue;                          // what a filter left nothing of
-    if (joined && kind.coloring(params[i])->field.name == "none") continue;  // nothing to see through
+    if (several && d->point_count() == 0) continue;                  // what a filter left nothing of
+    if (joined && kind.coloring(params[i])->field.none()) continue;  // nothing to see through
     const auto legend = kind.add(scene, d, params[i], context);
     if (!joined) {
       if (legend) legends.push_back(*legend);

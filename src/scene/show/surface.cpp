@@ -18,7 +18,8 @@ void describe(Schema& s, SurfaceShow& p) {
   s("lit", p.lit, "Light the surface; false shows the plain colours.");
   s("feature_angle", p.feature_angle, "Edges sharper than this stay sharp when normals are computed.").unit("deg").range(0, 180);
   describe(s, p.lic);
-  s("texture", p.texture, "Point field in [0, 1] that darkens and brightens the colours; default: 'lic' or 'spot noise'; 'none' for none.");
+  s("texture", p.texture, "Point field in [0, 1] that darkens and brightens the colours; default: 'lic' or 'spot noise'; 'none' for none.")
+      .takes(fields::point_scalars);
 }
 
 namespace {

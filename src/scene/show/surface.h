@@ -14,7 +14,7 @@ struct SurfaceShow {
   bool edges = false, flat = false, lit = true;
   double feature_angle = 40;
   LicShow lic;
-  std::string texture;
+  FieldName texture;
 };
 void describe(Schema& s, SurfaceShow& p);
 

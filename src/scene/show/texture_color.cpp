@@ -11,10 +11,10 @@
 
 namespace sg {
 
-std::string texture_field(const Dataset& d, const std::string& wanted, const std::optional<FieldColor>& color) {
-  if (wanted == "none") return "";
+std::string texture_field(const Dataset& d, const FieldName& wanted, const std::optional<FieldColor>& color) {
+  if (wanted.none()) return "";
   if (!wanted.empty()) {
-    const Field& f = d.fields().require(wanted, Association::point);
+    const Field& f = d.fields().require(wanted.name, Association::point);
     if (f.components() != 1)
       fail_usage(fmt::format("'{}' has {} components, a texture has one", f.name, f.components()), "texture",
                  "lic and spot_noise make one");

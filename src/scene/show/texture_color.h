@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Colours and a grey texture together: the map of one field, dark and bright by another.
 #pragma once
+#include "base/schema/param_ref.h"
 #include "scene/scene.h"
 
 namespace sg {
@@ -8,7 +9,7 @@ namespace sg {
 /// The name of the point field that is the texture of a dataset: `wanted`; empty: "lic" or "spot noise" where there is such a scalar field
 /// that is not itself the colour; "" for none (and for wanted=none). Throws Error(usage) for unknown names and fields of several
 /// components.
-std::string texture_field(const Dataset& data, const std::string& wanted, const std::optional<FieldColor>& color);
+std::string texture_field(const Dataset& data, const FieldName& wanted, const std::optional<FieldColor>& color);
 
 /// Gives the item colours of its own (a u8 point field): those it has, times the texture: 0.5 leaves a colour nearly as it is, 0 is dark, 1
 /// is bright. Textures of both signs count from -0.5 to 0.5. Where the texture is NaN the colour stays as it is.

@@ -18,14 +18,6 @@ namespace sg {
 
 namespace {
 
-constexpr std::string_view second_words[] = {"none", "gradient", "second_derivative", "curvature"};
-template <size_t N>
-int place_in(const std::string_view (&words)[N], std::string_view w) {
-  for (size_t i = 0; i < N; ++i)
-    if (words[i] == w) return int(i);
-  return -1;
-}
-
 const Field& mesh_field(const Dataset& d, const std::string& name, std::string_view word) {
   const Field& f = d.fields().require(name);
   if (f.association == Association::whole)
@@ -48,7 +40,7 @@ struct Fields {
 Fields fields_of(const Dataset& d, const VolumeShow& p) {
   ColoringParams named = p.coloring;
   named.color.clear();
-  if (named.field.name == "none") named.field.name.clear();
+  if (named.field.none()) named.field.name.clear();
   Fields f{};
   f.color = wanted_field(d, named);
   if (!f.color) f.color = d.fields().active(1);  // one that is the same everywhere is seen through all the same
@@ -84,19 +76,18 @@ void take_second_axis(const VolumeShow& p, const Fields& fields, const ColorScal
   TransferDetail& detail = item.detail;
   const Dataset& d = *item.data;
   const Field* second = nullptr;
-  std::string word = p.second;
+  const std::string& word = p.second;
   if (fields.color != fields.opacity) {
     detail.second = SecondAxis::field, detail.color_by_second = true, detail.second_color = colors;
     second = fields.color;
   } else {
-    if (word == "none" && !p.widgets.empty()) word = "gradient";
-    const int k = place_in(second_words, word);
-    if (k >= 0) detail.second = SecondAxis(k);
-    else {
-      detail.second = SecondAxis::field;
+    detail.second = value_of_word<SecondAxis>(word).value_or(SecondAxis::field);
+    if (detail.second == SecondAxis::none && !p.widgets.empty()) detail.second = SecondAxis::gradient;
+    if (detail.second == SecondAxis::field) {
       second = d.fields().find(word);
       if (!second) {
-        std::vector<std::string> names(std::begin(second_words), std::end(second_words));
+        std::vector<std::string> names;
+        for (const Word<SecondAxis>& w : enum_words(SecondAxis())) names.emplace_back(w.word);
         for (const std::string& n : d.fields().names()) names.push_back(n);
         fail_usage(fmt::format("'{}' is neither a second axis nor a field", word), "second", unknown_name_hint(word, names));
       }
@@ -158,7 +149,7 @@ void choose_transfer(const VolumeShow& p, const Field& field, VolumeItem& item, 
     item.opacity.points = {{item.color.lo, 1}};
     return;
   }
-  if (p.transfer == "boundaries") {
+  if (value_of_word<TransferChoice>(p.transfer) == TransferChoice::boundaries) {
     const Range r = item.data->range(field, field.components() > 1 ? item.component : 0);
     const auto found = material_boundaries(sample_derivatives(item.data, field, item.component, false, 2000000, context), r.lo, r.hi);
     const bool free = item.detail.second == SecondAxis::none;
@@ -174,7 +165,8 @@ void choose_transfer(const VolumeShow& p, const Field& field, VolumeItem& item, 
     }
     context.info(fmt::format("no borders of materials stand out in '{}'; opacity comes from its histogram", field.name));
   }
-  const std::string why = choose_volume_look(*item.data, field, p.coloring, item, p.transfer == "auto");
+  const std::string why =
+      choose_volume_look(*item.data, field, p.coloring, item, value_of_word<TransferChoice>(p.transfer) == TransferChoice::automatic);
   if (info_of(item.mode).absorbs) context.info(why);
 }
 

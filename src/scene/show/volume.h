@@ -7,6 +7,20 @@
 
 namespace sg {
 
+/// What decides on opacity where none is stated. Beside these words `transfer` takes a FILE.yaml: pipelines put its words in its place.
+enum class TransferChoice { automatic, histogram, boundaries };
+constexpr auto enum_words(TransferChoice) {
+  using enum TransferChoice;
+  return std::array{Word{"auto", automatic}, Word{"histogram", histogram}, Word{"boundaries", boundaries}};
+}
+
+/// Those of the words of `second`; any other is the name of a field.
+constexpr auto enum_words(SecondAxis) {
+  using enum SecondAxis;
+  return std::array{Word{"none", none}, Word{"gradient", gradient}, Word{"second_derivative", second_derivative},
+                    Word{"curvature", curvature}};
+}
+
 struct VolumeShow {
   ColoringParams coloring;
   std::string preset, transfer = "auto", save;

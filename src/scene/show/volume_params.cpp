@@ -65,8 +65,6 @@ void describe(Schema& s, VolumeShow& p) {
 
 namespace {
 
-constexpr std::string_view transfer_choices[] = {"auto", "histogram", "boundaries"};
-
 // Are there positions beside @values, so that only data can tell which comes first?
 bool mixes_places(const std::string& points) {
   int values = 0, positions = 0;
@@ -118,16 +116,18 @@ void check(const VolumeShow& p) {
     });
   if (!p.clip.empty()) each([&] { parse_clip(p.clip); });
   each([&] {
-    if (std::find(std::begin(transfer_choices), std::end(transfer_choices), p.transfer) == std::end(transfer_choices)) {
-      const std::vector<std::string> names(std::begin(transfer_choices), std::end(transfer_choices));
+    if (!value_of_word<TransferChoice>(p.transfer)) {
+      std::vector<std::string> names;
+      for (const Word<TransferChoice>& w : enum_words(TransferChoice())) names.emplace_back(w.word);
       fail_usage(fmt::format("'{}' is no way to choose a transfer function", p.transfer), "transfer",
                  unknown_name_hint(p.transfer, names) + "; files end in .yaml");
     }
     const int by = !p.opacity_by.empty() + !p.color_by.empty();
     if (by == 2) fail_usage("both opacity_by and color_by are stated", "opacity_by", "state one of them, and the other field as field=");
-    if (by == 1 && p.second != "none")
+    const bool second = value_of_word<SecondAxis>(p.second) != SecondAxis::none;
+    if (by == 1 && second)
       fail_usage("a second field already is the second axis", "second", "leave out second=, or opacity_by and color_by");
-    if (p.second == "none" && p.second_opacity && p.widgets.empty() && by == 0)
+    if (!second && p.second_opacity && p.widgets.empty() && by == 0)
       fail_usage("there is no second axis", "second_opacity", "state one: second=gradient");
   });
   if (!problems.empty()) fail_usage(problems);

@@ -115,3 +115,56 @@ TEST_CASE("schema: JSON says which fields a parameter takes") {
   Cut p;
   CHECK(params_json(schema_of(p)).find(R"("field":{"on":["point"],"of":["vector"]})") != std::string::npos);
 }
+
+namespace {
+
+// A parameter that is a view of members: the ends of a span as a list of two, open where it is the whole.
+struct Span {
+  size_t lo = 0, hi = SIZE_MAX;
+};
+struct SpanView {
+  static constexpr ParamType type = ParamType::integers;
+  static constexpr bool optional = true;
+  static Value get(const Span& s) { return s.hi == SIZE_MAX ? Value() : Value(std::vector<int64_t>{int64_t(s.lo), int64_t(s.hi)}); }
+  static void set(Span& s, const Value& v) {
+    s = {};
+    if (auto* ends = std::get_if<std::vector<int64_t>>(&v)) s = {size_t((*ends)[0]), size_t((*ends)[1])};
+  }
+};
+struct Take {
+  std::string from;
+  Span span;
+  size_t skip = 0;
+};
+void describe(Schema& s, Take& p) {
+  s("from", p.from, "From.").required();
+  s.view<SpanView>("span", p.span, "Span.").at_least(0).items(2);
+  s("skip", p.skip, "Skip.");
+}
+
+}  // namespace
+
+TEST_CASE("schema: a view is a parameter of a type that its member has not") {
+  ParamSet params = make_param_set<Take>();
+  Take& p = params.as<Take>();
+  CHECK(changed_words(params).empty());
+  set_param(params.schema, "span", "3,5", "take");
+  CHECK((p.span.lo == 3 && p.span.hi == 5));
+  CHECK(changed_words(params) == std::vector<std::string>{"span=3,5"});
+  set_param(params.schema, "span", "auto", "take");
+  CHECK(p.span.hi == SIZE_MAX);
+  CHECK(error_of([&] { set_param(params.schema, "span", "3,5,6", "take"); }) == "take span: '3,5,6' is not a list of 2");
+  CHECK(error_of([&] { set_param(params.schema, "span", "3,-5", "take"); }).find("at least 0") != std::string::npos);
+  CHECK(error_of([&] { set_value(params.schema, "skip", int64_t(-1), "take"); }).find("at least 0") != std::string::npos);
+  CHECK(error_of([&] { set_value(params.schema, "skip", "many", ""); }) == "skip: 'many' is not a whole number");
+}
+
+TEST_CASE("schema: JSON says how long lists are and what is required") {
+  Take p;
+  const std::string json = params_json(schema_of(p));
+  CHECK(json.find(R"("span":{"type":["array","null"],"items":{"type":"integer","minimum":0},"minItems":2,"maxItems":2,"default":null)") !=
+        std::string::npos);
+  CHECK(json.ends_with(R"("required":["from"]})"));
+  CHECK(json.starts_with(R"({"$schema":"https://json-schema.org/draft/2020-12/schema","type":"object")"));
+  CHECK(params_help(schema_of(p)).find("2 of them") != std::string::npos);
+}

@@ -99,7 +99,7 @@ TEST_CASE("metaimage: what is written reads back the same, with the field's name
                       components == 3 ? Role::vectors : Role::scalars});
         const auto d = make_dataset(p);
         WriteOptions o;
-        o.compression = compression;
+        o.compression = value_of_word<Compression>(compression);
         write_data(temp_folder() + name, d, o, context);
         const auto r = read_file(temp_folder() + name);
         const auto* h = r->as<UniformGrid>();
@@ -113,7 +113,7 @@ TEST_CASE("metaimage: what is written reads back the same, with the field's name
         CHECK(std::find(r->notes().begin(), r->notes().end(), p.notes[0]) != r->notes().end());
       }
   WriteOptions o;
-  o.compression = "lz4";
+  o.compression = Compression::lz4;
   CHECK(contains(error_of([&] { write_data(temp_folder() + "w.mha", make_dataset(p), o, context); }), "lz4"));
   CHECK(contains(error_of([&] { write_data(temp_folder() + "w.mha", make_dataset(PointCloud{}), {}, context); }), "uniform grid"));
   p.fields = {};

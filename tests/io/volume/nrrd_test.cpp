@@ -183,7 +183,7 @@ TEST_CASE("nrrd: writing and reading back gives the same grid, field and notes")
   for (const char* compression : {"none", "gzip"}) {
     CAPTURE(compression);
     WriteOptions o;
-    o.compression = compression;
+    o.compression = value_of_word<Compression>(compression);
     Context context;
     const std::string path = temp_folder() + "w.nrrd";
     write_data(path, d, o, context);
@@ -216,7 +216,7 @@ TEST_CASE("nrrd: what cannot be written is said") {
   p.fields.add({"a", Association::point, Array::from_vector(std::vector<float>{1}), "", Role::none});
   CHECK(contains(error_of([&] { write_data(temp_folder() + "x.nhdr", make_dataset(p), {}, context); }), "detached"));
   WriteOptions o;
-  o.compression = "lz4";
+  o.compression = Compression::lz4;
   CHECK(contains(error_of([&] { write_data(temp_folder() + "x.nrrd", make_dataset(p), o, context); }), "lz4"));
   p.fields.add({"b", Association::point, Array::from_vector(std::vector<float>{2}), "", Role::scalars});
   std::string warning;
@@ -279,7 +279,7 @@ TEST_CASE("nrrd: a stream that unpacks to far more than promised is refused, not
   std::memset(zeros, 0, g.dims[0]);
   Context context;
   WriteOptions o;
-  o.compression = "gzip";
+  o.compression = Compression::gzip;
   const std::string path = temp_folder() + "bomb.nrrd";
   write_data(path, make_dataset(std::move(p)), o, context);
   const MappedFile file(path);
@@ -304,7 +304,7 @@ TEST_CASE("nrrd: cut and damaged files give errors, never crashes") {
   p.fields.add({"z", Association::point, Array::from_vector(noise), "", Role::none});
   Context context;
   WriteOptions o;
-  o.compression = "gzip";
+  o.compression = Compression::gzip;
   write_data(temp_folder() + "gz.nrrd", make_dataset(p), o, context);
   CHECK(cut_and_damage("cut.nrrd", std::string(MappedFile(temp_folder() + "gz.nrrd").text())) == 63);
 }

@@ -107,8 +107,8 @@ TEST_CASE("vtk xml: units of fields go into the file and come back, in every enc
   p.fields.add({"plain", Association::cell, ramp<double>(90), {}, Role::none});
   const DatasetPtr d = make_dataset(p);
   for (const WriteOptions& o : every_option) {
-    CAPTURE(o.encoding);
-    CAPTURE(o.compression);
+    CAPTURE(std::string(word_of(o.encoding)));
+    CAPTURE(std::string(word_of(*o.compression)));
     write(temp("units.vtu"), d, o);
     const DatasetPtr back = read(temp("units.vtu"));
     for (const Field& f : d->fields()) {

@@ -58,8 +58,8 @@ TEST_CASE("vtk xml: a region of a lattice is what cutting the whole gives, in ev
       write(path, d, o);
       for (const LatticeRegion& region : regions) {
         CAPTURE(extension);
-        CAPTURE(o.encoding);
-        CAPTURE(o.compression);
+        CAPTURE(std::string(word_of(o.encoding)));
+        CAPTURE(std::string(word_of(*o.compression)));
         CAPTURE(region.lo[0]);
         ReadOptions options;
         options.region = region;

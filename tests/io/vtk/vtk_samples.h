@@ -221,8 +221,10 @@ inline std::string piece(const std::string& points, const std::string& cells, co
          "<DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">5</DataArray></Cells></Piece>";
 }
 
-inline const WriteOptions every_option[] = {{"ascii", "none"},    {"base64", "none"},  {"base64", "zlib"},
-                                            {"base64", "lz4"},    {"base64", "lzma"},  {"appended", "none"},
-                                            {"appended", "zlib"}, {"appended", "lz4"}, {"appended", "lzma"}};
+inline const WriteOptions every_option[] = {
+    {VtkEncoding::ascii, Compression::none},    {VtkEncoding::base64, Compression::none},  {VtkEncoding::base64, Compression::zlib},
+    {VtkEncoding::base64, Compression::lz4},    {VtkEncoding::base64, Compression::lzma},  {VtkEncoding::appended, Compression::none},
+    {VtkEncoding::appended, Compression::zlib}, {VtkEncoding::appended, Compression::lz4}, {VtkEncoding::appended, Compression::lzma},
+};
 
 }  // namespace sg::test

@@ -16,7 +16,7 @@ TEST_CASE("vtk xml: a file cut anywhere gives an Error that names it") {
       for (size_t i = 1; i < 64; ++i) {
         write_file(part, text.substr(0, text.size() * i / 64));
         CAPTURE(s.extension);
-        CAPTURE(o.encoding);
+        CAPTURE(std::string(word_of(o.encoding)));
         CAPTURE(i);
         CHECK(test::error_of([&] { read(part); }).find("cut.") != std::string::npos);
       }

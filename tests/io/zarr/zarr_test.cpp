@@ -76,7 +76,7 @@ TEST_CASE("zarr: what was written is read back, for all types, compressions and 
       const std::string path = folder("types.ome.zarr");
       WriteOptions options;
       options.chunk = 32;
-      options.compression = t == ElementType::u8 ? "zlib" : t == ElementType::f32 ? "zstd" : "none";
+      options.compression = t == ElementType::u8 ? Compression::zlib : t == ElementType::f32 ? Compression::zstd : Compression::none;
       write(path, d, options);
       const DatasetPtr r = read(path);
       CHECK(same_array(d->fields()[0].array, r->fields()[0].array));
@@ -379,7 +379,7 @@ TEST_CASE("zarr: a folder is replaced when it is a Zarr folder, and only then; a
 
 TEST_CASE("zarr: what cannot be written says why") {
   WriteOptions o;
-  o.compression = "lzma";
+  o.compression = Compression::lzma;
   CHECK(error_of([&] { write(folder("bad.zarr"), ramp({5, 4, 3}), o); }).find("lz4, zstd, zlib") != std::string::npos);
   o = {};
   o.chunk = 7;

@@ -37,28 +37,6 @@ TEST_CASE("operations: the overview lists families in the order of the table") {
   CHECK(help.find("\nparts\n") < help.find("\nstats\n"));
 }
 
-TEST_CASE("operations: JSON holds name, family, sentence, inputs and the schema of the parameters") {
-  const std::string json = ops_json(test::operations().subspan(0, 3));
-  CHECK(
-      json ==
-      "{\"operations\":[\n"
-      "{\"name\":\"ramp\",\"kind\":\"source\",\"family\":\"source\",\"sentence\":\"A line of points with a rising "
-      "field.\",\"version\":1,\"inputs\":[0,0],"
-      "\"params\":{\"type\":\"object\",\"additionalProperties\":false,\"properties\":{"
-      "\"n\":{\"type\":\"integer\",\"exclusiveMinimum\":0,\"default\":8,\"description\":\"Number of points.\"},"
-      "\"start\":{\"type\":\"number\",\"unit\":\"m\",\"default\":0,\"description\":\"First value.\"}}}},\n"
-      "{\"name\":\"moment\",\"kind\":\"source\",\"family\":\"source\",\"sentence\":\"A line at a moment.\",\"version\":1,\"inputs\":[0,0],"
-      "\"params\":{\"type\":\"object\",\"additionalProperties\":false,\"properties\":{"
-      "\"time\":{\"type\":[\"number\",\"null\"],\"default\":null,\"description\":\"Moment; default: the one asked for.\"}}}},\n"
-      "{\"name\":\"scale\",\"kind\":\"filter\",\"family\":\"scalar\",\"sentence\":\"Multiplies a field.\",\"version\":3,\"inputs\":[1,1],"
-      "\"params\":{\"type\":\"object\",\"additionalProperties\":false,\"properties\":{"
-      "\"field\":{\"type\":\"string\",\"field\":{\"on\":[\"point\",\"cell\"],\"of\":[\"scalar\",\"vector\",\"tensor\",\"other\"]},"
-      "\"description\":\"Field to scale; default: the active scalar.\"},"
-      "\"by\":{\"type\":\"number\",\"minimum\":-1000,\"maximum\":1000,\"unit\":\"@field\",\"default\":2,\"description\":\"Factor.\"},"
-      "\"mode\":{\"type\":\"string\",\"enum\":[\"plain\",\"fancy\"],\"default\":\"plain\",\"description\":\"How.\"}}}}\n"
-      "]}\n");
-}
-
 TEST_CASE("operations: every operation of this build has a sentence, a family, a name of its own and describable parameters") {
   std::vector<std::string_view> names;
   for (const Operation& o : operations()) {
@@ -71,7 +49,6 @@ TEST_CASE("operations: every operation of this build has a sentence, a family, a
     for (const ParamDecl& d : params.schema.decls()) CHECK_MESSAGE(d.doc.ends_with("."), d.name);
     CHECK_FALSE(ops_help(o.name).empty());
   }
-  CHECK(ops_json().ends_with("\n]}\n"));
 }
 
 TEST_CASE("operations: an unknown name gets the nearest one") {

@@ -331,11 +331,12 @@ void write_kind(const Out& o) {
 
 void write_vtkhdf(const std::string& path, const Data& data, const WriteOptions& options, Context& context) {
   const DatasetPtr d = single_dataset(data, "a VTKHDF file");
-  if (options.compression != "none" && options.compression != "zlib")
-    fail_usage(fmt::format("VTKHDF files are not packed with '{}'", options.compression), path, "zlib or none");
+  const Compression compression = options.compression.value_or(Compression::none);
+  if (compression != Compression::none && compression != Compression::zlib)
+    fail_usage(fmt::format("VTKHDF files are not packed with '{}'", word_of(compression)), path, "zlib or none");
   const h5::Turn turn;
   errno = 0;
-  vtkhdf::Writer writer(path, options.compression == "zlib", context);
+  vtkhdf::Writer writer(path, compression == Compression::zlib, context);
   WriteLosses losses(path, "VTKHDF");
   vtkhdf::write_kind({writer, *d, "/VTKHDF", losses});
   writer.commit();

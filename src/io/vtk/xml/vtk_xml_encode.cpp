@@ -63,16 +63,15 @@ uint64_t aligned(uint64_t n) { return (n + alignment - 1) / alignment * alignmen
 }  // namespace
 
 XmlWriter::XmlWriter(const std::string& path, const WriteOptions& options, Context& context) : file_(path), context_(context) {
-  const std::vector<std::string> encodings{"ascii", "base64", "appended"}, compressions{"none", "zlib", "lz4", "lzma"};
-  const auto e = std::find(encodings.begin(), encodings.end(), options.encoding);
-  if (e == encodings.end())
-    fail_usage(fmt::format("unknown encoding '{}'", options.encoding), path, unknown_name_hint(options.encoding, encodings));
-  const auto c = std::find(compressions.begin(), compressions.end(), options.compression);
-  if (c == compressions.end())
-    fail_usage(fmt::format("unknown compression '{}'", options.compression), path, unknown_name_hint(options.compression, compressions));
-  encoding_ = Encoding(e - encodings.begin());
-  codec_ = Codec(c - compressions.begin());
-  if (encoding_ == Encoding::ascii && codec_ != Codec::none)
+  encoding_ = options.encoding;
+  switch (const Compression c = options.compression.value_or(Compression::none)) {
+    case Compression::none: codec_ = Codec::none; break;
+    case Compression::zlib: codec_ = Codec::zlib; break;
+    case Compression::lz4: codec_ = Codec::lz4; break;
+    case Compression::lzma: codec_ = Codec::lzma; break;
+    default: fail_usage(fmt::format("VTK XML cannot be compressed with '{}'", word_of(c)), path, "none, zlib, lz4 or lzma");
+  }
+  if (encoding_ == VtkEncoding::ascii && codec_ != Codec::none)
     fail_usage("text cannot be compressed", path, "encoding base64 or appended, or compression none");
 }
 
@@ -83,7 +82,7 @@ void XmlWriter::open(std::string_view element, const XmlAttributes& attributes, 
   for (const auto& [name, value] : attributes) text_ += fmt::format(" {}=\"{}\"", name, escaped_xml(value));
   if (element == "VTKFile" && codec_ != Codec::none) text_ += fmt::format(" compressor=\"{}\"", codec_name(codec_));
   text_ += empty ? "/>\n" : ">\n";
-  if (text_.size() > 1 << 20 && encoding_ != Encoding::appended) flush();
+  if (text_.size() > 1 << 20 && encoding_ != VtkEncoding::appended) flush();
 }
 
 void XmlWriter::flush() {
@@ -154,7 +153,7 @@ void XmlWriter::array(std::string_view name, const Array& given, bool with_tuple
   XmlAttributes attributes{
       {"type", std::string(xml_type_name(a.type()))}, {"Name", std::string(name)}, {"NumberOfComponents", std::to_string(a.components())}};
   if (with_tuples) attributes.emplace_back("NumberOfTuples", std::to_string(a.count()));
-  if (encoding_ == Encoding::appended) {
+  if (encoding_ == VtkEncoding::appended) {
     Block b;
     if (codec_ != Codec::none) {
       b = compressed(a);
@@ -177,7 +176,7 @@ void XmlWriter::array(std::string_view name, const Array& given, bool with_tuple
     end();
     return;
   }
-  const bool text = encoding_ == Encoding::ascii;
+  const bool text = encoding_ == VtkEncoding::ascii;
   attributes.emplace_back("format", text ? "ascii" : "binary");
   begin("DataArray", attributes);
   if (text) text_ += format_numbers(a, size_t(a.components()) * std::max<size_t>(1, 12 / size_t(a.components())));
@@ -192,7 +191,7 @@ void XmlWriter::write_unit(std::string_view unit) {
 
 void XmlWriter::finish() {
   while (open_.size() > 1) end();
-  if (encoding_ == Encoding::appended) {
+  if (encoding_ == VtkEncoding::appended) {
     // Blanks before '_' so that numbers behind a size of eight bytes begin at a multiple of 64: readers need not copy them.
     text_ += "  <AppendedData encoding=\"raw\">\n";
     const uint64_t end_of_mark = text_.size() + 1 + header_bytes;

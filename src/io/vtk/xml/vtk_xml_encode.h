@@ -51,7 +51,7 @@ class XmlWriter {
 
   AtomicFile file_;
   Context& context_;
-  enum class Encoding { ascii, base64, appended } encoding_ = Encoding::appended;
+  VtkEncoding encoding_ = VtkEncoding::appended;
   Codec codec_ = Codec::none;
   std::string text_;
   std::vector<std::string> open_;

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// The pictures of a film, one after the other: the next step is read or computed while one is drawn.
+#include "pipeline/film/film.h"
+
+#include <exception>
+#include <mutex>
+#include <set>
+#include <thread>
+
+#include "base/error.h"
+#include "base/text/text.h"
+#include "data/memory/memory_budget.h"
+#include "pipeline/film/film_times.h"
+#include "pipeline/picture/picture_parts.h"
+#include "scene/choose/shared_scale.h"
+#include "scene/show/show.h"
+
+namespace sg {
+
+namespace {
+
+std::vector<Data> results_of(const PipelineFile& file, const std::shared_ptr<Cache>& cache, Context& context) {
+  GraphOptions options;
+  options.cache = cache;
+  const PipelineGraph built = build_graph(file, options);
+  std::vector<Target> targets;
+  for (NodeId n : built.show) targets.push_back({n, {}});
+  if (targets.empty()) targets.push_back({built.last, {}});
+  return built.graph.evaluate(targets, context);
+}
+
+// Computes the results of a step beside the drawing of another, and holds them so that the cache finds them.
+class Ahead {
+ public:
+  Ahead(PipelineFile file, std::shared_ptr<Cache> cache, Context& context)
+      : thread_([this, file = std::move(file), cache = std::move(cache), &context] {
+          try {
+            results_ = results_of(file, cache, context);
+          } catch (...) {
+            // The drawing meets the same error and says it.
+          }
+        }) {}
+  ~Ahead() { wait(); }
+  Ahead(const Ahead&) = delete;
+  Ahead& operator=(const Ahead&) = delete;
+  void wait() {
+    if (thread_.joinable()) thread_.join();
+  }
+
+ private:
+  std::vector<Data> results_;
+  std::thread thread_;
+};
+
+// Colours mean the same in all pictures: where no range is stated, that of up to five steps spread over the series.
+void fix_ranges(PipelineFile& first, const std::vector<PipelineFile>& some, Context& context) {
+  for (size_t i = 0; i < first.show.size(); ++i) {
+    PipelineFile::Show& show = first.show[i];
+    const ShowKind& kind = find_show(show.kind);
+    const ParamSet params = show_params(kind, show.words);
+    if (!kind.coloring || !kind.coloring(params)->color.empty()) continue;
+    ColoringParams& coloring = *kind.coloring(params);
+    Range all;
+    std::optional<Field> one;
+    for (const PipelineFile& file : some) {
+      const std::vector<Data> data = results_of(file, std::make_shared<Cache>(0), context);
+      for_each_dataset(data[std::min(i, data.size() - 1)], [&](const std::string&, const DatasetPtr& d) {
+        const Field* f = shown_field(kind, params, *d);
+        if (!f || f->association == Association::whole || f->role == Role::colors) return;
+        all.add(d->range(*f, f->components() > 1 ? coloring.component : 0));
+        if (!one) one = *f;
+      });
+    }
+    if (!one || !share_range(*one, all, coloring)) continue;
+    const Range range{coloring.range[0], coloring.range[1]};
+    show.words.push_back(fmt::format("range={},{}", exact_number(range.lo), exact_number(range.hi)));
+    context.info(fmt::format("one range for all pictures: {} to {}, that of {} steps spread over the series", short_number(range.lo),
+                             short_number(range.hi), some.size()));
+  }
+}
+
+// The pipeline of a series with the looks that its first picture gets.
+PipelineFile with_looks(const PipelineFile& plain, PipelineFile first, const PictureOptions& options, Context& context) {
+  std::vector<std::string> notes;
+  std::vector<Data> looked;
+  choose_looks(first, options, options.cache, looked, notes, context);
+  for (size_t i = 0; i < plain.steps.size(); ++i) first.steps[i].words = plain.steps[i].words;  // without its time
+  return first;
+}
+
+}  // namespace
+
+std::vector<double> make_film(PipelineFile plain, const FilmParams& params, const PictureOptions& options, const FilmCallbacks& callbacks,
+                              Context& outer) {
+  // One picture after the other says the same; two are under way at a time.
+  std::mutex mutex;
+  std::set<std::string> told;
+  Context context(outer, 0, 1);
+  context.on_log = [&](LogLevel level, std::string_view text) {
+    const std::lock_guard lock(mutex);
+    if (told.emplace(text).second) outer.log(level, text);
+  };
+  const FilmTimes film = film_times(plain, params.times, context);
+  const size_t count = film.times.size();
+  if (callbacks.begin) callbacks.begin(film.times);
+
+  // The first picture chooses the looks of all.
+  const auto cache = std::make_shared<Cache>(0);
+  PictureOptions each = options;
+  each.cache = cache;
+  std::vector<Data> held = results_of(at_time(plain, film, 0), cache, context);
+  const size_t one_step = array_memory();
+  PipelineFile base = with_looks(plain, at_time(plain, film, 0), each, context);
+  each.coloring.clear();
+  std::vector<PipelineFile> some;
+  for (size_t i = 0; i < std::min<size_t>(5, count); ++i)
+    some.push_back(at_time(base, film, count == 1 ? 0 : i * (count - 1) / (std::min<size_t>(5, count) - 1)));
+  fix_ranges(base, some, context);
+
+  const bool prefetch = outer.memory_limit == 0 || 2 * one_step < outer.memory_limit;
+  if (!prefetch) context.info("two steps do not fit into the memory allowed: each is read when it is drawn");
+  std::unique_ptr<Ahead> ahead;
+  for (size_t n = 0; n < count; ++n) {
+    context.check();
+    PipelineFile file = at_time(base, film, n);
+    if (n > 0 && !prefetch) held.clear();
+    if (ahead) ahead->wait();
+    const std::unique_ptr<Ahead> current = std::move(ahead);  // holds this step until it is drawn
+    if (prefetch && n + 1 < count) ahead = std::make_unique<Ahead>(at_time(base, film, n + 1), cache, context);
+    Picture picture = make_picture(file, each, context);
+    held.clear();
+    callbacks.frame({std::move(picture.image), file, n, count, film.times[n]});
+    context.progress(double(n + 1) / double(count), "drawing");
+  }
+  return film.times;
+}
+
+}  // namespace sg

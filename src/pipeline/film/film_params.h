@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is said of a film beside its pipeline and its pictures; in a pipeline file it stands under `picture`.
+#pragma once
+#include <string>
+#include <string_view>
+
+#include "base/schema/schema.h"
+#include "pipeline/file/pipeline_file.h"
+
+namespace sg {
+
+struct FilmParams {
+  std::string output;  ///< "out_{n}.png" (numbered pictures), "film.webm" or "film.mp4"
+  std::string
+      times;  ///< FIRST:LAST:COUNT, a list, or FIRST:LAST (of files: their steps in between; of sources: 0, 1, 2, ...); "" = all steps
+  double fps = 25;
+};
+void describe(Schema& s, FilmParams& p);
+
+/// Words under `picture` that are parameters of the film. A recipe and a single picture do without them.
+bool is_film_word(std::string_view word);
+/// Sets what a pipeline file says of its film, and takes it out of the file. Throws Error(usage).
+void take_film_words(PipelineFile& file, FilmParams& params);
+
+}  // namespace sg

@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/film/film_times.h"
+
+#include <cmath>
+
+#include "base/error.h"
+#include "base/text/text.h"
+#include "io/file_series.h"
+#include "io/options.h"
+#include "pipeline/graph/series_input.h"
+
+namespace sg {
+
+namespace {
+
+// Writes the time where a parameter asks for it: 'lic kernel=ripple phase={t}'. False when none does.
+bool write_time(PipelineFile& file, double time) {
+  constexpr std::string_view here = "{t}";
+  bool written = false;
+  for (PipelineFile::Step& s : file.steps)
+    for (std::string& word : s.words)
+      for (size_t at = word.find(here); at != word.npos; at = word.find(here, at)) {
+        word.replace(at, here.size(), exact_number(time));
+        written = true;
+      }
+  return written;
+}
+
+// Steps all of whose times an operation on series takes.
+std::vector<char> inside_series(const PipelineFile& file) {
+  std::vector<char> inside(file.steps.size(), 0);
+  const auto mark = [&](const std::string& name) {
+    for (size_t k = 0; k < file.steps.size(); ++k)
+      if (file.steps[k].name == name) inside[k] = 1;
+  };
+  for (size_t i = file.steps.size(); i-- > 0;) {
+    const PipelineFile::Step& s = file.steps[i];
+    const Operation* op = known_operation(s.operation);
+    if (!op || op->kind == OperationKind::source) continue;
+    const bool series = op->run_series != nullptr;
+    if (!series && !inside[i]) continue;
+    if (s.from.empty() && i > 0) inside[i - 1] = 1;
+    for (size_t k = 0; k < s.from.size(); ++k)
+      if (k == 0 || inside[i]) mark(s.from[k]);
+  }
+  return inside;
+}
+
+// What reads files: the series, whose steps are drawn, and what reads the same at all times.
+struct Reads {
+  std::string path, first;  // of the series ("" = none has steps); of the first of all
+  std::vector<double> times;
+  std::set<std::string> still;
+};
+
+Reads reads_of(const PipelineFile& file, Context& context) {
+  Reads r;
+  for (const PipelineFile::Step& s : file.steps) {
+    if (!s.reads()) continue;
+    ReadParams params;
+    Schema schema = schema_of(params);
+    set_params(schema, s.words, "read");
+    check(params.options);
+    const std::string path = series_beside(file.origin, params.path);
+    std::vector<double> times = file_times(path, params.options, context);
+    if (r.first.empty()) r.first = path;
+    const bool further = s.name.starts_with("with") && file.origin.empty();  // of -f 'probe with=FILE'
+    if (times.empty() || params.options.time || params.options.step >= 0) r.still.insert(s.name);
+    else if (r.path.empty() && !further) r.path = path, r.times = std::move(times);
+  }
+  return r;
+}
+
+// "0:114" = those of the file in between; for sources 0, 1, ... 114.
+std::vector<double> times_to_draw(const std::string& asked, const PipelineFile& file, const Reads& reads, std::vector<size_t>& steps) {
+  const auto ends = split(asked, ':');
+  const bool range = ends.size() == 2;
+  if (!asked.empty() && !range) return parse_times(asked, "--times");
+  const auto first = range ? parse_double(ends[0]) : -HUGE_VAL, last = range ? parse_double(ends[1]) : HUGE_VAL;
+  if (!first || !last || !(*first <= *last))
+    fail_usage(fmt::format("'{}' is no range of times", asked), "--times", "FIRST:LAST, FIRST:LAST:COUNT, or a list");
+  std::vector<double> times;
+  const bool computed = std::any_of(file.steps.begin(), file.steps.end(), [](const PipelineFile::Step& s) {
+    const Operation* op = known_operation(s.operation);
+    return op && op->kind == OperationKind::source;
+  });
+  if (reads.path.empty() && !computed) fail_usage("has no time steps", reads.first, "a picture without {n} in its name shows it");
+  if (const std::vector<double>& all = reads.times; !reads.path.empty()) {
+    for (size_t k = 0; k < all.size(); ++k)
+      if (all[k] >= *first && all[k] <= *last) times.push_back(all[k]), steps.push_back(k);
+    if (times.empty())
+      fail_usage(
+          fmt::format("no time step of '{}' lies there: it has {} to {}", reads.path, exact_number(all.front()), exact_number(all.back())),
+          "--times", "FIRST:LAST in the times of the file");
+  } else if (range && *last - *first < 1e6) {
+    for (int k = 0; *first + k <= *last; ++k) times.push_back(*first + k);
+  } else {
+    fail_usage("a series of a source needs its times", "--times", "FIRST:LAST:COUNT, like --times 0:10:101");
+  }
+  return times;
+}
+
+}  // namespace
+
+FilmTimes film_times(const PipelineFile& file, const std::string& asked, Context& context) {
+  Reads reads = reads_of(file, context);
+  FilmTimes film;
+  film.times = times_to_draw(asked, file, reads, film.steps);
+  film.still = std::move(reads.still);
+  return film;
+}
+
+PipelineFile at_time(PipelineFile file, const FilmTimes& film, size_t n) {
+  const double time = film.times[n];
+  const bool of_files = !film.steps.empty();
+  if (write_time(file, time)) return file;
+  bool moment = false;
+  for (PipelineFile::Step& s : file.steps)
+    if (const Operation* op = known_operation(s.operation); op && op->shows_moment && !of_files && !word_value(s.words, "time"))
+      s.words.push_back("time=" + exact_number(time)), moment = true;
+  if (moment) return file;
+  const std::vector<char> inside = inside_series(file);
+  bool moves = false;
+  std::string source;
+  for (size_t i = 0; i < file.steps.size(); ++i) {
+    PipelineFile::Step& s = file.steps[i];
+    if (inside[i]) continue;
+    const Operation* op = known_operation(s.operation);
+    if (s.reads()) {
+      if (film.still.count(s.name)) continue;
+      s.words.push_back(of_files ? fmt::format("step={}", film.steps[n]) : "time=" + exact_number(time));
+      moves = true;
+    } else if (op && (op->run_series || op->kind == OperationKind::source)) {
+      if (op->kind == OperationKind::source) source = s.operation;
+      if (word_value(s.words, "time") || !op->make_params().schema.find("time")) continue;
+      s.words.push_back("time=" + exact_number(time));
+      moves = true;
+    }
+  }
+  if (!moves && !source.empty())
+    fail_usage(fmt::format("the source '{}' has no time, or states one", source), "--times",
+               "a series needs a source with a parameter 'time'");
+  return file;
+}
+
+}  // namespace sg

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which times a film has, and the pipeline of one of them.
+#pragma once
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "base/context.h"
+#include "pipeline/file/pipeline_file.h"
+
+namespace sg {
+
+/// The times of a film, and what moves with them.
+struct FilmTimes {
+  std::vector<double> times;
+  std::vector<size_t> steps;    ///< of the files, where they have them; else empty
+  std::set<std::string> still;  ///< steps of the pipeline that read the same at all times
+};
+
+/// `asked` as FilmParams::times. Throws Error(usage) where nothing has times.
+FilmTimes film_times(const PipelineFile& file, const std::string& asked, Context& context);
+
+/// The pipeline at times[n]: the parameters that ask for the time ({t}) get it; else operations that show a moment of what they are given
+/// (Operation::shows_moment), whose input stays as it is; else readers and sources with a time, and operations on series in place of what
+/// lies above them.
+PipelineFile at_time(PipelineFile file, const FilmTimes& film, size_t n);
+
+}  // namespace sg

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// Films made from C++, without the command line. tests/cli has those of files.
+#include "pipeline/film/film.h"
+
+#include "base/file/file.h"
+#include "base/text/text.h"
+#include "image/codec.h"
+#include "support/test.h"
+
+using namespace sg;
+using test::error_of;
+
+namespace {
+
+constexpr const char* gyre =
+    "sightglass: 1\nsteps:\n  a: {double_gyre: {dims: [21, 11, 1]}}\nshow:\n  - {surface: {field: velocity}}\n"
+    "picture: {size: 60x40, legend: false, times: \"0:1:3\", output: film.webm, fps: 5}\n";
+
+struct Shot {
+  Image image;
+  PipelineFile pipeline;
+  double time;
+};
+
+std::vector<Shot> shots_of(PipelineFile file, const FilmParams& params, Context& context) {
+  std::vector<Shot> shots;
+  const std::vector<double> times = make_film(std::move(file), params, {},
+                                              {nullptr,
+                                               [&](FilmFrame&& f) {
+                                                 shots.push_back({std::move(f.image), f.pipeline, f.time});
+                                               }},
+                                              context);
+  REQUIRE(times.size() == shots.size());
+  for (size_t i = 0; i < times.size(); ++i) CHECK(shots[i].time == times[i]);
+  return shots;
+}
+
+}  // namespace
+
+TEST_CASE("film: what a pipeline file says of its film is taken out of it, and set with checks") {
+  PipelineFile file = parse_pipeline(gyre, "", picture_vocabulary());
+  FilmParams params;
+  take_film_words(file, params);
+  CHECK(params.times == "0:1:3");
+  CHECK(params.output == "film.webm");
+  CHECK(params.fps == 5);
+  CHECK(file.picture == std::vector<std::string>{"size=60x40", "legend=false"});
+  file.picture.push_back("fps=0");
+  CHECK(error_of([&] { take_film_words(file, params); }).find("from 0.1 to 1000") != std::string::npos);
+}
+
+TEST_CASE("film: each picture is the one that its pipeline makes alone, and all have one range of colours") {
+  PipelineFile file = parse_pipeline(gyre, "", picture_vocabulary());
+  FilmParams params;
+  take_film_words(file, params);
+  Context context;
+  const std::vector<Shot> shots = shots_of(file, params, context);
+  REQUIRE(shots.size() == 3);
+  CHECK(shots[1].time == 0.5);
+  CHECK(shots[0].image.pixels != shots[1].image.pixels);
+  const auto range = word_value(shots[0].pipeline.show[0].words, "range");
+  CHECK(range);
+  for (const Shot& s : shots) {
+    CHECK(word_value(s.pipeline.steps[0].words, "time") == exact_number(s.time));
+    CHECK(word_value(s.pipeline.show[0].words, "range") == range);
+    PipelineFile alone = s.pipeline;
+    CHECK(make_picture(alone, {}, context).image.pixels == s.image.pixels);
+  }
+}
+
+TEST_CASE("film: where two steps do not fit into the memory allowed, the pictures are the same") {
+  PipelineFile file = parse_pipeline(gyre, "", picture_vocabulary());
+  FilmParams params;
+  take_film_words(file, params);
+  Context free, tight;
+  tight.memory_limit = 4000;  // a source of 231 points may compute
+  std::string said;
+  tight.on_log = [&](LogLevel, std::string_view text) { said += text; };
+  const std::vector<Shot> a = shots_of(file, params, free), b = shots_of(file, params, tight);
+  CHECK(said.find("two steps do not fit") != std::string::npos);
+  REQUIRE(a.size() == b.size());
+  for (size_t i = 0; i < a.size(); ++i) CHECK(a[i].image.pixels == b[i].image.pixels);
+}
+
+TEST_CASE("film: an operation that shows a moment takes the time, and what it is given stays as it is") {
+  PipelineFile file = parse_pipeline(
+      "sightglass: 1\nsteps:\n  a: {double_gyre: {dims: [21, 11, 1]}}\n  b: {streamlines: {count: 5, max_time: 2}}\n  c: {trails: {length: "
+      "1}}\n"
+      "show:\n  - {lines: {}}\npicture: {size: 40x30}\n",
+      "", picture_vocabulary());
+  FilmParams params;
+  params.times = "1,2";
+  Context context;
+  for (const Shot& s : shots_of(file, params, context)) {
+    CHECK_FALSE(word_value(s.pipeline.steps[0].words, "time"));
+    CHECK(word_value(s.pipeline.steps[2].words, "time") == exact_number(s.time));
+  }
+}
+
+TEST_CASE("film: numbered pictures go into files that carry their recipes") {
+  PipelineFile file = parse_pipeline(gyre, "", picture_vocabulary());
+  FilmParams params;
+  take_film_words(file, params);
+  params.output = test::temp_folder() + "made_{n}.png", params.times = "0,1";
+  CHECK(is_film(params.output));
+  CHECK_FALSE(is_film("one.png"));
+  Context context;
+  const FilmWritten written = write_film(file, params, {}, context);
+  CHECK(written.times == std::vector<double>{0, 1});
+  CHECK(written.what.ends_with("made_001.png"));
+  const Image second = read_png(test::temp_folder() + "made_001.png");
+  CHECK(word_value(recipe_in(second, "x.png").steps[0].words, "time") == "1");
+}
+
+TEST_CASE("film: what has no time says so before anything is drawn") {
+  PipelineFile file = parse_pipeline("sightglass: 1\nsteps:\n  a: {tangle: {size: 5}}\n");
+  Context context;
+  FilmParams params;
+  bool drawn = false;
+  const FilmCallbacks callbacks{nullptr, [&](FilmFrame&&) { drawn = true; }};
+  CHECK(error_of([&] { make_film(file, params, {}, callbacks, context); }).find("--times") != std::string::npos);
+  params.times = "0,1";
+  CHECK(error_of([&] { make_film(file, params, {}, callbacks, context); }).find("has no time") != std::string::npos);
+  CHECK_FALSE(drawn);
+}
