@@ -72,7 +72,7 @@ TEST_CASE("amr: levels, boxes, fields and ghosts come back as they were written,
   Context context;
   for (const int dimension : {2, 3}) {
     const DatasetPtr d = amr(dimension);
-    write_data(temp("amr.vthb"), d, {"appended", "zlib"}, context);
+    write_data(temp("amr.vthb"), d, {VtkEncoding::appended, Compression::zlib}, context);
     const Data data = read_any(temp("amr.vthb"));
     const DatasetPtr back = std::get<DatasetPtr>(data);
     const auto *a = d->as<AmrGrid>(), *b = back->as<AmrGrid>();
@@ -142,7 +142,7 @@ TEST_CASE("amr: boxes that do not fit, odd ratios and missing patches are refuse
 
 TEST_CASE("amr: a file cut or changed anywhere reads or gives an Error") {
   Context context;
-  write_data(temp("amrcut.vthb"), amr(), {"appended", "none"}, context);
+  write_data(temp("amrcut.vthb"), amr(), {VtkEncoding::appended, Compression::none}, context);
   const std::string text(MappedFile(temp("amrcut.vthb")).text());
   size_t errors = 0;
   auto attempt = [&](const std::string& t) {

@@ -180,7 +180,7 @@ TEST_CASE("vtm: a tree is written and comes back with names, meshes and fields")
   all.push_back(samples()[0].dataset);
   Context context;
   for (const char* compression : {"none", "zlib"}) {  // the second time over the first
-    write_data(temp("tree out.vtm"), CollectionPtr(outer), {"appended", compression}, context);
+    write_data(temp("tree out.vtm"), CollectionPtr(outer), {VtkEncoding::appended, value_of_word<Compression>(compression)}, context);
     const Data back = read_any("tree out.vtm");
     CHECK(parts_of(back).parts.size() == 3);
     CHECK(names_of(back)[0] == "inner/a \"vti\" <b>");

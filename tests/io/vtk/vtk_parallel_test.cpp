@@ -253,7 +253,7 @@ TEST_CASE("vtk parallel: a collection is written as the pieces of one mesh") {
   c->parts.push_back({"a", make_dataset(a)});
   c->parts.push_back({"b", make_dataset(b)});
   Context context;
-  write_data(temp("pieces.pvtu"), CollectionPtr(c), {"appended", "zlib"}, context);
+  write_data(temp("pieces.pvtu"), CollectionPtr(c), {VtkEncoding::appended, Compression::zlib}, context);
   const DatasetPtr d = read(temp("pieces.pvtu"));
   CHECK(d->point_count() == 18);
   CHECK(d->cell_count() == 6);

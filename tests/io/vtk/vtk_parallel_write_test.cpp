@@ -105,7 +105,7 @@ TEST_CASE("vtk parallel writing: a lone mesh of each kind is the only piece, and
     p.mesh = mesh;
     add_fields(p);
     const DatasetPtr d = make_dataset(std::move(p));
-    write_parallel(std::string("lone.") + extension, d, {"appended", "zlib"});
+    write_parallel(std::string("lone.") + extension, d, {VtkEncoding::appended, Compression::zlib});
     check_same(*d, *read(temp(std::string("lone.") + extension)));
   }
 }

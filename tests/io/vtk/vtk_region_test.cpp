@@ -88,7 +88,7 @@ TEST_CASE("vtk xml: blocks and arrays that are not needed may be damaged") {
   u.dims = {128, 128, 32};
   const DatasetPtr d = big(u);
   const std::string path = temp("holes.vti");
-  write(path, d, {"appended", "zlib"});
+  write(path, d, {VtkEncoding::appended, Compression::zlib});
   std::string text(MappedFile(path).text());
   // The last bytes belong to the ghosts; the array before is 'm', those before are 'v' and 'T'. Half of 'v' is wiped.
   const size_t begin = text.find("_", text.find("<AppendedData")), middle = begin + (text.size() - begin) / 2;

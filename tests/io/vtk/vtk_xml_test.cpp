@@ -76,7 +76,7 @@ TEST_CASE("vtk xml: the wrong extension for a mesh kind names the right one") {
     CHECK(!file_exists(temp(name)));
   }
   CHECK(test::error_of([&] { write(temp("x.vtu"), d, {VtkEncoding::base64, Compression::gzip}); }).find("lz4") != std::string::npos);
-  CHECK(test::error_of([&] { write(temp("x.vtu"), d, {"ascii", "zlib"}); }).find("compressed") != std::string::npos);
+  CHECK(test::error_of([&] { write(temp("x.vtu"), d, {VtkEncoding::ascii, Compression::zlib}); }).find("compressed") != std::string::npos);
   AmrGrid amr;
   CHECK(test::error_of([&] { write(temp("x.vti"), make_dataset(amr)); }).find("amr") != std::string::npos);
 }
@@ -249,7 +249,7 @@ TEST_CASE("vtk xml: 64-bit ids come as 32-bit ones when they are unpacked or lie
   for (const char* compression : {"none", "zlib", "lz4"}) {
     CAPTURE(compression);
     Context context;
-    write_data(temp("ids.vtu"), d, {"appended", compression}, context);
+    write_data(temp("ids.vtu"), d, {VtkEncoding::appended, value_of_word<Compression>(compression)}, context);
     const bool plain = std::string_view(compression) == "none";
     const std::string text(MappedFile(temp("ids.vtu")).text());
     for (const size_t shift : {0, 1, 8, 13}) {
@@ -273,7 +273,7 @@ TEST_CASE("vtk xml: 64-bit ids come as 32-bit ones when they are unpacked or lie
     DatasetParts q;
     q.mesh = m;
     q.fields.add({"connectivity copy", Association::whole, Array::from_vector(ids), {}, Role::none});
-    write_data(temp("copy.vtu"), make_dataset(q), {"appended", compression}, context);
+    write_data(temp("copy.vtu"), make_dataset(q), {VtkEncoding::appended, value_of_word<Compression>(compression)}, context);
     std::string swapped(MappedFile(temp("copy.vtu")).text());
     const size_t good_name = swapped.find("\"connectivity\""), copy_name = swapped.find("\"connectivity copy\"");
     REQUIRE(good_name != std::string::npos);
