@@ -277,7 +277,8 @@ class SIGHTGLASS_API Data {
     return run(P::operation_name, p.stated_params(), others, context);
   }
 
-  /// The extension chooses the format. Parameters: encoding, compression, ascii, pieces, chunk. Nothing is ever half written.
+  /// The extension chooses the format. Parameters are those of the format (sightglass ops FORMAT):
+  /// encoding, compression, binary, pieces, chunk. Nothing is ever half written.
   void write(const std::string& path, const Params& params = {}, const Context& context = {}) const;
 
   struct Held;

@@ -8,7 +8,9 @@
 #include "base/text/text.h"
 #include "cli/cli.h"
 #include "color/colormap.h"
+#include "pipeline/catalog/catalog.h"
 #include "pipeline/operation/operation.h"
+#include "pipeline/picture/picture.h"
 #include "scene/camera_params.h"
 #include "scene/show/show.h"
 
@@ -124,9 +126,8 @@ Candidates flag_candidates(const FlagDoc& flag, const std::string& text) {
 Candidates input_candidates(const CommandDoc& command) {
   if (command.name == "colormap") return colormap_candidates();
   if (command.name != "ops") return command.words;
-  Candidates all{"read", "camera", "picture"};
-  for (const Operation& o : operations()) all.emplace_back(o.name);
-  for (const ShowKind& k : show_kinds()) all.emplace_back(k.name);
+  Candidates all;
+  for (const CatalogEntry& e : catalog()) all.push_back(e.name);
   return all;
 }
 

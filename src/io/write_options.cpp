@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/text/text.h"
 #include "io/options.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "base/schema/field_kinds.h"
 
+#include <fmt/core.h>
+
 #include "base/text/text.h"
 
 namespace sg {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/catalog/catalog.h"
 
+#include <fmt/core.h>
+
 #include "base/text/text.h"
 #include "io/options.h"
 #include "pipeline/film/film_params.h"

@@ -2,6 +2,8 @@
 // The pictures of a film, one after the other: the next step is read or computed while one is drawn.
 #include "pipeline/film/film.h"
 
+#include <fmt/core.h>
+
 #include <exception>
 #include <mutex>
 #include <set>

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where the pictures of a film go.
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/file/file.h"
 #include "base/text/text.h"

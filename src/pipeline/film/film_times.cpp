@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/film/film_times.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
 
 #include "base/error.h"

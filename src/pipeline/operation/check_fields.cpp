@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/operation/check_fields.h"
 
+#include <fmt/core.h>
+
 #include "base/error.h"
 #include "base/schema/field_kinds.h"
 
