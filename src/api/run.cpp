@@ -125,7 +125,7 @@ Data Data::run(std::string_view operation, const Params& params, const std::vect
 
 void Data::write(const std::string& path, const Params& params, const Context& context) const {
   guarded([&] {
-    const sg::Format& format = sg::find_format(path, {});
+    const sg::Format& format = sg::format_to_write(path);
     sg::WriteOptions options;
     sg::Schema schema;
     if (format.describe_write) format.describe_write(schema, options);

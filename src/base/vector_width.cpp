@@ -18,7 +18,7 @@ void cap_vector_width() {
   const std::string_view word = set ? set : "";
   // A target is a bit; the better it is, the lower.
   if (word == "avx2") hwy::DisableTargets(HWY_AVX2 - 1);
-  else if (word == "baseline") hwy::DisableTargets(HWY_STATIC_TARGET - 1);
+  else if (word == "baseline") hwy::DisableTargets(HWY_SSE4 - 1);
   else if (!word.empty())
     fail_usage("'" + std::string(word) + "' is not a vector width", "SG_SIMD", "say avx2 or baseline, or leave it unset");
 }

@@ -5,7 +5,8 @@
 
 namespace sg {
 
-/// Caps the vector width as SG_SIMD says: `avx2` leaves out AVX-512, `baseline` everything beyond what each machine of the family has;
+/// Caps the vector width as SG_SIMD says: `avx2` leaves out AVX-512, `baseline` AVX2 too (files that are not compiled for
+/// SSE4 compute one lane at a time);
 /// unset or empty: no cap. Before the first vector code runs; not thread-safe. Throws Error(usage) for other words.
 void cap_vector_width();
 

@@ -53,7 +53,11 @@ CLI::Option* add_flag(CLI::App& a, const ParamDecl& d, const std::string& flag, 
   if (flag.starts_with('!'))
     return a.add_flag_callback(
         "--" + bare(flag), [given] { given("false"); }, about);
-  return a.add_option_function<std::string>("--" + flag, given, about)->type_name(std::string(param_type(d)));
+  // command_docs() finds the choices in the braces.
+  std::string choices;
+  for (const std::string& c : d.choices_) choices += (choices.empty() ? "" : ",") + c;
+  const std::string type = choices.empty() ? std::string(param_type(d)) : "{" + choices + "}";
+  return a.add_option_function<std::string>("--" + flag, given, about)->type_name(type);
 }
 
 template <class P>
@@ -102,7 +106,12 @@ void add_writing(CLI::App& a, Options& o) {
     for (const ParamDecl& d : schema.decls()) {
       const auto have = std::find_if(flags.begin(), flags.end(), [&](const Flag& x) { return x.decl.name == d.name; });
       if (have == flags.end()) flags.push_back({d, std::string(f.name)});
-      else have->formats += fmt::format(", {}", f.name);
+      else {
+        have->formats += fmt::format(", {}", f.name);
+        for (const std::string& c : d.choices_)
+          if (std::find(have->decl.choices_.begin(), have->decl.choices_.end(), c) == have->decl.choices_.end())
+            have->decl.choices_.push_back(c);
+      }
     }
   }
   for (const auto& [d, formats] : flags)

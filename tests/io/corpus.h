@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "base/file/file.h"
-#include "fuzz.h"
+#include "../../fuzz/fuzz.h"
 #include "support/test.h"
 
 namespace sg::test {

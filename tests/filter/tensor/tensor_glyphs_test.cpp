@@ -12,7 +12,7 @@ namespace {
 
 const SymTensor oblique = rotated(diagonal(4, 2, 1), random_rotation(21));
 
-TensorGlyphsParams of_shape(const char* shape, int resolution = 10) {
+TensorGlyphsParams of_shape(TensorShape shape, int resolution = 10) {
   TensorGlyphsParams p;
   p.shape = shape, p.resolution = resolution, p.factor = 1, p.min_ratio = 0.01;
   return p;
@@ -47,7 +47,7 @@ double normal_error(const DatasetPtr& d) {
 }  // namespace
 
 TEST_CASE("tensor_glyphs: an ellipsoid has the eigenvalues as half axes, exact normals, a closed surface and its volume") {
-  const DatasetPtr g = glyph(oblique, of_shape("ellipsoid"));
+  const DatasetPtr g = glyph(oblique, of_shape(TensorShape::ellipsoid));
   const auto& m = *g->as<SurfaceMesh>();
   const Eigen3 e = eigen_of(oblique);
   for (size_t i = 0; i < m.points.count(); ++i) {
@@ -65,17 +65,17 @@ TEST_CASE("tensor_glyphs: an ellipsoid has the eigenvalues as half axes, exact n
   double h[4], off[4];
   for (int i = 0; i < 4; ++i) {
     const int n = 8 << i;
-    h[i] = 1.0 / n, off[i] = std::abs(volume(glyph(oblique, of_shape("ellipsoid", n))) - 4.0 / 3 * M_PI * 8);
+    h[i] = 1.0 / n, off[i] = std::abs(volume(glyph(oblique, of_shape(TensorShape::ellipsoid, n))) - 4.0 / 3 * M_PI * 8);
   }
   CHECK(observed_order(h, off, 4) == doctest::Approx(2).epsilon(0.05));
 }
 
 TEST_CASE("tensor_glyphs: cuboids and cylinders have their volumes; a cylinder lies along what differs most") {
-  CHECK(volume(glyph(oblique, of_shape("cuboid"))) == doctest::Approx(8 * 8).epsilon(1e-5));
+  CHECK(volume(glyph(oblique, of_shape(TensorShape::cuboid))) == doctest::Approx(8 * 8).epsilon(1e-5));
   const double m = 2 * 40, polygon = m / 2 * std::sin(2 * M_PI / m);
-  CHECK(volume(glyph(oblique, of_shape("cylinder", 40))) == doctest::Approx(polygon * 2 * 8).epsilon(1e-5));
+  CHECK(volume(glyph(oblique, of_shape(TensorShape::cylinder, 40))) == doctest::Approx(polygon * 2 * 8).epsilon(1e-5));
   for (const auto& [d, axis] : {std::pair(diagonal(5, 1, 1), 0), std::pair(diagonal(5, 5, 1), 2)}) {
-    const DatasetPtr c = glyph(d, of_shape("cylinder"));
+    const DatasetPtr c = glyph(d, of_shape(TensorShape::cylinder));
     int lids = 0;
     for (size_t i = 0; i < c->point_count(); ++i) lids += std::abs(vec(c, "Normals", i)[axis]) == 1;
     CHECK(lids == int(c->point_count() / 2));
@@ -83,9 +83,9 @@ TEST_CASE("tensor_glyphs: cuboids and cylinders have their volumes; a cylinder l
 }
 
 TEST_CASE("tensor_glyphs: superquadrics are ellipsoids for gamma 0, balls where all is equal, sharp where it is not") {
-  TensorGlyphsParams p = of_shape("superquadric", 12);
+  TensorGlyphsParams p = of_shape(TensorShape::superquadric, 12);
   p.gamma = 0;
-  const DatasetPtr round = glyph(oblique, p), ellipsoid = glyph(oblique, of_shape("ellipsoid", 12));
+  const DatasetPtr round = glyph(oblique, p), ellipsoid = glyph(oblique, of_shape(TensorShape::ellipsoid, 12));
   CHECK(equal_bytes(round->as<SurfaceMesh>()->points.xyz, ellipsoid->as<SurfaceMesh>()->points.xyz));
   p.gamma = 3;
   const DatasetPtr ball = glyph(diagonal(2, 2, 2), p);
@@ -105,7 +105,7 @@ TEST_CASE("tensor_glyphs: superquadrics are ellipsoids for gamma 0, balls where 
 
 TEST_CASE("tensor_glyphs: Reynolds lobes have radius |n.s.n| and its sign, HWY the shear stress; normals fit the surfaces") {
   const SymTensor s = rotated(diagonal(3, -1, -2), random_rotation(2));
-  const DatasetPtr r = glyph(s, of_shape("reynolds", 20)), h = glyph(s, of_shape("hwy", 20));
+  const DatasetPtr r = glyph(s, of_shape(TensorShape::reynolds, 20)), h = glyph(s, of_shape(TensorShape::hwy, 20));
   const Array &relative = r->fields().require("relative normal stress").array, &sign = r->fields().require("sign").array;
   size_t positive = 0;
   for (size_t i = 0; i < r->point_count(); ++i) {
@@ -125,7 +125,7 @@ TEST_CASE("tensor_glyphs: Reynolds lobes have radius |n.s.n| and its sign, HWY t
   }
   CHECK(positive > 100);
   // Away from where lobes meet in a point.
-  CHECK(normal_error(glyph(rotated(diagonal(3, 2, 1), random_rotation(2)), of_shape("reynolds", 100))) < 0.02);
+  CHECK(normal_error(glyph(rotated(diagonal(3, 2, 1), random_rotation(2)), of_shape(TensorShape::reynolds, 100))) < 0.02);
 }
 
 TEST_CASE("tensor_glyphs: strides, counts, cells, masks and what gets none") {
@@ -134,7 +134,7 @@ TEST_CASE("tensor_glyphs: strides, counts, cells, masks and what gets none") {
       tensor_grid({21, 21, 21}, {0, 0, 0}, {2, 2, 2}, [](Vec3 p) { return p.x > 1.95 ? SymTensor{} : diagonal(3, 2, 1); });
   TensorGlyphsParams p;
   p.resolution = 4, p.stride = 10;
-  const size_t nv = glyph(oblique, of_shape("superquadric", 4))->point_count();
+  const size_t nv = glyph(oblique, of_shape(TensorShape::superquadric, 4))->point_count();
   CHECK(tensor_glyphs(grid, p, l.context)->point_count() == 18 * nv);  // 27 less a face of zeros
   CHECK(l.notes.find("tensors get no glyph") != std::string::npos);
   p.stride = 0, p.count = 100;
@@ -231,7 +231,7 @@ TEST_CASE("tensor_glyphs: a long and narrow box gets fewer and larger glyphs, an
   Listener l;
   TensorGlyphsParams p;
   p.resolution = 4;
-  const size_t nv = glyph(oblique, of_shape("superquadric", 4))->point_count();
+  const size_t nv = glyph(oblique, of_shape(TensorShape::superquadric, 4))->point_count();
   const DatasetPtr plate = tensor_grid({81, 17, 3}, {0, 0, 0}, {8, 1.6, 0.2}, [](Vec3) { return diagonal(3, 2, 1); });
   const DatasetPtr few = tensor_glyphs(plate, p, l.context);
   CHECK(few->point_count() / nv <= 180);

@@ -12,7 +12,7 @@ namespace {
 
 const SymTensor constant = rotated(diagonal(4, 2, 1), random_rotation(11));
 
-HyperstreamlinesParams lines_from(std::vector<double> seeds, const char* section = "line") {
+HyperstreamlinesParams lines_from(std::vector<double> seeds, TensorSection section = TensorSection::line) {
   HyperstreamlinesParams p;
   p.seeds = std::move(seeds), p.section = section, p.min_radius = 0;
   return p;
@@ -91,7 +91,7 @@ TEST_CASE("hyperstreamlines: the section of a constant tensor is an ellipse with
   Context context;
   const DatasetPtr mesh = tensor_grid({9, 9, 9}, {-1, -1, -1}, {1, 1, 1}, [](Vec3) { return constant; });
   const Eigen3 e = eigen_of(constant);
-  HyperstreamlinesParams p = lines_from({0, 0, 0}, "ellipse");
+  HyperstreamlinesParams p = lines_from({0, 0, 0}, TensorSection::ellipse);
   p.factor = 0.01, p.sides = 24;
   const DatasetPtr tube = hyperstreamlines(mesh, p, context);
   const Field& normals = tube->fields().require("Normals");
@@ -312,7 +312,7 @@ TEST_CASE("tensor lines: the same bytes for 1 and 8 threads") {
 TEST_CASE("tensor lines: bad input is named, and what gives no line is told") {
   Listener l;
   const DatasetPtr mesh = tensor_grid({3, 3, 3}, {-1, -1, -1}, {1, 1, 1}, [](Vec3) { return diagonal(1, 1, 1); });
-  const DatasetPtr none = hyperstreamlines(mesh, lines_from({0, 0, 0, 9, 9, 9}, "ellipse"), l.context);  // isotropic; outside
+  const DatasetPtr none = hyperstreamlines(mesh, lines_from({0, 0, 0, 9, 9, 9}, TensorSection::ellipse), l.context);  // isotropic; outside
   CHECK(none->cell_count() == 0);
   CHECK(l.notes.find("2 of 2 seeds give no line") != std::string::npos);
   CHECK(error_of([&] { hyperstreamlines(mesh, lines_from({0, 0}), l.context); }).find("seeds has 2 numbers") != std::string::npos);

@@ -39,7 +39,7 @@ void on_points_and_cells(const DatasetPtr& d, F&& f) {
   }
 }
 
-HyperstreamlinesParams line_from(Vec3 seed, int eigenvector, const char* section = "line") {
+HyperstreamlinesParams line_from(Vec3 seed, int eigenvector, TensorSection section = TensorSection::line) {
   HyperstreamlinesParams p;
   p.seeds = {seed.x, seed.y, seed.z}, p.eigenvector = eigenvector, p.section = section, p.min_radius = 0;
   return p;
@@ -159,7 +159,7 @@ TEST_CASE("tensor meshes: a constant tensor has straight hyperstreamlines to the
         CHECK(std::max({std::abs(q.x), std::abs(q.y), std::abs(q.z)}) > 0.88);
       }
     }
-    HyperstreamlinesParams p = line_from(seed, 1, "ellipse");
+    HyperstreamlinesParams p = line_from(seed, 1, TensorSection::ellipse);
     p.factor = 0.01, p.sides = 24;
     const DatasetPtr tube = hyperstreamlines(mesh, p, context);
     REQUIRE(tube->point_count() >= 48);

@@ -16,7 +16,7 @@ Points two_points(size_t n) {
   return {Array::from_vector(std::move(xyz), 3)};
 }
 
-FieldSet fields(size_t points, size_t cells) {
+FieldSet some_fields(size_t points, size_t cells) {
   FieldSet f;
   f.add({"p", Association::point, Array::from_vector(std::vector<double>(points, 2.5)), "", Role::none});
   f.add({"v", Association::point, Array::from_vector(std::vector<float>(3 * points, 1.5f), 3), "", Role::vectors});
@@ -52,7 +52,7 @@ TEST_CASE("empty meshes: every format reads back what it wrote, fields of no tup
     u.points = two_points(n);
     SurfaceMesh s;
     s.points = two_points(n);
-    const DatasetPtr solid = make_dataset(u, fields(n, 0)), surface = make_dataset(s, fields(n, 0));
+    const DatasetPtr solid = make_dataset(u, some_fields(n, 0)), surface = make_dataset(s, some_fields(n, 0));
     for (const char* name : {"e.vtu", "e.pvtu", "e.vtm"}) {
       CAPTURE(name);
       for (const DatasetPtr& d : {solid, surface}) {
@@ -80,7 +80,8 @@ TEST_CASE("vtk xml: pieces without points and cells add nothing, but the first t
   one.points = two_points(2);
   Context context;
   const auto collection = std::make_shared<Collection>();
-  collection->parts = {{"a", make_dataset(none, fields(0, 0))}, {"b", make_dataset(one, fields(2, 0))}, {"c", make_dataset(none)}};
+  collection->parts = {
+      {"a", make_dataset(none, some_fields(0, 0))}, {"b", make_dataset(one, some_fields(2, 0))}, {"c", make_dataset(none)}};
   const std::string path = test::temp_folder() + "pieces.pvtu";
   write_data(path, CollectionPtr(collection), {}, context);
   const DatasetPtr back = single_dataset(read_data(path, {}, context), "test");

@@ -80,8 +80,8 @@ TEST_CASE("raster: a facing quad has the colour of the lighting formula") {
   const Picture p = draw(s, c, 64, 64);
   double diffuse = 0, specular = 0;
   for (const Light& l : {s.lights[0], s.lights[1]}) {
-    const double cosine = normalize(l.direction).z;  // normal and viewer are both z: the reflection's cosine is the same
-    diffuse += double(l.intensity) * cosine, specular += double(l.intensity) * std::pow(cosine, 7.5);
+    const Vec3 to = normalize(l.direction), half = normalize(to + Vec3(0, 0, 1));  // normal and viewer are both z
+    diffuse += double(l.intensity) * to.z, specular += double(l.intensity) * std::pow(half.z, 7.5);
   }
   const float srgb[3] = {0.5f, 0.6f, 0.7f};
   for (int k = 0; k < 3; ++k)

@@ -6,6 +6,9 @@
 #include "filter/flow/unsteady/flat_advance.h"
 
 #include "base/vector_targets.h"
+// One lane has no vectors of two floats, and takes another way than all others: SSSE3 and SSE4 stand before it.
+#undef HWY_DISABLED_TARGETS
+#define HWY_DISABLED_TARGETS HWY_AVX3_DL
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "filter/flow/unsteady/flat_advance_simd.cpp"
