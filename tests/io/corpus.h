@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "base/file/file.h"
 #include "../../fuzz/fuzz.h"
+#include "base/file/file.h"
 #include "support/test.h"
 
 namespace sg::test {
