@@ -303,19 +303,34 @@ HWY_INLINE void gather_words_at(D d, const T* data, const ptrdiff_t (&on)[n], At
   for (size_t r = 0; r < n; ++r) out[r] = gather_words(d, data + on[r], byte, false);
 }
 
-/// Small integer number k of a word.
+/// How small integers are read out of words: T tells their size, this whether they have a sign, so that vector code is compiled for one
+/// type of each size.
+template <class D>
+struct Integers {
+  Int<D> last_word;  ///< the last word within the array begins at this number
+  Int<D> code;       ///< the bits of 2^23, and the bit of the sign turned over
+  hn::Vec<D> zero;   ///< 2^23, and half of the range of T where there is a sign
+
+  HWY_INLINE Integers(int last, int bits, bool has_sign)
+      : last_word(hn::Set(IntTag<D>(), last)),
+        code(hn::Set(IntTag<D>(), 0x4B000000 | (has_sign ? 1 << (bits - 1) : 0))),
+        zero(hn::Set(D(), float((1 << 23) + (has_sign ? 1 << (bits - 1) : 0)))) {}
+};
+
+/// Small integer number k of a word. Its bits behind those of 2^23 are the float 2^23 + v; the difference is exact, as a conversion is.
 template <class T, int k, class D>
-HWY_INLINE hn::Vec<D> number_in(D d, Int<D> word) {
-  constexpr int bits = 8 * sizeof(T), above = 32 - bits * (k + 1);
+HWY_INLINE hn::Vec<D> number_in(D d, Int<D> word, const Integers<D>& integers) {
+  static_assert(std::is_unsigned_v<T>);
+  constexpr int bits = 8 * sizeof(T);
   const IntTag<D> di;
   const hn::RebindToUnsigned<D> du;
-  if constexpr (std::is_signed_v<T>) return hn::ConvertTo(d, hn::ShiftRight<32 - bits>(hn::ShiftLeft<above>(word)));
-  else if constexpr (above == 0) return hn::ConvertTo(d, hn::BitCast(di, hn::ShiftRight<32 - bits>(hn::BitCast(du, word))));
-  else return hn::ConvertTo(d, hn::And(hn::ShiftRight<bits * k>(word), hn::Set(di, (1 << bits) - 1)));
+  Int<D> number = hn::BitCast(di, hn::ShiftRight<bits * k>(hn::BitCast(du, word)));
+  if constexpr (bits * (k + 1) < 32) number = hn::And(number, hn::Set(di, (1 << bits) - 1));
+  return hn::Sub(hn::BitCast(d, hn::Xor(number, integers.code)), integers.zero);
 }
 template <class T, class D>
-HWY_INLINE Pair<D> pair_in(D d, Int<D> word) {
-  return {number_in<T, 0>(d, word), number_in<T, 1>(d, word)};
+HWY_INLINE Pair<D> pair_in(D d, Int<D> word, const Integers<D>& integers) {
+  return {number_in<T, 0>(d, word, integers), number_in<T, 1>(d, word, integers)};
 }
 
 /// May words begin at `at` + on for all lanes? The last one within the array begins at `last_word`.
@@ -326,40 +341,42 @@ HWY_INLINE bool words_fit(D d, const ptrdiff_t (&on)[n], At at, Int<D> last_word
 }
 /// A pair of small integers by one word, which near the end of the array starts earlier.
 template <class D, class T>
-HWY_INLINE Pair<D> gather_pair(D d, const T* data, Int<D> at, Int<D> last_word, bool loads) {
+HWY_INLINE Pair<D> gather_pair(D d, const T* data, Int<D> at, const Integers<D>& integers, bool loads) {
   const hn::RebindToUnsigned<D> du;
   constexpr int bits_by_shift = sizeof(T) == 2 ? 4 : 3;
-  const Int<D> from = hn::Min(at, last_word), skipped = hn::ShiftLeft<bits_by_shift>(hn::Sub(at, from));
+  const Int<D> from = hn::Min(at, integers.last_word), skipped = hn::ShiftLeft<bits_by_shift>(hn::Sub(at, from));
   Int<D> word;
   gather_words_at(d, data, {0}, from, loads, &word);
-  return pair_in<T>(d, hn::BitCast(IntTag<D>(), hn::Shr(hn::BitCast(du, word), hn::BitCast(du, skipped))));
+  return pair_in<T>(d, hn::BitCast(IntTag<D>(), hn::Shr(hn::BitCast(du, word), hn::BitCast(du, skipped))), integers);
 }
 /// gather_pairs() of small integers.
 template <class D, class T, size_t n, class At>
-HWY_INLINE void gather_pairs(D d, const T* data, const ptrdiff_t (&on)[n], At at, Int<D> last_word, bool loads, Pair<D>* out) {
-  if (words_fit(d, on, at, last_word)) {
+HWY_INLINE void gather_pairs(D d, const T* data, const ptrdiff_t (&on)[n], At at, const Integers<D>& integers, bool loads, Pair<D>* out) {
+  if (words_fit(d, on, at, integers.last_word)) {
     Int<D> words[n];
     gather_words_at(d, data, on, at, loads, words);
-    for (size_t r = 0; r < n; ++r) out[r] = pair_in<T>(d, words[r]);
+    for (size_t r = 0; r < n; ++r) out[r] = pair_in<T>(d, words[r], integers);
     return;
   }
   const Int<D> first = in_vector(d, at);
-  for (size_t r = 0; r < n; ++r) out[r] = gather_pair(d, data, hn::Add(first, hn::Set(IntTag<D>(), int(on[r]))), last_word, loads);
+  for (size_t r = 0; r < n; ++r) out[r] = gather_pair(d, data, hn::Add(first, hn::Set(IntTag<D>(), int(on[r]))), integers, loads);
 }
 /// gather_quads() of small integers.
 template <class D, class T, size_t n>
-HWY_INLINE void gather_quads(D d, const T* data, const ptrdiff_t (&on)[n], Int<D> at, Int<D> last_word, bool loads, Quad<D>* out) {
+HWY_INLINE void gather_quads(D d, const T* data, const ptrdiff_t (&on)[n], Int<D> at, const Integers<D>& integers, bool loads,
+                             Quad<D>* out) {
   if constexpr (sizeof(T) == 1) {
-    if (words_fit(d, on, at, last_word)) {
+    if (words_fit(d, on, at, integers.last_word)) {
       Int<D> words[n];
       gather_words_at(d, data, on, at, loads, words);
-      for (size_t r = 0; r < n; ++r) out[r] = {pair_in<T>(d, words[r]), {number_in<T, 2>(d, words[r]), number_in<T, 3>(d, words[r])}};
+      for (size_t r = 0; r < n; ++r)
+        out[r] = {pair_in<T>(d, words[r], integers), {number_in<T, 2>(d, words[r], integers), number_in<T, 3>(d, words[r], integers)}};
       return;
     }
   }
   Pair<D> low[n], high[n];
-  gather_pairs(d, data, on, at, last_word, loads, low);
-  gather_pairs(d, data, on, hn::Add(at, hn::Set(IntTag<D>(), 2)), last_word, loads, high);
+  gather_pairs(d, data, on, at, integers, loads, low);
+  gather_pairs(d, data, on, hn::Add(at, hn::Set(IntTag<D>(), 2)), integers, loads, high);
   for (size_t r = 0; r < n; ++r) out[r] = {low[r], high[r]};
 }
 

@@ -12,14 +12,14 @@ namespace sg::volume {
 
 namespace {
 
-/// Calls f with a number of the type of samples.
+/// Calls f with a number of the type that stands for the samples in vector code: integers with a sign are read as those without.
 template <class F>
 void with_samples(const PacketPlan& plan, F&& f) {
   switch (plan.volume.voxels.array.type()) {
-    case ElementType::u8: return f(uint8_t());
-    case ElementType::i8: return f(int8_t());
-    case ElementType::u16: return f(uint16_t());
-    case ElementType::i16: return f(int16_t());
+    case ElementType::u8:
+    case ElementType::i8: return f(uint8_t());
+    case ElementType::u16:
+    case ElementType::i16: return f(uint16_t());
     default: return f(float());
   }
 }

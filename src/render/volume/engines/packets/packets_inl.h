@@ -44,11 +44,12 @@ struct Place {
   hn::Vec<D> fraction;
 };
 
-/// The lattice, ready for gathers.
+/// The lattice, ready for gathers. T: float, or the unsigned integers of the size of the samples.
 template <class D, class T>
 struct Source {
   const T* data;
-  Int<D> row, layer, last_word;
+  Int<D> row, layer;
+  Integers<D> integers;
   hn::Vec<D> top[3];
   Int<D> last_cell[3];
   ptrdiff_t to_row, to_layer;  ///< row and layer as numbers of samples
@@ -56,12 +57,14 @@ struct Source {
   bool within;                 ///< no place that is asked for lies beyond the outermost samples, but for rounding
 
   HWY_INLINE explicit Source(const Voxels& voxels, bool all_within = false)
-      : data(reinterpret_cast<const T*>(voxels.array.raw())), loads(loads_beat_gathers()), within(all_within) {
+      : data(reinterpret_cast<const T*>(voxels.array.raw())),
+        integers((int(voxels.array.bytes()) - 4) / int(sizeof(T)), 8 * int(sizeof(T)), has_sign(voxels.array.type())),
+        loads(loads_beat_gathers()),
+        within(all_within) {
     const D d;
     const IntTag<D> di;
     to_row = ptrdiff_t(voxels.dims[0]), to_layer = ptrdiff_t(voxels.dims[0] * voxels.dims[1]);
     row = hn::Set(di, int(to_row)), layer = hn::Set(di, int(to_layer));
-    last_word = hn::Set(di, (int(voxels.array.bytes()) - 4) / int(sizeof(T)));
     for (size_t a = 0; a < 3; ++a) top[a] = hn::Set(d, float(voxels.dims[a] - 1)), last_cell[a] = hn::Set(di, int(voxels.dims[a]) - 2);
   }
   HWY_INLINE Place<D> place(int axis, hn::Vec<D> u) const {
@@ -81,13 +84,13 @@ struct Source {
   template <size_t n, class At>
   HWY_INLINE void pairs(At at, const ptrdiff_t (&on)[n], Pair<D>* out) const {
     if constexpr (std::is_same_v<T, float>) gather_pairs(D(), data, on, at, loads, out);
-    else gather_pairs(D(), data, on, at, last_word, loads, out);
+    else gather_pairs(D(), data, on, at, integers, loads, out);
   }
   /// Four samples in a row each.
   template <size_t n>
   HWY_INLINE void quads(Int<D> at, const ptrdiff_t (&on)[n], Quad<D>* out) const {
     if constexpr (std::is_same_v<T, float>) gather_quads(D(), data, on, at, loads, out);
-    else gather_quads(D(), data, on, at, last_word, loads, out);
+    else gather_quads(D(), data, on, at, integers, loads, out);
   }
   /// The corners of the cell whose lowest one is there: its rows (0, 0), (1, 0), (0, 1), (1, 1) along y and z.
   template <class At>
@@ -112,6 +115,7 @@ struct Source {
   }
 
  private:
+  static bool has_sign(ElementType type) { return type == ElementType::i8 || type == ElementType::i16; }
   static HWY_INLINE hn::Vec<D> across(hn::Vec<D> v0, hn::Vec<D> v1, hn::Vec<D> v2, hn::Vec<D> v3, hn::Vec<D> fy, hn::Vec<D> fz) {
     const D d;
     return mixed(d, mixed(d, v0, v1, fy), mixed(d, v2, v3, fy), fz);
