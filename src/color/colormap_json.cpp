@@ -2,21 +2,17 @@
 // Colour maps in JSON: ParaView's (RGBPoints in a ColorSpace, or IndexedColors with Annotations, NanColor) and niivue's (lists R, G,
 // B, A over I from 0 to 255, and the values min and max).
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/text/json.h"
 #include "base/text/text.h"
 #include "color/colormap_formats.h"
 
 namespace sg {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-constexpr int deepest = 64;
 
 struct JsonMaps {
   const std::string& path;
@@ -27,12 +23,12 @@ struct JsonMaps {
 
   std::vector<double> numbers(const Json& o, const char* key, const std::string& map) const {
     std::vector<double> r;
-    const auto it = o.find(key);
-    if (it == o.end() || it->is_null()) return r;
-    if (!it->is_array()) fail(map, fmt::format("'{}' is no list", key));
-    for (const Json& v : *it) {
-      if (!v.is_number() || !std::isfinite(v.get<double>())) fail(map, fmt::format("'{}' holds something that is no number", key));
-      r.push_back(v.get<double>());
+    const Json& list = o[key];
+    if (list.is_null()) return r;
+    if (!list.is_list()) fail(map, fmt::format("'{}' is no list", key));
+    for (const Json& v : list.items()) {
+      if (!v.is_number() || !std::isfinite(v.number())) fail(map, fmt::format("'{}' holds something that is no number", key));
+      r.push_back(v.number());
     }
     return r;
   }
@@ -64,7 +60,7 @@ struct JsonMaps {
 
   FileColormap paraview(const Json& o) const {
     FileColormap f;
-    auto word = [&](const char* key) { return o.contains(key) && o[key].is_string() ? o[key].get<std::string>() : std::string(); };
+    auto word = [&](const char* key) { return o[key].text(); };
     f.map.name = word("Name");
     const std::string& name = f.map.name;
     f.nan = color(o, "NanColor", name);
@@ -98,15 +94,13 @@ struct JsonMaps {
 
   // Pairs of value and text. Kept only when they give a value to each colour.
   void annotations(const Json& o, FileColormap& f) const {
-    const auto it = o.find("Annotations");
-    if (it == o.end() || !it->is_array() || it->size() / 2 < f.entries) return;
+    const Json& list = o["Annotations"];
+    if (!list.is_list() || list.size() / 2 < f.entries) return;
     for (size_t i = 0; i < f.entries; ++i) {
-      const Json &value = (*it)[2 * i], &text = (*it)[2 * i + 1];
-      const auto v = value.is_number()   ? std::optional(value.get<double>())
-                     : value.is_string() ? parse_double(value.get<std::string>())
-                                         : std::nullopt;
+      const Json &value = list[2 * i], &text = list[2 * i + 1];
+      const auto v = value.is_number() ? std::optional(value.number()) : value.is_text() ? parse_double(value.text()) : std::nullopt;
       f.labels.push_back(v.value_or(double(i)));
-      f.label_names.push_back(text.is_string() ? text.get<std::string>() : text.dump());
+      f.label_names.push_back(text.is_text() ? text.text() : text.dump());
     }
   }
 
@@ -117,7 +111,7 @@ struct JsonMaps {
     const size_t n = r.size();
     if (n == 0 || g.size() != n || b.size() != n || (!a.empty() && a.size() != n) || (!at.empty() && at.size() != n))
       fail("", "the lists R, G, B, A and I are not equally long");
-    const bool labels = o.contains("labels") && o["labels"].is_array();
+    const bool labels = o["labels"].is_list();
     for (size_t i = 0; at.size() < n; ++i) at.push_back(labels || n == 1 ? double(i) : 255 * double(i) / double(n - 1));
     std::vector<ColorNode> nodes;
     for (size_t i = 0; i < n; ++i) nodes.push_back({at[i], rgb({r[i], g[i], b[i]}, 0, 255, "")});
@@ -127,14 +121,13 @@ struct JsonMaps {
     f.space = "RGB";
     f.lo = at.front(), f.hi = at.back();
     for (const auto& [key, to] : {std::pair{"min", &f.range_lo}, std::pair{"max", &f.range_hi}})
-      if (o.contains(key) && o[key].is_number()) *to = o[key].get<double>();
+      if (o[key].is_number()) *to = o[key].number();
     if (labels) {
       f.map.kind = MapKind::categorical;
       for (size_t i = 0; i < n; ++i) {
         f.map.colors.push_back(nodes[i].color);
         f.labels.push_back(at[i]);
-        const Json& text = i < o["labels"].size() ? o["labels"][i] : Json();
-        f.label_names.push_back(text.is_string() ? text.get<std::string>() : "");
+        f.label_names.push_back(o["labels"][i].text());
       }
       return f;
     }
@@ -147,29 +140,18 @@ struct JsonMaps {
 }  // namespace
 
 std::vector<FileColormap> parse_json_maps(std::string_view text, const std::string& path) {
-  bool too_deep = false;
-  auto watch = [&](int depth, Json::parse_event_t, Json&) {
-    if (depth > deepest) too_deep = true;
-    return !too_deep;
-  };
   const JsonMaps maps{path};
-  try {
-    const Json root = Json::parse(text.begin(), text.end(), watch);
-    if (too_deep) fail_data(fmt::format("is nested more than {} deep", deepest), path);
-    std::vector<FileColormap> r;
-    if (root.is_object() && root.contains("R") && root.contains("G") && root.contains("B")) r.push_back(maps.niivue(root));
-    else if (root.is_object() && (root.contains("RGBPoints") || root.contains("IndexedColors"))) r.push_back(maps.paraview(root));
-    else if (root.is_array() && !root.empty())
-      for (const Json& o : root) {
-        if (!o.is_object()) fail_data("holds something that is no colour map", path);
-        r.push_back(maps.paraview(o));
-      }
-    else fail_data("is JSON, but no colour map", path, "maps are a list of RGBPoints or IndexedColors, or the lists R, G, B, A, I");
-    return r;
-  } catch (const nlohmann::json::exception& e) {
-    if (too_deep) fail_data(fmt::format("is nested more than {} deep", deepest), path);
-    fail_data(fmt::format("is no valid JSON: {}", e.what()), path);
-  }
+  const Json root = parse_json(text, path);
+  std::vector<FileColormap> r;
+  if (root.contains("R") && root.contains("G") && root.contains("B")) r.push_back(maps.niivue(root));
+  else if (root.contains("RGBPoints") || root.contains("IndexedColors")) r.push_back(maps.paraview(root));
+  else if (root.is_list() && !root.empty())
+    for (const Json& o : root.items()) {
+      if (!o.is_object()) fail_data("holds something that is no colour map", path);
+      r.push_back(maps.paraview(o));
+    }
+  else fail_data("is JSON, but no colour map", path, "maps are a list of RGBPoints or IndexedColors, or the lists R, G, B, A, I");
+  return r;
 }
 
 }  // namespace sg

@@ -15,6 +15,12 @@
 
 namespace sg {
 
+Array::Array(const Array&) = default;
+Array::Array(Array&&) noexcept = default;
+Array& Array::operator=(const Array&) = default;
+Array& Array::operator=(Array&&) noexcept = default;
+Array::~Array() = default;
+
 size_t element_size(ElementType t) {
   constexpr size_t sizes[] = {1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
   return sizes[size_t(t)];

@@ -69,6 +69,12 @@ struct View {
 class Array {
  public:
   Array() = default;
+  // Out of line, as in all that holds arrays: inline they were a tenth of the program's code.
+  Array(const Array&);
+  Array(Array&&) noexcept;
+  Array& operator=(const Array&);
+  Array& operator=(Array&&) noexcept;
+  ~Array();
   /// Packed tuples at the start of `buffer`; throws Error(data) when the buffer is too small.
   Array(Buffer buffer, ElementType type, size_t count, int components = 1);
   /// Any layout: byte offset of the first number and byte strides (multiples of the element size).

@@ -14,6 +14,12 @@
 
 namespace sg {
 
+Data::Data(const Data&) = default;
+Data::Data(Data&&) noexcept = default;
+Data& Data::operator=(const Data&) = default;
+Data& Data::operator=(Data&&) noexcept = default;
+Data::~Data() = default;
+
 Dataset::Dataset(DatasetParts parts)
     : parts_(std::move(parts)),
       points_(sg::point_count(parts_.mesh)),

@@ -86,8 +86,19 @@ struct Table {
 };
 using TablePtr = std::shared_ptr<const Table>;
 
-/// What flows between operations.
-using Data = std::variant<DatasetPtr, CollectionPtr, TablePtr>;
+using DataKinds = std::variant<DatasetPtr, CollectionPtr, TablePtr>;
+
+/// What flows between operations. A class as Mesh is, for the same reason.
+class Data : public DataKinds {
+ public:
+  using DataKinds::DataKinds, DataKinds::operator=;
+  Data() = default;
+  Data(const Data&);
+  Data(Data&&) noexcept;
+  Data& operator=(const Data&);
+  Data& operator=(Data&&) noexcept;
+  ~Data();
+};
 
 /// Named parts (multiblock, parallel pieces), nested to any depth.
 struct Collection {

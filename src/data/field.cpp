@@ -17,6 +17,12 @@ struct FieldSet::Index {
   std::unordered_map<std::string, size_t> places[3];  // by association
 };
 
+FieldSet::FieldSet(const FieldSet&) = default;
+FieldSet::FieldSet(FieldSet&&) noexcept = default;
+FieldSet& FieldSet::operator=(const FieldSet&) = default;
+FieldSet& FieldSet::operator=(FieldSet&&) noexcept = default;
+FieldSet::~FieldSet() = default;
+
 namespace {
 constexpr size_t many = 32, nowhere = SIZE_MAX;
 }

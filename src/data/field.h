@@ -31,6 +31,13 @@ struct Field {
 /// The fields of a dataset in file order. Names are unique per association.
 class FieldSet {
  public:
+  FieldSet() = default;
+  FieldSet(const FieldSet&);
+  FieldSet(FieldSet&&) noexcept;
+  FieldSet& operator=(const FieldSet&);
+  FieldSet& operator=(FieldSet&&) noexcept;
+  ~FieldSet();
+
   /// Adds, or replaces the field of the same name and association.
   void add(Field f);
   void remove(std::string_view name, Association a);

@@ -9,6 +9,12 @@
 
 namespace sg {
 
+Mesh::Mesh(const Mesh&) = default;
+Mesh::Mesh(Mesh&&) noexcept = default;
+Mesh& Mesh::operator=(const Mesh&) = default;
+Mesh& Mesh::operator=(Mesh&&) noexcept = default;
+Mesh::~Mesh() = default;
+
 IndexView index_view(const Array& a) {
   if (a.empty()) return {};
   if (a.type() != ElementType::i64 && a.type() != ElementType::i32) fail_internal("cell indices must be i32 or i64");

@@ -110,7 +110,19 @@ struct AmrGrid {
   std::vector<Level> levels;
 };
 
-using Mesh = std::variant<UniformGrid, RectilinearGrid, CurvilinearGrid, UnstructuredMesh, SurfaceMesh, PointCloud, AmrGrid>;
+using MeshKinds = std::variant<UniformGrid, RectilinearGrid, CurvilinearGrid, UnstructuredMesh, SurfaceMesh, PointCloud, AmrGrid>;
+
+/// One of the kinds; std::visit, std::get_if and the like take it. A class only so that its copies and its end are compiled once.
+class Mesh : public MeshKinds {
+ public:
+  using MeshKinds::MeshKinds, MeshKinds::operator=;
+  Mesh() = default;
+  Mesh(const Mesh&);
+  Mesh(Mesh&&) noexcept;
+  Mesh& operator=(const Mesh&);
+  Mesh& operator=(Mesh&&) noexcept;
+  ~Mesh();
+};
 
 /// "uniform", "rectilinear", "curvilinear", "unstructured", "surface", "points", "amr".
 std::string_view mesh_kind(const Mesh& mesh);

@@ -5,20 +5,15 @@
 
 #include <algorithm>
 
-#include <nlohmann/json.hpp>
-
 #include "base/bytes.h"
 #include "base/file/file.h"
+#include "base/text/json.h"
 #include "base/text/text.h"
 #include "io/gltf/gltf_bytes.h"
 
 namespace sg {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-constexpr int deepest = 64;
 
 // Extensions that change looks only, or what this reader does anyway.
 bool is_harmless(std::string_view name) {
@@ -35,11 +30,10 @@ struct Parser {
   [[noreturn]] void fail(const std::string& where, const std::string& what) const { fail_data(fmt::format("{}: {}", where, what), path); }
 
   uint64_t whole(const Json& o, const char* key, uint64_t otherwise, const std::string& where) const {
-    const auto it = o.find(key);
-    if (it == o.end()) return otherwise;
-    if (it->is_number_unsigned()) return it->get<uint64_t>();
-    if (it->is_number_float() && it->get<double>() >= 0 && it->get<double>() < 9e15 && std::floor(it->get<double>()) == it->get<double>())
-      return uint64_t(it->get<double>());
+    const Json* v = o.find(key);
+    if (!v) return otherwise;
+    if (v->is_whole()) return v->whole();
+    if (v->is_real() && v->number() >= 0 && v->number() < 9e15 && std::floor(v->number()) == v->number()) return uint64_t(v->number());
     fail(where, fmt::format("'{}' is no whole number from 0", key));
   }
   // A place in the list `of`, or -1 when there is none.
@@ -48,23 +42,19 @@ struct Parser {
     return checked(whole(o, key, 0, where), of, where, key);
   }
   int checked(uint64_t i, const char* of, const std::string& where, const char* key) const {
-    const auto it = root.find(of);
-    const size_t n = it != root.end() && it->is_array() ? it->size() : 0;
+    const size_t n = root[of].items().size();
     if (i >= n) fail(where, fmt::format("'{}' is {}, but there are {} {}", key, i, n, of));
     return int(i);
   }
-  std::string name(const Json& o) const {
-    const auto it = o.find("name");
-    return it != o.end() && it->is_string() ? it->get<std::string>() : "";
-  }
+  std::string name(const Json& o) const { return o["name"].text(); }
   // Calls f(object, "accessor 3") for each entry of a list of the root.
   template <class F>
   void each(const char* list, const char* one, F&& f) const {
-    const auto it = root.find(list);
-    if (it == root.end()) return;
-    if (!it->is_array()) fail(list, "is no list");
+    const Json* found = root.find(list);
+    if (!found) return;
+    if (!found->is_list()) fail(list, "is no list");
     size_t n = 0;
-    for (const Json& o : *it) {
+    for (const Json& o : found->items()) {
       const std::string where = fmt::format("{} {}", one, n++);
       if (!o.is_object()) fail(where, "is no object");
       f(o, where);
@@ -72,13 +62,13 @@ struct Parser {
   }
   template <size_t n>
   bool numbers(const Json& o, const char* key, double (&out)[n], const std::string& where) const {
-    const auto it = o.find(key);
-    if (it == o.end()) return false;
-    if (!it->is_array() || it->size() != n) fail(where, fmt::format("'{}' is no list of {} numbers", key, n));
+    const Json* list = o.find(key);
+    if (!list) return false;
+    if (!list->is_list() || list->size() != n) fail(where, fmt::format("'{}' is no list of {} numbers", key, n));
     for (size_t i = 0; i < n; ++i) {
-      if (!(*it)[i].is_number() || !std::isfinite((*it)[i].template get<double>()))
-        fail(where, fmt::format("'{}' holds something that is no number", key));
-      out[i] = (*it)[i].template get<double>();
+      const Json& v = (*list)[i];
+      if (!v.is_number() || !std::isfinite(v.number())) fail(where, fmt::format("'{}' holds something that is no number", key));
+      out[i] = v.number();
     }
     return true;
   }
@@ -101,18 +91,16 @@ struct Parser {
     a.offset = whole(o, "byteOffset", 0, where);
     a.count = whole(o, "count", 0, where);
     a.type = type(o, where);
-    const std::string shape = o.contains("type") && o["type"].is_string() ? o["type"].get<std::string>() : "";
+    const std::string shape = o["type"].text();
     constexpr std::pair<std::string_view, int> shapes[] = {{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4},
                                                            {"MAT2", 4},   {"MAT3", 9}, {"MAT4", 16}};
     a.components = 0;
     for (const auto& [known, n] : shapes)
       if (shape == known) a.components = n;
     if (a.components == 0) fail(where, fmt::format("'type' is '{}', not SCALAR, VEC2, VEC3, VEC4, MAT2, MAT3 or MAT4", shape));
-    a.normalized = o.contains("normalized") && o["normalized"].is_boolean() && o["normalized"].get<bool>();
-    if (const auto s = o.find("sparse"); s != o.end()) {
-      if (!s->is_object() || !s->contains("indices") || !s->contains("values") || !(*s)["indices"].is_object() ||
-          !(*s)["values"].is_object())
-        fail(where, "'sparse' has no 'indices' and 'values'");
+    a.normalized = o["normalized"].boolean();
+    if (const Json* s = o.find("sparse")) {
+      if (!(*s)["indices"].is_object() || !(*s)["values"].is_object()) fail(where, "'sparse' has no 'indices' and 'values'");
       const Json &i = (*s)["indices"], &v = (*s)["values"];
       GltfSparse& sparse = a.sparse.emplace();
       sparse.count = whole(*s, "count", 0, where);
@@ -131,11 +119,11 @@ struct Parser {
     GltfNode n;
     n.name = name(o);
     n.mesh = place(o, "mesh", "meshes", where);
-    if (const auto c = o.find("children"); c != o.end()) {
-      if (!c->is_array()) fail(where, "'children' is no list");
-      for (const Json& child : *c) {
-        if (!child.is_number_unsigned()) fail(where, "'children' holds something that is no number of a node");
-        n.children.push_back(checked(child.get<uint64_t>(), "nodes", where, "children"));
+    if (const Json* c = o.find("children")) {
+      if (!c->is_list()) fail(where, "'children' is no list");
+      for (const Json& child : c->items()) {
+        if (!child.is_whole()) fail(where, "'children' holds something that is no number of a node");
+        n.children.push_back(checked(child.whole(), "nodes", where, "children"));
       }
     }
     double m[16];
@@ -163,22 +151,21 @@ struct Parser {
   GltfMesh mesh(const Json& o, const std::string& where) const {
     GltfMesh m;
     m.name = name(o);
-    const auto list = o.find("primitives");
-    if (list == o.end() || !list->is_array()) fail(where, "has no 'primitives'");
-    for (const Json& p : *list) {
+    if (!o["primitives"].is_list()) fail(where, "has no 'primitives'");
+    for (const Json& p : o["primitives"].items()) {
       const std::string here = fmt::format("{}, primitive {}", where, m.primitives.size());
-      if (!p.is_object() || !p.contains("attributes") || !p["attributes"].is_object()) fail(here, "has no 'attributes'");
+      if (!p["attributes"].is_object()) fail(here, "has no 'attributes'");
       GltfPrimitive& r = m.primitives.emplace_back();
-      for (const auto& [key, value] : p["attributes"].items()) {
-        if (!value.is_number_unsigned()) fail(here, fmt::format("attribute '{}' is no number of an accessor", key));
-        r.attributes.emplace_back(key, checked(value.get<uint64_t>(), "accessors", here, key.c_str()));
+      for (const auto& [key, value] : p["attributes"].members()) {
+        if (!value.is_whole()) fail(here, fmt::format("attribute '{}' is no number of an accessor", key));
+        r.attributes.emplace_back(key, checked(value.whole(), "accessors", here, key.c_str()));
       }
       r.indices = place(p, "indices", "accessors", here);
       r.material = place(p, "material", "materials", here);
       r.mode = int(std::min<uint64_t>(whole(p, "mode", 4, here), 99));
       if (r.mode > 6) fail(here, fmt::format("'mode' is {}, not 0 to 6", r.mode));
       // Without its extension a compressed primitive has accessors that no view backs.
-      if (const auto e = p.find("extensions"); e != p.end() && e->is_object() && e->contains("KHR_draco_mesh_compression")) {
+      if (p["extensions"].contains("KHR_draco_mesh_compression")) {
         for (const auto& [key, accessor] : r.attributes)
           if (!root["accessors"][size_t(accessor)].contains("bufferView")) fail(here, "is compressed with KHR_draco_mesh_compression");
       }
@@ -187,14 +174,12 @@ struct Parser {
   }
 
   void check_extensions(Context& context) const {
-    const auto required = root.find("extensionsRequired");
-    if (required != root.end() && required->is_array())
-      for (const Json& e : *required) {
-        const std::string extension = e.is_string() ? e.get<std::string>() : e.dump();
-        if (!is_harmless(extension))
-          fail_data(fmt::format("needs the extension {}, which is not read", extension), path,
-                    extension.find("compression") != std::string::npos ? "write it again without compression" : "");
-      }
+    for (const Json& e : root["extensionsRequired"].items()) {
+      const std::string extension = e.is_text() ? e.text() : e.dump();
+      if (!is_harmless(extension))
+        fail_data(fmt::format("needs the extension {}, which is not read", extension), path,
+                  extension.find("compression") != std::string::npos ? "write it again without compression" : "");
+    }
     for (const char* list : {"animations", "skins"})
       if (root.contains(list)) context.info(fmt::format("{}: {} are not read; the mesh is drawn as it stands", path, list));
   }
@@ -203,13 +188,11 @@ struct Parser {
     GltfDocument d;
     d.path = path;
     each("buffers", "buffer", [&](const Json& o, const std::string& where) {
-      const auto uri = o.find("uri");
       const uint64_t length = whole(o, "byteLength", 0, where);
       GltfBuffer b;
-      if (uri != o.end() && uri->is_string()) b = gltf_uri(uri->get<std::string>(), path, where);
+      if (o["uri"].is_text()) b = gltf_uri(o["uri"].text(), path, where);
       else if (d.buffers.empty() && chunk.data()) b = {file.owner(), chunk};
-      else if (o.contains("extensions") && o["extensions"].contains("EXT_meshopt_compression"))
-        fail(where, "is compressed with EXT_meshopt_compression");
+      else if (o["extensions"].contains("EXT_meshopt_compression")) fail(where, "is compressed with EXT_meshopt_compression");
       else fail(where, "has neither 'uri' nor bytes in this file");
       if (length > b.bytes.size()) fail(where, fmt::format("has {} bytes, but its 'byteLength' is {}", b.bytes.size(), length));
       b.bytes = b.bytes.substr(0, size_t(length));
@@ -235,7 +218,7 @@ struct Parser {
       GltfMaterial m;
       m.name = name(o);
       double c[4];
-      if (const auto p = o.find("pbrMetallicRoughness"); p != o.end() && p->is_object() && numbers(*p, "baseColorFactor", c, where))
+      if (numbers(o["pbrMetallicRoughness"], "baseColorFactor", c, where))
         for (int i = 0; i < 4; ++i) m.base_color[i] = float(c[i]);
       d.materials.push_back(m);
     });
@@ -244,16 +227,15 @@ struct Parser {
   }
 
   void add_roots(GltfDocument& d) const {
-    const auto scenes = root.find("scenes");
-    if (scenes != root.end() && scenes->is_array() && !scenes->empty()) {
+    const std::vector<Json>& scenes = root["scenes"].items();
+    if (!scenes.empty()) {
       const int scene = std::max(place(root, "scene", "scenes", "the scene"), 0);
-      const Json& s = (*scenes)[size_t(scene)];
+      const Json& s = scenes[size_t(scene)];
       if (!s.is_object()) fail("the scene", "is no object");
-      if (const auto nodes = s.find("nodes"); nodes != s.end() && nodes->is_array())
-        for (const Json& n : *nodes) {
-          if (!n.is_number_unsigned()) fail("the scene", "'nodes' holds something that is no number of a node");
-          d.roots.push_back(checked(n.get<uint64_t>(), "nodes", "the scene", "nodes"));
-        }
+      for (const Json& n : s["nodes"].items()) {
+        if (!n.is_whole()) fail("the scene", "'nodes' holds something that is no number of a node");
+        d.roots.push_back(checked(n.whole(), "nodes", "the scene", "nodes"));
+      }
       return;
     }
     std::vector<bool> child(d.nodes.size(), false);
@@ -269,26 +251,14 @@ struct Parser {
 GltfDocument read_gltf_document(const std::string& path, Context& context) {
   const MappedFile file(path);
   const GltfChunks chunks = gltf_chunks(file);
-  bool too_deep = false;
-  auto watch = [&](int depth, Json::parse_event_t, Json&) {
-    if (depth > deepest) too_deep = true;
-    return !too_deep;
-  };
-  try {
-    const Json root = Json::parse(chunks.json.begin(), chunks.json.end(), watch);
-    if (too_deep) fail_data(fmt::format("is nested more than {} deep", deepest), path);
-    if (!root.is_object() || !root.contains("asset") || !root["asset"].is_object())
-      fail_data("is JSON, but has no 'asset': it is no glTF", path);
-    const Json& asset = root["asset"];
-    const std::string version = asset.contains("version") && asset["version"].is_string() ? asset["version"].get<std::string>() : "?";
-    if (!version.starts_with("2")) fail_data(fmt::format("is glTF {}", version), path, "version 2.0 is read");
-    const Parser parser{path, root};
-    parser.check_extensions(context);
-    return parser.document(chunks.binary, file);
-  } catch (const nlohmann::json::exception& e) {
-    if (too_deep) fail_data(fmt::format("is nested more than {} deep", deepest), path);
-    fail_data(fmt::format("its JSON is not valid: {}", e.what()), path);
-  }
+  const Json root = parse_json(chunks.json, path);
+  if (!root["asset"].is_object()) fail_data("is JSON, but has no 'asset': it is no glTF", path);
+  const Json& v = root["asset"]["version"];
+  const std::string version = v.is_text() ? v.text() : "?";
+  if (!version.starts_with("2")) fail_data(fmt::format("is glTF {}", version), path, "version 2.0 is read");
+  const Parser parser{path, root};
+  parser.check_extensions(context);
+  return parser.document(chunks.binary, file);
 }
 
 }  // namespace sg

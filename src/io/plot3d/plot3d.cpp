@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // PLOT3D: a grid file, and beside it a solution (q) and a function file. Layout: see layout.h.
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstring>
 
 #include "base/file/file_fence.h"
+#include "base/text/json.h"
 #include "base/text/text.h"
 #include "io/formats.h"
 #include "io/mesh/blanking.h"
@@ -192,19 +192,16 @@ struct MetaStep {
 };
 
 std::vector<MetaStep> read_meta(const std::string& path) {
-  using Json = nlohmann::json;
   const MappedFile file(path);
-  const Json j = Json::parse(file.text(), nullptr, false);
+  const Json j = parse_json(file.text(), path);
   std::vector<MetaStep> steps;
-  if (!j.is_object() || !j.contains("filenames") || !j["filenames"].is_array())
+  if (!j["filenames"].is_list())
     fail_data("is no PLOT3D meta file", path, R"(like {"filenames": [{"time": 0, "xyz": "a.xyz", "q": "a.q"}]})");
-  for (const Json& e : j["filenames"]) {
+  for (const Json& e : j["filenames"].items()) {
     MetaStep s;
-    auto name = [&](const char* key) {
-      return e.contains(key) && e[key].is_string() ? named_file(path, e[key].get<std::string>()) : std::string();
-    };
-    if (!e.is_object() || name("xyz").empty()) fail_data(fmt::format("entry {} of \"filenames\" names no \"xyz\"", steps.size()), path);
-    if (e.contains("time") && e["time"].is_number()) s.time = e["time"].get<double>();
+    auto name = [&](const char* key) { return e[key].is_text() ? named_file(path, e[key].text()) : std::string(); };
+    if (name("xyz").empty()) fail_data(fmt::format("entry {} of \"filenames\" names no \"xyz\"", steps.size()), path);
+    s.time = e["time"].number();
     s.files = {name("xyz"), name("q"), name("function"), true};
     steps.push_back(std::move(s));
   }

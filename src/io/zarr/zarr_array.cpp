@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "base/bytes.h"
 #include "base/file/file.h"
@@ -41,27 +40,27 @@ void parse_v2_type(ZarrArray& a, const Json& json, const std::string& path) {
 void set_fill(ZarrArray& a, const Json& v, const std::string& path) {
   double d = 0;
   if (v.is_null()) return;
-  if (v.is_string()) {
-    const std::string s = v.get<std::string>();
+  if (v.is_text()) {
+    const std::string& s = v.text();
     if (s == "NaN") d = std::nan("");
     else if (s == "Infinity") d = HUGE_VAL;
     else if (s == "-Infinity") d = -HUGE_VAL;
     else fail_data(fmt::format("the fill value '{}' is no number", s.substr(0, 40)), path);
     if (!is_float(a.type)) fail_data(fmt::format("the fill value {} is no whole number", s), path);
   } else if (v.is_number()) {
-    d = v.get<double>();
-  } else if (v.is_boolean()) {
-    d = v.get<bool>() ? 1 : 0;
+    d = v.number();
+  } else if (v.is_bool()) {
+    d = v.boolean() ? 1 : 0;
   } else {
     fail_data("the fill value is no number", path);
   }
   const Array one = Array::from_vector(std::vector<double>{d}).converted(a.type);
   // 64-bit integers do not pass through doubles unchanged.
-  if (v.is_number_unsigned() && a.type == ElementType::u64) {
-    const auto w = v.get<uint64_t>();
+  if (v.is_whole() && a.type == ElementType::u64) {
+    const uint64_t w = v.whole();
     std::memcpy(a.fill, &w, 8);
-  } else if (v.is_number_integer() && a.type == ElementType::i64) {
-    const auto w = v.get<int64_t>();
+  } else if ((v.is_whole() || v.negative() < 0) && a.type == ElementType::i64) {
+    const int64_t w = v.is_whole() ? int64_t(v.whole()) : v.negative();
     std::memcpy(a.fill, &w, 8);
   } else {
     std::memcpy(a.fill, one.raw(), element_size(a.type));
@@ -100,7 +99,7 @@ ZarrArray parse_v2(const Json& json, const std::string& folder, const std::strin
   if (separator != "." && separator != "/")
     fail_data(fmt::format("the dimension separator is '{}'", separator.substr(0, 10)), path, ". or /");
   a.separator = separator[0];
-  if (json.contains("fill_value")) set_fill(a, json["fill_value"], path);
+  set_fill(a, json["fill_value"], path);
   return a;
 }
 
@@ -108,10 +107,10 @@ void parse_v3_codecs(ZarrArray& a, const Json& json, const std::string& path) {
   const Json* codecs = list_of(json, "codecs");
   if (!codecs) fail_data("has no list 'codecs'", path);
   bool bytes = false;
-  for (const Json& c : *codecs) {
-    const std::string name = c.is_string() ? c.get<std::string>() : c.is_object() ? text_of(c, "name", "") : "";
+  for (const Json& c : codecs->items()) {
+    const std::string name = c.is_text() ? c.text() : text_of(c, "name", "");
     if (name == "bytes") {
-      const Json* how = c.is_object() ? object_of(c, "configuration") : nullptr;
+      const Json* how = object_of(c, "configuration");
       a.big_endian = how && text_of(*how, "endian", "little") == "big";
       bytes = true;
     } else if (name == "sharding_indexed") {
@@ -145,9 +144,9 @@ ZarrArray parse_v3(const Json& json, const std::string& folder, const std::strin
     a.before = v2 ? "" : std::string("c") + separator;
   }
   parse_v3_codecs(a, json, path);
-  if (json.contains("fill_value")) set_fill(a, json["fill_value"], path);
+  set_fill(a, json["fill_value"], path);
   if (const Json* names = list_of(json, "dimension_names"); names && names->size() == a.shape.size())
-    for (const Json& n : *names) a.names.push_back(n.is_string() ? n.get<std::string>() : "");
+    for (const Json& n : names->items()) a.names.push_back(n.text());
   return a;
 }
 
@@ -207,13 +206,13 @@ bool ZarrArray::read_chunk(std::span<const size_t> at, std::byte* out, std::vect
 
 std::optional<ZarrArray> open_array(const std::string& folder) {
   if (const auto json = read_json(folder + ".zarray")) {
-    if (const auto it = json->find("zarr_format"); it == json->end() || *it != 2) fail_data("is not of Zarr version 2", folder + ".zarray");
+    if ((*json)["zarr_format"].whole() != 2) fail_data("is not of Zarr version 2", folder + ".zarray");
     return parse_v2(*json, folder, folder + ".zarray");
   }
   const std::string path = folder + "zarr.json";
   const auto json = read_json(path);
   if (!json || text_of(*json, "node_type", "") != "array") return std::nullopt;
-  if (const auto it = json->find("zarr_format"); it == json->end() || *it != 3) fail_data("is not of Zarr version 3", path);
+  if ((*json)["zarr_format"].whole() != 3) fail_data("is not of Zarr version 3", path);
   return parse_v3(*json, folder, path);
 }
 

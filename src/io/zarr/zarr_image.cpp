@@ -5,7 +5,6 @@
 #include <fmt/core.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "base/file/file.h"
 #include "io/zarr/zarr_json.h"
@@ -31,10 +30,10 @@ Axes axes_of(const Json& multiscale, size_t n, const std::string& where) {
     return axes;
   }
   if (list->size() != n) fail_data(fmt::format("names {} axes of an array with {}", list->size(), n), where);
-  for (const Json& a : *list) {
-    axes.names.push_back(a.is_string() ? a.get<std::string>() : a.is_object() ? text_of(a, "name", "") : "");
-    axes.types.push_back(a.is_object() ? text_of(a, "type", "") : "");
-    axes.units.push_back(a.is_object() ? text_of(a, "unit", "") : "");
+  for (const Json& a : list->items()) {
+    axes.names.push_back(a.is_text() ? a.text() : text_of(a, "name", ""));
+    axes.types.push_back(text_of(a, "type", ""));
+    axes.units.push_back(text_of(a, "unit", ""));
   }
   return axes;
 }
@@ -66,17 +65,17 @@ void place_axes(Image& image, const Axes& axes, const std::string& where) {
 void apply_transformations(const Json& object, size_t n, std::vector<double>& scale, std::vector<double>& shift, const std::string& where) {
   const Json* list = list_of(object, "coordinateTransformations");
   if (!list) return;
-  for (const Json& t : *list) {
-    const std::string type = t.is_object() ? text_of(t, "type", "") : "";
+  for (const Json& t : list->items()) {
+    const std::string type = text_of(t, "type", "");
     if (type == "identity") continue;
-    const Json* v = t.is_object() ? list_of(t, type.c_str()) : nullptr;
+    const Json* v = list_of(t, type.c_str());
     if ((type != "scale" && type != "translation") || !v)
       fail_data(fmt::format("a coordinate transformation of type '{}' is not read", type.substr(0, 40)), where,
                 "scale and translation are");
     if (v->size() != n) fail_data(fmt::format("a {} has {} numbers for {} axes", type, v->size(), n), where);
     for (size_t a = 0; a < n; ++a) {
       if (!(*v)[a].is_number()) fail_data(fmt::format("a {} holds something that is no number", type), where);
-      const double x = (*v)[a].get<double>();
+      const double x = (*v)[a].number();
       if (!std::isfinite(x) || (type == "scale" && !(x > 0)))
         fail_data(fmt::format("a {} of {}", type, x), where, "finite numbers; scales above 0");
       if (type == "scale") scale[a] *= x, shift[a] *= x;
@@ -90,8 +89,8 @@ void read_levels(Image& image, const Json& multiscale, const std::string& where)
   if (!datasets || datasets->empty() || datasets->size() > most_levels)
     fail_data("'multiscales' has no list of datasets", where, fmt::format("1 to {} levels", most_levels));
   std::vector<std::array<std::vector<double>, 2>> places;
-  for (const Json& d : *datasets) {
-    const std::string path = d.is_object() ? text_of(d, "path", "") : "";
+  for (const Json& d : datasets->items()) {
+    const std::string path = text_of(d, "path", "");
     if (path.empty() || path[0] == '/' || ("/" + path + "/").find("/../") != std::string::npos)
       fail_data(fmt::format("a level lies at '{}'", path.substr(0, 80)), where, "a folder below this one");
     auto array = open_array(image.path + path + "/");
@@ -115,21 +114,20 @@ void read_levels(Image& image, const Json& multiscale, const std::string& where)
     image.time_step = places[0][0][size_t(image.time_axis)], image.first_time = places[0][1][size_t(image.time_axis)];
 }
 
-void read_extras(Image& image, const Json& attributes) {
+// `own`: what this program wrote beside the attributes of the standard.
+void read_extras(Image& image, const Json& attributes, const Json& own) {
   if (const Json* omero = object_of(attributes, "omero"))
     if (const Json* channels = list_of(*omero, "channels"))
-      for (const Json& c : *channels) image.channels.push_back(c.is_object() ? text_of(c, "label", "") : "");
-  const Json* own = object_of(attributes, "sightglass");
-  if (!own) return;
-  image.unit = text_of(*own, "unit", "");
-  image.vector = own->value("vector", Json()) == Json(true);
-  image.labels = own->value("labels", Json()) == Json(true);
-  if (const std::string m = text_of(*own, "minmax", ""); !m.empty() && m.find('/') == std::string::npos && m[0] != '.')
+      for (const Json& c : channels->items()) image.channels.push_back(text_of(c, "label", ""));
+  image.unit = text_of(own, "unit", "");
+  image.vector = own["vector"].boolean();
+  image.labels = own["labels"].boolean();
+  if (const std::string m = text_of(own, "minmax", ""); !m.empty() && m.find('/') == std::string::npos && m[0] != '.')
     image.minmax = image.path + m + "/";
-  if (const Json* d = list_of(*own, "direction"); d && d->size() == 9) {
+  if (const Json* d = list_of(own, "direction"); d && d->size() == 9) {
     Mat3 m;
     bool good = true;
-    for (size_t i = 0; i < 9; ++i) good = good && (*d)[i].is_number(), m.m[i / 3][i % 3] = good ? (*d)[i].get<double>() : 0;
+    for (size_t i = 0; i < 9; ++i) good = good && (*d)[i].is_number(), m.m[i / 3][i % 3] = good ? (*d)[i].number() : 0;
     const Mat3 square = [&] {
       Mat3 s;
       for (int r = 0; r < 3; ++r)
@@ -190,33 +188,33 @@ Image open_image(const std::string& given) {
     const size_t n = array->shape.size();
     const std::vector<std::string> names = array->names;
     image.levels.push_back({std::move(*array), {1, 1, 1}, {0, 0, 0}});
-    Json axes = Json::array();
+    std::vector<Json> axes;
     constexpr const char* usual[] = {"t", "c", "z", "y", "x"};
     bool named = !names.empty();
     for (const std::string& s : names) named = named && (s == "t" || s == "c" || s == "z" || s == "y" || s == "x");
     if (n > 5 && !named) fail_data(fmt::format("has {} axes", n), given, "up to 5 are read: t, c, z, y, x");
-    for (size_t i = 0; i < n; ++i) axes.push_back(named ? names[i] : usual[5 - n + i]);
-    place_axes(image, axes_of(Json{{"axes", axes}}, n, given), given);
+    for (size_t i = 0; i < n; ++i) axes.emplace_back(named ? names[i] : std::string(usual[5 - n + i]));
+    place_axes(image, axes_of(Json(Json::Members{{"axes", Json(std::move(axes))}}), n, given), given);
     name_channels(image);
     return image;
   }
   std::string where = image.path + ".zattrs";
   auto attributes = read_json(where);
+  Json own = attributes ? (*attributes)["sightglass"] : Json();
   if (!attributes) {
     where = image.path + "zarr.json";
     const auto group = read_json(where);
     if (!group) fail_data("has neither .zattrs nor zarr.json", given, "a Zarr folder has one of them at its top");
-    if (const Json* all = object_of(*group, "attributes")) attributes = object_of(*all, "ome") ? *object_of(*all, "ome") : *all;
-    else attributes = Json::object();
-    if (const Json* all = object_of(*group, "attributes"); all && object_of(*all, "sightglass"))
-      (*attributes)["sightglass"] = *object_of(*all, "sightglass");
+    const Json& all = (*group)["attributes"];
+    attributes = object_of(all, "ome") ? all["ome"] : all;
+    own = object_of(all, "sightglass") ? all["sightglass"] : (*attributes)["sightglass"];
   }
   const Json* multiscales = list_of(*attributes, "multiscales");
   if (!multiscales || multiscales->empty() || !(*multiscales)[0].is_object())
     fail_data("is a group without an image ('multiscales')", where, "name the folder of one array or image in it");
   read_levels(image, (*multiscales)[0], where);
   image.name = text_of((*multiscales)[0], "name", "");
-  read_extras(image, *attributes);
+  read_extras(image, *attributes, own);
   check_levels(image);
   name_channels(image);
   return image;

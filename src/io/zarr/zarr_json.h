@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Private to src/io/zarr: JSON files that may be damaged. The three files that use it include nlohmann/json.hpp before it.
+// Private to src/io/zarr: JSON files that may be damaged.
 #pragma once
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/error.h"
+#include "base/text/json.h"
 
 namespace sg::zarr {
-
-using Json = nlohmann::json;
 
 /// Nothing when the file is not there. Throws Error(data) for what is no JSON object, is nested deeper than 64 or larger than 16 MiB.
 std::optional<Json> read_json(const std::string& path);
