@@ -122,10 +122,10 @@ TEST_CASE("zarr: descriptions that cannot be right are refused, and say where") 
     write_file(path + "/.zarray", text);
     return refused(path);
   };
-  CHECK(contains(with("{"), "no JSON"));
+  CHECK(contains(with("{"), "no valid JSON"));
   CHECK(contains(with("[]"), "no JSON object"));
   CHECK(contains(with(std::string(100000, '[')), ".zarray"));
-  CHECK(contains(with("{\"a\":" + std::string(100, '[') + std::string(100, ']') + "}"), "nested deeper"));
+  CHECK(contains(with("{\"a\":" + std::string(100, '[') + std::string(100, ']') + "}"), "nested more than"));
   CHECK(contains(with(R"({"zarr_format": 2, "shape": [2], "chunks": [2], "dtype": "<U4"})"), "type '<U4'"));
   CHECK(contains(with(R"({"zarr_format": 2, "shape": [2], "chunks": [2], "dtype": [["a", "<f4"]]})"), "type"));
   CHECK(contains(with(R"({"zarr_format": 3, "shape": [2], "chunks": [2], "dtype": "<f4"})"), "version 2"));
