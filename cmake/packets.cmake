@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# The packets of rays hold most of the compile time of rendering: each file is compiled once for each type of samples, as an object library.
+# The packets of rays hold most of the compile time of rendering: each file is compiled once for each size of samples, as an object library.
 
 # sg_packets(TARGET): takes the files out of the sources of TARGET and links their objects into it.
 function(sg_packets target)

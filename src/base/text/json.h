@@ -21,6 +21,7 @@ class Json {
   explicit Json(uint64_t v) : value_(v) {}
   explicit Json(int64_t v) : value_(v) {}
   explicit Json(double v) : value_(v) {}
+  Json(const char*) = delete;  ///< would be taken for a bool
   explicit Json(std::string v) : value_(std::make_shared<const std::string>(std::move(v))) {}
   explicit Json(std::vector<Json> list) : value_(std::make_shared<const std::vector<Json>>(std::move(list))) {}
   /// In that order; of members of one name the last stands, at the place of the first.
