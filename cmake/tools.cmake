@@ -2,9 +2,11 @@
 # ccache and mold where they are installed; neither is needed, -DSG_CCACHE=OFF does without.
 find_program(SG_CCACHE ccache)
 if(SG_CCACHE)
+  # CCACHE_DEPEND: results are found by the text of the headers, never by the preprocessed text. GCC knows a header of "#pragma once" again by
+  # a sum of its text, which a precompiled header holds: one from before a comment was changed has the same preprocessed text, another sum.
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env
       CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
-      CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} CCACHE_NOHASHDIR=1 CCACHE_PCH_EXTSUM=1 ${SG_CCACHE})
+      CCACHE_BASEDIR=${CMAKE_SOURCE_DIR} CCACHE_NOHASHDIR=1 CCACHE_PCH_EXTSUM=1 CCACHE_DEPEND=1 ${SG_CCACHE})
   # The precompiled headers differ in every build folder, though their content does not: ccache is told what they stand for, which is the
   # text of all headers that they may include. CMake runs again when one of them changes, before anything is compiled.
   foreach(target IN ITEMS sg_base sg_data sg_test_support)

@@ -69,7 +69,7 @@ struct View {
 class Array {
  public:
   Array() = default;
-  // Out of line, as in all that holds arrays: inlined in every file they cost compile time and size.
+  // Out of line, as in all that holds arrays: inlined in every file they cost time to compile and size.
   Array(const Array&);
   Array(Array&&) noexcept;
   Array& operator=(const Array&);

@@ -22,9 +22,9 @@ struct LampTerms {
 /// From n.l and n.h.
 template <class F>
 HWY_INLINE LampTerms<F> lamp_terms(F n_l, F n_h, const Power& power) {
-  const F zero = hn::Zero(hn::DFromV<F>());
-  const auto reached = hn::Gt(n_l, zero);
-  return {hn::Max(n_l, zero), hn::IfThenElseZero(reached, power(n_h)), reached};
+  const F zero = set(hn::DFromV<F>(), 0);
+  const auto reached = n_l > zero;
+  return {max(n_l, zero), only(reached, power(n_h)), reached};
 }
 
 }  // namespace sg::shading::HWY_NAMESPACE

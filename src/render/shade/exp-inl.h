@@ -11,55 +11,52 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/simd/arithmetic-inl.h"
+#include "base/simd/vector-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::shading::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
-using simd::HWY_NAMESPACE::mul_add;
-using simd::HWY_NAMESPACE::neg_mul_add;
+using namespace simd::HWY_NAMESPACE;
 
 /// exp(-x) for x >= 0 to 2e-7, 0 from 87 on.
 template <class F>
 HWY_INLINE F exp_minus(F x) {
   const hn::DFromV<F> d;
-  const hn::RebindToSigned<hn::DFromV<F>> di;
-  const auto deep = hn::Ge(x, hn::Set(d, 87.0f));
-  x = hn::Min(x, hn::Set(d, 87.0f));
-  const auto k = simd::HWY_NAMESPACE::truncated(mul_add(x, hn::Set(d, 1.44269504f), hn::Set(d, 0.5f)));
-  const F kf = hn::ConvertTo(d, k);
-  const F r = hn::Neg(neg_mul_add(kf, hn::Set(d, 1.42860677e-6f), neg_mul_add(kf, hn::Set(d, 0.693145752f), x)));
-  F sum = hn::Set(d, 1.0f / 5040);
-  for (const float c : {1.0f / 720, 1.0f / 120, 1.0f / 24, 1.0f / 6, 0.5f, 1.0f, 1.0f}) sum = mul_add(sum, r, hn::Set(d, c));
-  const F power_of_two = hn::BitCast(d, hn::ShiftLeft<23>(hn::Sub(hn::Set(di, 127), k)));
-  return hn::IfThenElseZero(hn::Not(deep), hn::Mul(sum, power_of_two));
+  const auto deep = x >= 87.0f;
+  x = min(x, 87.0f);
+  const auto k = truncated(mul_add(x, 1.44269504f, 0.5f));
+  const F kf = convert(d, k);
+  const F r = -neg_mul_add(kf, 1.42860677e-6f, neg_mul_add(kf, 0.693145752f, x));
+  F sum = set(d, 1.0f / 5040);
+  for (const float c : {1.0f / 720, 1.0f / 120, 1.0f / 24, 1.0f / 6, 0.5f, 1.0f, 1.0f}) sum = mul_add(sum, r, c);
+  const F power_of_two = bit_cast(d, shift_left<23>(127 - k));
+  return only(!deep, sum * power_of_two);
 }
 
 /// 1 - exp(-x) for x >= 0, to a few units in the last place.
 template <class F>
 HWY_INLINE F absorbed(F x) {
   const hn::DFromV<F> d;
-  const hn::RebindToSigned<hn::DFromV<F>> di;
-  x = hn::Min(x, hn::Set(d, 80.0f));
-  const auto k = simd::HWY_NAMESPACE::truncated(mul_add(x, hn::Set(d, 1.44269504f), hn::Set(d, 0.5f)));
-  const F kf = hn::ConvertTo(d, k);
+  x = min(x, 80.0f);
+  const auto k = truncated(mul_add(x, 1.44269504f, 0.5f));
+  const F kf = convert(d, k);
   // r = x - k ln 2 in two parts; e = 1 - exp(-r) by its series.
-  const F r = neg_mul_add(kf, hn::Set(d, 1.42860677e-6f), neg_mul_add(kf, hn::Set(d, 0.693145752f), x));
-  F e = hn::Set(d, 1.0f / 5040);
-  for (const float c : {-1.0f / 720, 1.0f / 120, -1.0f / 24, 1.0f / 6, -0.5f, 1.0f}) e = mul_add(e, r, hn::Set(d, c));
-  e = hn::Mul(e, r);
-  const F power_of_two = hn::BitCast(d, hn::ShiftLeft<23>(hn::Sub(hn::Set(di, 127), k)));
-  return mul_add(power_of_two, e, hn::Sub(hn::Set(d, 1.0f), power_of_two));
+  const F r = neg_mul_add(kf, 1.42860677e-6f, neg_mul_add(kf, 0.693145752f, x));
+  F e = set(d, 1.0f / 5040);
+  for (const float c : {-1.0f / 720, 1.0f / 120, -1.0f / 24, 1.0f / 6, -0.5f, 1.0f}) e = mul_add(e, r, c);
+  e = e * r;
+  const F power_of_two = bit_cast(d, shift_left<23>(127 - k));
+  return mul_add(power_of_two, e, 1.0f - power_of_two);
 }
 
 /// 2 artanh(z) for small z: the logarithm of (1 + z) / (1 - z).
 template <class F>
 HWY_INLINE F log_of_ratio(F z) {
   const hn::DFromV<F> d;
-  const F square = hn::Mul(z, z);
-  F sum = hn::Set(d, 1.0f / 9);
-  for (const float c : {1.0f / 7, 1.0f / 5, 1.0f / 3, 1.0f}) sum = mul_add(sum, square, hn::Set(d, c));
-  return hn::Mul(hn::Mul(hn::Set(d, 2.0f), z), sum);
+  const F square = z * z;
+  F sum = set(d, 1.0f / 9);
+  for (const float c : {1.0f / 7, 1.0f / 5, 1.0f / 3, 1.0f}) sum = mul_add(sum, square, c);
+  return 2.0f * z * sum;
 }
 
 /// -ln(1 - x) for 0 <= x < 1, to a few units in the last place: that of x / (2 - x) near 0, else of the mantissa of 1 - x.
@@ -67,13 +64,13 @@ template <class F>
 HWY_INLINE F minus_log_of_rest(F x) {
   const hn::DFromV<F> d;
   const hn::RebindToSigned<hn::DFromV<F>> di;
-  const F one = hn::Set(d, 1.0f), two = hn::Set(d, 2.0f);
-  const auto bits = hn::BitCast(di, hn::Sub(one, x));
-  const auto exponent = hn::ShiftRight<23>(hn::Sub(bits, hn::Set(di, 0x3F3504F3)));  // of a mantissa from sqrt(1/2) on
-  const F mantissa = hn::BitCast(d, hn::Sub(bits, hn::ShiftLeft<23>(exponent)));
-  const auto near = hn::RebindMask(d, hn::Eq(exponent, hn::Zero(di)));
-  const F z = hn::Div(hn::IfThenElse(near, x, hn::Sub(one, mantissa)), hn::IfThenElse(near, hn::Sub(two, x), hn::Add(one, mantissa)));
-  return mul_add(hn::ConvertTo(d, exponent), hn::Set(d, -0.693147181f), log_of_ratio(z));
+  const F one = set(d, 1.0f), two = set(d, 2.0f);
+  const auto bits = bit_cast(di, one - x);
+  const auto exponent = shift_right<23>(bits - 0x3F3504F3);  // of a mantissa from sqrt(1/2) on
+  const F mantissa = bit_cast(d, bits - shift_left<23>(exponent));
+  const auto near = rebind(d, exponent == 0);
+  const F z = select(near, x, one - mantissa) / select(near, two - x, one + mantissa);
+  return mul_add(convert(d, exponent), -0.693147181f, log_of_ratio(z));
 }
 
 /// -ln x for normal numbers x > 0, to 2e-7 of it or of 1: the mantissa in [sqrt(1/2), sqrt(2)) by the series of artanh.
@@ -81,12 +78,12 @@ template <class F>
 HWY_INLINE F minus_log(F x) {
   const hn::DFromV<F> d;
   const hn::RebindToSigned<hn::DFromV<F>> di;
-  const F one = hn::Set(d, 1.0f);
-  const auto bits = hn::Sub(hn::BitCast(di, x), hn::Set(di, 0x3F3504F3));
-  const auto exponent = hn::ShiftRight<23>(bits);
-  const F mantissa = hn::BitCast(d, hn::Add(hn::And(bits, hn::Set(di, 0x7FFFFF)), hn::Set(di, 0x3F3504F3)));
-  const F z = hn::Div(hn::Sub(mantissa, one), hn::Add(mantissa, one));
-  return hn::Neg(mul_add(hn::ConvertTo(d, exponent), hn::Set(d, 0.693147181f), log_of_ratio(z)));
+  const F one = set(d, 1.0f);
+  const auto bits = bit_cast(di, x) - 0x3F3504F3;
+  const auto exponent = shift_right<23>(bits);
+  const F mantissa = bit_cast(d, (bits & 0x7FFFFF) + 0x3F3504F3);
+  const F z = (mantissa - one) / (mantissa + one);
+  return -mul_add(convert(d, exponent), 0.693147181f, log_of_ratio(z));
 }
 
 /// x^p for x in [0, 1] and one p >= 0 for all: by squaring for whole p up to 4096, else exp(p ln x).
@@ -99,15 +96,15 @@ class Power {
   template <class F>
   HWY_INLINE F operator()(F x) const {
     const hn::DFromV<F> d;
-    if (whole_ == 0) return hn::Set(d, 1.0f);
-    x = hn::Max(x, hn::Set(d, least_));
-    if (whole_ < 0) return exp_minus(hn::Mul(hn::Set(d, p_), hn::Max(hn::Zero(d), minus_log(x))));
+    if (whole_ == 0) return set(d, 1.0f);
+    x = max(x, least_);
+    if (whole_ < 0) return exp_minus(p_ * max(0, minus_log(x)));
     int n = whole_;
-    for (; (n & 1) == 0; n >>= 1) x = hn::Mul(x, x);
+    for (; (n & 1) == 0; n >>= 1) x = x * x;
     F result = x;
     while (n >>= 1) {
-      x = hn::Mul(x, x);
-      if (n & 1) result = hn::Mul(result, x);
+      x = x * x;
+      if (n & 1) result = result * x;
     }
     return result;
   }

@@ -14,6 +14,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace sg::raster::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+using namespace simd::HWY_NAMESPACE;
 
 struct Hit {
   F w[3];  // barycentric
@@ -24,12 +25,11 @@ struct Hit {
 /// Moeller & Trumbore's ray-triangle test, without the test: the pixel is known to be covered.
 HWY_INLINE Hit intersect(const ShadeJob& job, const ShadeBatch& b, I pixel, const I* point) {
   const DF d;
-  const DI di;
   const EyeView& v = job.view;
-  const F inverse = hn::Set(d, 1.0f / v.scale), zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-  const F px = hn::ConvertTo(d, hn::And(pixel, hn::Set(di, tile_size - 1)) + hn::Set(di, b.tile_x)) + hn::Set(d, 0.5f);
-  const F py = hn::ConvertTo(d, hn::ShiftRight<6>(pixel) + hn::Set(di, b.tile_y)) + hn::Set(d, 0.5f);
-  const V3 side = set3(v.right) * ((px - hn::Set(d, v.center_x)) * inverse) + set3(v.up) * ((hn::Set(d, v.center_y) - py) * inverse);
+  const F inverse = set(d, 1.0f / v.scale), zero = set(d, 0), one = set(d, 1.0f);
+  const F px = convert(d, (pixel & (tile_size - 1)) + b.tile_x) + 0.5f;
+  const F py = convert(d, shift_right<6>(pixel) + b.tile_y) + 0.5f;
+  const V3 side = set3(v.right) * ((px - v.center_x) * inverse) + set3(v.up) * ((v.center_y - py) * inverse);
   const V3 forward = set3(v.forward), none{zero, zero, zero};
   Hit h;
   h.ray = v.parallel ? forward : forward + side;
@@ -40,10 +40,10 @@ HWY_INLINE Hit intersect(const ShadeJob& job, const ShadeBatch& b, I pixel, cons
   const F inverse_det = one / dot3(e1, p);
   F u = dot3(t0, p) * inverse_det, w = dot3(h.ray, q) * inverse_det;
   // Rounding may leave the triangle by a hair, and a triangle seen edge-on has no answer at all: stay inside.
-  const M good = hn::And(hn::Lt(hn::Abs(u), hn::Set(d, 1e30f)), hn::Lt(hn::Abs(w), hn::Set(d, 1e30f)));
-  u = hn::IfThenElse(good, hn::Max(u, zero), hn::Set(d, 1.0f / 3)), w = hn::IfThenElse(good, hn::Max(w, zero), hn::Set(d, 1.0f / 3));
-  const F sum = hn::Max(u + w, one);
-  h.w[1] = u / sum, h.w[2] = w / sum, h.w[0] = hn::Max(one - h.w[1] - h.w[2], zero);
+  const M good = (abs(u) < 1e30f) & (abs(w) < 1e30f);
+  u = select(good, max(u, zero), 1.0f / 3), w = select(good, max(w, zero), 1.0f / 3);
+  const F sum = max(u + w, one);
+  h.w[1] = u / sum, h.w[2] = w / sum, h.w[0] = max(one - h.w[1] - h.w[2], zero);
   h.depth = dot3(ra, forward) + h.w[1] * dot3(e1, forward) + h.w[2] * dot3(e2, forward);
   h.normal = cross3(e1, e2);
   return h;
@@ -64,12 +64,12 @@ HWY_INLINE I table_entry(const ColorSource& c, F stored) {
   const DF d;
   const DI di;
   const int n = int(c.table.size()) - 3;
-  const F position = (stored - hn::Set(d, c.first)) * hn::Set(d, c.slope), zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-  const F inside = hn::Min(hn::Max(position, zero), one);
-  I entry = hn::ConvertTo(di, inside * hn::Set(d, float(n - 1)) + hn::Set(d, 0.5f));
-  entry = hn::IfThenElse(hn::RebindMask(di, hn::Lt(position, zero)), hn::Set(di, n), entry);
-  entry = hn::IfThenElse(hn::RebindMask(di, hn::Gt(position, one)), hn::Set(di, n + 1), entry);
-  return hn::IfThenElse(hn::RebindMask(di, hn::Eq(position, position)), entry, hn::Set(di, n + 2));
+  const F position = (stored - c.first) * c.slope, zero = set(d, 0), one = set(d, 1.0f);
+  const F inside = min(max(position, zero), one);
+  I entry = convert(di, inside * float(n - 1) + set(d, 0.5f));
+  entry = select(position < zero, n, entry);
+  entry = select(position > one, n + 1, entry);
+  return select(position == position, entry, n + 2);
 }
 
 /// Colour of a lane, or its value in rgba[0] when the scale is not linear.
@@ -78,26 +78,27 @@ HWY_INLINE void color(const ShadeJob& job, const Hit& h, I triangle, const I* po
   const DI di;
   const ColorSource& c = *job.color;
   if (c.kind == ColorSource::Kind::constant) {
-    for (int k = 0; k < 4; ++k) rgba[k] = hn::Set(d, c.constant[k]);
+    for (int k = 0; k < 4; ++k) rgba[k] = set(d, c.constant[k]);
     return;
   }
+  // Colours as they are.
   const float* values = c.data();
   I cell = triangle;
   if (c.per_cell)
-    cell = job.cells ? hn::GatherIndex(di, reinterpret_cast<const int32_t*>(job.cells), triangle)
-                     : triangle + hn::Set(di, int32_t(job.first_cell));
+    cell = job.cells ? hn::GatherIndex(di, reinterpret_cast<const int32_t*>(job.cells), triangle) : triangle + int32_t(job.first_cell);
   if (c.kind == ColorSource::Kind::direct) {
     for (int k = 0; k < 4; ++k) {
-      auto value = [&](I at) { return hn::GatherIndex(d, values + k, hn::ShiftLeft<2>(at)); };
+      auto value = [&](I at) { return hn::GatherIndex(d, values + k, shift_left<2>(at)); };
       rgba[k] = c.per_cell ? value(cell) : value(point[0]) * h.w[0] + value(point[1]) * h.w[1] + value(point[2]) * h.w[2];
     }
     return;
   }
+  // The value: of the cell, of the nearest corner, or between the corners.
   F value;
   if (c.per_cell) value = hn::GatherIndex(d, values, cell);
   else if (c.nearest) {
-    I best = hn::IfThenElse(hn::RebindMask(di, hn::Gt(h.w[1], h.w[0])), point[1], point[0]);
-    best = hn::IfThenElse(hn::RebindMask(di, hn::Gt(h.w[2], hn::Max(h.w[0], h.w[1]))), point[2], best);
+    I best = select(h.w[1] > h.w[0], point[1], point[0]);
+    best = select(h.w[2] > max(h.w[0], h.w[1]), point[2], best);
     value = hn::GatherIndex(d, values, best);
   } else {
     value = hn::GatherIndex(d, values, point[0]) * h.w[0] + hn::GatherIndex(d, values, point[1]) * h.w[1] +
@@ -107,7 +108,8 @@ HWY_INLINE void color(const ShadeJob& job, const Hit& h, I triangle, const I* po
     rgba[0] = value;
     return;
   }
-  const I entry = hn::ShiftLeft<2>(table_entry(c, value));
+  // Its entry of the table of colours.
+  const I entry = shift_left<2>(table_entry(c, value));
   const float* table = &c.table[0].x;
   for (int k = 0; k < 4; ++k) rgba[k] = hn::GatherIndex(d, table + k, entry);
 }
@@ -127,7 +129,7 @@ void run(const ShadeJob& job, ShadeBatch& b) {
       corner[k] = job.corners == job.triangles ? point[k] : hn::GatherIndex(di, reinterpret_cast<const int32_t*>(job.corners) + k, at);
     }
     const Hit h = intersect(job, b, pixel, point);
-    F rgba[4] = {hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d)}, light, gloss;
+    F rgba[4] = {set(d, 0), set(d, 0), set(d, 0), set(d, 0)}, light, gloss;
     color(job, h, triangle, point, rgba);
     light_up(job, h, corner, light, gloss);
     hn::Store(h.depth, d, b.depth + i);

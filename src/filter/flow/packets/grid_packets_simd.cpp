@@ -15,6 +15,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace sg::packets::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+using namespace simd::HWY_NAMESPACE;
 
 template <class T>
 class GridMesh {
@@ -42,31 +43,31 @@ class GridMesh {
     const DR d;
     const DI di;
     for (size_t l = 0; l < N; l += hn::Lanes(d)) {
-      auto good = hn::Eq(hn::Zero(di), hn::Zero(di));
-      auto at = hn::Zero(di);
+      auto good = set(di, 0) == 0;
+      auto at = set(di, 0);
       for (int a = 0; a < 3; ++a) {
-        auto q = hn::Mul(hn::Set(d, to_grid_[a][0]), hn::Load(d, &move[0][l]));
-        q = hn::Add(q, hn::Mul(hn::Set(d, to_grid_[a][1]), hn::Load(d, &move[1][l])));
-        q = hn::Add(q, hn::Mul(hn::Set(d, to_grid_[a][2]), hn::Load(d, &move[2][l])));
-        q = hn::Add(q, hn::Load(d, &f_[a][l]));
-        const auto sane = hn::Lt(hn::Abs(q), hn::Set(d, T(1e9)));  // no NaN either
-        q = hn::IfThenElseZero(sane, q);
-        const auto whole = hn::Floor(q);
-        auto part = hn::Sub(q, whole);
-        auto i = hn::Add(hn::Load(di, &i_[a][l]), hn::ConvertTo(di, whole));
+        auto q = to_grid_[a][0] * hn::Load(d, &move[0][l]);
+        q = q + to_grid_[a][1] * hn::Load(d, &move[1][l]);
+        q = q + to_grid_[a][2] * hn::Load(d, &move[2][l]);
+        q = q + hn::Load(d, &f_[a][l]);
+        const auto sane = abs(q) < T(1e9);  // no NaN either
+        q = only(sane, q);
+        const auto whole = floor(q);
+        auto part = q - whole;
+        auto i = hn::Load(di, &i_[a][l]) + convert(di, whole);
         // The last plane of points belongs to the last cell.
-        const auto cells = hn::Set(di, Int(g_.cells[a])), last = hn::Set(di, Int(g_.cells[a] - 1));
-        const auto end = hn::And(hn::Eq(i, cells), hn::RebindMask(di, hn::Eq(part, hn::Zero(d))));
-        i = hn::IfThenElse(end, last, i);
-        part = hn::IfThenElse(hn::RebindMask(d, end), hn::Set(d, T(1)), part);
-        good = hn::And(good, hn::And(hn::RebindMask(di, sane), hn::And(hn::Gt(i, hn::Set(di, -1)), hn::Lt(i, cells))));
-        i = hn::Min(hn::Max(i, hn::Zero(di)), last);
+        const auto cells = set(di, Int(g_.cells[a])), last = set(di, Int(g_.cells[a] - 1));
+        const auto end = (i == cells) & rebind(di, part == 0);
+        i = select(end, last, i);
+        part = select(end, T(1), part);
+        good = good & (rebind(di, sane) & ((i > -1) & (i < cells)));
+        i = min(max(i, 0), last);
         hn::Store(i, di, &to_i_[a][l]);
         hn::Store(part, d, &to_f_[a][l]);
-        at = hn::Add(at, hn::Mul(i, hn::Set(di, Int(g_.stride[a]))));
+        at = at + i * Int(g_.stride[a]);
       }
       hn::Store(at, di, &base_[l]);
-      hn::Store(hn::IfThenElseZero(good, hn::Set(di, -1)), di, ok + l);
+      hn::Store(only(good, set(di, -1)), di, ok + l);
     }
     HWY_ALIGN T out[N][4];
     for (size_t l = 0; l < active; ++l) interpolate(g_.v + base_[l], to_f_[0][l], to_f_[1][l], to_f_[2][l], out[l]);
@@ -75,9 +76,9 @@ class GridMesh {
       hn::Vec<DR> x, y, z, rest;
       hn::LoadInterleaved4(d, out[l], x, y, z, rest);
       hn::Store(x, d, &v[0][l]), hn::Store(y, d, &v[1][l]), hn::Store(z, d, &v[2][l]);
-      const auto sum = hn::Add(hn::Add(x, y), z);
-      const auto finite = hn::Lt(hn::Abs(sum), hn::Set(d, T(3e38)));
-      hn::Store(hn::And(hn::Load(di, ok + l), hn::IfThenElseZero(hn::RebindMask(di, finite), hn::Set(di, -1))), di, ok + l);
+      const auto sum = x + y + z;
+      const auto finite = abs(sum) < T(3e38);
+      hn::Store(hn::Load(di, ok + l) & only(finite, set(di, -1)), di, ok + l);
     }
   }
   void go(size_t l) {
@@ -109,7 +110,7 @@ class GridMesh {
   // As below, both points of a row in one vector; a masked load reads six numbers and no more.
   template <class V>
   static HWY_INLINE V blend(V a, V b, V t) {
-    return hn::Add(a, hn::Mul(t, hn::Sub(b, a)));
+    return a + t * (b - a);
   }
   HWY_INLINE void interpolate(const float* p, float fx, float fy, float fz, float* HWY_RESTRICT out) const {
     const hn::CappedTag<float, 8> d;
@@ -117,23 +118,23 @@ class GridMesh {
     alignas(32) static constexpr int32_t second[8] = {3, 4, 5, 5, 3, 4, 5, 5};
     const ptrdiff_t dy = g_.stride[1], dz = g_.stride[2];
     const auto six = hn::FirstN(d, 6);
-    const auto y = hn::Set(d, fy);
+    const auto y = set(d, fy);
     const auto low = blend(hn::MaskedLoad(six, d, p), hn::MaskedLoad(six, d, p + dy), y);
     const auto high = blend(hn::MaskedLoad(six, d, p + dz), hn::MaskedLoad(six, d, p + dz + dy), y);
-    const auto row = blend(low, high, hn::Set(d, fz));
+    const auto row = blend(low, high, set(d, fz));
     const auto next = hn::TableLookupLanes(row, hn::SetTableIndices(d, second));
-    hn::Store(blend(hn::LowerHalf(half, row), hn::LowerHalf(half, next), hn::Set(half, fx)), half, out);
+    hn::Store(blend(hn::LowerHalf(half, row), hn::LowerHalf(half, next), set(half, fx)), half, out);
   }
 #else
-  static HWY_INLINE hn::Vec<D4> blend(hn::Vec<D4> a, hn::Vec<D4> b, hn::Vec<D4> t) { return hn::Add(a, hn::Mul(t, hn::Sub(b, a))); }
+  static HWY_INLINE hn::Vec<D4> blend(hn::Vec<D4> a, hn::Vec<D4> b, hn::Vec<D4> t) { return a + t * (b - a); }
   HWY_INLINE void interpolate(const float* p, float fx, float fy, float fz, float* HWY_RESTRICT out) const {
     const D4 d;
     const ptrdiff_t dy = g_.stride[1], dz = g_.stride[2];
-    const auto y = hn::Set(d, fy), z = hn::Set(d, fz);
+    const auto y = set(d, fy), z = set(d, fz);
     const auto a = blend(blend(hn::LoadU(d, p), hn::LoadU(d, p + dy), y), blend(hn::LoadU(d, p + dz), hn::LoadU(d, p + dz + dy), y), z);
     const float* q = p + 2;
     const auto b = blend(blend(hn::LoadU(d, q), hn::LoadU(d, q + dy), y), blend(hn::LoadU(d, q + dz), hn::LoadU(d, q + dz + dy), y), z);
-    hn::Store(blend(a, hn::Shuffle0321(b), hn::Set(d, fx)), d, out);
+    hn::Store(blend(a, hn::Shuffle0321(b), set(d, fx)), d, out);
   }
 #endif
 
@@ -147,11 +148,11 @@ class GridMesh {
     const ptrdiff_t dy = g_.stride[1], dz = g_.stride[2];
     const auto six = hn::FirstN(df, 6);
     const auto load = [&](const float* q) HWY_ATTR { return hn::PromoteTo(d, hn::MaskedLoad(six, df, q)); };
-    const auto y = hn::Set(d, fy);
+    const auto y = set(d, fy);
     const auto low = blend(load(p), load(p + dy), y), high = blend(load(p + dz), load(p + dz + dy), y);
-    const auto row = blend(low, high, hn::Set(d, fz));
+    const auto row = blend(low, high, set(d, fz));
     const auto next = hn::TableLookupLanes(row, hn::SetTableIndices(d, second));
-    hn::Store(blend(hn::LowerHalf(half, row), hn::LowerHalf(half, next), hn::Set(half, fx)), half, out);
+    hn::Store(blend(hn::LowerHalf(half, row), hn::LowerHalf(half, next), set(half, fx)), half, out);
   }
 #else
   void interpolate(const float* p, double fx, double fy, double fz, double* HWY_RESTRICT out) const {

@@ -14,12 +14,14 @@
 #define SG_PACKET_TRACER_INL_H_
 #endif
 
+#include "base/simd/vector-inl.h"
 #include "filter/flow/packets/packets.h"
 #include "filter/flow/trace_line.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::packets::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+using namespace simd::HWY_NAMESPACE;
 
 constexpr size_t N = lanes;
 
@@ -32,9 +34,9 @@ HWY_INLINE void combine(const T* scale, const T (*const (&k)[K])[3][N], const T 
   const hn::CappedTag<T, N> d;
   for (int a = 0; a < 3; ++a)
     for (size_t l = 0; l < N; l += hn::Lanes(d)) {
-      auto sum = hn::Mul(hn::Set(d, c[0]), hn::Load(d, &(*k[0])[a][l]));
-      for (size_t n = 1; n < K; ++n) sum = hn::Add(sum, hn::Mul(hn::Set(d, c[n]), hn::Load(d, &(*k[n])[a][l])));
-      hn::Store(hn::Mul(hn::Load(d, scale + l), sum), d, &out[a][l]);
+      auto sum = c[0] * hn::Load(d, &(*k[0])[a][l]);
+      for (size_t n = 1; n < K; ++n) sum = sum + c[n] * hn::Load(d, &(*k[n])[a][l]);
+      hn::Store(hn::Load(d, scale + l) * sum, d, &out[a][l]);
     }
 }
 
@@ -159,15 +161,15 @@ class Tracer {
   HWY_INLINE void direct(const Lanes3& v, Lanes3& u, const T* still, T* slow) {
     const DR d;
     const DI di;
-    const auto one = hn::Set(d, T(1));
+    const auto one = set(d, T(1));
     for (size_t l = 0; l < N; l += hn::Lanes(d)) {
       const auto x = hn::Load(d, &v[0][l]), y = hn::Load(d, &v[1][l]), z = hn::Load(d, &v[2][l]);
-      const auto square = hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
-      const auto timed = hn::RebindMask(d, hn::Ne(hn::Load(di, timed_ + l), hn::Zero(di))), moves = hn::Gt(square, hn::Zero(d));
-      const auto speed = hn::Sqrt(square), inverse = hn::Div(one, hn::IfThenElse(moves, speed, one));
-      const auto by = hn::IfThenElse(timed, one, inverse);
-      hn::Store(hn::Mul(x, by), d, &u[0][l]), hn::Store(hn::Mul(y, by), d, &u[1][l]), hn::Store(hn::Mul(z, by), d, &u[2][l]);
-      hn::Store(hn::IfThenElse(hn::Or(timed, moves), by, hn::Load(d, still + l)), d, slow + l);
+      const auto square = x * x + y * y + z * z;
+      const auto timed = rebind(d, hn::Load(di, timed_ + l) != 0), moves = square > 0;
+      const auto speed = sqrt(square), inverse = one / select(moves, speed, one);
+      const auto by = select(timed, one, inverse);
+      hn::Store(x * by, d, &u[0][l]), hn::Store(y * by, d, &u[1][l]), hn::Store(z * by, d, &u[2][l]);
+      hn::Store(select(timed | moves, by, hn::Load(d, still + l)), d, slow + l);
     }
   }
   void step_fixed() {

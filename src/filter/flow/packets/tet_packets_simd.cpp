@@ -15,6 +15,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace sg::packets::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+using namespace simd::HWY_NAMESPACE;
 
 template <class T>
 class TetMesh {
@@ -48,32 +49,31 @@ class TetMesh {
     // The place as a pair of numbers: what the first cannot hold is in the second (Knuth's sum).
     for (int a = 0; a < 3; ++a)
       for (size_t l = 0; l < N; l += hn::Lanes(d)) {
-        const auto x = hn::Load(d, &x_[a][l]), s = hn::Add(hn::Load(d, &rest_[a][l]), hn::Load(d, &move[a][l]));
-        const auto to = hn::Add(x, s), back = hn::Sub(to, x);
-        const auto lost = hn::Add(hn::Sub(x, hn::Sub(to, back)), hn::Sub(s, back));
+        const auto x = hn::Load(d, &x_[a][l]), s = hn::Load(d, &rest_[a][l]) + hn::Load(d, &move[a][l]);
+        const auto to = x + s, back = to - x;
+        const auto lost = x - (to - back) + (s - back);
         hn::Store(to, d, &to_x_[a][l]), hn::Store(lost, d, &to_rest_[a][l]);
       }
     for (size_t l = 0; l < N; ++l) ok[l] = l < active ? -1 : 0;
     for (int round = 0; round < 256; ++round) {
-      const auto edge = hn::Set(d, round < 64 ? edge_ : T(-1e-3));
+      const auto edge = set(d, round < 64 ? edge_ : T(-1e-3));
       for (size_t l = 0; l < N; l += hn::Lanes(d)) {
         hn::Vec<DR> p[3];
-        for (int a = 0; a < 3; ++a)
-          p[a] = hn::Add(hn::Sub(hn::Load(d, &to_x_[a][l]), hn::Load(d, &a_[a][l])), hn::Load(d, &to_rest_[a][l]));
-        auto left = hn::Set(d, T(1)), least = left;
+        for (int a = 0; a < 3; ++a) p[a] = hn::Load(d, &to_x_[a][l]) - hn::Load(d, &a_[a][l]) + hn::Load(d, &to_rest_[a][l]);
+        auto left = set(d, T(1)), least = left;
         for (int k = 0; k < 3; ++k) {
-          auto r = hn::Mul(hn::Load(d, &rows_[3 * k][l]), p[0]);
-          r = hn::Add(r, hn::Mul(hn::Load(d, &rows_[3 * k + 1][l]), p[1]));
-          r = hn::Add(r, hn::Mul(hn::Load(d, &rows_[3 * k + 2][l]), p[2]));
+          auto r = hn::Load(d, &rows_[3 * k][l]) * p[0];
+          r = r + hn::Load(d, &rows_[3 * k + 1][l]) * p[1];
+          r = r + hn::Load(d, &rows_[3 * k + 2][l]) * p[2];
           hn::Store(r, d, &r_[k + 1][l]);
-          left = hn::Sub(left, r), least = hn::Min(least, r);
+          left = left - r, least = min(least, r);
         }
         hn::Store(left, d, &r_[0][l]);
-        least = hn::Min(least, left);
+        least = min(least, left);
         // NaN, of a flat cell, is not inside. A lane that is out stays so.
-        const auto inside = hn::And(hn::Ge(least, edge), hn::Eq(left, left));
-        const auto walks = hn::AndNot(hn::RebindMask(di, inside), hn::Ne(hn::Load(di, ok + l), hn::Zero(di)));
-        hn::Store(hn::IfThenElseZero(walks, hn::Set(di, 1)), di, walks_ + l);
+        const auto inside = (least >= edge) & (left == left);
+        const auto walks = (hn::Load(di, ok + l) != 0) & !rebind(di, inside);
+        hn::Store(only(walks, set(di, 1)), di, walks_ + l);
       }
       size_t list[N], n = 0;
       for (size_t l = 0; l < active; ++l)
@@ -82,15 +82,15 @@ class TetMesh {
       walk(list, n, ok);
     }
     for (size_t l = 0; l < N; l += hn::Lanes(d)) {
-      auto sum = hn::Zero(d);
+      auto sum = set(d, 0);
       for (int a = 0; a < 3; ++a) {
         auto u = hn::Load(d, &v0_[a][l]);
-        for (int k = 0; k < 3; ++k) u = hn::Add(u, hn::Mul(hn::Load(d, &slopes_[3 * k + a][l]), hn::Load(d, &r_[k + 1][l])));
+        for (int k = 0; k < 3; ++k) u = u + hn::Load(d, &slopes_[3 * k + a][l]) * hn::Load(d, &r_[k + 1][l]);
         hn::Store(u, d, &v[a][l]);
-        sum = hn::Add(sum, u);
+        sum = sum + u;
       }
-      const auto finite = hn::Lt(hn::Abs(sum), hn::Set(d, T(3e38)));
-      hn::Store(hn::And(hn::Load(di, ok + l), hn::IfThenElseZero(hn::RebindMask(di, finite), hn::Set(di, -1))), di, ok + l);
+      const auto finite = abs(sum) < T(3e38);
+      hn::Store(hn::Load(di, ok + l) & only(finite, set(di, -1)), di, ok + l);
     }
   }
   void go(size_t l) {

@@ -11,14 +11,17 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "base/simd/vector-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace sg::texture::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+using namespace simd::HWY_NAMESPACE;
 
 using DD = hn::CappedTag<double, 8>;
 using DL = hn::Rebind<int64_t, DD>;
-using V = hn::Vec<DD>;
-using M = hn::Mask<DD>;
+using V = Float<DD>;
+using M = Mask<DD>;
 
 struct Flow2 {
   const float* velocity;
@@ -26,11 +29,11 @@ struct Flow2 {
 
   HWY_INLINE explicit Flow2(const PixelFlow& f) : velocity(f.velocity()) {
     const DD d;
-    for (int a = 0; a < 2; ++a) most[a] = hn::Set(d, double(f.n(a) - 1)), last_cell[a] = hn::Set(d, double(f.n(a) - 2));
-    width = hn::Set(d, double(f.n(0)));
+    for (int a = 0; a < 2; ++a) most[a] = set(d, double(f.n(a) - 1)), last_cell[a] = set(d, double(f.n(a) - 2));
+    width = set(d, double(f.n(0)));
   }
 
-  HWY_INLINE V inside(V x, int a) const { return hn::Min(hn::Max(x, hn::Zero(DD())), most[a]); }
+  HWY_INLINE V inside(V x, int a) const { return min(max(x, 0), most[a]); }
 
   // Two floats of a pixel, from one load.
   HWY_INLINE void corner(hn::Vec<DL> index, size_t offset, V* v) const {
@@ -39,43 +42,41 @@ struct Flow2 {
     const hn::Rebind<uint32_t, DD> du;
     const hn::Rebind<uint64_t, DD> dul;
     const hn::Rebind<float, DD> df;
-    const auto both = hn::BitCast(dul, hn::GatherIndex(dl, reinterpret_cast<const int64_t*>(velocity) + offset, index));
-    v[0] = hn::PromoteTo(d, hn::BitCast(df, hn::TruncateTo(du, both)));
-    v[1] = hn::PromoteTo(d, hn::BitCast(df, hn::TruncateTo(du, hn::ShiftRight<32>(both))));
+    const auto both = bit_cast(dul, hn::GatherIndex(dl, reinterpret_cast<const int64_t*>(velocity) + offset, index));
+    v[0] = hn::PromoteTo(d, bit_cast(df, hn::TruncateTo(du, both)));
+    v[1] = hn::PromoteTo(d, bit_cast(df, hn::TruncateTo(du, shift_right<32>(both))));
   }
 
   HWY_INLINE void at_nearest(V x, V y, size_t stride, V* v) const {
     const DD d;
     const V px = inside(x, 0), py = inside(y, 1);
-    const V i = hn::Min(hn::Floor(px), last_cell[0]), j = hn::Min(hn::Floor(py), last_cell[1]);
-    const V f = hn::Sub(px, i), g = hn::Sub(py, j), one = hn::Set(d, 1.0), f0 = hn::Sub(one, f), g0 = hn::Sub(one, g);
-    const auto index = hn::ConvertTo(DL(), hn::Add(i, hn::Mul(width, j)));
+    const V i = min(floor(px), last_cell[0]), j = min(floor(py), last_cell[1]);
+    const V f = px - i, g = py - j, one = set(d, 1.0), f0 = one - f, g0 = one - g;
+    const auto index = convert(DL(), i + width * j);
     V c[4][2];
     corner(index, 0, c[0]), corner(index, 1, c[1]), corner(index, stride, c[2]), corner(index, stride + 1, c[3]);
-    for (int a = 0; a < 2; ++a)
-      v[a] = hn::Add(hn::Mul(g0, hn::Add(hn::Mul(f0, c[0][a]), hn::Mul(f, c[1][a]))),
-                     hn::Mul(g, hn::Add(hn::Mul(f0, c[2][a]), hn::Mul(f, c[3][a]))));
+    for (int a = 0; a < 2; ++a) v[a] = g0 * (f0 * c[0][a] + f * c[1][a]) + g * (f0 * c[2][a] + f * c[3][a]);
   }
 };
 
 HWY_INLINE V pass_dye(const BackTrace& how, const V* from, const V* to, V nearest, M alive) {
   const DD d;
   for (const Vec3& place : how.dye) {
-    V a[2], w[2], ww = hn::Zero(d), aw = hn::Zero(d);
+    V a[2], w[2], ww = set(d, 0), aw = set(d, 0);
     for (int k = 0; k < 2; ++k) {
-      const V pitch = hn::Set(d, how.pitch[k]);
-      a[k] = hn::Mul(hn::Sub(from[k], hn::Set(d, place[k])), pitch), w[k] = hn::Mul(hn::Sub(to[k], from[k]), pitch);
-      ww = hn::Add(ww, hn::Mul(w[k], w[k])), aw = hn::Add(aw, hn::Mul(a[k], w[k]));
+      const V pitch = set(d, how.pitch[k]);
+      a[k] = (from[k] - place[k]) * pitch, w[k] = (to[k] - from[k]) * pitch;
+      ww = ww + w[k] * w[k], aw = aw + a[k] * w[k];
     }
-    const M moves = hn::Gt(ww, hn::Zero(d));
-    const V quotient = hn::Div(hn::Sub(hn::Zero(d), aw), hn::IfThenElse(moves, ww, hn::Set(d, 1.0)));
-    const V t = hn::IfThenElseZero(moves, hn::Min(hn::Max(quotient, hn::Zero(d)), hn::Set(d, 1.0)));
-    V mm = hn::Zero(d);
+    const M moves = ww > 0;
+    const V quotient = (0 - aw) / select(moves, ww, 1.0);
+    const V t = only(moves, min(max(quotient, 0), 1.0));
+    V mm = set(d, 0);
     for (int k = 0; k < 2; ++k) {
-      const V m = hn::Add(a[k], hn::Mul(t, w[k]));
-      mm = hn::Add(mm, hn::Mul(m, m));
+      const V m = a[k] + t * w[k];
+      mm = mm + m * m;
     }
-    nearest = hn::IfThenElse(alive, hn::Min(nearest, mm), nearest);
+    nearest = select(alive, min(nearest, mm), nearest);
   }
   return nearest;
 }
@@ -91,8 +92,8 @@ uint32_t trace_some(const PixelFlow& flow, const BackTrace& how, BackPath* paths
     buffer[0][l] = p.x[0], buffer[1][l] = p.x[1], buffer[2][l] = p.nearest;
   }
   V p[2] = {hn::Load(d, buffer[0]), hn::Load(d, buffer[1])}, nearest = hn::Load(d, buffer[2]);
-  const V half = hn::Set(d, how.h / 2), whole = hn::Set(d, how.h), sixth = hn::Set(d, how.h / 6), two = hn::Set(d, 2.0);
-  const V slack = hn::Set(d, 1e-6), below = hn::Set(d, -1e-6);
+  const V half = set(d, how.h / 2), whole = set(d, how.h), sixth = set(d, how.h / 6), two = set(d, 2.0);
+  const V slack = set(d, 1e-6), below = set(d, -1e-6);
   M alive = hn::FirstN(d, count), left = hn::FirstN(d, 0), odd = left;
   nearest = pass_dye(how, p, p, nearest, alive);
   for (int64_t s = 0; s < how.steps; ++s) {
@@ -100,27 +101,27 @@ uint32_t trace_some(const PixelFlow& flow, const BackTrace& how, BackPath* paths
     g.at_nearest(p[0], p[1], stride, k[0]);
     for (int stage = 1; stage < 4; ++stage) {
       const V part = stage == 3 ? whole : half;
-      g.at_nearest(hn::Add(p[0], hn::Mul(part, k[stage - 1][0])), hn::Add(p[1], hn::Mul(part, k[stage - 1][1])), stride, k[stage]);
+      g.at_nearest(p[0] + part * k[stage - 1][0], p[1] + part * k[stage - 1][1], stride, k[stage]);
     }
     V step[2], q[2];
     for (int a = 0; a < 2; ++a) {
-      step[a] = hn::Mul(sixth, hn::Add(hn::Add(hn::Add(k[0][a], hn::Mul(two, k[1][a])), hn::Mul(two, k[2][a])), k[3][a]));
-      q[a] = hn::Add(p[a], step[a]);
+      step[a] = sixth * (k[0][a] + two * k[1][a] + two * k[2][a] + k[3][a]);
+      q[a] = p[a] + step[a];
     }
     // The sum holds all velocities met: it is a number exactly when they are.
-    const V sum = hn::Add(step[0], step[1]);
-    const M holes = hn::AndNot(hn::Lt(hn::Abs(sum), hn::Set(d, HUGE_VAL)), alive);
-    odd = hn::Or(odd, holes), alive = hn::AndNot(holes, alive);
+    const V sum = step[0] + step[1];
+    const M holes = alive & !(abs(sum) < HUGE_VAL);
+    odd = odd | holes, alive = alive & !holes;
     nearest = pass_dye(how, p, q, nearest, alive);
-    const M moved = hn::Or(hn::Ne(step[0], hn::Zero(d)), hn::Ne(step[1], hn::Zero(d)));
+    const M moved = (step[0] != 0) | (step[1] != 0);
     M out = hn::FirstN(d, 0);
     for (int a = 0; a < 2; ++a) {
-      out = hn::Or(out, hn::Or(hn::Lt(q[a], below), hn::Gt(q[a], hn::Add(g.most[a], slack))));
-      p[a] = hn::IfThenElse(alive, g.inside(q[a], a), p[a]);
+      out = out | ((q[a] < below) | (q[a] > g.most[a] + slack));
+      p[a] = select(alive, g.inside(q[a], a), p[a]);
     }
-    left = hn::Or(left, hn::And(out, alive));
-    alive = hn::And(alive, hn::AndNot(out, moved));
-    if (hn::AllFalse(d, alive)) break;
+    left = left | (out & alive);
+    alive = alive & (moved & !out);
+    if (none(alive)) break;
   }
   hn::Store(p[0], d, buffer[0]), hn::Store(p[1], d, buffer[1]), hn::Store(nearest, d, buffer[2]);
   uint8_t left_bits[8] = {}, odd_bits[8] = {};

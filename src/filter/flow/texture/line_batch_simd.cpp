@@ -11,9 +11,12 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "base/simd/vector-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace sg::texture::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+using namespace simd::HWY_NAMESPACE;
 
 using DF = hn::CappedTag<float, lanes>;
 using DI = hn::Rebind<int32_t, DF>;
@@ -21,18 +24,18 @@ using F = hn::Vec<DF>;
 using I = hn::Vec<DI>;
 using M = hn::Mask<DF>;
 
-HWY_INLINE F whole(I i) { return hn::ConvertTo(DF(), i); }
-HWY_INLINE F mixed(F a, F b, F t) { return hn::Add(a, hn::Mul(t, hn::Sub(b, a))); }
+HWY_INLINE F whole(I i) { return convert(DF(), i); }
+HWY_INLINE F mixed(F a, F b, F t) { return a + t * (b - a); }
 
 template <int D>
 HWY_INLINE void unpack(I code, F* v) {
   if constexpr (D == 2) {
-    v[0] = whole(hn::ShiftRight<16>(hn::ShiftLeft<16>(code)));
-    v[1] = whole(hn::ShiftRight<16>(code));
+    v[0] = whole(shift_right<16>(shift_left<16>(code)));
+    v[1] = whole(shift_right<16>(code));
   } else {
-    v[0] = whole(hn::ShiftRight<22>(hn::ShiftLeft<22>(code)));
-    v[1] = whole(hn::ShiftRight<22>(hn::ShiftLeft<12>(code)));
-    v[2] = whole(hn::ShiftRight<22>(hn::ShiftLeft<2>(code)));
+    v[0] = whole(shift_right<22>(shift_left<22>(code)));
+    v[1] = whole(shift_right<22>(shift_left<12>(code)));
+    v[2] = whole(shift_right<22>(shift_left<2>(code)));
   }
 }
 
@@ -42,11 +45,11 @@ HWY_INLINE void look(const DirectionGrid& g, const F* p, F* v) {
   const DI di;
   const auto* codes = reinterpret_cast<const int32_t*>(g.codes);
   F f[D], c[4][D];
-  I index = hn::Zero(di);
+  I index = set(di, 0);
   for (int a = D - 1; a >= 0; --a) {
-    const I i = hn::Min(hn::ConvertTo(di, p[a]), hn::Set(di, g.n[a] - 2));
-    f[a] = hn::Sub(p[a], whole(i));
-    index = a == D - 1 ? i : hn::Add(hn::Mul(index, hn::Set(di, g.n[a])), i);
+    const I i = min(convert(di, p[a]), g.n[a] - 2);
+    f[a] = p[a] - whole(i);
+    index = a == D - 1 ? i : index * g.n[a] + i;
   }
   const int32_t* slab = codes;
   for (int z = 0; z < D - 1; ++z, slab += size_t(g.n[0]) * size_t(g.n[1])) {
@@ -78,10 +81,10 @@ struct Walk {
   HWY_INLINE Walk(const DirectionGrid& grid, LineBatch& b, int first_lane, int sign) : g(grid), batch(b), part(first_lane), way(sign) {
     const DF df;
     const float h = float(way) * batch.step / code_scale(D), l = least_direction * code_scale(D);
-    longer = hn::Set(df, 1.5f * h), shorter = hn::Set(df, 0.5f * h), whole_step = hn::Set(df, h), least = hn::Set(df, l * l);
-    for (int a = 0; a < D; ++a) p[a] = hn::LoadU(df, batch.start[a] + part), last[a] = hn::Zero(df);
+    longer = set(df, 1.5f * h), shorter = set(df, 0.5f * h), whole_step = set(df, h), least = set(df, l * l);
+    for (int a = 0; a < D; ++a) p[a] = hn::LoadU(df, batch.start[a] + part), last[a] = set(df, 0);
     alive = hn::FirstN(df, size_t(lanes));
-    made = hn::Zero(DI()), since = hn::Set(DI(), -1);
+    made = set(DI(), 0), since = set(DI(), -1);
   }
 
   HWY_INLINE void step(int k) {
@@ -89,26 +92,25 @@ struct Walk {
     const DI di;
     F v[D], q[D];
     look<D>(g, p, v);
-    F square = hn::Mul(v[0], v[0]);
-    for (int a = 1; a < D; ++a) square = hn::Add(square, hn::Mul(v[a], v[a]));
-    alive = hn::And(alive, hn::Gt(square, least));
+    F square = v[0] * v[0];
+    for (int a = 1; a < D; ++a) square = square + v[a] * v[a];
+    alive = alive & (square > least);
     if (k == 0) {
       F m[D], w[D];
-      for (int a = 0; a < D; ++a)
-        m[a] = hn::Min(hn::Max(hn::Add(p[a], hn::Mul(shorter, v[a])), hn::Zero(df)), hn::Set(df, float(g.n[a] - 1)));
+      for (int a = 0; a < D; ++a) m[a] = min(max(p[a] + shorter * v[a], 0), float(g.n[a] - 1));
       look<D>(g, m, w);
-      for (int a = 0; a < D; ++a) q[a] = hn::Add(p[a], hn::Mul(whole_step, w[a]));
+      for (int a = 0; a < D; ++a) q[a] = p[a] + whole_step * w[a];
     } else {
-      for (int a = 0; a < D; ++a) q[a] = hn::Add(p[a], hn::Sub(hn::Mul(longer, v[a]), hn::Mul(shorter, last[a])));
+      for (int a = 0; a < D; ++a) q[a] = p[a] + (longer * v[a] - shorter * last[a]);
     }
-    for (int a = 0; a < D; ++a) alive = hn::And(alive, hn::And(hn::Ge(q[a], hn::Zero(df)), hn::Le(q[a], hn::Set(df, float(g.n[a] - 1)))));
-    for (int a = 0; a < D; ++a) last[a] = v[a], p[a] = hn::IfThenElse(alive, q[a], p[a]);
-    const auto walks = hn::RebindMask(di, alive);
-    made = hn::IfThenElse(walks, hn::Set(di, k + 1), made);
+    for (int a = 0; a < D; ++a) alive = alive & ((q[a] >= 0) & (q[a] <= float(g.n[a] - 1)));
+    for (int a = 0; a < D; ++a) last[a] = v[a], p[a] = select(alive, q[a], p[a]);
+    const auto walks = rebind(di, alive);
+    made = select(walks, k + 1, made);
     const auto inside = record(way * (k + 1), alive);
     if (batch.tail > 0) {
-      since = hn::IfThenElse(inside, hn::Set(di, k), since);
-      alive = hn::And(alive, hn::RebindMask(df, hn::Gt(since, hn::Set(di, k - batch.tail))));
+      since = select(inside, k, since);
+      alive = alive & rebind(df, since > k - batch.tail);
     }
   }
 
@@ -116,20 +118,20 @@ struct Walk {
   HWY_INLINE hn::Mask<DI> record(int k, M valid) {
     const DF df;
     const DI di;
-    I pixel = hn::Zero(di), local = hn::Zero(di);
-    auto inside = hn::RebindMask(di, valid);
+    I pixel = set(di, 0), local = set(di, 0);
+    auto inside = rebind(di, valid);
     const bool boxed = batch.tail > 0;
     for (int a = D - 1; a >= 0; --a) {
-      const I i = hn::ConvertTo(di, hn::Add(p[a], hn::Set(df, 0.5f)));
-      pixel = a == D - 1 ? i : hn::Add(hn::Mul(pixel, hn::Set(di, g.n[a])), i);
+      const I i = convert(di, p[a] + 0.5f);
+      pixel = a == D - 1 ? i : pixel * g.n[a] + i;
       if (!boxed) continue;
-      const I in = hn::Sub(i, hn::Set(di, batch.box_lo[a])), edge = hn::Set(di, batch.box_hi[a] - batch.box_lo[a]);
-      local = a == D - 1 ? in : hn::Add(hn::Mul(local, edge), in);
-      inside = hn::And(inside, hn::And(hn::Gt(in, hn::Set(di, -1)), hn::Lt(in, edge)));
+      const I in = i - batch.box_lo[a], edge = set(di, batch.box_hi[a] - batch.box_lo[a]);
+      local = a == D - 1 ? in : local * edge + in;
+      inside = inside & ((in > -1) & (in < edge));
     }
     const size_t row = size_t(batch.steps + k) * lanes + size_t(part);
-    hn::StoreU(hn::IfThenElseZero(valid, hn::GatherIndex(df, g.noise, pixel)), df, batch.noise.data() + row);
-    if (!batch.pixels.empty()) hn::StoreU(hn::IfThenElse(inside, boxed ? local : pixel, hn::Set(di, -1)), di, batch.pixels.data() + row);
+    hn::StoreU(only(valid, hn::GatherIndex(df, g.noise, pixel)), df, batch.noise.data() + row);
+    if (!batch.pixels.empty()) hn::StoreU(select(inside, boxed ? local : pixel, -1), di, batch.pixels.data() + row);
     return inside;
   }
 
@@ -137,8 +139,8 @@ struct Walk {
   void finish(int walked) {
     for (int k = walked; k < batch.steps; ++k) {
       const size_t row = size_t(batch.steps + way * (k + 1)) * lanes + size_t(part);
-      hn::StoreU(hn::Zero(DF()), DF(), batch.noise.data() + row);
-      if (!batch.pixels.empty()) hn::StoreU(hn::Set(DI(), -1), DI(), batch.pixels.data() + row);
+      hn::StoreU(set(DF(), 0), DF(), batch.noise.data() + row);
+      if (!batch.pixels.empty()) hn::StoreU(set(DI(), -1), DI(), batch.pixels.data() + row);
     }
     hn::StoreU(made, DI(), (way > 0 ? batch.forth : batch.back) + part);
   }
@@ -153,8 +155,8 @@ void trace(const DirectionGrid& g, LineBatch& batch) {
     int a = 0, b = 0;
     bool more_a = true, more_b = true;
     for (int k = 0; k < batch.steps && (more_a || more_b); ++k) {
-      if (more_a) forth.step(k), a = k + 1, more_a = !hn::AllFalse(df, forth.alive);
-      if (more_b) back.step(k), b = k + 1, more_b = !hn::AllFalse(df, back.alive);
+      if (more_a) forth.step(k), a = k + 1, more_a = any(forth.alive);
+      if (more_b) back.step(k), b = k + 1, more_b = any(back.alive);
     }
     forth.finish(a), back.finish(b);
   }
@@ -168,15 +170,15 @@ void convolve(const LineBatch& batch, const Weights& weights, int first, int las
   const int rows = 2 * batch.steps + 1, n = weights.steps;
   for (int part = 0; part < lanes; part += int(hn::Lanes(df))) {
     const float* noise = batch.noise.data() + part;
-    auto row = [&](int r) HWY_ATTR { return r < 0 || r >= rows ? hn::Zero(df) : hn::LoadU(df, noise + size_t(r) * lanes); };
-    F s = hn::Zero(df);
+    auto row = [&](int r) HWY_ATTR { return r < 0 || r >= rows ? set(df, 0) : hn::LoadU(df, noise + size_t(r) * lanes); };
+    F s = set(df, 0);
     for (int m = first; m <= last; ++m) {
       if (!weights.box || m == first) {
-        s = hn::Zero(df);
+        s = set(df, 0);
         for (int k = std::max(-n, -m); k <= std::min(n, rows - 1 - m); ++k)
-          s = hn::Add(s, hn::Mul(hn::Set(df, weights.w[size_t(n + k)]), hn::LoadU(df, noise + size_t(m + k) * lanes)));
+          s = s + weights.w[size_t(n + k)] * hn::LoadU(df, noise + size_t(m + k) * lanes);
       } else {
-        s = hn::Add(s, hn::Sub(row(m + n), row(m - n - 1)));
+        s = s + (row(m + n) - row(m - n - 1));
       }
       hn::StoreU(s, df, out + size_t(m - first) * lanes + part);
     }

@@ -15,6 +15,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "base/simd/vector-inl.h"
+
 #include <algorithm>
 #include <bit>
 #include <cfloat>
@@ -23,6 +25,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace sg::flat_advance::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+using namespace simd::HWY_NAMESPACE;
 using lattice_advance::Job;
 
 #if HWY_TARGET == HWY_SCALAR  // has no vectors of two floats
@@ -36,9 +39,9 @@ using D = hn::CappedTag<double, 8>;
 using L = hn::RebindToSigned<D>;
 using U = hn::RebindToUnsigned<D>;
 using F = hn::Repartition<float, D>;
-using VD = hn::Vec<D>;
+using VD = Float<D>;
 using VF = hn::Vec<F>;
-using Mask = hn::Mask<D>;
+using Mask = Mask<D>;
 constexpr D d;
 
 struct Flat {
@@ -50,12 +53,13 @@ struct Flat {
   const Job* job = nullptr;
 };
 
-HWY_INLINE VD set(double v) { return hn::Set(d, v); }
+using simd::HWY_NAMESPACE::set;
+HWY_INLINE VD set(double v) { return set(d, v); }
 
 /// Both components at a point of each lane.
 HWY_INLINE VF corners(const float* base, hn::Vec<L> bytes) {
 #if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2
-  return hn::BitCast(F(), hn::GatherOffset(L(), reinterpret_cast<const int64_t*>(base), bytes));
+  return bit_cast(F(), hn::GatherOffset(L(), reinterpret_cast<const int64_t*>(base), bytes));
 #else
   HWY_ALIGN int64_t at[8];
   HWY_ALIGN float v[16];
@@ -68,31 +72,31 @@ HWY_INLINE VF corners(const float* base, hn::Vec<L> bytes) {
 HWY_INLINE VF twice(VD v) {
   const hn::Rebind<float, D> half;
   const hn::Rebind<uint32_t, D> bits;
-  return hn::DupEven(hn::BitCast(F(), hn::PromoteTo(U(), hn::BitCast(bits, hn::DemoteTo(half, v)))));
+  return hn::DupEven(bit_cast(F(), hn::PromoteTo(U(), bit_cast(bits, hn::DemoteTo(half, v)))));
 }
 HWY_INLINE VD component(hn::Vec<U> bits) {
   const hn::Rebind<float, D> half;
   const hn::Rebind<uint32_t, D> low;
-  return hn::PromoteTo(d, hn::BitCast(half, hn::TruncateTo(low, bits)));
+  return hn::PromoteTo(d, bit_cast(half, hn::TruncateTo(low, bits)));
 }
-HWY_INLINE VF mix(VF a, VF b, VF f) { return hn::Add(a, hn::Mul(f, hn::Sub(b, a))); }
+HWY_INLINE VF mix(VF a, VF b, VF f) { return a + f * (b - a); }
 
 /// Velocities; a mask of those inside. NaN in the data makes NaN of v, and places that are NaN lie outside.
 template <int STEPS>
 HWY_INLINE Mask velocity(const Flat& g, VD x, VD y, VD t, VD& u, VD& v) {
-  const VD zero = hn::Zero(d);
-  const VD qx = hn::Mul(hn::Sub(x, set(g.origin[0])), set(g.inverse[0])), qy = hn::Mul(hn::Sub(y, set(g.origin[1])), set(g.inverse[1]));
+  const VD zero = set(d, 0);
+  const VD qx = (x - g.origin[0]) * g.inverse[0], qy = (y - g.origin[1]) * g.inverse[1];
   // Addresses stay inside whatever q is.
-  const auto cell = [&](VD q, double last) { return hn::Floor(hn::Min(hn::IfThenElseZero(hn::Gt(q, zero), q), set(last))); };
-  const VD cx = cell(qx, g.last[0]), cy = cell(qy, g.last[1]), fx = hn::Sub(qx, cx), fy = hn::Sub(qy, cy);
-  const auto near = [](VD f) { return hn::Le(hn::Abs(hn::Sub(f, set(0.5))), set(0.5 + 1e-9)); };
-  const Mask ok = hn::And(near(fx), near(fy));
+  const auto cell = [&](VD q, double last) { return floor(min(only(q > zero, q), last)); };
+  const VD cx = cell(qx, g.last[0]), cy = cell(qy, g.last[1]), fx = qx - cx, fy = qy - cy;
+  const auto near = [](VD f) { return abs(f - 0.5) <= 0.5 + 1e-9; };
+  const Mask ok = near(fx) & near(fy);
   // A whole number below 2^52 stands in the low bits of its sum with 2^52.
   constexpr double two52 = 4503599627370496.0;
-  const VD place = hn::Add(hn::Add(hn::Mul(cx, set(g.bytes[0])), hn::Mul(cy, set(g.bytes[1]))), set(two52));
-  const auto at = hn::And(hn::BitCast(L(), place), hn::Set(L(), (int64_t(1) << 52) - 1));
+  const VD place = cx * g.bytes[0] + cy * g.bytes[1] + two52;
+  const auto at = bit_cast(L(), place) & ((int64_t(1) << 52) - 1);
   const VF wx = twice(fx), wy = twice(fy);
-  const VD s = hn::Mul(hn::Sub(t, set(g.job->begin)), set(g.job->scale));
+  const VD s = (t - g.job->begin) * g.job->scale;
   const auto in_step = [&](int j) {
     const float* p = g.step[j];
     const VF low = mix(corners(p, at), corners(p + g.dx, at), wx);
@@ -102,36 +106,36 @@ HWY_INLINE Mask velocity(const Flat& g, VD x, VD y, VD t, VD& u, VD& v) {
   if constexpr (STEPS == 2) {
     sum = mix(in_step(0), in_step(1), twice(s));
   } else {
-    sum = hn::Zero(F());
+    sum = set(F(), 0);
     for (int j = 0; j < 4; ++j) {
       const double* p = g.job->weight[j];
-      VD m = hn::Add(hn::Mul(set(p[3]), s), set(p[2]));
-      m = hn::Add(hn::Mul(hn::Add(hn::Mul(m, s), set(p[1])), s), set(p[0]));
+      VD m = p[3] * s + p[2];
+      m = (m * s + p[1]) * s + p[0];
       const VF w = twice(m);
-      sum = hn::Add(sum, hn::IfThenElseZero(hn::Ne(w, hn::Zero(F())), hn::Mul(w, in_step(j))));
+      sum = sum + only(w != 0, w * in_step(j));
     }
   }
-  const auto bits = hn::BitCast(U(), sum);
-  u = component(bits), v = component(hn::ShiftRight<32>(bits));
+  const auto bits = bit_cast(U(), sum);
+  u = component(bits), v = component(shift_right<32>(bits));
   return ok;
 }
-HWY_INLINE Mask known(VD u, VD v) { return hn::And(hn::Le(hn::Abs(u), set(double(FLT_MAX))), hn::Le(hn::Abs(v), set(double(FLT_MAX)))); }
+HWY_INLINE Mask known(VD u, VD v) { return (abs(u) <= double(FLT_MAX)) & (abs(v) <= double(FLT_MAX)); }
 
-HWY_INLINE VD length_of(VD x, VD y) { return hn::Sqrt(hn::Add(hn::Mul(x, x), hn::Mul(y, y))); }
+HWY_INLINE VD length_of(VD x, VD y) { return sqrt(x * x + y * y); }
 
 /// h times 0.9 error^(-1/5), between 0.2 and 5; the root by two of Newton's iterations: to 1e-4, enough for the size of a step.
 HWY_INLINE VD next_size(VD h, VD error) {
-  const VD x = hn::Min(hn::Max(error, set(1e-10)), set(1e10)), two52 = set(4503599627370496.0);
+  const VD x = min(max(error, 1e-10), 1e10), two52 = set(4503599627370496.0);
   // A fifth of the upper 52 bits.
-  const auto upper = hn::Or(hn::ShiftRight<12>(hn::BitCast(U(), x)), hn::BitCast(U(), two52));
-  const VD fifth = hn::Add(hn::Mul(hn::Sub(hn::BitCast(d, upper), two52), set(0.2)), two52);
-  const auto whole = hn::And(hn::BitCast(U(), fifth), hn::Set(U(), (uint64_t(1) << 52) - 1));
-  VD y = hn::BitCast(d, hn::Sub(hn::Set(U(), 0x4CB999999999999A), hn::ShiftLeft<12>(whole)));
+  const auto upper = shift_right<12>(bit_cast(U(), x)) | bit_cast(U(), two52);
+  const VD fifth = (bit_cast(d, upper) - two52) * 0.2 + two52;
+  const auto whole = bit_cast(U(), fifth) & ((uint64_t(1) << 52) - 1);
+  VD y = bit_cast(d, 0x4CB999999999999A - shift_left<12>(whole));
   for (int n = 0; n < 2; ++n) {
-    const VD y2 = hn::Mul(y, y), y5 = hn::Mul(hn::Mul(y2, y2), y);  // y^5, one of it is the factor outside
-    y = hn::Mul(y, hn::Sub(set(1.2), hn::Mul(hn::Mul(set(0.2), x), y5)));
+    const VD y2 = y * y, y5 = y2 * y2 * y;  // y^5, one of it is the factor outside
+    y = y * (set(1.2) - 0.2 * x * y5);
   }
-  return hn::Mul(h, hn::Min(hn::Max(hn::Mul(set(0.9), y), set(0.2)), set(5)));
+  return h * min(max(0.9 * y, 0.2), 5);
 }
 
 struct Lanes16 {
@@ -178,7 +182,7 @@ class Runner {
     const auto look = [&] {
       VD vu, vv;
       const Mask in = velocity<STEPS>(g_, hn::Load(d, x), hn::Load(d, y), hn::Load(d, t), vu, vv);
-      hn::Store(hn::VecFromMask(L(), hn::RebindMask(L(), hn::And(in, known(vu, vv)))), L(), ok);
+      hn::Store(hn::VecFromMask(L(), rebind(L(), in & known(vu, vv))), L(), ok);
       hn::Store(vu, d, u), hn::Store(vv, d, v);
       for (size_t l = 0; l < n; ++l) {
         Particle& p = particles_[who[l]];
@@ -246,20 +250,18 @@ class Runner {
   /// Sizes of the steps that begin, as in advance_one().
   HWY_INLINE void size(size_t n) {
     for (size_t l = 0; l < n; l += hn::Lanes(d)) {
-      const Mask begins = hn::Ne(hn::Load(d, s_.begins + l), hn::Zero(d));
+      const Mask begins = hn::Load(d, s_.begins + l) != 0;
       VD unit = set(1);
       if (o_.unit != StepUnit::time)
-        unit = hn::Div(set(o_.unit == StepUnit::cells ? g_.job->cell : 1.0),
-                       length_of(hn::Load(d, s_.k[0][0] + l), hn::Load(d, s_.k[0][1] + l)));
-      const VD least = hn::Mul(set(o_.min_step), unit), next = hn::Load(d, s_.next + l), left = hn::Load(d, s_.left + l);
-      const VD wished = hn::Min(hn::Max(hn::IfThenElse(hn::Gt(next, hn::Zero(d)), next, hn::Mul(set(o_.step), unit)), least),
-                                hn::Mul(set(o_.max_step), unit));
+        unit = (o_.unit == StepUnit::cells ? g_.job->cell : 1.0) / length_of(hn::Load(d, s_.k[0][0] + l), hn::Load(d, s_.k[0][1] + l));
+      const VD least = o_.min_step * unit, next = hn::Load(d, s_.next + l), left = hn::Load(d, s_.left + l);
+      const VD wished = min(max(select(next > 0, next, o_.step * unit), least), o_.max_step * unit);
       // Two even steps rather than a long and a short one.
-      const VD half = hn::Mul(left, set(0.5));
-      const VD h = hn::IfThenElse(hn::Lt(wished, left), hn::Min(wished, half), left);
-      const auto store = [&](VD v, double* to) { hn::Store(hn::IfThenElse(begins, v, hn::Load(d, to + l)), d, to + l); };
+      const VD half = left * 0.5;
+      const VD h = select(wished < left, min(wished, half), left);
+      const auto store = [&](VD v, double* to) { hn::Store(select(begins, v, hn::Load(d, to + l)), d, to + l); };
       store(least, s_.least), store(wished, s_.wished), store(h, s_.h);
-      store(hn::Zero(d), s_.halvings), store(hn::Zero(d), s_.border);
+      store(set(d, 0), s_.halvings), store(set(d, 0), s_.border);
     }
   }
 
@@ -267,20 +269,20 @@ class Runner {
   template <int OUT, int K>
   HWY_INLINE void stage(size_t n, const int (&from)[K], const double (&c)[K], double share) {
     for (size_t l = 0; l < n; l += hn::Lanes(d)) {
-      const VD h = hn::Mul(set(sign_), hn::Load(d, s_.h + l));
+      const VD h = sign_ * hn::Load(d, s_.h + l);
       VD x[2], u, v;
       for (int a = 0; a < 2; ++a) {
-        VD sum = hn::Mul(set(c[0]), hn::Load(d, s_.k[from[0]][a] + l));
-        for (int i = 1; i < K; ++i) sum = hn::Add(sum, hn::Mul(set(c[i]), hn::Load(d, s_.k[from[i]][a] + l)));
-        x[a] = hn::Add(hn::Load(d, s_.x[a] + l), hn::Mul(h, sum));
+        VD sum = c[0] * hn::Load(d, s_.k[from[0]][a] + l);
+        for (int i = 1; i < K; ++i) sum = sum + c[i] * hn::Load(d, s_.k[from[i]][a] + l);
+        x[a] = hn::Load(d, s_.x[a] + l) + h * sum;
       }
-      Mask ok = velocity<STEPS>(g_, x[0], x[1], hn::Add(hn::Load(d, s_.t + l), hn::Mul(set(share), h)), u, v);
+      Mask ok = velocity<STEPS>(g_, x[0], x[1], hn::Load(d, s_.t + l) + share * h, u, v);
       if (OUT == 6) {
         hn::Store(x[0], d, s_.to[0] + l), hn::Store(x[1], d, s_.to[1] + l);
-        ok = hn::And(ok, known(u, v));
+        ok = ok & known(u, v);
       }
-      const auto all = hn::VecFromMask(L(), hn::RebindMask(L(), ok));
-      hn::Store(OUT == 1 ? all : hn::And(all, hn::Load(L(), s_.ok + l)), L(), s_.ok + l);
+      const auto all = hn::VecFromMask(L(), rebind(L(), ok));
+      hn::Store(OUT == 1 ? all : all & hn::Load(L(), s_.ok + l), L(), s_.ok + l);
       hn::Store(u, d, s_.k[OUT][0] + l), hn::Store(v, d, s_.k[OUT][1] + l);
     }
   }
@@ -296,47 +298,47 @@ class Runner {
     constexpr double c[6] = {71.0 / 57600, -71.0 / 16695, 71.0 / 1920, -17253.0 / 339200, 22.0 / 525, -1.0 / 40};
     VD e[2];
     for (int a = 0; a < 2; ++a) {
-      e[a] = hn::Mul(set(c[0]), hn::Load(d, s_.k[0][a] + l));
-      for (int i = 1; i < 6; ++i) e[a] = hn::Add(e[a], hn::Mul(set(c[i]), hn::Load(d, s_.k[i + 1][a] + l)));
-      e[a] = hn::Mul(h, e[a]);
+      e[a] = c[0] * hn::Load(d, s_.k[0][a] + l);
+      for (int i = 1; i < 6; ++i) e[a] = e[a] + c[i] * hn::Load(d, s_.k[i + 1][a] + l);
+      e[a] = h * e[a];
     }
-    return hn::Div(length_of(e[0], e[1]), set(o_.tolerance * g_.job->cell));
+    return length_of(e[0], e[1]) / (o_.tolerance * g_.job->cell);
   }
 
   /// What advance_one() does with a step; the lanes whose particles are through with the interval.
   HWY_INLINE uint32_t finish(size_t n) {
-    const VD zero = hn::Zero(d), one = set(1);
+    const VD zero = set(d, 0), one = set(1);
     uint32_t ends = 0, goes = 0;
     lost_ = 0;
     for (size_t l = 0; l < n; l += hn::Lanes(d)) {
-      const Mask ok = hn::RebindMask(d, hn::MaskFromVec(hn::Load(L(), s_.ok + l)));
+      const Mask ok = rebind(d, hn::MaskFromVec(hn::Load(L(), s_.ok + l)));
       const VD h = hn::Load(d, s_.h + l), left = hn::Load(d, s_.left + l), least = hn::Load(d, s_.least + l);
-      const VD wished = hn::Load(d, s_.wished + l), t = hn::Load(d, s_.t + l), shortest = hn::Min(least, left);
+      const VD wished = hn::Load(d, s_.wished + l), t = hn::Load(d, s_.t + l), shortest = min(least, left);
       const VD error = error_of(l, h), next = next_size(h, error);
-      const Mask large = hn::And(hn::Gt(error, one), hn::Gt(h, hn::Mul(set(1.001), shortest)));
-      const Mask accept = hn::AndNot(large, ok), fail = hn::Not(ok);
-      const VD border = hn::IfThenElse(fail, one, hn::Load(d, s_.border + l));
-      const VD halvings = hn::Add(hn::Load(d, s_.halvings + l), hn::IfThenElseZero(fail, one));
+      const Mask large = (error > one) & (h > 1.001 * shortest);
+      const Mask accept = ok & !large, fail = !ok;
+      const VD border = select(fail, one, hn::Load(d, s_.border + l));
+      const VD halvings = hn::Load(d, s_.halvings + l) + only(fail, one);
       hn::Store(border, d, s_.border + l), hn::Store(halvings, d, s_.halvings + l);
-      hn::Store(hn::IfThenElse(fail, hn::Mul(h, set(0.5)), hn::IfThenElse(large, hn::Max(next, shortest), h)), d, s_.h + l);
+      hn::Store(select(fail, h * 0.5, select(large, max(next, shortest), h)), d, s_.h + l);
       for (int a = 0; a < 2; ++a) {
-        hn::Store(hn::IfThenElse(accept, hn::Load(d, s_.to[a] + l), hn::Load(d, s_.x[a] + l)), d, s_.x[a] + l);
-        hn::Store(hn::IfThenElse(accept, hn::Load(d, s_.k[6][a] + l), hn::Load(d, s_.k[0][a] + l)), d, s_.k[0][a] + l);
+        hn::Store(select(accept, hn::Load(d, s_.to[a] + l), hn::Load(d, s_.x[a] + l)), d, s_.x[a] + l);
+        hn::Store(select(accept, hn::Load(d, s_.k[6][a] + l), hn::Load(d, s_.k[0][a] + l)), d, s_.k[0][a] + l);
       }
-      VD now = hn::IfThenElse(hn::Ge(h, left), set(until_), hn::Add(t, hn::Mul(set(sign_), h)));
-      now = hn::IfThenElse(accept, now, t);
-      const VD rest = hn::Abs(hn::Sub(set(until_), now)), steps = hn::Add(hn::Load(d, s_.steps + l), hn::IfThenElseZero(accept, one));
+      VD now = select(h >= left, until_, t + sign_ * h);
+      now = select(accept, now, t);
+      const VD rest = abs(until_ - now), steps = hn::Load(d, s_.steps + l) + only(accept, one);
       // A step that the end of the interval cut short says little about the next.
-      const Mask cut = hn::And(hn::Lt(h, wished), hn::Le(error, one));
-      const VD kept = hn::IfThenElse(cut, hn::Max(wished, next), next);
-      hn::Store(hn::IfThenElse(accept, kept, hn::Load(d, s_.next + l)), d, s_.next + l);
-      const Mask lost = hn::Or(hn::And(fail, hn::Gt(halvings, set(10))), hn::And(accept, hn::And(hn::Gt(border, zero), hn::Lt(h, least))));
-      const Mask there = hn::And(accept, hn::Le(rest, hn::Mul(set(1e-12), hn::Max(set(std::abs(until_)), rest))));
-      const Mask tired = hn::And(accept, hn::Ge(steps, set(double(o_.max_steps))));
-      hn::Store(hn::IfThenElse(hn::AndNot(lost, there), set(until_), now), d, s_.t + l);
+      const Mask cut = (h < wished) & (error <= one);
+      const VD kept = select(cut, max(wished, next), next);
+      hn::Store(select(accept, kept, hn::Load(d, s_.next + l)), d, s_.next + l);
+      const Mask lost = (fail & (halvings > 10)) | (accept & ((border > zero) & (h < least)));
+      const Mask there = accept & (rest <= 1e-12 * max(std::abs(until_), rest));
+      const Mask tired = accept & (steps >= double(o_.max_steps));
+      hn::Store(select(there & !lost, until_, now), d, s_.t + l);
       hn::Store(rest, d, s_.left + l), hn::Store(steps, d, s_.steps + l);
-      hn::Store(hn::IfThenElseZero(accept, one), d, s_.begins + l);
-      lost_ |= bits_of(lost) << l, ends |= bits_of(hn::Or(hn::Or(lost, there), tired)) << l, goes |= bits_of(accept) << l;
+      hn::Store(only(accept, one), d, s_.begins + l);
+      lost_ |= bits_of(lost) << l, ends |= bits_of(lost | there | tired) << l, goes |= bits_of(accept) << l;
     }
     if (way_)
       for (size_t l = 0; l < n; ++l)

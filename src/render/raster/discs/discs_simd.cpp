@@ -16,12 +16,14 @@
 HWY_BEFORE_NAMESPACE();
 namespace sg::raster::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+using namespace simd::HWY_NAMESPACE;
 
 constexpr int32_t small_disc = 12;                     // pixels wide and high; larger ones are drawn one by one
 constexpr uint32_t most_points = 0x7FFFFFFFu / 3 - 1;  // whose coordinates a lane's offset reaches
 
-HWY_INLINE F set(float x) { return hn::Set(DF(), x); }
-HWY_INLINE F along(const F* a, const float* b) { return a[0] * set(b[0]) + a[1] * set(b[1]) + a[2] * set(b[2]); }
+using simd::HWY_NAMESPACE::set;
+HWY_INLINE F set(float x) { return set(DF(), x); }
+HWY_INLINE F along(const F* a, const float* b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 // A vector of discs on the picture.
 struct Lanes {
@@ -38,7 +40,7 @@ struct Stored {
 };
 HWY_INLINE Stored stored(const DiscJob& job, I point) {
   const DF d;
-  const I at = hn::Add(point, hn::Add(point, point));
+  const I at = point + (point + point);
   Stored s;
   for (int c = 0; c < 3; ++c) s.p[c] = hn::GatherIndex(d, job.xyz + c, at), s.n[c] = hn::GatherIndex(d, job.normals + c, at);
   s.r = hn::GatherIndex(d, job.radius, point);
@@ -58,45 +60,45 @@ HWY_INLINE Lanes place(const DiscJob& job, const Stored& s, I valid) {
   const DI di;
   const EyeView& v = job.view;
   F p[3];
-  for (int c = 0; c < 3; ++c) p[c] = (s.p[c] - set(v.hi[c])) - set(v.lo[c]);
+  for (int c = 0; c < 3; ++c) p[c] = (s.p[c] - v.hi[c]) - v.lo[c];
   Lanes l;
   l.x = along(p, v.right), l.y = along(p, v.up), l.z = along(p, v.forward);
   l.n[0] = along(s.n, v.right), l.n[1] = along(s.n, v.up), l.n[2] = along(s.n, v.forward);
-  const F r = s.r, scale = v.parallel ? set(v.scale) : set(v.scale) / l.z;
-  const F cx = set(v.center_x) + scale * l.x, cy = set(v.center_y) - scale * l.y, reach = r * scale;
-  M good = hn::And(hn::And(hn::Gt(l.z, set(v.near_plane)), hn::Lt(l.z, set(v.far_plane))), hn::Gt(r, set(0)));
-  good = hn::And(good, hn::And(hn::Lt(hn::Abs(cx), set(1e6f)), hn::Lt(hn::Abs(cy), set(1e6f))));
-  good = hn::And(good, hn::MaskFromVec(hn::BitCast(d, valid)));
-  l.tiny = hn::Lt(reach, set(0.7f));
-  l.within = hn::AllTrue(d, hn::And(hn::Gt(l.z - r, set(v.near_plane)), hn::Lt(l.z + r, set(v.far_plane))));
+  const F r = s.r, scale = v.parallel ? set(v.scale) : v.scale / l.z;
+  const F cx = v.center_x + scale * l.x, cy = v.center_y - scale * l.y, reach = r * scale;
+  M good = (l.z > v.near_plane) & (l.z < v.far_plane) & (r > 0);
+  good = good & ((abs(cx) < 1e6f) & (abs(cy) < 1e6f));
+  good = good & hn::MaskFromVec(bit_cast(d, valid));
+  l.tiny = reach < 0.7f;
+  l.within = all((l.z - r > v.near_plane) & (l.z + r < v.far_plane));
   // A disc spans r sqrt(1 - n^2) along each axis; on the picture, what the box of these spans covers, a little more for rounding.
-  auto span = [&](F n) { return r * hn::Sqrt(hn::Max(set(1.0001f) - n * n, set(0))); };
+  auto span = [&](F n) { return r * sqrt(max(1.0001f - n * n, 0)); };
   const F span_x = span(l.n[0]), span_y = span(l.n[1]), span_z = span(l.n[2]), margin = set(0.01f);
   F near_scale = scale, far_scale = scale;
   M beside = hn::FirstN(d, 0);  // reaches the eye's plane, or nearly
   if (!v.parallel) {
-    near_scale = set(v.scale) / hn::Max(l.z - span_z, r), far_scale = set(v.scale) / (l.z + span_z);
-    beside = hn::Not(hn::Gt(l.z, set(2) * r));
+    near_scale = v.scale / max(l.z - span_z, r), far_scale = v.scale / (l.z + span_z);
+    beside = !(l.z > 2 * r);
   }
-  auto most = [&](F q) { return hn::Max(q * near_scale, q * far_scale) + margin; };
-  auto least = [&](F q) { return hn::Min(q * near_scale, q * far_scale) - margin; };
-  const F grown = reach * set(4);
-  const F low_x = hn::IfThenElse(beside, cx - grown, set(v.center_x) + least(l.x - span_x)),
-          high_x = hn::IfThenElse(beside, cx + grown, set(v.center_x) + most(l.x + span_x)),
-          low_y = hn::IfThenElse(beside, cy - grown, set(v.center_y) - most(l.y + span_y)),
-          high_y = hn::IfThenElse(beside, cy + grown, set(v.center_y) - least(l.y - span_y));
+  auto most = [&](F q) { return max(q * near_scale, q * far_scale) + margin; };
+  auto least = [&](F q) { return min(q * near_scale, q * far_scale) - margin; };
+  const F grown = reach * 4;
+  const F low_x = select(beside, cx - grown, v.center_x + least(l.x - span_x)),
+          high_x = select(beside, cx + grown, v.center_x + most(l.x + span_x)),
+          low_y = select(beside, cy - grown, v.center_y - most(l.y + span_y)),
+          high_y = select(beside, cy + grown, v.center_y - least(l.y - span_y));
   const F most_x = set(float(v.width - 1)), most_y = set(float(v.height - 1)), half = set(0.5f), zero = set(0);
-  const F left = hn::IfThenElse(l.tiny, hn::Floor(cx), hn::Ceil(low_x - half)), right = hn::Floor(high_x - half);
-  const F top = hn::IfThenElse(l.tiny, hn::Floor(cy), hn::Ceil(low_y - half)), bottom = hn::Floor(high_y - half);
+  const F left = select(l.tiny, floor(cx), ceil(low_x - half)), right = floor(high_x - half);
+  const F top = select(l.tiny, floor(cy), ceil(low_y - half)), bottom = floor(high_y - half);
   // Tiny ones off the picture stay off it.
-  const F x0 = hn::IfThenElse(l.tiny, left, hn::Max(left, zero)), x1 = hn::IfThenElse(l.tiny, left, hn::Min(right, most_x));
-  const F y0 = hn::IfThenElse(l.tiny, top, hn::Max(top, zero)), y1 = hn::IfThenElse(l.tiny, top, hn::Min(bottom, most_y));
-  good = hn::And(good, hn::And(hn::And(hn::Ge(x0, zero), hn::Le(x1, most_x)), hn::And(hn::Ge(y0, zero), hn::Le(y1, most_y))));
-  auto pixel = [&](F value, float otherwise) { return hn::ConvertTo(di, hn::IfThenElse(good, value, set(otherwise))); };
+  const F x0 = select(l.tiny, left, max(left, zero)), x1 = select(l.tiny, left, min(right, most_x));
+  const F y0 = select(l.tiny, top, max(top, zero)), y1 = select(l.tiny, top, min(bottom, most_y));
+  good = good & ((x0 >= zero) & (x1 <= most_x) & ((y0 >= zero) & (y1 <= most_y)));
+  auto pixel = [&](F value, float otherwise) { return convert(di, select(good, value, otherwise)); };
   l.x0 = pixel(x0, 1), l.x1 = pixel(x1, 0), l.y0 = pixel(y0, 1), l.y1 = pixel(y1, 0);
   l.plane = l.n[0] * l.x + l.n[1] * l.y + l.n[2] * l.z;
   l.radius2 = r * r;
-  l.nearest = l.z - r * set(1.001f);
+  l.nearest = l.z - r * 1.001f;
   return l;
 }
 
@@ -108,26 +110,26 @@ HWY_INLINE void draw_lanes(const DiscJob& job, const Lanes& l, uint32_t primitiv
   const DF d;
   const DI di;
   const EyeView& v = job.view;
-  const I wide = hn::Sub(l.x1, l.x0), high = hn::Sub(l.y1, l.y0), zero = hn::Zero(di);
-  const auto some =
-      hn::And(hn::Not(hn::Or(hn::Gt(zero, wide), hn::Gt(zero, high))), hn::MaskFromVec(hn::BitCast(di, hn::VecFromMask(d, wanted))));
-  if (hn::AllFalse(di, some)) return;
-  const int32_t columns = largest(hn::IfThenElseZero(some, wide)), rows = largest(hn::IfThenElseZero(some, high));
+  const I wide = l.x1 - l.x0, high = l.y1 - l.y0, zero = set(di, 0);
+  const auto some = !((zero > wide) | (zero > high)) & hn::MaskFromVec(bit_cast(di, hn::VecFromMask(d, wanted)));
+  if (none(some)) return;
+  const int32_t columns = largest(only(some, wide)), rows = largest(only(some, high));
   const F inverse = set(1 / v.scale);
   const auto* depths = reinterpret_cast<const int32_t*>(job.keys);
   for (int32_t row = 0; row <= rows; ++row) {
-    const I y = hn::Add(l.y0, hn::Set(di, row));
-    const F dy = (set(v.center_y) - hn::ConvertTo(d, y) - set(0.5f)) * inverse;
-    const auto in_row = hn::And(some, hn::Not(hn::Gt(y, l.y1)));
+    const I y = l.y0 + row;
+    const F dy = (v.center_y - convert(d, y) - 0.5f) * inverse;
+    const auto in_row = some & !(y > l.y1);
     for (int32_t column = 0; column <= columns; ++column) {
-      const I x = hn::Add(l.x0, hn::Set(di, column));
-      const auto in_box = hn::And(in_row, hn::Not(hn::Gt(x, l.x1)));
+      const I x = l.x0 + column;
+      const auto in_box = in_row & !(x > l.x1);
       // What is there already. Another thread may bring something nearer meanwhile, never something further.
-      const I at = hn::IfThenElseZero(in_box, hn::Add(hn::Mul(y, hn::Set(di, v.width)), x));
-      const F there = hn::BitCast(d, hn::GatherIndex(di, depths + 1, hn::Add(at, at)));
-      M hit = hn::And(hn::Le(l.nearest, there), hn::MaskFromVec(hn::BitCast(d, hn::VecFromMask(di, in_box))));
-      if (hn::AllFalse(d, hit)) continue;
-      const F dx = (hn::ConvertTo(d, x) + set(0.5f) - set(v.center_x)) * inverse;
+      const I at = only(in_box, y * v.width + x);
+      const F there = bit_cast(d, hn::GatherIndex(di, depths + 1, at + at));
+      M hit = (l.nearest <= there) & hn::MaskFromVec(bit_cast(d, hn::VecFromMask(di, in_box)));
+      if (none(hit)) continue;
+      // Where the ray of the pixel meets the plane of the disc.
+      const F dx = (convert(d, x) + 0.5f - v.center_x) * inverse;
       F qx, qy, z;
       if constexpr (parallel) {
         qx = dx, qy = dy, z = (l.plane - l.n[0] * dx - l.n[1] * dy) / l.n[2];
@@ -135,12 +137,14 @@ HWY_INLINE void draw_lanes(const DiscJob& job, const Lanes& l, uint32_t primitiv
         z = l.plane / (l.n[0] * dx + l.n[1] * dy + l.n[2]);
         qx = dx * z, qy = dy * z;
       }
+      // Within the radius, between the planes, nearer than what is there.
       const F ox = qx - l.x, oy = qy - l.y, oz = z - l.z;
-      hit = hn::And(hit, hn::Or(hn::Le(ox * ox + oy * oy + oz * oz, l.radius2), l.tiny));
-      z = hn::IfThenElse(l.tiny, l.z, z);
-      if (!l.within) hit = hn::And(hit, hn::And(hn::Gt(z, set(v.near_plane)), hn::Lt(z, set(v.far_plane))));
-      hit = hn::And(hit, hn::Le(z, there));
-      if (hn::AllFalse(d, hit)) continue;
+      hit = hit & ((ox * ox + oy * oy + oz * oz <= l.radius2) | l.tiny);
+      z = select(l.tiny, l.z, z);
+      if (!l.within) hit = hit & ((z > v.near_plane) & (z < v.far_plane));
+      hit = hit & (z <= there);
+      if (none(hit)) continue;
+      // Lane by lane: two may have the same pixel.
       HWY_ALIGN float depth[hn::MaxLanes(DF())];
       HWY_ALIGN int32_t slot[hn::MaxLanes(DI())];
       hn::Store(z, d, depth), hn::Store(at, di, slot);
@@ -162,6 +166,7 @@ void disc_range(const DiscJob& job, size_t begin, size_t end) {
   const size_t lanes = hn::Lanes(d);
   for (size_t i = begin; i < end; i += lanes) {
     const size_t n = std::min(lanes, end - i);
+    // The discs of the lanes: neighbours in memory, or by number; the last one again where fewer are left.
     Stored s;
     if (!job.points && n == lanes) {
       s = stored_from(job, i);
@@ -180,12 +185,13 @@ void disc_range(const DiscJob& job, size_t begin, size_t end) {
       s = stored(job, hn::Load(di, reinterpret_cast<const int32_t*>(point)));
     }
     const Lanes l = place(job, s, hn::VecFromMask(di, hn::FirstN(di, n)));
-    const I limit = hn::Set(di, small_disc);
-    const auto large = hn::Or(hn::Gt(hn::Sub(l.x1, l.x0), limit), hn::Gt(hn::Sub(l.y1, l.y0), limit));
-    const M is_large = hn::MaskFromVec(hn::BitCast(d, hn::VecFromMask(di, large)));
-    if (job.view.parallel) draw_lanes<true>(job, l, job.first_primitive + uint32_t(i), hn::Not(is_large));
-    else draw_lanes<false>(job, l, job.first_primitive + uint32_t(i), hn::Not(is_large));
-    if (HWY_LIKELY(hn::AllFalse(di, large))) continue;
+    // Small ones by vectors, large ones one by one.
+    const I limit = set(di, small_disc);
+    const auto large = (l.x1 - l.x0 > limit) | (l.y1 - l.y0 > limit);
+    const M is_large = hn::MaskFromVec(bit_cast(d, hn::VecFromMask(di, large)));
+    if (job.view.parallel) draw_lanes<true>(job, l, job.first_primitive + uint32_t(i), !is_large);
+    else draw_lanes<false>(job, l, job.first_primitive + uint32_t(i), !is_large);
+    if (HWY_LIKELY(none(large))) continue;
     uint8_t bytes[8] = {};
     hn::StoreMaskBits(d, is_large, bytes);
     for (size_t lane = 0; lane < n; ++lane)
@@ -206,23 +212,26 @@ void disc_light(const DiscLight& job, ShadeBatch& b) {
   for (size_t i = 0; i < b.n; i += lanes) {
     const I disc = hn::LoadU(di, reinterpret_cast<const int32_t*>(b.triangle + i));
     const I point = job.points ? hn::GatherIndex(di, reinterpret_cast<const int32_t*>(job.points), disc) : disc,
-            at = hn::Add(point, hn::Add(point, point));
+            at = point + (point + point);
     const I pixel = hn::LoadU(di, reinterpret_cast<const int32_t*>(b.pixel + i));
+    // Normal, and the direction to the viewer.
     F n[3], view[3];
     for (int c = 0; c < 3; ++c) n[c] = hn::GatherIndex(d, job.normals + c, at), view[c] = set(-v.forward[c]);
     if (!v.parallel) {
-      const F x = hn::ConvertTo(d, hn::Add(hn::Set(di, b.tile_x), hn::And(pixel, hn::Set(di, tile_size - 1))));
-      const F y = hn::ConvertTo(d, hn::Add(hn::Set(di, b.tile_y), hn::ShiftRight<6>(pixel)));
+      const F x = convert(d, b.tile_x + (pixel & (tile_size - 1)));
+      const F y = convert(d, b.tile_y + shift_right<6>(pixel));
       static_assert(tile_size == 64);
-      const F dx = (x + set(0.5f) - set(v.center_x)) / set(v.scale), dy = (set(v.center_y) - y - set(0.5f)) / set(v.scale);
-      for (int c = 0; c < 3; ++c) view[c] = view[c] - set(v.right[c]) * dx - set(v.up[c]) * dy;
-      const F size = one / hn::Sqrt(view[0] * view[0] + view[1] * view[1] + view[2] * view[2]);
+      const F dx = (x + 0.5f - v.center_x) / v.scale, dy = (v.center_y - y - 0.5f) / v.scale;
+      for (int c = 0; c < 3; ++c) view[c] = view[c] - v.right[c] * dx - v.up[c] * dy;
+      const F size = one / sqrt(view[0] * view[0] + view[1] * view[1] + view[2] * view[2]);
       for (int c = 0; c < 3; ++c) view[c] = view[c] * size;
     }
+    // The side that is seen.
     F facing = n[0] * view[0] + n[1] * view[1] + n[2] * view[2];
-    const M away = hn::Lt(facing, zero);
-    for (int c = 0; c < 3; ++c) n[c] = hn::IfThenElse(away, hn::Neg(n[c]), n[c]);
-    facing = hn::Abs(facing);
+    const M away = facing < zero;
+    for (int c = 0; c < 3; ++c) n[c] = select(away, -n[c], n[c]);
+    facing = abs(facing);
+    // Blinn and Phong's model.
     F diffuse = zero, specular = zero;
     for (const Lamp& lamp : job.lights) {
       const Vec3f direction(lamp.direction);
@@ -231,8 +240,8 @@ void disc_light(const DiscLight& job, ShadeBatch& b) {
       const auto terms = shading::HWY_NAMESPACE::lamp_terms(n_l, cosine_to_half(n_l, facing, along(view, to)), power);
       diffuse = diffuse + terms.diffuse * intensity, specular = specular + terms.specular * intensity;
     }
-    hn::StoreU(m.lit ? set(m.ambient) + set(m.diffuse) * diffuse : one, d, b.light + i);
-    hn::StoreU(m.lit ? set(m.specular) * specular : zero, d, b.gloss + i);
+    hn::StoreU(m.lit ? set(m.ambient) + m.diffuse * diffuse : one, d, b.light + i);
+    hn::StoreU(m.lit ? m.specular * specular : zero, d, b.gloss + i);
   }
 }
 

@@ -18,6 +18,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace sg::raster::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+using namespace simd::HWY_NAMESPACE;
 
 /// Points of glyphs on the pixel grid, and the triangles among them that wait to be drawn.
 struct GlyphQueue {
@@ -40,7 +41,7 @@ void draw_queue(const GlyphJob& job, GlyphQueue& q) {
     Corner c[3];
     const MI real = hn::FirstN(di, q.triangles - t);
     for (int k = 0; k < 3; ++k) {
-      const I at = hn::IfThenElseZero(real, hn::LoadU(di, &q.corner[k][t]));
+      const I at = only(real, hn::LoadU(di, &q.corner[k][t]));
       c[k].x = hn::GatherIndex(di, q.x.data(), at), c[k].y = hn::GatherIndex(di, q.y.data(), at);
       c[k].w = hn::GatherIndex(d, q.w.data(), at);
     }
@@ -64,29 +65,29 @@ HWY_INLINE bool project_glyph(const EyeView& v, const GlyphShape& s, const float
   const DF d;
   const DI di;
   const size_t lanes = hn::Lanes(d);
-  auto set = [](float x) { return hn::Set(DF(), x); };
-  I lx = hn::Set(di, INT32_MAX), ly = lx, hx = hn::Set(di, INT32_MIN), hy = hx;
+  I lx = set(di, INT32_MAX), ly = lx, hx = set(di, INT32_MIN), hy = hx;
   M clean = hn::FirstN(d, lanes);
-  const F near_plane = set(v.near_plane), guard = set(guard_band), scale = set(v.scale), grid = set(float(subpixels));
+  const F near_plane = set(d, v.near_plane), guard = set(d, guard_band), scale = set(d, v.scale), grid = set(d, float(subpixels));
   for (size_t k = 0; k < s.points; k += lanes) {
     const F x = hn::LoadU(d, &s.x[k]), y = hn::LoadU(d, &s.y[k]), z = hn::LoadU(d, &s.z[k]);
-    auto row = [&](int r) { return ((set(m[4 * r]) * x + set(m[4 * r + 1]) * y) + set(m[4 * r + 2]) * z) + set(m[4 * r + 3]); };
-    const F dx = (row(0) - set(v.hi[0])) - set(v.lo[0]), dy = (row(1) - set(v.hi[1])) - set(v.lo[1]),
-            dz = (row(2) - set(v.hi[2])) - set(v.lo[2]);
-    auto along = [&](const float* a) { return dx * set(a[0]) + dy * set(a[1]) + dz * set(a[2]); };
+    auto row = [&](int r) { return ((m[4 * r] * x + m[4 * r + 1] * y) + m[4 * r + 2] * z) + m[4 * r + 3]; };
+    // The eye's coordinates; hi + lo is the eye in two floats.
+    const F dx = (row(0) - v.hi[0]) - v.lo[0], dy = (row(1) - v.hi[1]) - v.lo[1], dz = (row(2) - v.hi[2]) - v.lo[2];
+    auto along = [&](const float* a) { return dx * a[0] + dy * a[1] + dz * a[2]; };
     F ex = along(v.right), ey = along(v.up), w = along(v.forward);
-    clean = hn::And(clean, hn::Ge(w, near_plane));
-    if (!v.parallel) w = set(1.0f) / w, ex = ex * w, ey = ey * w;
-    const F px = set(v.center_x) + ex * scale, py = set(v.center_y) - ey * scale;
-    clean = hn::And(clean, hn::And(hn::Lt(hn::Abs(px), guard), hn::Lt(hn::Abs(py), guard)));
-    const I ix = hn::NearestInt(px * grid), iy = hn::NearestInt(py * grid);
-    lx = hn::Min(lx, ix), hx = hn::Max(hx, ix), ly = hn::Min(ly, iy), hy = hn::Max(hy, iy);
+    clean = clean & (w >= near_plane);
+    if (!v.parallel) w = 1.0f / w, ex = ex * w, ey = ey * w;
+    // On the picture, in subpixels.
+    const F px = v.center_x + ex * scale, py = v.center_y - ey * scale;
+    clean = clean & ((abs(px) < guard) & (abs(py) < guard));
+    const I ix = nearest_int(px * grid), iy = nearest_int(py * grid);
+    lx = min(lx, ix), hx = max(hx, ix), ly = min(ly, iy), hy = max(hy, iy);
     hn::StoreU(ix, di, &q.x[q.points + k]), hn::StoreU(iy, di, &q.y[q.points + k]), hn::StoreU(w, d, &q.w[q.points + k]);
   }
   auto least = [](I a) { return hn::GetLane(hn::MinOfLanes(DI(), a)); };
   auto most = [](I a) { return hn::GetLane(hn::MaxOfLanes(DI(), a)); };
   box = {least(lx), most(hx), least(ly), most(hy)};
-  return hn::AllTrue(d, clean);
+  return all(clean);
 }
 
 void keep_large(const GlyphJob& job, const GlyphShape& s, const GlyphQueue& q, size_t t, uint64_t bits, uint32_t first,
@@ -109,7 +110,7 @@ HWY_INLINE void queue_triangles(const GlyphJob& job, const GlyphShape& s, uint32
   const DF d;
   const DI di;
   const size_t lanes = hn::Lanes(d);
-  const I base = hn::Set(di, int32_t(q.points)), zero = hn::Zero(di), limit = hn::Set(di, job.small * subpixels);
+  const I base = set(di, int32_t(q.points)), zero = set(di, 0), limit = set(di, job.small * subpixels);
   const int32_t *xs = &q.x[q.points], *ys = &q.y[q.points];
   for (size_t t = 0; t < s.triangles; t += lanes) {
     Corner c[3];
@@ -121,18 +122,18 @@ HWY_INLINE void queue_triangles(const GlyphJob& job, const GlyphShape& s, uint32
     Setup b;
     I lx, hx, ly, hy;
     pixel_boxes(job.view, c, b, lx, hx, ly, hy);
-    const MI none = hn::Or(hn::Gt(b.first_x, b.last_x), hn::Gt(b.first_y, b.last_y));
-    MI seen = hn::AndNot(none, hn::FirstN(di, s.triangles - t));
+    const MI none = (b.first_x > b.last_x) | (b.first_y > b.last_y);
+    MI seen = hn::FirstN(di, s.triangles - t) & !none;
     if (!all_small) {
-      const MI small = hn::And(hn::Lt(hx - lx, limit), hn::Lt(hy - ly, limit)), big = hn::AndNot(small, seen);
-      if (!hn::AllFalse(di, big)) keep_large(job, s, q, t, bits_of(di, big), first, large);
-      seen = hn::And(small, seen);
+      const MI small = (hx - lx < limit) & (hy - ly < limit), big = seen & !small;
+      if (any(big)) keep_large(job, s, q, t, bits_of(di, big), first, large);
+      seen = small & seen;
     }
     const I area = (c[1].x - c[0].x) * (c[2].y - c[0].y) - (c[1].y - c[0].y) * (c[2].x - c[0].x);
-    seen = hn::And(seen, front > 0 ? hn::Gt(area, zero) : front < 0 ? hn::Lt(area, zero) : hn::Ne(area, zero));
-    const size_t n = compress_store(di, hn::Add(number[0], base), seen, &q.corner[0][q.triangles]);
-    compress_store(di, hn::Add(number[1], base), seen, &q.corner[1][q.triangles]);
-    compress_store(di, hn::Add(number[2], base), seen, &q.corner[2][q.triangles]);
+    seen = seen & (front > 0 ? area > zero : front < 0 ? area < zero : area != zero);
+    const size_t n = compress_store(di, number[0] + base, seen, &q.corner[0][q.triangles]);
+    compress_store(di, number[1] + base, seen, &q.corner[1][q.triangles]);
+    compress_store(di, number[2] + base, seen, &q.corner[2][q.triangles]);
     compress_store(di, hn::Iota(di, int32_t(first + uint32_t(t))), seen, &q.primitive[q.triangles]);
     q.triangles += n;
     if (q.triangles + lanes > GlyphQueue::waiting) {
@@ -190,8 +191,7 @@ void light_glyph_batch(const GlyphLight& job, ShadeBatch& b) {
   const DI di;
   const EyeView& v = job.view;
   const size_t lanes = hn::Lanes(d);
-  auto set = [](float x) { return hn::Set(DF(), x); };
-  const F inverse = set(1.0f / v.scale), half = set(0.5f);
+  const F inverse = set(d, 1.0f / v.scale), half = set(d, 0.5f);
   const float* faces = job.set.faces.data();
   const auto* matrices = job.set.instances->data();
   while (b.n % lanes) b.pixel[b.n] = b.pixel[b.n - 1], b.triangle[b.n] = b.triangle[b.n - 1], b.depth[b.n] = b.depth[b.n - 1], ++b.n;
@@ -199,41 +199,42 @@ void light_glyph_batch(const GlyphLight& job, ShadeBatch& b) {
   for (size_t i = 0; i < b.n; i += lanes) {
     const I pixel = hn::Load(di, reinterpret_cast<const int32_t*>(b.pixel + i));
     const auto primitive = hn::Load(DU(), b.triangle + i);
-    const I instance = hn::BitCast(di, hn::ShiftRightSame(primitive, job.set.shift));
+    const I instance = bit_cast(di, hn::ShiftRightSame(primitive, job.set.shift));
     for (size_t k = 0; k < lanes; ++k) rows[k] = job.set.row_of(b.triangle[i + k]) * int32_t(GlyphShape::row);
     const I row = hn::Load(di, rows);
     // Where the pixel's ray is at the depth that is seen, from the eye.
-    const F px = hn::ConvertTo(d, hn::And(pixel, hn::Set(di, tile_size - 1)) + hn::Set(di, b.tile_x)) + half;
-    const F py = hn::ConvertTo(d, hn::ShiftRight<6>(pixel) + hn::Set(di, b.tile_y)) + half;
-    const V3 side = set3(v.right) * ((px - set(v.center_x)) * inverse) + set3(v.up) * ((set(v.center_y) - py) * inverse);
+    const F px = convert(d, (pixel & (tile_size - 1)) + b.tile_x) + half;
+    const F py = convert(d, shift_right<6>(pixel) + b.tile_y) + half;
+    const V3 side = set3(v.right) * ((px - v.center_x) * inverse) + set3(v.up) * ((v.center_y - py) * inverse);
     const V3 forward = set3(v.forward), ray = v.parallel ? forward : forward + side;
     const F depth = hn::Load(d, b.depth + i);
     const V3 hit = v.parallel ? side + forward * depth : ray * depth;
     // The matrix, by columns, made near 1.
-    const I at = hn::ShiftLeft<2>(instance) + hn::ShiftLeft<3>(instance);
+    const I at = shift_left<2>(instance) + shift_left<3>(instance);
     auto number = [&](int k) { return hn::GatherIndex(d, matrices + k, at); };
     V3 a{number(0), number(4), number(8)}, e{number(1), number(5), number(9)}, c{number(2), number(6), number(10)};
     const V3 place = (V3{number(3), number(7), number(11)} - set3(v.hi)) - set3(v.lo);
-    F size = set(0);
-    for (const V3& q : {a, e, c}) size = hn::Max(size, hn::Max(hn::Abs(q.x), hn::Max(hn::Abs(q.y), hn::Abs(q.z))));
-    const F unscale = set(1.0f) / size;
+    F size = set(d, 0);
+    for (const V3& q : {a, e, c}) size = max(size, max(abs(q.x), max(abs(q.y), abs(q.z))));
+    const F unscale = 1.0f / size;
     a = a * unscale, e = e * unscale, c = c * unscale;
     // Rows of the inverse, times the determinant; normals turn by the same vectors.
     const V3 ka = cross3(e, c), ke = cross3(c, a), kc = cross3(a, e);
     auto face_number = [&](int k) { return hn::GatherIndex(d, faces + k, row); };
     auto to_world = [&](F x, F y, F z) { return ka * x + ke * y + kc * z; };
+    // Normals: of the face, and the smooth one at the place in the glyph's own coordinates.
     const V3 normal = to_world(face_number(0), face_number(1), face_number(2));
     auto smooth = [&](V3 face) {
       if (!job.set.smooth) return face;
       F drawn = size;
       if (job.set.in_pixels) {
-        const F unit_length = set(job.pixel_scale / v.scale);
+        const F unit_length = set(d, job.pixel_scale / v.scale);
         drawn = size * (v.parallel ? unit_length : unit_length * dot3(place, forward));
       }
-      const F det = dot3(a, ka), per = set(1.0f) / (det * drawn);
+      const F det = dot3(a, ka), per = 1.0f / (det * drawn);
       const V3 offset = hit - place;
-      const M flat = hn::Not(hn::Lt(hn::Abs(per), set(1e30f)));
-      auto local = [&](V3 k) { return hn::IfThenZeroElse(flat, dot3(k, offset) * per); };
+      const M flat = !(abs(per) < 1e30f);
+      auto local = [&](V3 k) { return only(!flat, dot3(k, offset) * per); };
       const F x = local(ka), y = local(ke), z = local(kc);
       auto linear = [&](int r) {
         return face_number(3 + r) + face_number(6 + 3 * r) * x + face_number(7 + 3 * r) * y + face_number(8 + 3 * r) * z;

@@ -11,9 +11,12 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "base/simd/vector-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace sg::raster::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+using namespace simd::HWY_NAMESPACE;
 
 using DF = hn::ScalableTag<float>;
 using DI = hn::RebindToSigned<DF>;
@@ -34,22 +37,23 @@ void run_connect(LicPlanes& p, float slack, bool parallel, int first, int last) 
       const size_t i = row + std::min(x, width - lanes);
       const U item = hn::LoadU(du, p.item.data() + i);
       const F w = hn::LoadU(d, p.w.data() + i), wx = hn::LoadU(d, p.wx.data() + i), wy = hn::LoadU(d, p.wy.data() + i);
-      const F free = parallel ? hn::Set(d, slack) : w * hn::Set(d, slack);
-      U bits = hn::Zero(du);
+      const F free = parallel ? set(d, slack) : w * slack;
+      // A bit for each neighbour whose depth goes on from here in either's plane, of the same item.
+      U bits = set(du, 0);
       for (int dy = -1; dy <= 1; ++dy)
         for (int dx = -1; dx <= 1; ++dx) {
           if (dx == 0 && dy == 0) continue;
           const size_t j = i + size_t(dy) * p.stride + size_t(dx);
-          const F fx = hn::Set(d, float(dx)), fy = hn::Set(d, float(dy));
+          const F fx = set(d, float(dx)), fy = set(d, float(dy));
           const F jump = hn::LoadU(d, p.w.data() + j) - w, own = wx * fx + wy * fy,
                   other = hn::LoadU(d, p.wx.data() + j) * fx + hn::LoadU(d, p.wy.data() + j) * fy;
-          const M inside = hn::And(hn::Ge(jump, hn::Min(own, other) - free), hn::Le(jump, hn::Max(own, other) + free));
-          const auto same = hn::And(hn::RebindMask(du, inside), hn::Eq(item, hn::LoadU(du, p.item.data() + j)));
-          bits = hn::Or(bits, hn::IfThenElseZero(same, hn::Set(du, 1u << neighbor_bit(dx, dy))));
+          const M inside = (jump >= min(own, other) - free) & (jump <= max(own, other) + free);
+          const auto same = rebind(du, inside) & (item == hn::LoadU(du, p.item.data() + j));
+          bits = bits | only(same, set(du, 1u << neighbor_bit(dx, dy)));
         }
-      bits = hn::IfThenElseZero(hn::Ne(item, hn::Zero(du)), bits);
-      const U word = hn::And(hn::LoadU(du, p.word.data() + i), hn::Set(du, 0xFFFFFF00u));
-      hn::StoreU(hn::Or(word, bits), du, p.word.data() + i);
+      bits = only(item != 0, bits);
+      const U word = hn::LoadU(du, p.word.data() + i) & 0xFFFFFF00u;
+      hn::StoreU(word | bits, du, p.word.data() + i);
     }
   }
 }
@@ -64,28 +68,28 @@ struct Way {
 HWY_INLINE void step_on(const ConvolveJob& job, F unit, F weight, Way& w) {
   const DF d;
   const DI di;
-  const I one = hn::Set(di, 1), two = hn::Set(di, 2), nothing = hn::Zero(di);
-  const F half = hn::Set(d, 0.5f), more = hn::Set(d, 1.5f);
-  const M turned = hn::Lt(w.dx * w.bx + w.dy * w.by, hn::Zero(d));
-  w.x = w.x + hn::IfThenElse(turned, w.dx, w.dx * more - w.bx * half);
-  w.y = w.y + hn::IfThenElse(turned, w.dy, w.dy * more - w.by * half);
-  const I jx = hn::ConvertTo(di, w.x), jy = hn::ConvertTo(di, w.y);  // positive while active
+  const I one = set(di, 1), two = set(di, 2), nothing = set(di, 0);
+  const F half = set(d, 0.5f), more = set(d, 1.5f);
+  const M turned = w.dx * w.bx + w.dy * w.by < 0;
+  w.x = w.x + select(turned, w.dx, w.dx * more - w.bx * half);
+  w.y = w.y + select(turned, w.dy, w.dy * more - w.by * half);
+  const I jx = convert(di, w.x), jy = convert(di, w.y);  // positive while active
   const I ox = jx - w.ix, oy = jy - w.iy, apart = oy + oy + oy + ox;
-  const auto near = hn::And(hn::Lt(hn::Abs(ox), two), hn::Lt(hn::Abs(oy), two));
+  const auto near = (abs(ox) < two) & (abs(oy) < two);
   // The bit of that neighbour, moved to the lowest place.
-  const I bit = hn::And(apart + hn::Set(di, 4) + hn::VecFromMask(di, hn::Gt(apart, nothing)), hn::Set(di, 15));
-  const auto open = hn::Or(hn::Ne(hn::And(hn::Shr(w.word, bit), one), nothing), hn::Eq(apart, nothing));
-  w.active = hn::And(w.active, hn::RebindMask(d, hn::And(near, open)));
-  const auto go = hn::RebindMask(di, w.active);
-  w.at = hn::IfThenElse(go, jy * hn::Set(di, job.stride) + jx, w.at), w.ix = jx, w.iy = jy;
+  const I bit = (apart + 4 + hn::VecFromMask(di, apart > nothing)) & 15;
+  const auto open = ((hn::Shr(w.word, bit) & one) != nothing) | (apart == nothing);
+  w.active = w.active & rebind(d, near & open);
+  const auto go = rebind(di, w.active);
+  w.at = select(go, jy * job.stride + jx, w.at), w.ix = jx, w.iy = jy;
   w.word = hn::GatherIndex(di, reinterpret_cast<const int32_t*>(job.word), w.at);
   w.bx = w.dx, w.by = w.dy;
-  w.dx = hn::ConvertTo(d, hn::ShiftRight<20>(w.word)) * unit;
-  w.dy = hn::ConvertTo(d, hn::ShiftRight<20>(hn::ShiftLeft<12>(w.word))) * unit;
-  w.sum = w.sum + hn::IfThenElseZero(w.active, hn::GatherIndex(d, job.noise, w.at) * weight);
+  w.dx = convert(d, shift_right<20>(w.word)) * unit;
+  w.dy = convert(d, shift_right<20>(shift_left<12>(w.word))) * unit;
+  w.sum = w.sum + only(w.active, hn::GatherIndex(d, job.noise, w.at) * weight);
   w.steps = w.steps - hn::VecFromMask(di, go);
   // A place without direction is the end.
-  w.active = hn::And(w.active, hn::RebindMask(d, hn::Ne(hn::And(w.word, hn::Set(di, ~0xFF)), nothing)));
+  w.active = w.active & rebind(d, (w.word & ~0xFF) != nothing);
 }
 
 void run_convolve(const ConvolveJob& job, const int32_t* pixels, size_t n) {
@@ -94,7 +98,7 @@ void run_convolve(const ConvolveJob& job, const int32_t* pixels, size_t n) {
   const size_t lanes = hn::Lanes(d);
   const LicWeights& kernel = *job.weights;
   const float* weight = kernel.weight.data() + kernel.steps;
-  const F unit = hn::Set(d, job.step / 2047), back_unit = hn::Neg(unit), half = hn::Set(d, 0.5f);
+  const F unit = set(d, job.step / 2047), back_unit = -unit, half = set(d, 0.5f);
   HWY_ALIGN float out[hn::MaxLanes(d)];
   HWY_ALIGN int32_t xs[hn::MaxLanes(di)], ys[hn::MaxLanes(di)], places[hn::MaxLanes(di)];
   for (size_t first = 0; first < n; first += lanes) {
@@ -105,23 +109,23 @@ void run_convolve(const ConvolveJob& job, const int32_t* pixels, size_t n) {
     }
     Way on;
     on.at = hn::Load(di, places), on.ix = hn::Load(di, xs), on.iy = hn::Load(di, ys);
-    on.x = hn::ConvertTo(d, on.ix) + half, on.y = hn::ConvertTo(d, on.iy) + half;
+    on.x = convert(d, on.ix) + half, on.y = convert(d, on.iy) + half;
     on.word = hn::GatherIndex(di, reinterpret_cast<const int32_t*>(job.word), on.at);
-    on.bx = on.dx = hn::ConvertTo(d, hn::ShiftRight<20>(on.word)) * unit;
-    on.by = on.dy = hn::ConvertTo(d, hn::ShiftRight<20>(hn::ShiftLeft<12>(on.word))) * unit;
-    on.sum = hn::Zero(d), on.steps = hn::Zero(di);
-    const M any = on.active = hn::RebindMask(d, hn::Ne(hn::And(on.word, hn::Set(di, ~0xFF)), hn::Zero(di)));
-    const F own = hn::GatherIndex(d, job.noise, on.at) * hn::Set(d, weight[0]);
+    on.bx = on.dx = convert(d, shift_right<20>(on.word)) * unit;
+    on.by = on.dy = convert(d, shift_right<20>(shift_left<12>(on.word))) * unit;
+    on.sum = set(d, 0), on.steps = set(di, 0);
+    const M moving = on.active = rebind(d, (on.word & ~0xFF) != 0);
+    const F own = hn::GatherIndex(d, job.noise, on.at) * weight[0];
     Way back = on;
-    back.bx = back.dx = hn::Neg(on.dx), back.by = back.dy = hn::Neg(on.dy);
+    back.bx = back.dx = -on.dx, back.by = back.dy = -on.dy;
     // Both ways at once: what one waits for, the other computes.
-    for (int k = 1; k <= kernel.steps && !hn::AllFalse(d, hn::Or(on.active, back.active)); ++k) {
-      step_on(job, unit, hn::Set(d, weight[k]), on);
-      step_on(job, back_unit, hn::Set(d, weight[-k]), back);
+    for (int k = 1; k <= kernel.steps && any(on.active | back.active); ++k) {
+      step_on(job, unit, set(d, weight[k]), on);
+      step_on(job, back_unit, set(d, weight[-k]), back);
     }
-    const I entry = back.steps * hn::Set(di, kernel.steps + 1) + on.steps;
+    const I entry = back.steps * (kernel.steps + 1) + on.steps;
     const F value = (own + back.sum + on.sum) * hn::GatherIndex(d, kernel.factor.data(), entry);
-    hn::Store(hn::IfThenElseZero(any, value), d, out);
+    hn::Store(only(moving, value), d, out);
     for (size_t k = 0; k < count; ++k) job.value[pixels[first + k]] = out[k];
   }
 }

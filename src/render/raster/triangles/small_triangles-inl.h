@@ -8,11 +8,13 @@
 #define SG_RASTER_SMALL_TRIANGLES_INL
 #endif
 #include "base/compress_inl.h"
+#include "base/simd/vector-inl.h"
 #include "render/raster/triangles/kernels.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::raster::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+using namespace simd::HWY_NAMESPACE;
 using sg::HWY_NAMESPACE::compress_store;
 
 using DF = hn::ScalableTag<float>;
@@ -28,8 +30,8 @@ struct Corner {
   F w, px, py, z;
 };
 
-HWY_INLINE I min3(I a, I b, I c) { return hn::Min(a, hn::Min(b, c)); }
-HWY_INLINE I max3(I a, I b, I c) { return hn::Max(a, hn::Max(b, c)); }
+HWY_INLINE I min3(I a, I b, I c) { return min(a, min(b, c)); }
+HWY_INLINE I max3(I a, I b, I c) { return max(a, max(b, c)); }
 
 struct Setup {
   I e[3], step_x[3], step_y[3], above[3];
@@ -52,8 +54,8 @@ template <class Primitive>
 HWY_INLINE void draw_small(const EyeView& view, uint64_t* keys, const Setup& s, MI live, Primitive&& primitive) {
   const DF d;
   const DI di;
-  const int wide = hn::GetLane(hn::MaxOfLanes(di, hn::IfThenElseZero(live, (s.last_x - s.first_x) + hn::Set(di, 1))));
-  const int high = hn::GetLane(hn::MaxOfLanes(di, hn::IfThenElseZero(live, (s.last_y - s.first_y) + hn::Set(di, 1))));
+  const int wide = hn::GetLane(hn::MaxOfLanes(di, only(live, (s.last_x - s.first_x) + 1)));
+  const int high = hn::GetLane(hn::MaxOfLanes(di, only(live, (s.last_y - s.first_y) + 1)));
   alignas(64) float depth[64];
   alignas(64) int32_t fx[64], fy[64];
   hn::Store(s.first_x, di, fx), hn::Store(s.first_y, di, fy);
@@ -61,14 +63,13 @@ HWY_INLINE void draw_small(const EyeView& view, uint64_t* keys, const Setup& s, 
   I row0 = s.e[0], row1 = s.e[1], row2 = s.e[2];
   for (int j = 0; j < high; ++j) {
     I e0 = row0, e1 = row1, e2 = row2;
-    const MI in_row = hn::AndNot(hn::Gt(hn::Set(di, j), most_y), live);
+    const MI in_row = live & !(j > most_y);
     for (int i = 0; i < wide; ++i) {
-      const MI inside = hn::And(hn::And(hn::Gt(e0, s.above[0]), hn::Gt(e1, s.above[1])),
-                                hn::And(hn::Gt(e2, s.above[2]), hn::AndNot(hn::Gt(hn::Set(di, i), most_x), in_row)));
-      if (!hn::AllFalse(di, inside)) {
+      const MI inside = (e0 > s.above[0]) & (e1 > s.above[1]) & ((e2 > s.above[2]) & (in_row & !(i > most_x)));
+      if (any(inside)) {
         // Weights of the corners are the opposite edge functions.
-        F w = (hn::ConvertTo(d, e1) * s.w[0] + hn::ConvertTo(d, e2) * s.w[1] + hn::ConvertTo(d, e0) * s.w[2]) * s.inverse_area;
-        if (!view.parallel) w = hn::Set(d, 1.0f) / w;
+        F w = (convert(d, e1) * s.w[0] + convert(d, e2) * s.w[1] + convert(d, e0) * s.w[2]) * s.inverse_area;
+        if (!view.parallel) w = 1.0f / w;
         hn::Store(w, d, depth);
         for (uint64_t bits = bits_of(di, inside); bits; bits &= bits - 1) {
           const int k = __builtin_ctzll(bits);
@@ -99,40 +100,42 @@ struct PixelQueue {
 HWY_INLINE void draw_thin(const EyeView& view, uint64_t* keys, const Setup& s, MI live, I primitive, PixelQueue& out) {
   const DF d;
   const DI di;
-  const I one = hn::Set(di, 1), zero = hn::Zero(di), width = hn::Set(di, view.width);
-  const int high = hn::GetLane(hn::MaxOfLanes(di, hn::IfThenElseZero(live, (s.last_y - s.first_y) + one)));
+  const I one = set(di, 1), zero = set(di, 0), width = set(di, view.width);
+  const int high = hn::GetLane(hn::MaxOfLanes(di, only(live, (s.last_y - s.first_y) + one)));
   const I most_y = s.last_y - s.first_y;
   I first = s.first_y * width + s.first_x;
-  const F most_x = hn::ConvertTo(d, s.last_x - s.first_x), hair = hn::Set(d, 1e-3f);  // what is inside is decided by whole numbers
+  const F most_x = convert(d, s.last_x - s.first_x), hair = set(d, 1e-3f);  // what is inside is decided by whole numbers
+  // Edge functions of the first row; where along a row each changes its sign.
   I row[3] = {s.e[0], s.e[1], s.e[2]};
   F inverse[3];
   M rises[3], falls[3];
   for (int k = 0; k < 3; ++k) {
-    inverse[k] = hn::Set(d, -1.0f) / hn::ConvertTo(d, s.step_x[k]);
-    rises[k] = hn::RebindMask(d, hn::Gt(s.step_x[k], zero)), falls[k] = hn::RebindMask(d, hn::Lt(s.step_x[k], zero));
+    inverse[k] = -1.0f / convert(d, s.step_x[k]);
+    rises[k] = rebind(d, s.step_x[k] > zero), falls[k] = rebind(d, s.step_x[k] < zero);
   }
   for (int j = 0; j < high; ++j, first = first + width) {
-    F from = hn::Zero(d), to = most_x;
+    // The span of each lane in this row.
+    F from = set(d, 0), to = most_x;
     for (int k = 0; k < 3; ++k) {
-      const F crossing = hn::ConvertTo(d, row[k] - s.above[k] - one) * inverse[k];
-      from = hn::IfThenElse(rises[k], hn::Max(from, hn::Ceil(crossing - hair)), from);
-      to = hn::IfThenElse(falls[k], hn::Min(to, hn::Floor(crossing + hair)), to);
+      const F crossing = convert(d, row[k] - s.above[k] - one) * inverse[k];
+      from = select(rises[k], max(from, ceil(crossing - hair)), from);
+      to = select(falls[k], min(to, floor(crossing + hair)), to);
     }
-    const M some = hn::And(hn::Le(from, to), hn::RebindMask(d, hn::AndNot(hn::Gt(hn::Set(di, j), most_y), live)));
-    if (!hn::AllFalse(d, some)) {
-      const I start = hn::ConvertTo(di, hn::IfThenElseZero(some, from)), wide = hn::ConvertTo(di, hn::IfThenElseZero(some, to - from));
-      const MI drawn = hn::RebindMask(di, some);
+    const M some = (from <= to) & rebind(d, live & !(j > most_y));
+    if (any(some)) {
+      // Pixel by pixel, inside as decided by whole numbers.
+      const I start = convert(di, only(some, from)), wide = convert(di, only(some, to - from));
+      const MI drawn = rebind(di, some);
       const int most = hn::GetLane(hn::MaxOfLanes(di, wide));
       I e0 = row[0] + s.step_x[0] * start, e1 = row[1] + s.step_x[1] * start, e2 = row[2] + s.step_x[2] * start, at = first + start;
       for (int i = 0; i <= most; ++i) {
-        const MI inside = hn::And(hn::And(hn::Gt(e0, s.above[0]), hn::Gt(e1, s.above[1])),
-                                  hn::And(hn::Gt(e2, s.above[2]), hn::AndNot(hn::Gt(hn::Set(di, i), wide), drawn)));
-        if (!hn::AllFalse(di, inside)) {
-          F w = (hn::ConvertTo(d, e1) * s.w[0] + hn::ConvertTo(d, e2) * s.w[1] + hn::ConvertTo(d, e0) * s.w[2]) * s.inverse_area;
-          if (!view.parallel) w = hn::Set(d, 1.0f) / w;
+        const MI inside = (e0 > s.above[0]) & (e1 > s.above[1]) & ((e2 > s.above[2]) & (drawn & !(i > wide)));
+        if (any(inside)) {
+          F w = (convert(d, e1) * s.w[0] + convert(d, e2) * s.w[1] + convert(d, e0) * s.w[2]) * s.inverse_area;
+          if (!view.parallel) w = 1.0f / w;
           const size_t more = compress_store(di, at, inside, out.pixel + out.count);
           compress_store(di, primitive, inside, out.primitive + out.count);
-          compress_store(d, w, hn::RebindMask(d, inside), out.depth + out.count);
+          compress_store(d, w, rebind(d, inside), out.depth + out.count);
           out.count += more;
           if (out.count >= PixelQueue::full) out.flush(keys);
         }
@@ -147,10 +150,10 @@ HWY_INLINE void edge(const Corner& a, const Corner& b, I px, I py, Setup& s, int
   const DI di;
   const I dx = b.x - a.x, dy = b.y - a.y;
   s.e[k] = dx * (py - a.y) - dy * (px - a.x);
-  s.step_x[k] = hn::Neg(hn::ShiftLeft<8>(dy)), s.step_y[k] = hn::ShiftLeft<8>(dx);
-  const I zero = hn::Zero(di);
-  const MI owns = hn::Or(hn::Lt(dy, zero), hn::And(hn::Eq(dy, zero), hn::Gt(dx, zero)));
-  s.above[k] = hn::IfThenElse(owns, hn::Set(di, -1), zero);
+  s.step_x[k] = -shift_left<8>(dy), s.step_y[k] = shift_left<8>(dx);
+  const I zero = set(di, 0);
+  const MI owns = (dy < zero) | ((dy == zero) & (dx > zero));
+  s.above[k] = select(owns, -1, zero);
 }
 
 /// The pixels whose centres lie in the boxes of the triangles, within the picture. lx..hy: the boxes on the pixel grid.
@@ -158,30 +161,28 @@ HWY_INLINE void pixel_boxes(const EyeView& view, const Corner* c, Setup& s, I& l
   const DI di;
   lx = min3(c[0].x, c[1].x, c[2].x), hx = max3(c[0].x, c[1].x, c[2].x);
   ly = min3(c[0].y, c[1].y, c[2].y), hy = max3(c[0].y, c[1].y, c[2].y);
-  const I half = hn::Set(di, subpixels / 2), zero = hn::Zero(di);
-  s.first_x = hn::Max(hn::ShiftRight<8>(lx + (half - hn::Set(di, 1))), zero),
-  s.first_y = hn::Max(hn::ShiftRight<8>(ly + (half - hn::Set(di, 1))), zero);
-  s.last_x = hn::Min(hn::ShiftRight<8>(hx - half), hn::Set(di, view.width - 1)),
-  s.last_y = hn::Min(hn::ShiftRight<8>(hy - half), hn::Set(di, view.height - 1));
+  const I half = set(di, subpixels / 2), zero = set(di, 0);
+  s.first_x = max(shift_right<8>(lx + (half - 1)), zero), s.first_y = max(shift_right<8>(ly + (half - 1)), zero);
+  s.last_x = min(shift_right<8>(hx - half), view.width - 1), s.last_y = min(shift_right<8>(hy - half), view.height - 1);
 }
 
 /// Turns the triangles of `small` so that their inside is positive; which of them have an area.
 HWY_INLINE MI turn(Corner* c, Setup& s, MI small) {
   const DF d;
   const DI di;
-  const I zero = hn::Zero(di), half = hn::Set(di, subpixels / 2);
+  const I zero = set(di, 0), half = set(di, subpixels / 2);
   const I area = (c[1].x - c[0].x) * (c[2].y - c[0].y) - (c[1].y - c[0].y) * (c[2].x - c[0].x);
-  const MI turned = hn::Lt(area, zero);
+  const MI turned = area < zero;
   const Corner b = c[1];
-  c[1].x = hn::IfThenElse(turned, c[2].x, b.x), c[2].x = hn::IfThenElse(turned, b.x, c[2].x);
-  c[1].y = hn::IfThenElse(turned, c[2].y, b.y), c[2].y = hn::IfThenElse(turned, b.y, c[2].y);
-  const M turned_f = hn::RebindMask(d, turned);
-  c[1].w = hn::IfThenElse(turned_f, c[2].w, b.w), c[2].w = hn::IfThenElse(turned_f, b.w, c[2].w);
-  const MI live = hn::AndNot(hn::Eq(area, zero), small);
-  const I px = hn::ShiftLeft<8>(s.first_x) + half, py = hn::ShiftLeft<8>(s.first_y) + half;
+  c[1].x = select(turned, c[2].x, b.x), c[2].x = select(turned, b.x, c[2].x);
+  c[1].y = select(turned, c[2].y, b.y), c[2].y = select(turned, b.y, c[2].y);
+  const M turned_f = rebind(d, turned);
+  c[1].w = select(turned_f, c[2].w, b.w), c[2].w = select(turned_f, b.w, c[2].w);
+  const MI live = small & !(area == zero);
+  const I px = shift_left<8>(s.first_x) + half, py = shift_left<8>(s.first_y) + half;
   edge(c[0], c[1], px, py, s, 0), edge(c[1], c[2], px, py, s, 1), edge(c[2], c[0], px, py, s, 2);
   for (int k = 0; k < 3; ++k) s.w[k] = c[k].w;
-  s.inverse_area = hn::Set(d, 1.0f) / hn::ConvertTo(d, hn::Abs(area));
+  s.inverse_area = 1.0f / convert(d, abs(area));
   return live;
 }
 

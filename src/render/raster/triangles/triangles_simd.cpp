@@ -16,29 +16,32 @@
 HWY_BEFORE_NAMESPACE();
 namespace sg::raster::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+using namespace simd::HWY_NAMESPACE;
 
 HWY_INLINE Corner project(const TriangleJob& job, I point) {
   const DF d;
   const EyeView& v = job.view;
-  const I at = hn::Add(point, hn::Add(point, point));
+  const I at = point + (point + point);
   const F x = hn::GatherIndex(d, job.xyz, at), y = hn::GatherIndex(d, job.xyz + 1, at), z = hn::GatherIndex(d, job.xyz + 2, at);
-  const F dx = (x - hn::Set(d, v.hi[0])) - hn::Set(d, v.lo[0]);
-  const F dy = (y - hn::Set(d, v.hi[1])) - hn::Set(d, v.lo[1]);
-  const F dz = (z - hn::Set(d, v.hi[2])) - hn::Set(d, v.lo[2]);
-  auto along = [&](const float* a) { return dx * hn::Set(d, a[0]) + dy * hn::Set(d, a[1]) + dz * hn::Set(d, a[2]); };
+  const F dx = (x - v.hi[0]) - v.lo[0];
+  const F dy = (y - v.hi[1]) - v.lo[1];
+  const F dz = (z - v.hi[2]) - v.lo[2];
+  // The eye's coordinates.
+  auto along = [&](const float* a) { return dx * a[0] + dy * a[1] + dz * a[2]; };
   F ex = along(v.right), ey = along(v.up);
   Corner c;
   c.z = along(v.forward);
   if (v.parallel) {
     c.w = c.z;
   } else {
-    c.w = hn::Set(d, 1.0f) / c.z;
+    c.w = 1.0f / c.z;
     ex = ex * c.w, ey = ey * c.w;
   }
-  const F scale = hn::Set(d, v.scale), grid = hn::Set(d, float(subpixels));
-  c.px = hn::Set(d, v.center_x) + ex * scale;
-  c.py = hn::Set(d, v.center_y) - ey * scale;
-  c.x = hn::NearestInt(c.px * grid), c.y = hn::NearestInt(c.py * grid);
+  // On the picture, then on the grid of subpixels.
+  const F scale = set(d, v.scale), grid = set(d, float(subpixels));
+  c.px = v.center_x + ex * scale;
+  c.py = v.center_y - ey * scale;
+  c.x = nearest_int(c.px * grid), c.y = nearest_int(c.py * grid);
   return c;
 }
 
@@ -68,19 +71,16 @@ HWY_INLINE void draw_block(const TriangleJob& job, const uint32_t* t, size_t cou
   const EyeView& view = job.view;
   hn::Vec<DU> i0, i1, i2;
   hn::LoadInterleaved3(du, t, i0, i1, i2);
-  Corner c[3] = {project(job, hn::BitCast(di, i0)), project(job, hn::BitCast(di, i1)), project(job, hn::BitCast(di, i2))};
+  Corner c[3] = {project(job, bit_cast(di, i0)), project(job, bit_cast(di, i1)), project(job, bit_cast(di, i2))};
 
   // Which triangles can be seen, and which need clipping? Comparisons with NaN are false, so those end up with the clipped ones.
   const MI real = hn::FirstN(di, count);
-  const F near_plane = hn::Set(d, view.near_plane), guard = hn::Set(d, guard_band);
-  auto clean = [&](const Corner& q) {
-    return hn::And(hn::Ge(q.z, near_plane), hn::And(hn::Lt(hn::Abs(q.px), guard), hn::Lt(hn::Abs(q.py), guard)));
-  };
-  const MI whole = hn::And(hn::RebindMask(di, hn::And(clean(c[0]), hn::And(clean(c[1]), clean(c[2])))), real);
-  const MI behind =
-      hn::RebindMask(di, hn::And(hn::Lt(c[0].z, near_plane), hn::And(hn::Lt(c[1].z, near_plane), hn::Lt(c[2].z, near_plane))));
+  const F near_plane = set(d, view.near_plane), guard = set(d, guard_band);
+  auto clean = [&](const Corner& q) { return (q.z >= near_plane) & ((abs(q.px) < guard) & (abs(q.py) < guard)); };
+  const MI whole = rebind(di, clean(c[0]) & (clean(c[1]) & clean(c[2]))) & real;
+  const MI behind = rebind(di, (c[0].z < near_plane) & ((c[1].z < near_plane) & (c[2].z < near_plane)));
   const uint32_t first = job.first_primitive + uint32_t(triangle);
-  for (uint64_t bits = bits_of(di, hn::AndNot(hn::Or(whole, behind), real)); bits; bits &= bits - 1) {
+  for (uint64_t bits = bits_of(di, real & !(whole | behind)); bits; bits &= bits - 1) {
     const size_t k = size_t(__builtin_ctzll(bits));
     clip_triangle(view, job.xyz + 3 * size_t(t[3 * k]), job.xyz + 3 * size_t(t[3 * k + 1]), job.xyz + 3 * size_t(t[3 * k + 2]),
                   first + uint32_t(k), large);
@@ -90,14 +90,14 @@ HWY_INLINE void draw_block(const TriangleJob& job, const uint32_t* t, size_t cou
   Setup s;
   I lx, hx, ly, hy;
   pixel_boxes(view, c, s, lx, hx, ly, hy);
-  const MI none = hn::Or(hn::Gt(s.first_x, s.last_x), hn::Gt(s.first_y, s.last_y));
-  const MI seen = hn::AndNot(none, whole);
-  if (hn::AllFalse(di, seen)) return;
-  const I limit = hn::Set(di, job.small * subpixels);
-  const MI small = hn::And(hn::And(hn::Lt(hx - lx, limit), hn::Lt(hy - ly, limit)), seen);
-  const MI big = hn::AndNot(small, seen);
-  if (!hn::AllFalse(di, big)) store_large(c, bits_of(di, big), first, view, large);
-  if (hn::AllFalse(di, small)) return;
+  const MI no_pixel = (s.first_x > s.last_x) | (s.first_y > s.last_y);
+  const MI seen = whole & !no_pixel;
+  if (none(seen)) return;
+  const I limit = set(di, job.small * subpixels);
+  const MI small = (hx - lx < limit) & (hy - ly < limit) & seen;
+  const MI big = seen & !small;
+  if (any(big)) store_large(c, bits_of(di, big), first, view, large);
+  if (none(small)) return;
 
   const MI live = turn(c, s, small);
   draw_small(view, job.keys, s, live, [&](int k) { return first + uint32_t(k); });
@@ -118,11 +118,11 @@ void depths(const WPlane& plane, bool parallel, int x, int y, int n, float* dept
   const DF d;
   const DI di;
   const int lanes = int(hn::Lanes(d));
-  const F start = hn::Set(d, float(plane(x, y))), slope = hn::Set(d, float(plane.gx)), lo = hn::Set(d, plane.lo), hi = hn::Set(d, plane.hi);
+  const F start = set(d, float(plane(x, y))), slope = set(d, float(plane.gx)), lo = set(d, plane.lo), hi = set(d, plane.hi);
   for (int i = 0; i < n; i += lanes) {
-    const F at = hn::ConvertTo(d, hn::Iota(di, i));
-    F w = hn::Min(hn::Max(start + slope * at, lo), hi);
-    if (!parallel) w = hn::Set(d, 1.0f) / w;
+    const F at = convert(d, hn::Iota(di, i));
+    F w = min(max(start + slope * at, lo), hi);
+    if (!parallel) w = 1.0f / w;
     hn::StoreU(w, d, depth + i);
   }
 }

@@ -13,9 +13,12 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "base/simd/vector-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace sg::contouring::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+using namespace simd::HWY_NAMESPACE;
 
 template <class D, class M>
 HWY_INLINE uint64_t bits_of(D d, M mask) {
@@ -29,8 +32,8 @@ HWY_INLINE uint64_t bits_of(D d, M mask) {
 
 template <class T, class V>
 HWY_INLINE auto not_below(V v, V limit) {
-  if constexpr (std::is_floating_point_v<T>) return hn::Ge(v, limit);  // no NaN
-  else return hn::Not(hn::Gt(limit, v));
+  if constexpr (std::is_floating_point_v<T>) return v >= limit;  // no NaN
+  else return plain(!(limit > v));
 }
 
 // Bit i: p[i] >= least, for i < n <= 64, in vectors of up to `most` lanes.
@@ -38,7 +41,7 @@ template <size_t most, class T>
 HWY_INLINE uint64_t word(const T* HWY_RESTRICT p, size_t n, T least) {
   const hn::CappedTag<T, most> d;
   const size_t lanes = hn::Lanes(d);
-  const auto limit = hn::Set(d, least);
+  const auto limit = set(d, least);
   uint64_t r = 0;
   size_t i = 0;
   for (; i + lanes <= n; i += lanes) r |= bits_of(d, not_below<T>(hn::LoadU(d, p + i), limit)) << i;
@@ -97,15 +100,15 @@ class SparseRows {
     constexpr uint64_t ones = 0xffff;
     const hn::CappedTag<uint8_t, 16> d;
     const size_t lanes = hn::Lanes(d), stretches = (b_.nx + length - 1) / length, first = (b_.first_row + r) * b_.ranges->per_row;
-    const auto level = hn::Set(d, b_.level);
+    const auto level = set(d, b_.level);
     const uint8_t *lo = &b_.ranges->lo[first], *hi = &b_.ranges->hi[first];
     uint64_t* HWY_RESTRICT out = b_.bits + r * b_.words;
     uint64_t any = 0, every = ~uint64_t(0);
     for (size_t s = 0; s < stretches; s += 16) {  // four words at a time
       uint64_t inside = 0, outside = 0;
       for (size_t l = 0; l < 16; l += lanes) {
-        inside |= bits_of(d, hn::Gt(hn::LoadU(d, lo + s + l), level)) << l;
-        outside |= bits_of(d, hn::Gt(level, hn::LoadU(d, hi + s + l))) << l;
+        inside |= bits_of(d, hn::LoadU(d, lo + s + l) > level) << l;
+        outside |= bits_of(d, level > hn::LoadU(d, hi + s + l)) << l;
       }
       const size_t here = std::min<size_t>(16, stretches - s), words = std::min<size_t>(4, b_.words - s / 4);
       const uint64_t valid = (uint64_t(1) << here) - 1;
@@ -158,14 +161,14 @@ bool ranges_of_row(const T* HWY_RESTRICT row, size_t nx, float* HWY_RESTRICT lo,
     if constexpr (std::is_floating_point_v<T>) {
       if (n == length) {
         const hn::CappedTag<T, length> d;
-        const auto least = hn::Set(d, T(-HUGE_VALF));
-        auto low = hn::Neg(least), high = least;
+        const auto least = set(d, T(-HUGE_VALF));
+        auto low = -least, high = least;
         for (size_t i = 0; i < length; i += hn::Lanes(d)) {
           const auto v = hn::LoadU(d, p + i);
-          const auto missing = hn::IsNaN(v);
-          const auto known = hn::IfThenElse(missing, least, v);
-          nan = nan || !hn::AllFalse(d, missing);
-          low = hn::Min(low, known), high = hn::Max(high, known);
+          const auto missing = is_nan(v);
+          const auto known = select(missing, least, v);
+          nan = nan || any(missing);
+          low = min(low, known), high = max(high, known);
         }
         lo[s] = float(hn::GetLane(hn::MinOfLanes(d, low))), hi[s] = float(hn::GetLane(hn::MaxOfLanes(d, high)));
         continue;
@@ -191,11 +194,11 @@ bool holds_nan(const T* HWY_RESTRICT p, size_t n) {
   size_t i = 0;
   for (; i + 2 * lanes <= n; i += 2 * lanes) {
     const auto a = hn::LoadU(d, p + i), b = hn::LoadU(d, p + i + lanes);
-    odd = hn::Or(odd, hn::Or(hn::IsNaN(a), hn::IsNaN(b)));
+    odd = odd | (is_nan(a) | is_nan(b));
   }
-  bool any = !hn::AllFalse(d, odd);
-  for (; i < n; ++i) any = any || p[i] != p[i];
-  return any;
+  bool found = any(odd);
+  for (; i < n; ++i) found = found || p[i] != p[i];
+  return found;
 }
 
 void rows_u8(const BitRows<uint8_t>& b) { rows_at_least(b); }

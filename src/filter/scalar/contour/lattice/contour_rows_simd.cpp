@@ -18,11 +18,14 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "base/simd/vector-inl.h"
+
 #include "filter/scalar/contour/lattice/contour_list-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::contouring::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+using namespace simd::HWY_NAMESPACE;
 
 // One word of a row of bits, and the same shifted so that bit i is that of point i+1.
 struct Twice {
@@ -108,7 +111,7 @@ HWY_INLINE void write_cell(hn::Vec<DU> edges, const uint8_t* names, size_t trian
   store_first(hn::Vec<DU>{_mm512_permutexvar_epi32(order, edges.raw)}, 3 * triangles, out);
 }
 HWY_INLINE void write_numbers(uint32_t number, size_t triangles, uint32_t* out) {
-  store_first(hn::Set(DU(), number), triangles, reinterpret_cast<int32_t*>(out));
+  store_first(set(DU(), number), triangles, reinterpret_cast<int32_t*>(out));
 }
 HWY_INLINE void edge_list(hn::Vec<DU> edges, uint32_t* to) { hn::Store(edges, DU(), to); }
 #else

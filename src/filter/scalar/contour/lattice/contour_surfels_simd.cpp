@@ -13,11 +13,14 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "base/simd/vector-inl.h"
+
 #include "filter/scalar/contour/lattice/contour_list-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::contouring::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+using namespace simd::HWY_NAMESPACE;
 
 using DD = hn::ScalableTag<double>;
 using DH = hn::Rebind<float, DD>;  // half as many as DF where there is more than one
@@ -31,7 +34,7 @@ template <class T>
 HWY_INLINE F samples_at(const T* HWY_RESTRICT base, I offset, double value) {
   const DF d;
   if constexpr (std::is_same_v<T, float>) {
-    return hn::Sub(hn::GatherIndex(d, base, offset), hn::Set(d, float(value)));
+    return hn::GatherIndex(d, base, offset) - float(value);
   } else {
     HWY_ALIGN int32_t at[hn::MaxLanes(DI())];
     HWY_ALIGN float got[hn::MaxLanes(DF())];
@@ -53,10 +56,10 @@ HWY_INLINE Two pairs_at(const T* HWY_RESTRICT base, I offset, double value) {
     const hn::ScalableTag<int64_t> d64;
     const hn::Half<DI> half;
     const auto* wide = reinterpret_cast<const int64_t*>(base);
-    const auto lo = hn::BitCast(d, hn::GatherOffset(d64, wide, hn::ShiftLeft<2>(hn::PromoteTo(d64, hn::LowerHalf(half, offset)))));
-    const auto hi = hn::BitCast(d, hn::GatherOffset(d64, wide, hn::ShiftLeft<2>(hn::PromoteTo(d64, hn::UpperHalf(half, offset)))));
-    const F v = hn::Set(d, float(value));
-    return {hn::Sub(hn::ConcatEven(d, hi, lo), v), hn::Sub(hn::ConcatOdd(d, hi, lo), v)};
+    const auto lo = bit_cast(d, hn::GatherOffset(d64, wide, shift_left<2>(hn::PromoteTo(d64, hn::LowerHalf(half, offset)))));
+    const auto hi = bit_cast(d, hn::GatherOffset(d64, wide, shift_left<2>(hn::PromoteTo(d64, hn::UpperHalf(half, offset)))));
+    const F v = set(d, float(value));
+    return {hn::ConcatEven(d, hi, lo) - v, hn::ConcatOdd(d, hi, lo) - v};
   }
 #endif
   return {samples_at(base, offset, value), samples_at(base + 1, offset, value)};
@@ -69,17 +72,16 @@ struct At {
   F value, x, y, z;  // and slopes
 };
 
-HWY_INLINE F mix(F a, F b, F t) { return hn::Add(a, hn::Mul(hn::Sub(b, a), t)); }
+HWY_INLINE F mix(F a, F b, F t) { return a + (b - a) * t; }
 HWY_INLINE At trilinear(const Corners& c, F u, F v, F w) {
   const F a = mix(c.f[0], c.f[1], u), b = mix(c.f[2], c.f[3], u), e = mix(c.f[4], c.f[5], u), g = mix(c.f[6], c.f[7], u);
   const F low = mix(a, b, v), high = mix(e, g, v);
-  const F d0 = hn::Sub(c.f[1], c.f[0]), d1 = hn::Sub(c.f[3], c.f[2]), d2 = hn::Sub(c.f[5], c.f[4]), d3 = hn::Sub(c.f[7], c.f[6]);
-  return {mix(low, high, w), mix(mix(d0, d1, v), mix(d2, d3, v), w), mix(hn::Sub(b, a), hn::Sub(g, e), w), hn::Sub(high, low)};
+  const F d0 = c.f[1] - c.f[0], d1 = c.f[3] - c.f[2], d2 = c.f[5] - c.f[4], d3 = c.f[7] - c.f[6];
+  return {mix(low, high, w), mix(mix(d0, d1, v), mix(d2, d3, v), w), mix(b - a, g - e, w), high - low};
 }
 HWY_INLINE F within_cell(F u) {
-  const DF d;
-  const F held = hn::Min(hn::Max(u, hn::Zero(d)), hn::Set(d, 1.0f));
-  return hn::IfThenElse(hn::IsNaN(u), hn::Set(d, 0.5f), held);
+  const F held = min(max(u, 0), 1.0f);
+  return select(is_nan(u), 0.5f, held);
 }
 
 template <class T>
@@ -140,29 +142,30 @@ class Surfels {
       const Two two = pairs_at(f_ + (k & 1) * r_.nx + (k >> 1) * r_.nx * r_.ny, from, r_.value);
       c.f[2 * k] = two.a, c.f[2 * k + 1] = two.b;
     }
-    const F half = hn::Set(d, 0.5f), one = hn::Set(d, 1.0f);
+    // Two steps of Newton's method from the middle of the cell, along the gradient.
+    const F half = set(d, 0.5f), one = set(d, 1.0f);
     F u = half, v = half, w = half;
     for (int step = 0; step < 2; ++step) {
       const At at = trilinear(c, u, v, w);
-      const F square = hn::Add(hn::Add(hn::Mul(at.x, at.x), hn::Mul(at.y, at.y)), hn::Mul(at.z, at.z));
-      const F move = hn::IfThenElseZero(hn::Gt(square, hn::Zero(d)), hn::Neg(hn::Div(at.value, square)));
-      u = within_cell(hn::Add(u, hn::Mul(at.x, move)));
-      v = within_cell(hn::Add(v, hn::Mul(at.y, move)));
-      w = within_cell(hn::Add(w, hn::Mul(at.z, move)));
+      const F square = at.x * at.x + at.y * at.y + at.z * at.z;
+      const F move = only(square > 0, -(at.value / square));
+      u = within_cell(u + at.x * move);
+      v = within_cell(v + at.y * move);
+      w = within_cell(w + at.z * move);
     }
+    // Gradient there.
     HWY_ALIGN int32_t index[3][hn::MaxLanes(DI())];
     find_cells(n, index);
     const At at = smooth(c, from, index, u, v, w);
     // Against the gradient in space. Scaled by the largest part, so that no square is lost.
-    F gx = hn::Mul(at.x, hn::Set(d, float(-1 / r_.step.x))), gy = hn::Mul(at.y, hn::Set(d, float(-1 / r_.step.y))),
-      gz = hn::Mul(at.z, hn::Set(d, float(-1 / r_.step.z)));
-    const F most = hn::Max(hn::Max(hn::Abs(gx), hn::Abs(gy)), hn::Abs(gz));
-    const auto known = hn::And(hn::Gt(most, hn::Zero(d)), hn::Lt(most, hn::Set(d, HUGE_VALF)));
-    const F scale = hn::Div(one, most);
-    gx = hn::Mul(gx, scale), gy = hn::Mul(gy, scale), gz = hn::Mul(gz, scale);
-    const F size = hn::Div(one, hn::Sqrt(hn::Add(hn::Add(hn::Mul(gx, gx), hn::Mul(gy, gy)), hn::Mul(gz, gz))));
-    hn::StoreInterleaved3(hn::IfThenElseZero(known, hn::Mul(gx, size)), hn::IfThenElseZero(known, hn::Mul(gy, size)),
-                          hn::IfThenElse(known, hn::Mul(gz, size), one), d, normals);
+    F gx = at.x * float(-1 / r_.step.x), gy = at.y * float(-1 / r_.step.y), gz = at.z * float(-1 / r_.step.z);
+    const F most = max(max(abs(gx), abs(gy)), abs(gz));
+    const auto known = (most > 0) & (most < HUGE_VALF);
+    const F scale = one / most;
+    gx = gx * scale, gy = gy * scale, gz = gz * scale;
+    const F size = one / sqrt(gx * gx + gy * gy + gz * gz);
+    hn::StoreInterleaved3(only(known, gx * size), only(known, gy * size), select(known, gz * size, one), d, normals);
+    // Places in space, in double precision.
     HWY_ALIGN float local[3][hn::MaxLanes(DF())];
     hn::Store(u, d, local[0]), hn::Store(v, d, local[1]), hn::Store(w, d, local[2]);
     for (size_t l = 0; l < hn::Lanes(d); l += hn::Lanes(DD())) {
@@ -170,8 +173,8 @@ class Surfels {
       const DH dh;
       auto place = [&](double first, double step, int axis) {
         const auto cell = hn::PromoteTo(dd, hn::LoadU(DHI(), index[axis] + l));
-        const auto at_cell = hn::Add(cell, hn::PromoteTo(dd, hn::LoadU(dh, local[axis] + l)));
-        return hn::DemoteTo(dh, hn::Add(hn::Set(dd, first), hn::Mul(hn::Set(dd, step), at_cell)));
+        const auto at_cell = cell + hn::PromoteTo(dd, hn::LoadU(dh, local[axis] + l));
+        return hn::DemoteTo(dh, first + step * at_cell);
       };
       hn::StoreInterleaved3(place(r_.first.x, r_.step.x, 0), place(r_.first.y, r_.step.y, 1), place(r_.first.z, r_.step.z, 2), dh,
                             xyz + 3 * l);
@@ -182,13 +185,13 @@ class Surfels {
   HWY_INLINE void find_cells(size_t n, int32_t (*HWY_RESTRICT index)[hn::MaxLanes(DI())]) {
     const DD dd;
     const DHI di;
-    const auto half = hn::Set(dd, 0.5), nx = hn::Set(dd, double(r_.nx)), ny = hn::Set(dd, double(r_.ny));
+    const auto half = set(dd, 0.5), nx = set(dd, double(r_.nx)), ny = set(dd, double(r_.ny));
     for (size_t l = 0; l < hn::Lanes(DF()); l += hn::Lanes(dd)) {
       const auto p = hn::PromoteTo(dd, hn::LoadU(di, from_ + n + l));
-      const auto row = hn::Floor(hn::Div(hn::Add(p, half), nx)), r = hn::Add(row, hn::Set(dd, double(first_row_)));
-      const auto k = hn::Floor(hn::Div(hn::Add(r, half), ny));
-      hn::StoreU(hn::DemoteTo(di, hn::Sub(p, hn::Mul(row, nx))), di, index[0] + l);
-      hn::StoreU(hn::DemoteTo(di, hn::Sub(r, hn::Mul(k, ny))), di, index[1] + l);
+      const auto row = floor((p + half) / nx), r = row + double(first_row_);
+      const auto k = floor((r + half) / ny);
+      hn::StoreU(hn::DemoteTo(di, p - row * nx), di, index[0] + l);
+      hn::StoreU(hn::DemoteTo(di, r - k * ny), di, index[1] + l);
       hn::StoreU(hn::DemoteTo(di, k), di, index[2] + l);
     }
   }
@@ -199,15 +202,15 @@ class Surfels {
     const DI di;
     const At own = trilinear(c, u, v, w);
     const size_t nx = r_.nx, nxy = r_.nx * r_.ny;
-    const F half = hn::Set(d, 0.5f);
+    const F half = set(d, 0.5f);
     // The change over two cells of a line of samples: a, low, high, b.
-    auto change = [](F a, F low, F high, F b, F t) { return hn::Sub(mix(high, b, t), mix(a, low, t)); };
+    auto change = [](F a, F low, F high, F b, F t) { return mix(high, b, t) - mix(a, low, t); };
     auto choose = [&](size_t axis, size_t count, auto&& slope, F otherwise) {
       const I here = hn::Load(di, index[axis]);
-      const auto inner = hn::And(hn::Gt(here, hn::Zero(di)), hn::Gt(hn::Set(di, int32_t(count) - 2), here));
-      const I one = hn::IfThenElseZero(inner, hn::Set(di, int32_t(axis == 0 ? 1 : axis == 1 ? nx : nxy)));
-      const F central = hn::Mul(slope(hn::Sub(from, one), hn::Add(from, one)), half);
-      return hn::IfThenElse(hn::MaskFromVec(hn::BitCast(d, hn::VecFromMask(di, inner))), central, otherwise);
+      const auto inner = (here > 0) & (int32_t(count) - 2 > here);
+      const I one = only(inner, set(di, int32_t(axis == 0 ? 1 : axis == 1 ? nx : nxy)));
+      const F central = slope(from - one, from + one) * half;
+      return select(hn::MaskFromVec(bit_cast(d, hn::VecFromMask(di, inner))), central, otherwise);
     };
     const F x = choose(
         0, r_.nx,

@@ -11,16 +11,19 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "base/simd/vector-inl.h"
+
 #include "filter/scalar/contour/lattice/contour_list-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::contouring::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+using namespace simd::HWY_NAMESPACE;
 
 using D = hn::ScalableTag<double>;
 using DF = hn::Rebind<float, D>;
 using DI = hn::Rebind<int32_t, D>;
-using V = hn::Vec<D>;
+using V = Float<D>;
 using VF = hn::Vec<DF>;
 using VI = hn::Vec<DI>;
 
@@ -145,45 +148,40 @@ class Rows {
     const DF df;
     const DI di;
     const auto nx = double(job_.frame.dims[0]), ny = double(job_.frame.dims[1]);
-    const V one = hn::Set(d, 1.0), half = hn::Set(d, 0.5);
+    const V one = set(d, 1.0), half = set(d, 0.5);
     for (size_t l = 0; l < 8; ++l) __builtin_prefetch(f_ + edges_.from[e + 48 + l]), __builtin_prefetch(f_ + edges_.to[e + 48 + l]);
     const VI from = hn::LoadU(di, edges_.from + e), to = hn::LoadU(di, edges_.to + e);
     const V a = samples_at(f_, from), b = samples_at(f_, to);
-    V t = hn::Div(hn::Sub(hn::Set(d, job_.value), a), hn::Sub(b, a));
-    t = hn::IfThenElse(hn::And(hn::Ge(t, hn::Zero(d)), hn::Le(t, one)), t, half);
+    V t = (job_.value - a) / (b - a);
+    t = select((t >= 0) & (t <= one), t, half);
     // Rows and columns from offsets: exact, since the quotients are half a sample away from whole numbers.
     const V p = hn::PromoteTo(d, from);
-    const V row = hn::Floor(hn::Div(hn::Add(p, half), hn::Set(d, nx))), i = hn::Sub(p, hn::Mul(row, hn::Set(d, nx)));
-    const V r = hn::Add(row, hn::Set(d, double(first_row_)));
-    const V k = hn::Floor(hn::Div(hn::Add(r, half), hn::Set(d, ny))), j = hn::Sub(r, hn::Mul(k, hn::Set(d, ny)));
-    const V length = hn::PromoteTo(d, hn::Sub(to, from));
-    const auto along_x = hn::Eq(length, one), along_y = hn::Eq(length, hn::Set(d, nx));
-    const auto along_z = hn::Not(hn::Or(along_x, along_y));
-    auto place = [&](double first, double step, V index, auto along) {
-      return hn::DemoteTo(df, hn::Add(hn::Set(d, first), hn::Mul(hn::Set(d, step), hn::Add(index, hn::IfThenElseZero(along, t)))));
-    };
+    const V row = floor((p + half) / nx), i = p - row * nx;
+    const V r = row + double(first_row_);
+    const V k = floor((r + half) / ny), j = r - k * ny;
+    const V length = hn::PromoteTo(d, to - from);
+    const auto along_x = length == one, along_y = length == nx;
+    const auto along_z = !(along_x | along_y);
+    auto place = [&](double first, double step, V index, auto along) { return hn::DemoteTo(df, first + step * (index + only(along, t))); };
     hn::StoreInterleaved3(place(work_.first.x, work_.step.x, i, along_x), place(work_.first.y, work_.step.y, j, along_y),
                           place(work_.first.z, work_.step.z, k, along_z), df, xyz);
     if (points) {
-      const VI base = hn::Set(di, int32_t(uint32_t(first_row_ * job_.frame.dims[0])));
-      hn::StoreInterleaved3(hn::BitCast(df, hn::Add(from, base)), hn::BitCast(df, hn::Add(to, base)), hn::DemoteTo(df, t), df,
-                            reinterpret_cast<float*>(points));
+      const VI base = set(di, int32_t(uint32_t(first_row_ * job_.frame.dims[0])));
+      hn::StoreInterleaved3(bit_cast(df, from + base), bit_cast(df, to + base), hn::DemoteTo(df, t), df, reinterpret_cast<float*>(points));
     }
     if (!normals) return;
     auto blend = [&](ptrdiff_t step, double scale) {
-      const V at_a = hn::Sub(samples_at(f_ + step, from), samples_at(f_ - step, from));
-      const V at_b = hn::Sub(samples_at(f_ + step, to), samples_at(f_ - step, to));
-      return hn::Mul(hn::Set(d, scale), hn::Add(at_a, hn::Mul(hn::Sub(at_b, at_a), t)));
+      const V at_a = samples_at(f_ + step, from) - samples_at(f_ - step, from);
+      const V at_b = samples_at(f_ + step, to) - samples_at(f_ - step, to);
+      return scale * (at_a + (at_b - at_a) * t);
     };
     const V gx = blend(1, work_.scale.x), gy = blend(job_.frame.stride[1], work_.scale.y), gz = blend(job_.frame.stride[2], work_.scale.z);
-    const V square = hn::Add(hn::Add(hn::Mul(gx, gx), hn::Mul(gy, gy)), hn::Mul(gz, gz));
-    const V size = hn::Div(hn::Set(d, -1.0), hn::Sqrt(square));
-    hn::StoreInterleaved3(hn::DemoteTo(df, hn::Mul(gx, size)), hn::DemoteTo(df, hn::Mul(gy, size)), hn::DemoteTo(df, hn::Mul(gz, size)), df,
-                          normals);
+    const V square = gx * gx + gy * gy + gz * gz;
+    const V size = -1.0 / sqrt(square);
+    hn::StoreInterleaved3(hn::DemoteTo(df, gx * size), hn::DemoteTo(df, gy * size), hn::DemoteTo(df, gz * size), df, normals);
     // At the ends of rows differences are one-sided; a gradient of zero, or beside NaN, is looked at closely too.
-    const auto good = hn::And(hn::And(hn::Gt(square, hn::Zero(d)), hn::Lt(square, hn::Set(d, HUGE_VAL))),
-                              hn::And(hn::Ge(i, one), hn::Lt(i, hn::Set(d, nx - 2))));
-    if (HWY_LIKELY(hn::AllTrue(d, good))) return;
+    const auto good = (square > 0) & (square < HUGE_VAL) & ((i >= one) & (i < nx - 2));
+    if (HWY_LIKELY(all(good))) return;
     HWY_ALIGN uint8_t bytes[8] = {};
     hn::StoreMaskBits(d, good, bytes);
     for (size_t l = 0; l < n; ++l) {

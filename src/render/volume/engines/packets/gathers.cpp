@@ -23,12 +23,12 @@ namespace sg::volume::HWY_NAMESPACE {
 HWY_NOINLINE float fetch(const float* data, int count, bool loads) {
   const hn::CappedTag<float, 16> d;
   const IntTag<decltype(d)> di;
-  auto at = hn::ShiftLeft<4>(hn::Iota(di, 0));
-  auto sum = hn::Zero(d);
+  auto at = shift_left<4>(hn::Iota(di, 0));
+  auto sum = set(d, 0);
   for (int i = 0; i < count; ++i) {
     const auto p = gather_pair(d, data, at, loads), q = gather_pair(d, data + 256, at, loads);
-    sum = hn::Add(sum, hn::Add(hn::Add(p.a, q.a), hn::Add(p.b, q.b)));
-    at = hn::And(hn::Add(at, hn::Set(di, 37)), hn::Set(di, 255));
+    sum = sum + ((p.a + q.a) + (p.b + q.b));
+    at = (at + 37) & 255;
   }
   return hn::GetLane(hn::SumOfLanes(d, sum));
 }

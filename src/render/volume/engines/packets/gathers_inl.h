@@ -12,16 +12,17 @@
 #include <cstring>
 #include <type_traits>
 
+#include "base/simd/vector-inl.h"
+
 #define SG_HARDWARE_GATHERS (HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2)
 
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+using namespace simd::HWY_NAMESPACE;
 
 template <class D>
 using IntTag = hn::RebindToSigned<D>;
-template <class D>
-using Int = hn::Vec<IntTag<D>>;
 
 template <class D>
 constexpr int lanes_of = int(hn::MaxLanes(D()));
@@ -29,7 +30,7 @@ constexpr int lanes_of = int(hn::MaxLanes(D()));
 /// Values that are neighbours in memory.
 template <class D>
 struct Pair {
-  hn::Vec<D> a, b;
+  Float<D> a, b;
 };
 template <class D>
 struct Quad {
@@ -134,11 +135,11 @@ HWY_INLINE void by_halves(D, const int32_t* at, const Read& read) {
   for (int h = 0; h < lanes_of<D> / 8; ++h) read(EightIndices(at + 8 * h), h);
 }
 template <class D>
-HWY_INLINE hn::Vec<D> joined(D, const __m256 half[2]) {
+HWY_INLINE Float<D> joined(D, const __m256 half[2]) {
 #if HWY_TARGET <= HWY_AVX3
-  if constexpr (lanes_of<D> == 16) return hn::Vec<D>{_mm512_insertf32x8(_mm512_castps256_ps512(half[0]), half[1], 1)};
+  if constexpr (lanes_of<D> == 16) return Float<D>{_mm512_insertf32x8(_mm512_castps256_ps512(half[0]), half[1], 1)};
 #endif
-  if constexpr (lanes_of<D> == 8) return hn::Vec<D>{half[0]};
+  if constexpr (lanes_of<D> == 8) return Float<D>{half[0]};
 }
 #endif
 
@@ -150,7 +151,7 @@ HWY_INLINE Int<D> gather_words([[maybe_unused]] D d, const void* data, Int<D> at
     if (loads) {
       __m256 half[2];
       by_halves(d, at, [&](const EightIndices& i, int h) HWY_ATTR { half[h] = load_words(static_cast<const char*>(data), i); });
-      return hn::BitCast(IntTag<D>(), joined(d, half));
+      return bit_cast(IntTag<D>(), joined(d, half));
     }
   }
 #if HWY_TARGET <= HWY_AVX3
@@ -164,7 +165,7 @@ HWY_INLINE Int<D> gather_words([[maybe_unused]] D d, const void* data, Int<D> at
 /// Pairs as loads bring them: those of the lanes 0 1, 4 5, ... side by side in x, those of 2 3, 6 7, ... in y.
 template <class D>
 struct SideBySide {
-  using F = hn::Vec<D>;
+  using F = Float<D>;
   F x, y;
 
   /// A number of each lane beside itself.
@@ -203,7 +204,7 @@ HWY_INLINE Pair<D> gathered_pair(D d, const float* data, Int<D> at) {
         return V64{_mm256_i32gather_epi64(reinterpret_cast<const long long*>(data), from, 4)};
     };
     const V64 lo = longs(below), hi = longs(above);
-    return {hn::ConcatEven(d, hn::BitCast(d, hi), hn::BitCast(d, lo)), hn::ConcatOdd(d, hn::BitCast(d, hi), hn::BitCast(d, lo))};
+    return {hn::ConcatEven(d, bit_cast(d, hi), bit_cast(d, lo)), hn::ConcatOdd(d, bit_cast(d, hi), bit_cast(d, lo))};
   }
 #endif
   return {hn::GatherIndex(d, data, at), hn::GatherIndex(d, data + 1, at)};
@@ -294,12 +295,12 @@ HWY_INLINE void gather_words_at(D d, const T* data, const ptrdiff_t (&on)[n], At
       by_halves(d, at, [&](const EightIndices& i, int h) HWY_ATTR {
         for (size_t r = 0; r < n; ++r) half[r][h] = load_words(data + on[r], i);
       });
-      for (size_t r = 0; r < n; ++r) out[r] = hn::BitCast(IntTag<D>(), joined(d, half[r]));
+      for (size_t r = 0; r < n; ++r) out[r] = bit_cast(IntTag<D>(), joined(d, half[r]));
       return;
     }
   }
 #endif
-  const Int<D> first = in_vector(d, at), byte = sizeof(T) == 2 ? hn::ShiftLeft<1>(first) : first;
+  const Int<D> first = in_vector(d, at), byte = sizeof(T) == 2 ? shift_left<1>(first) : first;
   for (size_t r = 0; r < n; ++r) out[r] = gather_words(d, data + on[r], byte, false);
 }
 
@@ -309,24 +310,24 @@ template <class D>
 struct Integers {
   Int<D> last_word;  ///< the last word within the array begins at this number
   Int<D> code;       ///< the bits of 2^23, and the bit of the sign turned over
-  hn::Vec<D> zero;   ///< 2^23, and half of the range of T where there is a sign
+  Float<D> zero;     ///< 2^23, and half of the range of T where there is a sign
 
   HWY_INLINE Integers(int last, int bits, bool has_sign)
-      : last_word(hn::Set(IntTag<D>(), last)),
-        code(hn::Set(IntTag<D>(), 0x4B000000 | (has_sign ? 1 << (bits - 1) : 0))),
-        zero(hn::Set(D(), float((1 << 23) + (has_sign ? 1 << (bits - 1) : 0)))) {}
+      : last_word(set(IntTag<D>(), last)),
+        code(set(IntTag<D>(), 0x4B000000 | (has_sign ? 1 << (bits - 1) : 0))),
+        zero(set(D(), float((1 << 23) + (has_sign ? 1 << (bits - 1) : 0)))) {}
 };
 
 /// Small integer number k of a word. Its bits behind those of 2^23 are the float 2^23 + v; the difference is exact, as a conversion is.
 template <class T, int k, class D>
-HWY_INLINE hn::Vec<D> number_in(D d, Int<D> word, const Integers<D>& integers) {
+HWY_INLINE Float<D> number_in(D d, Int<D> word, const Integers<D>& integers) {
   static_assert(std::is_unsigned_v<T>);
   constexpr int bits = 8 * sizeof(T);
   const IntTag<D> di;
   const hn::RebindToUnsigned<D> du;
-  Int<D> number = hn::BitCast(di, hn::ShiftRight<bits * k>(hn::BitCast(du, word)));
-  if constexpr (bits * (k + 1) < 32) number = hn::And(number, hn::Set(di, (1 << bits) - 1));
-  return hn::Sub(hn::BitCast(d, hn::Xor(number, integers.code)), integers.zero);
+  Int<D> number = bit_cast(di, shift_right<bits * k>(bit_cast(du, word)));
+  if constexpr (bits * (k + 1) < 32) number = number & ((1 << bits) - 1);
+  return bit_cast(d, number ^ integers.code) - integers.zero;
 }
 template <class T, class D>
 HWY_INLINE Pair<D> pair_in(D d, Int<D> word, const Integers<D>& integers) {
@@ -336,18 +337,17 @@ HWY_INLINE Pair<D> pair_in(D d, Int<D> word, const Integers<D>& integers) {
 /// May words begin at `at` + on for all lanes? The last one within the array begins at `last_word`.
 template <class D, size_t n, class At>
 HWY_INLINE bool words_fit(D d, const ptrdiff_t (&on)[n], At at, Int<D> last_word) {
-  const IntTag<D> di;
-  return hn::AllFalse(di, hn::Gt(in_vector(d, at), hn::Sub(last_word, hn::Set(di, int(*std::max_element(on, on + n))))));
+  return none(in_vector(d, at) > last_word - int(*std::max_element(on, on + n)));
 }
 /// A pair of small integers by one word, which near the end of the array starts earlier.
 template <class D, class T>
 HWY_INLINE Pair<D> gather_pair(D d, const T* data, Int<D> at, const Integers<D>& integers, bool loads) {
   const hn::RebindToUnsigned<D> du;
   constexpr int bits_by_shift = sizeof(T) == 2 ? 4 : 3;
-  const Int<D> from = hn::Min(at, integers.last_word), skipped = hn::ShiftLeft<bits_by_shift>(hn::Sub(at, from));
+  const Int<D> from = min(at, integers.last_word), skipped = shift_left<bits_by_shift>(at - from);
   Int<D> word;
   gather_words_at(d, data, {0}, from, loads, &word);
-  return pair_in<T>(d, hn::BitCast(IntTag<D>(), hn::Shr(hn::BitCast(du, word), hn::BitCast(du, skipped))), integers);
+  return pair_in<T>(d, bit_cast(IntTag<D>(), bit_cast(du, word) >> bit_cast(du, skipped)), integers);
 }
 /// gather_pairs() of small integers.
 template <class D, class T, size_t n, class At>
@@ -359,7 +359,7 @@ HWY_INLINE void gather_pairs(D d, const T* data, const ptrdiff_t (&on)[n], At at
     return;
   }
   const Int<D> first = in_vector(d, at);
-  for (size_t r = 0; r < n; ++r) out[r] = gather_pair(d, data, hn::Add(first, hn::Set(IntTag<D>(), int(on[r]))), integers, loads);
+  for (size_t r = 0; r < n; ++r) out[r] = gather_pair(d, data, first + int(on[r]), integers, loads);
 }
 /// gather_quads() of small integers.
 template <class D, class T, size_t n>
@@ -376,7 +376,7 @@ HWY_INLINE void gather_quads(D d, const T* data, const ptrdiff_t (&on)[n], Int<D
   }
   Pair<D> low[n], high[n];
   gather_pairs(d, data, on, at, integers, loads, low);
-  gather_pairs(d, data, on, hn::Add(at, hn::Set(IntTag<D>(), 2)), integers, loads, high);
+  gather_pairs(d, data, on, at + 2, integers, loads, high);
   for (size_t r = 0; r < n; ++r) out[r] = {low[r], high[r]};
 }
 

@@ -15,16 +15,16 @@ namespace sg::volume::HWY_NAMESPACE {
 /// One axis of a cell of each lane, which may be the first or the last there.
 template <class D>
 struct Edge {
-  using F = hn::Vec<D>;
-  hn::Mask<D> first, last;
+  using F = Float<D>;
+  Mask<D> first, last;
   bool inner;  ///< no lane's is
 
   /// Differences over two cells (or derivatives) at both ends, of which those at the border are made good (border_slope()). `whole`: what
   /// they would be if the field went straight over the cell.
   HWY_INLINE void mend(F& lower, F& upper, F whole) const {
-    const auto alone = hn::And(first, last);
-    const F twice = hn::Add(whole, whole), lo = hn::IfThenElse(alone, whole, lower), hi = hn::IfThenElse(alone, whole, upper);
-    lower = hn::IfThenElse(first, hn::Sub(twice, hi), lower), upper = hn::IfThenElse(last, hn::Sub(twice, lo), upper);
+    const auto alone = first & last;
+    const F twice = whole + whole, lo = select(alone, whole, lower), hi = select(alone, whole, upper);
+    lower = select(first, twice - hi, lower), upper = select(last, twice - lo, upper);
   }
   /// The same for the corners i + 2 j + 4 k of a cell, `per_cell` being what a difference over one cell, as there is at the border, counts.
   HWY_INLINE void mend_corners(F at[8], int axis, float per_cell) const {
@@ -32,16 +32,16 @@ struct Edge {
     for (int c = 0; c < 8; ++c) {
       if (c >> axis & 1) continue;
       F &lower = at[c], &upper = at[c | 1 << axis];
-      mend(lower, upper, hn::Mul(hn::Set(D(), per_cell), hn::IfThenElse(first, lower, upper)));
+      mend(lower, upper, per_cell * select(first, lower, upper));
     }
   }
   /// The difference over two cells around a fraction of the edge from a to b.
   HWY_INLINE F change(F before, F a, F b, F after, F fraction) const {
     const D d;
-    F lower = hn::Sub(b, before), upper = hn::Sub(after, a);
+    F lower = b - before, upper = after - a;
     if (!inner) {
-      const F over = hn::Sub(b, a);
-      mend(lower, upper, hn::Add(over, over));
+      const F over = b - a;
+      mend(lower, upper, over + over);
     }
     return mixed(d, lower, upper, fraction);
   }
@@ -50,7 +50,7 @@ struct Edge {
 /// A cell of each lane with the samples one beyond it along each axis; beyond the border those are the outermost again.
 template <class D, class T>
 class Around {
-  using F = hn::Vec<D>;
+  using F = Float<D>;
   using I = Int<D>;
 
  public:
@@ -58,11 +58,10 @@ class Around {
 
   HWY_INLINE Around(const Source<D, T>& source, const I cell[3]) : source_(source), corner_(source.offset(cell[0], cell[1], cell[2])) {
     const D d;
-    const IntTag<D> di;
     for (int a = 0; a < 3; ++a) {
-      const auto in_first = hn::Eq(cell[a], hn::Zero(di)), in_last = hn::Eq(cell[a], source.last_cell[a]);
-      first_[a] = hn::RebindMask(d, in_first), last_[a] = hn::RebindMask(d, in_last);
-      inner = inner && hn::AllFalse(di, hn::Or(in_first, in_last));
+      const auto in_first = cell[a] == 0, in_last = cell[a] == source.last_cell[a];
+      first_[a] = rebind(d, in_first), last_[a] = rebind(d, in_last);
+      inner = inner && none(in_first | in_last);
     }
   }
 
@@ -74,7 +73,7 @@ class Around {
   HWY_INLINE void rows(Quad<D> rows[4]) const {
     const ptrdiff_t row = source_.to_row, layer = source_.to_layer;
     if (inner) return source_.quads(corner_, {-1, row - 1, layer - 1, layer + row - 1}, rows);
-    const I before = hn::Add(corner_, step(first_[0], 0, -1)), after = hn::Add(corner_, step(last_[0], 0, 1));
+    const I before = corner_ + step(first_[0], 0, -1), after = corner_ + step(last_[0], 0, 1);
     Pair<D> low[4], own[4], high[4];
     source_.corners(before, low), source_.corners(corner_, own), source_.corners(after, high);
     for (int r = 0; r < 4; ++r) rows[r] = {{low[r].a, own[r].a}, {own[r].b, high[r].b}};
@@ -84,8 +83,8 @@ class Around {
   HWY_INLINE void beyond(Pair<D> rows[4]) const {
     const ptrdiff_t along = axis == 1 ? source_.to_row : source_.to_layer, across = axis == 1 ? source_.to_layer : source_.to_row;
     if (inner) return source_.pairs(corner_, {-along, across - along, 2 * along, 2 * along + across}, rows);
-    source_.pairs(hn::Add(corner_, step(first_[axis], 0, -int(along))), {0, across}, rows);
-    source_.pairs(hn::Add(corner_, step(last_[axis], int(along), int(2 * along))), {0, across}, rows + 2);
+    source_.pairs(corner_ + step(first_[axis], 0, -int(along)), {0, across}, rows);
+    source_.pairs(corner_ + step(last_[axis], int(along), int(2 * along)), {0, across}, rows + 2);
   }
   /// each(corner i + 2 j + 4 k, the sample before it along the axis, its own, the one after it), of what rows() told.
   template <int axis, class Each>
@@ -121,33 +120,33 @@ class Around {
   }
 
  private:
-  static HWY_INLINE I step(hn::Mask<D> border, int there, int elsewhere) {
+  static HWY_INLINE I step(Mask<D> border, int there, int elsewhere) {
     const IntTag<D> di;
-    return hn::IfThenElse(hn::RebindMask(di, border), hn::Set(di, there), hn::Set(di, elsewhere));
+    return select(border, set(di, there), elsewhere);
   }
 
   const Source<D, T>& source_;
   const I corner_;
-  hn::Mask<D> first_[3], last_[3];
+  Mask<D> first_[3], last_[3];
 };
 
 /// Differences over two cells along each axis at the corners of a cell.
 template <class D, class T>
 class CornerChanges {
-  using F = hn::Vec<D>;
+  using F = Float<D>;
 
  public:
   HWY_INLINE void find(const Around<D, T>& around) {
-    each(around, [](F before, F, F after) HWY_ATTR { return hn::Sub(after, before); });
+    each(around, [](F before, F, F after) HWY_ATTR { return after - before; });
   }
   /// The same; where a neighbour is no number, twice the difference to the other one.
   HWY_NOINLINE void find_beside_holes(const Around<D, T>& around) {
     each(around, [](F before, F own, F after) HWY_ATTR {
-      const F twice = hn::Add(own, own);
-      const F lo = hn::IfThenElse(hn::IsNaN(before), hn::Sub(twice, after), before);
-      const F hi = hn::IfThenElse(hn::IsNaN(after), hn::Sub(twice, before), after);
-      const F change = hn::Sub(hi, lo);
-      return hn::IfThenElseZero(hn::Not(hn::IsNaN(change)), change);
+      const F twice = own + own;
+      const F lo = select(is_nan(before), twice - after, before);
+      const F hi = select(is_nan(after), twice - before, after);
+      const F change = hi - lo;
+      return only(!is_nan(change), change);
     });
   }
   /// Along axis a, between the corners.

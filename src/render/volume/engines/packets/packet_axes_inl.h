@@ -15,7 +15,7 @@ namespace sg::volume::HWY_NAMESPACE {
 /// q = u.
 template <class D>
 class EvenAxes {
-  using F = hn::Vec<D>;
+  using F = Float<D>;
   using I = Int<D>;
 
  public:
@@ -27,17 +27,16 @@ class EvenAxes {
   /// The cell at a place of an axis; -1 and last + 1 are the halves beyond the outermost samples.
   HWY_INLINE I cell_at(int a, F q) const {
     const D d;
-    const IntTag<D> di;
-    return hn::Min(hn::Max(to_int(d, hn::Floor(q)), hn::Set(di, -1)), hn::Add(last_cell_[a], hn::Set(di, 1)));
+    return min(max(to_int(d, floor(q)), -1), last_cell_[a] + 1);
   }
   /// Where sample `number` lies, or what is beyond all of them.
-  HWY_INLINE F sample(int, I number) const { return hn::ConvertTo(D(), number); }
+  HWY_INLINE F sample(int, I number) const { return convert(D(), number); }
   /// The share of the edge of cell `inside` at a place start + along * t, for any t.
   struct Shares {
     F base;
     HWY_INLINE F at(F along, F t) const { return mul_add(along, t, base); }
   };
-  HWY_INLINE Shares shares(int, I inside, F start) const { return {hn::Sub(start, hn::ConvertTo(D(), inside))}; }
+  HWY_INLINE Shares shares(int, I inside, F start) const { return {start - convert(D(), inside)}; }
 
   /// Derivatives in q in one cell of each lane.
   template <class T>
@@ -47,7 +46,7 @@ class EvenAxes {
     /// The same; where a neighbour is no number, one-sided.
     HWY_INLINE void find_beside_holes(const EvenAxes&, const Around<D, T>& around, const I[3]) { changes_.find_beside_holes(around); }
     /// Along axis a, on the way from + s * way.
-    HWY_INLINE Cubic<D> along(int a, const F from[3], const F way[3]) const { return changes_.on(a, from, way).times(hn::Set(D(), 0.5f)); }
+    HWY_INLINE Cubic<D> along(int a, const F from[3], const F way[3]) const { return changes_.on(a, from, way).times(set(D(), 0.5f)); }
 
    private:
     CornerChanges<D, T> changes_;
@@ -60,7 +59,7 @@ class EvenAxes {
 /// UnevenAxes of rectilinear grids.
 template <class D>
 class UnevenLanes {
-  using F = hn::Vec<D>;
+  using F = Float<D>;
   using I = Int<D>;
 
  public:
@@ -72,59 +71,57 @@ class UnevenLanes {
   HWY_INLINE I cell_at(int a, F q) const {
     const D d;
     const IntTag<D> di;
-    const I zero = hn::Zero(di), one = hn::Set(di, 1);
-    const F slice = hn::Mul(hn::Sub(q, hn::Set(d, axes_.first[a])), hn::Set(d, axes_.slices_per_q[a]));
-    const F last_slice = hn::Set(d, float(axes_.slices[a].size() - 1));
-    const I in_slice = to_int(d, hn::Max(hn::Zero(d), hn::Min(slice, last_slice)));
-    I cell = gather_words(d, axes_.slices[a].data(), hn::ShiftLeft<2>(in_slice), loads_);
+    const I zero = set(di, 0), one = set(di, 1);
+    const F slice = (q - axes_.first[a]) * axes_.slices_per_q[a];
+    const F last_slice = set(d, float(axes_.slices[a].size() - 1));
+    const I in_slice = to_int(d, max(0, min(slice, last_slice)));
+    I cell = gather_words(d, axes_.slices[a].data(), shift_left<2>(in_slice), loads_);
     // The slice may begin before it by rounding, and end some cells on.
-    const auto before = [&](I c) HWY_ATTR { return hn::RebindMask(di, hn::Lt(q, sample(a, c))); };
-    cell = hn::IfThenElse(before(cell), hn::Max(hn::Sub(cell, one), zero), cell);
+    const auto before = [&](I c) HWY_ATTR { return rebind(di, q < sample(a, c)); };
+    cell = select(before(cell), max(cell - one, zero), cell);
     while (true) {
-      const I next = hn::Add(cell, one);
-      const auto on = hn::Not(hn::Or(before(next), hn::Eq(cell, last_cell_[a])));
-      if (hn::AllFalse(di, on)) break;
-      cell = hn::IfThenElse(on, next, cell);
+      const I next = cell + one;
+      const auto on = !(before(next) | (cell == last_cell_[a]));
+      if (none(on)) break;
+      cell = select(on, next, cell);
     }
-    const I end = hn::Add(last_cell_[a], one);
-    cell = hn::IfThenElse(before(zero), hn::Set(di, -1), cell);
-    return hn::IfThenElse(hn::RebindMask(di, hn::Gt(q, sample(a, end))), end, cell);
+    const I end = last_cell_[a] + one;
+    cell = select(before(zero), -1, cell);
+    return select(q > sample(a, end), end, cell);
   }
   HWY_INLINE F sample(int a, I number) const {
     const D d;
     const IntTag<D> di;
-    const I zero = hn::Zero(di), last = hn::Add(last_cell_[a], hn::Set(di, 1));
-    const I inside = hn::Max(zero, hn::Min(number, last));
-    const F at = hn::BitCast(d, gather_words(d, axes_.cells[a].data(), hn::ShiftLeft<3>(inside), loads_));
-    const F below = hn::Set(d, -HUGE_VALF), above = hn::Set(d, HUGE_VALF);
-    return hn::IfThenElse(hn::RebindMask(d, hn::Lt(number, zero)), below,
-                          hn::IfThenElse(hn::RebindMask(d, hn::Gt(number, last)), above, at));
+    const I zero = set(di, 0), last = last_cell_[a] + 1;
+    const I inside = max(zero, min(number, last));
+    const F at = bit_cast(d, gather_words(d, axes_.cells[a].data(), shift_left<3>(inside), loads_));
+    const F below = set(d, -HUGE_VALF), above = set(d, HUGE_VALF);
+    return select(number < zero, below, select(number > last, above, at));
   }
   struct Shares {
     F base, per_width;
-    HWY_INLINE F at(F along, F t) const { return hn::Mul(mul_add(along, t, base), per_width); }
+    HWY_INLINE F at(F along, F t) const { return mul_add(along, t, base) * per_width; }
   };
   HWY_INLINE Shares shares(int a, I inside, F start) const {
-    const Pair<D> cell = gather_pair(D(), reinterpret_cast<const float*>(axes_.cells[a].data()), hn::ShiftLeft<1>(inside), loads_);
-    return {hn::Sub(start, cell.a), cell.b};
+    const Pair<D> cell = gather_pair(D(), reinterpret_cast<const float*>(axes_.cells[a].data()), shift_left<1>(inside), loads_);
+    return {start - cell.a, cell.b};
   }
 
   template <class T>
   class Slopes {
    public:
     HWY_INLINE void find(const UnevenLanes& lanes, const Around<D, T>& around, const I cell[3]) {
-      corners(lanes, around, cell, [](const Pair<D>& w, F before, F own, F after) HWY_ATTR {
-        return mul_add(w.b, hn::Sub(after, own), hn::Mul(w.a, hn::Sub(own, before)));
-      });
+      corners(lanes, around, cell,
+              [](const Pair<D>& w, F before, F own, F after) HWY_ATTR { return mul_add(w.b, after - own, w.a * (own - before)); });
     }
     HWY_NOINLINE void find_beside_holes(const UnevenLanes& lanes, const Around<D, T>& around, const I cell[3]) {
       corners(lanes, around, cell, [](const Pair<D>& w, F before, F own, F after) HWY_ATTR {
-        const F back = hn::Sub(own, before), on = hn::Sub(after, own),
-                whole = hn::Sqrt(hn::Mul(w.a, w.b));  // 1 / distance of the neighbours
-        F slope = mul_add(w.b, on, hn::Mul(w.a, back));
-        slope = hn::IfThenElse(hn::IsNaN(back), hn::Mul(on, hn::Add(w.b, whole)), slope);
-        slope = hn::IfThenElse(hn::IsNaN(on), hn::Mul(back, hn::Add(w.a, whole)), slope);
-        return hn::IfThenElseZero(hn::Not(hn::IsNaN(slope)), slope);
+        const F back = own - before, on = after - own,
+                whole = sqrt(w.a * w.b);  // 1 / distance of the neighbours
+        F slope = mul_add(w.b, on, w.a * back);
+        slope = select(is_nan(back), on * (w.b + whole), slope);
+        slope = select(is_nan(on), back * (w.a + whole), slope);
+        return only(!is_nan(slope), slope);
       });
     }
     HWY_INLINE Cubic<D> along(int a, const F from[3], const F way[3]) const { return Around<D, T>::trilinear(slope_[a], from, way); }
@@ -152,7 +149,7 @@ class UnevenLanes {
  private:
   /// DerivativeWeights of both samples of a cell.
   HWY_INLINE Quad<D> weights(int a, I cell) const {
-    return gather_quad(D(), reinterpret_cast<const float*>(axes_.weights[a].data()), hn::ShiftLeft<1>(cell), loads_);
+    return gather_quad(D(), reinterpret_cast<const float*>(axes_.weights[a].data()), shift_left<1>(cell), loads_);
   }
 
   const UnevenAxes& axes_;

@@ -16,7 +16,7 @@ namespace sg::volume::HWY_NAMESPACE {
 /// The medium, ready for gathers.
 template <class D>
 struct MediumLanes {
-  using F = hn::Vec<D>;
+  using F = Float<D>;
   using I = Int<D>;
   const Medium& medium;
   const Medium::Columns& columns;
@@ -24,16 +24,16 @@ struct MediumLanes {
   struct Line {
     F lo, hi, origin, at, slope, curve, twist;
     HWY_INLINE F tau(F v) const {
-      const F x = hn::Sub(v, origin);
-      return hn::Max(hn::Zero(D()), mul_add(x, mul_add(x, mul_add(x, twist, curve), slope), at));
+      const F x = v - origin;
+      return max(0, mul_add(x, mul_add(x, mul_add(x, twist, curve), slope), at));
     }
     HWY_INLINE F slope_at(F v) const {
-      const F x = hn::Sub(v, origin);
-      return hn::Abs(mul_add(x, mul_add(x, hn::Mul(hn::Set(D(), 3.0f), twist), hn::Add(curve, curve)), slope));
+      const F x = v - origin;
+      return abs(mul_add(x, mul_add(x, 3.0f * twist, curve + curve), slope));
     }
-    HWY_INLINE hn::Mask<D> dark() const {
-      const F zero = hn::Zero(D());
-      return hn::And(hn::And(hn::Eq(at, zero), hn::Eq(slope, zero)), hn::And(hn::Eq(curve, zero), hn::Eq(twist, zero)));
+    HWY_INLINE Mask<D> dark() const {
+      const F zero = set(D(), 0);
+      return (at == zero) & (slope == zero) & ((curve == zero) & (twist == zero));
     }
   };
   /// As many lines as there are lanes fit a vector: then no gather is needed.
@@ -63,33 +63,32 @@ struct MediumLanes {
       l.at = hn::GatherIndex(d, columns.at.data(), i), l.slope = hn::GatherIndex(d, columns.slope.data(), i);
       l.curve = hn::GatherIndex(d, columns.curve.data(), i), l.twist = hn::GatherIndex(d, columns.twist.data(), i);
     }
-    l.lo = hn::IfThenElse(hn::RebindMask(d, hn::Eq(i, hn::Zero(IntTag<D>()))), hn::Set(d, -HUGE_VALF), l.origin);
+    l.lo = select(i == 0, -HUGE_VALF, l.origin);
     return l;
   }
   HWY_INLINE I line_of(F v) const {
     const D d;
     const IntTag<D> di;
-    v = hn::Min(v, hn::Set(d, 3e38f));  // the last line ends at infinity
-    F at = hn::Mul(hn::Sub(v, hn::Set(d, medium.slice_lo())), hn::Set(d, medium.per_slice()));
-    at = hn::IfThenElseZero(hn::Ge(at, hn::Zero(d)), hn::Min(at, hn::Set(d, float(Medium::slices))));
-    I i = hn::And(gather_words(d, medium.first_lines(), hn::ShiftLeft<1>(to_int(d, at)), loads), hn::Set(di, 0xFFFF));
+    v = min(v, 3e38f);  // the last line ends at infinity
+    F at = (v - medium.slice_lo()) * medium.per_slice();
+    at = only(at >= 0, min(at, float(Medium::slices)));
+    I i = gather_words(d, medium.first_lines(), shift_left<1>(to_int(d, at)), loads) & 0xFFFF;
     for (;;) {
       const auto beyond =
-          hn::Le(few ? hn::TableLookupLanes(few_columns[1], hn::IndicesFromVec(d, i)) : hn::GatherIndex(d, columns.hi.data(), i), v);
-      if (hn::AllFalse(d, beyond)) return i;
-      i = hn::Sub(i, hn::VecFromMask(di, hn::RebindMask(di, beyond)));
+          (few ? hn::TableLookupLanes(few_columns[1], hn::IndicesFromVec(d, i)) : hn::GatherIndex(d, columns.hi.data(), i)) <= v;
+      if (none(beyond)) return i;
+      i = i - hn::VecFromMask(di, rebind(di, beyond));
     }
   }
   /// The largest of a column over the lines a .. b, from the table of powers of two.
   HWY_INLINE F most(const std::vector<float>& table, I a, I b) const {
     const D d;
     const IntTag<D> di;
-    const I count = hn::Add(hn::Sub(b, a), hn::Set(di, 1));
-    const I k = hn::Sub(hn::ShiftRight<23>(hn::BitCast(di, hn::ConvertTo(d, count))), hn::Set(di, 127));
-    const I row = hn::Mul(k, hn::Set(di, int(columns.hi.size())));
-    const I width = to_int(d, hn::BitCast(d, hn::ShiftLeft<23>(hn::Add(k, hn::Set(di, 127)))));
-    return hn::Max(hn::GatherIndex(d, table.data(), hn::Add(row, a)),
-                   hn::GatherIndex(d, table.data(), hn::Add(row, hn::Sub(hn::Add(b, hn::Set(di, 1)), width))));
+    const I count = b - a + 1;
+    const I k = shift_right<23>(bit_cast(di, convert(d, count))) - 127;
+    const I row = k * int(columns.hi.size());
+    const I width = to_int(d, bit_cast(d, shift_left<23>(k + 127)));
+    return max(hn::GatherIndex(d, table.data(), row + a), hn::GatherIndex(d, table.data(), row + (b + 1 - width)));
   }
   struct Color {
     F r, g, b;
@@ -97,8 +96,8 @@ struct MediumLanes {
   HWY_INLINE Color color(F v) const {
     if (medium.pieced()) return color_on(v, line_of(v));
     const D d;
-    F at = mul_add(hn::Sub(v, hn::Set(d, medium.first_node())), hn::Set(d, medium.per_node()), hn::Set(d, 0.5f));
-    at = hn::IfThenElseZero(hn::Ge(at, hn::Zero(d)), hn::Min(at, hn::Set(d, float(Medium::nodes))));
+    F at = mul_add(v - medium.first_node(), medium.per_node(), 0.5f);
+    at = only(at >= 0, min(at, float(Medium::nodes)));
     return color_of_node(to_int(d, at));
   }
   /// On a line, its ends included: at a knot colours may jump.
@@ -106,38 +105,37 @@ struct MediumLanes {
   /// Medium::leaning.
   HWY_INLINE F leaning(F slope, F range, F bend, F twist) const {
     const D d;
-    const F one = hn::Set(d, 1.0f), per_opacity = hn::Min(hn::Mul(slope, hn::Set(d, medium.unit())), hn::Set(d, 1e30f));
-    const auto turned = [&](F by) HWY_ATTR { return hn::Min(hn::Mul(per_opacity, by), one); };
+    const F one = set(d, 1.0f), per_opacity = min(slope * medium.unit(), 1e30f);
+    const auto turned = [&](F by) HWY_ATTR { return min(per_opacity * by, one); };
     const F y = turned(range), u = turned(bend);
-    return hn::Mul(hn::Set(d, medium.per_unit()), mul_add(u, mul_add(hn::Set(d, 0.5f), u, hn::Mul(y, y)), hn::Mul(turned(twist), y)));
+    return medium.per_unit() * mul_add(u, mul_add(0.5f, u, y * y), turned(twist) * y);
   }
   /// Do abrupt knots lie between two lines?
-  HWY_INLINE hn::Mask<D> abrupt(I first, I last) const {
+  HWY_INLINE Mask<D> abrupt(I first, I last) const {
     const D d;
     const auto* before = reinterpret_cast<const float*>(medium.abrupt_before());
     const IntTag<D> di;
-    return hn::RebindMask(d, hn::Ne(hn::BitCast(di, hn::GatherIndex(d, before, first)), hn::BitCast(di, hn::GatherIndex(d, before, last))));
+    return rebind(d, bit_cast(di, hn::GatherIndex(d, before, first)) != bit_cast(di, hn::GatherIndex(d, before, last)));
   }
 
  private:
   HWY_NOINLINE Color color_on(F v, I line) const {
     const D d;
-    const auto [lo_per, first_count] = gather_quad(d, reinterpret_cast<const float*>(medium.pieces()), hn::ShiftLeft<2>(line), loads);
-    F at = mul_add(hn::Sub(v, lo_per.a), lo_per.b, hn::Set(d, 0.5f));
-    at = hn::IfThenElseZero(hn::Ge(at, hn::Zero(d)), hn::Min(at, first_count.b));
-    return color_of_node(hn::Add(to_int(d, at), to_int(d, first_count.a)));
+    const auto [lo_per, first_count] = gather_quad(d, reinterpret_cast<const float*>(medium.pieces()), shift_left<2>(line), loads);
+    F at = mul_add(v - lo_per.a, lo_per.b, 0.5f);
+    at = only(at >= 0, min(at, first_count.b));
+    return color_of_node(to_int(d, at) + to_int(d, first_count.a));
   }
   HWY_INLINE Color color_of_node(I node) const {
     const D d;
     const IntTag<D> di;
-    const Pair<D> words = gather_pair(d, reinterpret_cast<const float*>(medium.colors()), hn::ShiftLeft<1>(node), loads);
-    const I rg = hn::BitCast(di, words.a), b = hn::BitCast(di, words.b);
-    const F per = hn::Set(d, 1.0f / 65535);
-    const I low = hn::Set(di, 0xFFFF);
+    const Pair<D> words = gather_pair(d, reinterpret_cast<const float*>(medium.colors()), shift_left<1>(node), loads);
+    const I rg = bit_cast(di, words.a), b = bit_cast(di, words.b);
+    const F per = set(d, 1.0f / 65535);
+    const I low = set(di, 0xFFFF);
     const hn::RebindToUnsigned<IntTag<D>> du;
-    const I g = hn::BitCast(di, hn::ShiftRight<16>(hn::BitCast(du, rg)));
-    return {hn::Mul(hn::ConvertTo(d, hn::And(rg, low)), per), hn::Mul(hn::ConvertTo(d, g), per),
-            hn::Mul(hn::ConvertTo(d, hn::And(b, low)), per)};
+    const I g = bit_cast(di, shift_right<16>(bit_cast(du, rg)));
+    return {convert(d, rg & low) * per, convert(d, g) * per, convert(d, b & low) * per};
   }
 };
 

@@ -16,7 +16,7 @@ namespace sg::volume::HWY_NAMESPACE {
 
 template <class D, class T>
 class ShadeQueue {
-  using F = hn::Vec<D>;
+  using F = Float<D>;
   using I = Int<D>;
   static constexpr size_t lanes_ = lanes_of<D>;
   enum { at_sample, at_r, at_g, at_b, at_flash, at_lane, parts };
@@ -25,10 +25,10 @@ class ShadeQueue {
   HWY_INLINE void start(const PacketPlan& plan, const RayPacket& rays) { count_ = 0, lighting_ = Lighting<D>(plan, rays); }
 
   /// The number of the sample; negative: the last, shorter step. Colours and `flash` (the share of what is mirrored) are weighted already.
-  HWY_INLINE void push(const PacketPlan& plan, const RayPacket& rays, PacketResult& result, hn::Mask<D> which, F sample, F r, F g, F b,
+  HWY_INLINE void push(const PacketPlan& plan, const RayPacket& rays, PacketResult& result, Mask<D> which, F sample, F r, F g, F b,
                        F flash) {
     const D d;
-    const F part[parts] = {sample, r, g, b, flash, hn::ConvertTo(d, hn::Iota(IntTag<D>(), 0))};
+    const F part[parts] = {sample, r, g, b, flash, convert(d, hn::Iota(IntTag<D>(), 0))};
     size_t n = 0;
     for (int i = 0; i < parts; ++i) n = sg::HWY_NAMESPACE::compress_store(d, part[i], which, queue_[i] + count_);
     count_ += n;
@@ -52,11 +52,11 @@ class ShadeQueue {
     const I order = to_int(d, hn::Load(d, queue_[at_lane]));
     const auto lane = hn::IndicesFromVec(d, order);
     const F sample = hn::Load(d, queue_[at_sample]);
-    const auto in_last = hn::Lt(sample, hn::Zero(d));
+    const auto in_last = sample < 0;
     F at[3];
     for (int a = 0; a < 3; ++a) {
       at[a] = mul_add(sample, of_lanes(rays.by[a], lane), of_lanes(rays.first[a], lane));
-      at[a] = hn::IfThenElse(in_last, of_lanes(rays.last[a], lane), at[a]);
+      at[a] = select(in_last, of_lanes(rays.last[a], lane), at[a]);
     }
     const Slope<D> slope = SlopeFinder<D, T>(source, at[0], at[1], at[2]).find();
     const F cells[3] = {slope.x, slope.y, slope.z};
@@ -64,7 +64,7 @@ class ShadeQueue {
     lighting_.to_world(cells, g);
     const Lighting<D> lighting = lighting_.permuted(order);
     const LitLanes<D> lit = lighting.on(lighting.surface(g, slope.per_cell));
-    const F flash = hn::Mul(hn::Load(d, queue_[at_flash]), lit.specular);
+    const F flash = hn::Load(d, queue_[at_flash]) * lit.specular;
     for (const int i : {at_r, at_g, at_b}) hn::Store(mul_add(hn::Load(d, queue_[i]), lit.diffuse, flash), d, queue_[i]);
     for (size_t n = 0; n < count; ++n) {
       const auto to = size_t(queue_[at_lane][n]);

@@ -17,14 +17,14 @@ namespace sg::volume::HWY_NAMESPACE {
 /// Derivatives in u.
 template <class D>
 struct Slope {
-  hn::Vec<D> x, y, z;
-  hn::Vec<D> per_cell;  ///< change of the value over the length of a cell
-  hn::Vec<D> value;     ///< of the field, as Source::value() has it
+  Float<D> x, y, z;
+  Float<D> per_cell;  ///< change of the value over the length of a cell
+  Float<D> value;     ///< of the field, as Source::value() has it
 };
 
 template <class D, class T>
 class SlopeFinder {
-  using F = hn::Vec<D>;
+  using F = Float<D>;
   using I = Int<D>;
 
  public:
@@ -39,12 +39,12 @@ class SlopeFinder {
     F change[3], value;
     find(around, change, value);
     if constexpr (std::is_same_v<T, float>) {
-      const auto holes = hn::IsNaN(hn::Add(change[0], hn::Add(change[1], change[2])));
-      if (!hn::AllFalse(d, holes)) find_beside_holes(around, holes, change);
+      const auto holes = is_nan(change[0] + (change[1] + change[2]));
+      if (any(holes)) find_beside_holes(around, holes, change);
     }
-    F slope[3], square = hn::Zero(d);
-    for (int a = 0; a < 3; ++a) slope[a] = hn::Mul(hn::Set(d, 0.5f), change[a]), square = mul_add(slope[a], slope[a], square);
-    return {slope[0], slope[1], slope[2], hn::Sqrt(square), value};
+    F slope[3], square = set(d, 0);
+    for (int a = 0; a < 3; ++a) slope[a] = 0.5f * change[a], square = mul_add(slope[a], slope[a], square);
+    return {slope[0], slope[1], slope[2], sqrt(square), value};
   }
 
  private:
@@ -91,11 +91,11 @@ class SlopeFinder {
   }
 
   /// The slopes of those lanes by what Around's corners have without what is no number.
-  HWY_NOINLINE void find_beside_holes(const Around<D, T>& around, hn::Mask<D> which, F change[3]) const {
+  HWY_NOINLINE void find_beside_holes(const Around<D, T>& around, Mask<D> which, F change[3]) const {
     const F f[3] = {at_[0].fraction, at_[1].fraction, at_[2].fraction};
     CornerChanges<D, T> changes;
     changes.find_beside_holes(around);
-    for (int a = 0; a < 3; ++a) change[a] = hn::IfThenElse(which, changes.at(a, f), change[a]);
+    for (int a = 0; a < 3; ++a) change[a] = select(which, changes.at(a, f), change[a]);
   }
 
   const Source<D, T>& source_;
@@ -104,26 +104,24 @@ class SlopeFinder {
 
 /// The slopes and values at the places of the lanes that want them; the others' are anything. Out of line: it is long.
 template <class D, class T>
-HWY_NOINLINE void slopes_of_most(const Source<D, T>& source, const Place<D> at[3], hn::Mask<D> wanted, Slope<D>& out) {
+HWY_NOINLINE void slopes_of_most(const Source<D, T>& source, const Place<D> at[3], Mask<D> wanted, Slope<D>& out) {
   // Lanes that want none look at the middle, which is no border that would have to be looked after.
-  const auto kept = hn::RebindMask(IntTag<D>(), wanted);
+  const auto kept = rebind(IntTag<D>(), wanted);
   Place<D> p[3];
-  for (int a = 0; a < 3; ++a) p[a] = {hn::IfThenElse(kept, at[a].cell, hn::ShiftRight<1>(source.last_cell[a])), at[a].fraction};
+  for (int a = 0; a < 3; ++a) p[a] = {select(kept, at[a].cell, shift_right<1>(source.last_cell[a])), at[a].fraction};
   out = SlopeFinder<D, T>(source, p).find();
 }
 
 /// The same, found by vectors half as wide when those lanes are few.
 template <class D, class T>
-HWY_INLINE Slope<D> slopes_at(const Source<D, T>& source, [[maybe_unused]] const Voxels& voxels, const hn::Vec<D> u[3],
-                              hn::Mask<D> wanted) {
-  using F = hn::Vec<D>;
-  const D d;
+HWY_INLINE Slope<D> slopes_at(const Source<D, T>& source, [[maybe_unused]] const Voxels& voxels, const Float<D> u[3], Mask<D> wanted) {
+  using F = Float<D>;
   F v[3];
-  for (int a = 0; a < 3; ++a) v[a] = hn::Mul(hn::Set(d, 0.5f), source.top[a]);
+  for (int a = 0; a < 3; ++a) v[a] = 0.5f * source.top[a];
 #if SG_HARDWARE_GATHERS && HWY_TARGET <= HWY_AVX3
   if constexpr (lanes_of<D> == 16) {
     using H = hn::Half<D>;
-    if (hn::CountTrue(d, wanted) <= lanes_of<H>) {
+    if (hn::CountTrue(D(), wanted) <= lanes_of<H>) {
       hn::Vec<H> few[3];
       for (int a = 0; a < 3; ++a) few[a].raw = _mm512_castps512_ps256(_mm512_mask_compress_ps(v[a].raw, wanted.raw, u[a].raw));
       const Slope<H> found = SlopeFinder<H, T>(Source<H, T>(voxels, source.within), few[0], few[1], few[2]).find();
@@ -132,7 +130,7 @@ HWY_INLINE Slope<D> slopes_at(const Source<D, T>& source, [[maybe_unused]] const
     }
   }
 #endif
-  for (int a = 0; a < 3; ++a) v[a] = hn::IfThenElse(wanted, u[a], v[a]);
+  for (int a = 0; a < 3; ++a) v[a] = select(wanted, u[a], v[a]);
   return SlopeFinder<D, T>(source, v[0], v[1], v[2]).find();
 }
 

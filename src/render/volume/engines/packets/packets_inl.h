@@ -14,34 +14,32 @@
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+using namespace simd::HWY_NAMESPACE;
 using shading::HWY_NAMESPACE::exp_minus;
-using simd::HWY_NAMESPACE::mul_add;
-using simd::HWY_NAMESPACE::mul_sub;
-using simd::HWY_NAMESPACE::neg_mul_add;
 
 template <class D>
-HWY_INLINE hn::Vec<D> mixed(D, hn::Vec<D> a, hn::Vec<D> b, hn::Vec<D> f) {
-  return mul_add(f, hn::Sub(b, a), a);
+HWY_INLINE Float<D> mixed(D, Float<D> a, Float<D> b, Float<D> f) {
+  return mul_add(f, b - a, a);
 }
 
 template <class D>
-HWY_INLINE Int<D> to_int(D, hn::Vec<D> v) {
-  return simd::HWY_NAMESPACE::truncated(v);
+HWY_INLINE Int<D> to_int(D, Float<D> v) {
+  return truncated(v);
 }
 
 /// 1 / sqrt(x) to a part in 500, x > 1e-38.
 template <class D>
-HWY_INLINE hn::Vec<D> about_one_by_sqrt(D d, hn::Vec<D> x) {
+HWY_INLINE Float<D> about_one_by_sqrt(D d, Float<D> x) {
   const IntTag<D> di;
-  const auto y = hn::BitCast(d, hn::Sub(hn::Set(di, 0x5F3759DF), hn::ShiftRight<1>(hn::BitCast(di, x))));
-  return hn::Mul(y, neg_mul_add(hn::Mul(hn::Set(d, 0.5f), x), hn::Mul(y, y), hn::Set(d, 1.5f)));
+  const auto y = bit_cast(d, 0x5F3759DF - shift_right<1>(bit_cast(di, x)));
+  return y * neg_mul_add(0.5f * x, y * y, 1.5f);
 }
 
 /// A place along one axis: the cell and the fraction of its edge.
 template <class D>
 struct Place {
   Int<D> cell;
-  hn::Vec<D> fraction;
+  Float<D> fraction;
 };
 
 /// The lattice, ready for gathers. T: float, or the unsigned integers of the size of the samples.
@@ -50,7 +48,7 @@ struct Source {
   const T* data;
   Int<D> row, layer;
   Integers<D> integers;
-  hn::Vec<D> top[3];
+  Float<D> top[3];
   Int<D> last_cell[3];
   ptrdiff_t to_row, to_layer;  ///< row and layer as numbers of samples
   bool loads;                  ///< of gathers.h
@@ -64,22 +62,22 @@ struct Source {
     const D d;
     const IntTag<D> di;
     to_row = ptrdiff_t(voxels.dims[0]), to_layer = ptrdiff_t(voxels.dims[0] * voxels.dims[1]);
-    row = hn::Set(di, int(to_row)), layer = hn::Set(di, int(to_layer));
-    for (size_t a = 0; a < 3; ++a) top[a] = hn::Set(d, float(voxels.dims[a] - 1)), last_cell[a] = hn::Set(di, int(voxels.dims[a]) - 2);
+    row = set(di, int(to_row)), layer = set(di, int(to_layer));
+    for (size_t a = 0; a < 3; ++a) top[a] = set(d, float(voxels.dims[a] - 1)), last_cell[a] = set(di, int(voxels.dims[a]) - 2);
   }
-  HWY_INLINE Place<D> place(int axis, hn::Vec<D> u) const {
+  HWY_INLINE Place<D> place(int axis, Float<D> u) const {
     const D d;
-    if (!within) u = hn::Max(hn::Zero(d), hn::Min(u, top[axis]));
-    const auto cell = hn::Min(to_int(d, u), last_cell[axis]);
-    return {cell, hn::Sub(u, hn::ConvertTo(d, cell))};
+    if (!within) u = max(0, min(u, top[axis]));
+    const auto cell = min(to_int(d, u), last_cell[axis]);
+    return {cell, u - convert(d, cell)};
   }
   /// For places that are known to lie in [0, top).
-  HWY_INLINE Place<D> inner_place(hn::Vec<D> u) const {
+  HWY_INLINE Place<D> inner_place(Float<D> u) const {
     const D d;
     const auto cell = to_int(d, u);
-    return {cell, hn::Sub(u, hn::ConvertTo(d, cell))};
+    return {cell, u - convert(d, cell)};
   }
-  HWY_INLINE Int<D> offset(Int<D> i, Int<D> j, Int<D> k) const { return hn::Add(i, hn::Add(hn::Mul(j, row), hn::Mul(k, layer))); }
+  HWY_INLINE Int<D> offset(Int<D> i, Int<D> j, Int<D> k) const { return i + (j * row + k * layer); }
   /// Pairs so many samples on from `at`, the same for all lanes.
   template <size_t n, class At>
   HWY_INLINE void pairs(At at, const ptrdiff_t (&on)[n], Pair<D>* out) const {
@@ -97,12 +95,12 @@ struct Source {
   HWY_INLINE void corners(At lowest, Pair<D> rows[4]) const {
     pairs(lowest, {0, to_row, to_layer, to_layer + to_row}, rows);
   }
-  HWY_INLINE hn::Vec<D> value(const Place<D>& x, const Place<D>& y, const Place<D>& z) const {
+  HWY_INLINE Float<D> value(const Place<D>& x, const Place<D>& y, const Place<D>& z) const {
     return value(offset(x.cell, y.cell, z.cell), x.fraction, y.fraction, z.fraction);
   }
   /// At the fractions of the cell whose lowest corner is sample `at`. Along x last, as SlopeFinder does: the same bits.
   template <class At>
-  HWY_INLINE hn::Vec<D> value(At at, hn::Vec<D> fx, hn::Vec<D> fy, hn::Vec<D> fz) const {
+  HWY_INLINE Float<D> value(At at, Float<D> fx, Float<D> fy, Float<D> fz) const {
     const D d;
     Pair<D> p;
     if (!value_of_loads(at, fy, fz, p)) {
@@ -116,13 +114,13 @@ struct Source {
 
  private:
   static bool has_sign(ElementType type) { return type == ElementType::i8 || type == ElementType::i16; }
-  static HWY_INLINE hn::Vec<D> across(hn::Vec<D> v0, hn::Vec<D> v1, hn::Vec<D> v2, hn::Vec<D> v3, hn::Vec<D> fy, hn::Vec<D> fz) {
+  static HWY_INLINE Float<D> across(Float<D> v0, Float<D> v1, Float<D> v2, Float<D> v3, Float<D> fy, Float<D> fz) {
     const D d;
     return mixed(d, mixed(d, v0, v1, fy), mixed(d, v2, v3, fy), fz);
   }
   /// Both values along x where numbers are loaded lane by lane: their rows are mixed while the pairs are side by side.
   template <class At>
-  HWY_INLINE bool value_of_loads([[maybe_unused]] At at, [[maybe_unused]] hn::Vec<D> fy, [[maybe_unused]] hn::Vec<D> fz,
+  HWY_INLINE bool value_of_loads([[maybe_unused]] At at, [[maybe_unused]] Float<D> fy, [[maybe_unused]] Float<D> fz,
                                  [[maybe_unused]] Pair<D>& out) const {
 #if SG_HARDWARE_GATHERS
     if constexpr (std::is_same_v<T, float> && lanes_of<D> >= 8) {
@@ -149,22 +147,22 @@ constexpr int packet_width = lanes_of<D> >= 8   ? 4
 
 template <class DD>
 struct V3 {
-  hn::Vec<DD> x, y, z;
+  Float<DD> x, y, z;
 };
 template <class DD>
 HWY_INLINE V3<DD> set3(DD d, Vec3 v) {
-  return {hn::Set(d, v.x), hn::Set(d, v.y), hn::Set(d, v.z)};
+  return {set(d, v.x), set(d, v.y), set(d, v.z)};
 }
 template <class DD>
-HWY_INLINE hn::Vec<DD> dot3(DD, const V3<DD>& a, const V3<DD>& b) {
-  return mul_add(a.z, b.z, mul_add(a.y, b.y, hn::Mul(a.x, b.x)));
+HWY_INLINE Float<DD> dot3(DD, const V3<DD>& a, const V3<DD>& b) {
+  return mul_add(a.z, b.z, mul_add(a.y, b.y, a.x * b.x));
 }
 template <class DD>
-HWY_INLINE V3<DD> plus(DD, const V3<DD>& a, const V3<DD>& b, hn::Vec<DD> s) {
+HWY_INLINE V3<DD> plus(DD, const V3<DD>& a, const V3<DD>& b, Float<DD> s) {
   return {mul_add(b.x, s, a.x), mul_add(b.y, s, a.y), mul_add(b.z, s, a.z)};
 }
 template <class DD>
-HWY_INLINE void store_narrow(DD, hn::Vec<DD> v, float* to) {
+HWY_INLINE void store_narrow(DD, Float<DD> v, float* to) {
   const hn::Rebind<float, DD> df;
   hn::StoreU(hn::DemoteTo(df, v), df, to);
 }
@@ -175,7 +173,7 @@ HWY_INLINE bool set_up(const PacketPlan& plan, int x, int y, int x1, int y1, con
   constexpr int lanes = lanes_of<D>, width = packet_width<D>;
   using DD = hn::CappedTag<double, lanes>;
   const DD d;
-  using V = hn::Vec<DD>;
+  using V = Float<DD>;
   const Projection& p = plan.projection;
   const Volume& v = plan.volume;
   alignas(64) double px[lanes], py[lanes], depth[lanes];
@@ -189,76 +187,77 @@ HWY_INLINE bool set_up(const PacketPlan& plan, int x, int y, int x1, int y1, con
     if (r.before[n] < plan.budget.stop_below) depth[n] = -HUGE_VAL;
   }
   const Mat3& m = v.to_q;
-  const V zero = hn::Zero(d);
-  bool any = false;
+  const V zero = set(d, 0);
+  bool meets = false;
   for (size_t n = 0; n < size_t(lanes); n += hn::Lanes(d)) {
-    const V sx = hn::Div(hn::Sub(hn::Load(d, px + n), hn::Set(d, p.middle_x())), hn::Set(d, p.scale));
-    const V sy = hn::Div(hn::Sub(hn::Set(d, p.middle_y()), hn::Load(d, py + n)), hn::Set(d, p.scale));
+    // Ray: origin and direction in the world, near and far plane along it.
+    const V sx = (hn::Load(d, px + n) - p.middle_x()) / p.scale;
+    const V sy = (p.middle_y() - hn::Load(d, py + n)) / p.scale;
     const V3<DD> eye = set3(d, p.eye), right = set3(d, p.right), up = set3(d, p.up), forward = set3(d, p.forward);
     V3<DD> origin = eye, direction = forward;
     if (p.parallel) {
       origin = plus(d, plus(d, eye, right, sx), up, sy);
     } else {
       direction = plus(d, plus(d, forward, right, sx), up, sy);
-      const V length = hn::Sqrt(dot3(d, direction, direction));
-      direction = {hn::Div(direction.x, length), hn::Div(direction.y, length), hn::Div(direction.z, length)};
+      const V length = sqrt(dot3(d, direction, direction));
+      direction = {direction.x / length, direction.y / length, direction.z / length};
     }
     const V per_length = dot3(d, direction, forward);
-    const V first_depth = dot3(d, V3<DD>{hn::Sub(origin.x, eye.x), hn::Sub(origin.y, eye.y), hn::Sub(origin.z, eye.z)}, forward);
-    V enter = hn::Div(hn::Sub(hn::Set(d, p.near_plane), first_depth), per_length);
-    V leave = hn::Div(hn::Sub(hn::Load(d, depth + n), first_depth), per_length);
-    const V3<DD> away{hn::Sub(origin.x, hn::Set(d, v.origin.x)), hn::Sub(origin.y, hn::Set(d, v.origin.y)),
-                      hn::Sub(origin.z, hn::Set(d, v.origin.z))};
+    const V first_depth = dot3(d, V3<DD>{origin.x - eye.x, origin.y - eye.y, origin.z - eye.z}, forward);
+    V enter = (p.near_plane - first_depth) / per_length;
+    V leave = (hn::Load(d, depth + n) - first_depth) / per_length;
+    // Box of the lattice (slabs), then clip planes.
+    const V3<DD> away{origin.x - v.origin.x, origin.y - v.origin.y, origin.z - v.origin.z};
     V start[3], along[3], first_enter = enter, last_leave = leave;  // of all lattices
     for (int a = 0; a < 3; ++a) {
       const V3<DD> line = set3(d, Vec3{m.m[a][0], m.m[a][1], m.m[a][2]});
       start[a] = dot3(d, line, away), along[a] = dot3(d, line, direction);
-      const V lo = hn::Set(d, v.lo[a]), hi = hn::Set(d, v.hi[a]);
-      const auto still = hn::Eq(along[a], zero);
-      const auto outside = hn::Or(hn::Lt(start[a], lo), hn::Gt(start[a], hi));
-      const V t0 = hn::Div(hn::Sub(lo, start[a]), along[a]), t1 = hn::Div(hn::Sub(hi, start[a]), along[a]);
-      enter = hn::IfThenElse(still, enter, hn::Max(enter, hn::Min(t0, t1)));
-      leave = hn::IfThenElse(still, leave, hn::Min(leave, hn::Max(t0, t1)));
-      leave = hn::IfThenElse(hn::And(still, outside), hn::Set(d, -HUGE_VAL), leave);
+      const V lo = set(d, v.lo[a]), hi = set(d, v.hi[a]);
+      const auto still = along[a] == zero;
+      const auto outside = (start[a] < lo) | (start[a] > hi);
+      const V t0 = (lo - start[a]) / along[a], t1 = (hi - start[a]) / along[a];
+      enter = select(still, enter, max(enter, min(t0, t1)));
+      leave = select(still, leave, min(leave, max(t0, t1)));
+      leave = select(still & outside, -HUGE_VAL, leave);
       if (!plan.half) continue;
-      const V w0 = hn::Div(hn::Sub(hn::Set(d, plan.whole_lo[a]), start[a]), along[a]),
-              w1 = hn::Div(hn::Sub(hn::Set(d, plan.whole_hi[a]), start[a]), along[a]);
-      first_enter = hn::IfThenElse(still, first_enter, hn::Max(first_enter, hn::Min(w0, w1)));
-      last_leave = hn::IfThenElse(still, last_leave, hn::Min(last_leave, hn::Max(w0, w1)));
+      const V w0 = (plan.whole_lo[a] - start[a]) / along[a], w1 = (plan.whole_hi[a] - start[a]) / along[a];
+      first_enter = select(still, first_enter, max(first_enter, min(w0, w1)));
+      last_leave = select(still, last_leave, min(last_leave, max(w0, w1)));
     }
     for (const ClipPlane& plane : plan.clip) {
       const V3<DD> normal = set3(d, plane.normal);
-      const V along_normal = dot3(d, normal, direction), rest = hn::Sub(hn::Set(d, plane.offset), dot3(d, normal, origin));
-      const V at = hn::Div(rest, along_normal);
-      leave = hn::IfThenElse(hn::Gt(along_normal, zero), hn::Min(leave, at), leave);
-      enter = hn::IfThenElse(hn::Lt(along_normal, zero), hn::Max(enter, at), enter);
-      const auto outside = hn::And(hn::Eq(along_normal, zero), hn::Lt(rest, zero));
-      leave = hn::IfThenElse(outside, hn::Set(d, -HUGE_VAL), leave);
+      const V along_normal = dot3(d, normal, direction), rest = plane.offset - dot3(d, normal, origin);
+      const V at = rest / along_normal;
+      leave = select(along_normal > zero, min(leave, at), leave);
+      enter = select(along_normal < zero, max(enter, at), enter);
+      const auto outside = (along_normal == zero) & (rest < zero);
+      leave = select(outside, -HUGE_VAL, leave);
     }
-    const auto hit = hn::Gt(leave, enter);
-    any = any || !hn::AllFalse(d, hit);
-    // A ray that misses has no steps; its places are of no account but finite.
-    const V length = hn::IfThenElseZero(hit, hn::Sub(leave, enter)), step = hn::Set(d, v.step);
-    V steps = hn::Floor(hn::Div(length, step));
-    V rest = hn::Max(zero, neg_mul_add(steps, step, length));
-    const V half = hn::Set(d, 0.5);
-    enter = hn::IfThenElseZero(hit, enter), leave = hn::IfThenElseZero(hit, leave);
+    const auto hit = leave > enter;
+    meets = meets || any(hit);
+    // A ray that misses has no steps; its places are unused, but must stay finite.
+    const V length = only(hit, leave - enter), step = set(d, v.step);
+    V steps = floor(length / step);
+    V rest = max(zero, neg_mul_add(steps, step, length));
+    const V half = set(d, 0.5);
+    enter = only(hit, enter), leave = only(hit, leave);
     V t_first = mul_add(half, step, enter), t_last = neg_mul_add(half, rest, leave);
     if (plan.half) {
       // Steps of the whole whose middles lie in this part.
-      first_enter = hn::IfThenElseZero(hit, first_enter), last_leave = hn::IfThenElseZero(hit, last_leave);
-      const V all = hn::Sub(last_leave, first_enter), count = hn::Floor(hn::Div(all, step));
-      const auto number = [&](V t) HWY_ATTR { return hn::Min(count, hn::Ceil(hn::Sub(hn::Div(hn::Sub(t, first_enter), step), half))); };
+      first_enter = only(hit, first_enter), last_leave = only(hit, last_leave);
+      const V all = last_leave - first_enter, count = floor(all / step);
+      const auto number = [&](V t) HWY_ATTR { return min(count, ceil((t - first_enter) / step - half)); };
       const V begin = number(enter);
-      steps = hn::IfThenElseZero(hit, hn::Max(zero, hn::Sub(number(leave), begin)));
-      t_first = mul_add(hn::Add(begin, half), step, first_enter);
-      rest = hn::Max(zero, neg_mul_add(count, step, all));
+      steps = only(hit, max(zero, number(leave) - begin));
+      t_first = mul_add(begin + half, step, first_enter);
+      rest = max(zero, neg_mul_add(count, step, all));
       t_last = neg_mul_add(half, rest, last_leave);
-      rest = hn::IfThenElseZero(hn::And(hit, hn::And(hn::Ge(t_last, enter), hn::Lt(t_last, leave))), rest);
+      rest = only(hit & ((t_last >= enter) & (t_last < leave)), rest);
     }
+    // Places and steps in the lattice, as floats.
     for (int a = 0; a < 3; ++a) {
       store_narrow(d, mul_add(along[a], t_first, start[a]), r.first[a] + n);
-      store_narrow(d, hn::Mul(along[a], step), r.by[a] + n);
+      store_narrow(d, along[a] * step, r.by[a] + n);
       store_narrow(d, mul_add(along[a], t_last, start[a]), r.last[a] + n);
       store_narrow(d, mul_add(along[a], enter, start[a]), r.entry[a] + n);
       store_narrow(d, along[a], r.along[a] + n);
@@ -269,7 +268,7 @@ HWY_INLINE bool set_up(const PacketPlan& plan, int x, int y, int x1, int y1, con
     hn::Store(enter, d, r.enter + n), hn::Store(leave, d, r.leave + n);
     hn::Store(first_depth, d, r.first_depth + n), hn::Store(per_length, d, r.per_length + n);
   }
-  return any;
+  return meets;
 }
 
 }  // namespace sg::volume::HWY_NAMESPACE

@@ -18,6 +18,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "render/volume/engines/packets/packet_leaps_inl.h"
 #include "render/volume/engines/packets/packet_shading_inl.h"
 #include "render/volume/engines/packets/packets_inl.h"
 
@@ -29,92 +30,14 @@ constexpr int samples_per_look = 4;
 /// Samples half an edge apart or more are lit by twos; those of a look together when they take less than the first share of the light,
 /// those of several looks when they take less than the second.
 constexpr float faint = 1.0f / 32, faintest = 1.0f / 256;
-/// So far ahead samples are asked for: in the next turn or the one after it.
-constexpr float samples_asked_ahead = 48;
-
-/// Bricks that draw nothing, ready for gathers.
-template <class D>
-struct Space {
-  const uint8_t* distance;
-  Int<D> row, layer, last[3], up[3];  ///< up: of SpaceAhead
-  hn::Vec<D> margin, edges[3];
-
-  HWY_INLINE explicit Space(const PacketPlan& plan) : distance(plan.ahead ? plan.ahead->bricks.data() : plan.volume.distance.data()) {
-    const D d;
-    const IntTag<D> di;
-    const Volume& v = plan.volume;
-    for (size_t a = 0; a < 3; ++a) up[a] = hn::Set(di, plan.ahead ? plan.ahead->up[a] : 0);
-    const auto& dims = v.fine().dims;
-    row = hn::Set(di, int(dims[0])), layer = hn::Set(di, int(dims[0] * dims[1]));
-    for (size_t a = 0; a < 3; ++a) last[a] = hn::Set(di, int(dims[a]) - 1), edges[a] = hn::Set(d, float(dims[a]));
-    margin = hn::Set(d, float(std::max({v.margin.x, v.margin.y, v.margin.z})));
-  }
-};
-
-/// Where the lanes of a packet are: sample s of `end`, at first + s * by.
-template <class D>
-struct Lanes {
-  hn::Vec<D> first[3], by[3], per_by[3], s, end;
-
-  HWY_INLINE Lanes(const RayPacket& r, const float (*per)[most_lanes], hn::Vec<D> sample) : s(sample) {
-    const D d;
-    for (int a = 0; a < 3; ++a) first[a] = hn::Load(d, r.first[a]), by[a] = hn::Load(d, r.by[a]), per_by[a] = hn::Load(d, per[a]);
-    end = hn::Load(d, r.steps);
-  }
-  HWY_INLINE hn::Vec<D> u(int a) const { return u(a, s); }
-  HWY_INLINE hn::Vec<D> u(int a, hn::Vec<D> sample) const { return mul_add(sample, by[a], first[a]); }
-};
-
-/// The bricks that the lanes are in.
-template <class D>
-struct Nearby {
-  Int<D> brick[3];
-  Int<D> free;  ///< so many bricks around draw nothing
-
-  template <class T>
-  HWY_INLINE void find(const Source<D, T>& source, const Space<D>& space, const Lanes<D>& lanes) {
-    const D d;
-    for (int a = 0; a < 3; ++a) {
-      const auto cell = to_int(d, hn::Max(hn::Zero(d), hn::Min(lanes.u(a), source.top[a])));
-      brick[a] = hn::Min(hn::ShiftRight<FineBricks::shift>(cell), space.last[a]);
-    }
-    auto id = hn::Add(brick[0], hn::Add(hn::Mul(brick[1], space.row), hn::Mul(brick[2], space.layer)));
-    for (int a = 0; a < 3; ++a)
-      id = hn::Add(id, hn::IfThenElseZero(hn::RebindMask(IntTag<D>(), hn::Gt(lanes.by[a], hn::Zero(d))), space.up[a]));
-    free = hn::And(gather_words(d, space.distance, id, source.loads), hn::Set(IntTag<D>(), 255));
-  }
-};
-
-/// Takes the lanes that are `looking`, if they are in bricks that draw nothing, to their first sample beyond those that are known to be so.
-/// Whether that is in such a brick, too, is asked with the next look: to go on at once would let the other lanes wait.
-template <class D>
-HWY_INLINE void leap(const Space<D>& space, const Nearby<D>& here, Lanes<D>& lanes, hn::Mask<D> looking) {
-  const D d;
-  const auto zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-  looking = hn::And(looking, hn::RebindMask(d, hn::Gt(here.free, hn::Zero(IntTag<D>()))));
-  if (hn::AllFalse(d, looking)) return;
-  // All bricks nearer than that are empty: leave their cube, but for a margin wider than rounding errors.
-  const auto reach = hn::ConvertTo(d, here.free);
-  auto out = lanes.end;
-  for (int a = 0; a < 3; ++a) {
-    const auto forth = hn::Gt(lanes.by[a], zero);
-    const auto side = hn::Add(hn::ConvertTo(d, here.brick[a]), hn::IfThenElse(forth, reach, hn::Sub(one, reach)));
-    const auto at = mul_add(side, hn::Set(d, float(FineBricks::edge)), hn::IfThenElse(forth, hn::Neg(space.margin), space.margin));
-    const auto there = hn::Mul(hn::Sub(at, lanes.first[a]), lanes.per_by[a]);
-    // Beyond the outermost bricks there is nothing else.
-    const auto open = hn::Or(hn::Or(hn::Le(side, zero), hn::Ge(side, space.edges[a])), hn::Eq(lanes.by[a], zero));
-    out = hn::IfThenElse(open, out, hn::Min(out, there));
-  }
-  // Always by twos, as samples are taken.
-  const auto next = hn::Mul(hn::Floor(hn::Mul(hn::Ceil(out), hn::Set(d, 0.5f))), hn::Set(d, 2.0f));
-  lanes.s = hn::IfThenElse(looking, hn::Max(next, lanes.s), lanes.s);
-}
+/// Prefetch distance in samples: of the next turn or the one after it.
+constexpr float prefetch_distance = 48;
 
 /// Transfer::index, times four: where the entry's numbers begin.
 template <class D, class T>
 struct Entries {
-  hn::Vec<D> first, per_axis, count, last;
-  Int<D> below_count, above, none;
+  Float<D> first, per_axis, count, last;
+  Int<D> below_count, above, of_nan;
   bool spanned;         ///< no values are beyond the ends
   Int<D> drawn_eights;  ///< Transfer::drawn_eights
 
@@ -123,35 +46,33 @@ struct Entries {
     const IntTag<D> di;
     drawn_eights = hn::LoadU(di, reinterpret_cast<const int32_t*>(v.transfer[0].drawn_eights().data()));
     const LinearTable t = v.transfer[0].linear_table();
-    first = hn::Set(d, t.first), per_axis = hn::Set(d, t.per_axis), count = hn::Set(d, float(t.count)),
-    last = hn::Set(d, float(t.count - 1));
-    below_count = hn::Set(di, t.count - 1), above = hn::Set(di, t.count + 1), none = hn::Set(di, t.count + 2);
+    first = set(d, t.first), per_axis = set(d, t.per_axis), count = set(d, float(t.count)), last = set(d, float(t.count - 1));
+    below_count = set(di, t.count - 1), above = set(di, t.count + 1), of_nan = set(di, t.count + 2);
   }
-  HWY_INLINE Int<D> at(hn::Vec<D> value) const {
+  HWY_INLINE Int<D> at(Float<D> value) const {
     const D d;
-    const IntTag<D> di;
-    const auto zero = hn::Zero(d);
-    const auto place = hn::Mul(hn::Sub(value, first), per_axis);
+    const auto zero = set(d, 0);
+    const auto place = (value - first) * per_axis;
     if (spanned) {
-      auto e = hn::Add(to_int(d, hn::Min(hn::Max(place, zero), last)), hn::Set(di, 1));
-      if constexpr (std::is_same_v<T, float>) e = hn::IfThenElse(hn::RebindMask(di, hn::IsNaN(value)), none, e);
-      return hn::ShiftLeft<2>(e);
+      auto e = to_int(d, min(max(place, zero), last)) + 1;
+      if constexpr (std::is_same_v<T, float>) e = select(is_nan(value), of_nan, e);
+      return shift_left<2>(e);
     }
-    auto e = hn::Add(hn::Min(to_int(d, hn::Max(hn::Min(place, count), zero)), below_count), hn::Set(di, 1));
-    e = hn::IfThenElse(hn::RebindMask(di, hn::Gt(place, count)), above, e);
-    e = hn::IfThenElseZero(hn::RebindMask(di, hn::Ge(place, zero)), e);
-    e = hn::IfThenElse(hn::RebindMask(di, hn::Eq(value, value)), e, none);
-    return hn::ShiftLeft<2>(e);
+    auto e = min(to_int(d, max(min(place, count), zero)), below_count) + 1;
+    e = select(place > count, above, e);
+    e = only(place >= zero, e);
+    e = select(value == value, e, of_nan);
+    return shift_left<2>(e);
   }
   /// False where none of these entries draws anything, as far as can be told at once.
-  HWY_INLINE bool may_draw([[maybe_unused]] Int<D> entry, hn::Mask<D> which) const {
+  HWY_INLINE bool may_draw([[maybe_unused]] Int<D> entry, Mask<D> which) const {
     if constexpr (lanes_of<D> == 16) {
       const IntTag<D> di;
-      const auto word = hn::And(hn::ShiftRight<10>(entry), hn::Set(di, 15)), bit = hn::And(hn::ShiftRight<5>(entry), hn::Set(di, 31));
+      const auto word = shift_right<10>(entry) & 15, bit = shift_right<5>(entry) & 31;
       const auto words = hn::TableLookupLanes(drawn_eights, hn::IndicesFromVec(di, word));
-      return !hn::AllFalse(di, hn::And(hn::RebindMask(di, which), hn::TestBit(hn::Shr(words, bit), hn::Set(di, 1))));
+      return any(rebind(di, which) & hn::TestBit(hn::Shr(words, bit), set(di, 1)));
     }
-    return !hn::AllFalse(D(), which);
+    return any(which);
   }
 };
 
@@ -160,25 +81,24 @@ struct Entries {
 template <class D>
 struct Due {
   static constexpr int parts = 7;
-  hn::Vec<D> r, g, b, taken, moment, value, rise;
-  HWY_INLINE Due() { r = g = b = taken = moment = value = rise = hn::Zero(D()); }
-  HWY_INLINE hn::Mask<D> turns(hn::Vec<D> next) {
-    const D d;
-    const auto after = hn::Sub(next, value);
-    const auto turned = hn::And(hn::Lt(hn::Mul(after, rise), hn::Zero(d)), hn::Gt(taken, hn::Zero(d)));
+  Float<D> r, g, b, taken, moment, value, rise;
+  HWY_INLINE Due() { r = g = b = taken = moment = value = rise = set(D(), 0); }
+  HWY_INLINE Mask<D> turns(Float<D> next) {
+    const auto after = next - value;
+    const auto turned = (after * rise < 0) & (taken > 0);
     value = next, rise = after;
     return turned;
   }
-  HWY_INLINE void drop(hn::Mask<D> which) {
-    for (hn::Vec<D>* v : {&r, &g, &b, &taken, &moment}) *v = hn::IfThenElseZero(hn::Not(which), *v);
+  HWY_INLINE void drop(Mask<D> which) {
+    for (Float<D>* v : {&r, &g, &b, &taken, &moment}) *v = only(!which, *v);
   }
   HWY_INLINE void load(const float from[parts][most_lanes]) {
     size_t i = 0;
-    for (hn::Vec<D>* v : {&r, &g, &b, &taken, &moment, &value, &rise}) *v = hn::Load(D(), from[i++]);
+    for (Float<D>* v : {&r, &g, &b, &taken, &moment, &value, &rise}) *v = hn::Load(D(), from[i++]);
   }
   HWY_INLINE void store(float to[parts][most_lanes]) const {
     size_t i = 0;
-    for (const hn::Vec<D>* v : {&r, &g, &b, &taken, &moment, &value, &rise}) hn::Store(*v, D(), to[i++]);
+    for (const Float<D>* v : {&r, &g, &b, &taken, &moment, &value, &rise}) hn::Store(*v, D(), to[i++]);
   }
 };
 
@@ -186,7 +106,7 @@ struct Due {
 /// are near in the cache.
 template <class D, class T, bool shaded>
 class March {
-  using F = hn::Vec<D>;
+  using F = Float<D>;
 
   /// The samples between two looks at the bricks: the cells they lie in.
   struct Look {
@@ -212,28 +132,28 @@ class March {
   HWY_INLINE void start(const PacketPlan& plan) {
     const D d;
     // Places go one way, so all lie inside when the first and the last do. Rays without whole steps stand in the first sample.
-    const F steps = hn::Load(d, rays.steps), zero = hn::Zero(d);
-    const auto none = hn::Eq(steps, zero);
+    const F steps = hn::Load(d, rays.steps), zero = set(d, 0);
+    const auto none = steps == zero;
     inside_ = true;
     for (size_t a = 0; a < 3; ++a) {
-      const F first = hn::IfThenElseZero(hn::Not(none), hn::Load(d, rays.first[a])), by = hn::Load(d, rays.by[a]);
-      const F last = mul_add(hn::Sub(steps, hn::Set(d, 1.0f)), by, first);
-      const F top = hn::Set(d, float(plan.volume.voxels.dims[a] - 1));
-      const auto good = hn::And(hn::And(hn::Ge(first, zero), hn::Lt(first, top)), hn::And(hn::Ge(last, zero), hn::Lt(last, top)));
-      inside_ = inside_ && hn::AllTrue(d, hn::Or(good, none));
+      const F first = only(!none, hn::Load(d, rays.first[a])), by = hn::Load(d, rays.by[a]);
+      const F last = mul_add(steps - 1.0f, by, first);
+      const F top = set(d, float(plan.volume.voxels.dims[a] - 1));
+      const auto good = (first >= zero) & (first < top) & ((last >= zero) & (last < top));
+      inside_ = inside_ && all(good | none);
       hn::Store(first, d, rays.first[a]);
     }
-    for (int a = 0; a < 3; ++a) hn::Store(hn::Div(hn::Set(d, 1.0f), hn::Load(d, rays.by[a])), d, per_by_[a]);
-    hn::Store(hn::Load(d, rays.before), d, result.transmittance), hn::Store(hn::Set(d, -1.0f), d, seen_half_);
-    hn::Store(hn::Zero(d), d, result.r), hn::Store(hn::Zero(d), d, result.g), hn::Store(hn::Zero(d), d, result.b);
+    for (int a = 0; a < 3; ++a) hn::Store(1.0f / hn::Load(d, rays.by[a]), d, per_by_[a]);
+    hn::Store(hn::Load(d, rays.before), d, result.transmittance), hn::Store(set(d, -1.0f), d, seen_half_);
+    hn::Store(set(d, 0), d, result.r), hn::Store(set(d, 0), d, result.g), hn::Store(set(d, 0), d, result.b);
     if constexpr (shaded) queue_.start(plan, rays), Due<D>().store(due_);
-    Lanes<D> lanes(rays, per_by_, hn::Zero(d));
+    Lanes<D> lanes(rays, per_by_, set(d, 0));
     const Source<D, T> source(plan.volume.voxels);
     const Space<D> space(plan);
     if (skips(plan)) {
       Nearby<D> nearby;
       nearby.find(source, space, lanes);
-      leap(space, nearby, lanes, hn::Lt(lanes.s, lanes.end));
+      leap(space, nearby, lanes, lanes.s < lanes.end);
     }
     hn::Store(lanes.s, d, next_);
     constexpr int lanes_here = lanes_of<D>;
@@ -253,12 +173,12 @@ class March {
     const bool skip = skips(plan);
     // Who asks for shorter steps wants to see each of them lit.
     [[maybe_unused]] const bool together = v.step > 0.4 * v.edge;
-    const F stop = hn::Set(d, plan.knobs.stop_below), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
+    const F stop = set(d, plan.knobs.stop_below), one = set(d, 1.0f), half = set(d, 0.5f);
 
     Lanes<D> lanes(rays, per_by_, hn::Load(d, next_));
     F r = hn::Load(d, result.r), g = hn::Load(d, result.g), b = hn::Load(d, result.b);
     F pass = hn::Load(d, result.transmittance), seen_half = hn::Load(d, seen_half_);
-    const F horizon = hn::Min(hn::Set(d, until), lanes.end);
+    const F horizon = min(until, lanes.end);
     // Values wait for nothing but their samples: the places are known already. The bricks of the next samples are asked for before them,
     // and leaps do not wait for the light that these samples take.
     F first = lanes.s;
@@ -267,43 +187,46 @@ class March {
     [[maybe_unused]] Due<D> due;
     if constexpr (shaded) due.load(due_);
     while (true) {
-      const auto bright = hn::Ge(pass, stop);
-      if (hn::AllFalse(d, hn::And(hn::Lt(first, horizon), bright))) break;
-      lanes.s = hn::Add(first, hn::Set(d, float(samples_per_look)));
+      const auto bright = pass >= stop;
+      if (none((first < horizon) & bright)) break;
+      // Values of this look, then what is empty beyond it and the cells of the next.
+      lanes.s = first + float(samples_per_look);
       Nearby<D> nearby;
       if (skip) nearby.find(source, space, lanes);
       alignas(64) float values[samples_per_look][most_lanes];
       if (crowded_) look.values(by_fours, values);
       else look.values(source, values);
-      if (skip) leap(space, nearby, lanes, hn::And(hn::Lt(lanes.s, lanes.end), bright));
+      if (skip) leap(space, nearby, lanes, (lanes.s < lanes.end) & bright);
       look_ahead(source, lanes, look);
+      // Compositing, front to back.
       for (int k = 0; k < samples_per_look; ++k) {
-        const F s = hn::Add(first, hn::Set(d, float(k))), value = hn::Load(d, values[k]);
+        const F s = first + float(k), value = hn::Load(d, values[k]);
         const auto entry = entries.at(value);
-        const auto active = hn::And(hn::Lt(s, lanes.end), hn::Ge(pass, stop));
+        const auto active = (s < lanes.end) & (pass >= stop);
         if constexpr (shaded) {
           const auto turned = due.turns(value);
-          if (!hn::AllFalse(d, turned)) push(plan, due, turned);
+          if (any(turned)) push(plan, due, turned);
         }
         if (entries.may_draw(entry, active)) {
           const auto [r_g, b_pass] = gather_quad(d, steps, entry, source.loads);
-          seen_half = hn::IfThenElse(hn::And(active, hn::Ge(pass, half)), s, seen_half);
-          const F weight = hn::IfThenElseZero(active, pass);
-          const F wr = hn::Mul(weight, r_g.a), wg = hn::Mul(weight, r_g.b), wb = hn::Mul(weight, b_pass.a);
+          seen_half = select(active & (pass >= half), s, seen_half);
+          const F weight = only(active, pass);
+          const F wr = weight * r_g.a, wg = weight * r_g.b, wb = weight * b_pass.a;
           if constexpr (shaded) {
-            const F taken = hn::Mul(weight, hn::Sub(one, b_pass.b));
-            due.r = hn::Add(due.r, wr), due.g = hn::Add(due.g, wg), due.b = hn::Add(due.b, wb);
-            due.taken = hn::Add(due.taken, taken), due.moment = mul_add(taken, s, due.moment);
+            const F taken = weight * (one - b_pass.b);
+            due.r = due.r + wr, due.g = due.g + wg, due.b = due.b + wb;
+            due.taken = due.taken + taken, due.moment = mul_add(taken, s, due.moment);
           } else {
-            r = hn::Add(r, wr), g = hn::Add(g, wg), b = hn::Add(b, wb);
+            r = r + wr, g = g + wg, b = b + wb;
           }
-          pass = hn::IfThenElse(active, hn::Mul(pass, b_pass.b), pass);
+          pass = select(active, pass * b_pass.b, pass);
         }
+        // Light for what has gathered.
         if constexpr (shaded) {
           if (k % 2 == 1 || !together) {
             const float enough = !together ? 0 : k + 1 < samples_per_look ? faint : faintest;
-            const auto ready = hn::Gt(due.taken, hn::Set(d, enough));
-            if (!hn::AllFalse(d, ready)) push(plan, due, ready);
+            const auto ready = due.taken > enough;
+            if (any(ready)) push(plan, due, ready);
           }
         }
       }
@@ -313,7 +236,7 @@ class March {
     if constexpr (shaded) due.store(due_);
     else hn::Store(r, d, result.r), hn::Store(g, d, result.g), hn::Store(b, d, result.b);
     hn::Store(pass, d, result.transmittance), hn::Store(seen_half, d, seen_half_);
-    return !hn::AllFalse(d, hn::And(hn::Lt(first, lanes.end), hn::Ge(pass, stop)));
+    return any((first < lanes.end) & (pass >= stop));
   }
 
   /// The last step has what length is left.
@@ -327,35 +250,37 @@ class March {
     alignas(64) float before[most_lanes];
     hn::Store(pass, d, before);
     const F rest = hn::Load(d, rays.rest);
-    const auto last = hn::And(hn::Gt(rest, hn::Zero(d)), hn::Ge(pass, hn::Set(d, plan.knobs.stop_below)));
-    if (!hn::AllFalse(d, last)) {
+    const auto last = (rest > 0) & (pass >= plan.knobs.stop_below);
+    if (any(last)) {
       const F x = hn::Load(d, rays.last[0]), y = hn::Load(d, rays.last[1]), z = hn::Load(d, rays.last[2]);
       const F value = source.value(source.place(0, x), source.place(1, y), source.place(2, z));
       const auto entry = entries.at(value);
       const auto* media = reinterpret_cast<const float*>(&transfer.medium(0));
       const auto [r_g, b_density] = gather_quad(d, media, entry, source.loads);
-      const auto drawn = hn::And(last, hn::Gt(b_density.b, hn::Zero(d)));
-      if (!hn::AllFalse(d, drawn)) {
-        const F alpha = shading::HWY_NAMESPACE::absorbed(hn::Mul(b_density.b, rest));
-        const F weight = hn::IfThenElseZero(drawn, hn::Mul(pass, alpha));
-        const F wr = hn::Mul(weight, r_g.a), wg = hn::Mul(weight, r_g.b), wb = hn::Mul(weight, b_density.a);
+      const auto drawn = last & (b_density.b > 0);
+      if (any(drawn)) {
+        const F alpha = shading::HWY_NAMESPACE::absorbed(b_density.b * rest);
+        const F weight = only(drawn, pass * alpha);
+        const F wr = weight * r_g.a, wg = weight * r_g.b, wb = weight * b_density.a;
         if constexpr (shaded) {
-          queue_.push(plan, rays, result, drawn, hn::Set(d, -1.0f), wr, wg, wb, weight);
+          queue_.push(plan, rays, result, drawn, set(d, -1.0f), wr, wg, wb, weight);
         } else {
-          hn::Store(hn::Add(hn::Load(d, result.r), wr), d, result.r), hn::Store(hn::Add(hn::Load(d, result.g), wg), d, result.g);
-          hn::Store(hn::Add(hn::Load(d, result.b), wb), d, result.b);
+          hn::Store(hn::Load(d, result.r) + wr, d, result.r), hn::Store(hn::Load(d, result.g) + wg, d, result.g);
+          hn::Store(hn::Load(d, result.b) + wb, d, result.b);
         }
-        pass = hn::IfThenElse(drawn, hn::Mul(pass, hn::Sub(hn::Set(d, 1.0f), alpha)), pass);
+        pass = select(drawn, pass * (1.0f - alpha), pass);
         hn::Store(pass, d, result.transmittance);
       }
     }
+    // What still waits for its light.
     if constexpr (shaded) {
       Due<D> due;
       due.load(due_);
-      const auto any = hn::Gt(due.taken, hn::Zero(d));
-      if (!hn::AllFalse(d, any)) push(plan, due, any);
+      const auto waiting = due.taken > 0;
+      if (any(waiting)) push(plan, due, waiting);
       queue_.finish(plan, rays, result);
     }
+    // Where half of the light was gone.
     for (size_t n = 0; n < hn::Lanes(d); ++n) {
       result.surface[n] = -1;
       if (before[n] < 0.5f) result.surface[n] = rays.enter[n] + (double(seen_half_[n]) + 0.5) * v.step;
@@ -366,8 +291,8 @@ class March {
  private:
   static bool skips(const PacketPlan& plan) { return plan.knobs.skip_empty && plan.volume.any_empty; }
 
-  HWY_INLINE void push(const PacketPlan& plan, Due<D>& due, hn::Mask<D> which) {
-    queue_.push(plan, rays, result, which, hn::Div(due.moment, due.taken), due.r, due.g, due.b, due.taken);
+  HWY_INLINE void push(const PacketPlan& plan, Due<D>& due, Mask<D> which) {
+    queue_.push(plan, rays, result, which, due.moment / due.taken, due.r, due.g, due.b, due.taken);
     due.drop(which);
   }
 
@@ -375,9 +300,9 @@ class March {
   HWY_INLINE void look_ahead(const Source<D, T>& source, const Lanes<D>& lanes, Look& look) const {
     const D d;
     const IntTag<D> di;
-    const F final_sample = hn::Max(hn::Zero(d), hn::Sub(lanes.end, hn::Set(d, 1.0f)));
+    const F final_sample = max(0, lanes.end - 1.0f);
     for (int k = 0; k < samples_per_look; ++k) {
-      const F s = hn::Min(hn::Add(lanes.s, hn::Set(d, float(k))), final_sample);
+      const F s = min(lanes.s + float(k), final_sample);
       Place<D> at[3];
       for (int a = 0; a < 3; ++a) at[a] = inside_ ? source.inner_place(lanes.u(a, s)) : source.place(a, lanes.u(a, s));
       hn::Store(source.offset(at[0].cell, at[1].cell, at[2].cell), di, look.corner[k]);
@@ -385,7 +310,7 @@ class March {
     }
     if (lanes_of<D> >= 8 && inside_) {
       alignas(64) int32_t corner[most_lanes];
-      const F s = hn::Min(hn::Add(lanes.s, hn::Set(d, samples_asked_ahead)), final_sample);
+      const F s = min(lanes.s + prefetch_distance, final_sample);
       hn::Store(source.offset(to_int(d, lanes.u(0, s)), to_int(d, lanes.u(1, s)), to_int(d, lanes.u(2, s))), di, corner);
       for (int n = 0; n < lanes_of<D>; ++n) __builtin_prefetch(source.data + corner[n], 0, 3);
     }

@@ -17,61 +17,60 @@ HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {
 
 template <class D>
-HWY_INLINE hn::Vec<D> clamped_to(hn::Vec<D> x, hn::Vec<D> lo, hn::Vec<D> hi) {
-  return hn::Max(lo, hn::Min(x, hi));
+HWY_INLINE Float<D> clamped_to(Float<D> x, Float<D> lo, Float<D> hi) {
+  return max(lo, min(x, hi));
 }
 
 /// Walks the boxes of `edge` cells that rays cross; box numbers are whole floats. Boxes from `lowest` to `highest` exist, those at
 /// the ends reach as far as the ray does.
 template <class D>
 struct Walk {
-  using F = hn::Vec<D>;
-  using M = hn::Mask<D>;
+  using F = Float<D>;
+  using M = Mask<D>;
   const F *entry, *along, *per_along;
   F edge, lowest[3], highest[3], box[3], next[3], t, end;
   M crossed[3];  // through which sides the lanes came in
 
   HWY_INLINE F crossing(int a) const {
     const D d;
-    const M forth = hn::Gt(along[a], hn::Zero(d));
-    const F at =
-        hn::Mul(hn::Sub(hn::Mul(hn::Add(box[a], hn::IfThenElse(forth, hn::Set(d, 1.0f), hn::Zero(d))), edge), entry[a]), per_along[a]);
-    const M open = hn::Or(hn::Eq(along[a], hn::Zero(d)), hn::Eq(box[a], hn::IfThenElse(forth, highest[a], lowest[a])));
-    return hn::IfThenElse(open, hn::Set(d, HUGE_VALF), hn::Max(at, t));
+    const M forth = along[a] > 0;
+    const F at = ((box[a] + select(forth, set(d, 1.0f), 0)) * edge - entry[a]) * per_along[a];
+    const M open = (along[a] == 0) | (box[a] == select(forth, highest[a], lowest[a]));
+    return select(open, HUGE_VALF, max(at, t));
   }
   /// From length `from` to `to`.
   HWY_INLINE void start(F from, F to) {
     const D d;
     t = from, end = to;
     for (int a = 0; a < 3; ++a) {
-      const F at = hn::Div(hn::Add(entry[a], hn::Mul(t, along[a])), edge);
-      box[a] = clamped_to<D>(hn::Floor(at), lowest[a], highest[a]);
-      crossed[a] = hn::Gt(hn::Zero(d), hn::Zero(d));
+      const F at = (entry[a] + t * along[a]) / edge;
+      box[a] = clamped_to<D>(floor(at), lowest[a], highest[a]);
+      crossed[a] = set(d, 0) > 0;
     }
     for (int a = 0; a < 3; ++a) next[a] = crossing(a);
   }
-  HWY_INLINE F leave() const { return hn::Min(hn::Min(next[0], next[1]), hn::Min(next[2], end)); }
+  HWY_INLINE F leave() const { return min(min(next[0], next[1]), min(next[2], end)); }
   /// The lanes `m` go on to their next box; returns those for which there is one.
   HWY_INLINE M advance(M m) {
     const D d;
     const F to = leave();
-    m = hn::And(m, hn::Lt(to, end));
-    t = hn::IfThenElse(m, to, t);
+    m = m & (to < end);
+    t = select(m, to, t);
     for (int a = 0; a < 3; ++a) {
-      crossed[a] = hn::And(m, hn::Le(next[a], to));
-      const F by = hn::IfThenElse(hn::Gt(along[a], hn::Zero(d)), hn::Set(d, 1.0f), hn::Set(d, -1.0f));
-      box[a] = hn::IfThenElse(crossed[a], hn::Add(box[a], by), box[a]);
+      crossed[a] = m & (next[a] <= to);
+      const F by = select(along[a] > 0, set(d, 1.0f), -1.0f);
+      box[a] = select(crossed[a], box[a] + by, box[a]);
     }
-    for (int a = 0; a < 3; ++a) next[a] = hn::IfThenElse(crossed[a], crossing(a), next[a]);
+    for (int a = 0; a < 3; ++a) next[a] = select(crossed[a], crossing(a), next[a]);
     return m;
   }
 };
 
 template <class D, class T>
 class Climb {
-  using F = hn::Vec<D>;
+  using F = Float<D>;
   using I = Int<D>;
-  using M = hn::Mask<D>;
+  using M = Mask<D>;
 
  public:
   HWY_INLINE Climb(const PacketPlan& plan, const RayPacket& rays)
@@ -79,18 +78,18 @@ class Climb {
     const D d;
     for (int a = 0; a < 3; ++a) {
       entry_[a] = hn::Load(d, rays.entry[a]), along_[a] = hn::Load(d, rays.along[a]);
-      per_along_[a] = hn::Div(hn::Set(d, 1.0f), along_[a]);
-      last_cell_[a] = hn::ConvertTo(d, source_.last_cell[a]);
+      per_along_[a] = 1.0f / along_[a];
+      last_cell_[a] = convert(d, source_.last_cell[a]);
     }
     length_ = hn::Load(d, rays.length);
-    best_ = hn::Set(d, -HUGE_VALF), where_ = hn::Zero(d);
+    best_ = set(d, -HUGE_VALF), where_ = set(d, 0);
   }
 
   HWY_INLINE void run() {
     const D d;
     Walk<D> walk = bricks();
-    walk.start(hn::Zero(d), length_);
-    for (M going = hn::Gt(length_, hn::Zero(d)); !hn::AllFalse(d, going);) {
+    walk.start(set(d, 0), length_);
+    for (M going = length_ > 0; any(going);) {
       going = look(walk, going);
       visit();
     }
@@ -104,25 +103,23 @@ class Climb {
   HWY_INLINE Walk<D> bricks() const {
     const D d;
     Walk<D> w;
-    w.entry = entry_, w.along = along_, w.per_along = per_along_, w.edge = hn::Set(d, float(MinMaxBricks::edge));
-    for (size_t a = 0; a < 3; ++a) w.lowest[a] = hn::Zero(d), w.highest[a] = hn::Set(d, float(volume_.bricks().dims[a] - 1));
+    w.entry = entry_, w.along = along_, w.per_along = per_along_, w.edge = set(d, float(MinMaxBricks::edge));
+    for (size_t a = 0; a < 3; ++a) w.lowest[a] = set(d, 0), w.highest[a] = set(d, float(volume_.bricks().dims[a] - 1));
     return w;
   }
   HWY_INLINE F highest_in(const Walk<D>& w) const {
     const D d;
-    const IntTag<D> di;
     const auto& dims = volume_.bricks().dims;
-    const auto id = hn::Add(to_int(d, w.box[0]), hn::Add(hn::Mul(to_int(d, w.box[1]), hn::Set(di, int(dims[0]))),
-                                                         hn::Mul(to_int(d, w.box[2]), hn::Set(di, int(dims[0] * dims[1])))));
-    return hn::BitCast(d, gather_words(d, &volume_.bricks().ranges[0].hi, hn::ShiftLeft<3>(id), source_.loads));
+    const auto id = to_int(d, w.box[0]) + (to_int(d, w.box[1]) * int(dims[0]) + to_int(d, w.box[2]) * int(dims[0] * dims[1]));
+    return bit_cast(d, gather_words(d, &volume_.bricks().ranges[0].hi, shift_left<3>(id), source_.loads));
   }
 
   /// Notes what the next bricks promise; returns the lanes that have more of them.
   HWY_INLINE M look(Walk<D>& walk, M going) {
     const D d;
     hn::Store(walk.t, d, begin_[0]);
-    for (seen_ = 0; seen_ < most_seen && !hn::AllFalse(d, going); ++seen_) {
-      hn::Store(hn::IfThenElse(going, highest_in(walk), hn::Set(d, -HUGE_VALF)), d, promise_[seen_]);
+    for (seen_ = 0; seen_ < most_seen && any(going); ++seen_) {
+      hn::Store(select(going, highest_in(walk), -HUGE_VALF), d, promise_[seen_]);
       const F leave = walk.leave();
       going = walk.advance(going);
       hn::Store(leave, d, begin_[seen_ + 1]);
@@ -133,22 +130,22 @@ class Climb {
   HWY_INLINE void visit() {
     const D d;
     const IntTag<D> di;
-    const I lanes = hn::Set(di, lanes_of<D>), lane = hn::Iota(di, 0);
+    const I lanes = set(di, lanes_of<D>), lane = hn::Iota(di, 0);
     while (true) {
-      F most = skip_ ? best_ : hn::Set(d, -HUGE_VALF);
-      I which = hn::Set(di, -1);
+      F most = skip_ ? best_ : set(d, -HUGE_VALF);
+      I which = set(di, -1);
       for (int i = 0; i < seen_; ++i) {
         const F promise = hn::Load(d, promise_[i]);
-        which = hn::IfThenElse(hn::RebindMask(di, hn::Gt(promise, most)), hn::Set(di, i), which), most = hn::Max(most, promise);
+        which = select(promise > most, i, which), most = max(most, promise);
       }
-      const auto chosen = hn::Gt(which, hn::Set(di, -1));
-      if (hn::AllFalse(di, chosen)) return;
+      const auto chosen = which > -1;
+      if (none(chosen)) return;
       alignas(64) int32_t at[most_lanes];
       hn::Store(which, di, at);
       for (int n = 0; n < lanes_of<D>; ++n)
         if (at[n] >= 0) promise_[at[n]][n] = -HUGE_VALF;
-      const I from = hn::Add(hn::Mul(hn::Max(which, hn::Zero(di)), lanes), lane);
-      cells(hn::RebindMask(d, chosen), hn::GatherIndex(d, begin_[0], from), hn::GatherIndex(d, begin_[1], from));
+      const I from = max(which, 0) * lanes + lane;
+      cells(rebind(d, chosen), hn::GatherIndex(d, begin_[0], from), hn::GatherIndex(d, begin_[1], from));
     }
   }
 
@@ -156,64 +153,62 @@ class Climb {
   HWY_INLINE void cells(M m, F from, F to) {
     const D d;
     Walk<D> w;
-    w.entry = entry_, w.along = along_, w.per_along = per_along_, w.edge = hn::Set(d, 1.0f);
-    for (int a = 0; a < 3; ++a) w.lowest[a] = hn::Set(d, -1.0f), w.highest[a] = hn::Add(last_cell_[a], hn::Set(d, 1.0f));
+    w.entry = entry_, w.along = along_, w.per_along = per_along_, w.edge = set(d, 1.0f);
+    for (int a = 0; a < 3; ++a) w.lowest[a] = set(d, -1.0f), w.highest[a] = last_cell_[a] + 1.0f;
     w.start(from, to);
-    for (; !hn::AllFalse(d, m); m = w.advance(m)) cell(m, w);
+    for (; any(m); m = w.advance(m)) cell(m, w);
   }
 
   HWY_INLINE void cell(M m, const Walk<D>& w) {
     const D d;
-    const F zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+    const F zero = set(d, 0), one = set(d, 1.0f);
     F low[3];
     Int<D> at[3];
     for (int a = 0; a < 3; ++a) low[a] = clamped_to<D>(w.box[a], zero, last_cell_[a]), at[a] = to_int(d, low[a]);
     const auto p = source_.offset(at[0], at[1], at[2]);
     Pair<D> c[4];
     source_.corners(p, c);
-    F top = hn::Max(hn::Max(hn::Max(c[0].a, c[0].b), hn::Max(c[1].a, c[1].b)), hn::Max(hn::Max(c[2].a, c[2].b), hn::Max(c[3].a, c[3].b)));
-    if (skip_) m = hn::And(m, hn::Gt(top, best_));
+    F top = max(max(max(c[0].a, c[0].b), max(c[1].a, c[1].b)), max(max(c[2].a, c[2].b), max(c[3].a, c[3].b)));
+    if (skip_) m = m & (top > best_);
     if constexpr (std::is_same_v<T, float>) {  // a cell with a NaN corner is clear
-      const F sum =
-          hn::Add(hn::Add(hn::Add(c[0].a, c[0].b), hn::Add(c[1].a, c[1].b)), hn::Add(hn::Add(c[2].a, c[2].b), hn::Add(c[3].a, c[3].b)));
-      m = hn::And(m, hn::Eq(sum, sum));
+      const F sum = c[0].a + c[0].b + (c[1].a + c[1].b) + (c[2].a + c[2].b + (c[3].a + c[3].b));
+      m = m & (sum == sum);
     }
-    if (hn::AllFalse(d, m)) return;
+    if (none(m)) return;
 
     // Fractions of the edges at both ends; where a side is crossed, but for rounding errors, they are whole.
-    const F leave = w.leave(), length = hn::Sub(leave, w.t), crossing = hn::Mul(leave, hn::Set(d, 1 + 5e-7f));
+    const F leave = w.leave(), length = leave - w.t, crossing = leave * (1 + 5e-7f);
     F f0[3], df[3];
     for (int a = 0; a < 3; ++a) {
-      const M forth = hn::Gt(along_[a], zero), inside = hn::Eq(low[a], w.box[a]);
-      F enters = clamped_to<D>(hn::Sub(hn::Add(entry_[a], hn::Mul(w.t, along_[a])), low[a]), zero, one);
-      F leaves = clamped_to<D>(hn::Sub(hn::Add(entry_[a], hn::Mul(leave, along_[a])), low[a]), zero, one);
-      enters = hn::IfThenElse(hn::And(inside, w.crossed[a]), hn::IfThenElse(forth, zero, one), enters);
-      leaves = hn::IfThenElse(hn::And(inside, hn::Le(w.next[a], crossing)), hn::IfThenElse(forth, one, zero), leaves);
-      f0[a] = enters, df[a] = hn::Sub(leaves, enters);
+      const M forth = along_[a] > zero, inside = low[a] == w.box[a];
+      F enters = clamped_to<D>(entry_[a] + w.t * along_[a] - low[a], zero, one);
+      F leaves = clamped_to<D>(entry_[a] + leave * along_[a] - low[a], zero, one);
+      enters = select(inside & w.crossed[a], select(forth, zero, one), enters);
+      leaves = select(inside & (w.next[a] <= crossing), select(forth, one, zero), leaves);
+      f0[a] = enters, df[a] = leaves - enters;
     }
     const Cubic<D> f = along_way(c, f0, df);
     offer(m, along_cell(c, f0, df, zero), w.t), offer(m, along_cell(c, f0, df, one), leave);
     // Of the zeros of f' = b + 2 c s + 3 e s^2 the one where f'' < 0.
-    const F discriminant = neg_mul_add(hn::Mul(hn::Set(d, 3.0f), f.e), f.b, hn::Mul(f.c, f.c));
-    const F square_root = hn::Sqrt(hn::Max(discriminant, zero));
-    const M falling = hn::Gt(f.c, zero);
-    const F s = hn::Div(hn::IfThenElse(falling, hn::Neg(hn::Add(f.c, square_root)), f.b),
-                        hn::IfThenElse(falling, hn::Mul(hn::Set(d, 3.0f), f.e), hn::Sub(square_root, f.c)));
-    m = hn::And(hn::And(m, hn::Gt(discriminant, zero)), hn::And(hn::Gt(s, zero), hn::Lt(s, one)));
-    if (hn::AllFalse(d, m)) return;
+    const F discriminant = neg_mul_add(3.0f * f.e, f.b, f.c * f.c);
+    const F square_root = sqrt(max(discriminant, zero));
+    const M falling = f.c > zero;
+    const F s = select(falling, -(f.c + square_root), f.b) / select(falling, 3.0f * f.e, square_root - f.c);
+    m = m & (discriminant > zero) & ((s > zero) & (s < one));
+    if (none(m)) return;
     offer(m, along_cell(c, f0, df, s), mul_add(s, length, w.t));
   }
 
   /// Exact at the corners.
-  static HWY_INLINE F between(F a, F b, F x) { return mul_add(b, x, hn::Mul(a, hn::Sub(hn::Set(D(), 1.0f), x))); }
+  static HWY_INLINE F between(F a, F b, F x) { return mul_add(b, x, a * (1.0f - x)); }
   static HWY_INLINE F along_cell(const Pair<D>* c, const F* f0, const F* df, F s) {
     const F x = mul_add(s, df[0], f0[0]), y = mul_add(s, df[1], f0[1]), z = mul_add(s, df[2], f0[2]);
     return between(between(between(c[0].a, c[0].b, x), between(c[1].a, c[1].b, x), y),
                    between(between(c[2].a, c[2].b, x), between(c[3].a, c[3].b, x), y), z);
   }
   HWY_INLINE void offer(M m, F value, F t) {
-    const M better = hn::And(m, hn::Gt(value, best_));
-    best_ = hn::IfThenElse(better, value, best_), where_ = hn::IfThenElse(better, t, where_);
+    const M better = m & (value > best_);
+    best_ = select(better, value, best_), where_ = select(better, t, where_);
   }
 
   const Volume& volume_;

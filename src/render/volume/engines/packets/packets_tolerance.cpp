@@ -54,58 +54,58 @@ class TolerantPacket : CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>> {
  public:
   HWY_INLINE TolerantPacket(const PacketPlan& plan, const RayPacket& rays) : Walk(plan, rays), sums_{plan.sums, cells_.source.loads} {
     const D d;
-    F square = hn::Zero(d);
+    F square = set(d, 0);
     for (int a = 0; a < 3; ++a) square = mul_add(cells_.along[a], cells_.along[a], square);
-    speed_ = hn::Sqrt(square);
-    per_speed_ = hn::Div(hn::Set(d, 1.0f), hn::Max(speed_, hn::Set(d, 1e-30f)));
-    reserve_ = hn::Set(d, share_at_first * float(plan.budget.tolerance));
-    stride_ = hn::Set(d, 1.0f);
-    if (plan.passages) here_ = sums_.at(hn::Zero(d));
-    lit_ = hn::MaskFromVec(hn::Zero(d));
+    speed_ = sqrt(square);
+    per_speed_ = 1.0f / max(speed_, 1e-30f);
+    reserve_ = set(d, share_at_first * float(plan.budget.tolerance));
+    stride_ = set(d, 1.0f);
+    if (plan.passages) here_ = sums_.at(set(d, 0));
+    lit_ = hn::MaskFromVec(set(d, 0));
     here_lit_ = LitPlace<D>::none();
     strides_ = !shaded || plan.budget.tolerance >= least_lit_tolerance;
-    per_scale_ = hn::Set(d, plan.volume.shade_plan.per_scale * (2 / most_turned));
+    per_scale_ = set(d, plan.volume.shade_plan.per_scale * (2 / most_turned));
   }
 
   HWY_INLINE void run(PacketResult& result) {
     const D d;
     const IntTag<D> di;
-    const F stop = hn::Set(d, plan_.budget.stop_below);
+    const F stop = set(d, plan_.budget.stop_below);
     // Cells -1 and n-1 are the halves beyond the outermost samples; where a lane has strode, the nearest cells inside.
-    F t = hn::Zero(d);
+    F t = set(d, 0);
     I cell[3];
     for (int a = 0; a < 3; ++a) cell[a] = cell_at(a, t);
-    M strode = hn::MaskFromVec(hn::Zero(d));
-    M known = hn::MaskFromVec(hn::Zero(d));  // the lanes for which here_ is the place t
-    const auto on = [&]() HWY_ATTR { return hn::And(hn::Lt(t, end_), hn::Ge(cells_.sum.pass, stop)); };
+    M strode = hn::MaskFromVec(set(d, 0));
+    M known = hn::MaskFromVec(set(d, 0));  // the lanes for which here_ is the place t
+    const auto on = [&]() HWY_ATTR { return (t < end_) & (cells_.sum.pass >= stop); };
     const auto find_cells = [&](M which) HWY_ATTR {
-      const auto unsure = hn::RebindMask(di, hn::And(which, strode));
-      for (int a = 0; a < 3; ++a) cell[a] = hn::IfThenElse(unsure, cell_at(a, t), cell[a]);
-      strode = hn::AndNot(which, strode), known = hn::AndNot(which, known), lit_ = hn::AndNot(which, lit_);
+      const auto unsure = rebind(di, which & strode);
+      for (int a = 0; a < 3; ++a) cell[a] = select(unsure, cell_at(a, t), cell[a]);
+      strode = strode & !which, known = known & !which, lit_ = lit_ & !which;
       if constexpr (shaded) path_.forget(which);
     };
     Passage here = passage(cell);
-    for (M going = on(); !hn::AllFalse(d, going); going = on()) {
-      const M leaping = hn::And(going, here.empty());
-      if (!hn::AllFalse(d, leaping)) {
+    for (M going = on(); any(going); going = on()) {
+      const M leaping = going & here.empty();
+      if (any(leaping)) {
         find_cells(leaping);
         leap(here, leaping, cell, t);
         here = passage(cell);
-        going = on(), going = hn::AndNot(here.empty(), going);
+        going = on(), going = going & !here.empty();
       }
-      const M cellwise = !strides_ ? hn::Eq(t, t) : hn::Or(hn::Lt(stride_, hn::Set(d, shortest_stride)), here.bent());
-      const M crossing = hn::And(going, cellwise), striding = hn::AndNot(cellwise, going);
-      if (!hn::AllFalse(d, striding)) {
-        const M fresh = hn::AndNot(known, striding);
-        if (!hn::AllFalse(d, fresh)) renew(t, fresh), known = hn::Or(known, fresh);
+      const M cellwise = !strides_ ? t == t : (stride_ < shortest_stride) | here.bent();
+      const M crossing = going & cellwise, striding = going & !cellwise;
+      if (any(striding)) {
+        const M fresh = striding & !known;
+        if (any(fresh)) renew(t, fresh), known = known | fresh;
         // A lane that was refused stays in its cell, which rounding may tell otherwise.
-        strode = hn::Or(strode, stride_on(t, cell, here, striding));
+        strode = strode | stride_on(t, cell, here, striding);
       }
-      if (!hn::AllFalse(d, crossing)) {
+      if (any(crossing)) {
         find_cells(crossing);
         cross(crossing, cell, t);
         here = passage(cell);
-        stride_ = hn::IfThenElse(crossing, hn::Max(stride_, hn::Set(d, 2 * shortest_stride)), stride_);
+        stride_ = select(crossing, max(stride_, 2 * shortest_stride), stride_);
       }
     }
     store(result);
@@ -125,133 +125,134 @@ class TolerantPacket : CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>> {
   HWY_INLINE void renew(F t, M which) { take(sums_.at(value_at(t)), which); }
   HWY_INLINE void take(const typename SumLanes<D>::Place& p, M which) {
     const IntTag<D> di;
-    here_.value = hn::IfThenElse(which, p.value, here_.value), here_.tau = hn::IfThenElse(which, p.tau, here_.tau);
-    here_.slope = hn::IfThenElse(which, p.slope, here_.slope);
-    here_.beyond = hn::IfThenElse(which, p.beyond, here_.beyond), here_.kinks = hn::IfThenElse(which, p.kinks, here_.kinks);
-    const auto whole = hn::RebindMask(di, which);
-    here_.node = hn::IfThenElse(whole, p.node, here_.node), here_.sum = hn::IfThenElse(whole, p.sum, here_.sum);
+    here_.value = select(which, p.value, here_.value), here_.tau = select(which, p.tau, here_.tau);
+    here_.slope = select(which, p.slope, here_.slope);
+    here_.beyond = select(which, p.beyond, here_.beyond), here_.kinks = select(which, p.kinks, here_.kinks);
+    const auto whole = rebind(di, which);
+    here_.node = select(whole, p.node, here_.node), here_.sum = select(whole, p.sum, here_.sum);
   }
 
   /// How the field bends along two strides.
   HWY_INLINE I bends_around(const Passage& here, const Place<D> between[3], M longer) const {
     const D d;
-    const IntTag<D> di;
-    if (hn::AllFalse(d, longer)) return here.code;
+    if (none(longer)) return here.code;
     const I id = brick_id(between[0].cell, between[1].cell, between[2].cell);
-    const I there = hn::And(gather_words(d, plan_.passages->bends->codes.data(), id, cells_.source.loads), hn::Set(di, 255));
-    return hn::IfThenElse(hn::RebindMask(di, longer), there, here.code);
+    const I there = gather_words(d, plan_.passages->bends->codes.data(), id, cells_.source.loads) & 255;
+    return select(longer, there, here.code);
   }
 
   /// Two strides from t on, if their errors are allowed. Returns which lanes have moved, to which cell. How that is passed is looked up
-  /// before anything else: what the next turn does hangs on it.
+  /// before anything else: the next turn depends on it.
   HWY_INLINE M stride_on(F& t, I cell[3], Passage& here, M striding) {
     const D d;
     const IntTag<D> di;
-    const F half = hn::Set(d, 0.5f);
-    const F world = hn::Min(hn::Mul(stride_, per_speed_), hn::Mul(half, hn::Sub(end_, t)));
-    const F cells = hn::Mul(world, speed_);
-    const M ends = hn::Le(hn::Sub(end_, t), hn::Mul(hn::Set(d, 2.0f), hn::Mul(stride_, per_speed_)));
-    const F t1 = hn::Add(t, world), t2 = hn::IfThenElse(ends, end_, hn::Add(t1, world));
+    const F half = set(d, 0.5f);
+    // Lengths: two equal strides; the last pair ends with the ray.
+    const F world = min(stride_ * per_speed_, half * (end_ - t));
+    const F cells = world * speed_;
+    const M ends = end_ - t <= 2.0f * (stride_ * per_speed_);
+    const F t1 = t + world, t2 = select(ends, end_, t1 + world);
+    // Cells at the end and in the middle, and the bound on the bend of the field between.
     Place<D> there[3];
     places_at(t2, there);
     const I cell2[3] = {there[0].cell, there[1].cell, there[2].cell};
     const Passage next_passage = passage(brick_id(cell2[0], cell2[1], cell2[2]));
     Place<D> between[3];
     places_at(t1, between);
-    const M longer_pair = hn::Gt(cells, hn::Set(d, half_brick));
+    const M longer_pair = cells > half_brick;
     const I bend_code = bends_around(here, between, longer_pair);
-    const F bend = hn::Mul(hn::BitCast(d, hn::Add(hn::ShiftLeft<21>(bend_code), hn::Set(di, (127 + Bends::least) << 23))),
-                           hn::Set(d, plan_.passages->bends->range));
+    const F bend = bit_cast(d, shift_left<21>(bend_code) + ((127 + Bends::least) << 23)) * plan_.passages->bends->range;
     // Where most lanes are lit already the slopes are found together with the values.
-    const bool lit_ahead = shaded && 2 * hn::CountTrue(d, hn::And(striding, lit_)) > hn::Lanes(d);
+    const bool lit_ahead = shaded && 2 * hn::CountTrue(d, striding & lit_) > hn::Lanes(d);
     const F value1 = value_at(between);
     Slope<D> slope2;
     if (lit_ahead) slopes_of_most(cells_.source, there, striding, slope2);
     const auto p1 = sums_.at(value1), p2 = sums_.at(lit_ahead ? slope2.value : value_at(there));
     const Strides<D> s = strides<shaded>(sums_, *plan_.medium, float(plan_.budget.tolerance), here_, p1, p2, world, cells, bend);
-    const F zero = hn::Zero(d), one = hn::Set(d, 1.0f), tolerance = hn::Set(d, float(plan_.budget.tolerance));
-    const F pass = cells_.sum.pass, taken = hn::Mul(pass, hn::Min(one, s.depth));
-    const M unbounded = hn::RebindMask(d, hn::Eq(bend_code, hn::Set(di, int(Bends::unbounded))));
-    F error = hn::IfThenElse(unbounded, hn::Set(d, 1e30f), hn::Mul(pass, s.error));
-    const F own = hn::Mul(tolerance, mul_add(world, hn::Set(d, float(2 * share_of_length / plan_.budget.length)),
-                                             hn::Mul(taken, hn::Set(d, share_of_light))));
-    const F allowed = mul_add(reserve_, hn::Set(d, share_at_once), own);
-    const M seen = hn::And(hn::And(striding, hn::Le(error, allowed)), hn::Gt(s.depth, zero));
-    const bool any_seen = !hn::AllFalse(d, seen);
+    // Error estimate, and what is allowed: a share by length, one by light, and of what earlier strides left over.
+    const F zero = set(d, 0), one = set(d, 1.0f), tolerance = set(d, float(plan_.budget.tolerance));
+    const F pass = cells_.sum.pass, taken = pass * min(one, s.depth);
+    const M unbounded = rebind(d, bend_code == int(Bends::unbounded));
+    F error = select(unbounded, 1e30f, pass * s.error);
+    const F own = tolerance * mul_add(world, float(2 * share_of_length / plan_.budget.length), taken * share_of_light);
+    const F allowed = mul_add(reserve_, share_at_once, own);
+    const M seen = striding & (error <= allowed) & (s.depth > zero);
+    const bool any_seen = any(seen);
     LitPlace<D> lit2;
     StrideLight<D> light;
+    // Light at the end, and its error where it is taken as straight between the ends.
     if constexpr (shaded)
       if (any_seen) {
         lit2 = light_ends(t, t2, lit_ahead ? &slope2 : nullptr, seen);
-        const F swerve = path_.swerve(here_lit_, lit2, hn::Sub(t2, t));
+        const F swerve = path_.swerve(here_lit_, lit2, t2 - t);
         light = StrideLight<D>::straight(cells_.lighting, here_lit_, lit2, swerve);
-        const auto over = hn::Eq(hn::Xor(here_lit_.sides, lit2.sides), cells_.lighting.turned_over());
-        const M turned = hn::And(seen, hn::RebindMask(d, over));
-        if (!hn::AllFalse(d, turned)) {
+        const auto over = (here_lit_.sides ^ lit2.sides) == cells_.lighting.turned_over();
+        const M turned = seen & rebind(d, over);
+        if (any(turned)) {
           const F tau[3] = {here_.tau, p1.tau, p2.tau};
           light.take(StrideLight<D>::turned_over(cells_.lighting, here_lit_, lit2, tau, s.depth), turned);
         }
         // The middle only where the ends do not do.
-        const F unknown = hn::IfThenElse(path_.known(), zero, hn::Set(d, first_error));
-        const M unsure =
-            hn::Or(hn::Gt(mul_add(taken, hn::Add(light.error, unknown), error), allowed), grazing(here_lit_.surface, lit2.surface));
-        const M rough = hn::AndNot(turned, hn::And(seen, unsure));
-        if (!hn::AllFalse(d, rough))
-          light.take(StrideLight<D>::curved(cells_.lighting, here_lit_, lit_at(t1, rough), lit2, s.depth), rough);
+        const F unknown = select(path_.known(), zero, first_error);
+        const M unsure = (mul_add(taken, light.error + unknown, error) > allowed) | grazing(here_lit_.surface, lit2.surface);
+        const M rough = seen & unsure & !turned;
+        if (any(rough)) light.take(StrideLight<D>::curved(cells_.lighting, here_lit_, lit_at(t1, rough), lit2, s.depth), rough);
         // Three places tell little where the gradient may turn right round in between.
-        const F gradient = hn::Max(here_lit_.surface.much, lit2.surface.much);
-        const M astray = hn::Gt(hn::Mul(hn::Mul(bend, cells), per_scale_), gradient);
-        light.error = hn::Max(light.error, hn::IfThenElseZero(astray, one));
-        error = hn::Add(error, hn::IfThenElseZero(seen, hn::Mul(taken, light.error)));
+        const F gradient = max(here_lit_.surface.weight, lit2.surface.weight);
+        const M astray = bend * cells * per_scale_ > gradient;
+        light.error = max(light.error, only(astray, one));
+        error = error + only(seen, taken * light.error);
         // What the front of an uneven pair hides of the change of light.
-        const F uneven = hn::Mul(hn::Mul(pass, s.uneven), apart(here_lit_.light, lit2.light));
-        error = hn::Add(error, hn::IfThenElseZero(hn::AndNot(turned, seen), uneven));
+        const F uneven = pass * s.uneven * apart(here_lit_.light, lit2.light);
+        error = error + only(seen & !turned, uneven);
       }
-    const M good = hn::And(striding, hn::Le(error, allowed));
-    reserve_ = hn::IfThenElse(good, hn::Sub(hn::Add(reserve_, own), error), reserve_);
+    // Accepted: both strides as one segment.
+    const M good = striding & (error <= allowed);
+    reserve_ = select(good, reserve_ + own - error, reserve_);
     if (any_seen) {
-      const M drawn = hn::And(seen, good);
+      const M drawn = seen & good;
       F lightening = zero;
-      if constexpr (shaded) lightening = hn::Mul(hn::Set(d, 2.0f), hn::Add(hn::Abs(light.diffuse.b), hn::Abs(light.specular.b)));
+      if constexpr (shaded) lightening = 2.0f * (abs(light.diffuse.b) + abs(light.specular.b));
       cells_.may_hide(s.change, lightening, lightening);
       const F taus[3] = {here_.tau, p1.tau, p2.tau};
-      cells_.segment(drawn, t, hn::Add(world, world), s.depth, taus, here_.value, p2.value, s.value, hn::Mul(half, hn::Add(one, s.middle)),
-                     nullptr, [&](F at, F share, const auto& spread, F& red, F& green, F& blue) HWY_ATTR {
+      cells_.segment(drawn, t, world + world, s.depth, taus, here_.value, p2.value, s.value, half * (one + s.middle), nullptr,
+                     [&](F at, F share, const auto& spread, F& red, F& green, F& blue) HWY_ATTR {
                        if constexpr (shaded) {
-                         const F x = hn::Sub(hn::Add(at, at), one), variance = hn::Mul(s.variance, spread.narrower);
-                         const F factor = light.diffuse.mean(x, variance), flash = hn::Mul(light.specular.mean(x, variance), share);
+                         const F x = at + at - one, variance = s.variance * spread.narrower;
+                         const F factor = light.diffuse.mean(x, variance), flash = light.specular.mean(x, variance) * share;
                          F* colors[3] = {&red, &green, &blue};
                          for (F* c : colors) *c = mul_add(*c, factor, flash);
                          // Colours and light that change together.
                          if (spread.any_change) {
-                           const F both = hn::Mul(hn::Mul(half, variance), light.diffuse.slope(x));
+                           const F both = half * variance * light.diffuse.slope(x);
                            for (int c = 0; c < 3; ++c) *colors[c] = mul_add(spread.change[c], both, *colors[c]);
                          }
                        }
                      });
-      if constexpr (shaded) path_.go(here_lit_, lit2, hn::Sub(t2, t), drawn), here_lit_.take(lit2, drawn);
+      if constexpr (shaded) path_.go(here_lit_, lit2, t2 - t, drawn), here_lit_.take(lit2, drawn);
     }
     if constexpr (shaded) {
-      lit_ = hn::Or(hn::AndNot(good, lit_), hn::And(seen, good));
-      path_.forget(hn::AndNot(lit_, good));
+      lit_ = (lit_ & !good) | (seen & good);
+      path_.forget(good & !lit_);
     }
     take(p2, good);
-    const F next_error = hn::IfThenElse(good, mul_add(pass, s.ahead, error), error);
-    // safety sqrt(allowed / error)
-    const F product = hn::Max(hn::Mul(allowed, next_error), hn::Set(d, 1e-36f));
-    const F factor = hn::IfThenElseZero(hn::Eq(error, error), hn::Mul(hn::Mul(hn::Set(d, safety), allowed), about_one_by_sqrt(d, product)));
-    const F most = hn::IfThenElse(hn::Gt(s.depth, zero), hn::Set(d, most_growth), hn::Set(d, most_growth_in_the_dark));
-    const F longer = hn::Max(hn::Set(d, least_growth), hn::Min(factor, most));
-    const F shorter = hn::Max(hn::Set(d, least_if_refused), hn::Min(factor, hn::Set(d, most_if_refused)));
-    F next = hn::Min(hn::Mul(stride_, hn::IfThenElse(good, longer, shorter)), hn::Set(d, longest_stride));
+    const F next_error = select(good, mul_add(pass, s.ahead, error), error);
+    // Length of the next stride: times safety sqrt(allowed / error), within bounds.
+    const F product = max(allowed * next_error, 1e-36f);
+    const F factor = only(error == error, safety * allowed * about_one_by_sqrt(d, product));
+    const F most = select(s.depth > zero, set(d, most_growth), most_growth_in_the_dark);
+    const F longer = max(least_growth, min(factor, most));
+    const F shorter = max(least_if_refused, min(factor, most_if_refused));
+    F next = min(stride_ * select(good, longer, shorter), longest_stride);
     // Cells are crossed where strides of about the shortest were refused.
-    next = hn::IfThenElse(hn::Lt(stride_, hn::Set(d, 2 * shortest_stride)), next, hn::Max(next, hn::Set(d, shortest_stride)));
-    stride_ = hn::IfThenElse(striding, next, stride_);
-    const M moved = hn::And(good, hn::Gt(t2, t));
-    t = hn::IfThenElse(moved, t2, t);
-    const auto to = hn::RebindMask(di, moved);
-    for (int a = 0; a < 3; ++a) cell[a] = hn::IfThenElse(to, cell2[a], cell[a]);
-    here.code = hn::IfThenElse(to, next_passage.code, here.code);
+    next = select(stride_ < 2 * shortest_stride, next, max(next, shortest_stride));
+    stride_ = select(striding, next, stride_);
+    // On to the end.
+    const M moved = good & (t2 > t);
+    t = select(moved, t2, t);
+    const auto to = rebind(di, moved);
+    for (int a = 0; a < 3; ++a) cell[a] = select(to, cell2[a], cell[a]);
+    here.code = select(to, next_passage.code, here.code);
     return moved;
   }
 
@@ -272,9 +273,9 @@ class TolerantPacket : CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>> {
   HWY_INLINE LitPlace<D> light_ends(F t, F t2, const Slope<D>* slope2, M seen) {
     const D d;
     const IntTag<D> di;
-    const M dark = hn::AndNot(lit_, seen);
-    lit_ = hn::Or(lit_, seen);
-    const bool any_dark = !hn::AllFalse(d, dark);
+    const M dark = seen & !lit_;
+    lit_ = lit_ | seen;
+    const bool any_dark = any(dark);
     if (slope2 || !any_dark || hn::CountTrue(d, dark) + hn::CountTrue(d, seen) > hn::Lanes(d)) {
       if (any_dark) here_lit_.take(lit_at(t, dark), dark);
       return slope2 ? LitPlace<D>::at(cells_.lighting, *slope2) : lit_at(t2, seen);
@@ -294,7 +295,7 @@ class TolerantPacket : CellWalk<D, PacketCells<D, T, shaded, EvenAxes<D>>> {
     F u[3];
     for (int a = 0; a < 3; ++a) {
       const F first = hn::TableLookupLanes(mul_add(cells_.along[a], t, cells_.start[a]), indices);
-      u[a] = hn::IfThenElse(seen, mul_add(cells_.along[a], t2, cells_.start[a]), first);
+      u[a] = select(seen, mul_add(cells_.along[a], t2, cells_.start[a]), first);
     }
     const uint8_t wanted_bits[8] = {uint8_t(wanted), uint8_t(wanted >> 8)};
     LitPlace<D> found;

@@ -18,7 +18,7 @@ namespace sg::volume::HWY_NAMESPACE {
 /// The value between the rows, and its differences over two cells along y and z.
 template <class D>
 struct RowSums {
-  using F = hn::Vec<D>;
+  using F = Float<D>;
   F value, along_y, along_z;
 
   /// Of one place along x in the cell's own rows (as Source::corners has them), those beyond along y, and along z (Around::beyond).
@@ -34,22 +34,22 @@ struct RowSums {
 #if SG_HARDWARE_GATHERS
 /// Four numbers each of rays n, 4 + n, ...
 template <class D>
-HWY_INLINE hn::Vec<D> blocks_of(D, const float* data, const int32_t* at) {
+HWY_INLINE Float<D> blocks_of(D, const float* data, const int32_t* at) {
   const __m256 two = _mm256_insertf128_ps(_mm256_castps128_ps256(_mm_loadu_ps(data + at[0])), _mm_loadu_ps(data + at[4]), 1);
 #if HWY_TARGET <= HWY_AVX3
   if constexpr (lanes_of<D> == 16) {
     const __m512 three = _mm512_insertf32x4(_mm512_castps256_ps512(two), _mm_loadu_ps(data + at[8]), 2);
-    return hn::Vec<D>{_mm512_insertf32x4(three, _mm_loadu_ps(data + at[12]), 3)};
+    return Float<D>{_mm512_insertf32x4(three, _mm_loadu_ps(data + at[12]), 3)};
   }
 #endif
-  if constexpr (lanes_of<D> == 8) return hn::Vec<D>{two};
+  if constexpr (lanes_of<D> == 8) return Float<D>{two};
 }
 
 /// RowSums around inner cells: the values at all four places along x, and the differences at the cell's own two.
 template <class D>
-HWY_INLINE void sums_of_rays(const Source<D, float>& source, Int<D> corner, hn::Vec<D> fy, hn::Vec<D> fz, hn::Vec<D> value[4],
-                             hn::Vec<D> y[2], hn::Vec<D> z[2]) {
-  using F = hn::Vec<D>;
+HWY_INLINE void sums_of_rays(const Source<D, float>& source, Int<D> corner, Float<D> fy, Float<D> fz, Float<D> value[4], Float<D> y[2],
+                             Float<D> z[2]) {
+  using F = Float<D>;
   const D d;
   const ptrdiff_t row = source.to_row, layer = source.to_layer;
   // As RowSums has them.
@@ -58,7 +58,7 @@ HWY_INLINE void sums_of_rays(const Source<D, float>& source, Int<D> corner, hn::
   alignas(64) int32_t at[lanes_of<D>];
   hn::Store(corner, IntTag<D>(), at);
   F v[4], dy[4], dz[4];
-  const Edge<D> inner{hn::MaskFromVec(hn::Zero(d)), hn::MaskFromVec(hn::Zero(d)), true};
+  const Edge<D> inner{hn::MaskFromVec(set(d, 0)), hn::MaskFromVec(set(d, 0)), true};
   const auto group = [&]<int n>() HWY_ATTR {
     F s[12];
     for (int r = 0; r < 12; ++r) s[r] = blocks_of(d, source.data - 1 + on[r], at + n);

@@ -9,9 +9,12 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "base/simd/vector-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace sg::volume::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
+using namespace simd::HWY_NAMESPACE;
 
 // Gathers pay where the machine has them and vectors are not wider than a run.
 #undef SG_GATHERS
@@ -24,10 +27,10 @@ namespace hn = hwy::HWY_NAMESPACE;
 #if SG_GATHERS
 using D = hn::ScalableTag<float>;
 using DI = hn::ScalableTag<int32_t>;
-using F = hn::Vec<D>;
+using F = Float<D>;
 using I = hn::Vec<DI>;
 
-HWY_ATTR inline F mixed(F a, F b, F f) { return hn::Add(a, hn::Mul(f, hn::Sub(b, a))); }
+HWY_ATTR inline F mixed(F a, F b, F f) { return a + f * (b - a); }
 
 /// The samples at offset and offset + 1.
 struct Pair {
@@ -40,9 +43,9 @@ HWY_ATTR inline Pair pair_f32(const float* data, I offset) {
   const hn::ScalableTag<int64_t> d64;
   const hn::Half<DI> half;
   const auto* wide = reinterpret_cast<const int64_t*>(data);
-  const auto lo = hn::GatherOffset(d64, wide, hn::ShiftLeft<2>(hn::PromoteTo(d64, hn::LowerHalf(half, offset))));
-  const auto hi = hn::GatherOffset(d64, wide, hn::ShiftLeft<2>(hn::PromoteTo(d64, hn::UpperHalf(half, offset))));
-  return {hn::ConcatEven(d, hn::BitCast(d, hi), hn::BitCast(d, lo)), hn::ConcatOdd(d, hn::BitCast(d, hi), hn::BitCast(d, lo))};
+  const auto lo = hn::GatherOffset(d64, wide, shift_left<2>(hn::PromoteTo(d64, hn::LowerHalf(half, offset))));
+  const auto hi = hn::GatherOffset(d64, wide, shift_left<2>(hn::PromoteTo(d64, hn::UpperHalf(half, offset))));
+  return {hn::ConcatEven(d, bit_cast(d, hi), bit_cast(d, lo)), hn::ConcatOdd(d, bit_cast(d, hi), bit_cast(d, lo))};
 }
 
 // Small integers: one 32-bit load brings both; near the end of the array it starts earlier and is shifted.
@@ -51,20 +54,20 @@ HWY_ATTR inline Pair pair_small(const T* data, I offset, I last_load) {
   const D d;
   const DI di;
   constexpr int bits = 8 * sizeof(T);
-  const I byte = sizeof(T) == 2 ? hn::ShiftLeft<1>(offset) : offset;
-  const I from = hn::Min(byte, last_load);
-  const I skipped = hn::ShiftLeft<3>(hn::Sub(byte, from));
+  const I byte = sizeof(T) == 2 ? shift_left<1>(offset) : offset;
+  const I from = min(byte, last_load);
+  const I skipped = shift_left<3>(byte - from);
   const hn::RebindToUnsigned<DI> du;
-  const I word = hn::BitCast(
-      di, hn::Shr(hn::BitCast(du, hn::GatherOffset(di, reinterpret_cast<const int32_t*>(data), from)), hn::BitCast(du, skipped)));
+  const I word =
+      bit_cast(di, hn::Shr(bit_cast(du, hn::GatherOffset(di, reinterpret_cast<const int32_t*>(data), from)), bit_cast(du, skipped)));
   if constexpr (std::is_signed_v<T>) {
     const I a = hn::ShiftRight<32 - bits>(hn::ShiftLeft<32 - bits>(word)),
             b = hn::ShiftRight<32 - bits>(hn::ShiftLeft<32 - 2 * bits>(word));
-    return {hn::ConvertTo(d, a), hn::ConvertTo(d, b)};
+    return {convert(d, a), convert(d, b)};
   } else {
-    const I mask = hn::Set(di, (1 << bits) - 1);
-    const I shifted = hn::BitCast(di, hn::ShiftRight<bits>(hn::BitCast(du, word)));
-    return {hn::ConvertTo(d, hn::And(word, mask)), hn::ConvertTo(d, hn::And(shifted, mask))};
+    const I mask = set(di, (1 << bits) - 1);
+    const I shifted = bit_cast(di, shift_right<bits>(bit_cast(du, word)));
+    return {convert(d, word & mask), convert(d, shifted & mask)};
   }
 }
 
@@ -76,9 +79,9 @@ struct Place {
 HWY_ATTR inline Place place(F u, float top) {
   const D d;
   const DI di;
-  const F x = hn::Max(hn::Zero(d), hn::Min(u, hn::Set(d, top)));
-  const I cell = hn::Min(hn::ConvertTo(di, x), hn::Set(di, int(top) - 1));
-  return {cell, hn::Sub(x, hn::ConvertTo(d, cell))};
+  const F x = max(0, min(u, top));
+  const I cell = min(convert(di, x), int(top) - 1);
+  return {cell, x - convert(d, cell)};
 }
 
 /// The lattice, ready for gathers.
@@ -90,8 +93,8 @@ struct Source {
 
   HWY_ATTR explicit Source(const Voxels& voxels) : data(reinterpret_cast<const T*>(voxels.array.raw())) {
     const DI di;
-    row = hn::Set(di, int(voxels.dims[0])), layer = hn::Set(di, int(voxels.dims[0] * voxels.dims[1]));
-    last_load = hn::Set(di, int(voxels.array.bytes()) - 4);
+    row = set(di, int(voxels.dims[0])), layer = set(di, int(voxels.dims[0] * voxels.dims[1]));
+    last_load = set(di, int(voxels.array.bytes()) - 4);
     for (size_t a = 0; a < 3; ++a) top[a] = float(voxels.dims[a] - 1);
   }
   HWY_ATTR Pair pair(I offset) const {
@@ -99,8 +102,8 @@ struct Source {
     else return pair_small(data, offset, last_load);
   }
   HWY_ATTR F value(const Place& x, const Place& y, const Place& z) const {
-    const I at = hn::Add(x.cell, hn::Add(hn::Mul(y.cell, row), hn::Mul(z.cell, layer)));
-    const Pair p00 = pair(at), p01 = pair(hn::Add(at, row)), p10 = pair(hn::Add(at, layer)), p11 = pair(hn::Add(at, hn::Add(row, layer)));
+    const I at = x.cell + (y.cell * row + z.cell * layer);
+    const Pair p00 = pair(at), p01 = pair(at + row), p10 = pair(at + layer), p11 = pair(at + (row + layer));
     const F v0 = mixed(mixed(p00.a, p00.b, x.fraction), mixed(p01.a, p01.b, x.fraction), y.fraction);
     const F v1 = mixed(mixed(p10.a, p10.b, x.fraction), mixed(p11.a, p11.b, x.fraction), y.fraction);
     return mixed(v0, v1, z.fraction);
@@ -121,19 +124,19 @@ HWY_ATTR void sample(const Voxels& voxels, const float* ux, const float* uy, con
 template <class T>
 HWY_ATTR HWY_NOINLINE F slope_at_border(const Source<T>& source, const Place here[3], int axis, F at) {
   const D d;
-  const F zero = hn::Zero(d), top = hn::Set(d, source.top[axis]), half = hn::Set(d, 0.5f);
-  const auto first = hn::Lt(at, hn::Set(d, 1.0f));
+  const F zero = set(d, 0), top = set(d, source.top[axis]), half = set(d, 0.5f);
+  const auto first = at < 1.0f;
   F value[3];  // in the three outermost layers, inwards
   for (int i = 0; i < 3; ++i) {
-    const F n = hn::Set(d, float(i)), layer = hn::Max(zero, hn::IfThenElse(first, hn::Min(n, top), hn::Sub(top, n)));
+    const F n = set(d, float(i)), layer = max(zero, select(first, min(n, top), top - n));
     const Place p = place(layer, source.top[axis]);
     value[i] = source.value(axis == 0 ? p : here[0], axis == 1 ? p : here[1], axis == 2 ? p : here[2]);
   }
-  const F over = hn::IfThenElse(first, hn::Sub(value[1], value[0]), hn::Sub(value[0], value[1]));
-  F inner = hn::Mul(half, hn::IfThenElse(first, hn::Sub(value[2], value[0]), hn::Sub(value[0], value[2])));
-  inner = hn::IfThenElse(hn::And(hn::Eq(inner, inner), hn::Ge(top, hn::Set(d, 2.0f))), inner, over);
-  const F border = hn::Sub(hn::Add(over, over), inner);
-  return mixed(border, inner, hn::IfThenElse(first, at, hn::Sub(top, at)));
+  const F over = select(first, value[1] - value[0], value[0] - value[1]);
+  F inner = half * select(first, value[2] - value[0], value[0] - value[2]);
+  inner = select((inner == inner) & (top >= 2.0f), inner, over);
+  const F border = over + over - inner;
+  return mixed(border, inner, select(first, at, top - at));
 }
 
 template <class T>
@@ -141,33 +144,35 @@ HWY_ATTR void gradients(const Voxels& voxels, const float* const u[3], const flo
   const D d;
   const Source<T> source(voxels);
   float* result[3] = {out.x, out.y, out.z};
-  const F one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
+  const F one = set(d, 1.0f), half = set(d, 0.5f);
   for (size_t n = 0; n < size_t(run_length); n += hn::Lanes(d)) {
     const F middle = hn::Load(d, centre + n);
     const Place here[3] = {place(hn::Load(d, u[0] + n), source.top[0]), place(hn::Load(d, u[1] + n), source.top[1]),
                            place(hn::Load(d, u[2] + n), source.top[2])};
-    F square = hn::Zero(d);
+    F square = set(d, 0);
     for (int a = 0; a < 3; ++a) {
-      const F top = hn::Set(d, source.top[a]), at = hn::Max(hn::Zero(d), hn::Min(hn::Load(d, u[a] + n), top));
-      const F below = hn::Max(hn::Sub(at, one), hn::Zero(d)), above = hn::Min(hn::Add(at, one), top);
+      const F top = set(d, source.top[a]), at = max(0, min(hn::Load(d, u[a] + n), top));
+      const F below = max(at - one, 0), above = min(at + one, top);
       const Place p = place(below, source.top[a]), q = place(above, source.top[a]);
+      // Central difference, one-sided at the border and beside holes.
       F lo = source.value(a == 0 ? p : here[0], a == 1 ? p : here[1], a == 2 ? p : here[2]);
       F hi = source.value(a == 0 ? q : here[0], a == 1 ? q : here[1], a == 2 ? q : here[2]);
-      F length = hn::Sub(above, below);
-      const auto lo_good = hn::Eq(lo, lo), hi_good = hn::Eq(hi, hi);
-      length = hn::IfThenElse(lo_good, length, hn::Mul(length, half));
-      length = hn::IfThenElse(hi_good, length, hn::Mul(length, half));
-      lo = hn::IfThenElse(lo_good, lo, middle), hi = hn::IfThenElse(hi_good, hi, middle);
-      F slope = hn::Div(hn::Sub(hi, lo), length);
-      const auto outermost = hn::Or(hn::Lt(at, one), hn::Gt(at, hn::Sub(top, one)));
-      if (!hn::AllFalse(d, outermost)) {
+      F length = above - below;
+      const auto lo_good = lo == lo, hi_good = hi == hi;
+      length = select(lo_good, length, length * half);
+      length = select(hi_good, length, length * half);
+      lo = select(lo_good, lo, middle), hi = select(hi_good, hi, middle);
+      F slope = (hi - lo) / length;
+      // In the outermost cells the slope goes on as inside.
+      const auto outermost = (at < one) | (at > top - one);
+      if (any(outermost)) {
         const F mended = slope_at_border(source, here, a, at);
-        slope = hn::IfThenElse(hn::And(outermost, hn::Eq(mended, mended)), mended, slope);
+        slope = select(outermost & (mended == mended), mended, slope);
       }
       hn::Store(slope, d, result[a] + n);
-      square = hn::Add(square, hn::Mul(slope, slope));
+      square = square + slope * slope;
     }
-    hn::Store(hn::Sqrt(square), d, out.per_cell + n);
+    hn::Store(sqrt(square), d, out.per_cell + n);
   }
 }
 
