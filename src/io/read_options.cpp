@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/core.h>
 
+#include <set>
+
 #include "base/error.h"
 #include "base/text/text.h"
 #include "io/options.h"
@@ -87,7 +89,13 @@ void describe_csv(Schema& s, ReadOptions& p) {
   s("csv_header", p.csv_header, "Delimited text: whether the first line names the columns; auto: by its cells.");
 }
 
-void describe(Schema& s, ReadOptions& p) { describe_fields(s, p), describe_raw(s, p), describe_csv(s, p), describe_parts(s, p); }
+void describe(Schema& s, ReadOptions& p) {
+  describe_fields(s, p);
+  std::set<void (*)(Schema&, ReadOptions&)> described;  // formats may share their options
+  for (const Format& f : formats())
+    if (f.describe_read && described.insert(f.describe_read).second) f.describe_read(s, p);
+  describe_parts(s, p);
+}
 
 void describe(Schema& s, ReadParams& p) { describe_path(s, p), describe(s, p.options); }
 

@@ -19,6 +19,11 @@ namespace sg {
 
 namespace {
 
+template <class P>
+void add_show(Look& look, P params, bool of_input) {
+  look.shows.push_back({&show_kind<P>(), param_set_of(std::move(params)), of_input});
+}
+
 // What a surface, line or dot will be coloured by.
 std::string field_reason(const Dataset& d, const std::string& field) {
   const Field* f = field.empty() ? automatic_field(d) : d.fields().find(field);
@@ -70,7 +75,7 @@ void look_at_grid(const Dataset& d, const Field& f, Look& look) {
     look.filter = {"label_surface", "field=" + f.name};
     SurfaceShow surface;
     surface.coloring.field.name = f.name, surface.coloring.map = "labels";
-    look.shows.push_back({ShowType::surface, param_set_of(surface), false});
+    add_show(look, surface, false);
     look.reason = fmt::format("'{}' holds few integer values in pieces: labels, shown as surfaces with one colour each", f.name);
     return;
   }
@@ -79,8 +84,8 @@ void look_at_grid(const Dataset& d, const Field& f, Look& look) {
   if (habit_of(f).shows == FieldHabit::Shows::fibres)
     if (const Field* speed = d.fields().find("speed", f.association); speed && speed->components() == 1)
       volume.color_by.name = speed->name, volume.sampling.tolerance = 0.01;  // one colour says less
-  look.shows.push_back({ShowType::volume, param_set_of(volume), true});
-  if (is_turned(d)) look.shows.push_back({ShowType::outline, param_set_of(OutlineShow()), true});
+  add_show(look, volume, true);
+  if (is_turned(d)) add_show(look, OutlineShow(), true);
   ColoringParams params;
   Context quiet;
   VolumeItem item;
@@ -132,7 +137,7 @@ Look choose_look(const Dataset& d, const std::string& field, const std::string& 
     return look;
   }
   if (is_line_labels(d)) {
-    look.shows.push_back({ShowType::labels, param_set_of(LabelsShow()), true});
+    add_show(look, LabelsShow(), true);
     look.reason = "places along lines: their values as text";
     return look;
   }
@@ -140,12 +145,12 @@ Look choose_look(const Dataset& d, const std::string& field, const std::string& 
     PointsShow points;
     points.size = d.point_count() > 200000 ? 1.5 : d.point_count() > 5000 ? 3 : 7;
     if (d.fields().with_role(Role::normals) && field.empty() && !automatic_field(d)) points.coloring.color = "#c8c8cc";  // lit
-    look.shows.push_back({ShowType::points, param_set_of(points), true});
+    add_show(look, points, true);
     look.reason = fmt::format("points only: dots, {}", field_reason(d, field));
     return look;
   }
   if (!has_polygons(d)) {
-    look.shows.push_back({ShowType::surface, param_set_of(SurfaceShow()), true});
+    add_show(look, SurfaceShow(), true);
     look.reason = fmt::format("lines and vertices, {}", field_reason(d, field));
     return look;
   }
@@ -155,7 +160,7 @@ Look choose_look(const Dataset& d, const std::string& field, const std::string& 
     if (const Shows shows = habit_of(*scalar).shows; shows == Shows::high || shows == Shows::low) {
       VolumeShow volume;
       volume.coloring.field.name = scalar->name;
-      look.shows.push_back({ShowType::volume, param_set_of(volume), true});
+      add_show(look, volume, true);
       look.reason = fmt::format("'{}' in a solid mesh: volume", scalar->name);
       return look;
     }
@@ -166,8 +171,8 @@ Look choose_look(const Dataset& d, const std::string& field, const std::string& 
   surface.edges = show_edges;
   const bool filled_contours = flat && field.empty() && is_banded(d);
   surface.lit = !((look.parallel && box_grid) || filled_contours);  // an image: its colours as they are
-  look.shows.push_back({ShowType::surface, param_set_of(surface), true});
-  if (is_lattice(d.mesh()) && !box_grid) look.shows.push_back({ShowType::outline, param_set_of(OutlineShow()), true});
+  add_show(look, surface, true);
+  if (is_lattice(d.mesh()) && !box_grid) add_show(look, OutlineShow(), true);
   look.reason = fmt::format("{} mesh: its outer surface{}, {}", d.kind(), show_edges ? " with cell edges" : "", field_reason(d, field));
   return look;
 }

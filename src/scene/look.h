@@ -12,8 +12,8 @@ namespace sg {
 struct Look {
   std::vector<std::string> filter;  ///< operation and its key=value words to run first; empty = none
   struct Show {
-    ShowType type;
-    ParamSet params;        ///< of show_kind(type)
+    const ShowKind* kind;
+    ParamSet params;        ///< of the kind
     bool of_input = false;  ///< show the input, not the filter's result
   };
   std::vector<Show> shows;

@@ -17,7 +17,7 @@ TEST_CASE("render: glyphs say what was chosen, and a mesh of them is written; a 
   INFO(r.err);
   REQUIRE(r.status == 0);
   CHECK(has(r.err, "64 glyphs (arrow) of 'velocity' placed evenly"));
-  r = sightglass({"convert", "-s", "abc size=4", "-f", "glyphs shape=cube size=0.1 scale=constant", "-o", folder + "cubes.stl"});
+  r = sightglass({"convert", "-s", "abc size=4", "-f", "glyphs shape=cube size=0.1 size_by=constant", "-o", folder + "cubes.stl"});
   INFO(r.err);
   REQUIRE(r.status == 0);
   CHECK(has(sightglass({"info", folder + "cubes.stl"}).out, "768 cells"));

@@ -136,7 +136,9 @@ class Check {
 
 }  // namespace
 
+// A name stands for one parameter: words could reach but the first of two.
 ParamDecl& Schema::add(std::string name, ParamRef ref, std::string doc) {
+  if (find(name)) fail_internal(fmt::format("parameter '{}' is declared twice", name));
   ParamDecl d{std::move(name), ref, std::move(doc), {}, -HUGE_VAL, HUGE_VAL, false, false, {}, {}, 0, SIZE_MAX, false, false};
   if (ref.least() == 0) d.lo = 0;
   for (const std::string_view w : ref.words()) d.choices_.emplace_back(w);

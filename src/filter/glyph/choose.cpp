@@ -45,7 +45,7 @@ const Field* wanted_vectors(const Dataset& d, const GlyphParams& p) {
       std::string has;
       for (const std::string& n : d.fields().names()) has += (has.empty() ? "" : ", ") + n;
       fail_usage("there is no vector field to show", "glyphs",
-                 has.empty() ? "the data has no fields" : fmt::format("it has {}; shape=sphere scale=NAME shows scalars", has));
+                 has.empty() ? "the data has no fields" : fmt::format("it has {}; shape=sphere size_by=NAME shows scalars", has));
     }
     return f;
   }
@@ -104,22 +104,22 @@ std::vector<double> size_factors(const Dataset& d, const std::string& name) {
 
 void choose_scale_rule(const GlyphParams& p, const Field* vectors, bool barbs, ChosenGlyphs& out) {
   GlyphRule& r = out.rule;
-  std::string scale = p.scale;
-  if (scale == "auto") scale = vectors && !barbs ? "length" : "constant";
-  if (scale == "constant") return;
-  if (scale == "length") {
+  std::string by = p.size_by;
+  if (by == "auto") by = vectors && !barbs ? "length" : "constant";
+  if (by == "constant") return;
+  if (by == "length") {
     if (!vectors)
-      fail_usage("there are no vectors whose length could be the size", "glyphs: scale", "scale=constant, or the name of a field");
+      fail_usage("there are no vectors whose length could be the size", "glyphs: size_by", "size_by=constant, or the name of a field");
     r.size = GlyphRule::Size::length;
     return;
   }
-  const Field* f = out.data->fields().find(scale, Association::point);
+  const Field* f = out.data->fields().find(by, Association::point);
   if (!f) {
     std::vector<std::string> names{"auto", "constant", "length"};
     for (const std::string& n : out.data->fields().names()) names.push_back(n);
-    fail_usage(fmt::format("'{}' is neither a way to scale nor a field", scale), "glyphs: scale", unknown_name_hint(scale, names));
+    fail_usage(fmt::format("'{}' is neither 'length' nor 'constant' nor a field", by), "glyphs: size_by", unknown_name_hint(by, names));
   }
-  r.size = GlyphRule::Size::field, r.size_field = scale;
+  r.size = GlyphRule::Size::field, r.size_field = by;
 }
 
 constexpr double faint = 0.02;  // of the largest: hardly seen
@@ -206,7 +206,8 @@ void describe(Schema& s, GlyphParams& p) {
   s("frames", p.frames, "Point field of 9 numbers, a matrix by rows that turns and stretches the shape, in place of vectors.")
       .takes(fields::tensors);
   describe(s, p.shape);
-  s("scale", p.scale, "What sizes show: length (of the vector), constant, or the name of a scalar field; auto: length, barbs constant.");
+  s("size_by", p.size_by,
+    "What the size of a glyph shows: length (of its vector), constant, or the name of a scalar field; auto: length, barbs constant.");
   s("size", p.size, "Length of the largest glyph; 0: about the distance of the places. Barbs in pictures: pixels.")
       .unit("length")
       .at_least(0);
@@ -214,7 +215,7 @@ void describe(Schema& s, GlyphParams& p) {
   s("place", p.place,
     "Where: all points, every n-th, evenly, cells, random, apart (no overlap), lines (along them); auto: evenly, all of few.");
   s("count", p.count, "About how many glyphs, placed evenly or at random; 0: chosen.").range(0, 1e9);
-  s("every", p.every, "place=every: one of so many points.").range(1, 1e12);
+  s("every", p.every, "place=every: one of this many points.").range(1, 1e12);
   s("seed", p.seed, "place=random: another number gives other places.");
   s("spacing", p.spacing, "Distance of places, evenly or along lines; 0: from the count.").unit("length").at_least(0);
   describe(s, p.barbs);

@@ -11,7 +11,7 @@ namespace sg {
 struct GlyphParams {
   FieldName vectors, frames;
   GlyphShapeParams shape;
-  std::string scale = "auto";
+  std::string size_by = "auto";
   double size = 0, factor = 0;
   std::optional<GlyphPlaces> place;
   int64_t count = 0, every = 10, seed = 1;

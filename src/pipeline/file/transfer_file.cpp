@@ -50,7 +50,7 @@ std::vector<std::string> read_words(const std::string& path) {
     words.push_back(word);
   }
   if (!known) fail(root.line, "is no transfer function", fmt::format("its first line is '{}: 1'", head));
-  with_context(fmt::format("reading '{}'", path), [&] { show_params(show_kind(ShowType::volume), words); });
+  with_context(fmt::format("reading '{}'", path), [&] { show_params(show_kind<VolumeShow>(), words); });
   return words;
 }
 
@@ -58,7 +58,7 @@ std::vector<std::string> read_words(const std::string& path) {
 
 void load_transfer_files(PipelineFile& file) {
   for (auto& show : file.show) {
-    if (show.kind != show_kind(ShowType::volume).name) continue;
+    if (show.kind != show_kind<VolumeShow>().name) continue;
     const std::string name = word_value(show.words, "transfer").value_or("");
     if (!names_file(name)) continue;
     std::vector<std::string> words = read_words(path_beside(file.origin, name));

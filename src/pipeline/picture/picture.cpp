@@ -10,6 +10,7 @@
 #include "pipeline/file/transfer_file.h"
 #include "pipeline/film/film_params.h"
 #include "pipeline/picture/picture_parts.h"
+#include "scene/show/outline.h"
 #include "scene/show/parts.h"
 #include "scene/show/volume.h"
 
@@ -132,7 +133,7 @@ Shown collect(const PipelineFile& file, const std::vector<StatedShow>& shows, co
   Shown s;
   for (size_t i = 0; i < results.size(); ++i) {
     const auto& [kind, params] = shows[i];
-    s.outlined = s.outlined || kind->type == ShowType::outline;
+    s.outlined = s.outlined || kind->is<OutlineShow>();
     if (std::holds_alternative<TablePtr>(results[i]))
       fail_no_mesh(results[i], file_name_of(origin_of(file, file.show[i].of.empty() ? file.steps.back().name : file.show[i].of)));
     std::vector<DatasetPtr> parts;
@@ -148,7 +149,7 @@ Shown collect(const PipelineFile& file, const std::vector<StatedShow>& shows, co
       if (have == s.legends.end()) s.legends.push_back(legend);
       else if (legend.glyph && (!have->glyph || have->glyph->most < legend.glyph->most)) have->glyph = legend.glyph;
     }
-    if (kind->type != ShowType::volume || s.scene.items.size() == first) continue;
+    if (!kind->is<VolumeShow>() || s.scene.items.size() == first) continue;
     if (const std::string& path = params.as<VolumeShow>().save; !path.empty())
       save_transfer_file(path_beside(file.origin, path), std::get<VolumeItem>(s.scene.items.back()));
   }

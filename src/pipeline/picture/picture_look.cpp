@@ -147,7 +147,7 @@ Look choose_for(const PipelineFile::Show& wanted, const Data& data, PipelineFile
     file.steps.push_back({result, look.filter[0], {look.filter.begin() + 1, look.filter.end()}, {end}, 0});
   }
   for (const Look::Show& s : look.shows) {
-    const ShowKind& kind = show_kind(s.type);
+    const ShowKind& kind = *s.kind;
     std::vector<std::string> words = changed_words(s.params);
     if (kind.coloring) words.insert(words.end(), coloring.begin(), coloring.end());
     shows.push_back({std::string(kind.name), words, s.of_input ? end : result, 0});

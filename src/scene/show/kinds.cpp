@@ -17,10 +17,11 @@ namespace sg {
 namespace {
 
 template <class P>
-constexpr ShowKind kind(ShowType type, std::string_view name, std::string_view sentence) {
+constexpr ShowKind kind(std::string_view name, std::string_view sentence) {
   ShowKind k;
-  k.type = type, k.name = name, k.sentence = sentence;
+  k.name = name, k.sentence = sentence;
   k.make_params = make_param_set<P>;
+  k.has_params = [](const std::type_info& type) { return type == typeid(P); };
   if constexpr (requires(P p) { p.coloring; }) k.coloring = [](const ParamSet& params) { return &params.as<P>().coloring; };
   if constexpr (requires(const P p) { check(p); }) k.check = [](const ParamSet& params) { check(params.as<P>()); };
   if constexpr (requires(const P p, const Dataset d) { automatic_field(p, d); })
@@ -43,20 +44,20 @@ constexpr ShowKind kind(ShowType type, std::string_view name, std::string_view s
 
 std::span<const ShowKind> show_kinds() {
   static constexpr ShowKind kinds[] = {
-      kind<SurfaceShow>(ShowType::surface, "surface", "The outer surface, coloured by a field."),
-      kind<VolumeShow>(ShowType::volume, "volume", "A scalar field of any mesh with volume, seen through."),
-      kind<LinesShow>(ShowType::lines, "lines", "Lines of constant width."),
-      kind<PointsShow>(ShowType::points, "points", "Every point as a dot."),
-      kind<LabelsShow>(ShowType::labels, "labels", "Numbers at points, turned along their lines (see line_labels)."),
-      kind<GlyphsShow>(ShowType::glyphs, "glyphs", "Arrows, barbs and other shapes at points, turned and scaled by fields."),
-      kind<OutlineShow>(ShowType::outline, "outline", "The box around the data."),
+      kind<SurfaceShow>("surface", "The outer surface, coloured by a field."),
+      kind<VolumeShow>("volume", "A scalar field of any mesh with volume, seen through."),
+      kind<LinesShow>("lines", "Lines of constant width."),
+      kind<PointsShow>("points", "Every point as a dot."),
+      kind<LabelsShow>("labels", "Numbers at points, turned along their lines (see line_labels)."),
+      kind<GlyphsShow>("glyphs", "Arrows, barbs and other shapes at points, turned and scaled by fields."),
+      kind<OutlineShow>("outline", "The box around the data."),
   };
   return kinds;
 }
 
-const ShowKind& show_kind(ShowType type) {
+const ShowKind& show_kind(const std::type_info& type) {
   const auto kinds = show_kinds();
-  return *std::find_if(kinds.begin(), kinds.end(), [&](const ShowKind& k) { return k.type == type; });
+  return *std::find_if(kinds.begin(), kinds.end(), [&](const ShowKind& k) { return k.has_params(type); });
 }
 
 const ShowKind& find_show(std::string_view name) {

@@ -2,6 +2,7 @@
 #include "scene/show/parts.h"
 
 #include "scene/choose/shared_scale.h"
+#include "scene/show/volume.h"
 #include "scene/show/volume_parts.h"
 
 namespace sg {
@@ -54,7 +55,7 @@ std::vector<Legend> show_parts(Scene& scene, const std::vector<DatasetPtr>& part
                                uint32_t group, Context& context) {
   const std::vector<ParamSet> params = params_of_parts(parts, kind, stated);
   const size_t first = scene.items.size();
-  const bool several = parts.size() > 1, joined = several && kind.type == ShowType::volume;
+  const bool several = parts.size() > 1, joined = several && kind.is<VolumeShow>();
   std::vector<Legend> legends;
   size_t largest = 0, most = 0;  // of joined volumes: the item that speaks for all
   for (size_t i = 0; i < parts.size(); ++i) {

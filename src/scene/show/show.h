@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <typeinfo>
 #include <vector>
 
 #include "base/context.h"
@@ -15,13 +16,11 @@
 
 namespace sg {
 
-enum class ShowType { surface, volume, lines, points, labels, glyphs, outline };
-
 /// One way to show, as all doors see it. Struct and function of each stand in the header of its name.
 struct ShowKind {
-  ShowType type = ShowType::surface;
   std::string_view name, sentence;
   ParamSet (*make_params)() = nullptr;
+  bool (*has_params)(const std::type_info& type) = nullptr;
   /// Throws Error(usage) for what no data could make right; all mistakes at once. Null: nothing beyond ranges and choices.
   void (*check)(const ParamSet& params) = nullptr;
   /// How its values become colours; null: it has one colour.
@@ -32,9 +31,20 @@ struct ShowKind {
   void (*share)(const std::vector<DatasetPtr>& parts, std::vector<ParamSet>& params) = nullptr;
   /// Adds items for the dataset; returns what the legend shows when a field is mapped to colours.
   std::optional<Legend> (*add)(Scene&, const DatasetPtr&, const ParamSet& params, Context&) = nullptr;
+
+  /// Whether its parameters are of this struct: kind.is<VolumeShow>().
+  template <class P>
+  bool is() const {
+    return has_params(typeid(P));
+  }
 };
 std::span<const ShowKind> show_kinds();
-const ShowKind& show_kind(ShowType type);
+/// The one whose parameters are of this struct.
+const ShowKind& show_kind(const std::type_info& type);
+template <class P>
+const ShowKind& show_kind() {
+  return show_kind(typeid(P));
+}
 /// Throws Error(usage) with "did you mean".
 const ShowKind& find_show(std::string_view name);
 

@@ -39,6 +39,14 @@ TEST_CASE("schema: words set parameters, every mistake is reported at once") {
   CHECK(e.find("did you mean 'fixed'?") != std::string::npos);
 }
 
+TEST_CASE("schema: a name stands for one parameter") {
+  double glyphs = 1, colours = 2;
+  Schema s;
+  s("scale", glyphs, "Of the glyphs.");
+  CHECK(test::error_of([&] { s("scale", colours, "Of the colours."); }) == "parameter 'scale' is declared twice");
+  CHECK(s.decls().size() == 1);
+}
+
 TEST_CASE("schema: text of parameters reads back to the same values") {
   P p, q;
   p.size = 0.1, p.values = {1e-20, 3};

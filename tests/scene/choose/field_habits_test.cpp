@@ -8,6 +8,7 @@
 #include "scene/choose/volume_look.h"
 #include "scene/look.h"
 #include "scene/show/glyphs.h"
+#include "scene/show/surface.h"
 #include "scene/show/volume.h"
 #include "support/test.h"
 
@@ -147,8 +148,8 @@ TEST_CASE("volume: the side of Q that matters says how far its colours go, and a
     f.add({name, Association::point, Array::from_vector(std::move(v)), "", Role::scalars});
     return make_dataset(Mesh(g), std::move(f));
   };
-  CHECK(choose_look(*bent("Q"), "", "").shows[0].type == ShowType::volume);
-  CHECK(choose_look(*bent("temperature"), "", "").shows[0].type == ShowType::surface);
+  CHECK(choose_look(*bent("Q"), "", "").shows[0].kind->is<VolumeShow>());
+  CHECK(choose_look(*bent("temperature"), "", "").shows[0].kind->is<SurfaceShow>());
 }
 
 TEST_CASE("look: a solid texture of sparse noise is shown as opaque strands in the colours of the speed") {
@@ -160,11 +161,11 @@ TEST_CASE("look: a solid texture of sparse noise is shown as opaque strands in t
   const DatasetPtr d = make_dataset(std::move(parts));
   const Look look = choose_look(*d, "", "");
   REQUIRE(look.shows.size() == 1);
-  CHECK(look.shows[0].type == ShowType::volume);
+  CHECK(look.shows[0].kind->is<VolumeShow>());
   CHECK(changed_words(look.shows[0].params) == std::vector<std::string>{"field=lic", "color_by=speed", "tolerance=0.01"});
   Context context;
   Scene scene;
-  show_kind(ShowType::volume).add(scene, d, look.shows[0].params, context);
+  show_kind<VolumeShow>().add(scene, d, look.shows[0].params, context);
   const auto& item = std::get<VolumeItem>(scene.items.back());
   CHECK(item.field == "lic");
   CHECK(item.opacity.at(0) == 0);

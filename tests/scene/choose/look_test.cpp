@@ -2,6 +2,9 @@
 // What is chosen when nobody says: colours, ranges, representations.
 #include "scene/look.h"
 #include "scene/show/labels.h"
+#include "scene/show/points.h"
+#include "scene/show/surface.h"
+#include "scene/show/volume.h"
 
 #include "color/parse_color.h"
 #include "filter/scalar/bands.h"
@@ -115,7 +118,7 @@ TEST_CASE("choose_look: CT, labels, flat images, surfaces and points are recogni
   CHECK(looks_like_ct(*ct, ct->fields()[0], &offset));
   CHECK(offset == 0);
   CHECK(choose_look(*ct, "", "mhd").reason.find("CT") != std::string::npos);
-  CHECK(choose_look(*ct, "", "mhd").shows[0].type == ShowType::volume);
+  CHECK(choose_look(*ct, "", "mhd").shows[0].kind->is<VolumeShow>());
 
   const auto labels = image<uint8_t>(16, [](size_t i, size_t j, size_t) { return uint8_t(i < 4 ? 0 : j < 8 ? 1 : 2); });
   const Look look = choose_look(*labels, "", "");
@@ -129,11 +132,11 @@ TEST_CASE("choose_look: CT, labels, flat images, surfaces and points are recogni
   const Look map = choose_look(*make_dataset(flat, f), "", "");
   CHECK(map.parallel);
   CHECK(map.direction == Vec3(0, 0, 1));
-  CHECK(map.shows[0].type == ShowType::surface);
+  CHECK(map.shows[0].kind->is<SurfaceShow>());
 
   PointCloud cloud;
   cloud.points.xyz = Array::from_vector<float>({0, 0, 0, 1, 2, 3}, 3);
-  CHECK(choose_look(*make_dataset(cloud), "", "").shows[0].type == ShowType::points);
+  CHECK(choose_look(*make_dataset(cloud), "", "").shows[0].kind->is<PointsShow>());
 }
 
 TEST_CASE("show: a constant field is no automatic colour, a named one is") {
@@ -234,7 +237,7 @@ TEST_CASE("labels: a cloud of line labels becomes texts that lie along their lin
   CHECK(is_line_labels(*d));
   const Look look = choose_look(*d, "", "");
   REQUIRE(look.shows.size() == 1);
-  CHECK(look.shows[0].type == ShowType::labels);
+  CHECK(look.shows[0].kind->is<LabelsShow>());
   Scene scene;
   add_show(scene, "labels", d, {}, ctx);
   REQUIRE(scene.texts.size() == 2);
