@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/file/partial_file.h"
+#include "io/plugins/openvdb/held_grids.h"
 #include "io/plugins/openvdb/vdb.h"
 #include "io/volume/lattice_part.h"
 #include "io/write_losses.h"
