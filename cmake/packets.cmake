@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# The packets of rays hold most of the compile time of rendering: each file is compiled once for each size of samples, as an object library.
+# The packets of rays hold most of the compile time of rendering: each file is compiled once for floats and once for small integers, as an object library.
 
 # sg_packets(TARGET): takes the files out of the sources of TARGET and links their objects into it.
 function(sg_packets target)
@@ -10,7 +10,7 @@ function(sg_packets target)
   get_target_property(sources ${target} SOURCES)
   list(REMOVE_ITEM sources ${files})
   set_target_properties(${target} PROPERTIES SOURCES "${sources}")
-  foreach(samples IN ITEMS uint8_t uint16_t float)
+  foreach(samples IN ITEMS SmallInteger float)
     set(name ${target}_${samples})
     add_library(${name} OBJECT ${files})
     target_compile_definitions(${name} PRIVATE SG_SAMPLES=${samples})

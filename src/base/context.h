@@ -9,6 +9,8 @@
 
 namespace sg {
 
+class Communicator;
+
 enum class LogLevel { debug, info, warning };
 
 /// Passed by reference through every operation; the callbacks may be empty. Callbacks are called from one thread at a time.
@@ -17,6 +19,8 @@ class Context {
   std::function<void(LogLevel, std::string_view)> on_log;
   std::function<void(double fraction, std::string_view doing)> on_progress;
   size_t memory_limit = 0;  ///< bytes; 0 = no limit stated
+  /// The processes that hold the other parts of the data; null: this one holds all. Not owned. Reductions ask it (base/communicator.h).
+  const Communicator* communicator = nullptr;
 
   Context() = default;
   /// For one part of larger work: logs to `parent`, stops when it is cancelled, and reports progress between `from` and `to`

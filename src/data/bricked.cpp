@@ -5,13 +5,11 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "data/memory/memo.h"
 
 namespace sg {
 
 namespace {
 
-constexpr char key[] = "bricked volume";
 constexpr BrickedVolume::Extremes none{HUGE_VALF, -HUGE_VALF};
 
 std::array<size_t, 3> blocks_of(const std::array<size_t, 3>& dims) {
@@ -74,13 +72,6 @@ Box3 BrickedVolume::bounds() const {
     box.add(l.origin + direction * (l.spacing * corner));
   }
   return box;
-}
-
-void attach_bricked(const Dataset& coarse, BrickedPtr volume) { coarse.memo().keep(key, BrickedPtr(std::move(volume)), 0); }
-
-BrickedPtr bricked_of(const Dataset& dataset) {
-  const auto found = dataset.memo().find<BrickedPtr>(key);
-  return found ? *found : nullptr;
 }
 
 BlockExtremes::BlockExtremes(std::array<size_t, 3> dims) : dims_(dims), blocks_(blocks_of(dims)) {

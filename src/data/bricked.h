@@ -49,13 +49,6 @@ struct BrickedVolume {
 };
 using BrickedPtr = std::shared_ptr<const BrickedVolume>;
 
-/// `coarse` is the volume at one of its levels; from now on renderers may read finer values of it, and the bounds of the dataset and the
-/// range of the field are those of the volume. To be called before anything else is asked of the dataset. Filters make new datasets,
-/// which do not have the volume any more.
-void attach_bricked(const Dataset& coarse, BrickedPtr volume);
-/// The volume that the dataset stands for; null for all others.
-BrickedPtr bricked_of(const Dataset& dataset);
-
 /// Extremes of blocks, from slabs of whole slices that come one after the other.
 class BlockExtremes {
  public:

@@ -20,8 +20,9 @@ Data& Data::operator=(const Data&) = default;
 Data& Data::operator=(Data&&) noexcept = default;
 Data::~Data() = default;
 
-Dataset::Dataset(DatasetParts parts)
+Dataset::Dataset(DatasetParts parts, BrickedPtr bricks)
     : parts_(std::move(parts)),
+      bricks_(std::move(bricks)),
       points_(sg::point_count(parts_.mesh)),
       cells_(sg::cell_count(parts_.mesh)),
       memo_(std::make_shared<Memo>()) {}
@@ -41,7 +42,9 @@ void shape_empty_points(Mesh& mesh) {
 
 }  // namespace
 
-DatasetPtr make_dataset(DatasetParts parts) {
+DatasetPtr make_dataset(DatasetParts parts) { return make_dataset(std::move(parts), BrickedPtr()); }
+
+DatasetPtr make_dataset(DatasetParts parts, BrickedPtr bricks) {
   if (!detail::mesh_is_trusted()) own_indices(parts.mesh);
   validate(parts.mesh);
   shape_empty_points(parts.mesh);
@@ -59,7 +62,7 @@ DatasetPtr make_dataset(DatasetParts parts) {
   };
   check_ghost(parts.point_ghost, points, "point");
   check_ghost(parts.cell_ghost, cells, "cell");
-  return DatasetPtr(new Dataset(std::move(parts)));
+  return DatasetPtr(new Dataset(std::move(parts), std::move(bricks)));
 }
 
 DatasetPtr make_dataset(Mesh mesh, FieldSet fields) {
@@ -73,7 +76,7 @@ const Box3& Dataset::bounds() const {
   std::lock_guard lock(mutex_);
   if (!bounds_) {
     bounds_ = sg::bounds(parts_.mesh);
-    if (const BrickedPtr whole = bricked_of(*this)) bounds_ = whole->bounds();  // what the coarse level stands for
+    if (bricks_) bounds_ = bricks_->bounds();  // what the coarse level stands for
   }
   return *bounds_;
 }
@@ -86,8 +89,8 @@ const FieldStats& Dataset::stats(const Field& field) const {
   const Array& skip = field.association == Association::point ? parts_.point_ghost : parts_.cell_ghost;
   stats_.emplace_back(key, std::make_unique<FieldStats>(field_stats(field.array, true, skip)));
   // Means hide the extremes of the volume that the dataset stands for.
-  if (const BrickedPtr whole = bricked_of(*this); whole && field.association == Association::point && field.name == whole->field)
-    if (const Range r = whole->range(); !r.empty() && field.components() == 1) stats_.back().second->range[0].add(r);
+  if (bricks_ && field.association == Association::point && field.name == bricks_->field)
+    if (const Range r = bricks_->range(); !r.empty() && field.components() == 1) stats_.back().second->range[0].add(r);
   return *stats_.back().second;
 }
 

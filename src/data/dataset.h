@@ -17,6 +17,7 @@ namespace sg {
 
 class Dataset;
 class Memo;
+struct BrickedVolume;
 using DatasetPtr = std::shared_ptr<const Dataset>;
 
 /// Bits of ghost arrays, as in VTK files.
@@ -53,15 +54,18 @@ class Dataset {
   const Box3& bounds() const;
   /// Range of the finite, not hidden values; computed once per field, on first use.
   const FieldStats& stats(const Field& field) const;
+  /// The volume that the mesh and its values are one coarse level of (data/bricked.h); null for all others.
+  const std::shared_ptr<const BrickedVolume>& bricks() const { return bricks_; }
   /// Indexes and the like that were made from this dataset and live as long as it does.
   Memo& memo() const { return *memo_; }
   /// Range of one component, or of the magnitude when component is -1 and there are several.
   Range range(const Field& field, int component = -1) const;
 
  private:
-  friend DatasetPtr make_dataset(DatasetParts parts);
-  explicit Dataset(DatasetParts parts);
+  friend DatasetPtr make_dataset(DatasetParts parts, std::shared_ptr<const BrickedVolume> bricks);
+  Dataset(DatasetParts parts, std::shared_ptr<const BrickedVolume> bricks);
   DatasetParts parts_;
+  std::shared_ptr<const BrickedVolume> bricks_;
   size_t points_ = 0, cells_ = 0;
   mutable std::mutex mutex_;
   mutable std::optional<Box3> bounds_;
@@ -71,6 +75,9 @@ class Dataset {
 
 /// Validates (mesh, field lengths) and freezes. Throws Error(data).
 DatasetPtr make_dataset(DatasetParts parts);
+/// `parts` are one level of a bricked volume: renderers may read finer values of it; bounds() and the range of its field are the volume's.
+/// What filters make of it is no level of the volume any more.
+DatasetPtr make_dataset(DatasetParts parts, std::shared_ptr<const BrickedVolume> bricks);
 DatasetPtr make_dataset(Mesh mesh, FieldSet fields = {});
 
 struct Collection;

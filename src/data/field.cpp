@@ -39,6 +39,8 @@ size_t FieldSet::place_of(std::string_view name, Association a) const {
 }
 
 void FieldSet::add(Field f) {
+  if (f.look.result)
+    for (Field& other : fields_) other.look.result = false;
   if (const size_t at = place_of(f.name, f.association); at != nowhere) {
     fields_[at] = std::move(f);
     return;
@@ -91,6 +93,12 @@ const Field* FieldSet::with_role(Role role) const {
   for (Association a : {Association::point, Association::cell})
     for (const Field& f : fields_)
       if (f.association == a && f.role == role) return &f;
+  return nullptr;
+}
+
+const Field* FieldSet::result() const {
+  for (const Field& f : fields_)
+    if (f.look.result) return &f;
   return nullptr;
 }
 

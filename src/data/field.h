@@ -18,14 +18,32 @@ std::string_view association_name(Association a);
 /// What the file said the array is for; a hint for defaults, never a type.
 enum class Role : uint8_t { none, scalars, vectors, normals, tcoords, tensors, colors, global_ids, labels };
 
+/// How a field wants to be seen, told by the operation that made it: a hint for those who choose colours when nobody says.
+struct FieldLook {
+  /// Which values are to be seen in a volume; fibres: the few that are not zero, as solid strands.
+  enum class Shows : uint8_t { any, high, low, fibres } shows = Shows::any;
+  bool one_sided = false;  ///< its negative values are no other kind: a sequential map
+  bool two_sided = false;  ///< its signs are two kinds, however unlike their reach
+  bool tailed = false;     ///< derivatives: single extreme values say little
+  bool texture = false;    ///< dark and bright for the colours of another field, in [0, 1] or with both signs
+  bool bands = false;      ///< numbers of bands, whose ends are the cell fields "band low" and "band high"
+  bool result = false;     ///< what the operation was asked for: coloured by, before all others
+
+  friend bool operator==(const FieldLook&, const FieldLook&) = default;
+};
+
 struct Field {
   std::string name;
   Association association = Association::point;
   Array array;
   std::string unit;
   Role role = Role::none;
+  FieldLook look = {};
 
   int components() const { return array.components(); }
+  /// The same field with other numbers, as operations carry it; also on another association.
+  Field with(Array numbers) const { return {name, association, std::move(numbers), unit, role, look}; }
+  Field with(Array numbers, Association on) const { return {name, on, std::move(numbers), unit, role, look}; }
 };
 
 /// The fields of a dataset in file order. Names are unique per association.
@@ -38,7 +56,7 @@ class FieldSet {
   FieldSet& operator=(FieldSet&&) noexcept;
   ~FieldSet();
 
-  /// Adds, or replaces the field of the same name and association.
+  /// Adds, or replaces the field of the same name and association. A result (FieldLook::result) takes the place of the one before.
   void add(Field f);
   void remove(std::string_view name, Association a);
 
@@ -50,6 +68,8 @@ class FieldSet {
   const Field& require(std::string_view name, Association a) const;
   /// The first field of that role, points first; null when there is none.
   const Field* with_role(Role role) const;
+  /// The field with look.result; null when there is none.
+  const Field* result() const;
   /// The field an operation takes when none is named: role scalars, else the first point field with `components`
   /// components (0 = any) that is no id, normal or texture coordinate, else the first such cell field; null when none.
   const Field* active(int components = 1) const;

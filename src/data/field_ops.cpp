@@ -69,7 +69,7 @@ Array interpolate_directions(const Array& a, std::span<const EdgePoint> points) 
 template <class Map>
 void carry(FieldSet& out, const FieldSet& in, Association association, Association as, Map&& map) {
   for (const Field& f : in)
-    if (f.association == association) out.add({f.name, as, map(f.array), f.unit, f.role});
+    if (f.association == association) out.add(f.with(map(f.array), as));
 }
 
 }  // namespace
@@ -130,7 +130,7 @@ void carry_interpolated(FieldSet& out, const FieldSet& in, std::span<const EdgeP
     const ElementType t = f.array.type();
     const bool direction = f.role == Role::normals && f.components() == 3 && (t == ElementType::f32 || t == ElementType::f64);
     out.add(
-        {f.name, Association::point, direction ? interpolate_directions(f.array, points) : interpolate(f.array, points), f.unit, f.role});
+        f.with(direction ? interpolate_directions(f.array, points) : interpolate(f.array, points)));
   }
 }
 void carry_combined(FieldSet& out, const FieldSet& in, Association association, std::span<const int64_t> ids,

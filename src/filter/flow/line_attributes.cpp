@@ -62,7 +62,7 @@ std::vector<Target> targets_of(const FlowParts& parts, size_t count, const std::
   const FieldSet& first = parts.fields().front().dataset()->fields();
   for (const Field& f : first) {
     if (f.association == Association::whole || f.name == without) continue;
-    Target t{{f.name, f.association, {}, f.unit, f.role}, {}, nullptr, {}, false};
+    Target t{f.with({}), {}, nullptr, {}, false};
     for (const FlowField& part : parts.fields()) {
       const Field* g = part.dataset()->fields().find(f.name, f.association);
       if (!g || g->components() != f.components()) break;

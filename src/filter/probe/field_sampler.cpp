@@ -13,7 +13,7 @@ FieldSampler::FieldSampler(const Dataset& from, size_t count) {
       continue;
     }
     if (f.association == Association::cell && from.cell_count() == 0) continue;  // points are found in clouds, but they have no cells
-    Target t{{f.name, Association::point, {}, f.unit, f.role}, f.array.made_packed(), {}, nullptr};
+    Target t{f.with({}, Association::point), f.array.made_packed(), {}, nullptr};
     ElementType type = f.array.type();
     if (f.association == Association::point) {
       type = element_size(type) == 8 ? ElementType::f64 : ElementType::f32;

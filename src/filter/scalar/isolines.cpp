@@ -140,7 +140,7 @@ DatasetPtr polylines(const DatasetPtr& in, const PolylinesParams& p, Context& ct
   size_t dropped = 0;
   for (const Field& f : in->fields()) dropped += f.association == Association::cell;
   for (const Field* f : fields)
-    out.fields.add({f->name, f->association, gather(f->array, std::span<const int64_t>(lines.cells)), f->unit, f->role});
+    out.fields.add(f->with(gather(f->array, std::span<const int64_t>(lines.cells))));
   carry_whole(out.fields, in->fields());
   if (dropped > fields.size())
     ctx.info(fmt::format("polylines: {} cell fields that vary along a line were left out", dropped - fields.size()));

@@ -183,7 +183,7 @@ DatasetPtr assemble(const Dataset& in, const Field& field, double value, Points 
     rest.add(f);
     others = others || f.association == Association::point;
   }
-  out.fields.add({field.name, Association::point, same_number(count, float(value)), field.unit, field.role});
+  out.fields.add(field.with(same_number(count, float(value)), Association::point));
   if (others) carry_combined(out.fields, rest, Association::point, corners, weights, 8, Association::point);
   carry_gathered(out.fields, rest, Association::cell, cells, Association::point);
   carry_whole(out.fields, rest);

@@ -120,12 +120,9 @@ Data read_zarr(const std::string& path, const ReadOptions& options, Context& con
     context.info(fmt::format("{}: {} do not fit into memory; level {} with {} is read, {}", path, size_text(dims), level,
                              size_text(grid.dims), rest));
   }
-  const DatasetPtr dataset = make_dataset(std::move(parts));
-  if (coarse && planned.size() == 1 && !image->vector) {
-    const size_t cache = size_t(std::min<uint64_t>(allowed / 4, uint64_t(256) << 20));
-    attach_bricked(*dataset, zarr::bricked(image, step, planned[0].channels[0], cache));
-  }
-  return dataset;
+  if (!coarse || planned.size() != 1 || image->vector) return make_dataset(std::move(parts));
+  const size_t cache = size_t(std::min<uint64_t>(allowed / 4, uint64_t(256) << 20));
+  return make_dataset(std::move(parts), zarr::bricked(image, step, planned[0].channels[0], cache));
 }
 
 }  // namespace sg

@@ -23,7 +23,7 @@ void add_field(Request& request, const std::string& name) {
 }
 
 bool can_merge(const Request& a, const Request& b) {
-  return a.time == b.time && a.region == b.region && a.piece == b.piece && a.pieces == b.pieces;
+  return a.time == b.time && a.region == b.region && a.piece == b.piece && a.pieces == b.pieces && a.ghost_levels == b.ghost_levels;
 }
 
 Request merged(Request a, const Request& b) {
@@ -47,7 +47,7 @@ std::string request_text(const Request& r) {
       box += (box.empty() ? "" : ",") + exact_number(v);
     add("region=" + box);
   }
-  if (r.pieces != 1 || r.piece != 0) add(fmt::format("piece={}/{}", r.piece, r.pieces));
+  if (r.pieces != 1 || r.piece != 0) add(fmt::format(r.ghost_levels ? "piece={}/{}/{}" : "piece={}/{}", r.piece, r.pieces, r.ghost_levels));
   return text.empty() ? "everything" : text;
 }
 

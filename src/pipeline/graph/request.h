@@ -16,6 +16,7 @@ struct Request {
   std::optional<double> time;       ///< sources with a parameter `time` that the user left open follow it
   std::optional<Box3> region;       ///< only this part of space is needed
   int piece = 0, pieces = 1;        ///< part of the work when several processes share it
+  int ghost_levels = 0;             ///< layers of cells around that part, marked as ghosts
 
   static Request only(std::vector<std::string> names);
   friend bool operator==(const Request&, const Request&) = default;

@@ -49,7 +49,7 @@ double pixels_in_memory(const Scene& scene, const Projection& p, std::string& ma
   double most = 0;
   for (const Item& item : scene.items) {
     const auto* volume = std::get_if<VolumeItem>(&item);
-    const BrickedPtr bricks = volume && volume->method == VolumeMethod::ray ? bricked_of(*volume->data) : nullptr;
+    const BrickedPtr bricks = volume && volume->method == VolumeMethod::ray ? volume->data->bricks() : nullptr;
     const auto* grid = bricks ? volume->data->as<UniformGrid>() : nullptr;
     if (!grid) continue;
     const Box3 box = bricks->bounds();

@@ -127,14 +127,14 @@ DatasetPtr scaled(const DatasetPtr& data, const std::vector<ScaledField>& fields
     bytes += field.array.bytes();
     parts.fields.add(std::move(field));
   }
-  DatasetPtr made = make_dataset(std::move(parts));
-  if (const BrickedPtr bricks = bricked_of(*data)) {
+  BrickedPtr bricks = data->bricks();
+  if (bricks) {
     double value = 1;
     for (const ScaledField& f : fields)
       if (f.field->name == bricks->field) value = f.factor;
-    attach_bricked(*made, scaled(bricks, value, length));
+    bricks = scaled(bricks, value, length);
   }
-  return *data->memo().keep(key, std::move(made), bytes);
+  return *data->memo().keep(key, make_dataset(std::move(parts), std::move(bricks)), bytes);
 }
 
 void scale_colors(ColorScale& s, double factor) {

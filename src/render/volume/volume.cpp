@@ -219,7 +219,7 @@ void cast_volumes(const Scene& scene, const Projection& projection, const Fragme
       context.check();
       check(*item);
       std::shared_ptr<const Volume> lattice;
-      const BrickedPtr bricks = bricked_of(*item->data);
+      const BrickedPtr bricks = item->data->bricks();
       const bool of_bricks = bricks && (item->field.empty() || item->field == bricks->field), in_bricks = of_bricks && knobs.coarser > 0;
       if (!in_bricks && (item->data->as<UniformGrid>() || item->data->as<RectilinearGrid>())) {
         Volume prepared = prepare(*item, uint32_t(i + 1), knobs);

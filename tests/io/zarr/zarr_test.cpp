@@ -293,10 +293,10 @@ TEST_CASE("zarr: a volume beyond the memory allowed is a coarse level with a way
   const std::string path = folder("large.zarr");
   write(path, d);
   const size_t bytes = 200 * 150 * 140 * 4;
-  CHECK(!bricked_of(*read(path, {}, 4 * bytes)));
+  CHECK(!read(path, {}, 4 * bytes)->bricks());
   const DatasetPtr coarse = read(path, {}, bytes);
   CHECK(coarse->as<UniformGrid>()->dims == std::array<size_t, 3>{50, 38, 35});
-  const BrickedPtr v = bricked_of(*coarse);
+  const BrickedPtr v = coarse->bricks();
   REQUIRE(v);
   CHECK(v->levels.size() == 3);
   CHECK(v->levels[0].dims == std::array<size_t, 3>{200, 150, 140});
@@ -330,7 +330,7 @@ TEST_CASE("zarr: a volume beyond the memory allowed is a coarse level with a way
   CHECK(coarse->range(coarse->fields()[0]) == d->range(d->fields()[0]));
   // A file that says nothing of them.
   std::filesystem::remove_all(path + "/minmax");
-  CHECK(bricked_of(*read(path, {}, bytes))->extremes.empty());
+  CHECK(read(path, {}, bytes)->bricks()->extremes.empty());
   // One level alone.
   CHECK(error_of([&] { read(path + "/0", {}, bytes); }).find("--region") != std::string::npos);
 }

@@ -63,7 +63,7 @@ DatasetPtr welded(const DatasetPtr& in) {
   DatasetParts out;
   out.mesh = std::move(m);
   for (const Field& f : in->fields())
-    out.fields.add({f.name, f.association, f.association == Association::point ? gather(f.array, kept) : f.array, f.unit, f.role});
+    out.fields.add(f.association == Association::point ? f.with(gather(f.array, kept)) : f);
   out.time = in->time();
   return make_dataset(std::move(out));
 }

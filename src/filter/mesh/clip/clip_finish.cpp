@@ -164,7 +164,7 @@ DatasetPtr finish(const Job& job, Build b) {
   const Shares shares{b, t};
   for (const Field& f : in.fields())
     if (f.association == Association::point)
-      out.fields.add({f.name, f.association, carried(f.array, shares, is_direction(f)), f.unit, f.role});
+      out.fields.add(f.with(carried(f.array, shares, is_direction(f))));
   carry_gathered(out.fields, in.fields(), Association::cell, b.source, Association::cell);
   carry_whole(out.fields, in.fields());
   if (!in.fields().find("original_cell", Association::cell))

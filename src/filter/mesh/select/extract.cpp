@@ -302,7 +302,7 @@ DatasetPtr extract_lattice_cells(const DatasetPtr& in, const Bits& cells, std::s
   }
   out.mesh = std::move(mesh);
   for (const Field& f : in->fields())
-    if (f.association == Association::point) out.fields.add({f.name, f.association, chosen_points(f.array, g, rank), f.unit, f.role});
+    if (f.association == Association::point) out.fields.add(f.with(chosen_points(f.array, g, rank)));
   carry_gathered(out.fields, in->fields(), Association::cell, std::span<const uint32_t>(ids), Association::cell);
   carry_whole(out.fields, in->fields());
   if (!in->point_ghost().empty()) out.point_ghost = chosen_points(in->point_ghost(), g, rank);

@@ -135,7 +135,7 @@ CellArray split_strips(const CellArray& a, const std::function<bool(size_t)>& sp
 void carry_cells(DatasetParts& parts, const std::vector<int64_t>& source) {
   FieldSet fields;
   for (const Field& f : parts.fields)
-    fields.add(f.association == Association::cell ? Field{f.name, f.association, gather(f.array, source), f.unit, f.role} : f);
+    fields.add(f.association == Association::cell ? f.with(gather(f.array, source)) : f);
   parts.fields = std::move(fields);
   if (!parts.cell_ghost.empty()) parts.cell_ghost = gather(parts.cell_ghost, source);
 }

@@ -201,7 +201,7 @@ void transform_fields(const Dataset& d, const Mat3& linear, const FieldLawParams
     if ((f.role == Role::none || f.role == Role::scalars) && !listed(p.turn, f.name) && !listed(p.gradients, f.name) &&
         !listed(p.axial, f.name))
       guessed += fmt::format("{}'{}' ({})", guessed.empty() ? "" : ", ", f.name, is_tensor(law) ? "tensors" : "vectors");
-    out.add({f.name, f.association, std::move(a), f.unit, f.role});
+    out.add(f.with(std::move(a)));
   }
   if (!guessed.empty())
     ctx.info(fmt::format("transform: turns {}, though nothing marks them as such; keep=NAME leaves a field as it is", guessed));

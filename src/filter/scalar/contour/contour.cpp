@@ -242,7 +242,7 @@ DatasetPtr assemble(const Dataset& input, const Field& field, const std::vector<
     if (f.association != Association::point) continue;
     // On its own contour the field has the isovalue itself, free of the rounding of an interpolation.
     const bool itself = f.name == field.name && f.components() == 1;
-    out.add({f.name, f.association, itself ? isovalues(pieces, values, f.array.type()) : carried(f.array, pieces), f.unit, f.role});
+    out.add(f.with(itself ? isovalues(pieces, values, f.array.type()) : carried(f.array, pieces)));
   }
   if (wants_normals) {
     float* none = nullptr;

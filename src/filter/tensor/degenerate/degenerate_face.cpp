@@ -2,6 +2,7 @@
 #include "filter/tensor/degenerate/degenerate_face.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <tuple>
 
 namespace sg {

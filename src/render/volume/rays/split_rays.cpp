@@ -231,7 +231,7 @@ std::vector<RaySlab> ray_slabs(const Scene& scene, const Projection& p) {
     if (!v) continue;
     whole = whole || !info_of(v->mode).in_parts;
     if (v->sampling.antialias != VolumeAntialias::split) continue;
-    if (bricked_of(*v->data))
+    if (v->data->bricks())
       fail_usage("antialias=split is for volumes in memory; this one is drawn from a file whose levels are means of cells already",
                  "volume", "leave antialias=none, or allow more --memory");
     cell = std::min(cell, cell_size(*v->data));

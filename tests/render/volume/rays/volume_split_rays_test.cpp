@@ -186,8 +186,9 @@ TEST_CASE("volume split rays: the same bytes for any number of threads; a window
 }
 
 TEST_CASE("volume split rays: refused for volumes that memory does not hold") {
-  const DatasetPtr data = grid(cube(17, -1, 1), bands);
-  attach_bricked(*data, std::make_shared<BrickedVolume>());
+  const auto volume = std::make_shared<BrickedVolume>();
+  volume->levels.emplace_back();
+  const DatasetPtr data = make_dataset(grid(cube(17, -1, 1), bands)->parts(), volume);
   VolumeItem v = item(data, grey(0, 1), spikes());
   v.sampling.antialias = VolumeAntialias::split;
   CHECK_THROWS_WITH_AS(volume::ray_slabs(scene_of({v}), perspective_view(8, 8, 10, {0, 0, 9}, {0, 0, 0})),

@@ -175,7 +175,7 @@ class Surface {
       const ElementType t = f.array.type();
       const bool wide = element_size(t) == 8;
       Array a = Array::from_vector(std::vector<double>(values), f.components());
-      out.fields.add({f.name, f.association, wide ? a : a.converted(ElementType::f32), f.unit, f.role});
+      out.fields.add(f.with(wide ? a : a.converted(ElementType::f32)));
     }
     if (normals) out.fields.add({"Normals", Association::point, Array::from_vector(std::move(normals_), 3), "", Role::normals});
     std::vector<uint32_t> from = line_cells_;

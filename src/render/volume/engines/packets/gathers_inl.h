@@ -304,18 +304,20 @@ HWY_INLINE void gather_words_at(D d, const T* data, const ptrdiff_t (&on)[n], At
   for (size_t r = 0; r < n; ++r) out[r] = gather_words(d, data + on[r], byte, false);
 }
 
-/// How small integers are read out of words: T tells their size, this whether they have a sign, so that vector code is compiled for one
-/// type of each size.
+/// How small integers are read out of words. Vector code is compiled once for one and two bytes, with and without a sign.
 template <class D>
 struct Integers {
   Int<D> last_word;  ///< the last word within the array begins at this number
   Int<D> code;       ///< the bits of 2^23, and the bit of the sign turned over
-  Float<D> zero;     ///< 2^23, and half of the range of T where there is a sign
+  Float<D> zero;     ///< 2^23, and half of the range where there is a sign
+  bool two_bytes;    ///< each
 
-  HWY_INLINE Integers(int last, int bits, bool has_sign)
-      : last_word(set(IntTag<D>(), last)),
-        code(set(IntTag<D>(), 0x4B000000 | (has_sign ? 1 << (bits - 1) : 0))),
-        zero(set(D(), float((1 << 23) + (has_sign ? 1 << (bits - 1) : 0)))) {}
+  /// `array_bytes`: of all; `bytes`: of one.
+  HWY_INLINE Integers(size_t array_bytes, size_t bytes, bool has_sign)
+      : last_word(set(IntTag<D>(), (int(array_bytes) - 4) / int(bytes))),
+        code(set(IntTag<D>(), 0x4B000000 | (has_sign ? 1 << (8 * bytes - 1) : 0))),
+        zero(set(D(), float((1 << 23) + (has_sign ? 1 << (8 * bytes - 1) : 0)))),
+        two_bytes(bytes == 2) {}
 };
 
 /// Small integer number k of a word. Its bits behind those of 2^23 are the float 2^23 + v; the difference is exact, as a conversion is.

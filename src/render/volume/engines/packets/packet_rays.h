@@ -36,7 +36,10 @@ void put(const PacketPlan& plan, const RayPacket& rays, const PacketResult& resu
 /// Draws the maximum; the same contract as march_tile.
 void maximum_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame);
 
-// The others for one type of samples, T; each is an object file of its own.
+/// A sample of one or two bytes, with or without a sign: told apart as they are read, so that vector code is compiled for two types only.
+enum class SmallInteger : uint8_t {};
+
+// The others for samples T, float or SmallInteger; each is an object file of its own.
 /// march_tile() but for the maximum.
 template <class T>
 void march_even_tile(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame);

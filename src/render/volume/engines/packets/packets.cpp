@@ -12,14 +12,14 @@ namespace sg::volume {
 
 namespace {
 
-/// Calls f with a number of the type that stands for the samples in vector code: integers with a sign are read as those without.
+/// Calls f with a sample of the type that vector code is compiled for.
 template <class F>
 void with_samples(const PacketPlan& plan, F&& f) {
   switch (plan.volume.voxels.array.type()) {
     case ElementType::u8:
-    case ElementType::i8: return f(uint8_t());
+    case ElementType::i8:
     case ElementType::u16:
-    case ElementType::i16: return f(uint16_t());
+    case ElementType::i16: return f(SmallInteger());
     default: return f(float());
   }
 }

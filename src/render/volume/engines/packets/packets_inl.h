@@ -42,7 +42,7 @@ struct Place {
   Float<D> fraction;
 };
 
-/// The lattice, ready for gathers. T: float, or the unsigned integers of the size of the samples.
+/// The lattice, ready for gathers. T: float, or SmallInteger.
 template <class D, class T>
 struct Source {
   const T* data;
@@ -56,7 +56,7 @@ struct Source {
 
   HWY_INLINE explicit Source(const Voxels& voxels, bool all_within = false)
       : data(reinterpret_cast<const T*>(voxels.array.raw())),
-        integers((int(voxels.array.bytes()) - 4) / int(sizeof(T)), 8 * int(sizeof(T)), has_sign(voxels.array.type())),
+        integers(voxels.array.bytes(), element_size(voxels.array.type()), has_sign(voxels.array.type())),
         loads(loads_beat_gathers()),
         within(all_within) {
     const D d;
@@ -82,13 +82,15 @@ struct Source {
   template <size_t n, class At>
   HWY_INLINE void pairs(At at, const ptrdiff_t (&on)[n], Pair<D>* out) const {
     if constexpr (std::is_same_v<T, float>) gather_pairs(D(), data, on, at, loads, out);
-    else gather_pairs(D(), data, on, at, integers, loads, out);
+    else if (integers.two_bytes) gather_pairs(D(), reinterpret_cast<const uint16_t*>(data), on, at, integers, loads, out);
+    else gather_pairs(D(), reinterpret_cast<const uint8_t*>(data), on, at, integers, loads, out);
   }
   /// Four samples in a row each.
   template <size_t n>
   HWY_INLINE void quads(Int<D> at, const ptrdiff_t (&on)[n], Quad<D>* out) const {
     if constexpr (std::is_same_v<T, float>) gather_quads(D(), data, on, at, loads, out);
-    else gather_quads(D(), data, on, at, integers, loads, out);
+    else if (integers.two_bytes) gather_quads(D(), reinterpret_cast<const uint16_t*>(data), on, at, integers, loads, out);
+    else gather_quads(D(), reinterpret_cast<const uint8_t*>(data), on, at, integers, loads, out);
   }
   /// The corners of the cell whose lowest one is there: its rows (0, 0), (1, 0), (0, 1), (1, 1) along y and z.
   template <class At>

@@ -249,9 +249,9 @@ template <class D>
 HWY_INLINE void climb_with(const PacketPlan& plan, int x0, int y0, int x1, int y1, Frame& frame) {
   switch (plan.volume.voxels.array.type()) {
     case ElementType::u8:
-    case ElementType::i8: return climb_all<D, uint8_t>(plan, x0, y0, x1, y1, frame);
+    case ElementType::i8:
     case ElementType::u16:
-    case ElementType::i16: return climb_all<D, uint16_t>(plan, x0, y0, x1, y1, frame);
+    case ElementType::i16: return climb_all<D, SmallInteger>(plan, x0, y0, x1, y1, frame);
     default: return climb_all<D, float>(plan, x0, y0, x1, y1, frame);
   }
 }

@@ -53,7 +53,7 @@ class TetEngine : public TileEngine {
 }  // namespace
 
 std::unique_ptr<TileEngine> tetrahedra_engine(const EngineInput& in) {
-  if (in.lattice || in.volume.detail || !in.by_tolerance() || !in.item().clip.empty() || bricked_of(*in.item().data)) return nullptr;
+  if (in.lattice || in.volume.detail || !in.by_tolerance() || !in.item().clip.empty() || in.item().data->bricks()) return nullptr;
   if (!TetRays::fits(cell_volume_of(*in.volume.source))) return nullptr;
   return std::make_unique<TetEngine>(in);
 }

@@ -121,7 +121,7 @@ double BrickedSource::finest_edge() const {
 
 std::unique_ptr<RaySource> bricked_source(const VolumeItem& item, const Projection& projection, size_t memory, Context&, double coarser) {
   if (!item.data) return nullptr;
-  BrickedPtr volume = bricked_of(*item.data);
+  BrickedPtr volume = item.data->bricks();
   if (!volume || (!item.field.empty() && item.field != volume->field) || item.association != Association::point) return nullptr;
   if (!(coarser >= 1) || !std::isfinite(coarser)) fail_usage(fmt::format("voxels of {} pixels", coarser), "volume", "give 1 or more");
   if (memory == 0) memory = size_t(1) << 30;

@@ -17,7 +17,7 @@ struct BrickedUse {
   uint64_t bytes = 0;          ///< of these bricks
 };
 
-/// A source for items whose dataset stands for a bricked volume (bricked_of(*item.data)) and show its field; null for all others.
+/// A source for items whose dataset stands for a bricked volume (item.data->bricks()) and show its field; null for all others.
 ///
 /// Each place is drawn from the coarsest level whose voxels cover at most `coarser` pixels there, or a coarser one where all bricks that
 /// may be seen would have more than four times the bytes of the cache; so what is drawn depends on the view, the invisible values and

@@ -110,9 +110,7 @@ DatasetPtr bricked_dataset(const UniformGrid& g, const Array& samples, const Dim
   parts.mesh = coarse;
   const std::vector<float> last = pyramid->means.empty() ? std::vector<float>(dims[0] * dims[1] * dims[2]) : pyramid->means.back();
   parts.fields.add({"f", Association::point, Array::from_vector(last), "", Role::scalars});
-  DatasetPtr stub = make_dataset(std::move(parts));
-  attach_bricked(*stub, v);
-  return stub;
+  return make_dataset(std::move(parts), v);
 }
 
 class MipSource final : public RaySource {

@@ -222,9 +222,7 @@ TEST_CASE("brick packets: what cannot be read, and work that is to stop, end wit
   const MadeVolume m = make_volume({200, 100, 100}, 2, bumpy);
   auto broken = std::make_shared<BrickedVolume>(*m.volume);
   broken->read = [](size_t, std::array<size_t, 3>, std::array<size_t, 3>, std::byte*) { fail_data("is damaged", "chunk 3"); };
-  DatasetParts parts = m.dataset->parts();
-  const DatasetPtr data = make_dataset(std::move(parts));
-  attach_bricked(*data, broken);
+  const DatasetPtr data = make_dataset(m.dataset->parts(), broken);
   const Projection p = near_view(m, 64, 200);
   CHECK(error_of([&] { draw(scene_of({look_of(data, true)}), p); }).find("chunk 3") != std::string::npos);
 
@@ -234,8 +232,7 @@ TEST_CASE("brick packets: what cannot be read, and work that is to stop, end wit
     context.cancel();
     m.volume->read(level, lo, n, out);
   };
-  const DatasetPtr other = make_dataset(DatasetParts(m.dataset->parts()));
-  attach_bricked(*other, stops);
+  const DatasetPtr other = make_dataset(m.dataset->parts(), stops);
   Frame frame(p.width, p.height);
   CHECK_THROWS_AS(volume::composite_volumes(scene_of({look_of(other, true)}), p, {}, frame, context, {}), Error);
   CHECK(*m.reads <= 8);  // one brick for each thread, and what it mixes in

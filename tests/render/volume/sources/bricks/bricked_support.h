@@ -99,8 +99,7 @@ MadeVolume make_volume(std::array<size_t, 3> dims, size_t levels, F&& f, Mat3 di
   g.dims = m.dims.back(), g.origin = v->levels.back().origin, g.spacing = v->levels.back().spacing, g.direction = direction;
   parts.mesh = g;
   parts.fields.add({"f", Association::point, Array::from_vector(m.values->back()), "", Role::scalars});
-  m.dataset = make_dataset(std::move(parts));
-  attach_bricked(*m.dataset, m.volume);
+  m.dataset = make_dataset(std::move(parts), m.volume);
   return m;
 }
 

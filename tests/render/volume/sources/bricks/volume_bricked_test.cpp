@@ -315,11 +315,11 @@ TEST_CASE("bricked: integers, and other datasets and fields") {
   DatasetParts parts;
   parts.mesh = UniformGrid{};
   VolumeItem item;
-  item.data = make_dataset(std::move(parts));
+  item.data = make_dataset(parts);
   const Projection p = look({{0, 0, 0}, {69, 4, 5}}, 1, 4000, true);
   Context context;
   CHECK(!volume::bricked_source(item, p, 0, context));
-  attach_bricked(*item.data, v);
+  item.data = make_dataset(parts, v);
   const auto source = volume::bricked_source(item, p, 0, context);
   REQUIRE(source);
   const auto ray = source->walker();
@@ -336,10 +336,8 @@ TEST_CASE("bricked: what cannot be read says so from any walker") {
   MadeVolume m = make_volume({100, 100, 100}, 2, bumpy);
   auto broken = std::make_shared<BrickedVolume>(*m.volume);
   broken->read = [](size_t, std::array<size_t, 3>, std::array<size_t, 3>, std::byte*) { fail_data("is damaged", "chunk 3"); };
-  DatasetParts parts = m.dataset->parts();
-  m.dataset = make_dataset(std::move(parts));
-  CHECK(!bricked_of(*m.dataset));  // a new dataset: no longer the volume
-  attach_bricked(*m.dataset, broken);
+  CHECK(!make_dataset(m.dataset->parts())->bricks());  // a new dataset: no longer the volume
+  m.dataset = make_dataset(m.dataset->parts(), broken);
   const auto source = source_of(m, look(box_of(m), 1, 4000));
   for (int i = 0; i < 2; ++i) {
     const auto ray = source->walker();
@@ -349,7 +347,6 @@ TEST_CASE("bricked: what cannot be read says so from any walker") {
 
 TEST_CASE("bricked: kernels and second fields that bricks do not have are refused, not ignored") {
   const MadeVolume m = make_volume({100, 100, 100}, 2, bumpy);
-  attach_bricked(*m.dataset, m.volume);
   VolumeItem item = test::item(m.dataset, test::grey(-2, 2), {});
   item.field = m.volume->field;
   const auto shot = [&] {

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <tuple>
 
+#include "base/schema/schema.h"
 #include "color/cie.h"
 #include "filter/field/sampling/reconstruction.h"
 #include "render/volume/rays/functions.h"
