@@ -5,6 +5,7 @@
 #include "api/held.h"
 #include "base/text/text.h"
 #include "data/cells/point_positions.h"
+#include "data/known_looks.h"
 #include "data/lattice.h"
 #include "filter/mesh/to_unstructured.h"
 
@@ -218,7 +219,9 @@ Data Data::with_field(Field field) const {
   return guarded([&] {
     sg::DatasetParts parts = single(*this, "with_field()")->parts();
     if (field.name.empty()) sg::fail_usage("a field needs a name", "with_field()");
-    parts.fields.add({std::move(field.name), sg::Association(int(field.on)), field.values.held().array, std::move(field.unit)});
+    const sg::FieldLook look = sg::known_look(field.name);
+    parts.fields.add({std::move(field.name), sg::Association(int(field.on)), field.values.held().array, std::move(field.unit), sg::Role::none,
+                      look});
     return data_from_memory(sg::make_dataset(std::move(parts)));
   });
 }

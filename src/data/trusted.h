@@ -7,7 +7,7 @@ namespace sg {
 
 /// make_dataset() without validate() of the mesh, whose looks at every index take as long as making them. For results that are right by
 /// construction and whose tests call validate(); builds with assertions check all the same. Never for what a file or a caller gave.
-DatasetPtr make_trusted_dataset(DatasetParts parts);
+DatasetPtr make_trusted_dataset(DatasetParts parts, std::shared_ptr<const BrickedVolume> bricks = {});
 
 namespace detail {
 /// Is make_trusted_dataset() at work in this thread?

@@ -10,6 +10,7 @@
 #include "base/file/file_fence.h"
 #include "base/file/mapped_watch.h"
 #include "base/text/text.h"
+#include "data/known_looks.h"
 #include "data/lattice.h"
 #include "data/lattice_crop.h"
 #include "io/file_series.h"
@@ -135,7 +136,7 @@ Data read_unchanged(const Format& f, const std::string& path, const ReadOptions&
 Data read_data(const std::string& path, const ReadOptions& options, Context& context) {
   if (names_series(path)) return read_of_series(path, options, context);
   return with_format(path, options, [&](const Format& f, const std::string& at) {
-    Data data = read_unchanged(f, at, options, context);
+    const Data data = map_datasets(read_unchanged(f, at, options, context), with_known_looks);
     if (options.region.whole() || (f.honours & honours_region)) return data;
     return map_datasets(data, [&](const DatasetPtr& d) {
       return is_lattice(d->mesh()) ? crop_lattice(*d, options.region.lo, options.region.hi, options.region.stride) : d;

@@ -6,7 +6,7 @@
 #include "base/text/text.h"
 #include "data/cells/mesh_dimension.h"
 #include "data/lattice.h"
-#include "scene/choose/field_habits.h"
+#include "scene/choose/shown_range.h"
 #include "scene/choose/scale.h"
 #include "scene/choose/volume_look.h"
 #include "scene/show/labels.h"
@@ -81,7 +81,7 @@ void look_at_grid(const Dataset& d, const Field& f, Look& look) {
   }
   VolumeShow volume;
   volume.coloring.field.name = f.name;
-  if (habit_of(f).shows == FieldHabit::Shows::fibres)
+  if (f.look.shows == FieldLook::Shows::fibres)
     if (const Field* speed = d.fields().find("speed", f.association); speed && speed->components() == 1)
       volume.color_by.name = speed->name, volume.sampling.tolerance = 0.01;  // one colour says less
   add_show(look, volume, true);
@@ -129,7 +129,9 @@ Look choose_look(const Dataset& d, const std::string& field, const std::string& 
   const Field* scalar = field.empty() ? d.fields().with_role(Role::scalars) : d.fields().find(field);
   if (!scalar || (field.empty() && scalar->components() != 1)) scalar = d.fields().active(1);
   if (!scalar) scalar = d.fields().active(0);
-  if (const Field* lic = d.fields().find("lic", Association::point); grid3 && field.empty() && lic && lic->components() == 1) scalar = lic;
+  if (grid3 && field.empty())
+    for (const Field& f : d.fields())
+      if (f.look.shows == FieldLook::Shows::fibres && f.association == Association::point && f.components() == 1) scalar = &f;
   const bool colors = scalar && scalar->role == Role::colors && scalar->components() >= 3;
 
   if (grid3 && box_grid && scalar && !colors) {
@@ -155,9 +157,9 @@ Look choose_look(const Dataset& d, const std::string& field, const std::string& 
     return look;
   }
   // Crests and cores lie inside, of whatever cells; the outer surface shows none of them.
-  using Shows = FieldHabit::Shows;
+  using Shows = FieldLook::Shows;
   if (scalar && !colors && mesh_dimension(d) == 3)
-    if (const Shows shows = habit_of(*scalar).shows; shows == Shows::high || shows == Shows::low) {
+    if (const Shows shows = scalar->look.shows; shows == Shows::high || shows == Shows::low) {
       VolumeShow volume;
       volume.coloring.field.name = scalar->name;
       add_show(look, volume, true);
@@ -169,7 +171,8 @@ Look choose_look(const Dataset& d, const std::string& field, const std::string& 
   const bool bare_map = look.parallel && d.fields().empty() && d.as<SurfaceMesh>();  // nothing but its edges tells its parts apart
   const bool show_edges = (simulation && d.cell_count() <= 12000) || (bare_map && d.cell_count() <= 2000);
   surface.edges = show_edges;
-  const bool filled_contours = flat && field.empty() && is_banded(d);
+  const Field* colored = field.empty() ? automatic_field(d) : d.fields().find(field);
+  const bool filled_contours = flat && colored && colored->look.bands;
   surface.lit = !((look.parallel && box_grid) || filled_contours);  // an image: its colours as they are
   add_show(look, surface, true);
   if (is_lattice(d.mesh()) && !box_grid) add_show(look, OutlineShow(), true);

@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "data/field_ops.h"
+#include "data/known_looks.h"
 
 namespace sg {
 
@@ -21,12 +22,6 @@ const Field& chosen(const Dataset& in, const FieldName& name, std::initializer_l
   for (int n : components)
     if (const Field* f = in.fields().active(n)) return *f;
   fail_usage(fmt::format("the mesh has no {} field", kind), who, "name one: field=NAME");
-}
-
-DatasetPtr with_field(const DatasetPtr& in, Field f) {
-  DatasetParts out = in->parts();
-  out.fields.add(std::move(f));
-  return make_dataset(std::move(out));
 }
 
 ElementType float_type(ElementType t) { return element_size(t) == 8 ? ElementType::f64 : ElementType::f32; }
@@ -67,7 +62,7 @@ DatasetPtr magnitude(const DatasetPtr& in, const MagnitudeParams& p, Context&) {
   const Field& f = chosen(*in, p.field, {3, 2}, "magnitude", "vector");
   if (f.components() == 1)
     fail_usage(fmt::format("field '{}' has one component, so it has no direction to leave out", f.name), "magnitude", "use it as it is");
-  return with_field(in, {p.name.empty() ? f.name + "_magnitude" : p.name, f.association, scalar_of(f, -1, float_type(f.array.type())),
+  return with_result(in, {p.name.empty() ? f.name + "_magnitude" : p.name, f.association, scalar_of(f, -1, float_type(f.array.type())),
                          f.unit, Role::none});
 }
 
@@ -81,7 +76,7 @@ DatasetPtr scale_field(const DatasetPtr& in, const ScaleFieldParams& p, Context&
   Array a = wide ? scaled<double>(f.array, p.factor, p.offset) : scaled<float>(f.array, p.factor, p.offset);
   // Scaled normals, ids or labels are no longer that; scalars and vectors are (an offset moves a vector's tip, not its kind).
   const Role role = f.role == Role::scalars || f.role == Role::vectors ? f.role : Role::none;
-  return with_field(in, {p.name.empty() ? f.name : p.name, f.association, std::move(a),
+  return with_result(in, {p.name.empty() ? f.name : p.name, f.association, std::move(a),
                          !p.unit.empty() ? p.unit
                          : unchanged     ? f.unit
                                          : "",
@@ -94,7 +89,7 @@ DatasetPtr component(const DatasetPtr& in, const ComponentParams& p, Context&) {
     fail_usage(fmt::format("field '{}' has {} components, not component {}", f.name, f.components(), p.component), "component",
                fmt::format("0 to {}", f.components() - 1));
   const std::string suffix = f.components() <= 3 ? std::string(1, "xyz"[p.component]) : std::to_string(p.component);
-  return with_field(in,
+  return with_result(in,
                     {p.name.empty() ? f.name + "_" + suffix : p.name, f.association, f.array.component(p.component), f.unit, Role::none});
 }
 

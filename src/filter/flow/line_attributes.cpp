@@ -2,6 +2,7 @@
 #include "filter/flow/line_attributes.h"
 
 #include "base/parallel.h"
+#include "data/known_looks.h"
 #include "filter/flow/line_mesh.h"
 #include "filter/flow/streamlines.h"
 #include "filter/mesh/surface_builder.h"
@@ -159,7 +160,7 @@ FieldSet rotation_along(const FlowParts& parts, const Dataset& mesh, const std::
   const View<float> u = mesh.fields().require(velocity, Association::point).array.view<float>();
   float *w = nullptr, *turn = nullptr, *sum = nullptr;
   FieldSet out;
-  if (vorticity) out.add({"vorticity", Association::point, Array::make<float>(n, 3, &w), "", Role::none});
+  if (vorticity) out.add({"vorticity", Association::point, Array::make<float>(n, 3, &w), "", Role::none, known_look("vorticity")});
   if (rotation) {
     out.add({"angular velocity", Association::point, Array::make<float>(n, 1, &turn), "", Role::none});
     out.add({"rotation", Association::point, Array::make<float>(n, 1, &sum), "rad", Role::none});

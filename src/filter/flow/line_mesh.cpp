@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "base/parallel.h"
+#include "data/known_looks.h"
 #include "data/trusted.h"
 
 namespace sg {
@@ -20,7 +21,8 @@ struct LineArrays {
 
   LineArrays(size_t n, const std::string& velocity_name, const std::string& unit) {
     points.xyz = Array::make<float>(n, 3, &xyz);
-    fields.add({own_value("speed", velocity_name), Association::point, Array::make<float>(n, 1, &speed), unit, Role::scalars});
+    fields.add({own_value("speed", velocity_name), Association::point, Array::make<float>(n, 1, &speed), unit, Role::scalars,
+                known_look("speed")});
     fields.add({velocity_name, Association::point, Array::make<float>(n, 3, &v), unit, Role::vectors});
     fields.add({own_value("time", velocity_name), Association::point, Array::make<float>(n, 1, &time), "", Role::none});
     fields.add({own_value("length", velocity_name), Association::point, Array::make<float>(n, 1, &arc), "", Role::none});

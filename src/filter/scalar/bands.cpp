@@ -10,6 +10,7 @@
 #include "base/text/text.h"
 #include "data/cells/cell_topology.h"
 #include "data/field_ops.h"
+#include "data/known_looks.h"
 #include "filter/scalar/contour/cells/cell_cases.h"
 #include "filter/surface/polygons.h"
 
@@ -309,7 +310,8 @@ DatasetPtr bands(const DatasetPtr& in, const BandsParams& p, Context& ctx) {
     out.fields.add(field.with(Array::from_vector(std::move(exact)), Association::point));
   carry_gathered(out.fields, s->fields(), Association::cell, cells, Association::cell);
   carry_whole(out.fields, s->fields());
-  out.fields.add({"band", Association::cell, Array::from_vector(std::move(band)), "", Role::labels});
+  out.fields.add({"band", Association::cell, Array::from_vector(std::move(band)), "", Role::labels, known_look("band")});
+  mark_result(out.fields, "band", Association::cell);
   out.fields.add({"band low", Association::cell, Array::from_vector(std::move(low)), field.unit, Role::none});
   out.fields.add({"band high", Association::cell, Array::from_vector(std::move(high)), field.unit, Role::none});
   SurfaceMesh r;

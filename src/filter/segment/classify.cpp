@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "base/text/text.h"
+#include "data/known_looks.h"
 #include "filter/segment/otsu.h"
 #include "filter/segment/samples.h"
 #include "filter/segment/tissue_model.h"
@@ -353,6 +354,7 @@ DatasetPtr classify(const DatasetPtr& in, const ClassifyParams& p, Context& cont
       label[i] = v.inside[i] ? uint8_t(best + 1 - first) : uint8_t(0);
     }
   });
+  mark_result(parts.fields, "label", on);
   parts.fields.add({"class means", Association::whole, Array::from_vector(model.mean), image.field.unit, Role::none});
   parts.fields.add({"class deviations", Association::whole, Array::from_vector(model.deviation), image.field.unit, Role::none});
   return make_dataset(std::move(parts));

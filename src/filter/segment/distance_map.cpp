@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "base/text/text.h"
+#include "data/known_looks.h"
 #include "filter/segment/samples.h"
 
 namespace sg {
@@ -163,7 +164,7 @@ DatasetPtr distance_map(const DatasetPtr& in, const DistanceMapParams& p, Contex
   });
   if (std::none_of(inside.begin(), inside.end(), [](uint8_t b) { return b != 0; }))
     context.warn("distance_map: the set is empty, all distances are infinite");
-  return with_field(in, std::move(out));
+  return with_result(in, std::move(out));
 }
 
 }  // namespace sg

@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "data/field_ops.h"
+#include "data/known_looks.h"
 #include "filter/segment/label_nets.h"
 #include "filter/segment/samples.h"
 
@@ -104,6 +105,7 @@ DatasetPtr label_surface(const DatasetPtr& input, const LabelSurfaceParams& para
     carried.add(std::move(f));
   }
   carry_gathered(out.fields, carried, image.field.association, first, Association::cell);
+  mark_result(out.fields, image.field.name, Association::cell);
   carry_whole(out.fields, input->fields());
   const bool wide = !codes.table.empty() || std::abs(params.background) > double(INT32_MAX);
   out.fields.add({"sides", Association::cell,

@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "base/text/text.h"
+#include "data/known_looks.h"
 #include "filter/segment/distance_map.h"
 #include "filter/segment/label_components.h"
 #include "filter/segment/samples.h"
@@ -137,7 +138,7 @@ DatasetPtr morphology(const DatasetPtr& in, const MorphologyParams& p, Context& 
   });
   const std::string ball = p.operation == Morphology::fill ? "" : fmt::format(", ball of radius {}", short_number(radius));
   context.info(fmt::format("morphology: {}{}: {} samples added, {} removed", word_of(p.operation), ball, change.added, change.removed));
-  return with_field(in, std::move(out));
+  return with_result(in, std::move(out));
 }
 
 }  // namespace sg

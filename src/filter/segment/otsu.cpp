@@ -182,6 +182,7 @@ DatasetPtr otsu(const DatasetPtr& in, const OtsuParams& p, Context& context) {
         },
         &context);
   });
+  out.look.result = true;
   DatasetParts parts = in->parts();
   parts.fields.add(std::move(out));
   parts.fields.add({p.name + " thresholds", Association::whole, Array::from_vector(std::move(thresholds)), field->unit, Role::none});

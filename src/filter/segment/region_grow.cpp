@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "base/text/text.h"
+#include "data/known_looks.h"
 #include "filter/segment/samples.h"
 
 namespace sg {
@@ -140,7 +141,7 @@ DatasetPtr region_grow(const DatasetPtr& in, const RegionGrowParams& p, Context&
   });
   context.info(fmt::format("region_grow: {} samples with values from {} to {}", size, short_number(range.lo), short_number(range.hi)));
   if (size == 0) context.warn("region_grow: the seeds themselves lie outside the range; give min and max");
-  return with_field(in, {p.name, image.field.association, Array::from_vector(std::move(mask)), "", Role::labels});
+  return with_result(in, {p.name, image.field.association, Array::from_vector(std::move(mask)), "", Role::labels});
 }
 
 }  // namespace sg

@@ -222,12 +222,6 @@ LabelCodes label_codes(const SampleImage& image, std::optional<double> backgroun
   return r;
 }
 
-DatasetPtr with_field(const DatasetPtr& in, Field field) {
-  DatasetParts parts = in->parts();
-  parts.fields.add(std::move(field));
-  return make_dataset(std::move(parts));
-}
-
 std::vector<std::array<int, 3>> neighbors_before(int connectivity) {
   const int most = connectivity == 6 ? 1 : connectivity == 18 ? 2 : 3;
   std::vector<std::array<int, 3>> r;

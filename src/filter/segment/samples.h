@@ -56,9 +56,6 @@ struct LabelCodes {
 LabelCodes label_codes(const SampleImage& image, std::optional<double> background, const std::vector<int64_t>& wanted, std::string_view who,
                        const Context& context);
 
-/// `in` with one more field (or in place of the one of that name).
-DatasetPtr with_field(const DatasetPtr& in, Field field);
-
 /// The 6, 18 or 26 neighbours (4 or 8 in a plane) that lie before a sample in memory, as steps along the axes.
 std::vector<std::array<int, 3>> neighbors_before(int connectivity);
 

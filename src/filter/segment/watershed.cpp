@@ -11,6 +11,7 @@
 
 #include "base/parallel.h"
 #include "base/text/text.h"
+#include "data/known_looks.h"
 #include "filter/segment/samples.h"
 
 namespace sg {
@@ -245,7 +246,7 @@ DatasetPtr watershed(const DatasetPtr& in, const WatershedParams& p, Context& co
     out.array = Array::make<int64_t>(n, 1, &to);
     for (size_t i = 0; i < n; ++i) to[i] = label[i] == 0 ? 0 : codes.label(label[i]);
   }
-  return with_field(in, std::move(out));
+  return with_result(in, std::move(out));
 }
 
 }  // namespace sg

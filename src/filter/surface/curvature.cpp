@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "data/known_looks.h"
 #include "filter/surface/polygons.h"
 
 namespace sg {
@@ -136,6 +137,7 @@ DatasetPtr curvature(const DatasetPtr& in, const CurvatureParams& p, Context& ct
   if (p.gaussian) add("Gaussian curvature", std::move(gaussian));
   if (p.mean) add("mean curvature", std::move(mean));
   if (p.angle_defect) add("angle defect", std::move(defect), "rad");
+  mark_result(out.fields, "mean curvature", Association::point);
   out.mesh = std::move(mesh);
   return make_dataset(std::move(out));
 }

@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "data/cells/cell_reader.h"
 #include "data/cells/shape/cell_shape.h"
+#include "data/known_looks.h"
 
 namespace sg {
 
@@ -337,6 +338,7 @@ DatasetPtr quality(const DatasetPtr& in, const QualityParams& p, Context& ctx) {
     const bool angle = of == CellMeasure::min_angle || of == CellMeasure::max_angle;
     out.fields.add({std::string(word_of(of)), Association::cell, Array::from_vector(std::move(values[m])), angle ? "deg" : "", Role::none});
   }
+  if (!p.measures.empty()) mark_result(out.fields, word_of(p.measures[0]), Association::cell);
   return make_dataset(std::move(out));
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "data/known_looks.h"
 #include "filter/surface/normals.h"
 #include "filter/tensor/tensor_shape.h"
 
@@ -83,6 +84,7 @@ DatasetPtr stress_measures(const DatasetPtr& in, const StressMeasuresParams& p, 
         }));
     }
   }
+  mark_result(parts.fields, "von Mises stress", t.field.association);
   return make_dataset(std::move(parts));
 }
 
@@ -100,6 +102,7 @@ DatasetPtr traction(const DatasetPtr& in, const TractionParams& p, Context& ctx)
   parts.fields.add(field_beside(t, "shear stress", 1, unit, Role::none, ctx, [&](size_t i, double* v) { *v = length(shear(i)); }));
   parts.fields.add(field_beside(t, "traction", 3, unit, Role::none, ctx, [&](size_t i, double* v) { put(t.d[i] * n[i], v); }));
   parts.fields.add(field_beside(t, "shear traction", 3, unit, Role::none, ctx, [&](size_t i, double* v) { put(shear(i), v); }));
+  mark_result(parts.fields, "normal traction", t.field.association);
   return make_dataset(std::move(parts));
 }
 

@@ -11,8 +11,10 @@ namespace sg {
 
 namespace {
 
+// The first of them is the result.
 DatasetPtr with_added(const DatasetPtr& in, std::vector<Field> fields) {
   DatasetParts parts = in->parts();
+  if (!fields.empty()) fields[0].look.result = true;
   for (Field& f : fields) parts.fields.add(std::move(f));
   return make_dataset(std::move(parts));
 }

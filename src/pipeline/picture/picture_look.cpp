@@ -48,57 +48,6 @@ std::string free_name(const PipelineFile& file, const std::string& wanted) {
   }
 }
 
-// Operations whose result is a new field: the parameter that names it, and its name when nothing is said.
-struct Maker {
-  std::string_view operation, word, name;
-};
-constexpr Maker makers[] = {
-    {"calc", "name", "result"},
-    {"otsu", "name", "otsu"},
-    {"classify", "", "label"},
-    {"label_components", "", "component"},
-    {"components", "", "component"},
-    {"distance_map", "name", "distance"},
-    {"region_grow", "name", "region"},
-    {"watershed", "name", "watershed"},
-    {"morphology", "name", ""},
-    {"quality", "measures", "scaled_jacobian"},
-    {"curvature", "", "mean curvature"},
-    {"divergence", "as", ""},
-    {"gradient", "as", ""},
-    {"curl", "as", ""},
-    {"tensor_measures", "measures", "FA"},
-    {"stress_measures", "", "von Mises stress"},
-    {"direction_colors", "", "direction"},
-    {"traction", "", "normal traction"},
-    {"vortex_cores", "", "swirling strength"},
-};
-
-// The field that the last steps were made for, when `d` has it; "" = the data decides.
-std::string made_field(const PipelineFile& file, const std::string& end, const Dataset& d) {
-  size_t at = file.steps.size();
-  for (size_t i = 0; i < file.steps.size(); ++i)
-    if (file.steps[i].name == end) at = i;
-  for (; at < file.steps.size(); --at) {
-    const auto& s = file.steps[at];
-    if (!s.from.empty() || s.reads()) return "";
-    const auto maker = std::find_if(std::begin(makers), std::end(makers), [&](const Maker& m) { return m.operation == s.operation; });
-    if (maker != std::end(makers)) {
-      std::string name = maker->word.empty() ? "" : word_value(s.words, maker->word).value_or("");
-      if (name.empty()) name = maker->name;
-      name = name.substr(0, name.find(','));                      // the first of several
-      if (name.empty() && s.operation == "morphology") continue;  // in place of labels that an earlier step made
-      const Field* f = name.empty() ? nullptr : d.fields().find(name);
-      if (!f || f->association == Association::whole || f->role == Role::global_ids) return "";
-      const Range r = d.range(*f, f->components() > 1 ? -1 : 0);
-      return r.lo < r.hi ? name : "";  // one value everywhere shows nothing
-    }
-    const Operation* op = known_operation(s.operation);
-    if (!op || (op->family != "mesh" && op->family != "surface")) return "";  // a surface of other values
-  }
-  return "";
-}
-
 }  // namespace
 
 void fail_no_mesh(const Data& data, const std::string& where) {
@@ -137,7 +86,8 @@ Look choose_for(const PipelineFile::Show& wanted, const Data& data, PipelineFile
   if (!largest) fail_no_mesh(data, file_name_of(origin_of(file, end)));
   const std::string stated = word_value(wanted.words, "field").value_or("");
   if (!stated.empty()) largest->fields().require(stated);
-  const std::string field = stated.empty() ? made_field(file, end, *largest) : stated;
+  const Field* made = automatic_field(*largest);
+  const std::string field = !stated.empty() ? stated : made && made->look.result ? made->name : "";
   std::vector<std::string> coloring = wanted.words;
   if (field != stated) coloring.push_back("field=" + field);
   const Look look = choose_look(*largest, field, extension_of(origin_of(file, end)));

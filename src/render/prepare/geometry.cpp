@@ -2,8 +2,6 @@
 // From cells to triangles and segments.
 #include <fmt/core.h>
 
-#include <mutex>
-
 #include "base/error.h"
 #include "base/parallel.h"
 #include "filter/mesh/surface.h"
@@ -14,12 +12,6 @@ namespace sg::raster {
 namespace {
 
 constexpr size_t grain = 1 << 15;
-
-struct Memory {
-  std::weak_ptr<const Dataset> owner;
-  std::string key;
-  std::shared_ptr<const void> value;
-};
 
 bool hidden(const uint8_t* ghost, size_t cell) {
   return ghost && (ghost[cell] & (ghost_duplicate | ghost_hidden_cell | ghost_refined_cell));
@@ -40,6 +32,7 @@ bool in_place(const SurfaceMesh& mesh, const Dataset& data) {
 
 struct Derived {
   Array triangles, cells;
+  size_t bytes() const { return triangles.bytes() + cells.bytes(); }
 };
 
 /// All triangles but those of hidden cells.
@@ -82,26 +75,9 @@ SurfaceMesh visible_polygons(const SurfaceMesh& mesh, const Dataset& data) {
 
 }  // namespace
 
-std::shared_ptr<const void> remembered(const DatasetPtr& data, const std::string& key, std::shared_ptr<const void> (*make)(void*),
-                                       void* argument) {
-  static std::mutex mutex;
-  static std::vector<Memory> memory;
-  {
-    std::lock_guard lock(mutex);
-    std::erase_if(memory, [](const Memory& m) { return m.owner.expired(); });
-    for (const Memory& m : memory)
-      if (m.key == key && m.owner.lock() == data) return m.value;
-  }
-  std::shared_ptr<const void> value = make(argument);
-  std::lock_guard lock(mutex);
-  if (memory.size() >= 1024) memory.erase(memory.begin());
-  memory.push_back({data, key, value});
-  return value;
-}
-
 Positions packed_positions(const DatasetPtr& data, const Points& points) {
   if (points.xyz.type() == ElementType::f32 && points.xyz.packed()) return {points.xyz, points.origin};
-  return *derived<Positions>(data, "positions", [&]() -> Positions {
+  return *derived(data, "positions", [&]() -> Positions {
     if (points.xyz.type() == ElementType::f32) return {points.xyz.made_packed(), points.origin};
     // The f32 numbers that are left must be small: they are taken from the middle of the data.
     const Box3& box = data->bounds();
@@ -134,7 +110,7 @@ TriangleSet triangulate(const DatasetPtr& data, bool& any_polygon) {
     s.first_cell = uint32_t(mesh.vertices.size() + mesh.lines.size());
     return s;
   }
-  const auto d = derived<Derived>(data, "triangles", [&] { return visible_triangles(mesh, *data); });
+  const auto d = derived(data, "triangles", [&] { return visible_triangles(mesh, *data); });
   s.triangles = d->triangles, s.cells = d->cells, s.count = d->triangles.count();
   return s;
 }

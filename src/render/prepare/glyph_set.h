@@ -23,6 +23,10 @@ struct GlyphShape {
   /// Of each triangle: face normal (3), then the smooth normal as a linear function of the place: constant (3), matrix by rows (9).
   std::vector<float> faces;
   SegmentSet segments;
+
+  size_t bytes() const {
+    return 4 * (x.size() + y.size() + z.size() + 3 * corners[0].size() + triangle_list.size() + faces.size()) + segments.bytes();
+  }
 };
 std::shared_ptr<const GlyphShape> glyph_shape(const DatasetPtr& shape, double feature_angle, bool flat);
 

@@ -72,6 +72,18 @@ Array direct_colors(const Field& f, bool& any_alpha) {
 struct Scalars {
   Array values;
   double offset = 0;
+  size_t bytes() const { return values.bytes(); }
+};
+
+/// The outer faces of a mesh that is no surface.
+struct OuterFaces {
+  Skin skin;
+  size_t bytes() const {
+    size_t sum = 0;
+    if (const auto* m = skin.surface->as<SurfaceMesh>()) sum += m->points.xyz.bytes() + m->polygons.connectivity.bytes();
+    for (const Field& f : skin.surface->fields()) sum += f.array.bytes();
+    return sum;
+  }
 };
 
 /// f32 numbers without losing the small differences of f64 ones far from zero.
@@ -117,8 +129,9 @@ ColorSource color_source(const DatasetPtr& data, const std::optional<FieldColor>
     struct Direct {
       Array colors;
       bool alpha = false;
+      size_t bytes() const { return colors.bytes(); }
     };
-    const auto d = derived<Direct>(data, "direct/" + key, [&] {
+    const auto d = derived(data, "direct/" + key, [&] {
       Direct r;
       r.colors = direct_colors(f, r.alpha);
       return r;
@@ -129,7 +142,7 @@ ColorSource color_source(const DatasetPtr& data, const std::optional<FieldColor>
   s.kind = ColorSource::Kind::scalar;
   if (f.array.type() == ElementType::f32 && f.components() == 1 && f.array.packed()) s.values = f.array;
   else {
-    const auto d = derived<Scalars>(data, "scalar/" + key, [&] { return scalars_of(f, color->component); });
+    const auto d = derived(data, "scalar/" + key, [&] { return scalars_of(f, color->component); });
     s.values = d->values, s.offset = d->offset;
   }
   const ColorScale& scale = color->scale;
@@ -164,8 +177,8 @@ class Preparation {
     if (!(given.opacity > 0)) return;
     SurfaceItem s = given;
     if (!s.data->as<SurfaceMesh>()) {  // any other mesh shows its outer faces
-      const auto skin = derived<Skin>(given.data, "outer faces", [&] { return faces_and_edges(given.data, {}, context_); });
-      s.data = skin->surface, s.edge_lines = skin->edges;
+      const auto outer = derived(given.data, "outer faces", [&] { return OuterFaces{faces_and_edges(given.data, {}, context_)}; });
+      s.data = outer->skin.surface, s.edge_lines = outer->skin.edges;
     }
     const SurfaceMesh& mesh = surface_mesh(s.data, "surface");
     PreparedItem p = start(PreparedItem::Kind::surface, s.data, s.opacity);
@@ -183,13 +196,13 @@ class Preparation {
     PreparedItem e = start(PreparedItem::Kind::lines, s.data, s.opacity);
     if (s.edge_lines) {
       const SurfaceMesh& lines = surface_mesh(s.edge_lines, "surface");
-      e.segments = derived<SegmentSet>(s.edge_lines, "segments", [&] { return line_segments(*s.edge_lines, lines); });
+      e.segments = derived(s.edge_lines, "segments", [&] { return line_segments(*s.edge_lines, lines); });
       e.color = color_source(s.data, std::nullopt, s.edge_color, "surface");
       const Positions own = packed_positions(s.edge_lines, lines.points);
       e.positions = own.xyz, e.origin = own.origin, e.width = 1;
       return push(std::move(e), e.segments->count());
     }
-    e.segments = derived<SegmentSet>(s.data, "edges", [&] { return polygon_edges(*s.data, mesh); });
+    e.segments = derived(s.data, "edges", [&] { return polygon_edges(*s.data, mesh); });
     e.color = color_source(s.data, std::nullopt, s.edge_color, "surface");
     e.positions = positions, e.origin = origin, e.width = 1;
     push(std::move(e), e.segments->count());
@@ -200,7 +213,7 @@ class Preparation {
     const SurfaceMesh& mesh = surface_mesh(s.data, "lines");
     if (!(s.opacity > 0) || !(s.width > 0)) return;
     PreparedItem p = start(PreparedItem::Kind::lines, s.data, s.opacity);
-    p.segments = derived<SegmentSet>(s.data, "segments", [&] { return line_segments(*s.data, mesh); });
+    p.segments = derived(s.data, "segments", [&] { return line_segments(*s.data, mesh); });
     p.color = color_source(s.data, s.color_by, s.color, "lines");
     const Positions positions = packed_positions(s.data, mesh.points);
     p.positions = positions.xyz, p.origin = positions.origin;
@@ -225,7 +238,7 @@ class Preparation {
         if (f.components() != components)
           fail_usage(fmt::format("field '{}' has {} components, not {}", name, f.components(), components), "points");
         if (f.array.type() == ElementType::f32 && f.array.packed()) return f.array;
-        return *derived<Array>(s.data, "discs/" + name, [&] { return f.array.converted(ElementType::f32).made_packed(); });
+        return *derived(s.data, "discs/" + name, [&] { return f.array.converted(ElementType::f32).made_packed(); });
       };
       p.disc_normals = numbers(s.disc_normals, 3), p.disc_radius = numbers(s.disc_radius, 1);
       p.discs = true;
@@ -298,8 +311,8 @@ class Preparation {
         if (g.role == Role::normals && g.association == Association::point && g.components() == 3 && !f) f = &g;
     }
     if (f && f->array.type() == ElementType::f32 && f->array.packed()) return {f->array, {}};
-    if (f) return {*derived<Array>(s.data, "normals/" + f->name, [&] { return f->array.converted(ElementType::f32).made_packed(); }), {}};
-    return *derived<NormalSet>(s.data, fmt::format("smooth/{}", s.feature_angle),
+    if (f) return {*derived(s.data, "normals/" + f->name, [&] { return f->array.converted(ElementType::f32).made_packed(); }), {}};
+    return *derived(s.data, fmt::format("smooth/{}", s.feature_angle),
                                [&] { return smooth_normals(triangles, s.feature_angle); });
   }
 
@@ -310,7 +323,7 @@ class Preparation {
     if (auto* m = data->as<CurvilinearGrid>()) return packed_positions(data, m->points);
     if (!is_lattice(data->mesh()))
       fail_usage(fmt::format("the points of a {} mesh cannot be drawn", data->kind()), "points", "draw its surface or resample it");
-    return *derived<Positions>(data, "positions", [&] { return lattice_positions(*data); });
+    return *derived(data, "positions", [&] { return lattice_positions(*data); });
   }
 
   static Positions lattice_positions(const Dataset& data) {

@@ -3,8 +3,11 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <string>
+#include <type_traits>
 #include <vector>
 
+#include "data/memory/memo.h"
 #include "render/prepare/prepare.h"
 
 namespace sg {
@@ -36,6 +39,7 @@ struct NormalSet {
 struct SegmentSet {
   std::vector<uint32_t> points, cells, groups;
   size_t count() const { return points.size() / 2; }
+  size_t bytes() const { return 4 * (points.size() + cells.size() + groups.size()); }
 };
 
 /// Colour of anything: one colour, a number per point or cell through a table, or linear RGBA per point or cell.
@@ -102,18 +106,21 @@ ColorSource color_source(const DatasetPtr& data, const std::optional<FieldColor>
 struct Positions {
   Array xyz;
   Vec3 origin;
+
+  size_t bytes() const { return xyz.bytes(); }
 };
 Positions packed_positions(const DatasetPtr& data, const Points& points);
 
-/// Remembers what was derived from a dataset until the dataset is gone. `make` must not keep a DatasetPtr.
-std::shared_ptr<const void> remembered(const DatasetPtr& data, const std::string& key, std::shared_ptr<const void> (*make)(void*),
-                                       void* argument);
-template <class T, class F>
-std::shared_ptr<const T> derived(const DatasetPtr& data, const std::string& key, F&& f) {
-  auto make = [](void* p) -> std::shared_ptr<const void> {
-    return std::make_shared<const T>((*static_cast<std::remove_reference_t<F>*>(p))());
-  };
-  return std::static_pointer_cast<const T>(remembered(data, key, make, &f));
+/// What is derived from a dataset, made once and kept in its memo. `make` must not keep a pointer to `data`.
+template <class F>
+auto derived(const DatasetPtr& data, const std::string& what, F&& make) {
+  using T = std::invoke_result_t<F>;
+  const std::string key = "surfaces/" + what;
+  Memo& memo = data->memo();
+  if (std::shared_ptr<const T> kept = memo.find<T>(key)) return kept;
+  T made = make();
+  const size_t bytes = made.bytes();
+  return memo.keep<T>(key, std::move(made), bytes);
 }
 
 float linear_light(float srgb);

@@ -26,11 +26,11 @@ void describe(Schema& s, ColoringParams& p) {
 
 namespace {
 
-// Ids: 5, 6, 7, ... in the order of the points or cells, or a name that says so; textures.
+// Ids: 5, 6, 7, ... in the order of the points or cells, or a name that says so; textures, which go with the colours of another field.
 bool is_numbering(const Field& f) {
   if (f.components() != 1) return false;
+  if (f.look.texture) return true;
   const std::string name = to_lower(f.name);
-  if (name == "lic" || name == "spot noise") return true;  // a texture goes with the colours of another field
   for (std::string_view end : {"id", "ids", "nodenums", "elemnums", "number", "valid"})
     if (name.ends_with(end)) return true;
   const size_t n = std::min<size_t>(f.array.count(), 1000);
@@ -49,7 +49,9 @@ const Field* automatic_field(const Dataset& d) {
     return r.empty() || r.lo < r.hi;
   };
   auto plain = [](Role r) { return r != Role::normals && r != Role::tcoords && r != Role::global_ids; };
-  if (is_banded(d)) return d.fields().find("band", Association::cell);
+  if (const Field* f = d.fields().result(); f && f->association != Association::whole && f->role != Role::global_ids && varies(*f)) return f;
+  for (const Field& f : d.fields())
+    if (f.look.bands) return &f;
   if (const Field* f = d.fields().with_role(Role::scalars); f && f->components() == 1 && varies(*f)) return f;
   if (const Field* f = d.fields().with_role(Role::colors)) return f;
   for (const bool numberings : {false, true})
@@ -69,13 +71,6 @@ const Field* wanted_field(const Dataset& d, const ColoringParams& p) {
     return &f;
   }
   return automatic_field(d);
-}
-
-bool is_banded(const Dataset& d) {
-  const Field* band = d.fields().find("band", Association::cell);
-  const Field *low = d.fields().find("band low", Association::cell), *high = d.fields().find("band high", Association::cell);
-  return band && low && high && band->components() == 1 && !is_float(band->array.type()) && low->components() == 1 &&
-         high->components() == 1;
 }
 
 bool is_direct_color(const Field& f) {

@@ -25,8 +25,8 @@ struct ColoringParams {
 };
 void describe(Schema& s, ColoringParams& p);
 
-/// The field that colours a dataset when none is named: the bands of filled contours, its scalars when they vary, else its own colours,
-/// else the first field that varies, points before cells, scalars before vectors, numberings last. Null when there is none.
+/// The field that colours a dataset when none is named: the result of the last operation when it varies, the bands of filled contours, its
+/// scalars when they vary, else its own colours, else the first field that varies, points before cells, scalars before vectors, numberings last. Null when there is none.
 const Field* automatic_field(const Dataset& data);
 
 /// The field that `params` names, else the automatic one; null for one colour and when there is none. Throws Error(usage).
@@ -34,8 +34,5 @@ const Field* wanted_field(const Dataset& data, const ColoringParams& params);
 
 /// Components that are colours themselves.
 bool is_direct_color(const Field& field);
-
-/// Has the cell fields 'band', 'band low' and 'band high' that the operation bands makes: filled contours.
-bool is_banded(const Dataset& data);
 
 }  // namespace sg

@@ -11,7 +11,7 @@
 #include "color/colormap_file.h"
 #include "color/parse_color.h"
 #include "data/lattice.h"
-#include "scene/choose/field_habits.h"
+#include "scene/choose/shown_range.h"
 
 namespace sg {
 
@@ -174,9 +174,9 @@ bool looks_like_labels(const Dataset& data, const Field& field) {
 }
 
 bool two_sided(const Field& field, const Range& r) {
-  const FieldHabit habit = habit_of(field);
-  if (habit.one_sided || !(r.lo < 0 && r.hi > 0)) return false;
-  return habit.two_sided || std::min(-r.lo, r.hi) > 0.05 * std::max(-r.lo, r.hi);
+  const FieldLook& look = field.look;
+  if (look.one_sided || !(r.lo < 0 && r.hi > 0)) return false;
+  return look.two_sided || std::min(-r.lo, r.hi) > 0.05 * std::max(-r.lo, r.hi);
 }
 
 ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringParams& p, Context& context) {
@@ -191,7 +191,7 @@ ColorScale choose_scale(const Dataset& data, const Field& field, const ColoringP
   }
   if (!p.range.empty() && (p.range.size() != 2 || !(p.range[0] < p.range[1])))
     fail_usage("range needs two numbers, the lower one first", "range", "like range=0,100");
-  if (field.name == "band" && field.association == Association::cell && is_banded(data)) return band_scale(data, field, p);
+  if (field.look.bands) return band_scale(data, field, p);
   const bool automatic = !p.map;
   const std::optional<FileColormap> file = p.map && names_colormap_file(*p.map) ? std::optional(find_file_colormap(*p.map)) : std::nullopt;
   const Colormap asked = automatic ? Colormap{} : file ? file->map : find_colormap(*p.map);

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "scene/choose/coloring.h"
-#include "scene/choose/field_habits.h"
+#include "scene/choose/shown_range.h"
 
 namespace sg {
 

@@ -6,7 +6,7 @@
 #include "base/text/text.h"
 #include "data/field_ops.h"
 #include "data/lattice.h"
-#include "scene/choose/field_habits.h"
+#include "scene/choose/shown_range.h"
 #include "scene/choose/scale.h"
 
 namespace sg {
@@ -80,8 +80,8 @@ size_t fullest(const std::vector<size_t>& h) {
 
 // Fields of which it is known what matters in them: crests, troughs or strands. "" when it is not.
 std::string known_look(const Dataset& data, const Field& field, const Range& r, int component, VolumeItem& item) {
-  using Shows = FieldHabit::Shows;
-  const Shows shows = habit_of(field).shows;
+  using Shows = FieldLook::Shows;
+  const Shows shows = field.look.shows;
   if (shows == Shows::any) return "";
   const auto h = histogram(field, component, r.lo, r.hi, 1024);
   size_t all = 0;

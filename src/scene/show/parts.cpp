@@ -17,7 +17,7 @@ std::string field_of_parts(const std::vector<DatasetPtr>& parts, const ShowKind&
   for (const bool labels : {false, true})
     for (const Dataset* d : by_size)
       if (const Field* f = shown_field(kind, params, *d); f && (labels || f->role != Role::labels))
-        return f->name == "band" && is_banded(*d) ? "band low" : f->name;  // bands of parts differ; their values can be compared
+        return f->look.bands ? "band low" : f->name;  // bands of parts differ; their values can be compared
   return "";
 }
 

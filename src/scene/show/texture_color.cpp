@@ -20,9 +20,8 @@ std::string texture_field(const Dataset& d, const FieldName& wanted, const std::
                  "lic and spot_noise make one");
     return f.name;
   }
-  for (const char* name : {"lic", "spot noise"})
-    if (const Field* f = d.fields().find(name, Association::point); f && f->components() == 1 && !(color && color->field == name))
-      return name;
+  for (const Field& f : d.fields())
+    if (f.look.texture && f.association == Association::point && f.components() == 1 && !(color && color->field == f.name)) return f.name;
   return "";
 }
 

@@ -6,8 +6,8 @@
 
 namespace sg {
 
-/// The name of the point field that is the texture of a dataset: `wanted`; empty: "lic" or "spot noise" where there is such a scalar field
-/// that is not itself the colour; "" for none (and for wanted=none). Throws Error(usage) for unknown names and fields of several
+/// The name of the point field that is the texture of a dataset: `wanted`; empty: the scalar one whose look is that of a
+/// texture (lic, spot noise) and that is not itself the colour; "" for none (and for wanted=none). Throws Error(usage) for unknown names and fields of several
 /// components.
 std::string texture_field(const Dataset& data, const FieldName& wanted, const std::optional<FieldColor>& color);
 

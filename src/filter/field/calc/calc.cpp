@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "data/cells/cell_reader.h"
+#include "data/known_looks.h"
 #include "data/lattice.h"
 #include "filter/field/calc/calc_program.h"
 
@@ -262,9 +263,8 @@ DatasetPtr calc(const DatasetPtr& in, const CalcParams& p, Context& ctx) {
   const Positions* where = positions ? &*positions : nullptr;
   Array values = single ? compute<float>(program, fields, where, n, ctx) : compute<double>(program, fields, where, n, ctx);
   const int m = values.components();
-  DatasetParts parts = in->parts();
-  parts.fields.add({p.name, on, std::move(values), program.unit.text(), m == 1 ? Role::scalars : m == 3 ? Role::vectors : Role::none});
-  return make_dataset(std::move(parts));
+  const Role role = m == 1 ? Role::scalars : m == 3 ? Role::vectors : Role::none;
+  return with_result(in, {p.name, on, std::move(values), program.unit.text(), role, known_look(p.name)});
 }
 
 }  // namespace sg

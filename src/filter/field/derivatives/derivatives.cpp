@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "data/known_looks.h"
 #include "data/lattice.h"
 #include "filter/field/derivatives/border_layers.h"
 #include "filter/field/derivatives/fitted_derivatives.h"
@@ -34,8 +35,8 @@ const Field& choose(const DatasetPtr& in, const FieldName& name, int components,
 
 // Makes a field of `components` from the 9 derivatives of a vector field.
 template <class F>
-DatasetPtr from_derivatives(const DatasetPtr& in, const Field& field, std::string name, int components, Role role, F&& combine,
-                            Context& ctx) {
+DatasetPtr from_derivatives(const DatasetPtr& in, const Field& field, std::string name, int components, Role role, FieldLook look,
+                            F&& combine, Context& ctx) {
   const DatasetPtr with = gradient(in, {{field.name}, scratch}, ctx);
   const Field& g = with->fields().require(scratch, field.association);
   std::byte* bytes = nullptr;
@@ -52,9 +53,7 @@ DatasetPtr from_derivatives(const DatasetPtr& in, const Field& field, std::strin
       }
     });
   });
-  DatasetParts parts = in->parts();
-  parts.fields.add({std::move(name), field.association, std::move(out), g.unit, role});
-  return make_dataset(std::move(parts));
+  return with_result(in, {std::move(name), field.association, std::move(out), g.unit, role, look});
 }
 
 // Curvilinear sheets and lines: what second derivatives have across them comes from the turning of the tangent, not from the field.
@@ -98,13 +97,13 @@ std::string name_of(const std::string& as, const char* what, const Field& f) {
 DatasetPtr divergence(const DatasetPtr& in, const DivergenceParams& p, Context& ctx) {
   const Field f = choose(in, p.field, 3, "divergence");
   return from_derivatives(
-      in, f, name_of(p.as, "divergence", f), 1, Role::scalars, [](const double* d, double* r) { r[0] = d[0] + d[4] + d[8]; }, ctx);
+      in, f, name_of(p.as, "divergence", f), 1, Role::scalars, known_look("divergence"), [](const double* d, double* r) { r[0] = d[0] + d[4] + d[8]; }, ctx);
 }
 
 DatasetPtr curl(const DatasetPtr& in, const CurlParams& p, Context& ctx) {
   const Field f = choose(in, p.field, 3, "curl");
   return from_derivatives(
-      in, f, name_of(p.as, "curl", f), 3, Role::vectors,
+      in, f, name_of(p.as, "curl", f), 3, Role::vectors, FieldLook{},
       [](const double* d, double* r) { r[0] = d[7] - d[5], r[1] = d[2] - d[6], r[2] = d[3] - d[1]; }, ctx);
 }
 
@@ -115,7 +114,7 @@ DatasetPtr hessian(const DatasetPtr& in, const HessianParams& p, Context& ctx) {
     const DatasetPtr first = gradient(in, {{f.name}, "first " + std::string(scratch)}, ctx);
     const Field g = first->fields().require("first " + std::string(scratch), f.association);
     const DatasetPtr r = from_derivatives(
-        first, g, name, 9, Role::tensors,
+        first, g, name, 9, Role::tensors, FieldLook{},
         [](const double* d, double* h) {
           for (int a = 0; a < 3; ++a)
             for (int b = 0; b < 3; ++b) h[3 * a + b] = 0.5 * (d[3 * a + b] + d[3 * b + a]);  // equal but for the borders
@@ -138,10 +137,8 @@ DatasetPtr hessian(const DatasetPtr& in, const HessianParams& p, Context& ctx) {
   for (size_t i = 0; i < values.count(); ++i)
     for (size_t k = 0; k < 9; ++k) full[9 * i + k] = h[6 * i + size_t(place[k])];
   const Array out = Array::from_vector(std::move(full), 9);
-  DatasetParts parts = in->parts();
-  parts.fields.add({name, f.association, f.array.type() == ElementType::f64 ? out : out.converted(ElementType::f32),
-                    f.unit.empty() ? "" : f.unit + "/length^2", Role::tensors});
-  return make_dataset(std::move(parts));
+  return with_result(in, {name, f.association, f.array.type() == ElementType::f64 ? out : out.converted(ElementType::f32),
+                          f.unit.empty() ? "" : f.unit + "/length^2", Role::tensors});
 }
 
 }  // namespace sg

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
+#include "data/known_looks.h"
 #include "filter/field/derivatives/fitted_derivatives.h"
 #include "filter/field/derivatives/gradient_rows.h"
 #include "filter/field/derivatives/lattice_frame.h"
@@ -131,11 +132,9 @@ DatasetPtr gradient(const DatasetPtr& input, const GradientParams& params, Conte
                                          : grid_gradient<double>(*input, of_cells, values, context);
   }
   out.association = field.association;
-  DatasetParts parts = input->parts();
-  if (parts.fields.find(out.name, out.association))
+  if (input->fields().find(out.name, out.association))
     context.info(fmt::format("gradient: replaces the {} field '{}'", association_name(out.association), out.name));
-  parts.fields.add(std::move(out));
-  return make_dataset(std::move(parts));
+  return with_result(input, std::move(out));
 }
 
 }  // namespace sg

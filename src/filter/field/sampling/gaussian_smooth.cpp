@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "data/known_looks.h"
 #include "filter/field/sampling/separable.h"
 #include "filter/segment/samples.h"
 
@@ -101,7 +102,7 @@ DatasetPtr gaussian_smooth(const DatasetPtr& in, const GaussianSmoothParams& p, 
     out.array = Array::make<float>(n, 1, &to);
     write(to);
   }
-  return with_field(in, std::move(out));
+  return with_result(in, std::move(out));
 }
 
 }  // namespace sg

@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include "base/parallel.h"
+#include "data/known_looks.h"
 #include "filter/flow/fronts/default_curve.h"
 #include "filter/flow/fronts/front.h"
 #include "filter/flow/line_attributes.h"
@@ -376,7 +377,7 @@ Data stream_surface(const std::vector<Data>& inputs, const StreamSurfaceParams& 
   mesh.points.xyz = Array::make<float>(n, 3, &xyz);
   FieldSet fields;
   fields.add({own_value("speed", parts.name()), Association::point, Array::make<float>(n, 1, &speed), parts.fields().front().field().unit,
-              Role::scalars});
+              Role::scalars, known_look("speed")});
   fields.add({own_value("time", parts.name()), Association::point, Array::make<float>(n, 1, &time), "", Role::none});
   fields.add({own_value("length", parts.name()), Association::point, Array::make<float>(n, 1, &arc), "", Role::none});
   fields.add({parts.name(), Association::point, Array::make<float>(n, 3, &v), "", Role::vectors});

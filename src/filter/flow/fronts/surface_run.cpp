@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "data/known_looks.h"
 #include "filter/flow/fronts/default_curve.h"
 #include "filter/flow/line_mesh.h"
 
@@ -53,7 +54,8 @@ DatasetPtr surface_dataset(Collected c, const Field& velocity, double start, dou
   float *xyz = nullptr, *v = nullptr, *speed = nullptr, *s = nullptr, *st = nullptr, *age = nullptr;
   mesh.points.xyz = Array::make<float>(n, 3, &xyz);
   FieldSet fields;
-  fields.add({own_value("speed", velocity.name), Association::point, Array::make<float>(n, 1, &speed), velocity.unit, Role::scalars});
+  fields.add({own_value("speed", velocity.name), Association::point, Array::make<float>(n, 1, &speed), velocity.unit, Role::scalars,
+              known_look("speed")});
   fields.add({velocity.name, Association::point, Array::make<float>(n, 3, &v), velocity.unit, Role::vectors});
   fields.add({own_value("seed parameter", velocity.name), Association::point, Array::make<float>(n, 1, &s), "", Role::none});
   fields.add({own_value("age", velocity.name), Association::point, Array::make<float>(n, 1, &age), "", Role::none});

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/text/text.h"
+#include "data/known_looks.h"
 #include "filter/flow/flow_field.h"
 #include "filter/flow/seeds/noise_speed.h"
 #include "filter/flow/texture/frame.h"
@@ -85,7 +86,7 @@ double flowing_share(const Plane<uint32_t>& codes) {
 Field speed_of(const Frame& f) {
   const Field& v = f.fields.require(f.velocity_name, Association::point);
   float* speed = nullptr;
-  Field out{"speed", Association::point, Array::make<float>(f.size(), 1, &speed), v.unit, Role::none};
+  Field out{"speed", Association::point, Array::make<float>(f.size(), 1, &speed), v.unit, Role::none, known_look("speed")};
   dispatch(v.array, [&](auto view) {
     parallel_for(f.size(), 1 << 15, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) {
@@ -196,7 +197,7 @@ DatasetPtr lic(const DatasetPtr& input, const DatasetPtr& image, const LicParams
       for (size_t i = 0; i < n; ++i) out[i * size_t(components) + size_t(k)] = averaged[i];
   }
   if (without == n) context.warn(fmt::format("lic: '{}' does not flow anywhere, there is no texture", f.velocity_name));
-  std::vector<Field> made{{"lic", Association::point, std::move(result), "", Role::none}};
+  std::vector<Field> made{{"lic", Association::point, std::move(result), "", Role::none, known_look("lic")}};
   if (solid && !f.fields.find("speed")) made.push_back(speed_of(f));
   return frame_dataset(f, std::move(made));
 }

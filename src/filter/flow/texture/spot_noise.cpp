@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/random.h"
+#include "data/known_looks.h"
 #include "filter/flow/texture/frame.h"
 #include "filter/flow/texture/pixel_flow.h"
 
@@ -206,7 +207,7 @@ DatasetPtr spot_noise(const DatasetPtr& input, const SpotNoiseParams& p, Context
       },
       &context);
   standardise(flow, p.contrast, out, f.size(), context);
-  return frame_dataset(f, {{"spot noise", Association::point, std::move(result), "", Role::none}});
+  return frame_dataset(f, {{"spot noise", Association::point, std::move(result), "", Role::none, known_look("spot noise")}});
 }
 
 Data spot_noise_of(const Data& input, const SpotNoiseParams& p, Context& context) {

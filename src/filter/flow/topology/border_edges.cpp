@@ -7,6 +7,7 @@
 
 #include "data/cells/cell_reader.h"
 #include "data/cells/cell_topology.h"
+#include "data/known_looks.h"
 
 namespace sg {
 
@@ -107,7 +108,7 @@ DatasetPtr border_dataset(const FlowParts& flow, const std::vector<BorderEdge>& 
   mesh.lines.connectivity = Array::from_vector(std::move(ids));
   DatasetParts parts;
   parts.mesh = std::move(mesh);
-  parts.fields.add({"speed", Association::point, Array::from_vector(std::move(speed)), "", Role::scalars});
+  parts.fields.add({"speed", Association::point, Array::from_vector(std::move(speed)), "", Role::scalars, known_look("speed")});
   return make_dataset(std::move(parts));
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
+#include "data/known_looks.h"
 
 namespace sg {
 
@@ -204,7 +205,7 @@ DatasetPtr orbits_dataset(const std::vector<Orbit>& orbits) {
   mesh.lines.offsets = Array::from_vector(std::move(offsets));
   DatasetParts parts;
   parts.mesh = std::move(mesh);
-  parts.fields.add({"speed", Association::point, Array::from_vector(std::move(speed)), "", Role::none});
+  parts.fields.add({"speed", Association::point, Array::from_vector(std::move(speed)), "", Role::none, known_look("speed")});
   parts.fields.add({"repelling", Association::cell, Array::from_vector(std::move(repelling)), "", Role::labels});
   parts.fields.add({"period", Association::cell, Array::from_vector(std::move(period)), "", Role::none});
   parts.fields.add({"multiplier", Association::cell, Array::from_vector(std::move(multiplier)), "", Role::none});

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
+#include "data/known_looks.h"
 #include "filter/flow/packets/packet_lines.h"
 #include "filter/flow/topology/zeros/surface_zeros.h"
 
@@ -230,7 +231,7 @@ DatasetPtr separatrices_dataset(const std::vector<Separatrix>& lines) {
   mesh.lines.offsets = Array::from_vector(std::move(offsets));
   DatasetParts parts;
   parts.mesh = std::move(mesh);
-  parts.fields.add({"speed", Association::point, Array::from_vector(std::move(speed)), "", Role::none});
+  parts.fields.add({"speed", Association::point, Array::from_vector(std::move(speed)), "", Role::none, known_look("speed")});
   auto add = [&](const char* name, std::vector<int32_t> v) {
     parts.fields.add({name, Association::cell, Array::from_vector(std::move(v)), "", Role::labels});
   };

@@ -5,6 +5,8 @@
 
 #include "base/parallel.h"
 #include "data/cells/cell_reader.h"
+#include "data/known_looks.h"
+#include "data/trusted.h"
 #include "filter/flow/eigen_general.h"
 #include "filter/flow/flow_parts.h"
 #include "filter/flow/vortex/keep_large.h"
@@ -107,7 +109,10 @@ DatasetPtr of_mesh(const DatasetPtr& given, const VortexCoresParams& p, Context&
     angle[a] = std::max(angle[a], turn), angle[b] = std::max(angle[b], turn);
   }
   const DatasetPtr with = parallel_lines_mesh(in, kept, context, {{"swirling strength", swirl}, {"core angle", angle}});
-  return long_lines(with, p.min_length * in->bounds().diagonal(), "vortex_cores", context);
+  const DatasetPtr lines = long_lines(with, p.min_length * in->bounds().diagonal(), "vortex_cores", context);
+  DatasetParts parts = lines->parts();
+  mark_result(parts.fields, "swirling strength", Association::point);
+  return make_trusted_dataset(std::move(parts));
 }
 
 }  // namespace

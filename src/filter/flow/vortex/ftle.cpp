@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
+#include "data/known_looks.h"
 #include "data/memory/memory_budget.h"
 #include "filter/flow/flow_parts.h"
 #include "filter/flow/geographic.h"
@@ -158,7 +159,8 @@ DatasetPtr ftle_of(const UniformGrid& grid, double duration, std::optional<doubl
   parts.mesh = grid;
   constexpr const char* names[] = {"ftle", "flow map", "stretch", "stretch direction", "shrink direction"};
   for (int k = 0; k < 5; ++k)
-    parts.fields.add({names[k], Association::point, std::move(arrays[k]), k == 0 ? "1/time" : "", k == 0 ? Role::scalars : Role::none});
+    parts.fields.add({names[k], Association::point, std::move(arrays[k]), k == 0 ? "1/time" : "", k == 0 ? Role::scalars : Role::none,
+                      known_look(names[k])});
   return make_dataset(std::move(parts));
 }
 

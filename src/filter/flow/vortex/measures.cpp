@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
+#include "data/known_looks.h"
 #include "filter/field/derivatives/gradient.h"
 #include "filter/flow/eigen_general.h"
 #include "filter/flow/flow_field.h"
@@ -151,9 +152,11 @@ DatasetPtr vortex_measures(const DatasetPtr& in, const VortexMeasuresParams& p, 
     fields.add({std::string(asked[k]->name), velocity.association, std::move(arrays[k]), "",
                 !scalar ? Role::vectors
                 : first ? Role::scalars
-                        : Role::none});
+                        : Role::none,
+                known_look(asked[k]->name)});
     first = first && !scalar;
   }
+  if (!asked.empty()) mark_result(fields, asked[0]->name, velocity.association);
   parts.fields = std::move(fields);
   return make_dataset(std::move(parts));
 }

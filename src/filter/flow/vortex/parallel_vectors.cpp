@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "data/cells/cell_reader.h"
 #include "data/cells/cell_topology.h"
+#include "data/known_looks.h"
 #include "filter/field/sampling/point_cell.h"
 #include "filter/flow/flow_parts.h"
 #include "filter/flow/vortex/mend_lines.h"
@@ -330,7 +331,7 @@ DatasetPtr parallel_lines_mesh(const DatasetPtr& data, const ParallelLines& line
   mesh.lines.connectivity = Array::from_vector(std::vector<int32_t>(lines.segments.begin(), lines.segments.end()));
   parts.fields.add({"parallel ratio", Association::point, Array::from_vector(std::move(ratio)), "", Role::none});
   for (PointNumbers& m : more)
-    parts.fields.add({std::move(m.name), Association::point, Array::from_vector(std::move(m.values)), "", Role::none});
+    parts.fields.add({m.name, Association::point, Array::from_vector(std::move(m.values)), "", Role::none, known_look(m.name)});
   parts.mesh = std::move(mesh), parts.notes = data->notes(), parts.time = data->time();
   const bool none = lines.segments.empty();
   const DatasetPtr segments = make_dataset(std::move(parts));

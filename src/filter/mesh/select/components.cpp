@@ -82,8 +82,8 @@ DatasetPtr components(const DatasetPtr& in, const ComponentsParams& p, Context& 
     if (component[c] >= 0 && wanted[size_t(component[c])]) cells.push_back(int64_t(c));
   DatasetParts parts = in->parts();
   const bool cloud = in->as<PointCloud>();
-  parts.fields.add(
-      {"component", cloud ? Association::point : Association::cell, Array::from_vector(std::move(component)), "", Role::labels});
+  const Association on = cloud ? Association::point : Association::cell;
+  parts.fields.add({"component", on, Array::from_vector(std::move(component)), "", Role::labels, {.result = true}});
   const DatasetPtr all = make_dataset(std::move(parts));
   return p.keep > 0 || p.at || !p.points.empty() ? extract_cells(all, cells, "components") : all;
 }

@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
+#include "data/known_looks.h"
 #include "filter/flow/texture/surface/surface_convolution.h"
 #include "filter/mesh/surface.h"
 
@@ -89,7 +90,7 @@ DatasetPtr tensor_lic(const DatasetPtr& in, const TensorLicParams& p, Context& c
     for (size_t i = 0; i < faded.size(); ++i) faded[i] = part[i] >= 0 ? 0.5f + (v[i] - 0.5f) * part[i] : 0.5f;
     lic = Array::from_vector(std::move(faded));
   }
-  return textured_surface(r, {{"lic", Association::point, std::move(lic), "", Role::none},
+  return textured_surface(r, {{"lic", Association::point, std::move(lic), "", Role::none, known_look("lic")},
                               {"in-plane anisotropy", Association::point, Array::from_vector(std::move(anisotropy)), "", Role::none}});
 }
 

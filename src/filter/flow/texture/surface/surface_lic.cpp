@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "data/known_looks.h"
 #include "filter/flow/flow_field.h"
 #include "filter/flow/texture/surface/surface_convolution.h"
 #include "filter/mesh/surface.h"
@@ -35,7 +36,7 @@ DatasetPtr surface_lic(const DatasetPtr& in, const SurfaceLicParams& p, Context&
   const std::vector<Vec3> vectors = vectors_of(f);
   const SurfaceWalk walk(r, vectors, f.association == Association::cell, longest_piece(r, p.step));
   const SurfaceConvolution lines{p.steps, p.step, p.kernel, p.stretch, p.seed};
-  return textured_surface(r, {{"lic", Association::point, convolve_surface(r, walk, lines, {}, context), "", Role::none}});
+  return textured_surface(r, {{"lic", Association::point, convolve_surface(r, walk, lines, {}, context), "", Role::none, known_look("lic")}});
 }
 
 }  // namespace sg

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Looks of the fields that flow operations make, and of fields with few extreme values.
-#include "scene/choose/field_habits.h"
+#include "scene/choose/shown_range.h"
 
 #include <cmath>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "scene/choose/field_habits.h"
+#include "scene/choose/shown_range.h"
 
 #include <fmt/core.h>
 
@@ -12,20 +12,7 @@ namespace sg {
 
 namespace {
 
-struct Known {
-  std::string_view name;
-  FieldHabit habit;
-};
-using Shows = FieldHabit::Shows;
-constexpr Known known[] = {
-    {"ftle", {Shows::high, true, false, true}},         {"Q", {Shows::high, false, true, true}},
-    {"delta", {Shows::high, false, true, true}},        {"lambda2", {Shows::low, false, true, true}},
-    {"Okubo-Weiss", {Shows::low, false, true, true}},   {"swirling strength", {Shows::high, false, false, true}},
-    {"vorticity", {Shows::high, false, false, true}},   {"vorticity magnitude", {Shows::high, false, false, true}},
-    {"strain rate", {Shows::high, false, false, true}}, {"helicity", {Shows::any, false, true, true}},
-    {"divergence", {Shows::any, false, true, true}},    {"speed", {Shows::any, false, false, true}},
-    {"lic", {Shows::fibres, false, false, false}},
-};
+using Shows = FieldLook::Shows;
 
 constexpr size_t most_samples = 400000;
 constexpr double inside = 0.995, inside_tailed = 0.99;
@@ -65,21 +52,15 @@ double rounded(double x) { return *parse_double(short_number(x, 3)); }
 
 }  // namespace
 
-FieldHabit habit_of(const Field& field) {
-  for (const Known& k : known)
-    if (k.name == field.name) return k.habit;
-  return {};
-}
-
 ShownRange shown_range(std::span<const FieldOf> fields, int component, bool symmetric) {
   ShownRange s;
   bool may_cut = !fields.empty(), tailed = false;
-  auto shows = FieldHabit::Shows::any;
+  auto shows = Shows::any;
   for (const FieldOf& f : fields) {
     s.range.add(f.data->range(*f.field, f.field->components() > 1 ? component : 0));
     may_cut = may_cut && is_float(f.field->array.type());
-    tailed = tailed || habit_of(*f.field).tailed;
-    if (symmetric) shows = habit_of(*f.field).shows;
+    tailed = tailed || f.field->look.tailed;
+    if (symmetric) shows = f.field->look.shows;
   }
   if (s.range.empty()) return s;
   const Range whole = s.range;
