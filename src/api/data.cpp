@@ -220,8 +220,8 @@ Data Data::with_field(Field field) const {
     sg::DatasetParts parts = single(*this, "with_field()")->parts();
     if (field.name.empty()) sg::fail_usage("a field needs a name", "with_field()");
     const sg::FieldLook look = sg::known_look(field.name);
-    parts.fields.add({std::move(field.name), sg::Association(int(field.on)), field.values.held().array, std::move(field.unit), sg::Role::none,
-                      look});
+    parts.fields.add(
+        {std::move(field.name), sg::Association(int(field.on)), field.values.held().array, std::move(field.unit), sg::Role::none, look});
     return data_from_memory(sg::make_dataset(std::move(parts)));
   });
 }

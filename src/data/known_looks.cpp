@@ -14,7 +14,7 @@ struct Known {
   FieldLook look;
 };
 constexpr Known known[] = {
-    {"ftle", {.shows = Shows::high, .tailed = true}},
+    {"ftle", {.shows = Shows::high, .one_sided = true, .tailed = true}},
     {"Q", {.shows = Shows::high, .two_sided = true, .tailed = true}},
     {"delta", {.shows = Shows::high, .two_sided = true, .tailed = true}},
     {"lambda2", {.shows = Shows::low, .two_sided = true, .tailed = true}},

@@ -63,7 +63,7 @@ DatasetPtr magnitude(const DatasetPtr& in, const MagnitudeParams& p, Context&) {
   if (f.components() == 1)
     fail_usage(fmt::format("field '{}' has one component, so it has no direction to leave out", f.name), "magnitude", "use it as it is");
   return with_result(in, {p.name.empty() ? f.name + "_magnitude" : p.name, f.association, scalar_of(f, -1, float_type(f.array.type())),
-                         f.unit, Role::none});
+                          f.unit, Role::none});
 }
 
 DatasetPtr scale_field(const DatasetPtr& in, const ScaleFieldParams& p, Context& ctx) {
@@ -77,10 +77,10 @@ DatasetPtr scale_field(const DatasetPtr& in, const ScaleFieldParams& p, Context&
   // Scaled normals, ids or labels are no longer that; scalars and vectors are (an offset moves a vector's tip, not its kind).
   const Role role = f.role == Role::scalars || f.role == Role::vectors ? f.role : Role::none;
   return with_result(in, {p.name.empty() ? f.name : p.name, f.association, std::move(a),
-                         !p.unit.empty() ? p.unit
-                         : unchanged     ? f.unit
-                                         : "",
-                         role});
+                          !p.unit.empty() ? p.unit
+                          : unchanged     ? f.unit
+                                          : "",
+                          role});
 }
 
 DatasetPtr component(const DatasetPtr& in, const ComponentParams& p, Context&) {
@@ -90,7 +90,7 @@ DatasetPtr component(const DatasetPtr& in, const ComponentParams& p, Context&) {
                fmt::format("0 to {}", f.components() - 1));
   const std::string suffix = f.components() <= 3 ? std::string(1, "xyz"[p.component]) : std::to_string(p.component);
   return with_result(in,
-                    {p.name.empty() ? f.name + "_" + suffix : p.name, f.association, f.array.component(p.component), f.unit, Role::none});
+                     {p.name.empty() ? f.name + "_" + suffix : p.name, f.association, f.array.component(p.component), f.unit, Role::none});
 }
 
 }  // namespace sg

@@ -306,8 +306,7 @@ DatasetPtr bands(const DatasetPtr& in, const BandsParams& p, Context& ctx) {
 
   DatasetParts out;
   carry_interpolated(out.fields, s->fields(), points);
-  if (field.components() == 1)
-    out.fields.add(field.with(Array::from_vector(std::move(exact)), Association::point));
+  if (field.components() == 1) out.fields.add(field.with(Array::from_vector(std::move(exact)), Association::point));
   carry_gathered(out.fields, s->fields(), Association::cell, cells, Association::cell);
   carry_whole(out.fields, s->fields());
   out.fields.add({"band", Association::cell, Array::from_vector(std::move(band)), "", Role::labels, known_look("band")});

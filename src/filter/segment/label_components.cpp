@@ -160,8 +160,7 @@ DatasetPtr label_components(const DatasetPtr& in, const LabelComponentsParams& p
                         : fmt::format("label_components: {} part{}{}, the largest of {} samples", all, all == 1 ? "" : "s",
                                       c.size.size() < all ? fmt::format(" ({} kept)", c.size.size()) : "", c.size.empty() ? 0 : c.size[0]));
   DatasetParts parts = in->parts();
-  parts.fields.add(
-      {"component", image.field.association, Array::from_vector(std::move(c.component)), "", Role::labels, {.result = true}});
+  parts.fields.add({"component", image.field.association, Array::from_vector(std::move(c.component)), "", Role::labels, {.result = true}});
   parts.fields.add({"component sizes", Association::whole, Array::from_vector(std::move(c.size)), "", Role::none});
   return make_dataset(std::move(parts));
 }

@@ -93,8 +93,7 @@ GlyphShape make_shape(const DatasetPtr& data, double feature_angle, bool flat) {
 
 std::shared_ptr<const GlyphShape> glyph_shape(const DatasetPtr& shape, double feature_angle, bool flat) {
   if (!shape || !shape->as<SurfaceMesh>()) fail_usage("a shape must be a surface mesh", "glyphs");
-  return derived(shape, fmt::format("glyph shape/{}/{}", feature_angle, flat),
-                             [&] { return make_shape(shape, feature_angle, flat); });
+  return derived(shape, fmt::format("glyph shape/{}/{}", feature_angle, flat), [&] { return make_shape(shape, feature_angle, flat); });
 }
 
 std::vector<uint32_t> glyph_order(const GlyphInstances& instances) {

@@ -244,7 +244,7 @@ class Preparation {
       p.discs = true;
     }
     const bool all = p.discs && s.data->as<PointCloud>() && s.data->point_ghost().empty();  // of the discs: no list says more
-    if (!all) p.points = derived<std::vector<uint32_t>>(s.data, "points", [&] { return chosen_points(*s.data); });
+    if (!all) p.points = derived(s.data, "points", [&] { return chosen_points(*s.data); });
     push(std::move(p), all ? s.data->point_count() : p.points->size());
   }
 
@@ -312,8 +312,7 @@ class Preparation {
     }
     if (f && f->array.type() == ElementType::f32 && f->array.packed()) return {f->array, {}};
     if (f) return {*derived(s.data, "normals/" + f->name, [&] { return f->array.converted(ElementType::f32).made_packed(); }), {}};
-    return *derived(s.data, fmt::format("smooth/{}", s.feature_angle),
-                               [&] { return smooth_normals(triangles, s.feature_angle); });
+    return *derived(s.data, fmt::format("smooth/{}", s.feature_angle), [&] { return smooth_normals(triangles, s.feature_angle); });
   }
 
   static Positions positions_of(const DatasetPtr& data) {

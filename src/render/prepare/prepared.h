@@ -33,6 +33,8 @@ struct TriangleSet {
 struct NormalSet {
   Array normals;  ///< f32 x 3, packed; empty = face normals
   Array corners;  ///< u32 x 3 per triangle into `normals`; empty = the triangles' own point numbers
+
+  size_t bytes() const { return normals.bytes() + corners.bytes(); }
 };
 
 /// Two point numbers per line segment; `group` joins the segments of one polyline (empty: all of them).
@@ -119,7 +121,9 @@ auto derived(const DatasetPtr& data, const std::string& what, F&& make) {
   Memo& memo = data->memo();
   if (std::shared_ptr<const T> kept = memo.find<T>(key)) return kept;
   T made = make();
-  const size_t bytes = made.bytes();
+  size_t bytes = 0;
+  if constexpr (requires { made.bytes(); }) bytes = made.bytes();
+  else bytes = made.size() * sizeof(made[0]);
   return memo.keep<T>(key, std::move(made), bytes);
 }
 

@@ -49,7 +49,8 @@ const Field* automatic_field(const Dataset& d) {
     return r.empty() || r.lo < r.hi;
   };
   auto plain = [](Role r) { return r != Role::normals && r != Role::tcoords && r != Role::global_ids; };
-  if (const Field* f = d.fields().result(); f && f->association != Association::whole && f->role != Role::global_ids && varies(*f)) return f;
+  if (const Field* f = d.fields().result(); f && f->association != Association::whole && f->role != Role::global_ids && varies(*f))
+    return f;
   for (const Field& f : d.fields())
     if (f.look.bands) return &f;
   if (const Field* f = d.fields().with_role(Role::scalars); f && f->components() == 1 && varies(*f)) return f;

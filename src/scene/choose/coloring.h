@@ -26,7 +26,8 @@ struct ColoringParams {
 void describe(Schema& s, ColoringParams& p);
 
 /// The field that colours a dataset when none is named: the result of the last operation when it varies, the bands of filled contours, its
-/// scalars when they vary, else its own colours, else the first field that varies, points before cells, scalars before vectors, numberings last. Null when there is none.
+/// scalars when they vary, else its own colours, else the first field that varies, points before cells, scalars before vectors, numberings
+/// last. Null when there is none.
 const Field* automatic_field(const Dataset& data);
 
 /// The field that `params` names, else the automatic one; null for one colour and when there is none. Throws Error(usage).

@@ -6,8 +6,8 @@
 #include "base/text/text.h"
 #include "data/field_ops.h"
 #include "data/lattice.h"
-#include "scene/choose/shown_range.h"
 #include "scene/choose/scale.h"
+#include "scene/choose/shown_range.h"
 
 namespace sg {
 

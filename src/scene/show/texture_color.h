@@ -7,8 +7,8 @@
 namespace sg {
 
 /// The name of the point field that is the texture of a dataset: `wanted`; empty: the scalar one whose look is that of a
-/// texture (lic, spot noise) and that is not itself the colour; "" for none (and for wanted=none). Throws Error(usage) for unknown names and fields of several
-/// components.
+/// texture (lic, spot noise) and that is not itself the colour; "" for none (and for wanted=none). Throws Error(usage) for unknown names
+/// and fields of several components.
 std::string texture_field(const Dataset& data, const FieldName& wanted, const std::optional<FieldColor>& color);
 
 /// Gives the item colours of its own (a u8 point field): those it has, times the texture: 0.5 leaves a colour nearly as it is, 0 is dark, 1

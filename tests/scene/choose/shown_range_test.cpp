@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "data/known_looks.h"
 #include "scene/choose/scale.h"
 #include "scene/choose/volume_look.h"
 #include "scene/look.h"
@@ -29,7 +30,7 @@ DatasetPtr cube(const std::string& name, F&& f) {
       for (size_t i = 0; i < n; ++i) v.push_back(float(f(double(i), double(j), double(k))));
   FieldSet fields;
   fields.add({name, Association::point, Array::from_vector(std::move(v)), "", Role::scalars});
-  return make_dataset(g, std::move(fields));
+  return with_known_looks(make_dataset(g, std::move(fields)));
 }
 
 // Within +-1 but for one value in 500, which reaches far down.
@@ -146,7 +147,7 @@ TEST_CASE("volume: the side of Q that matters says how far its colours go, and a
     g.points.xyz = Array::from_vector(std::move(xyz), 3);
     FieldSet f;
     f.add({name, Association::point, Array::from_vector(std::move(v)), "", Role::scalars});
-    return make_dataset(Mesh(g), std::move(f));
+    return with_known_looks(make_dataset(Mesh(g), std::move(f)));
   };
   CHECK(choose_look(*bent("Q"), "", "").shows[0].kind->is<VolumeShow>());
   CHECK(choose_look(*bent("temperature"), "", "").shows[0].kind->is<SurfaceShow>());
@@ -156,7 +157,7 @@ TEST_CASE("look: a solid texture of sparse noise is shown as opaque strands in t
   DatasetParts parts = cube("other", [](double i, double, double) { return i; })->parts();
   const auto strands = cube("lic", [](double i, double j, double) { return int(i) % 6 == 0 && int(j) % 6 == 0 ? 0.8 : 0.0; });
   Field lic = strands->fields()[0], speed = lic;
-  lic.role = speed.role = Role::none, speed.name = "speed";
+  lic.role = speed.role = Role::none, speed.name = "speed", speed.look = known_look("speed");
   parts.fields.add(lic), parts.fields.add(speed);
   const DatasetPtr d = make_dataset(std::move(parts));
   const Look look = choose_look(*d, "", "");

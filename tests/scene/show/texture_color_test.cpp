@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/show/texture_color.h"
 
+#include "data/known_looks.h"
 #include "scene/show/show.h"
 #include "support/test.h"
 
@@ -14,7 +15,7 @@ DatasetPtr strip(const char* name, std::vector<float> texture) {
   g.dims = {5, 2, 1};
   FieldSet f;
   f.add({"v", Association::point, Array::from_vector(std::vector<float>{0, 1, 2, 3, 4, 0, 1, 2, 3, 4}), "", Role::none});
-  f.add({name, Association::point, Array::from_vector(std::move(texture)), "", Role::none});
+  f.add({name, Association::point, Array::from_vector(std::move(texture)), "", Role::none, known_look(name)});
   return make_dataset(g, f);
 }
 

@@ -97,7 +97,8 @@ std::string name_of(const std::string& as, const char* what, const Field& f) {
 DatasetPtr divergence(const DatasetPtr& in, const DivergenceParams& p, Context& ctx) {
   const Field f = choose(in, p.field, 3, "divergence");
   return from_derivatives(
-      in, f, name_of(p.as, "divergence", f), 1, Role::scalars, known_look("divergence"), [](const double* d, double* r) { r[0] = d[0] + d[4] + d[8]; }, ctx);
+      in, f, name_of(p.as, "divergence", f), 1, Role::scalars, known_look("divergence"),
+      [](const double* d, double* r) { r[0] = d[0] + d[4] + d[8]; }, ctx);
 }
 
 DatasetPtr curl(const DatasetPtr& in, const CurlParams& p, Context& ctx) {

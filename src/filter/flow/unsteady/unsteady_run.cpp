@@ -113,8 +113,8 @@ FieldSet point_fields(const LinePoints& lines, Field first, const Field& velocit
   FieldSet fields;
   if (!first.name.empty()) first.name = own_value(first.name, velocity.name), fields.add(std::move(first));
   const Role role = fields.empty() ? Role::scalars : Role::none;
-  fields.add({own_value("speed", velocity.name), Association::point, Array::make<float>(n, 1, &speed), velocity.unit, role,
-              known_look("speed")});
+  fields.add(
+      {own_value("speed", velocity.name), Association::point, Array::make<float>(n, 1, &speed), velocity.unit, role, known_look("speed")});
   fields.add({velocity.name, Association::point, Array::make<float>(n, 3, &v), velocity.unit, Role::vectors});
   parallel_for(n, 1 << 14, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {

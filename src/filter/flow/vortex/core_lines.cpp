@@ -109,8 +109,8 @@ DatasetPtr of_mesh(const DatasetPtr& given, const VortexCoresParams& p, Context&
     angle[a] = std::max(angle[a], turn), angle[b] = std::max(angle[b], turn);
   }
   const DatasetPtr with = parallel_lines_mesh(in, kept, context, {{"swirling strength", swirl}, {"core angle", angle}});
-  const DatasetPtr lines = long_lines(with, p.min_length * in->bounds().diagonal(), "vortex_cores", context);
-  DatasetParts parts = lines->parts();
+  const DatasetPtr joined = long_lines(with, p.min_length * in->bounds().diagonal(), "vortex_cores", context);
+  DatasetParts parts = joined->parts();
   mark_result(parts.fields, "swirling strength", Association::point);
   return make_trusted_dataset(std::move(parts));
 }

@@ -36,7 +36,8 @@ DatasetPtr surface_lic(const DatasetPtr& in, const SurfaceLicParams& p, Context&
   const std::vector<Vec3> vectors = vectors_of(f);
   const SurfaceWalk walk(r, vectors, f.association == Association::cell, longest_piece(r, p.step));
   const SurfaceConvolution lines{p.steps, p.step, p.kernel, p.stretch, p.seed};
-  return textured_surface(r, {{"lic", Association::point, convolve_surface(r, walk, lines, {}, context), "", Role::none, known_look("lic")}});
+  return textured_surface(r,
+                          {{"lic", Association::point, convolve_surface(r, walk, lines, {}, context), "", Role::none, known_look("lic")}});
 }
 
 }  // namespace sg
