@@ -5,7 +5,7 @@
 #include "api/held.h"
 #include "base/text/text.h"
 #include "data/cells/point_positions.h"
-#include "data/known_looks.h"
+#include "data/fields/known_looks.h"
 #include "data/lattice.h"
 #include "filter/mesh/to_unstructured.h"
 

@@ -3,7 +3,7 @@
 
 #include <fmt/core.h>
 
-#include "data/field_component.h"
+#include "data/fields/field_component.h"
 
 #include "base/error.h"
 #include "data/bricked.h"

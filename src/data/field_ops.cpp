@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "data/field_ops.h"
 
-#include "data/field_component.h"
+#include "data/fields/field_component.h"
 
 #include <algorithm>
 #include <cmath>
@@ -129,8 +129,7 @@ void carry_interpolated(FieldSet& out, const FieldSet& in, std::span<const EdgeP
     if (f.association != Association::point) continue;
     const ElementType t = f.array.type();
     const bool direction = f.role == Role::normals && f.components() == 3 && (t == ElementType::f32 || t == ElementType::f64);
-    out.add(
-        f.with(direction ? interpolate_directions(f.array, points) : interpolate(f.array, points)));
+    out.add(f.with(direction ? interpolate_directions(f.array, points) : interpolate(f.array, points)));
   }
 }
 void carry_combined(FieldSet& out, const FieldSet& in, Association association, std::span<const int64_t> ids,

@@ -10,7 +10,7 @@
 #include "base/file/file_fence.h"
 #include "base/file/mapped_watch.h"
 #include "base/text/text.h"
-#include "data/known_looks.h"
+#include "data/fields/known_looks.h"
 #include "data/lattice.h"
 #include "data/lattice_crop.h"
 #include "io/file_series.h"

@@ -2,7 +2,7 @@
 #include "filter/flow/line_attributes.h"
 
 #include "base/parallel.h"
-#include "data/known_looks.h"
+#include "data/fields/known_looks.h"
 #include "filter/flow/line_mesh.h"
 #include "filter/flow/streamlines.h"
 #include "filter/mesh/surface_builder.h"

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "base/parallel.h"
-#include "data/known_looks.h"
+#include "data/fields/known_looks.h"
 #include "data/trusted.h"
 
 namespace sg {

@@ -10,7 +10,7 @@
 #include "base/text/text.h"
 #include "data/cells/cell_topology.h"
 #include "data/field_ops.h"
-#include "data/known_looks.h"
+#include "data/fields/known_looks.h"
 #include "filter/scalar/contour/cells/cell_cases.h"
 #include "filter/surface/polygons.h"
 

@@ -5,7 +5,7 @@
 
 #include "base/parallel.h"
 #include "data/field_ops.h"
-#include "data/known_looks.h"
+#include "data/fields/known_looks.h"
 #include "filter/segment/label_nets.h"
 #include "filter/segment/samples.h"
 

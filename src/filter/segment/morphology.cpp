@@ -8,7 +8,7 @@
 
 #include "base/parallel.h"
 #include "base/text/text.h"
-#include "data/known_looks.h"
+#include "data/fields/known_looks.h"
 #include "filter/segment/distance_map.h"
 #include "filter/segment/label_components.h"
 #include "filter/segment/samples.h"

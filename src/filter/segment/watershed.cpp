@@ -11,7 +11,7 @@
 
 #include "base/parallel.h"
 #include "base/text/text.h"
-#include "data/known_looks.h"
+#include "data/fields/known_looks.h"
 #include "filter/segment/samples.h"
 
 namespace sg {

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "data/known_looks.h"
+#include "data/fields/known_looks.h"
 #include "filter/surface/polygons.h"
 
 namespace sg {

@@ -10,7 +10,7 @@
 #include "base/parallel.h"
 #include "data/cells/cell_reader.h"
 #include "data/cells/shape/cell_shape.h"
-#include "data/known_looks.h"
+#include "data/fields/known_looks.h"
 
 namespace sg {
 

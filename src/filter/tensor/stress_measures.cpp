@@ -4,7 +4,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
-#include "data/known_looks.h"
+#include "data/fields/known_looks.h"
 #include "filter/surface/normals.h"
 #include "filter/tensor/tensor_shape.h"
 

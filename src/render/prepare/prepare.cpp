@@ -6,8 +6,8 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "data/field_component.h"
 #include "data/field_ops.h"
+#include "data/fields/field_component.h"
 #include "data/lattice.h"
 #include "filter/mesh/faces/faces.h"
 #include "filter/mesh/surface.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "data/field_component.h"
+#include "data/fields/field_component.h"
 #include "render/volume/effects/effects.h"
 #include "render/volume/sources/bricks/bricked_source.h"
 #include "render/volume/sources/bricks/mip_source.h"

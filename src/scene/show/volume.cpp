@@ -6,7 +6,7 @@
 #include "base/text/text.h"
 #include "color/parse_color.h"
 #include "color/transfer_text.h"
-#include "data/field_component.h"
+#include "data/fields/field_component.h"
 #include "data/lattice.h"
 #include "scene/choose/scale.h"
 #include "scene/choose/volume_boundaries.h"

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "data/known_looks.h"
+#include "data/fields/known_looks.h"
 #include "scene/choose/scale.h"
 #include "scene/choose/volume_look.h"
 #include "scene/look.h"

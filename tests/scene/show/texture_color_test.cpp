@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scene/show/texture_color.h"
 
-#include "data/known_looks.h"
+#include "data/fields/known_looks.h"
 #include "scene/show/show.h"
 #include "support/test.h"
 

@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "data/cells/cell_reader.h"
-#include "data/known_looks.h"
+#include "data/fields/known_looks.h"
 #include "data/lattice.h"
 #include "filter/field/calc/calc_program.h"
 

@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "data/known_looks.h"
+#include "data/fields/known_looks.h"
 #include "data/lattice.h"
 #include "filter/field/derivatives/border_layers.h"
 #include "filter/field/derivatives/fitted_derivatives.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "data/known_looks.h"
+#include "data/fields/known_looks.h"
 #include "filter/field/derivatives/fitted_derivatives.h"
 #include "filter/field/derivatives/gradient_rows.h"
 #include "filter/field/derivatives/lattice_frame.h"

@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "data/known_looks.h"
+#include "data/fields/known_looks.h"
 #include "filter/field/sampling/separable.h"
 #include "filter/segment/samples.h"
 

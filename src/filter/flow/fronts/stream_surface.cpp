@@ -4,7 +4,7 @@
 #include <fmt/core.h>
 
 #include "base/parallel.h"
-#include "data/known_looks.h"
+#include "data/fields/known_looks.h"
 #include "filter/flow/fronts/default_curve.h"
 #include "filter/flow/fronts/front.h"
 #include "filter/flow/line_attributes.h"

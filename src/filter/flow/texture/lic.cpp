@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "base/text/text.h"
-#include "data/known_looks.h"
+#include "data/fields/known_looks.h"
 #include "filter/flow/flow_field.h"
 #include "filter/flow/seeds/noise_speed.h"
 #include "filter/flow/texture/frame.h"

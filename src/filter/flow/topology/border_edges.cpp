@@ -7,7 +7,7 @@
 
 #include "data/cells/cell_reader.h"
 #include "data/cells/cell_topology.h"
-#include "data/known_looks.h"
+#include "data/fields/known_looks.h"
 
 namespace sg {
 

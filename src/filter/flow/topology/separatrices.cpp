@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
-#include "data/known_looks.h"
+#include "data/fields/known_looks.h"
 #include "filter/flow/packets/packet_lines.h"
 #include "filter/flow/topology/zeros/surface_zeros.h"
 

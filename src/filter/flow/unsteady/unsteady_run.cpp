@@ -8,7 +8,7 @@
 
 #include "base/parallel.h"
 #include "base/text/text.h"
-#include "data/known_looks.h"
+#include "data/fields/known_looks.h"
 #include "filter/flow/geographic.h"
 #include "filter/flow/line_mesh.h"
 

@@ -5,7 +5,7 @@
 
 #include "base/parallel.h"
 #include "data/cells/cell_reader.h"
-#include "data/known_looks.h"
+#include "data/fields/known_looks.h"
 #include "data/trusted.h"
 #include "filter/flow/eigen_general.h"
 #include "filter/flow/flow_parts.h"

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
-#include "data/known_looks.h"
+#include "data/fields/known_looks.h"
 #include "data/memory/memory_budget.h"
 #include "filter/flow/flow_parts.h"
 #include "filter/flow/geographic.h"

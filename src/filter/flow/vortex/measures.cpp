@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
-#include "data/known_looks.h"
+#include "data/fields/known_looks.h"
 #include "filter/field/derivatives/gradient.h"
 #include "filter/flow/eigen_general.h"
 #include "filter/flow/flow_field.h"

@@ -9,7 +9,7 @@
 #include "base/parallel.h"
 #include "data/cells/cell_reader.h"
 #include "data/cells/cell_topology.h"
-#include "data/known_looks.h"
+#include "data/fields/known_looks.h"
 #include "filter/field/sampling/point_cell.h"
 #include "filter/flow/flow_parts.h"
 #include "filter/flow/vortex/mend_lines.h"

@@ -4,7 +4,7 @@
 #include <fmt/core.h>
 
 #include "base/error.h"
-#include "data/known_looks.h"
+#include "data/fields/known_looks.h"
 #include "filter/flow/texture/surface/surface_convolution.h"
 #include "filter/mesh/surface.h"
 

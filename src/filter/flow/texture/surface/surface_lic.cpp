@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "data/known_looks.h"
+#include "data/fields/known_looks.h"
 #include "filter/flow/flow_field.h"
 #include "filter/flow/texture/surface/surface_convolution.h"
 #include "filter/mesh/surface.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data/known_looks.h"
+#include "data/fields/known_looks.h"
 
 #include "data/field_ops.h"
 #include "support/test.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "data/field_component.h"
+#include "data/fields/field_component.h"
 
 #include <fmt/core.h>
 
