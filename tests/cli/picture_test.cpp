@@ -168,6 +168,10 @@ TEST_CASE("pictures: without a word about fields, what the last steps made is co
   };
   CHECK(told({"-f", "slice axis=z", "-f", "calc expr=x*y name=xy"}).find("coloured by 'xy'") != std::string::npos);
   CHECK(told({"-f", "slice axis=z", "-f", "bands count=4", "-f", "clip axis=x"}).find("coloured by 'band'") != std::string::npos);
+  // It travels with the data: through a surface of another field, too.
+  CHECK(told({"-f", "calc expr=x name=p", "-f", "contour field=tangle"}).find("coloured by 'p'") != std::string::npos);
+  CHECK(told({"-f", "calc expr=vec(-y,x,0) name=u", "-f", "calc expr=z name=p", "-f", "streamlines field=u"}).find("coloured by 'p'") !=
+        std::string::npos);
   CHECK(told({"-f", "otsu", "-f", "morphology operation=open"}).find("'otsu'") != std::string::npos);      // in place
   CHECK(told({"-f", "slice axis=z", "-f", "calc expr=3 name=same"}).find("'same'") == std::string::npos);  // shows nothing
 }
