@@ -60,8 +60,9 @@ void take_texture(const SurfaceTexture& t, PreparedItem& item) {
   struct Vectors {
     Array values;
     float largest = 0;
+    size_t bytes() const { return values.bytes(); }
   };
-  const auto v = derived<Vectors>(item.data, fmt::format("lic/{}/{}", f.name, int(f.association)), [&] {
+  const auto v = derived(item.data, fmt::format("lic/{}/{}", f.name, int(f.association)), [&] {
     Vectors r{packed_vectors(f), 0};
     r.largest = largest_of(r.values);
     return r;
