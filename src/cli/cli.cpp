@@ -128,20 +128,20 @@ int cli_main(int argc, char** argv) {
     const int status = dispatch_command(with_streams(o, context), context);
     interruptible = nullptr;
     check_files_unchanged();  // what was said on stdout
-    if (std::fflush(stdout) != 0) fail_data("standard output cannot be written");
+    if (std::fflush(stdout) != 0) fail_data("cannot write to standard output");
     return status;
   } catch (const Error& e) {
     interruptible = nullptr;
     // What an operation said of numbers that changed under it misleads.
     const std::string changed = e.kind() == ErrorKind::cancelled ? "" : mapped_watch().changed(1);
     if (!changed.empty()) {
-      say_error("sightglass: " + changed + ": the file changed while it was read; read it again when it is written completely");
+      say_error("sightglass: " + changed + ": the file changed while it was being read; read it again once it has been written completely");
       return 3;
     }
     say_error(std::string("sightglass: ") + e.what());
     return e.kind() == ErrorKind::cancelled && stopped_by ? 128 + stopped_by : e.exit_code();
   } catch (const std::bad_alloc&) {
-    std::fprintf(stderr, "sightglass: not enough memory; state a smaller region or fewer fields\n");
+    std::fprintf(stderr, "sightglass: not enough memory; read a smaller region or fewer fields\n");
     return 3;
   } catch (const std::exception& e) {
     say_error(fmt::format("sightglass: internal error: {}; please report it with the command and the file", e.what()));

@@ -58,7 +58,7 @@ std::string commands_text(const std::vector<CommandDoc>& commands) {
     for (const FlagDoc& f : c.flags)
       if (!common(f)) r += entry(names_of(f), f.doc);
   }
-  r += ".SH OPTIONS OF EVERY COMMAND\n";
+  r += ".SH COMMON OPTIONS\n";
   for (const FlagDoc& f : commands.front().flags)
     if (common(f)) r += entry(names_of(f), f.doc);
   return r;
@@ -69,14 +69,14 @@ std::string operations_text() {
   for (const Operation& o : operations())
     if (std::find(families.begin(), families.end(), o.family) == families.end()) families.push_back(o.family);
   std::string r =
-      ".SH OPERATIONS\nSources (\\-\\-source) compute data, the others (\\-f) change it;\n.B sightglass ops NAME\n"
+      ".SH OPERATIONS\nSources (\\-\\-source) compute data, the others (\\-f) process it;\n.B sightglass ops NAME\n"
       "lists the parameters of each with units, ranges and choices.\n";
   for (const std::string_view family : families) {
     r += ".SS " + plain(family) + "\n";
     for (const Operation& o : operations())
       if (o.family == family) r += entry(plain(o.name), o.sentence);
   }
-  r += ".SH WAYS TO SHOW\nWhat \\-\\-show takes.\n";
+  r += ".SH WAYS TO SHOW\nArguments of \\-\\-show.\n";
   for (const ShowKind& k : show_kinds()) r += entry(plain(k.name), k.sentence);
   return r;
 }
@@ -85,7 +85,7 @@ std::string operations_text() {
 
 int run_man(const Options&, Context&) {
   std::string r = ".\\\" Made by `sightglass man`.\n.TH SIGHTGLASS 1 \"\" \"Sightglass " SG_VERSION "\" \"User Commands\"\n";
-  r += ".SH NAME\nsightglass \\- pictures from the numbers of simulations and scanners\n.SH SYNOPSIS\n";
+  r += ".SH NAME\nsightglass \\- render simulation and scanner data\n.SH SYNOPSIS\n";
   const std::vector<CommandDoc> commands = command_docs();
   for (const CommandDoc& c : commands)
     r += ".B sightglass " + plain(c.name) + "\n[\\fIoptions\\fR]" +
@@ -97,7 +97,7 @@ int run_man(const Options&, Context&) {
   r += ".SH EXIT STATUS\n0 done, 2 usage, 3 data, 4 internal; 130, 143 and 129 when stopped by SIGINT, SIGTERM and SIGHUP.\n";
   r += ".SH ENVIRONMENT\n";
   r += entry("SIGHTGLASS_PLUGINS",
-             "The one folder where plug-ins (readers with large libraries) are looked for; else those of the installation.");
+             "The only folder to search for plug-ins (readers that need large libraries); default: those of the installation.");
   r += ".SH EXAMPLES\n.nf\n" +
        plain(
            "sightglass render head.mhd -o head.png\n"

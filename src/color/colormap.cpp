@@ -90,7 +90,7 @@ constexpr Entry entries[] = {
      "Purple over white to green, equally light on both sides, safe for red-green blindness."},
     {"phase", MapKind::cyclic, phase, "Once round the hues at nearly equal lightness, for angles and phases; both ends are one colour."},
     {"labels", MapKind::categorical, labels,
-     "Colours for names and numbers without order: 8 that please, then the farthest from all before (CIEDE2000)."},
+     "Colours for names and numbers without order: 8 hand-picked, then each as different as possible from all before (CIEDE2000)."},
     {"jet", MapKind::unsafe, jet,
      "The old rainbow clip(1.5-|4x-{3,2,1}|): its lightness falls in 114 of 255 steps and shows edges that are not in the data."},
     {"rainbow", MapKind::unsafe, rainbow,
@@ -118,12 +118,12 @@ const Colormap& built(size_t i) {
 [[noreturn]] void fail_unknown(std::string_view name) {
   for (const auto& [theirs, ours] : elsewhere)
     if (name == theirs || (name.size() > 2 && name.ends_with("_r") && name.substr(0, name.size() - 2) == theirs))
-      fail_usage(fmt::format("colour map '{}' is not built in", name), "colour map", fmt::format("the nearest of ours is '{}'", ours));
+      fail_usage(fmt::format("colour map '{}' is not built in", name), "colour map", fmt::format("the nearest built-in one is '{}'", ours));
   std::vector<std::string> names;
   for (const Entry& e : entries) names.push_back(e.name);
   const bool reversed = name.size() > 2 && name.ends_with("_r");
   fail_usage(fmt::format("colour map '{}' not found", name), "colour map",
-             unknown_name_hint(reversed ? name.substr(0, name.size() - 2) : name, names) + "; or a file: .cpt, .json:NAME, .css:NAME");
+             unknown_name_hint(reversed ? name.substr(0, name.size() - 2) : name, names) + "; or name a file: .cpt, .json:NAME, .css:NAME");
 }
 
 }  // namespace

@@ -132,7 +132,7 @@ DatasetPtr single_dataset(const Data& data, std::string_view who) {
   size_t n = 0;
   for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) { found = d, ++n; });
   if (n != 1)
-    fail_usage(n ? fmt::format("needs one mesh but got {} parts", n) : std::string("needs a mesh but got none"), std::string(who));
+    fail_usage(n ? fmt::format("needs a single mesh but got {} parts", n) : std::string("needs a mesh but got none"), std::string(who));
   return found;
 }
 

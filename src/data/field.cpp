@@ -84,7 +84,8 @@ const Field& FieldSet::require(std::string_view name) const {
 const Field& FieldSet::require(std::string_view name, Association a) const {
   if (const Field* f = find(name, a)) return *f;
   if (const Field* other = find(name))
-    fail_usage(fmt::format("field '{}' lies on the {}s, not on the {}s", name, association_name(other->association), association_name(a)));
+    fail_usage(
+        fmt::format("field '{}' is defined on the {}s, not on the {}s", name, association_name(other->association), association_name(a)));
   require(name);
   fail_internal("unreachable");
 }

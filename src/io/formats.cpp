@@ -93,8 +93,8 @@ const Format& format_of_file(const std::string& path, const ReadOptions& options
   for (const Format& f : formats())
     if (f.read && !f.sniff && !f.sniff_file && has_extension(f, path)) return f;
   for (const Format& f : formats())
-    if (f.read && has_extension(f, path)) fail_data(fmt::format("is named like {} but its content is none", f.name), path);
-  fail_data("is in no known format", path, "known are: " + known_extensions(false) + "; for a raw brick give --dims and --type");
+    if (f.read && has_extension(f, path)) fail_data(fmt::format("is named like {} but its content is not", f.name), path);
+  fail_data("is in no known format", path, "supported: " + known_extensions(false) + "; for a raw brick give --dims and --type");
 }
 
 const Format& format_of(std::string& path, const ReadOptions& options) {
@@ -185,9 +185,9 @@ const Format& format_to_write(const std::string& path) {
   const Format* known = nullptr;
   for (const Format& f : formats())
     if (has_extension(f, path) && (!known || !known->write)) known = &f;
-  if (!known) fail_usage(fmt::format("unknown extension '{}'", extension_of(path)), path, "can write: " + known_extensions(true));
+  if (!known) fail_usage(fmt::format("unknown extension '{}'", extension_of(path)), path, "supported: " + known_extensions(true));
   if (!known->write)
-    fail_usage(fmt::format("{} files are read but not written", known->name), path, "can write: " + known_extensions(true));
+    fail_usage(fmt::format("{} files are read but not written", known->name), path, "supported: " + known_extensions(true));
   return *known;
 }
 

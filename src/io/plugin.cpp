@@ -101,7 +101,7 @@ Loaded load(std::string_view name) {
       fail_data(fmt::format("the reader for {} cannot be loaded: {}", package.what, ::dlerror()), folder + file,
                 fmt::format("install its library: apt-get install {}", package.packages));
     const auto entry = reinterpret_cast<EntryPoint>(::dlsym(handle, "sightglass_plugin"));
-    if (!entry) fail_data("is no Sightglass plug-in", folder + file, "remove it, or build it again");
+    if (!entry) fail_data("is not a Sightglass plug-in", folder + file, "remove it, or build it again");
     if (const auto watch = reinterpret_cast<void (*)(MappedWatch*)>(::dlsym(handle, "sightglass_watch"))) watch(&mapped_watch());
     Loaded l{std::string(name), nullptr, 0};
     l.formats = entry(&l.count, thread_count(), plugin_memory);

@@ -76,7 +76,8 @@ void look_at_grid(const Dataset& d, const Field& f, Look& look) {
     SurfaceShow surface;
     surface.coloring.field.name = f.name, surface.coloring.map = "labels";
     add_show(look, surface, false);
-    look.reason = fmt::format("'{}' holds few integer values in pieces: labels, shown as surfaces with one colour each", f.name);
+    look.reason =
+        fmt::format("'{}' has few integer values in connected regions: taken as labels, shown as surfaces with one colour each", f.name);
     return;
   }
   VolumeShow volume;
@@ -91,7 +92,7 @@ void look_at_grid(const Dataset& d, const Field& f, Look& look) {
   VolumeItem item;
   item.color = choose_scale(d, f, params, quiet);
   const std::string why = choose_volume_look(d, f, params, item);
-  look.reason = fmt::format("scalar field '{}' on a 3D grid: volume; {}", f.name, why);
+  look.reason = fmt::format("scalar field '{}' on a 3D grid: shown as a volume; {}", f.name, why);
 }
 
 }  // namespace
@@ -120,7 +121,7 @@ Look choose_look(const Dataset& d, const std::string& field, const std::string& 
   if (!flat)
     if (const auto normal = plane_normal(d, look.direction)) look.direction = *normal, flat = true;
   if (d.point_count() == 0) {
-    look.reason = "there are no points: an empty picture";
+    look.reason = "no points: the picture is empty";
     return look;
   }
   const auto dims = lattice_dims(d.mesh());
@@ -138,7 +139,7 @@ Look choose_look(const Dataset& d, const std::string& field, const std::string& 
   }
   if (is_line_labels(d)) {
     add_show(look, LabelsShow(), true);
-    look.reason = "places along lines: their values as text";
+    look.reason = "label positions along lines: their values as text";
     return look;
   }
   if (d.as<PointCloud>() || (d.cell_count() == 0 && !is_lattice(d.mesh()))) {
@@ -146,7 +147,7 @@ Look choose_look(const Dataset& d, const std::string& field, const std::string& 
     points.size = d.point_count() > 200000 ? 1.5 : d.point_count() > 5000 ? 3 : 7;
     if (d.fields().with_role(Role::normals) && field.empty() && !automatic_field(d)) points.coloring.color = "#c8c8cc";  // lit
     add_show(look, points, true);
-    look.reason = fmt::format("points only: dots, {}", field_reason(d, field));
+    look.reason = fmt::format("points only: shown as dots, {}", field_reason(d, field));
     return look;
   }
   if (!has_polygons(d)) {
@@ -161,7 +162,7 @@ Look choose_look(const Dataset& d, const std::string& field, const std::string& 
       VolumeShow volume;
       volume.coloring.field.name = scalar->name;
       add_show(look, volume, true);
-      look.reason = fmt::format("'{}' in a solid mesh: volume", scalar->name);
+      look.reason = fmt::format("'{}' in a solid mesh: shown as a volume", scalar->name);
       return look;
     }
   SurfaceShow surface;

@@ -114,11 +114,11 @@ TEST_CASE("colour map files: categories keep their keys and labels") {
 
 TEST_CASE("colour map files: errors of a .cpt name the line") {
   CHECK(has(refusal("e1.cpt", "# x\n0 1/2/3 0 4/5/6\n"), "line 2"));
-  CHECK(has(refusal("e2.cpt", "0 1/2/300 1 4/5/6\n"), "'1/2/300' is no colour"));
-  CHECK(has(refusal("e3.cpt", "0 red 1 blue\n2 red 3 blue\n"), "line 2: a slice from 2"));
+  CHECK(has(refusal("e2.cpt", "0 1/2/300 1 4/5/6\n"), "'1/2/300' is not a colour"));
+  CHECK(has(refusal("e3.cpt", "0 red 1 blue\n2 red 3 blue\n"), "line 2: a slice begins at 2"));
   CHECK(has(refusal("e4.cpt", "0 red 1 blue\n4 blue\n"), "slices and categories"));
   CHECK(has(refusal("e5.cpt", "0 notacolour 1 blue\n"), "'notacolour'"));
-  CHECK(has(refusal("e6.cpt", "zero red 1 blue\n"), "'zero' is no number"));
+  CHECK(has(refusal("e6.cpt", "zero red 1 blue\n"), "'zero' is not a number"));
   CHECK(has(refusal("e7.cpt", "# only words\n"), "no slice"));
   CHECK(has(refusal("e8.cpt", "# COLOR_MODEL = LAB\n0 1 1 2\n"), "colour model"));
   CHECK(has(refusal("e9.cpt", "0 red 1\n"), "3 words"));
@@ -140,7 +140,7 @@ TEST_CASE("colour map files: ParaView's spaces and indexed colours") {
   CHECK(maps[2].labels == std::vector<double>{3, 5, 8});
   CHECK(maps[2].label_names[2] == "eight");
   CHECK(has(refusal("p1.json", R"([{"Name":"q","RGBPoints":[0,0,0]}])"), "map 'q'"));
-  CHECK(has(refusal("p2.json", R"([{"Name":"q","RGBPoints":[0,0,0,2]}])"), "is no colour"));
+  CHECK(has(refusal("p2.json", R"([{"Name":"q","RGBPoints":[0,0,0,2]}])"), "is not a colour"));
   CHECK(has(refusal("p3.json", R"([{"Name":"q","RGBPoints":[1,0,0,0,0,1,1,1]}])"), "do not rise"));
   CHECK(has(refusal("p4.json", R"({"a":1})"), "no colour map"));
   CHECK(has(refusal("p5.json", std::string(100, '[') + std::string(100, ']')), "nested"));

@@ -126,7 +126,7 @@ TEST_CASE("webm: what makes no film is refused") {
   CHECK(test::error_of([&] { webm_file(track, {}); }).find("a picture at least") != std::string::npos);
   CHECK(test::error_of([&] { webm_file(track, late); }).find("stands alone") != std::string::npos);
   track.fps = 0;
-  CHECK(test::error_of([&] { webm_file(track, one); }).find("pictures a second") != std::string::npos);
+  CHECK(test::error_of([&] { webm_file(track, one); }).find("pictures per second") != std::string::npos);
   track.fps = 25, track.width = 0;
   CHECK(test::error_of([&] { webm_file(track, one); }).find("no size of a film") != std::string::npos);
 }

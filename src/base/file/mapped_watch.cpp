@@ -163,7 +163,7 @@ void share_mapped_watch(MappedWatch* watch) { shared = watch; }
 
 void check_files_unchanged(uint64_t since) {
   if (const std::string path = mapped_watch().changed(since); !path.empty())
-    fail_data("the file changed while it was read", path, "read it again when it is written completely");
+    fail_data("the file changed while it was being read", path, "read it again once it has been written completely");
 }
 
 }  // namespace sg

@@ -33,7 +33,7 @@ class FaceSource {
       first_ = s->vertices.size() + s->lines.size(), end_ = first_ + cells_.count;
       single_ = CellType::polygon;
     } else {
-      fail_internal(fmt::format("face neighbours of a {} mesh are asked for; in a grid they are arithmetic", mesh_kind(mesh)));
+      fail_internal(fmt::format("face neighbours were requested for a {} mesh; in a grid they follow from the indices", mesh_kind(mesh)));
     }
     for (size_t t = 0; t < 256; ++t)
       if (const CellTypeInfo* info = cell_type_info(uint8_t(t)); info && info->dimension >= 2) {

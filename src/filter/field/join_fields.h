@@ -11,8 +11,8 @@ struct JoinFieldsParams {
   std::vector<std::string> fields, names;
 };
 inline void describe(Schema& s, JoinFieldsParams& p) {
-  s("fields", p.fields, "Fields to take of the further inputs; default: all.");
-  s("names", p.names, "Their names in the result, in the order of fields; default: their own.");
+  s("fields", p.fields, "Fields to take from the further inputs; default: all.");
+  s("names", p.names, "Their names in the result, in the order of 'fields'; default: their own.");
 }
 
 /// The first input with the fields of the others, whose meshes have the same kind, dimensions and numbers of points and cells; places are

@@ -10,10 +10,10 @@ namespace sg {
 
 std::vector<DatasetPtr> flow_meshes(const Data& data, std::string& field, std::string_view who) {
   if (std::holds_alternative<TablePtr>(data))
-    fail_usage("needs a mesh but got a table", std::string(who), "make points of its rows first: table_to_points x=... y=... z=...");
+    fail_usage("needs a mesh but got a table", std::string(who), "turn its rows into points first: table_to_points x=... y=... z=...");
   std::vector<DatasetPtr> all;
   for_each_dataset(data, [&](const std::string&, const DatasetPtr& d) { all.push_back(d); });
-  if (all.empty()) fail_usage("got no mesh", std::string(who));
+  if (all.empty()) fail_usage("has no mesh as input", std::string(who));
   const auto has = [&](const Dataset& d) {
     if (!field.empty()) return d.fields().find(field) != nullptr;
     return d.fields().with_role(Role::vectors) || d.fields().active(3) || d.fields().active(2);

@@ -17,9 +17,9 @@ const Field& times_of(const Dataset& d, const TrailsParams& p) {
   const Field* f = p.field.empty() ? nullptr : &d.fields().require(p.field.name, Association::point);
   for (const char* name : {"time", "integration time", "IntegrationTime"})
     if (!f) f = d.fields().find(name, Association::point);
-  if (!f) fail_usage("there is no point field of times", "trails", "pathlines have 'time'; name another with field=");
+  if (!f) fail_usage("there is no point field of times", "trails", "pathlines have 'time'; name another field with field=");
   if (f->components() != 1)
-    fail_usage(fmt::format("field '{}' has {} components", f->name, f->components()), "trails", "a time is one number");
+    fail_usage(fmt::format("field '{}' has {} components", f->name, f->components()), "trails", "times must be single numbers");
   return *f;
 }
 
@@ -133,8 +133,9 @@ Array faded(const std::vector<double>& color, const std::vector<float>& ages) {
 DatasetPtr trails(const DatasetPtr& data, const TrailsParams& p, Context& context) {
   const auto* mesh = data->as<SurfaceMesh>();
   if (!mesh || mesh->lines.size() == 0)
-    fail_usage(fmt::format("the mesh ({}) has no lines", data->kind()), "trails", "pathlines and streamlines have lines");
-  if (p.color.size() != 3) fail_usage(fmt::format("{} numbers are no colour", p.color.size()), "trails: color", "give red,green,blue");
+    fail_usage(fmt::format("the mesh ({}) has no lines", data->kind()), "trails", "use pathlines or streamlines to make lines");
+  if (p.color.size() != 3)
+    fail_usage(fmt::format("{} numbers do not make a colour", p.color.size()), "trails: color", "give red,green,blue");
   const Field& field = times_of(*data, p);
   const Array times = field.array.converted(ElementType::f64).made_packed();
   const std::vector<Span> spans = spans_of(cells_view(mesh->lines), times.view<double>());

@@ -228,7 +228,7 @@ Array joined_ghosts(const std::vector<DatasetPtr>& parts, bool of_points) {
 DatasetPtr append(const std::vector<Data>& inputs, const AppendParams& p, Context& ctx) {
   std::vector<DatasetPtr> parts;
   for (const Data& d : inputs) for_each_dataset(d, [&](const std::string&, const DatasetPtr& one) { parts.push_back(one); });
-  if (parts.empty()) fail_usage("there is no mesh among the inputs", "append");
+  if (parts.empty()) fail_usage("none of the inputs is a mesh", "append");
   check_memory(parts);
   bool surfaces = true, clouds = true;
   for (const DatasetPtr& d : parts) surfaces = surfaces && d->as<SurfaceMesh>(), clouds = clouds && d->as<PointCloud>();

@@ -12,8 +12,8 @@ struct AppendParams {
   bool part = true;
 };
 inline void describe(Schema& s, AppendParams& p) {
-  s("all", p.all, "Keeps fields that some inputs lack: NaN (0 for integers) there; else they are dropped.");
-  s("part", p.part, "Adds a cell field 'part': the number of the input.");
+  s("all", p.all, "Keep fields that some inputs lack, with NaN (0 for integers) there; otherwise they are dropped.");
+  s("part", p.part, "Add a cell field 'part': the number of the input.");
 }
 
 /// All datasets of all inputs (collections by their parts) as one mesh: a surface when all are surfaces, a point cloud when all are

@@ -319,7 +319,7 @@ DatasetPtr tessellate(const DatasetPtr& in, const TessellateParams& p, Context& 
   const int most = work.affordable(p.max_level), level = work.level(p.tolerance, most, left);
   if (left > 1)
     ctx.info(fmt::format("tessellate: {} leaves a distance of {:.3g} times the tolerance",
-                         most < p.max_level ? fmt::format("{} halvings, as many as there is room for,", most) : "max_level", left));
+                         most < p.max_level ? fmt::format("{} halvings, the most that fit,", most) : "max_level", left));
   return work.run(level);
 }
 

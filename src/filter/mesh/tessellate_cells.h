@@ -12,9 +12,9 @@ struct TessellateParams {
   int max_level = 5;
 };
 inline void describe(Schema& s, TessellateParams& p) {
-  s("tolerance", p.tolerance, "Largest distance between curved and straight, as a share of the mesh's size, and of a field's range.")
+  s("tolerance", p.tolerance, "Largest deviation of straight from curved cells, as a share of the mesh's size, and of a field's range.")
       .positive();
-  s("max_level", p.max_level, "Edges are halved at most this many times.").range(0, 7);
+  s("max_level", p.max_level, "Maximum number of times an edge is halved.").range(0, 7);
 }
 
 /// Each quadratic, Lagrange or Bezier cell becomes linear cells of its kind (hexahedra 8 per halving, pyramids 6 pyramids and 4

@@ -14,10 +14,10 @@ struct LineLabelsParams {
   Vec3 normal{0, 0, 1};
 };
 inline void describe(Schema& s, LineLabelsParams& p) {
-  s("field", p.field, "Field that the labels tell; default: 'contour value', else the active scalar.").takes(fields::scalars);
+  s("field", p.field, "Field shown by the labels; default: 'contour value', else the active scalar.").takes(fields::scalars);
   s("spacing", p.spacing, "Distance between labels along a line; 0: a third of the diagonal.").at_least(0).unit("length");
   s("width", p.width, "Width of a label; 0: 5 % of the diagonal. Lines shorter than two widths get none.").at_least(0).unit("length");
-  s("normal", p.normal, "Towards the reader; letters stand upright seen from there.");
+  s("normal", p.normal, "Direction towards the viewer, from which the text is upright.");
 }
 
 /// Right and up of the page for a reader in direction `normal`: up is z, or y for a reader above or below.

@@ -118,7 +118,7 @@ TablePtr integrate(const Data& in, const IntegrateParams& p, Context& ctx) {
     parts.push_back(d);
     dimension = std::max(dimension, highest_dimension(d));
   });
-  if (dimension < 0) fail_usage("has no cell to integrate over", "integrate", "hidden and duplicate cells do not count");
+  if (dimension < 0) fail_usage("has no cells to integrate over", "integrate", "hidden and duplicate cells do not count");
   std::vector<Row> rows;
   ExactSum whole;
   for (const std::string& name : p.fields) {

@@ -27,10 +27,10 @@ struct HistogramParams {
 };
 inline void describe(Schema& s, HistogramParams& p) {
   s("field", p.field, "Field to count; default: the active scalar.");
-  s("component", p.component, "Component of the field; -1: the length of a field of several.").at_least(-1);
+  s("component", p.component, "Component of the field; -1: the magnitude of a field of several.").at_least(-1);
   s("bins", p.bins, "Number of bins.").range(1, 1 << 20);
-  s("min", p.min, "Where the first bin begins; default: the smallest value.").unit("@field");
-  s("max", p.max, "Where the last bin ends; default: the largest value.").unit("@field");
+  s("min", p.min, "Lower end of the first bin; default: the smallest value.").unit("@field");
+  s("max", p.max, "Upper end of the last bin; default: the largest value.").unit("@field");
 }
 /// Columns lo, hi, count, fraction: a value v lies in the bin with lo <= v < hi, the last bin holds its upper end too. Values outside
 /// and NaN are in no bin, nor are infinities, which a warning counts; fractions are of all finite values.

@@ -13,9 +13,10 @@ struct CapParams {
   bool only_cap = false;
 };
 inline void describe(Schema& s, CapParams& p) {
-  s("max_perimeter", p.max_perimeter, "Closes only holes with edges up to this long together; 0: all.").at_least(0).unit("length");
-  s("tolerance", p.tolerance, "Loops this close to a common plane, as a share of the size of the surface, are closed together.").positive();
-  s("only_cap", p.only_cap, "Gives the caps alone, without the surface.");
+  s("max_perimeter", p.max_perimeter, "Close only holes whose total edge length is at most this; 0: all.").at_least(0).unit("length");
+  s("tolerance", p.tolerance, "Close loops together that lie this close to a common plane, as a share of the size of the surface.")
+      .positive();
+  s("only_cap", p.only_cap, "Return only the caps, without the surface.");
 }
 
 /// Triangles over the loops of open edges. Points at equal places count as one; polygons are turned to agree first. Loops in one

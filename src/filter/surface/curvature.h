@@ -12,11 +12,11 @@ struct CurvatureParams {
   int average = 0;
 };
 inline void describe(Schema& s, CurvatureParams& p) {
-  s("gaussian", p.gaussian, "Adds 'Gaussian curvature' (per area).");
-  s("mean", p.mean, "Adds 'mean curvature' (per length): positive where the surface bends away from its normals, 1/r on a sphere.");
-  s("principal", p.principal, "Adds 'largest curvature' and 'smallest curvature'.");
-  s("angle_defect", p.angle_defect, "Adds 'angle defect' (rad); its sum is 2 pi times the Euler number.");
-  s("average", p.average, "Times that values are averaged with those of the neighbours, by area: 2 to 5 calm surfaces of thin triangles.")
+  s("gaussian", p.gaussian, "Add 'Gaussian curvature' (per area).");
+  s("mean", p.mean, "Add 'mean curvature' (per length): positive where the surface bends away from its normals, 1/r on a sphere.");
+  s("principal", p.principal, "Add 'largest curvature' and 'smallest curvature'.");
+  s("angle_defect", p.angle_defect, "Add 'angle defect' (rad), whose sum is 2 pi times the Euler characteristic.");
+  s("average", p.average, "Number of area-weighted averaging passes over neighbours: 2 to 5 smooth out noise from thin triangles.")
       .range(0, 1000);
 }
 

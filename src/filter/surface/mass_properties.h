@@ -12,8 +12,8 @@ struct MassPropertiesParams {
   bool must_be_closed = false;
 };
 inline void describe(Schema& s, MassPropertiesParams& p) {
-  s("density", p.density, "Mass per volume; the inertia is multiplied with it.").positive();
-  s("must_be_closed", p.must_be_closed, "Fails when the surface does not enclose a volume, in place of a warning and NaN.");
+  s("density", p.density, "Mass per volume, by which the inertia is multiplied.").positive();
+  s("must_be_closed", p.must_be_closed, "Fail if the surface does not enclose a volume, instead of a warning and NaN.");
 }
 
 /// One row per mesh: part, closed (1: the polygons enclose a volume), area, area_x area_y area_z (centroid of the surface), volume,

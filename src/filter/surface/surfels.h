@@ -14,8 +14,8 @@ struct SurfelsParams {
 };
 inline void describe(Schema& s, SurfelsParams& p) {
   s("field", p.field, "Point field; default: the active scalar.").takes(fields::point_scalars);
-  s("value", p.value, "Where the surface lies; default: the middle of the range.").unit("@field");
-  s("size", p.size, "Radius of the discs in half diagonals of a cell; 1 leaves no holes.").positive();
+  s("value", p.value, "Isovalue of the surface; default: the middle of the range.").unit("@field");
+  s("size", p.size, "Radius of the discs, in half diagonals of a cell; 1 leaves no holes.").positive();
 }
 
 /// One disc for each cell of a grid of three axes that the surface field = value cuts: a point cloud with point fields

@@ -50,18 +50,18 @@ void take_format(std::string_view& line, const Fab& f, OpenFab& o) {
   if (i == line.size() || n.size() < 10 || n[0] != 8) fail_fab(f, "the format of the numbers is not understood");
   const int64_t bits = n[1], order = n[9];
   if ((bits != 64 && bits != 32) || order != bits / 8 || int64_t(n.size()) != 10 + order)
-    fail_fab(f, fmt::format("numbers of {} bits are not read", bits));
+    fail_fab(f, fmt::format("numbers of {} bits are not supported", bits));
   o.bytes = size_t(order);
   bool up = true, down = true;
   for (int64_t k = 0; k < order; ++k) up = up && n[size_t(10 + k)] == k + 1, down = down && n[size_t(10 + k)] == order - k;
-  if (!up && !down) fail_fab(f, "a mixed byte order is not read");
+  if (!up && !down) fail_fab(f, "a mixed byte order is not supported");
   o.big_endian = up;
   line.remove_prefix(i + 1);
 }
 
 OpenFab open_fab(const MappedFile& file, const Fab& f, const Box& box, int dimension, size_t components) {
   OpenFab o;
-  if (f.offset >= file.size()) fail_fab(f, fmt::format("is due, the file has {} bytes", file.size()));
+  if (f.offset >= file.size()) fail_fab(f, fmt::format("was expected, but the file has {} bytes", file.size()));
   std::string_view text = file.text().substr(f.offset);
   const size_t end = text.substr(0, 4096).find('\n');
   if (end == std::string_view::npos || !text.starts_with("FAB")) fail_fab(f, "no FAB begins here");
@@ -71,7 +71,7 @@ OpenFab open_fab(const MappedFile& file, const Fab& f, const Box& box, int dimen
   if (!take_box(line, dimension, have)) fail_fab(f, "the box of the FAB is not understood");
   const auto n = parse_int(line);
   if (!n || *n < 0 || uint64_t(*n) != components)
-    fail_fab(f, fmt::format("'{}' components, {} are due", trim(line).substr(0, 20), components));
+    fail_fab(f, fmt::format("'{}' components, expected {}", trim(line).substr(0, 20), components));
   uint64_t need = o.bytes;
   if (!multiply(need, components, need)) fail_fab(f, "too many components");
   for (size_t a = 0; a < 3; ++a) {

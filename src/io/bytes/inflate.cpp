@@ -110,7 +110,8 @@ void check_ratio(Codec codec, size_t packed, size_t need, const std::string& whe
 void unpack(Codec codec, std::span<const std::byte> in, Window window, std::byte* out, size_t need, const std::string& where) {
   auto damaged = [&] { fail_data(fmt::format("the {} data are damaged or cut off", name(codec)), where); };
   auto too_short = [&](size_t got) {
-    fail_data(fmt::format("unpacks to {} bytes, {} are needed", got, window.from_end ? need + window.after : window.skip + need), where);
+    fail_data(fmt::format("unpacks to {} bytes, but {} are needed", got, window.from_end ? need + window.after : window.skip + need),
+              where);
   };
   size_t got = 0;
   if (window.skip == 0 && !window.from_end) {

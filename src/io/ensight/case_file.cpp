@@ -79,7 +79,7 @@ class Parser {
   bool check_type(std::string_view value) const {
     std::string type;
     for (std::string_view w : words(value)) type += (type.empty() ? "" : " ") + to_lower(w);
-    if (type != "ensight gold") fail(fmt::format("type '{}' is not read", value), "EnSight Gold is: 'type: ensight gold'");
+    if (type != "ensight gold") fail(fmt::format("type '{}' is not supported", value), "EnSight Gold is: 'type: ensight gold'");
     return true;
   }
 
@@ -89,7 +89,7 @@ class Parser {
     for (int k = 0; k < 2 && w.size() > needed; ++k) {
       const auto n = parse_int(w.front());
       if (!n) break;
-      if (*n < 1 || *n > 1'000'000) fail(fmt::format("'{}' is no number of a set", w.front()));
+      if (*n < 1 || *n > 1'000'000) fail(fmt::format("'{}' is not a set number", w.front()));
       *sets[k] = int(*n);
       w.erase(w.begin());
     }
@@ -122,7 +122,7 @@ class Parser {
       for (std::string_view w : words(value)) case_.variables.back().constants.push_back(number(w));
       return;
     }
-    if (key.empty()) fail("is no variable", "for example 'scalar per node: pressure p.****'");
+    if (key.empty()) fail("is not a variable", "for example 'scalar per node: pressure p.****'");
     Variable v;
     const std::vector<std::string_view> k = words(key);
     auto has = [&](std::string_view word) { return std::find(k.begin(), k.end(), word) != k.end(); };
@@ -162,12 +162,13 @@ class Parser {
 
   double number(std::string_view word) const {
     const auto v = parse_double(word);
-    if (!v) fail(fmt::format("'{}' is no number", word.substr(0, 40)));
+    if (!v) fail(fmt::format("'{}' is not a number", word.substr(0, 40)));
     return *v;
   }
   int64_t integer(std::string_view word) const {
     const auto v = parse_int(word);
-    if (!v || *v < -most_steps * 100 || *v > most_steps * 100) fail(fmt::format("'{}' is no whole number of use here", word.substr(0, 40)));
+    if (!v || *v < -most_steps * 100 || *v > most_steps * 100)
+      fail(fmt::format("'{}' is not a valid whole number here", word.substr(0, 40)));
     return *v;
   }
 

@@ -42,7 +42,7 @@ void add_measured(const CaseFile& c, std::optional<double> time, Geometry& g) {
   if (s.form() != Form::ascii) s.line("the form");
   s.line("a description");
   const std::string k = to_lower(s.keyword("particle coordinates"));
-  if (k != "particle coordinates") s.fail(fmt::format("'{}' where 'particle coordinates' is due", k.substr(0, 40)));
+  if (k != "particle coordinates") s.fail(fmt::format("found '{}' where 'particle coordinates' was expected", k.substr(0, 40)));
   const size_t n = s.count("particles", 16);
   PointCloud cloud;
   if (s.form() == Form::ascii) {

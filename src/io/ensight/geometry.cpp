@@ -190,7 +190,7 @@ class Reader {
       context_.check();
     }
     const std::string k = s_.peek();
-    if (!s_.at_end() && k != "END TIME STEP") s_.fail(fmt::format("'{}' where a part is due", k.substr(0, 40)));
+    if (!s_.at_end() && k != "END TIME STEP") s_.fail(fmt::format("found '{}' where a part was expected", k.substr(0, 40)));
     return g;
   }
 
@@ -198,7 +198,7 @@ class Reader {
   bool listed(const std::string& what) {
     const std::string k = to_lower(s_.keyword(what));
     if (!k.starts_with(what))
-      s_.fail(fmt::format("'{}' where '{} ...' is due", k.substr(0, 40), what), "is this an EnSight Gold geometry?");
+      s_.fail(fmt::format("found '{}' where '{} ...' was expected", k.substr(0, 40), what), "is this an EnSight Gold geometry?");
     const auto w = words(k);
     const std::string_view how = w.back();
     if (how != "off" && how != "given" && how != "assign" && how != "ignore")

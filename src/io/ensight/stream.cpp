@@ -114,7 +114,7 @@ bool Stream::at_end() {
 
 std::string Stream::line(std::string_view what) {
   if (form_ != Form::ascii) return std::string(until_zero({take(line_bytes, what), line_bytes}));
-  if (at_ >= all_.size()) fail(fmt::format("ends where {} is due", what));
+  if (at_ >= all_.size()) fail(fmt::format("ends where {} was expected", what));
   const size_t end = std::min(all_.find('\n', at_), all_.size());
   const std::string_view s = trim(all_.substr(at_, end - at_));
   at_ = std::min(end + 1, all_.size());
@@ -135,7 +135,8 @@ std::string Stream::keyword(std::string_view what) {
 }
 
 const char* Stream::take(size_t n, std::string_view what) {
-  if (n > all_.size() - at_) fail(fmt::format("ends where {} is due: {} bytes are needed, there are {}", what, n, all_.size() - at_));
+  if (n > all_.size() - at_)
+    fail(fmt::format("ends where {} was expected: {} bytes are needed, but there are {}", what, n, all_.size() - at_));
   at_ += n;
   return all_.data() + at_ - n;
 }
@@ -168,7 +169,7 @@ void Stream::read_text(size_t n, T* out, std::string_view what) {
     if (!scan_column(p, end, out[i])) {
       at_ = size_t(word - all_.data());
       fail(word == end ? fmt::format("ends within {}: number {} of {}", what, i, n)
-                       : fmt::format("'{}' is no number ({}, {} of {})",
+                       : fmt::format("'{}' is not a number ({}, {} of {})",
                                      std::string_view(word, std::min<size_t>(30, size_t(skip_word(word, end) - word))), what, i, n));
     }
   }

@@ -115,7 +115,7 @@ void read_variable(Stream& s, const Variable& v, const std::string& name, Geomet
   for (;;) {
     const std::string k = s.peek();
     if (!to_lower(k).starts_with("part")) {
-      if (k != "END TIME STEP" && !s.at_end()) s.fail(fmt::format("'{}' where a part is due", k.substr(0, 40)));
+      if (k != "END TIME STEP" && !s.at_end()) s.fail(fmt::format("found '{}' where a part was expected", k.substr(0, 40)));
       return;
     }
     s.keyword("part");
@@ -127,8 +127,8 @@ void read_variable(Stream& s, const Variable& v, const std::string& name, Geomet
     } else {
       const std::string line = to_lower(s.keyword("'coordinates' or 'block'"));
       if (!line.starts_with(part.structured ? "block" : "coordinates"))
-        s.fail(
-            fmt::format("'{}' where '{}' is due in part {}", line.substr(0, 40), part.structured ? "block" : "coordinates", part.number));
+        s.fail(fmt::format("found '{}' where '{}' was expected in part {}", line.substr(0, 40), part.structured ? "block" : "coordinates",
+                           part.number));
       values.read(s, v.kind, line, 0, on_cells ? part.cells : part.points);
     }
     Role role = Role::none;

@@ -78,7 +78,7 @@ struct Reader {
     }
     const GltfAccessor& a = doc.accessors[size_t(p.indices)];
     if (a.components != 1 || (a.type != ElementType::u8 && a.type != ElementType::u16 && a.type != ElementType::u32))
-      fail_data(fmt::format("{}: indices are no unsigned integers", where), doc.path);
+      fail_data(fmt::format("{}: indices are not unsigned integers", where), doc.path);
     const Array indices = gltf_array(doc, p.indices, true);
     ids.resize(indices.count());
     dispatch(indices, [&](auto v) {
@@ -95,7 +95,7 @@ struct Reader {
     const size_t n = ids.size(), least = mode == 0 ? 0 : mode < 4 ? 2 : 3;
     if (n < least && n > 0) fail_data(fmt::format("{}: {} corners are too few for its mode {}", where, n, mode), doc.path);
     if ((mode == 1 && n % 2) || (mode == 4 && n % 3))
-      fail_data(fmt::format("{}: {} corners are no multiple of {}", where, n, mode == 1 ? 2 : 3), doc.path);
+      fail_data(fmt::format("{}: {} corners are not a multiple of {}", where, n, mode == 1 ? 2 : 3), doc.path);
     auto cells = [](std::vector<int32_t> list, int fixed) {
       CellArray c;
       c.connectivity = Array::from_vector(std::move(list));

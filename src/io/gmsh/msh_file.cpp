@@ -13,7 +13,7 @@
 namespace sg::gmsh {
 
 const char* MshInput::raw(size_t bytes, const char* what) {
-  if (text.left() < bytes) fail_data(fmt::format("byte {}: the file ends where {} should be", text.position(), what), text.where());
+  if (text.left() < bytes) fail_data(fmt::format("byte {}: the file ends where {} was expected", text.position(), what), text.where());
   const char* p = text.text().data() + text.position();
   text.seek(text.position() + bytes);
   return p;
@@ -49,7 +49,7 @@ void parse_format(MshInput& in) {
   const int64_t binary = in.text.integer("the file type");
   const int64_t size = in.text.integer("the size of numbers");
   if (!((version >= 2 && version < 3) || (version >= 4 && version < 4.2)))
-    in.text.fail(fmt::format("version {}", version), "versions 2.x, 4.0 and 4.1 are read; Gmsh converts: gmsh -save -format msh41");
+    in.text.fail(fmt::format("version {}", version), "versions 2.x, 4.0 and 4.1 are supported; Gmsh converts: gmsh -save -format msh41");
   in.version = int(std::lround(version * 10));
   if (binary < 0 || binary > 1) in.text.fail(fmt::format("file type {}", binary), "0 is ASCII, 1 is binary");
   if (size != 8) in.text.fail(fmt::format("numbers of {} bytes", size), "8");
@@ -139,7 +139,7 @@ void parse_nodes(MshInput& in, MshFile& f) {
 const ElementType& checked_type(MshInput& in, int64_t number) {
   const ElementType* type = element_type(number);
   if (!type)
-    fail_data(fmt::format("element type {} is not read", number),
+    fail_data(fmt::format("element type {} is not supported", number),
               fmt::format("{}, {} {}", in.text.where(), in.binary ? "byte" : "line", in.binary ? in.text.position() : in.text.line_now()),
               "points, and complete lines, triangles, quads, tetrahedra, hexahedra and prisms up to order 10, pyramids up to 2 are");
   return *type;

@@ -81,7 +81,7 @@ void read_elements(TextCursor& in, GambitMesh& m) {
     m.element_ids.push_back(in.integer("the number of an element"));
     const int64_t type = in.integer("an element type"), n = in.integer("the number of nodes");
     const GambitType* t = gambit_type(type, n);
-    if (!t) in.fail(fmt::format("an element of type {} with {} nodes is not read", type, n), "linear elements are");
+    if (!t) in.fail(fmt::format("an element of type {} with {} nodes is not supported", type, n), "linear elements are supported");
     nodes.clear(), points.clear();
     for (int64_t k = 0; k < n; ++k) {
       const int64_t id = in.integer("a node");

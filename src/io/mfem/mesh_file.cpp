@@ -43,7 +43,7 @@ FeSpace parse_space(TextCursor& in) {
   s.collection = parse_collection(in.word(), fmt::format("{}, line {}", in.where(), in.line_now()));
   in.expect("VDim:");
   const int64_t vdim = in.integer("the number of components");
-  if (vdim < 1 || vdim > 64) in.fail(fmt::format("VDim is {}", vdim), "1 to 64 components are read");
+  if (vdim < 1 || vdim > 64) in.fail(fmt::format("VDim is {}", vdim), "1 to 64 components are supported");
   s.vdim = int(vdim);
   in.expect("Ordering:");
   const int64_t ordering = in.integer("the ordering");
@@ -57,7 +57,7 @@ FeSpace parse_space(TextCursor& in) {
       break;
     }
     if (w.starts_with("NURBS") || w.starts_with("Element") || w.starts_with("Variable"))
-      in.fail(fmt::format("the space has '{}'", w), "spaces of one order for all elements are read");
+      in.fail(fmt::format("the space has '{}'", w), "spaces of one order for all elements are supported");
   }
   return s;
 }
@@ -72,7 +72,7 @@ size_t space_size(const Topology& t, const FeCollection& c, const std::string& w
     }
     case Family::nurbs: fail_data(fmt::format("the space '{}' needs a NURBS mesh", c.name), where);
     default:
-      fail_data(fmt::format("the vector-valued collection '{}' is not read", c.name), where,
+      fail_data(fmt::format("the vector-valued collection '{}' is not supported", c.name), where,
                 "project it on an L2 or H1 space of several components before it is written");
   }
 }
@@ -146,9 +146,9 @@ MeshFile parse_mesh(TextCursor& in) {
   const bool nurbs = kind == "NURBS", nonconforming = kind == "NC";
   if (nurbs || nonconforming) in.expect("mesh");
   else if (kind != "mesh")
-    in.fail(fmt::format("'MFEM {}' is no mesh that is read", kind), "'MFEM mesh', 'MFEM NC mesh', 'MFEM NURBS mesh'");
+    in.fail(fmt::format("'MFEM {}' is not a supported mesh", kind), "'MFEM mesh', 'MFEM NC mesh', 'MFEM NURBS mesh'");
   const std::string_view version = in.word();
-  if (!version.starts_with("v1.")) in.fail(fmt::format("version '{}'", version), "versions v1.0 to v1.3 are read");
+  if (!version.starts_with("v1.")) in.fail(fmt::format("version '{}'", version), "versions v1.0 to v1.3 are supported");
   in.expect("dimension");
   Topology& t = mesh.topology;
   const int64_t d = in.integer("the dimension");
@@ -189,7 +189,7 @@ MeshFile parse_mesh(TextCursor& in) {
         in.fail("a non-conforming mesh with curved elements", "save it with linear elements, or as a conforming mesh");
       return mesh;
     } else {
-      in.fail(fmt::format("'{}' where a section should begin", w.substr(0, 40)), "boundary, vertices");
+      in.fail(fmt::format("found '{}' where a section was expected", w.substr(0, 40)), "boundary, vertices");
     }
   }
   in.fail("the mesh has no vertices");

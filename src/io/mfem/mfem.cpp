@@ -148,7 +148,7 @@ Data read_glvis(const std::string& path, const ReadOptions& options, Context& co
   if (in.peek() == "mfem_mesh_end") in.word();
   std::vector<mfem::GridFunction> fields;
   if (kind == "quadrature" || in.peek() == "QuadratureSpace")
-    in.fail("quadrature functions are not read", "project them on an L2 space before they are saved");
+    in.fail("quadrature functions are not supported", "project them on an L2 space before they are saved");
   const bool more = !in.at_end();
   if (more && mfem::starts_function(in.text().substr(in.position()))) mfem::parse_function(in, mesh, "solution", options, fields);
   else if (kind != "mesh") in.fail("the grid function is missing", "a line 'FiniteElementSpace' behind the mesh");

@@ -13,7 +13,7 @@ namespace {
 KnotVector parse_knots(TextCursor& in) {
   KnotVector k;
   const int64_t order = in.integer("the order of a knot vector");
-  if (order < 1 || order > 10) in.fail(fmt::format("a knot vector of order {}", order), "orders 1 to 10 are read");
+  if (order < 1 || order > 10) in.fail(fmt::format("a knot vector of order {}", order), "orders 1 to 10 are supported");
   k.order = int(order);
   const size_t points = in.count("the number of control points", 2), n = points + size_t(order) + 1;
   if (points < size_t(order) + 1) in.fail(fmt::format("{} control points for order {}", points, order));
@@ -58,7 +58,7 @@ void parse_patches(TextCursor& in, const Topology& t, NurbsMesh& n, int& space_d
     space_dimension = int(d);
     const std::string_view kind = in.word();
     if (kind != "controlpoints" && kind != "controlpoints_homogeneous" && kind != "controlpoints_cartesian")
-      in.fail(fmt::format("'{}' where controlpoints should begin", kind));
+      in.fail(fmt::format("found '{}' where 'controlpoints' was expected", kind));
     patch.points = parse_values(in, size_t(points) * size_t(d + 1));
     if (kind != "controlpoints_cartesian")
       for (size_t i = 0; i < patch.points.size(); i += size_t(d + 1))
@@ -109,7 +109,7 @@ void parse_nurbs(TextCursor& in, MeshFile& mesh) {
       parse_patches(in, t, n, mesh.space_dimension);
       return;
     } else {
-      in.fail(fmt::format("the section '{}' of a NURBS mesh is not read", w.substr(0, 40)),
+      in.fail(fmt::format("the section '{}' of a NURBS mesh is not supported", w.substr(0, 40)),
               "elements, boundary, edges, vertices, knotvectors, weights, patches");
     }
   }

@@ -379,7 +379,7 @@ DatasetPtr nurbs_dataset(const MeshFile& mesh, const std::vector<GridFunction>& 
   for (const KnotVector& k : knots) order = std::max(order, k.order);
   std::vector<size_t> along;
   for (const KnotVector& k : knots) along.push_back(extract(k, order).rows.size());
-  if (listed && !fields.empty()) fail_data("fields on a NURBS mesh that lists its patches are not read", where);
+  if (listed && !fields.empty()) fail_data("fields on a NURBS mesh that lists its patches are not supported", where);
   const PatchNumbering from(mesh, control_points(knots), where), to(mesh, along, where);
   if (to.size() > 100 * from.size() + 1000000)
     fail_data(fmt::format("{} control points become {} at order {}", from.size(), to.size(), order), where,
@@ -387,7 +387,8 @@ DatasetPtr nurbs_dataset(const MeshFile& mesh, const std::vector<GridFunction>& 
   BezierNet net;
   for (const GridFunction& f : fields) {
     if (f.space.collection.family != Family::nurbs)
-      fail_data(fmt::format("a field of the space '{}' on a NURBS mesh is not read", f.space.collection.name), where, "NURBS fields are");
+      fail_data(fmt::format("a field of the space '{}' on a NURBS mesh is not supported", f.space.collection.name), where,
+                "NURBS fields are supported");
     net.width += size_t(f.space.vdim);
   }
   net.all.assign(to.size() * net.width, std::nan(""));

@@ -136,7 +136,7 @@ void parse_nonconforming(TextCursor& in, MeshFile& mesh) {
     } else if (w == "nodes") {
       in.fail("a non-conforming mesh with curved elements", "save it with linear elements, or as a conforming mesh");
     } else {
-      in.fail(fmt::format("'{}' where a section should begin", w.substr(0, 40)), "elements, boundary, vertex_parents, coordinates");
+      in.fail(fmt::format("found '{}' where a section was expected", w.substr(0, 40)), "elements, boundary, vertex_parents, coordinates");
     }
   }
   in.fail("the mesh has no coordinates");

@@ -140,7 +140,7 @@ class FieldReader {
       f_.skip_entry();
       return v;
     } else {
-      f_.fail(fmt::format("'{}' where uniform or nonuniform is due", how.substr(0, 40)));
+      f_.fail(fmt::format("found '{}' where uniform or nonuniform was expected", how.substr(0, 40)));
     }
     f_.expect(";", "an entry");
     v.given = true;
@@ -181,7 +181,7 @@ class FieldReader {
     if (look_only_) return unread_values(look_type_, count, kind_.components);
     Array a;
     if (v.uniform) a = filled(v.one, type_, count);
-    else if (v.list.count() != count) f_.fail(fmt::format("{} has {} values, {} are due", what, v.list.count(), count));
+    else if (v.list.count() != count) f_.fail(fmt::format("{} has {} values, expected {}", what, v.list.count(), count));
     else a = v.list.converted(type_);
     return kind_.components == 6 ? in_our_order(a) : a;
   }
@@ -203,7 +203,7 @@ class FieldReader {
     // Patches of no extent (empty) may keep a list of no values.
     if (e && e->value.given && (e->value.uniform || e->value.list.count() == p.count)) return array_of(e->value, p.count, p.name);
     if (e && e->value.given && e->value.list.count() != 0)
-      f_.fail(fmt::format("patch '{}' has {} values, {} are due", p.name, e->value.list.count(), p.count));
+      f_.fail(fmt::format("patch '{}' has {} values, expected {}", p.name, e->value.list.count(), p.count));
     std::vector<int64_t> cells(p.count);
     for (size_t i = 0; i < p.count; ++i) cells[i] = mesh_.owner[p.start + i];
     return gather(inner, cells);

@@ -80,7 +80,7 @@ void FoamFile::read_header() {
     std::string value(next());
     if (key == "class") class_ = value;
     if (key == "format") {
-      if (value != "ascii" && value != "binary") fail(fmt::format("format '{}' is not read", value), "ascii or binary");
+      if (value != "ascii" && value != "binary") fail(fmt::format("format '{}' is not supported", value), "ascii or binary");
       binary_ = value == "binary";
     }
     if (key == "arch") {
@@ -140,7 +140,7 @@ std::string_view FoamFile::peek() {
 
 void FoamFile::expect(std::string_view token, std::string_view what) {
   const std::string_view t = next();
-  if (t != token) fail(fmt::format("'{}' where '{}' of {} is due", t.substr(0, 40), token, what));
+  if (t != token) fail(fmt::format("found '{}' where '{}' of {} was expected", t.substr(0, 40), token, what));
 }
 
 void FoamFile::skip_entry() {
@@ -178,14 +178,14 @@ void FoamFile::skip_directive() { at_ = std::min(text_.find('\n', at_), text_.si
 size_t FoamFile::count(std::string_view what) {
   const std::string_view t = next();
   const auto n = parse_int(t);
-  if (!n || *n < 0) fail(fmt::format("'{}' where {} is due", t.substr(0, 40), what));
+  if (!n || *n < 0) fail(fmt::format("found '{}' where {} was expected", t.substr(0, 40), what));
   return size_t(*n);
 }
 
 double FoamFile::real(std::string_view what) {
   const std::string_view t = next();
   const auto v = parse_double(t);
-  if (!v) fail(fmt::format("'{}' is no number ({})", t.substr(0, 40), what));
+  if (!v) fail(fmt::format("'{}' is not a number ({})", t.substr(0, 40), what));
   return *v;
 }
 
@@ -195,7 +195,7 @@ bool FoamFile::open_list(size_t& n, bool& uniform, std::string_view what) {
   const std::string_view t = peek();
   uniform = t == "{";
   if (n == 0 && t != "(" && t != "{") return false;
-  if (t != "(" && t != "{") fail(fmt::format("'{}' where '(' of {} is due", t.substr(0, 40), what));
+  if (t != "(" && t != "{") fail(fmt::format("found '{}' where '(' of {} was expected", t.substr(0, 40), what));
   next();
   return true;
 }
@@ -229,7 +229,7 @@ std::vector<int32_t> FoamFile::labels(std::string_view what) {
     // One number stands for all: a list of any length from a few bytes, so it must be in proportion to the file.
     const std::string_view t = next();
     const auto x = parse_int(t);
-    if (!x) fail(fmt::format("'{}' is no whole number ({})", t.substr(0, 40), what));
+    if (!x) fail(fmt::format("'{}' is not a whole number ({})", t.substr(0, 40), what));
     if (n > file_.size() * 1000) fail(fmt::format("{} of {} equal numbers is too long for its file", what, n));
     v.assign(n, narrow(*x));
   } else {
@@ -340,7 +340,7 @@ void FoamFile::read_text(size_t n, int components, T* out, std::string_view what
     }
   }
   const char* p = scan_tuples(begin, end, n, components, out);
-  if (!p) fail(fmt::format("{} is no list of {} values of {} numbers", what, n, components));
+  if (!p) fail(fmt::format("{} is not a list of {} values of {} numbers", what, n, components));
   at_ = size_t(p - text_.data());
 }
 
@@ -377,7 +377,7 @@ void FoamFile::faces(std::vector<int64_t>& begin, std::vector<int32_t>& ids) {
       if (k > (text_.size() - at_) / 2 + 1) fail(fmt::format("a face of {} points does not fit", k));
       ids.resize(ids.size() + k);
       const char* p = scan_tuples(text_.data() + at_, text_.data() + text_.size(), k, 1, ids.data() + ids.size() - k);
-      if (!p) fail("a face is no list of whole numbers");
+      if (!p) fail("a face is not a list of whole numbers");
       at_ = size_t(p - text_.data());
     }
     expect(")", "a face");

@@ -164,7 +164,7 @@ Data read_files(const Files& files, std::optional<double> time, const ReadOption
   const std::optional<Layout> l = find_layout(n, Kind::grid);
   if (!l)
     fail_data(
-        "is no PLOT3D grid: its length fits no combination of byte order, records, precision, dimensions, blanking and number of grids",
+        "is not a PLOT3D grid: its length fits no combination of byte order, records, precision, dimensions, blanking and number of grids",
         files.grid, "a grid file begins with its sizes; for raw numbers give --dims and --type");
   context.info(fmt::format("{}: {}", files.grid, l->describe()));
   const auto q = open_beside(files.solution, Kind::solution, *l, files.named, context);
@@ -196,7 +196,7 @@ std::vector<MetaStep> read_meta(const std::string& path) {
   const Json j = parse_json(file.text(), path);
   std::vector<MetaStep> steps;
   if (!j["filenames"].is_list())
-    fail_data("is no PLOT3D meta file", path, R"(like {"filenames": [{"time": 0, "xyz": "a.xyz", "q": "a.q"}]})");
+    fail_data("is not a PLOT3D meta file", path, R"(like {"filenames": [{"time": 0, "xyz": "a.xyz", "q": "a.q"}]})");
   for (const Json& e : j["filenames"].items()) {
     MetaStep s;
     auto name = [&](const char* key) { return e[key].is_text() ? named_file(path, e[key].text()) : std::string(); };

@@ -55,7 +55,7 @@ struct Parser {
       if (p == end || *p == '#') break;
       const char* word = p;
       if (!scan_number(p, end, v[n]) || (p < end && !is_blank(*p)))
-        fail(fmt::format("'{}' is no number", std::string_view(word, std::min<size_t>(40, size_t(skip_word(word, end) - word)))));
+        fail(fmt::format("'{}' is not a number", std::string_view(word, std::min<size_t>(40, size_t(skip_word(word, end) - word)))));
       ++n;
     }
     return n;
@@ -82,7 +82,8 @@ struct Parser {
     int64_t i = 0;
     const char* word = p;
     if (!scan_number(p, end, i))
-      fail(fmt::format("'{}' is no {} index", std::string_view(word, std::min<size_t>(40, size_t(skip_word(word, end) - word))), what));
+      fail(fmt::format("'{}' is not a valid {} index", std::string_view(word, std::min<size_t>(40, size_t(skip_word(word, end) - word))),
+                       what));
     if (i == 0) fail(fmt::format("{} index 0", what), "indices count from 1, or from -1 backwards");
     if (i > INT32_MAX || i < -int64_t(INT32_MAX / 4)) fail(fmt::format("{} index {} is out of range", what, i));
     return i > 0 ? int32_t(i - 1) : int32_t(obj_relative + int64_t(count) + i);

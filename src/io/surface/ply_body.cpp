@@ -56,7 +56,7 @@ PlyHeader parse_ply_header(const MappedFile& file) {
       has_format = true;
     } else if (w[0] == "element") {
       const auto n = w.size() == 3 ? parse_int(w[2]) : std::nullopt;
-      if (!n || *n < 0) fail(fmt::format("'{}' is no 'element NAME COUNT'", line));
+      if (!n || *n < 0) fail(fmt::format("'{}' is not of the form 'element NAME COUNT'", line));
       h.elements.push_back({std::string(w[1]), size_t(*n), {}, -1, {}});
     } else if (w[0] == "property") {
       if (h.elements.empty()) fail("a property before the first element");
@@ -71,7 +71,7 @@ PlyHeader parse_ply_header(const MappedFile& file) {
         q.type = type_of(w[1]);
         q.name = w[2];
       } else {
-        fail(fmt::format("'{}' is no 'property TYPE NAME' or 'property list TYPE TYPE NAME'", line));
+        fail(fmt::format("'{}' is not of the form 'property TYPE NAME' or 'property list TYPE TYPE NAME'", line));
       }
       h.elements.back().properties.push_back(std::move(q));
     } else {

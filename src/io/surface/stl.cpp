@@ -83,7 +83,8 @@ void parse_chunk(std::string_view text, size_t begin, size_t end_at, const std::
       static constexpr std::string_view words_of_stl[] = {"facet", "outer", "endfacet", "solid", "endsolid", "color"};
       bool known = false;
       for (size_t i = 0; i < std::size(words_of_stl) && !known; ++i) known = word_is(word, word_end, words_of_stl[i]);
-      if (!known) fail(word, fmt::format("'{}' is no word of STL", std::string_view(word, std::min<size_t>(40, size_t(word_end - word)))));
+      if (!known)
+        fail(word, fmt::format("'{}' is not an STL keyword", std::string_view(word, std::min<size_t>(40, size_t(word_end - word)))));
     }
     p = line < end ? line + 1 : end;
   }
@@ -128,7 +129,7 @@ Data read_stl(const std::string& path, const ReadOptions&, Context& context) {
     fail_data(fmt::format("too short for STL: {} bytes", size), path,
               "a binary file has a header of 84 bytes, an ASCII one begins with 'solid'");
   if (size < header_bytes + triangle_bytes * count)
-    fail_data(fmt::format("{} triangles need {} bytes, there are {}", count, header_bytes + triangle_bytes * count, size), path,
+    fail_data(fmt::format("{} triangles need {} bytes, but there are {}", count, header_bytes + triangle_bytes * count, size), path,
               "the file is cut off or no STL");
   if (!exact)
     context.warn(fmt::format("{}: {} bytes follow the {} triangles; not read", path, size - header_bytes - triangle_bytes * count, count));

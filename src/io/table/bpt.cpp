@@ -28,7 +28,7 @@ Data read_bpt(const std::string& path, const ReadOptions&, Context&) {
     size_t n[2] = {};
     for (size_t& v : n) {
       v = in.count("a degree", 1);
-      if (v < 1 || v > highest_degree) in.fail(fmt::format("a patch of degree {}; 1 to {} are read", v, highest_degree));
+      if (v < 1 || v > highest_degree) in.fail(fmt::format("a patch of degree {}; 1 to {} are supported", v, highest_degree));
     }
     const size_t first = xyz.size() / 3, count = (n[0] + 1) * (n[1] + 1);
     for (size_t k = 0; k < 3 * count; ++k) {

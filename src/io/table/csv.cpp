@@ -187,7 +187,7 @@ TablePtr table_of(const Data& data) {
 Data read_csv(const std::string& path, const ReadOptions& options, Context& context) {
   const MappedFile file(path);
   const std::string text = text_of(file.text());
-  if (text.find('\0') != text.npos) fail_data("holds bytes that are no text", path, "delimited text in UTF-8 or UTF-16");
+  if (text.find('\0') != text.npos) fail_data("holds bytes that are not text", path, "delimited text in UTF-8 or UTF-16");
   const char delimiter = find_delimiter(text);
   TableBuilder builder;
   const char *p = text.data(), *end = p + text.size();

@@ -55,7 +55,7 @@ class Parser {
       } else if (w == "ZONE") {
         zone();
       } else if (w.empty()) {
-        fail(fmt::format("'{}' where a statement should begin", word()), "TITLE, VARIABLES or ZONE");
+        fail(fmt::format("found '{}' where a statement was expected", word()), "TITLE, VARIABLES or ZONE");
       } else {  // TEXT, GEOMETRY, DATASETAUXDATA, ...: nothing of the data
         skip_statement();
       }
@@ -160,7 +160,7 @@ class Parser {
   size_t count(const char* what) {
     equals();
     int64_t n = 0;
-    if (!scan_number(p_, end_, n) || n < 0 || uint64_t(n) > uint64_t(1) << 40) fail(fmt::format("{} is no count", what));
+    if (!scan_number(p_, end_, n) || n < 0 || uint64_t(n) > uint64_t(1) << 40) fail(fmt::format("{} is not a valid count", what));
     return size_t(n);
   }
 
@@ -235,7 +235,7 @@ class Parser {
     } else if (key == "SOLUTIONTIME") {
       equals();
       double t = 0;
-      if (!scan_number(p_, end_, t)) fail("SOLUTIONTIME is no number");
+      if (!scan_number(p_, end_, t)) fail("SOLUTIONTIME is not a number");
       z.time = t;
     } else if (key == "VARLOCATION") equals(), set_locations(brackets(), z);
     else if (key == "DT") {
@@ -317,7 +317,8 @@ class Parser {
     if (!element.empty()) z.type = element.starts_with("FE") ? element : "FE" + element;
     static constexpr const char* known[] = {"ORDERED", "FELINESEG", "FETRIANGLE", "FEQUADRILATERAL", "FETETRAHEDRON", "FEBRICK"};
     if (std::find(std::begin(known), std::end(known), z.type) == std::end(known))
-      fail(fmt::format("zone type '{}' is not read", z.type), "ORDERED, FELINESEG, FETRIANGLE, FEQUADRILATERAL, FETETRAHEDRON, FEBRICK");
+      fail(fmt::format("zone type '{}' is not supported", z.type),
+           "ORDERED, FELINESEG, FETRIANGLE, FEQUADRILATERAL, FETETRAHEDRON, FEBRICK");
     uint64_t points = z.nodes;
     if (z.ordered()) {
       for (size_t& d : z.dims) d = std::max<size_t>(d, 1);
@@ -341,10 +342,10 @@ class Parser {
     const char* begin = p_;
     if (!scan_number(p_, end_, v)) {
       p_ = begin;
-      fail(fmt::format("'{}' where a value should be", word()));
+      fail(fmt::format("found '{}' where a value was expected", word()));
     }
     if (p_ < end_ && *p_ == '*') {
-      if (!(v >= 1 && v <= 1e12)) fail("a repeat count that is none");
+      if (!(v >= 1 && v <= 1e12)) fail("an invalid repeat count");
       const auto times = uint64_t(v);
       ++p_;
       if (!scan_number(p_, end_, v)) fail("a repeat count without a value");
@@ -353,7 +354,7 @@ class Parser {
     }
     if (p_ < end_ && !separates(*p_)) {
       p_ = begin;
-      fail(fmt::format("'{}' where a value should be", word()));
+      fail(fmt::format("found '{}' where a value was expected", word()));
     }
     return v;
   }
@@ -399,7 +400,7 @@ class Parser {
     for (size_t i = 0; i < z.elements * z.corners(); ++i) {
       skip();
       int64_t id = 0;
-      if (!scan_number(p_, end_, id)) fail(fmt::format("'{}' where a node should be", word()));
+      if (!scan_number(p_, end_, id)) fail(fmt::format("found '{}' where a node was expected", word()));
       if (id < 1 || uint64_t(id) > z.nodes) fail(fmt::format("node {} does not exist", id), fmt::format("there are {}, from 1", z.nodes));
       z.connectivity.push_back(id - 1);
     }

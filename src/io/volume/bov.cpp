@@ -56,7 +56,7 @@ class BovParser {
       line = trim(line.substr(0, line.find('#')));
       if (line.empty()) continue;
       const size_t colon = line.find(':');
-      if (colon == std::string_view::npos) fail(fmt::format("'{}' is no KEY: VALUE", line.substr(0, 40)));
+      if (colon == std::string_view::npos) fail(fmt::format("'{}' is not of the form KEY: VALUE", line.substr(0, 40)));
       key(to_lower(trim(line.substr(0, colon))), trim(line.substr(colon + 1)));
     }
     number_ = 0;
@@ -73,22 +73,22 @@ class BovParser {
   }
   double real(std::string_view w) const {
     const auto v = parse_double(w);
-    if (!v || !std::isfinite(*v)) fail(fmt::format("'{}' is no number", w.substr(0, 40)));
+    if (!v || !std::isfinite(*v)) fail(fmt::format("'{}' is not a number", w.substr(0, 40)));
     return *v;
   }
   size_t count(std::string_view w, size_t least) const {
     const auto v = parse_int(w);
-    if (!v || *v < int64_t(least)) fail(fmt::format("'{}' is no count from {}", w.substr(0, 40), least));
+    if (!v || *v < int64_t(least)) fail(fmt::format("'{}' is not a valid count from {}", w.substr(0, 40), least));
     return size_t(*v);
   }
   std::array<size_t, 3> triple(std::string_view value) const {
     const auto w = words(value);
-    if (w.size() != 3) fail("three numbers are due");
+    if (w.size() != 3) fail("expected three numbers");
     return {count(w[0], 1), count(w[1], 1), count(w[2], 1)};
   }
   Vec3 vec(std::string_view value) const {
     const auto w = words(value);
-    if (w.size() != 3) fail("three numbers are due");
+    if (w.size() != 3) fail("expected three numbers");
     return {real(w[0]), real(w[1]), real(w[2])};
   }
 
@@ -206,7 +206,7 @@ Data read_bare_bov(const std::string& path, const ReadOptions&, Context& context
   const MappedFile file(path);
   const auto guess = guess_raw(file);
   if (!guess)
-    fail_data("is no BOV header, and its name and length say no size", path,
+    fail_data("is not a BOV header, and its name and length say no size", path,
               "a header has lines like 'DATA_FILE: values.dat'; for raw numbers give --dims NX,NY,NZ and --type");
   BovHeader h;
   h.size = guess->dims, h.type = guess->type, h.big_endian = guess->big_endian;

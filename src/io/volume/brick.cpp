@@ -40,7 +40,7 @@ std::span<const std::byte> raw_window(const BrickPart& p, size_t need, Context& 
           skip = s.size() - need;
   }
   if (skip > s.size() || s.size() - skip < need)
-    fail_data(fmt::format("too short: {} bytes are needed, there are {}", need, s.size() - std::min(skip, s.size())), p.file.path());
+    fail_data(fmt::format("too short: {} bytes are needed, but there are {}", need, s.size() - std::min(skip, s.size())), p.file.path());
   return s.subspan(skip, need);
 }
 
@@ -57,11 +57,11 @@ void unpack_hex(std::string_view text, std::byte* out, size_t need, const std::s
   for (size_t i = 0; i < text.size() && n < need; ++i) {
     if (is_space(text[i])) continue;
     const int v = hex_value(text[i]);
-    if (v < 0) fail_data(fmt::format("line {}: '{}' is no hexadecimal digit", line_number(text, i), text[i]), where);
+    if (v < 0) fail_data(fmt::format("line {}: '{}' is not a hexadecimal digit", line_number(text, i), text[i]), where);
     if (high < 0) high = v;
     else out[n++] = std::byte(high * 16 + v), high = -1;
   }
-  if (n < need) fail_data(fmt::format("has {} bytes as hexadecimal digits, {} are needed", n, need), where);
+  if (n < need) fail_data(fmt::format("has {} bytes as hexadecimal digits, but {} are needed", n, need), where);
 }
 
 // For text: what follows the skipped bytes.
@@ -210,7 +210,7 @@ std::vector<std::string> pattern_names(const std::string& pattern, int64_t first
   while (d < pattern.size() && is_digit(pattern[d]) && width < 100) width = width * 10 + size_t(pattern[d++] - '0');
   if (d >= pattern.size() || (pattern[d] != 'd' && pattern[d] != 'i' && pattern[d] != 'u') || width > 20 ||
       pattern.find('%', d) != std::string::npos)
-    fail_data(fmt::format("'{}' is no pattern of file names", pattern), where, "like slice%03d.raw 1 93 1");
+    fail_data(fmt::format("'{}' is not a pattern of file names", pattern), where, "like slice%03d.raw 1 93 1");
   constexpr int64_t most = 1000000000;
   bool good = step != 0;
   for (const int64_t v : {first, last, step}) good = good && v >= -most && v <= most;

@@ -36,14 +36,14 @@ struct Lines {
     std::vector<double> r;
     for (std::string_view w : words(next())) {
       const auto v = parse_double(w);
-      if (!v || !std::isfinite(*v)) fail_data(fmt::format("line {}: '{}' is no number", number, w.substr(0, 40)), file.path());
+      if (!v || !std::isfinite(*v)) fail_data(fmt::format("line {}: '{}' is not a number", number, w.substr(0, 40)), file.path());
       r.push_back(*v);
     }
     if (r.size() < least) fail_data(fmt::format("line {}: {} numbers are needed: {}", number, least, what), file.path());
     return r;
   }
   int64_t whole(double v) const {
-    if (v != std::floor(v) || std::abs(v) > 1e9) fail_data(fmt::format("line {}: '{}' is no count", number, v), file.path());
+    if (v != std::floor(v) || std::abs(v) > 1e9) fail_data(fmt::format("line {}: '{}' is not a valid count", number, v), file.path());
     return int64_t(v);
   }
 };

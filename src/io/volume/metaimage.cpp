@@ -42,10 +42,10 @@ struct Header {
     const std::string_view v = get(keys);
     for (std::string_view w : words(v)) {
       const auto d = parse_double(w);
-      if (!d || !std::isfinite(*d)) fail_data(fmt::format("{}: '{}' is no number", *keys.begin(), w), path);
+      if (!d || !std::isfinite(*d)) fail_data(fmt::format("{}: '{}' is not a number", *keys.begin(), w), path);
       r.push_back(*d);
     }
-    if (!r.empty() && r.size() != n) fail_data(fmt::format("{} has {} numbers, {} are needed", *keys.begin(), r.size(), n), path);
+    if (!r.empty() && r.size() != n) fail_data(fmt::format("{} has {} numbers, but {} are needed", *keys.begin(), r.size(), n), path);
     return r;
   }
 };
@@ -61,7 +61,8 @@ Header parse_header(const MappedFile& file) {
     p = e < end ? e + 1 : end;
     if (line.empty() || line[0] == '#') continue;
     const size_t eq = std::min(line.find('='), line.find(':'));
-    if (eq == std::string_view::npos) fail_data(fmt::format("line {}: '{}' is no 'Key = value'", number, line.substr(0, 60)), h.path);
+    if (eq == std::string_view::npos)
+      fail_data(fmt::format("line {}: '{}' is not of the form 'Key = value'", number, line.substr(0, 60)), h.path);
     h.lines.emplace_back(trim(line.substr(0, eq)), trim(line.substr(eq + 1)));
     if (equal_ignoring_case(h.lines.back().first, "ElementDataFile")) {
       h.rest_at = size_t(p - base);
@@ -111,7 +112,7 @@ std::vector<BrickPart> find_parts(const Header& h, const MappedFile& file, size_
     for (size_t i = 1; i < std::min<size_t>(w.size(), 4); ++i) {
       const auto v = parse_int(w[i]);
       if (!v)
-        fail_data(fmt::format("ElementDataFile: '{}' is no whole number", w[i]), h.path,
+        fail_data(fmt::format("ElementDataFile: '{}' is not a whole number", w[i]), h.path,
                   "pattern first last step, like slice%03d.raw 1 93 1");
       n[i - 1] = *v;
     }
@@ -178,7 +179,7 @@ Data read_metaimage(const std::string& path, const ReadOptions& options, Context
   std::vector<size_t> sizes;
   for (std::string_view w : words(h.get({"DimSize"}))) {
     const auto v = parse_int(w);
-    if (!v || *v < 1) fail_data(fmt::format("DimSize: '{}' is no size", w), path);
+    if (!v || *v < 1) fail_data(fmt::format("DimSize: '{}' is not a valid size", w), path);
     sizes.push_back(size_t(*v));
   }
   if (sizes.size() != size_t(*ndims)) fail_data(fmt::format("DimSize has {} numbers but NDims is {}", sizes.size(), *ndims), path);
@@ -242,7 +243,7 @@ Data read_metaimage(const std::string& path, const ReadOptions& options, Context
   if (steps > 1) {
     // Further volumes become components, one volume after the other in memory.
     if (channels > 1)
-      fail_data(fmt::format("{} axes and {} channels", sizes.size(), channels), path, "read are up to 3 axes with channels, or 4 axes");
+      fail_data(fmt::format("{} axes and {} channels", sizes.size(), channels), path, "supported: up to 3 axes with channels, or 4 axes");
     const auto size = ptrdiff_t(element_size(l.type));
     a = Array(a.buffer(), l.type, voxels, int(steps), size_t(a.raw() - a.buffer().data), size, size * ptrdiff_t(voxels));
     context.info(fmt::format("{}: the {} volumes of the fourth axis became components", path, steps));

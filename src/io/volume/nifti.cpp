@@ -122,11 +122,11 @@ Source open_nifti(const std::string& path) {
   s.blocks = d[4] * d[5] * d[6];
   if (s.gzip) check_ratio(Codec::gzip, s.image.size(), s.h.data_begin + total, s.image.path());
   else if (s.image.size() < s.h.data_begin || s.image.size() - s.h.data_begin < total)
-    fail_data(fmt::format("too short: {} bytes are needed from byte {} on, there are {}", total, s.h.data_begin,
+    fail_data(fmt::format("too short: {} bytes are needed from byte {} on, but there are {}", total, s.h.data_begin,
                           s.image.size() - std::min(s.image.size(), s.h.data_begin)),
               s.image.path());
   if (s.steps > (1 << 20) || s.blocks > (1 << 20)) fail_data(fmt::format("{} volumes of {} components", s.steps, s.blocks), header);
-  if (s.blocks > 1 && s.type.components > 1) fail_data("a fifth axis of complex or coloured voxels is not read", header);
+  if (s.blocks > 1 && s.type.components > 1) fail_data("a fifth axis of complex or coloured voxels is not supported", header);
   if (s.steps > 1) {
     s.bval = numbers_beside(header, {".bval", ".bvals"}, "bvals", s.steps, false);
     s.bvec = numbers_beside(header, {".bvec", ".bvecs"}, "bvecs", s.steps, true);

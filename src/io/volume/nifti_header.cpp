@@ -248,9 +248,9 @@ NiftiType nifti_type(const NiftiHeader& h, const std::string& where) {
     case 136:
       if (h.version == 0) return {u32};
       break;
-    case 1: fail_data("numbers of one bit are not read", where, "convert the file to 8 bits");
+    case 1: fail_data("numbers of one bit are not supported", where, "convert the file to 8 bits");
     case 1536:
-    case 2048: fail_data("numbers of 128 bits are not read", where, "convert the file to 64 bits");
+    case 2048: fail_data("numbers of 128 bits are not supported", where, "convert the file to 64 bits");
     default: break;
   }
   fail_data(fmt::format("byte {}: datatype {} is unknown", h.version == 2 ? 12 : 70, h.datatype), where,

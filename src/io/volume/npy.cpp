@@ -51,7 +51,7 @@ std::string_view value_of(std::string_view dict, std::string_view key, const std
 }
 
 void parse_type(NpyHeader& h, std::string_view descr, const std::string& where) {
-  if (!descr.empty() && descr[0] == '[') fail_data("structured arrays are not read", where, "save one array per field");
+  if (!descr.empty() && descr[0] == '[') fail_data("structured arrays are not supported", where, "save one array per field");
   if (descr.size() >= 2 && (descr[0] == '\'' || descr[0] == '"')) descr = descr.substr(1, descr.size() - 2);
   const std::string_view full = descr;
   if (!descr.empty() && std::string_view("<>=|").find(descr[0]) != std::string_view::npos) {
@@ -73,7 +73,7 @@ void parse_type(NpyHeader& h, std::string_view descr, const std::string& where) 
       h.type = t.type, h.numbers = t.numbers, h.half = t.half;
       return;
     }
-  fail_data(fmt::format("numbers of type '{}' are not read", full.substr(0, 40)), where,
+  fail_data(fmt::format("numbers of type '{}' are not supported", full.substr(0, 40)), where,
             "bool, int and uint of 8 to 64 bits, float of 16 to 64 bits, complex");
 }
 
@@ -103,7 +103,7 @@ NpyHeader parse_header(const MappedFile& file) {
   for (std::string_view s : split(shape, ',')) {
     if (!s.empty() && s.back() == 'L') s.remove_suffix(1);  // Python 2
     const auto v = parse_int(s);
-    if (!v || *v < 0) fail_data(fmt::format("'shape': '{}' is no size", s.substr(0, 40)), where);
+    if (!v || *v < 0) fail_data(fmt::format("'shape': '{}' is not a valid size", s.substr(0, 40)), where);
     h.shape.push_back(size_t(*v));
   }
   if (h.shape.size() > 4)

@@ -37,7 +37,7 @@ struct Parser {
     std::vector<double> r;
     for (std::string_view w : per_axis(field, value)) {
       const auto d = parse_double(w);
-      if (!d) fail(fmt::format("'{}': '{}' is no number", field, w));
+      if (!d) fail(fmt::format("'{}': '{}' is not a number", field, w));
       r.push_back(*d);
     }
     return r;
@@ -46,14 +46,14 @@ struct Parser {
   Vec3 vector(std::string_view field, std::string_view& s) const {
     const size_t close = s.find(')');
     if (s.empty() || s[0] != '(' || close == std::string_view::npos)
-      fail(fmt::format("'{}': '{}' is no vector like (1,0,0)", field, s.substr(0, 40)));
+      fail(fmt::format("'{}': '{}' is not a vector like (1,0,0)", field, s.substr(0, 40)));
     const auto parts = split(s.substr(1, close - 1), ',');
     if (parts.empty() || parts.size() > 4 || (space_dimension > 0 && parts.size() != size_t(space_dimension)))
       fail(fmt::format("'{}' has a vector of {} numbers in a space of {}", field, parts.size(), space_dimension));
     Vec3 v;
     for (size_t i = 0; i < parts.size(); ++i) {
       const auto d = parse_double(parts[i]);
-      if (!d) fail(fmt::format("'{}': '{}' is no number", field, parts[i]));
+      if (!d) fail(fmt::format("'{}': '{}' is not a number", field, parts[i]));
       if (i < 3) v[int(i)] = *d;
     }
     s = trim(s.substr(close + 1));
@@ -164,7 +164,7 @@ void Parser::field(const std::string& name, std::string_view value) {
     const auto w = per_axis(name, value);
     for (size_t a = 0; a < w.size(); ++a) {
       const auto v = parse_int(w[a]);
-      if (!v || *v < 1) fail(fmt::format("'sizes': '{}' is no size", w[a]));
+      if (!v || *v < 1) fail(fmt::format("'sizes': '{}' is not a valid size", w[a]));
       h.axes[a].size = size_t(*v);
     }
   } else if (name == "encoding") {
@@ -219,7 +219,7 @@ void Parser::data_file(std::string_view value, const char*& p, const char* end) 
   if (w.empty()) fail("'data file' without a name");
   auto number = [&](std::string_view s) {
     const auto v = parse_int(s);
-    if (!v) fail(fmt::format("'data file': '{}' is no whole number", s), "pattern min max step, like slice%03d.raw 1 93 1");
+    if (!v) fail(fmt::format("'data file': '{}' is not a whole number", s), "pattern min max step, like slice%03d.raw 1 93 1");
     return *v;
   };
   auto set_subdim = [&](std::string_view s) {

@@ -31,7 +31,7 @@ Data read_raw(const std::string& path, const ReadOptions& given, Context& contex
   BrickLayout l;
   if (o.raw_type.empty()) fail_usage("a raw brick does not say its element type", path, "give --type u8, i16, u16, f32, ...");
   if (!parse_element_type(o.raw_type, l.type))
-    fail_usage(fmt::format("unknown element type '{}'", o.raw_type), path, "known are u8 i8 u16 i16 u32 i32 u64 i64 f32 f64");
+    fail_usage(fmt::format("unknown element type '{}'", o.raw_type), path, "supported: u8 i8 u16 i16 u32 i32 u64 i64 f32 f64");
   if (o.raw_components < 1) fail_usage(fmt::format("{} components per voxel", o.raw_components), path, "give 1 or more");
 
   UniformGrid grid;
@@ -53,7 +53,7 @@ Data read_raw(const std::string& path, const ReadOptions& given, Context& contex
     // A brick of another size than told is nearly always a wrong size or type: what would fit is said.
     std::string hint = fmt::format("{} bytes are {} numbers of {}", have, have / size, element_name(l.type));
     if (have > need && need > 0) hint += fmt::format("; with a header of {} bytes it would fit", o.raw_header + (have - need));
-    fail_data(fmt::format("{} needs {} bytes, there are {}{}", what, need, have,
+    fail_data(fmt::format("{} needs {} bytes, but there are {}{}", what, need, have,
                           o.raw_header ? fmt::format(" after the header of {}", o.raw_header) : ""),
               path, hint);
   }

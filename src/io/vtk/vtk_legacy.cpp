@@ -139,13 +139,13 @@ void LegacyReader::header() {
   const std::string_view first = text_.line();
   const std::string_view prefix = "# vtk datafile version";
   if (first.size() < prefix.size() || !equal_ignoring_case(first.substr(0, prefix.size()), prefix))
-    text_.fail("is no legacy VTK file", "the first line should be '# vtk DataFile Version 3.0'");
+    text_.fail("is not a legacy VTK file", "the first line should be '# vtk DataFile Version 3.0'");
   const std::string_view title = trim(text_.line());
   if (!title.empty() && title.size() <= 1024) parts_.notes.emplace_back("title", std::string(title));
   const std::string_view encoding = text_.need_word("ASCII or BINARY");
   if (equal_ignoring_case(encoding, "BINARY")) text_.binary = true;
   else if (!equal_ignoring_case(encoding, "ASCII"))
-    text_.fail(fmt::format("'{}' where ASCII or BINARY should stand", encoding.substr(0, 40)),
+    text_.fail(fmt::format("found '{}' where ASCII or BINARY was expected", encoding.substr(0, 40)),
                "the word behind the title line tells the encoding");
 }
 
@@ -161,7 +161,7 @@ void LegacyReader::dataset() {
     if (equal_ignoring_case(w, name)) kind_ = kind;
   if (kind_ == Kind::none)
     text_.fail(fmt::format("the dataset '{}' has no mesh that can be read", w.substr(0, 40)),
-               "known are STRUCTURED_POINTS, STRUCTURED_GRID, RECTILINEAR_GRID, UNSTRUCTURED_GRID, POLYDATA");
+               "supported: STRUCTURED_POINTS, STRUCTURED_GRID, RECTILINEAR_GRID, UNSTRUCTURED_GRID, POLYDATA");
 }
 
 void LegacyReader::need(Kind kind, std::string_view keyword) {
@@ -232,7 +232,7 @@ CellArray LegacyReader::cell_list(std::string_view keyword) {
     Array starts;
     if (fixed) text_.skip_array(offset_type, n, 1, "OFFSETS");
     else starts = text_.array(offset_type, n, 1, "OFFSETS");
-    if (!equal_ignoring_case(text_.need_word("CONNECTIVITY"), "CONNECTIVITY")) text_.fail("CONNECTIVITY should stand here");
+    if (!equal_ignoring_case(text_.need_word("CONNECTIVITY"), "CONNECTIVITY")) text_.fail("expected CONNECTIVITY here");
     const std::string id_type(text_.need_word("the type of the connectivity"));
     const Array ids = text_.array(id_type, size, 1, "CONNECTIVITY");
     return with_context(fmt::format("taking {} apart", keyword),
@@ -287,7 +287,7 @@ void LegacyReader::scalars() {
   const std::string type(text_.need_word("the type of the scalars"));
   // "[components] LOOKUP_TABLE name": the first is often left out.
   const size_t components = equal_ignoring_case(text_.peek(), "LOOKUP_TABLE") ? 1 : text_.count("the number of components or LOOKUP_TABLE");
-  if (!equal_ignoring_case(text_.need_word("LOOKUP_TABLE"), "LOOKUP_TABLE")) text_.fail("LOOKUP_TABLE should stand here");
+  if (!equal_ignoring_case(text_.need_word("LOOKUP_TABLE"), "LOOKUP_TABLE")) text_.fail("expected LOOKUP_TABLE here");
   text_.need_word("the name of the lookup table");
   add(std::move(name), association_, type, tuples(), components, "SCALARS", Role::scalars);
 }

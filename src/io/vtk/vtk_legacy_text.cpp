@@ -51,7 +51,7 @@ std::string_view LegacyText::peek() {
 
 std::string_view LegacyText::need_word(std::string_view what) {
   const std::string_view w = word();
-  if (w.empty()) fail(fmt::format("the file ends where {} should stand", what), "the file is truncated");
+  if (w.empty()) fail(fmt::format("the file ends where {} was expected", what), "the file is truncated");
   return w;
 }
 
@@ -96,7 +96,7 @@ Array LegacyText::text_array(ElementType type, size_t tuples, size_t components,
       fail(fmt::format("{}: the file ends after {} of {} numbers", what, end.parsed, n), "the file is truncated");
     }
     at_ = size_t(end.bad - all_.data());
-    fail(fmt::format("{}: '{}' is no {} number ({} of {})", what, peek().substr(0, 40), element_name(type), end.parsed + 1, n));
+    fail(fmt::format("{}: '{}' is not a valid {} number ({} of {})", what, peek().substr(0, 40), element_name(type), end.parsed + 1, n));
   }
   if (end.next) at_ = size_t(end.next - all_.data());
   return a;
@@ -122,7 +122,7 @@ ElementType LegacyText::number_type(std::string_view type_name, std::string_view
   ElementType type{};
   if (!parse_element_type(plain, type))
     fail(fmt::format("{} has the unknown type '{}'", what, type_name.substr(0, 40)),
-         "known are: bit, char, short, int, long, their unsigned forms, float, double, vtkIdType, vtktypeint64");
+         "supported: bit, char, short, int, long, their unsigned forms, float, double, vtkIdType, vtktypeint64");
   return type;
 }
 

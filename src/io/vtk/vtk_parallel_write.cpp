@@ -160,7 +160,7 @@ Whole whole_of(std::vector<Piece>& pieces, const std::string& path) {
       for (size_t a = 0; a < 3; ++a)
         lo[a] = std::max(pieces[i].own_lo[a], pieces[k].own_lo[a]), hi[a] = std::min(pieces[i].own_hi[a], pieces[k].own_hi[a]);
       if (cells_between(lo, hi) > 0)
-        fail_usage(fmt::format("parts '{}' and '{}' share cells, so they are no pieces of one grid", pieces[k].name, pieces[i].name), path,
+        fail_usage(fmt::format("parts '{}' and '{}' share cells, so they are not pieces of one grid", pieces[k].name, pieces[i].name), path,
                    many_grids);
     }
   }

@@ -180,7 +180,7 @@ struct Reader {
     const std::string type = grid_type(grid);
     if (type == "uniform") return uniform(grid, time);
     if (type != "collection" && type != "tree")
-      doc.fail(fmt::format("is a grid of type '{}', which is not read", type), grid, "Uniform, Collection or Tree");
+      doc.fail(fmt::format("is a grid of type '{}', which is not supported", type), grid, "Uniform, Collection or Tree");
     const auto inner = doc.children(grid, "Grid");
     if (is_temporal(grid)) {
       if (inner.empty()) doc.fail("is a series without grids", grid);

@@ -74,7 +74,7 @@ Item Document::inline_item(pugi::xml_node n, const std::vector<size_t>& dims) co
 Item Document::binary_item(pugi::xml_node n, const std::vector<size_t>& dims) const {
   const std::string_view packing = n.attribute("Compression").value();
   if (!packing.empty() && !equal_ignoring_case(packing, "Raw"))
-    fail(fmt::format("is packed with '{}', which is not read", packing), n, "Raw");
+    fail(fmt::format("is packed with '{}', which is not supported", packing), n, "Raw");
   const std::string name = with_entities(std::string(trim(n.child_value())));
   const ElementType type = number_type(*this, n);
   uint64_t bytes = 0, end = 0;
@@ -101,7 +101,8 @@ Item Document::binary_item(pugi::xml_node n, const std::vector<size_t>& dims) co
 
 Item Document::hdf_item(pugi::xml_node n, const std::vector<size_t>& dims, const Item* slab) const {
   const std::string text = with_entities(std::string(trim(n.child_value())));
-  if (text.find('|') != text.npos) fail("selects parts of several HDF5 datasets by '|', which is not read", n, "ItemType=\"HyperSlab\"");
+  if (text.find('|') != text.npos)
+    fail("selects parts of several HDF5 datasets by '|', which is not supported", n, "ItemType=\"HyperSlab\"");
   size_t colon = text.find(":/", 1);
   if (colon == text.npos) colon = text.rfind(':');
   if (colon == text.npos || colon == 0 || colon + 1 >= text.size())
@@ -196,7 +197,7 @@ Item Document::item(pugi::xml_node n, int depth) const {
   if (kind == "hyperslab") return hyperslab(n, depth);
   if (kind == "function") return function(n, depth);
   if (!kind.empty() && kind != "uniform")
-    fail(fmt::format("is an item of type '{}', which is not read", kind), n, "Uniform, HyperSlab or Function");
+    fail(fmt::format("is an item of type '{}', which is not supported", kind), n, "Uniform, HyperSlab or Function");
   const std::vector<size_t> dims = dimensions(*this, n, "Dimensions");
   const std::string format = to_lower(n.attribute("Format").value());
   if (format == "hdf" || format == "hdf5") return hdf_item(n, dims, nullptr);

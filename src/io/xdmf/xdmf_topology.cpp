@@ -183,7 +183,7 @@ UnstructuredMesh read_topology(const Document& doc, pugi::xml_node topology, Poi
   for (const Kind& k : kinds)
     for (const std::string_view n : k.names)
       if (n == name) kind = &k;
-  if (!kind && !mixed) doc.fail(fmt::format("has the type '{}', which is not read", name), topology);
+  if (!kind && !mixed) doc.fail(fmt::format("has the type '{}', which is not supported", name), topology);
   const std::optional<size_t> cells = element_count(doc, topology);
   const pugi::xml_node data = doc.child(topology, "DataItem");
   if (!data) {  // vertices without a list are all points
@@ -196,7 +196,7 @@ UnstructuredMesh read_topology(const Document& doc, pugi::xml_node topology, Poi
     return mesh;
   }
   const Item item = doc.item(data);
-  if (is_float(item.values.type())) doc.fail("has point ids that are no whole numbers", data, "NumberType=\"Int\"");
+  if (is_float(item.values.type())) doc.fail("has point ids that are not whole numbers", data, "NumberType=\"Int\"");
   const auto base = parse_int(topology.attribute("BaseOffset").value()).value_or(0);
   const Array ids = vtk::as_indices(item.values);
   if (mixed || kind->type == CellType::polyhedron) {

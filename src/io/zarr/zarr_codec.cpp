@@ -56,7 +56,7 @@ void decode_last(Codec codec, std::span<const std::byte> in, std::byte* out, siz
     case Codec::lz4: return decode_lz4(in, out, bytes, where);
     case Codec::crc32c: break;
   }
-  fail_internal("a checksum is no compressor", where);
+  fail_internal("a checksum is not a compressor", where);
 }
 
 }  // namespace
@@ -81,7 +81,7 @@ void decode(std::span<const Codec> codecs, std::span<const std::byte> in, std::b
     std::memcpy(out, in.data(), bytes);
     return;
   }
-  if (codecs.size() > 1) fail_data(fmt::format("is packed {} times", codecs.size()), where, "one compressor is read");
+  if (codecs.size() > 1) fail_data(fmt::format("is packed {} times", codecs.size()), where, "one compressor is supported");
   decode_last(codecs[0], in, out, bytes, where);
 }
 

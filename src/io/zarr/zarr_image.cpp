@@ -49,7 +49,7 @@ void place_axes(Image& image, const Axes& axes, const std::string& where) {
                 : n == "c" || axes.types[i] == "channel" ? &image.channel_axis
                                                          : nullptr;
     if (slot && *slot < 0) *slot = int(i);
-    else if (shape[i] > 1) fail_data(fmt::format("axis '{}' of {} is none of t, c, z, y, x", n.substr(0, 40), shape[i]), where);
+    else if (shape[i] > 1) fail_data(fmt::format("axis '{}' of {} is not one of t, c, z, y, x", n.substr(0, 40), shape[i]), where);
   }
   if (image.axis[0] < 0) fail_data("has no axis x", where);
   constexpr std::pair<const char*, const char*> units[] = {{"meter", "m"},          {"millimeter", "mm"}, {"micrometer", "um"},
@@ -70,11 +70,11 @@ void apply_transformations(const Json& object, size_t n, std::vector<double>& sc
     if (type == "identity") continue;
     const Json* v = list_of(t, type.c_str());
     if ((type != "scale" && type != "translation") || !v)
-      fail_data(fmt::format("a coordinate transformation of type '{}' is not read", type.substr(0, 40)), where,
-                "scale and translation are");
+      fail_data(fmt::format("a coordinate transformation of type '{}' is not supported", type.substr(0, 40)), where,
+                "scale and translation are supported");
     if (v->size() != n) fail_data(fmt::format("a {} has {} numbers for {} axes", type, v->size(), n), where);
     for (size_t a = 0; a < n; ++a) {
-      if (!(*v)[a].is_number()) fail_data(fmt::format("a {} holds something that is no number", type), where);
+      if (!(*v)[a].is_number()) fail_data(fmt::format("a {} holds something that is not a number", type), where);
       const double x = (*v)[a].number();
       if (!std::isfinite(x) || (type == "scale" && !(x > 0)))
         fail_data(fmt::format("a {} of {}", type, x), where, "finite numbers; scales above 0");
@@ -192,7 +192,7 @@ Image open_image(const std::string& given) {
     constexpr const char* usual[] = {"t", "c", "z", "y", "x"};
     bool named = !names.empty();
     for (const std::string& s : names) named = named && (s == "t" || s == "c" || s == "z" || s == "y" || s == "x");
-    if (n > 5 && !named) fail_data(fmt::format("has {} axes", n), given, "up to 5 are read: t, c, z, y, x");
+    if (n > 5 && !named) fail_data(fmt::format("has {} axes", n), given, "up to 5 are supported: t, c, z, y, x");
     for (size_t i = 0; i < n; ++i) axes.emplace_back(named ? names[i] : std::string(usual[5 - n + i]));
     place_axes(image, axes_of(Json(Json::Members{{"axes", Json(std::move(axes))}}), n, given), given);
     name_channels(image);

@@ -32,7 +32,7 @@ class AtomicFolder {
   explicit AtomicFolder(std::string path) : path_(std::move(path)) {
     while (path_.size() > 1 && path_.back() == '/') path_.pop_back();
     if (file_exists(path_) && !(is_folder(path_) && sniff_zarr_folder(path_)))
-      fail_usage("is there already and is no Zarr folder", path_, "remove it first, or choose another name");
+      fail_usage("is there already and is not a Zarr folder", path_, "remove it first, or choose another name");
     partial_ = make_partial_folder(path_, false);
   }
   ~AtomicFolder() {

@@ -72,12 +72,12 @@ class FileParser {
 
   void check_version(const YamlNode& value) {
     if (value.kind != Kind::scalar || value.text != "1")
-      mistake(value.line, fmt::format("sightglass: '{}' is no version that this program reads; it reads 1", value.text));
+      mistake(value.line, fmt::format("sightglass: '{}' is not a version this program reads; it reads version 1", value.text));
   }
 
   // "key=value", "key=a,b,c" or the bare key. False after a mistake.
   bool add_word(const std::string& key, const YamlNode& value, int line, const std::string& of, std::vector<std::string>& words) {
-    if (key.find('=') != key.npos) return mistake(line, fmt::format("{}: '{}' is no name", of, key)), false;
+    if (key.find('=') != key.npos) return mistake(line, fmt::format("{}: '{}' is not a valid name", of, key)), false;
     if (value.kind == Kind::null) return words.push_back(key), true;
     if (value.kind == Kind::scalar) return words.push_back(key + "=" + value.text), true;
     if (value.kind == Kind::map) return mistake(value.line, fmt::format("{} {}: must be a value or a list, not a map", of, key)), false;
@@ -204,7 +204,7 @@ class FileParser {
       }
       unique_keys(value, fmt::format("picture {}: ", key.text));
       for (const auto& [k, v] : value.pairs) {
-        if (k.text.find('.') != k.text.npos) mistake(k.line, fmt::format("picture {}: '{}' is no name", key.text, k.text));
+        if (k.text.find('.') != k.text.npos) mistake(k.line, fmt::format("picture {}: '{}' is not a valid name", key.text, k.text));
         const std::string flat = key.text + "." + k.text;
         if (const auto at = lines.find(flat); at != lines.end())
           mistake(at->second, fmt::format("picture: the key '{}' stands twice", flat));

@@ -25,7 +25,7 @@ std::vector<std::string> read_words(const std::string& path) {
     fail_usage(what, fmt::format("{}:{}", path, line), hint);
   };
   if (root.kind != YamlNode::Kind::map)
-    fail(root.line, "is no transfer function", "a map of the words of --show volume, like opacity: '0:0,1:0.5'");
+    fail(root.line, "is not a transfer function", "a map of the words of --show volume, like opacity: '0:0,1:0.5'");
   std::vector<std::string> words;
   bool known = false;
   for (const auto& [key, value] : root.pairs) {
@@ -49,7 +49,7 @@ std::vector<std::string> read_words(const std::string& path) {
     });
     words.push_back(word);
   }
-  if (!known) fail(root.line, "is no transfer function", fmt::format("its first line is '{}: 1'", head));
+  if (!known) fail(root.line, "is not a transfer function", fmt::format("its first line is '{}: 1'", head));
   with_context(fmt::format("reading '{}'", path), [&] { show_params(show_kind<VolumeShow>(), words); });
   return words;
 }

@@ -80,7 +80,7 @@ std::vector<double> times_to_draw(const std::string& asked, const PipelineFile& 
   if (!asked.empty() && !range) return parse_times(asked, "--times");
   const auto first = range ? parse_double(ends[0]) : -HUGE_VAL, last = range ? parse_double(ends[1]) : HUGE_VAL;
   if (!first || !last || !(*first <= *last))
-    fail_usage(fmt::format("'{}' is no range of times", asked), "--times", "FIRST:LAST, FIRST:LAST:COUNT, or a list");
+    fail_usage(fmt::format("'{}' is not a range of times", asked), "--times", "FIRST:LAST, FIRST:LAST:COUNT, or a list");
   std::vector<double> times;
   const bool computed = std::any_of(file.steps.begin(), file.steps.end(), [](const PipelineFile::Step& s) {
     const Operation* op = known_operation(s.operation);

@@ -72,7 +72,7 @@ NodeId Graph::State::add(Node node, OperationNode op, const std::vector<NodeId>&
   double joined = 0;
   const bool joins = op.found && op.found->max_inputs < 0;
   for (const NodeId in : inputs) {
-    if (in < 0 || in >= id) mistake(fmt::format("{}: input {} is no earlier step", op.operation, in + 1));
+    if (in < 0 || in >= id) mistake(fmt::format("{}: input {} is not an earlier step", op.operation, in + 1));
     else {
       node.inputs.push_back(in), deepest = std::max(deepest, depth[size_t(in)] + 1);
       const double of = copies[size_t(in)];

@@ -18,13 +18,13 @@ std::vector<double> parse_times(std::string_view text, std::string_view who) {
     const auto a = parse_double(ends[0]), b = parse_double(ends[1]);
     const auto n = parse_int(ends[2]);
     if (!a || !b || !n || *n < 1 || *n > 1000000 || !std::isfinite(*a) || !std::isfinite(*b))
-      fail_usage(fmt::format("'{}' is no list of times", text), std::string(who), "FIRST:LAST:COUNT, like 0:10:101");
+      fail_usage(fmt::format("'{}' is not a list of times", text), std::string(who), "FIRST:LAST:COUNT, like 0:10:101");
     for (int64_t i = 0; i < *n; ++i) times.push_back(*n == 1 ? *a : *a + (*b - *a) * double(i) / double(*n - 1));
     return times;
   }
   for (const std::string_view part : split(text, ',')) {
     const auto t = parse_double(part);
-    if (!t || !std::isfinite(*t)) fail_usage(fmt::format("'{}' is no list of times", text), std::string(who), "like 0,0.5,1 or 0:1:101");
+    if (!t || !std::isfinite(*t)) fail_usage(fmt::format("'{}' is not a list of times", text), std::string(who), "like 0,0.5,1 or 0:1:101");
     times.push_back(*t);
   }
   if (times.empty()) fail_usage("names no time", std::string(who), "like 0,0.5,1 or 0:1:101");

@@ -32,7 +32,7 @@ std::string bounds_word(Vec3 lo, Vec3 hi) {
 
 SlabSource slabs_of_source(const std::string& operation, const std::vector<std::string>& words, Context& context) {
   const Operation& op = find_operation(operation);
-  if (op.kind != OperationKind::source) fail_usage("is no source", operation, "see: sightglass ops");
+  if (op.kind != OperationKind::source) fail_usage("is not a source", operation, "see: sightglass ops");
   const ParamSet params = make_params(op, words);  // all mistakes before any work
   const bool by_place =
       params.schema.find("dims") && params.schema.find("bounds") && params.schema.find("size") && !params.schema.find("seed");

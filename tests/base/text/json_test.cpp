@@ -64,7 +64,7 @@ TEST_CASE("json: what is no JSON, and what is nested too deeply, names the file"
       parse_json(bad, "some.json");
       FAIL("was taken");
     } catch (const Error& e) {
-      CHECK(std::string(e.what()).find("is no valid JSON") != std::string::npos);
+      CHECK(std::string(e.what()).find("is not valid JSON") != std::string::npos);
       CHECK(std::string(e.what()).find("some.json") != std::string::npos);
     }
   }

@@ -157,7 +157,8 @@ TEST_CASE("glyph_points: along lines at even spacing, with tangents, and not bes
   CHECK(p->fields().require("tangent").array.get(3, 0) == 1);
   CHECK(run(two_lines(), {.mode = GlyphPlaces::lines, .spacing = 2})->point_count() == 6);  // the other line is too near
   CHECK(error_of([] { run(box_grid(3, 3, 1), {.mode = GlyphPlaces::lines}); }).find("has no lines") != std::string::npos);
-  CHECK(error_of([] { run(two_lines(), {.mode = GlyphPlaces::lines, .spacing = 1e-200}); }).find("a larger spacing") != std::string::npos);
+  CHECK(error_of([] { run(two_lines(), {.mode = GlyphPlaces::lines, .spacing = 1e-200}); }).find("use a larger spacing") !=
+        std::string::npos);
 }
 
 TEST_CASE("trails: the stretch before a time, cut exactly, with ages and heads") {

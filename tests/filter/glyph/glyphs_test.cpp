@@ -233,7 +233,7 @@ TEST_CASE("glyphs: mistakes are named") {
   CHECK(message([](GlyphParams& p) { p.vectors.name = "w"; }, d).find("'w'") != std::string::npos);
   CHECK(message([](GlyphParams& p) { p.size_by = "lenght"; }, d).find("did you mean 'length'") != std::string::npos);
   CHECK(message([](GlyphParams& p) { p.size = 1, p.factor = 1; }, d).find("give one of them") != std::string::npos);
-  CHECK(message([](GlyphParams& p) { p.shape.shape = "barbs", p.vectors.name = "none"; }, d).find("barbs show a wind") !=
+  CHECK(message([](GlyphParams& p) { p.shape.shape = "barbs", p.vectors.name = "none"; }, d).find("barbs need a wind") !=
         std::string::npos);
   CHECK(message([](GlyphParams& p) { p.size_by = "length", p.shape.shape = "cube"; }, plain).find("no vectors") != std::string::npos);
   // A field of zeros and NaN is a picture without glyphs, and says so.

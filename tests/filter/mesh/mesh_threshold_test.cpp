@@ -102,7 +102,7 @@ TEST_CASE("threshold: mistakes say what would be right") {
   const DatasetPtr box = uniform_box(2, 2, 2);
   CHECK(error_of([&] { threshold(box, {.field = {"ff"}}, ctx); }).find("did you mean 'f'") != std::string::npos);
   CHECK(error_of([&] { threshold(box, {.field = {"f"}, .min = 2, .max = 1}, ctx); }).find("min 2 is above max 1") != std::string::npos);
-  CHECK(error_of([&] { threshold(box, {.field = {"f"}, .component = 2}, ctx); }).find("not component 2") != std::string::npos);
+  CHECK(error_of([&] { threshold(box, {.field = {"f"}, .component = 2}, ctx); }).find("no component 2") != std::string::npos);
   CHECK(error_of([&] { threshold(make_dataset(UniformGrid{}), {}, ctx); }).find("no scalar field") != std::string::npos);
   FieldSet whole;
   whole.add(make_field("w", Association::whole, {1}));

@@ -246,8 +246,7 @@ TEST_CASE("degenerate points and lines: the same bytes for 1 and 8 threads; the 
   CHECK(s->point_count() > 4);
   CHECK(equal_fields(*s, *t));
   Context context;
-  CHECK(error_of([&] { degenerate_points(volume, {}, context); }).find("slice it first, or ask for its degenerate_lines") !=
-        std::string::npos);
+  CHECK(error_of([&] { degenerate_points(volume, {}, context); }).find("slice it first, or use degenerate_lines") != std::string::npos);
   CHECK(error_of([&] { degenerate_lines(flat, {}, context); }).find("degenerate_points finds those of flat meshes") != std::string::npos);
   CHECK(error_of([&] { degenerate_points(tensor_points({diagonal(1, 2, 3)}), {}, context); }).find("has no degenerate points") !=
         std::string::npos);

@@ -371,13 +371,13 @@ TEST_CASE("ensight: errors say what is wrong and where") {
     s.replace(at, from.size(), to);
     return error_of([&] { read_any(write_case("ens_bad", files) + "m.case"); });
   };
-  CHECK(contains(refused("m.case", "ensight gold", "ensight"), "type 'ensight' is not read"));
+  CHECK(contains(refused("m.case", "ensight gold", "ensight"), "type 'ensight' is not supported"));
   CHECK(contains(refused("m.case", "model: m.geo", ""), "no geometry"));
   CHECK(contains(refused("m.case", "pressure m.scl", "pressure"), "line 8"));
   CHECK(contains(refused("m.case", "pressure m.scl", "pressure none.scl"), "none.scl"));
   CHECK(contains(refused("m.case", "pressure m.scl", "3 pressure m.scl"), "time set 3"));
   CHECK(contains(refused("m.case", "pressure m.scl", "pressure m.**"), "no time set"));
-  CHECK(contains(refused("m.case", "gamma 1.4", "gamma x"), "'x' is no number"));
+  CHECK(contains(refused("m.case", "gamma 1.4", "gamma x"), "'x' is not a number"));
   CHECK(contains(refused("m.geo", "node id given", "node id maybe"), "off, given, assign or ignore"));
   CHECK(contains(refused("m.geo", "coordinates\n        10", "coordinates\n2147483647"), "do not fit"));
   CHECK(contains(refused("m.geo", "coordinates\n        10", "coordinates\n        -1"), "do not fit"));
@@ -390,7 +390,7 @@ TEST_CASE("ensight: errors say what is wrong and where") {
   CHECK(contains(refused("m.scl", "         6\n", "         9\n"), "place 9 of 6"));
   CHECK(contains(refused("m.vel", "hexa8", "nsided"), "no elements 'nsided' (any more)"));
   const std::string message = refused("m.vel", "7.00000e+00", "seven");
-  CHECK(contains(message, "'seven' is no number"));
+  CHECK(contains(message, "'seven' is not a number"));
   CHECK(contains(message, "m.vel"));
 }
 

@@ -166,7 +166,7 @@ TEST_CASE("stl: bad files are refused") {
   CHECK(contains(
       refusal("b.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 0 1 0\nendloop\nendfacet\n" + facet + "endsolid\n"),
       "three vertices"));
-  CHECK(contains(refusal("b.stl", "solid\nfacet normal 0 0 1\npoint 0 0 0\nendsolid\n"), "line 3: 'point' is no word of STL"));
+  CHECK(contains(refusal("b.stl", "solid\nfacet normal 0 0 1\npoint 0 0 0\nendsolid\n"), "line 3: 'point' is not an STL keyword"));
 }
 
 TEST_CASE("stl: cut and damaged files give errors, never crashes") {

@@ -94,8 +94,8 @@ TEST_CASE("bov: errors say what is wrong and where") {
     return error_of([&] { read_bov_case("bov_bad", {{"a.bov", header}, {"v.dat", data}}); });
   };
   CHECK(contains(refused(head, floats(23)), "96 bytes are needed"));
-  CHECK(contains(refused(head + "DATA_SIZE: 4 3\n"), "line 7: three numbers are due"));
-  CHECK(contains(refused(head + "DATA_SIZE: 4 3 0\n"), "'0' is no count from 1"));
+  CHECK(contains(refused(head + "DATA_SIZE: 4 3\n"), "line 7: expected three numbers"));
+  CHECK(contains(refused(head + "DATA_SIZE: 4 3 0\n"), "'0' is not a valid count from 1"));
   CHECK(contains(refused(head + "DATA_SIZE: 9223372036854775807 9223372036854775807 4\n"), "too large"));
   CHECK(contains(refused(head + "DATA_FORMAT: HALF\n"), "unknown DATA_FORMAT 'HALF'"));
   CHECK(contains(refused(head + "DATA_FILE: v%d.dat\nDATA_BRICKLETS: 3 3 2\n"), "do not divide"));

@@ -124,10 +124,10 @@ TEST_CASE("metaimage: bad headers are refused") {
   const std::string end = "ElementType = MET_SHORT\nElementDataFile = LOCAL\n" + shorts(false);
   CHECK(contains(refusal("b.mha", "NDims = 3\nDimSize = 3 2\n" + end), "2 numbers but NDims is 3"));
   CHECK(contains(refusal("b.mha", "NDims = 30\nDimSize = 3 2\n" + end), "NDims is '30'"));
-  CHECK(contains(refusal("b.mha", "NDims = 2\nDimSize = 3 x\n" + end), "'x' is no size"));
+  CHECK(contains(refusal("b.mha", "NDims = 2\nDimSize = 3 x\n" + end), "'x' is not a valid size"));
   CHECK(contains(refusal("b.mha", head + "ElementType = MET_STRING\nElementDataFile = LOCAL\n"), "'MET_STRING' is unknown"));
   CHECK(contains(refusal("b.mha", head + "ElementSpacing = 1 1\n" + end), "2 numbers, 3 are needed"));
-  CHECK(contains(refusal("b.mha", head + "ElementSpacing = 1 1 nan\n" + end), "is no number"));
+  CHECK(contains(refusal("b.mha", head + "ElementSpacing = 1 1 nan\n" + end), "is not a number"));
   CHECK(contains(refusal("b.mha", head + "TransformMatrix = 1 0 0 1 0 0 0 0 1\n" + end), "in one plane"));
   CHECK(contains(refusal("b.mha", head + "ElementType = MET_SHORT\n"), "no ElementDataFile"));
   CHECK(contains(refusal("b.mha", head + "ElementNumberOfChannels = 0\n" + end), "ElementNumberOfChannels"));

@@ -234,7 +234,7 @@ TEST_CASE("nrrd: bad headers are refused with their line") {
   CHECK(contains(refusal("b.nrrd", "NRRD0004\nsizes: 4 3\n" + ok), "before 'dimension'"));
   CHECK(contains(refusal("b.nrrd", "NRRD0004\ndimension: 99\n" + ok), "'dimension' is '99'"));
   CHECK(contains(refusal("b.nrrd", "NRRD0004\ndimension: 2\nsizes: 4 3 2\n" + ok), "3 entries for 2 axes"));
-  CHECK(contains(refusal("b.nrrd", "NRRD0004\ndimension: 2\nsizes: 4 -3\n" + ok), "'-3' is no size"));
+  CHECK(contains(refusal("b.nrrd", "NRRD0004\ndimension: 2\nsizes: 4 -3\n" + ok), "'-3' is not a valid size"));
   CHECK(contains(refusal("b.nrrd", "NRRD0004\nsome words\n" + ok), "neither 'field: value'"));
   CHECK(contains(refusal("b.nrrd", "NRRD0004\ncolour: red\n" + ok), "unknown field 'colour'"));
   CHECK(contains(refusal("b.nrrd", head + ok), "no 'encoding'"));
@@ -262,10 +262,11 @@ TEST_CASE("nrrd: sizes are checked before memory is asked for") {
   CHECK(contains(refusal("s.nrrd", with("2 1 1", "bz2")), "damaged"));
   CHECK(contains(refusal("s.nrrd", with("2 1 1", "hex")), "cannot hold"));
   CHECK(contains(refusal("s.nrrd", with("5 1 1", "ascii")), "cannot hold"));
-  CHECK(contains(refusal("s.nrrd", "NRRD0004\ntype: uchar\ndimension: 1\nsizes: 2\nencoding: ascii\n\n1 256"), "'256' is no u8"));
-  CHECK(contains(refusal("s.nrrd", "NRRD0004\ntype: uchar\ndimension: 1\nsizes: 2\nencoding: ascii\n\n1 ten"), "line 7: 'ten' is no u8"));
-  CHECK(
-      contains(refusal("s.nrrd", "NRRD0004\ntype: uchar\ndimension: 1\nsizes: 2\nencoding: hex\n\n01 0g"), "'g' is no hexadecimal digit"));
+  CHECK(contains(refusal("s.nrrd", "NRRD0004\ntype: uchar\ndimension: 1\nsizes: 2\nencoding: ascii\n\n1 256"), "'256' is not a valid u8"));
+  CHECK(contains(refusal("s.nrrd", "NRRD0004\ntype: uchar\ndimension: 1\nsizes: 2\nencoding: ascii\n\n1 ten"),
+                 "line 7: 'ten' is not a valid u8"));
+  CHECK(contains(refusal("s.nrrd", "NRRD0004\ntype: uchar\ndimension: 1\nsizes: 2\nencoding: hex\n\n01 0g"),
+                 "'g' is not a hexadecimal digit"));
 }
 
 TEST_CASE("nrrd: a stream that unpacks to far more than promised is refused, not unpacked") {

@@ -227,7 +227,7 @@ TEST_CASE("xdmf: times of a series may stand in a list; spatial collections have
 }
 
 TEST_CASE("xdmf: faults are named with their line") {
-  CHECK(contains(refusal("t.xdmf", "<Xdmf><Domain><Grid>"), "is no well-formed XML"));
+  CHECK(contains(refusal("t.xdmf", "<Xdmf><Domain><Grid>"), "is not well-formed XML"));
   CHECK(contains(refusal("t.xdmf", file("")), "has no Grid"));
   CHECK(contains(refusal("t.xdmf", file(grid("<Topology TopologyType=\"Triangle\"/>"))), "has no Geometry"));
   const std::string message = refusal("t.xdmf", file(grid(triangle_mesh + attribute("s", "Center=\"Node\"", item("3", "1 2 3")))));

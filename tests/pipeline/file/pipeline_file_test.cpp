@@ -249,7 +249,8 @@ TEST_CASE("pipeline file: of words with one key the last is written") {
   CHECK(back.picture == Words{"size=2", "camera.a=3"});
   CHECK(has(error_of("sightglass: 1\nsteps: {a: {ramp: }}\npicture: {camera: {a: 1},\n camera.a: 2}"),
             "p.yaml:4: picture: the key 'camera.a' stands twice"));
-  CHECK(has(error_of("sightglass: 1\nsteps: {a: {ramp: }}\npicture: {camera: {a.b: 1}}"), "p.yaml:3: picture camera: 'a.b' is no name"));
+  CHECK(has(error_of("sightglass: 1\nsteps: {a: {ramp: }}\npicture: {camera: {a.b: 1}}"),
+            "p.yaml:3: picture camera: 'a.b' is not a valid name"));
 }
 
 TEST_CASE("pipeline file: every mistake of form is told with its line, all at once") {
@@ -276,7 +277,7 @@ TEST_CASE("pipeline file: every mistake of form is told with its line, all at on
       "  - [surface]\n"                                // 20
       "picture: {sise: 1x1, camera: {a: {b: 1}}}\n");  // 21
   for (const char* part : {"20 mistakes:",
-                           "p.yaml:1: sightglass: '2' is no version",
+                           "p.yaml:1: sightglass: '2' is not a version",
                            "p.yaml:2: unknown key 'stpes'; did you mean 'steps'?",
                            "p.yaml:4: step 'a': must be a map",
                            "p.yaml:5: step 'b': has 'form' beside 'contour'",
@@ -290,7 +291,7 @@ TEST_CASE("pipeline file: every mistake of form is told with its line, all at on
                            "p.yaml:12: read path: the items of a list must be values",
                            "p.yaml:13: steps: the key 'i' stands twice",
                            "p.yaml:14: contour: the key 'a' stands twice",
-                           "p.yaml:15: contour: 'a=b' is no name",
+                           "p.yaml:15: contour: 'a=b' is not a valid name",
                            "p.yaml:17: show: unknown kind 'surfcae'; did you mean 'surface'?",
                            "p.yaml:18: show: has no kind",
                            "p.yaml:19: show: of: must be the name of a step",

@@ -271,7 +271,7 @@ TEST_CASE("graph: mistakes in steps that are not needed do not stop the others")
   CHECK(test::error_of([&] { g.validate(); }).find("step 2: unknown operation 'rmap'") == 0);
   CHECK(test::error_of([&] { g.evaluate(7, {}, context); }) == "there is no step 8");
   const NodeId bad = g.add_operation("scale", {}, {9}), extra = g.add_operation("ramp", {}, {good});
-  CHECK(test::error_of([&] { g.evaluate(bad, {}, context); }).find("input 10 is no earlier step") != std::string::npos);
+  CHECK(test::error_of([&] { g.evaluate(bad, {}, context); }).find("input 10 is not an earlier step") != std::string::npos);
   CHECK(test::error_of([&] { g.evaluate(extra, {}, context); }).find("is a source and takes no input") != std::string::npos);
 }
 

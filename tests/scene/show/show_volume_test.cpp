@@ -159,7 +159,7 @@ TEST_CASE("volume words: what cannot be is refused before any data is read, all 
   CHECK_NOTHROW(show_params(find_show("volume"), {"opacity=0:0,@-500:0.1,1:1", "colors=0:black,@-500:white", "widgets="}));
   CHECK_NOTHROW(show_params(find_show("volume"), {"widgets=triangle 0 @-500 0 1"}));
   const DatasetPtr d = two_fields();
-  CHECK(says(show_error(d, {"field=T", "opacity=0:0,@100:0.5,1:1"}), "'@100:0.5' lies below the point before it (100 after 200)"));
+  CHECK(says(show_error(d, {"field=T", "opacity=0:0,@100:0.5,1:1"}), "'@100:0.5' lies below the previous point (100 after 200)"));
   CHECK(show(d, {"field=T", "opacity=0:0,@250:0.5,1:1"}).item.opacity.at(250) == 0.5);
 }
 

@@ -25,11 +25,10 @@ struct CalcParams {
 
 inline void describe(Schema& s, CalcParams& p) {
   s("expr", p.expr,
-    "What to compute, like mag(velocity)*rho; names of fields as they are, or in \"quotes\"; also x, y, z, position, time, pi. Operators "
-    "and "
+    "Expression, e.g. mag(velocity)*rho. Field names as they are, or in \"quotes\"; also x, y, z, position, time, pi. Operators and "
     "functions are listed below.");
   s("name", p.name, "Name of the new field.");
-  s("on", p.on, "Where: auto follows the fields of the expression (points when it has none).");
+  s("on", p.on, "Where to compute: auto follows the fields of the expression (points if it has none).");
 }
 
 /// Adds a field computed from others, tuple by tuple, in double; the result is f32 when every field used is f32 or a small

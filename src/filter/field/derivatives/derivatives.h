@@ -10,7 +10,7 @@ struct DivergenceParams {
   std::string as;
 };
 inline void describe(Schema& s, DivergenceParams& p) {
-  s("field", p.field, "Vector field; default: the active vector.").takes(fields::vectors);
+  s("field", p.field, "Vector field; default: the active vectors.").takes(fields::vectors);
   s("as", p.as, "Name of the result; default: divergence(FIELD).");
 }
 /// The sum of d u_a / d x_a of a vector field, where the field lies. Second order on grids and smooth meshes, exact for linear fields.
@@ -21,7 +21,7 @@ struct CurlParams {
   std::string as;
 };
 inline void describe(Schema& s, CurlParams& p) {
-  s("field", p.field, "Vector field; default: the active vector.").takes(fields::vectors);
+  s("field", p.field, "Vector field; default: the active vectors.").takes(fields::vectors);
   s("as", p.as, "Name of the result; default: curl(FIELD).");
 }
 /// Curl (vorticity) of a vector field: (dw/dy - dv/dz, du/dz - dw/dx, dv/dx - du/dy).

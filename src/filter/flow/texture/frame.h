@@ -44,7 +44,7 @@ Data over_parts(const Data& data, std::string_view who, Context& context, F&& f)
   });
   return map_datasets(data, [&](const DatasetPtr& d) -> DatasetPtr {
     if (alone || (has_room(*d) && mesh_dimension(*d) == dimension)) return f(d);
-    context.info(std::string(who) + ": a part without area (like points or lines), or of fewer dimensions than others, stays as it is");
+    context.info(std::string(who) + ": a part without area (like points or lines), or of fewer dimensions than others, is left unchanged");
     return d;
   });
 }

@@ -242,12 +242,12 @@ DatasetPtr separatrices_dataset(const std::vector<Separatrix>& lines) {
 }
 
 void describe(Schema& s, SeparatricesParams& p) {
-  s("field", p.field, "Velocity; default: the active vectors.").takes(fields::vectors);
+  s("field", p.field, "Velocity field; default: the active vectors.").takes(fields::vectors);
   describe(s, p.critical);
-  s("offset", p.offset, "How far from the saddle tracing begins, in diagonals of its cell.").positive();
-  s("border", p.border, "Also from places where the flow touches the border from inside, leaves a wall or comes to one (flat meshes).");
-  s("max_steps", p.max_steps, "Most steps of a line.").range(1, 1e9);
-  s("tolerance", p.tolerance, "Error of one step, in sizes of the local cell.").positive();
+  s("offset", p.offset, "Distance from the saddle at which tracing begins, in diagonals of its cell.").positive();
+  s("border", p.border, "Also start where the flow touches the border from inside, or separates from or attaches to a wall (flat meshes).");
+  s("max_steps", p.max_steps, "Maximum number of steps of a line.").range(1, 1e9);
+  s("tolerance", p.tolerance, "Error per step, in local cell sizes.").positive();
 }
 
 DatasetPtr separatrices(const Data& in, const SeparatricesParams& p, Context& context) {

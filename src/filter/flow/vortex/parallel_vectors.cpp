@@ -236,8 +236,8 @@ ParallelLines parallel_lines(const DatasetPtr& data, std::span<const Vec3> a, st
   const CellReader proto(data);
   const Around around(proto, a, b, nothing, context);
   if (!around.solid)
-    fail_usage("lines where two vector fields are parallel need cells with a volume", "parallel_vectors",
-               "in a plane the counterpart is a point: critical_points");
+    fail_usage("lines along which two vector fields are parallel need cells with volume", "parallel_vectors",
+               "in a plane the counterpart is points: use critical_points");
   constexpr size_t grain = 1 << 10;
   std::vector<Work> parts((around.cells.size() + grain - 1) / grain);
   const auto points = int64_t(data->point_count());
@@ -341,7 +341,8 @@ namespace {
 
 DatasetPtr of_mesh(const DatasetPtr& given, const ParallelVectorsParams& p, Context& context) {
   if (p.b.empty())
-    fail_usage("there is no second vector field", "parallel_vectors", "b=FIELD names it; a=FIELD the first (default: the active vectors)");
+    fail_usage("there is no second vector field", "parallel_vectors",
+               "name it with b=FIELD, and the first with a=FIELD (default: the active vectors)");
   Field first = flow_field_of(*given, p.a.name, "parallel_vectors"), second = flow_field_of(*given, p.b.name, "parallel_vectors");
   const double nothing = std::max(parallel_within(first.array.type()), parallel_within(second.array.type()));
   const DatasetPtr in = with_whole_faces(given, {first, second}, context);

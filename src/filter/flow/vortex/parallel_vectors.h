@@ -51,7 +51,7 @@ struct ParallelVectorsParams {
   FieldName a, b;
 };
 inline void describe(Schema& s, ParallelVectorsParams& p) {
-  s("a", p.a, "First vector field; default: the active vector.").takes(fields::vectors);
+  s("a", p.a, "First vector field; default: the active vectors.").takes(fields::vectors);
   s("b", p.b, "Second vector field, parallel or opposite to the first on the lines.").takes(fields::vectors);
 }
 /// Poly-lines with the fields of the input and "parallel ratio" (a over b).

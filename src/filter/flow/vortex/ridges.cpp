@@ -21,13 +21,13 @@
 namespace sg {
 
 void describe(Schema& s, RidgesParams& p) {
-  s("field", p.field, "Scalar field of points; default: the active scalar.").takes(fields::point_scalars);
-  s("kind", p.kind, "Crests or troughs.");
-  s("limit", p.limit, "Ridges: only where the field is at least this; valleys: at most. Default: no limit.").unit("@field");
-  s("smooth", p.smooth, "Standard deviation, in cells, of the Gaussian that uniform and rectilinear grids are averaged with before.")
+  s("field", p.field, "Scalar point field; default: the active scalar.").takes(fields::point_scalars);
+  s("kind", p.kind, "Find crests (ridges) or troughs (valleys).");
+  s("limit", p.limit, "Ridges: smallest value of the field; valleys: largest. Default: no limit.").unit("@field");
+  s("smooth", p.smooth, "Standard deviation, in cells, of the Gaussian with which uniform and rectilinear grids are smoothed first.")
       .range(0, 100);
-  s("strength", p.strength, "Weakest curvature across that counts, as a part of the strongest.").range(0, 1);
-  s("min_length", p.min_length, "Smallest extent of a connected piece, as a part of the mesh's diagonal.").range(0, 1);
+  s("strength", p.strength, "Minimum curvature across the ridge, as a fraction of the largest.").range(0, 1);
+  s("min_length", p.min_length, "Minimum extent of a connected piece, as a fraction of the mesh's diagonal.").range(0, 1);
 }
 
 namespace {
@@ -48,8 +48,8 @@ int flat_axis(const DatasetPtr& in) {
   const Vec3 size = in->bounds().size();
   for (int a = 0; a < 3; ++a)
     if (size[a] <= 1e-9 * in->bounds().diagonal()) return a;
-  fail_usage("this mesh is a bent or tilted surface; ridges are found in flat meshes along two axes and in volumes", "ridges",
-             "resample it on a grid");
+  fail_usage("this mesh is a curved or tilted surface; ridges can be found only in flat meshes along two axes and in volumes", "ridges",
+             "resample it to a grid");
 }
 
 double mean_cell(const Dataset& d, int dimension, int flat) {
@@ -209,10 +209,11 @@ std::vector<int64_t> cells_on_ridges(const DatasetPtr& all, const RidgesParams& 
 
 DatasetPtr ridges(const DatasetPtr& in, const RidgesParams& p, Context& context) {
   const Field* found = p.field.empty() ? in->fields().active(1) : &in->fields().require(p.field.name);
-  if (!found) fail_usage("the data have no scalar field", "ridges");
+  if (!found) fail_usage("the data has no scalar field", "ridges");
   const Field field = *found;
   if (field.components() != 1 || field.association != Association::point)
-    fail_usage(fmt::format("field '{}' is no scalar on points", field.name), "ridges", "magnitude, component or cell_to_point make one");
+    fail_usage(fmt::format("field '{}' is not a scalar point field", field.name), "ridges",
+               "magnitude, component or cell_to_point can make one");
   const int dimension = mesh_dimension(*in);
   if (dimension < 2) fail_usage("a mesh of lines or points has no ridges", "ridges");
   const int flat = dimension == 2 ? flat_axis(in) : -1;

@@ -12,9 +12,9 @@
 namespace sg {
 
 void describe(Schema& s, ShearLinesParams& p) {
-  s("family", p.family, "Which of the two directions.");
-  s("count", p.count, "Seeds of each family, about.").range(1, 1e7);
-  s("max_length", p.max_length, "Longest line; default: the diagonal of the data.").unit("length").positive();
+  s("family", p.family, "Which of the two shear directions.");
+  s("count", p.count, "Approximate number of seeds of each family.").range(1, 1e7);
+  s("max_length", p.max_length, "Maximum length of a line; default: the diagonal of the data.").unit("length").positive();
 }
 
 namespace {
@@ -25,7 +25,7 @@ const Field& of_ftle(const Dataset& d, const char* name, int components) {
   const Field* f = d.fields().find(name, Association::point);
   if (!f || f->components() != components)
     fail_usage(fmt::format("there is no point field '{}' of {} components", name, components), "shear_lines",
-               "the result of ftle on a flat grid of seeds");
+               "use the result of ftle on a flat grid of seeds");
   return *f;
 }
 

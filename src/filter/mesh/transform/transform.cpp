@@ -46,9 +46,9 @@ Affine affine_of(const TransformParams& p) {
   Affine r;
   if (!p.matrix.empty()) {
     if (p.matrix.size() != 16)
-      fail_usage(fmt::format("the matrix has {} numbers", p.matrix.size()), "transform matrix", "give 16, rows first");
+      fail_usage(fmt::format("the matrix has {} numbers", p.matrix.size()), "transform matrix", "give 16, row by row");
     if (p.matrix[12] != 0 || p.matrix[13] != 0 || p.matrix[14] != 0 || p.matrix[15] != 1)
-      fail_usage("the last row of the matrix is not 0,0,0,1", "transform matrix", "perspective belongs to the camera");
+      fail_usage("the last row of the matrix is not 0,0,0,1", "transform matrix", "perspective is a property of the camera");
     for (size_t i = 0; i < 3; ++i) {
       for (size_t j = 0; j < 3; ++j) r.linear.m[i][j] = p.matrix[4 * i + j];
       r.shift[int(i)] = p.matrix[4 * i + 3];
@@ -75,7 +75,7 @@ Affine affine_of(const TransformParams& p) {
     for (double v : row) largest = std::max(largest, std::abs(v));
   const double d = determinant(r.linear);
   if (!std::isfinite(d) || !std::isfinite(r.shift.x + r.shift.y + r.shift.z) || !(std::abs(d) > 1e-12 * largest * largest * largest))
-    fail_usage("the transform flattens the mesh", "transform", "scale factors must not be 0 and the matrix not singular");
+    fail_usage("the transform flattens the mesh", "transform", "scale factors must not be 0, nor the matrix singular");
   return r;
 }
 
@@ -180,7 +180,7 @@ struct Mover {
   }
   Mesh operator()(const AmrGrid& g) const {
     if (!t.diagonal())
-      fail_usage("an AMR grid cannot be rotated or sheared", "transform", "turn the camera, or take faces, a slice or a contour first");
+      fail_usage("an AMR grid cannot be rotated or sheared", "transform", "rotate the camera, or take faces, a slice or a contour first");
     AmrGrid r = g;
     r.origin = t(g.origin);
     for (auto& level : r.levels)

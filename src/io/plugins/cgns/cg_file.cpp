@@ -50,7 +50,7 @@ CgFile::CgFile(const std::string& path) : path_(path) {
   }
   int type = CGIO_FILE_NONE;
   if (cgio_check_file(path.c_str(), &type) != CGIO_ERR_NONE)
-    fail_data(fmt::format("is no CGNS file: {}", message()), path, "it may be cut or damaged");
+    fail_data(fmt::format("is not a CGNS file: {}", message()), path, "it may be cut or damaged");
   if (cgio_open_file(path.c_str(), CGIO_MODE_READ, type, &file_) != CGIO_ERR_NONE)
     fail_data(fmt::format("cannot be opened: {}", message()), path, "it may be cut or damaged");
   double id = 0;
@@ -86,7 +86,7 @@ Node CgFile::node_of(double id, const std::string& parent) const {
   cgsize_t dims[CGIO_MAX_DIMENSIONS + 1] = {};
   if (cgio_get_dimensions(file_, id, &rank, dims) != CGIO_ERR_NONE) fail(fmt::format("its size cannot be read: {}", message()), n);
   for (int k = 0; k < std::min(rank, CGIO_MAX_DIMENSIONS); ++k) {
-    if (dims[k] < 0) fail(fmt::format("has a size of {}", dims[k]), n, "sizes of 2^31 and more are not read");
+    if (dims[k] < 0) fail(fmt::format("has a size of {}", dims[k]), n, "sizes of 2^31 and more are not supported");
     n.dims.push_back(size_t(dims[k]));
   }
   return n;
@@ -104,7 +104,7 @@ void CgFile::check_link(const Node& node, double id) const {
   if (file.empty()) return;  // within this file
   const std::string beside = named_file(path_, file);
   for (const std::string& path : {beside, file})
-    if (file_exists(path) && !is_plain_file(path)) fail(fmt::format("links to '{}', which is no file", file), node);
+    if (file_exists(path) && !is_plain_file(path)) fail(fmt::format("links to '{}', which is not a file", file), node);
 }
 
 std::vector<Node> CgFile::children(const Node& node) const {

@@ -155,8 +155,8 @@ class Zone {
     else {
       const ElementKind* kind = element_kind(s.type);
       if (!kind)
-        file_.fail(fmt::format("elements of type {} are not read", s.type), n,
-                   "read are linear and quadratic elements, MIXED, NGON_n, NFACE_n");
+        file_.fail(fmt::format("elements of type {} are not supported", s.type), n,
+                   "supported: linear and quadratic elements, MIXED, NGON_n, NFACE_n");
       if (s.ids.count() / kind->nodes < size_t(s.count))
         file_.fail(fmt::format("{} elements of {} nodes need more than {} ids", s.count, kind->nodes, s.ids.count()), n);
       s.dimension = kind->dimension;
@@ -210,7 +210,7 @@ class Zone {
     type = numbered(type, version_);
     if (const ElementKind* kind = element_kind(type)) return kind->nodes;
     if (version_ < 3.2 && type > type_ngon && type < type_ngon + 10000) return size_t(type - type_ngon);
-    file_.fail(fmt::format("has an element of type {}, which is not read", type), *s.node);
+    file_.fail(fmt::format("has an element of type {}, which is not supported", type), *s.node);
   }
   int mixed_dimension(int64_t type) const {
     const ElementKind* kind = element_kind(numbered(type, version_));
@@ -285,7 +285,7 @@ class Zone {
         std::upper_bound(sections_.begin(), sections_.end(), number, [](int64_t n, const Section& f) { return n < f.first; });
     const Section* s = after == sections_.begin() ? nullptr : &after[-1];
     if (!s || number - s->first >= s->count || (s->dimension != 2 && s->type != type_mixed))
-      file_.fail(fmt::format("a face is the element {}, which is no polygon", number), *cells.node);
+      file_.fail(fmt::format("a face is the element {}, which is not a polygon", number), *cells.node);
     const IndexView ids = index_view(s->ids);
     const auto e = size_t(number - s->first);
     size_t at = 0, corners = 0;
@@ -297,7 +297,7 @@ class Zone {
       else at = e * element_kind(type)->nodes;
       corners = type == 5 || type == 6 ? 3 : 4;
       if (!element_kind(type) || element_kind(type)->dimension != 2)
-        file_.fail(fmt::format("a face is the element {}, which is no polygon", number), *cells.node);
+        file_.fail(fmt::format("a face is the element {}, which is not a polygon", number), *cells.node);
     }
     for (size_t k = 0; k < corners; ++k) {
       const int64_t id = zero_based(ids[at + k]);

@@ -36,7 +36,7 @@ ZoneSize size_of(const CgFile& file, const Node& zone, const std::vector<Node>& 
   const std::string text = type ? file.text(*type) : "Structured";
   z.structured = text == "Structured";
   if (!z.structured && text != "Unstructured")
-    file.fail(fmt::format("is a zone of type '{}'", text), zone, "known are Structured and Unstructured");
+    file.fail(fmt::format("is a zone of type '{}'", text), zone, "supported: Structured and Unstructured");
   const std::vector<int64_t> n = file.integers(zone);
   const size_t rank = zone.dims.empty() ? 0 : zone.dims[0];
   if (rank < 1 || rank > 3 || n.size() < 2 * rank) file.fail("does not say its size", zone);
@@ -122,7 +122,7 @@ Points positions(const CgFile& file, const Node& grid, const ZoneSize& size) {
     for (size_t i = 0; i < n; ++i) x[i] = r.get(i) * std::cos(theta.get(i)), y[i] = r.get(i) * std::sin(theta.get(i));
   }
   if (n > 0 && axes[0].empty() && axes[1].empty() && axes[2].empty())
-    file.fail("has no CoordinateX, CoordinateY or CoordinateZ", grid, "spherical and auxiliary coordinates are not read");
+    file.fail("has no CoordinateX, CoordinateY or CoordinateZ", grid, "spherical and auxiliary coordinates are not supported");
   const Array* some = nullptr;
   for (const Array& a : axes)
     if (!a.empty()) some = &a;

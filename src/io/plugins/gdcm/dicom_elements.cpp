@@ -67,7 +67,7 @@ struct Walker {
     while (at < end) {
       const Head h = head(at, end);
       if (h.e.tag == sequence_end && open) return h.e.value;
-      if (h.e.tag != item_tag) fail(at, h.e.tag, "is no item of a sequence");
+      if (h.e.tag != item_tag) fail(at, h.e.tag, "is not an item of a sequence");
       at = h.length == undefined ? item(h.e.value, end, true, depth, keep) : item(h.e.value, h.e.end, false, depth, keep);
     }
     if (open) fail_data(fmt::format("byte {}: a sequence has no end", at), d.path);
@@ -93,7 +93,7 @@ struct Walker {
     while (at < end) {
       const Head h = head(at, end);
       if (h.e.tag == sequence_end) return h.e.value;
-      if (h.e.tag != item_tag || h.length == undefined) fail(at, h.e.tag, "is no fragment of pixel data");
+      if (h.e.tag != item_tag || h.length == undefined) fail(at, h.e.tag, "is not a fragment of pixel data");
       d.fragment_bytes += h.length;
       at = h.e.end;
     }
@@ -173,7 +173,7 @@ DicomElements walk_dicom(std::span<const std::byte> bytes, const std::string& pa
       at = h.e.end;
     }
   } else if (bytes.size() < 16 || (load<uint16_t>(bytes.data()) != 8 && load<uint16_t>(bytes.data()) != 2)) {
-    fail_data("is no DICOM file: there is no 'DICM' at byte 128, and no element of group 8 at its beginning", path);
+    fail_data("is not a DICOM file: there is no 'DICM' at byte 128, and no element of group 8 at its beginning", path);
   } else {
     // Old files without a preamble: the VR is either there or not.
     const auto* vr = reinterpret_cast<const char*>(bytes.data()) + 4;
@@ -181,7 +181,7 @@ DicomElements walk_dicom(std::span<const std::byte> bytes, const std::string& pa
   }
   d.meta_end = at;
   if (d.transfer_syntax == "1.2.840.10008.1.2.1.99")
-    fail_data("its data set is deflated, which is not read", path, "convert it: gdcmconv --raw");
+    fail_data("its data set is deflated, which is not supported", path, "convert it: gdcmconv --raw");
   w.explicit_vr = d.explicit_vr = d.transfer_syntax != "1.2.840.10008.1.2";
   w.big = d.big_endian = d.transfer_syntax == "1.2.840.10008.1.2.2";
   w.dataset(at);

@@ -121,7 +121,7 @@ void decode_here(const std::string& file, const DicomPicture& p, Result& r, char
   r.is_signed = f.GetPixelRepresentation() == 1;
   const size_t need = p.numbers_per_frame() * p.frames * size_t(r.bits_allocated / 8), have = image->GetBufferLength();
   if (have != need || need > room || int(f.GetSamplesPerPixel()) != p.components())
-    return say(r, fmt::format("they unpack to {} bytes, {} are needed", have, need));
+    return say(r, fmt::format("they unpack to {} bytes, but {} are needed", have, need));
   if (!image->GetBuffer(out)) return say(r, "they are damaged");
   r.state = 1;
 }
@@ -226,7 +226,7 @@ bool read_dicom_header(const std::string& path, DicomPicture& p) {
   const size_t per_frame = p.rows * p.columns * size_t(p.samples) * size_t(p.bits_allocated / 8);
   if (!multiply(per_frame, p.frames, need) ||
       need / (d.encapsulated ? 5000 : 1) > (d.encapsulated ? d.fragment_bytes + 64 : p.pixels_bytes))
-    fail_data(fmt::format("{} frames of {} x {} need {} bytes, there are {}", p.frames, p.columns, p.rows, need,
+    fail_data(fmt::format("{} frames of {} x {} need {} bytes, but there are {}", p.frames, p.columns, p.rows, need,
                           d.encapsulated ? d.fragment_bytes : p.pixels_bytes),
               path);
   read_geometry(d, p);

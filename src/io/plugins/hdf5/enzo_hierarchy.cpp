@@ -75,9 +75,10 @@ struct Parser {
 
   void pointer(std::string_view text, Links& links) const {  // "Grid[1]->NextGridThisLevel = 0"
     const size_t open = text.find('['), close = text.find(']'), equal = text.find('=');
-    if (open == text.npos || close == text.npos || close < open || equal == text.npos) fail("is no pointer to a grid");
+    if (open == text.npos || close == text.npos || close < open || equal == text.npos) fail("is not a pointer to a grid");
     const auto from = parse_int(trim(text.substr(open + 1, close - open - 1))), to = parse_int(trim(text.substr(equal + 1)));
-    if (!from || !to || *from < 1 || *to < 0 || *from > int64_t(most_grids) || *to > int64_t(most_grids)) fail("is no pointer to a grid");
+    if (!from || !to || *from < 1 || *to < 0 || *from > int64_t(most_grids) || *to > int64_t(most_grids))
+      fail("is not a pointer to a grid");
     const std::string_view name = trim(text.substr(close + 1, equal - close - 1));
     if (*to == 0) return;
     if (name == "->NextGridThisLevel") links.same[int(*from)] = int(*to);

@@ -145,7 +145,7 @@ bool File::is_dataset(const std::string& object) const { return is_kind(*this, o
 std::vector<std::string> File::children(const std::string& group) const {
   std::vector<std::string> names;
   const Handle g(H5Gopen2(file_, group.c_str(), H5P_DEFAULT));
-  if (!g.good()) fail("is no group that can be opened", group);
+  if (!g.good()) fail("is not a group that can be opened", group);
   const Handle made(H5Gget_create_plist(g));
   unsigned order = 0;
   H5Pget_link_creation_order(made, &order);

@@ -14,7 +14,7 @@
 namespace sg::h5 {
 
 Dataset::Dataset(const File& file, const std::string& path) : file_(file), path_(path) {
-  if (!file.is_dataset(path)) file.fail("is no dataset", path, "the file is truncated or not complete");
+  if (!file.is_dataset(path)) file.fail("is not a dataset", path, "the file is truncated or not complete");
   set_ = Handle(H5Dopen2(file.id(), path.c_str(), H5P_DEFAULT));
   if (!set_.good()) file.fail("cannot be opened", path, "the file is damaged");
   type_in_file_ = Handle(H5Dget_type(set_));
@@ -43,9 +43,9 @@ void Dataset::find_layout() {
   hsize_t size = 0;
   if (!made.good() || !file.good() || H5Fget_filesize(file, &size) < 0) file_.fail("has no layout", path_, "the file is damaged");
   const H5D_layout_t layout = H5Pget_layout(made);
-  if (layout == H5D_VIRTUAL) file_.fail("is a virtual dataset: these are not read", path_, "copy it with h5repack first");
+  if (layout == H5D_VIRTUAL) file_.fail("is a virtual dataset: these are not supported", path_, "copy it with h5repack first");
   if (layout == H5D_CONTIGUOUS && H5Pget_external_count(made) > 0)
-    file_.fail("keeps its numbers in other files: that is not read", path_, "copy it with h5repack first");
+    file_.fail("keeps its numbers in other files: that is not supported", path_, "copy it with h5repack first");
   const int filters = H5Pget_nfilters(made);
   const uint64_t stored = std::min<uint64_t>(H5Dget_storage_size(set_), size);
   if (!multiply(stored, filters > 0 ? 1032 : 1, backed_) || !add(backed_, 1 << 20, backed_)) backed_ = UINT64_MAX;
@@ -128,7 +128,7 @@ const MappedFile& Dataset::home() const {
 }
 
 void Dataset::check_backed(uint64_t bytes) const {
-  if (!numeric_) file_.fail("holds no numbers of a type that is read", path_, "integers and floats of 1, 2, 4 or 8 bytes");
+  if (!numeric_) file_.fail("holds no numbers of a supported type", path_, "integers and floats of 1, 2, 4 or 8 bytes");
   if (bytes > backed_)
     file_.fail(fmt::format("has {} bytes, more than what the file holds of it can give", bytes), path_, "the file is truncated or damaged");
   check_plausible(bytes, std::max(file_.size(), file_size_), file_.path());

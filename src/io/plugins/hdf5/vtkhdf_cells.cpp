@@ -70,7 +70,7 @@ CellLists read_lists(const Group& g, const Partitions& p, const std::string& at,
   if (!add(r.cell_offset, p.first, from)) from = UINT64_MAX;
   const Array offsets = vtk::as_indices(h5::Dataset(g.file, g.at(at + "Offsets")).read_rows(from, r.cell_count + p.size()));
   const Array ids = vtk::as_indices(h5::Dataset(g.file, g.at(at + "Connectivity")).read_rows(id_offset, id_count));
-  if (offsets.components() != 1 || ids.components() != 1) g.file.fail("has cells that are no lists of numbers", g.at(at));
+  if (offsets.components() != 1 || ids.components() != 1) g.file.fail("has cells that are not lists of numbers", g.at(at));
   size_t o = 0, c = 0;
   for (size_t i = 0; i < p.size(); ++i) {
     const size_t n = r.cells[i], m = r.ids[i];
@@ -177,7 +177,7 @@ void read_unstructured(const Group& g, DatasetParts& parts) {
   mesh.cells = vtk::concatenated_cells(cells.lists, starts(p.points));
   if (cells.cell_count > 0) {
     const Array types = h5::Dataset(g.file, g.at("Types")).read_rows(cells.cell_offset, cells.cell_count);
-    if (is_float(types.type()) || types.components() != 1) g.file.fail("is no list of cell types", g.at("Types"));
+    if (is_float(types.type()) || types.components() != 1) g.file.fail("is not a list of cell types", g.at("Types"));
     vtk::set_types(mesh, types);
     if (has_polyhedra(mesh)) {
       if (!g.file.is_dataset(g.at("FaceConnectivity")))

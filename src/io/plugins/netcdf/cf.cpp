@@ -196,7 +196,7 @@ Data read_cf(const NcFile& file, const ReadOptions& options, Context& context) {
   const CfModel model(file);
   if (model.grids().empty()) {
     if (file.has_group("minc-2.0"))
-      file.fail("is a MINC 2 file, which is not read", {}, "convert it with mincconvert to MINC 1 or with mnc2nii to NIfTI");
+      file.fail("is a MINC 2 file, which is not supported", {}, "convert it with mincconvert to MINC 1 or with mnc2nii to NIfTI");
     file.fail("holds no variable on a grid", {}, "expected a numeric variable with at least one dimension longer than 1");
   }
   const std::vector<double> times = times_of(file, model);

@@ -36,11 +36,11 @@ MincLayout layout_of(const NcFile& file, const Variable& image) {
     if (name == "vector_dimension") l.vector = int(k), l.components = image.shape[k];
     else if (at != std::end(spaces)) l.axes.push_back(int(k)), l.space.push_back(int(at - std::begin(spaces)));
     else if (name == "time") l.time = int(k);
-    else file.fail(fmt::format("has the dimension '{}'", name), image.name, "known are xspace, yspace, zspace, time and vector_dimension");
+    else file.fail(fmt::format("has the dimension '{}'", name), image.name, "supported: xspace, yspace, zspace, time and vector_dimension");
   }
   for (size_t a = 0; a < l.axes.size(); ++a)
     if (std::count(l.space.begin(), l.space.end(), l.space[a]) > 1) file.fail("has one direction twice", image.name);
-  if (l.axes.empty() || l.components < 1 || l.components > 64) file.fail("is no volume", image.name);
+  if (l.axes.empty() || l.components < 1 || l.components > 64) file.fail("is not a volume", image.name);
   return l;
 }
 

@@ -229,7 +229,7 @@ Array NcFile::read(const Variable& v, const std::vector<size_t>& start, const st
   if (n == 0) return a;
   const size_t zero = 0;
   const int e = get_part(id_, v.id, start.empty() ? &zero : start.data(), count.empty() ? &zero : count.data(), type, out);
-  if (e == NC_ERANGE) fail(fmt::format("has a number that is no {}", element_name(type)), v.name);
+  if (e == NC_ERANGE) fail(fmt::format("has a number that is not a valid {}", element_name(type)), v.name);
   if (e != NC_NOERR) fail(fmt::format("cannot be read: {}", nc_strerror(e)), v.name);
   return a;
 }

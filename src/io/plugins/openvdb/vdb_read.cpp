@@ -53,7 +53,7 @@ std::vector<Group> group(const std::vector<openvdb::GridBase::ConstPtr>& grids, 
     Group one{{g}, {}, {}, box};
     if (!vdb_affine(*g, one.origin, one.step))
       fail_data(fmt::format("grid '{}' lies on a map that is not affine ({})", g->getName(), g->transform().mapType()), path,
-                "frustums are not read");
+                "frustums are not supported");
     bool found = false;
     for (Group& other : groups)
       if (other.grids[0]->transform() == g->transform()) {
@@ -166,7 +166,7 @@ DatasetPtr make_grid(const Group& g, const std::string& path, const ReadOptions&
       const Role role = n == 3 ? Role::vectors : out.fields.empty() ? Role::scalars : Role::none;
       out.fields.add({name, Association::point, dense<std::decay_t<decltype(typed)>, T, n>(typed, g.box, part), "", role});
     });
-    if (!known) context.warn(fmt::format("{}: grid '{}' of type {} holds no numbers that are read", path, name, one->valueType()));
+    if (!known) context.warn(fmt::format("{}: grid '{}' of type {} holds no numbers of a supported type", path, name, one->valueType()));
     if (one->getGridClass() != openvdb::GRID_UNKNOWN)
       out.notes.emplace_back(name, openvdb::GridBase::gridClassToMenuName(one->getGridClass()));
   }

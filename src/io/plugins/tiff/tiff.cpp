@@ -81,7 +81,7 @@ Page read_head(const Tiff& f) {
   else if (!is_float && p.bits == 16) p.type = is_signed ? i16 : u16;
   else if (!is_float && p.bits == 32) p.type = is_signed ? i32 : u32;
   else if (!is_float && p.bits == 64) p.type = is_signed ? i64 : u64;
-  else fail_data(fmt::format("{} numbers of {} bits are not read", is_float ? "floating-point" : "whole", p.bits), f.path);
+  else fail_data(fmt::format("{} numbers of {} bits are not supported", is_float ? "floating-point" : "whole", p.bits), f.path);
   if (p.samples < 1 || p.samples > 1024) f.fail(fmt::format("{} samples per pixel", p.samples));
   return p;
 }

@@ -77,7 +77,7 @@ void XmlFile::parse_elements(std::string_view head, std::string_view tail) {
       byte = byte - cut->first + cut->second;
       break;
     }
-  fail_data(fmt::format("is no well-formed XML: {}", result.description()),
+  fail_data(fmt::format("is not well-formed XML: {}", result.description()),
             fmt::format("{}: line {}, byte {}", path(), line_of(file_.text(), byte), byte), "the file is truncated or damaged");
 }
 
@@ -200,7 +200,7 @@ uint64_t parse_count(const XmlFile& file, pugi::xml_node element, const char* at
   uint64_t v = 0;
   const auto r = std::from_chars(w.data(), w.data() + w.size(), v);
   if (r.ec != std::errc{} || r.ptr != w.data() + w.size())
-    file.fail(fmt::format("{}=\"{}\" is no count", attribute, std::string_view(a.value()).substr(0, 80)), element,
+    file.fail(fmt::format("{}=\"{}\" is not a valid count", attribute, std::string_view(a.value()).substr(0, 80)), element,
               "a whole number, not negative");
   return v;
 }

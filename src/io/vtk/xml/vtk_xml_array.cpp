@@ -130,7 +130,7 @@ Array XmlFile::plain(const Wanted& want, const Source& s) const {
   }
   std::byte head[8];
   const size_t used = decode_base64(s.bytes, head, header);
-  if (used == SIZE_MAX) fail("is no base64", want.element, "the file is truncated or damaged");
+  if (used == SIZE_MAX) fail("is not base64", want.element, "the file is truncated or damaged");
   const uint64_t available = word(head);
   if (available > s.bytes.size() / 4 * 3)
     fail(fmt::format("says it has {} bytes but its text has {}", available, s.bytes.size()), want.element,
@@ -140,7 +140,7 @@ Array XmlFile::plain(const Wanted& want, const Source& s) const {
   std::byte* out = nullptr;
   const Buffer b = Buffer::allocate(64 + bytes, &out);
   if (decode_base64(s.bytes, out + 64 - header, header + bytes) == SIZE_MAX)
-    fail("is no base64", want.element, "the file is truncated or damaged");
+    fail("is not base64", want.element, "the file is truncated or damaged");
   return finished(want, b, 64, bytes);
 }
 
@@ -196,7 +196,7 @@ XmlFile::BlockTable XmlFile::block_table(const Wanted& want, const Source& s) co
   if (s.base64) {
     std::byte* to = nullptr;
     t.decoded = Buffer::allocate(t.starts.back(), &to);
-    if (decode_base64(rest, to, t.starts.back()) == SIZE_MAX) damaged("is no base64");
+    if (decode_base64(rest, to, t.starts.back()) == SIZE_MAX) damaged("is not base64");
     t.packed = to;
   }
   return t;
@@ -410,7 +410,7 @@ Array XmlFile::text(const Wanted& want) const {
   if (!end.bad)
     fail(fmt::format("ends after {} of {} numbers", end.parsed, n), want.element, "the file is truncated or the count is wrong");
   const auto at = size_t(end.bad - t.data());
-  fail(fmt::format("'{}' is no {} number ({} of {})", words(t.substr(at, 40)).front(), element_name(want.type), end.parsed + 1, n),
+  fail(fmt::format("'{}' is not a valid {} number ({} of {})", words(t.substr(at, 40)).front(), element_name(want.type), end.parsed + 1, n),
        want.element);
 }
 

@@ -92,7 +92,7 @@ UnstructuredMesh unstructured_piece(const XmlPiece& piece, uint64_t points, uint
   mesh.cells = read_cells(file, cells, n);
   const pugi::xml_node types_element = need_array(file, cells, "types");
   const Array types = file.array(types_element, n);
-  if (is_float(types.type()) || types.components() != 1) file.fail("is no list of cell types", types_element);
+  if (is_float(types.type()) || types.components() != 1) file.fail("is not a list of cell types", types_element);
   set_types(mesh, types);
   if (!mesh.types.empty()) {
     const auto t = mesh.types.view<uint8_t>();

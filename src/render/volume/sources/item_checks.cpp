@@ -16,13 +16,13 @@ void check(const VolumeItem& item) {
   if (item.data->as<SurfaceMesh>() || item.data->as<PointCloud>())
     fail_usage(fmt::format("a {} has no inside to look through", item.data->kind()), "volume", "show its surface: --show surface");
   if (!(item.sampling.step >= 0) || !std::isfinite(item.sampling.step))
-    fail_usage(fmt::format("the step {} is no length", item.sampling.step), "volume",
+    fail_usage(fmt::format("the step {} is not a valid length", item.sampling.step), "volume",
                "give a length above 0, or 0 to sample by the tolerance");
   if (!(item.sampling.tolerance > 0 && item.sampling.tolerance <= 1))
-    fail_usage(fmt::format("the tolerance {} is no share of full scale", item.sampling.tolerance), "volume",
+    fail_usage(fmt::format("the tolerance {} is not a valid share of full scale", item.sampling.tolerance), "volume",
                "give a number above 0 and at most 1; 0.002 (1/512) is the default");
   if (!(item.unit_distance >= 0) || !std::isfinite(item.unit_distance))
-    fail_usage(fmt::format("the unit distance {} is no length", item.unit_distance), "volume",
+    fail_usage(fmt::format("the unit distance {} is not a valid length", item.unit_distance), "volume",
                "give a length above 0, or 0 for 1/100 of the diagonal");
   if (info_of(item.mode).needs_level && item.levels.empty())
     fail_usage("this ray function needs a value to look for", "volume", "name one with levels=");
@@ -36,7 +36,7 @@ void check(const VolumeItem& item) {
                  "sort them by value");
   }
   for (double l : item.levels)
-    if (!std::isfinite(l)) fail_usage(fmt::format("the level {} is no number", l), "volume");
+    if (!std::isfinite(l)) fail_usage(fmt::format("the level {} is not a number", l), "volume");
   check_light(item);
 }
 

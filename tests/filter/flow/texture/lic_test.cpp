@@ -320,7 +320,7 @@ TEST_CASE("lic: bad inputs are named") {
   CHECK(error_of([&] { lic(along_x(8, 1), nullptr, p, c); }).find("one axis") != std::string::npos);
   p.image.name = "x";
   CHECK(error_of([&] { lic(along_x(8, 8), nullptr, p, c); }).find("second input") != std::string::npos);
-  CHECK(error_of([&] { lic(along_x(8, 8), along_x(8, 8), p, c); }).find("has: v") != std::string::npos);
+  CHECK(error_of([&] { lic(along_x(8, 8), along_x(8, 8), p, c); }).find("available: v") != std::string::npos);
   p = {};
   p.resolution = 100000;
   CHECK(error_of([&] { lic(along_x(8, 8), nullptr, p, c); }).find("2^31") != std::string::npos);

@@ -91,7 +91,7 @@ std::vector<Piece> LatticeContour::run(std::span<const double> values) {
       room.edges += c.vertices, room.inner += c.inner, room.cells += c.cells;
     }
     if (room.edges + room.inner > size_t(INT32_MAX))
-      fail_usage("the surfaces have more than 2^31 points", "contour", "contour a part of the grid at a time, or ask for fewer values");
+      fail_usage("the surfaces have more than 2^31 points", "contour", "contour a part of the grid at a time, or use fewer values");
     room.allocate(job_, frame_.axes);
     for (Cuts& c : cuts) {
       pieces.push_back(generate(c, room));
