@@ -93,15 +93,15 @@ Loaded load(std::string_view name) {
     tried += (tried.empty() ? "" : ", ") + folder;
     if (!file_exists(folder + file)) continue;
     if (!may_be_trusted(folder, own.path) || !may_be_trusted(folder + file, own.path)) {
-      tried += " (passed over: others may write there)";
+      tried += " (skipped: other users may write there)";
       continue;
     }
     void* handle = ::dlopen((folder + file).c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!handle)
-      fail_data(fmt::format("the reader for {} cannot be loaded: {}", package.what, ::dlerror()), folder + file,
+      fail_data(fmt::format("cannot load the reader for {}: {}", package.what, ::dlerror()), folder + file,
                 fmt::format("install its library: apt-get install {}", package.packages));
     const auto entry = reinterpret_cast<EntryPoint>(::dlsym(handle, "sightglass_plugin"));
-    if (!entry) fail_data("is not a Sightglass plug-in", folder + file, "remove it, or build it again");
+    if (!entry) fail_data("is not a Sightglass plug-in", folder + file, "remove or rebuild it");
     if (const auto watch = reinterpret_cast<void (*)(MappedWatch*)>(::dlsym(handle, "sightglass_watch"))) watch(&mapped_watch());
     Loaded l{std::string(name), nullptr, 0};
     l.formats = entry(&l.count, thread_count(), plugin_memory);

@@ -110,7 +110,7 @@ void WriteLosses::renames(const Field& f, std::string_view name) {
   if (f.name != name) add("renames", fmt::format("{} to '{}'", quoted_name(f), name));
 }
 
-void WriteLosses::splits(const Field& f) { add("parts into components", quoted_name(f)); }
+void WriteLosses::splits(const Field& f) { add("split into components", quoted_name(f)); }
 
 void WriteLosses::drops_unit(const Field& f) {
   if (!f.unit.empty()) add("drops the units of", quoted_name(f));

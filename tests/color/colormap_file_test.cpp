@@ -119,7 +119,7 @@ TEST_CASE("colour map files: errors of a .cpt name the line") {
   CHECK(has(refusal("e4.cpt", "0 red 1 blue\n4 blue\n"), "slices and categories"));
   CHECK(has(refusal("e5.cpt", "0 notacolour 1 blue\n"), "'notacolour'"));
   CHECK(has(refusal("e6.cpt", "zero red 1 blue\n"), "'zero' is not a number"));
-  CHECK(has(refusal("e7.cpt", "# only words\n"), "no slice"));
+  CHECK(has(refusal("e7.cpt", "# only words\n"), "neither slices"));
   CHECK(has(refusal("e8.cpt", "# COLOR_MODEL = LAB\n0 1 1 2\n"), "colour model"));
   CHECK(has(refusal("e9.cpt", "0 red 1\n"), "3 words"));
 }
@@ -141,8 +141,8 @@ TEST_CASE("colour map files: ParaView's spaces and indexed colours") {
   CHECK(maps[2].label_names[2] == "eight");
   CHECK(has(refusal("p1.json", R"([{"Name":"q","RGBPoints":[0,0,0]}])"), "map 'q'"));
   CHECK(has(refusal("p2.json", R"([{"Name":"q","RGBPoints":[0,0,0,2]}])"), "is not a colour"));
-  CHECK(has(refusal("p3.json", R"([{"Name":"q","RGBPoints":[1,0,0,0,0,1,1,1]}])"), "do not rise"));
-  CHECK(has(refusal("p4.json", R"({"a":1})"), "no colour map"));
+  CHECK(has(refusal("p3.json", R"([{"Name":"q","RGBPoints":[1,0,0,0,0,1,1,1]}])"), "do not increase"));
+  CHECK(has(refusal("p4.json", R"({"a":1})"), "not a colour map"));
   CHECK(has(refusal("p5.json", std::string(100, '[') + std::string(100, ']')), "nested"));
 }
 
@@ -154,7 +154,7 @@ TEST_CASE("colour map files: niivue's lists") {
   CHECK(f.hi == 255);
   CHECK(color_text(f.map.at(1)) == "#fffaf5");
   CHECK(length(f.map.at(128.0 / 255) - Vec3f(113, 109, 101) / 255.f) < 0.005f);
-  CHECK(has(refusal("n1.json", R"({"R":[0,1],"G":[0],"B":[0,1]})"), "equally long"));
+  CHECK(has(refusal("n1.json", R"({"R":[0,1],"G":[0],"B":[0,1]})"), "differ in length"));
 }
 
 TEST_CASE("colour map files: ColorBrewer's rules, and names of maps") {

@@ -139,7 +139,7 @@ TEST_CASE("widgets: places on both axes, and text reads back exactly") {
   CHECK(says(error("triangel 0 1 0 1"), "did you mean 'triangle'"));
   CHECK(says(error("triangle 0 1 0"), "3 numbers"));
   CHECK(says(error("rectangle 0.5 0.2 0 1"), "lower end"));
-  CHECK(says(error("rectangle 0 1 0.5 0.5"), "no height"));
+  CHECK(says(error("rectangle 0 1 0.5 0.5"), "zero width or height"));
   CHECK(says(error("rectangle 0 1 0 1 1.5"), "not between 0 and 1"));
   CHECK(says(error("rectangle 0 x 0 1"), "'x'"));
   CHECK(says(error(" ; "), "no widgets"));

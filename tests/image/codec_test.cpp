@@ -101,7 +101,7 @@ TEST_CASE("png: bad text names and empty images are refused") {
   CHECK(test::error_of([] { encode_png(Image(0, 3, 3)); }).find("0 x 3") != std::string::npos);
   image = sample(2, 2, 3);
   image.pixels.pop_back();
-  CHECK(test::error_of([&] { encode_png(image); }).find("cannot be a PNG") != std::string::npos);
+  CHECK(test::error_of([&] { encode_png(image); }).find("cannot be written as PNG") != std::string::npos);
 }
 
 TEST_CASE("png: the same bytes for 1 and 8 threads") {

@@ -69,7 +69,7 @@ TEST_CASE("read options: what cannot be says what would be right") {
   CHECK(says(error_of([] { read_of({"dims=3,4"}); }), "list of 3"));
   CHECK(says(error_of([] { read_of({"dims=3,4,5"}); }), "u8 i8"));
   CHECK(says(error_of([] { read_of({"dims=3,4,0"}); }), "at least 1"));
-  CHECK(says(error_of([] { read_of({"type=f77"}); }), "not a type of numbers"));
+  CHECK(says(error_of([] { read_of({"type=f77"}); }), "not a number type"));
   CHECK(says(error_of([] { read_of({"region=1,2"}); }), "list of 6"));
   CHECK(says(error_of([] { read_of({"region=5,1,0,1,0,1"}); }), "begins at 5 and ends at 1"));
   CHECK(says(error_of([] { read_of({"stride=1,2"}); }), "one or three numbers"));

@@ -134,9 +134,10 @@ TEST_CASE("movie: what cannot be written is said before anything is drawn, and n
   {
     MovieWriter writer(path, {});
     writer.add(frame(32, 32, 0));
-    CHECK(test::error_of([&] { writer.add(frame(34, 32, 0)); }).find("all pictures of a film have one size") != std::string::npos);
+    CHECK(test::error_of([&] { writer.add(frame(34, 32, 0)); }).find("all pictures of a film must have the same size") !=
+          std::string::npos);
   }
   CHECK_FALSE(file_exists(path));
   MovieWriter empty(path, {});
-  CHECK(test::error_of([&] { empty.finish(); }).find("has no picture") != std::string::npos);
+  CHECK(test::error_of([&] { empty.finish(); }).find("has no pictures") != std::string::npos);
 }

@@ -82,7 +82,7 @@ void take_ratios(Text& t, Plotfile& p) {
       line.remove_prefix(size_t(w[0].data() - line.data()) + w[0].size());
     }
     for (size_t a = 0; a < size_t(p.dimension); ++a)
-      if (r[a] < 1 || r[a] > 1024) t.fail(fmt::format("a refinement ratio of {}", r[a]));
+      if (r[a] < 1 || r[a] > 1024) t.fail(fmt::format("a refinement ratio is {}", r[a]));
   }
 }
 
@@ -117,7 +117,7 @@ void read_cell_header(const std::string& path, const Plotfile& p, Level& level, 
     t.drop(rest);
     level.boxes.push_back(box);
   }
-  if (t.word("')'") != ")") t.fail("more boxes than were promised");
+  if (t.word("')'") != ")") t.fail("has more boxes than announced");
   if (uint64_t(t.integer("the number of FABs", 0, INT64_MAX)) != boxes) t.fail(fmt::format("{} boxes need as many FABs", boxes));
   for (size_t b = 0; b < boxes; ++b) {
     if (t.word("'FabOnDisk:'") != "FabOnDisk:") t.fail("expected 'FabOnDisk: FILE BYTE'");
@@ -176,7 +176,7 @@ Plotfile read_headers(const std::string& folder) {
   for (Level& l : p.levels)
     for (int a = 0; a < p.dimension; ++a) {
       l.spacing[a] = t.real("the spacing");
-      if (!(l.spacing[a] > 0) || !std::isfinite(l.spacing[a])) t.fail(fmt::format("a spacing of {}", l.spacing[a]));
+      if (!(l.spacing[a] > 0) || !std::isfinite(l.spacing[a])) t.fail(fmt::format("a spacing is {}", l.spacing[a]));
     }
   const int64_t coordinates = t.integer("the kind of coordinates", 0, 2);
   (void)coordinates;  // 1 cylindrical (r, z), 2 spherical: drawn as they are counted

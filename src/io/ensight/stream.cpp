@@ -85,7 +85,7 @@ void Stream::unframe() {
     if (t.size() - at < 8) fail_data(fmt::format("byte {}: a Fortran record is cut off", at), path_);
     const uint64_t n = load<uint32_t>(t.data() + at, big_endian_);
     if (n > t.size() - at - 8 || load<uint32_t>(t.data() + at + 4 + n, big_endian_) != n)
-      fail_data(fmt::format("byte {}: a Fortran record of {} bytes does not end in that number", at, n), path_);
+      fail_data(fmt::format("byte {}: a Fortran record of {} bytes does not end with that length", at, n), path_);
     std::memcpy(out + used, t.data() + at + 4, n);
     used += n, at += n + 8;
   }
@@ -97,7 +97,7 @@ void Stream::seek_step(int64_t k) {
   size_t at = 0;
   for (int64_t i = 0;; ++i) {
     const void* found = at < all_.size() ? ::memmem(all_.data() + at, all_.size() - at, begin_step.data(), begin_step.size()) : nullptr;
-    if (!found) fail(fmt::format("there is no time step {}", k), fmt::format("it has {} marks '{}'", i, begin_step));
+    if (!found) fail(fmt::format("there is no time step {}", k), fmt::format("it has {} markers '{}'", i, begin_step));
     at = size_t(static_cast<const char*>(found) - all_.data());
     if (i == k) break;
     at += begin_step.size();

@@ -36,7 +36,7 @@ class Values {
       const size_t m = s.count("partial values", 4);
       which = s.integers(m, "places of partial values");
       for (const int32_t p : which)
-        if (p < 1 || size_t(p) > n) s.fail(fmt::format("a partial value for place {} of {}", p, n));
+        if (p < 1 || size_t(p) > n) s.fail(fmt::format("a partial value for position {} of {}", p, n));
       n = m;
     }
     if (look_only_) {
@@ -101,7 +101,7 @@ void read_elements(Stream& s, const Variable& v, const Part& part, Values& value
     const std::string_view type = words(line)[0];
     size_t k = 0;
     while (k < done.size() && (done[k] || words(part.sections[k].type)[0] != type)) ++k;
-    if (k == done.size()) s.fail(fmt::format("part {} has no elements '{}' (any more)", part.number, type));
+    if (k == done.size()) s.fail(fmt::format("part {} has no (further) elements '{}'", part.number, type));
     done[k] = true;
     values.read(s, v.kind, line, part.sections[k].first, part.sections[k].count);
   }
@@ -125,7 +125,7 @@ void read_variable(Stream& s, const Variable& v, const std::string& name, Geomet
     if (on_cells && !part.structured) {
       read_elements(s, v, part, values);
     } else {
-      const std::string line = to_lower(s.keyword("'coordinates' or 'block'"));
+      const std::string line = to_lower(s.keyword("expected 'coordinates' or 'block'"));
       if (!line.starts_with(part.structured ? "block" : "coordinates"))
         s.fail(fmt::format("found '{}' where '{}' was expected in part {}", line.substr(0, 40), part.structured ? "block" : "coordinates",
                            part.number));

@@ -43,7 +43,7 @@ void put_sparse(const GltfDocument& d, const GltfAccessor& a, int accessor, std:
   for (uint64_t k = 0; k < s.count; ++k) {
     uint32_t i = 0;
     std::memcpy(&i, indices.data + k * index_size, index_size);
-    if (i >= a.count) fail_data(fmt::format("accessor {}: sparse value {} of {}", accessor, i, a.count), d.path);
+    if (i >= a.count) fail_data(fmt::format("accessor {}: sparse value {} of {} does not exist", accessor, i, a.count), d.path);
     std::memcpy(out + i * size, values.data + k * size, size);
   }
 }

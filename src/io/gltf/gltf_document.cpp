@@ -67,7 +67,7 @@ struct Parser {
     if (!list->is_list() || list->size() != n) fail(where, fmt::format("'{}' is not a list of {} numbers", key, n));
     for (size_t i = 0; i < n; ++i) {
       const Json& v = (*list)[i];
-      if (!v.is_number() || !std::isfinite(v.number())) fail(where, fmt::format("'{}' holds something that is not a number", key));
+      if (!v.is_number() || !std::isfinite(v.number())) fail(where, fmt::format("'{}' contains something that is not a number", key));
       out[i] = v.number();
     }
     return true;
@@ -109,7 +109,7 @@ struct Parser {
       sparse.indices_offset = whole(i, "byteOffset", 0, where);
       sparse.values_offset = whole(v, "byteOffset", 0, where);
       sparse.indices_type = type(i, where);
-      if (sparse.indices_view < 0 || sparse.values_view < 0) fail(where, "'sparse' names no bufferView");
+      if (sparse.indices_view < 0 || sparse.values_view < 0) fail(where, "'sparse' does not name a bufferView");
       if (sparse.count > a.count) fail(where, fmt::format("{} sparse values of {}", sparse.count, a.count));
     }
     return a;
@@ -122,7 +122,7 @@ struct Parser {
     if (const Json* c = o.find("children")) {
       if (!c->is_list()) fail(where, "'children' is not a list");
       for (const Json& child : c->items()) {
-        if (!child.is_whole()) fail(where, "'children' holds something that is not a node number");
+        if (!child.is_whole()) fail(where, "'children' contains something that is not a node number");
         n.children.push_back(checked(child.whole(), "nodes", where, "children"));
       }
     }
@@ -178,10 +178,10 @@ struct Parser {
       const std::string extension = e.is_text() ? e.text() : e.dump();
       if (!is_harmless(extension))
         fail_data(fmt::format("needs the extension {}, which is not supported", extension), path,
-                  extension.find("compression") != std::string::npos ? "write it again without compression" : "");
+                  extension.find("compression") != std::string::npos ? "save it without compression" : "");
     }
     for (const char* list : {"animations", "skins"})
-      if (root.contains(list)) context.info(fmt::format("{}: {} are not read; the mesh is drawn as it stands", path, list));
+      if (root.contains(list)) context.info(fmt::format("{}: {} are ignored; the mesh is drawn without them", path, list));
   }
 
   GltfDocument document(std::string_view chunk, const MappedFile& file) const {
@@ -202,13 +202,13 @@ struct Parser {
     each("bufferViews", "bufferView", [&](const Json& o, const std::string& where) {
       GltfView v;
       v.buffer = place(o, "buffer", "buffers", where);
-      if (v.buffer < 0) fail(where, "names no buffer");
+      if (v.buffer < 0) fail(where, "does not name a buffer");
       v.offset = whole(o, "byteOffset", 0, where);
       v.length = whole(o, "byteLength", 0, where);
       v.stride = whole(o, "byteStride", 0, where);
       const uint64_t size = d.buffers[size_t(v.buffer)].bytes.size();
       if (v.offset > size || v.length > size - v.offset)
-        fail(where, fmt::format("bytes {} + {} lie beyond the {} of its buffer", v.offset, v.length, size));
+        fail(where, fmt::format("bytes {} + {} lie beyond the {} bytes of its buffer", v.offset, v.length, size));
       d.views.push_back(v);
     });
     each("accessors", "accessor", [&](const Json& o, const std::string& where) { d.accessors.push_back(accessor(o, where)); });
@@ -233,7 +233,7 @@ struct Parser {
       const Json& s = scenes[size_t(scene)];
       if (!s.is_object()) fail("the scene", "is not an object");
       for (const Json& n : s["nodes"].items()) {
-        if (!n.is_whole()) fail("the scene", "'nodes' holds something that is not a node number");
+        if (!n.is_whole()) fail("the scene", "'nodes' contains something that is not a node number");
         d.roots.push_back(checked(n.whole(), "nodes", "the scene", "nodes"));
       }
       return;

@@ -107,7 +107,7 @@ CarryReader::CarryReader(Buffer file, size_t begin, size_t end, size_t arrays, s
   if (begin > end || end > file_.size || arrays > file_.size) nonsense();
 }
 
-void CarryReader::nonsense() const { fail_data("is damaged: the process that reads it left nonsense", path_); }
+void CarryReader::nonsense() const { fail_data("is damaged: the process that reads it returned invalid data", path_); }
 
 template <class E>
 E CarryReader::one_of(E last) {

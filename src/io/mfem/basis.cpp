@@ -237,8 +237,8 @@ NodeMatrix node_matrix(Geometry g, const FeCollection& c, int q, const std::stri
   }
   if (g == Geometry::pyramid) {
     if (p > 1 || q > 1 || c.family != Family::h1)
-      fail_data(fmt::format("the mesh has pyramids, and '{}' or another of its spaces is above order 1 on them", c.name), where,
-                "pyramids are read with continuous spaces of order 1");
+      fail_data(fmt::format("the mesh has pyramids on which '{}' or another of its spaces is above order 1", c.name), where,
+                "pyramids are supported only with continuous spaces of order 1");
     for (size_t k = 0; k < 5; ++k) r.m[k * 5 + k] = 1;
     return r;
   }

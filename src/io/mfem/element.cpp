@@ -109,7 +109,7 @@ constexpr const char* readable =
 Basis basis_of(int64_t number, std::string_view name, const std::string& where) {
   constexpr Basis by_number[] = {Basis::gauss_legendre, Basis::gauss_lobatto,  Basis::bernstein,
                                  Basis::open_uniform,   Basis::closed_uniform, Basis::open_half};
-  if (number < 0 || number > 5) fail_data(fmt::format("the basis of the collection '{}' is not known", name), where, readable);
+  if (number < 0 || number > 5) fail_data(fmt::format("the basis of the collection '{}' is unknown", name), where, readable);
   return by_number[number];
 }
 

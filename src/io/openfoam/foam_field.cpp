@@ -69,7 +69,7 @@ class FieldReader {
     if (kind_.components == 3) r.inner.role = Role::vectors;
     if (!inner_.given) {
       const std::string why = f_.directive().empty() ? "" : fmt::format("; '{}' is not expanded", f_.directive());
-      f_.fail(fmt::format("has no internalField{}", why), "'uniform VALUE' or 'nonuniform List<TYPE> N(...)'");
+      f_.fail(fmt::format("has no internalField{}", why), "use 'uniform VALUE' or 'nonuniform List<TYPE> N(...)'");
     }
     // An empty list stands for no values at all: a processor without cells.
     type_ = inner_.uniform || inner_.list.empty() ? ElementType::f32 : inner_.list.type();
@@ -106,8 +106,8 @@ class FieldReader {
     std::vector<double> e;
     while (f_.peek() != "]") {
       if (const auto v = parse_double(f_.next())) e.push_back(*v);
-      else f_.fail("dimensions are seven numbers");
-      if (e.size() > 7) f_.fail("dimensions are seven numbers");
+      else f_.fail("dimensions must be seven numbers");
+      if (e.size() > 7) f_.fail("dimensions must be seven numbers");
     }
     f_.next();
     f_.expect(";", "the dimensions");

@@ -80,7 +80,7 @@ void FoamFile::read_header() {
     std::string value(next());
     if (key == "class") class_ = value;
     if (key == "format") {
-      if (value != "ascii" && value != "binary") fail(fmt::format("format '{}' is not supported", value), "ascii or binary");
+      if (value != "ascii" && value != "binary") fail(fmt::format("format '{}' is not supported", value), "use ascii or binary");
       binary_ = value == "binary";
     }
     if (key == "arch") {
@@ -115,7 +115,7 @@ std::string_view FoamFile::next() {
   if (text_[at_] == '"') {
     for (++at_; at_ < text_.size() && text_[at_] != '"'; ++at_)
       if (text_[at_] == '\\') ++at_;
-    if (at_ >= text_.size()) fail("a string does not end");
+    if (at_ >= text_.size()) fail("a string has no end");
     return ++at_, text_.substr(begin, at_ - begin);
   }
   // Words may hold balanced parentheses: "div(phi,U)"; a list begins behind a number.
@@ -150,7 +150,7 @@ void FoamFile::skip_entry() {
     if (t.empty()) fail("ends within an entry");
     if (t == "{" || t == "(" || t == "[") ++depth;
     else if (t == "}" || t == ")" || t == "]") {
-      if (depth == 0) fail(fmt::format("'{}' closes nothing", t));
+      if (depth == 0) fail(fmt::format("'{}' does not close anything", t));
       if (--depth == 0 && t == "}") {
         if (peek() == ";") next();
         return;
@@ -348,11 +348,11 @@ void FoamFile::faces(std::vector<int64_t>& begin, std::vector<int32_t>& ids) {
   begin.assign(1, 0);
   ids.clear();
   if (class_ == "faceCompactList") {
-    const std::vector<int32_t> offsets = labels("the begins of faces");
+    const std::vector<int32_t> offsets = labels("the starts of faces");
     ids = labels("the points of faces");
     begin.assign(offsets.begin(), offsets.end());
     if (begin.empty()) begin.assign(1, 0);
-    if (begin.front() != 0 || begin.back() != int64_t(ids.size())) fail("the begins of faces do not fit their points");
+    if (begin.front() != 0 || begin.back() != int64_t(ids.size())) fail("the starts of faces do not match their points");
     for (size_t i = 1; i < begin.size(); ++i)
       if (begin[i] < begin[i - 1]) fail(fmt::format("face {} ends before it begins", i - 1));
     return;

@@ -226,12 +226,12 @@ Data read_openfoam(const std::string& path, const ReadOptions& options, Context&
   const auto n = int64_t(processors.size());
   for (int64_t i = n * options.piece / pieces; i < n * (options.piece + 1) / pieces; ++i) {
     const std::string at = folder + processors[size_t(i)] + "/";
-    if (regions_of(at).empty()) fail_data("has no mesh", at + "constant/polyMesh", "each processor folder needs one");
+    if (regions_of(at).empty()) fail_data("has no mesh", at + "constant/polyMesh", "every processor folder needs one");
     const std::vector<TimeFolder> own = time_folders(at);
     size_t k = 0;
     while (k < own.size() && !times.empty() && own[k].time != times[step].time) ++k;
     if (k == own.size() && !times.empty())
-      fail_data(fmt::format("has no time folder '{}'", times[step].name), at, "all processors need the same times");
+      fail_data(fmt::format("has no time folder '{}'", times[step].name), at, "all processor folders need the same times");
     r->parts.push_back({processors[size_t(i)], read_folder(at, own, k, options, context)});
   }
   return r;

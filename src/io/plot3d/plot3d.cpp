@@ -153,7 +153,7 @@ std::optional<Opened> open_beside(const std::string& path, Kind kind, const Layo
   Numbers n{MappedFile(path)};
   std::optional<Layout> l = find_layout(n, kind, &grid);
   if (l) return Opened{std::move(n), std::move(*l)};
-  const std::string what = fmt::format("its length and sizes do not fit the grid ({})", grid.describe());
+  const std::string what = fmt::format("its length and sizes do not match the grid ({})", grid.describe());
   if (must) fail_data(what, path);
   context.warn(fmt::format("{} is left out: {}", path, what));
   return {};
@@ -164,7 +164,8 @@ Data read_files(const Files& files, std::optional<double> time, const ReadOption
   const std::optional<Layout> l = find_layout(n, Kind::grid);
   if (!l)
     fail_data(
-        "is not a PLOT3D grid: its length fits no combination of byte order, records, precision, dimensions, blanking and number of grids",
+        "is not a PLOT3D grid: its length matches no combination of byte order, records, precision, dimensions, blanking and number of "
+        "grids",
         files.grid, "a grid file begins with its sizes; for raw numbers give --dims and --type");
   context.info(fmt::format("{}: {}", files.grid, l->describe()));
   const auto q = open_beside(files.solution, Kind::solution, *l, files.named, context);

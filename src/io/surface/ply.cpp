@@ -186,7 +186,7 @@ Data read_ply(const std::string& path, const ReadOptions& options, Context& cont
     else if (e.name == "face" && !face) face = &e;
     else if ((e.name == "tristrips" || e.name == "tristrip") && !strip) strip = &e;
     else if (e.name == "edge" && !edge) edge = &e;
-    else context.info(fmt::format("{}: element '{}' is not read", path, e.name));
+    else context.info(fmt::format("{}: element '{}' is ignored", path, e.name));
   }
   if (!vertex) fail_data("there is no element 'vertex'", path);
 
@@ -202,7 +202,7 @@ Data read_ply(const std::string& path, const ReadOptions& options, Context& cont
     if (face->wanted_list < 0 && face->count > 0) fail_data("the faces have no list 'vertex_indices'", path);
     // Cell fields are numbered over all cells, so they need faces alone.
     if (!strip || strip->count == 0) r.add_fields(*face, Association::cell, std::vector<bool>(face->properties.size(), false), h);
-    else context.warn(path + ": face properties are not read beside triangle strips");
+    else context.warn(path + ": face properties are ignored, since there are triangle strips");
   }
   std::byte* ends = nullptr;
   const bool lines = edge && edge->count > 0 && (!face || face->count == 0) && !strip;
@@ -215,7 +215,7 @@ Data read_ply(const std::string& path, const ReadOptions& options, Context& cont
     direct(edge->properties[size_t(edge->find("vertex1"))], ends, 8, ElementType::i32);
     direct(edge->properties[size_t(edge->find("vertex2"))], ends + 4, 8, ElementType::i32);
   } else if (edge && edge->count > 0) {
-    context.info(path + ": edges are not read beside faces");
+    context.info(path + ": edges are ignored, since there are faces");
   }
   decode_ply(file, h, context);
   if (face && face->wanted_list >= 0) mesh.polygons = cells_of(*face);

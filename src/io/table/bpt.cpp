@@ -20,7 +20,7 @@ Data read_bpt(const std::string& path, const ReadOptions&, Context&) {
   const MappedFile file(path);
   TextCursor in(file.text(), path, '#');
   const size_t patches = in.count("the number of patches", 28);  // two degrees and four points of three numbers, with blanks
-  if (patches == 0) in.fail("no patches");
+  if (patches == 0) in.fail("has no patches");
   std::vector<double> xyz;
   std::vector<int64_t> ids, offsets{0};
   std::vector<uint8_t> degrees;

@@ -175,7 +175,7 @@ CellType curved_type(CellType shape, CellType curve) {
     case CellType::hexahedron: return at(CellType::lagrange_hexahedron);
     case CellType::wedge: return at(CellType::lagrange_wedge);
     case CellType::pyramid: return at(CellType::lagrange_pyramid);
-    default: fail_internal("curved_type: no such shape");
+    default: fail_internal("curved_type: unsupported shape");
   }
 }
 

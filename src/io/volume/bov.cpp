@@ -60,9 +60,9 @@ class BovParser {
       key(to_lower(trim(line.substr(0, colon))), trim(line.substr(colon + 1)));
     }
     number_ = 0;
-    if (h_.file.empty()) fail("names no DATA_FILE");
-    if (h_.size[0] == 0) fail("says no DATA_SIZE");
-    if (!h_.have_type) fail("says no DATA_FORMAT");
+    if (h_.file.empty()) fail("has no DATA_FILE");
+    if (h_.size[0] == 0) fail("has no DATA_SIZE");
+    if (!h_.have_type) fail("has no DATA_FORMAT");
     if (h_.brick[0] == 0) h_.brick = h_.size;
     return h_;
   }
@@ -99,14 +99,14 @@ class BovParser {
     else if (k == "data_file") h_.file = v;
     else if (k == "data_size" || k == "data size") h_.size = triple(v);
     else if (k == "data_format" || k == "data format") {
-      if (!bov_type(v, h_.type)) fail(fmt::format("unknown DATA_FORMAT '{}'", v), "BYTE, SHORT, INT, LONG, FLOAT or DOUBLE");
+      if (!bov_type(v, h_.type)) fail(fmt::format("unknown DATA_FORMAT '{}'", v), "use BYTE, SHORT, INT, LONG, FLOAT or DOUBLE");
       h_.have_type = true;
     } else if (k == "variable") h_.variable = v;
     else if (k == "data_endian") {
-      if (low != "little" && low != "big") fail(fmt::format("DATA_ENDIAN '{}'", v), "LITTLE or BIG");
+      if (low != "little" && low != "big") fail(fmt::format("DATA_ENDIAN '{}'", v), "use LITTLE or BIG");
       h_.big_endian = low == "big";
     } else if (k == "centering") {
-      if (low != "zonal" && low != "nodal") fail(fmt::format("CENTERING '{}'", v), "zonal or nodal");
+      if (low != "zonal" && low != "nodal") fail(fmt::format("CENTERING '{}'", v), "use zonal or nodal");
       h_.zonal = low == "zonal";
     } else if (k == "brick_origin" || k == "brick origin") h_.origin = vec(v);
     else if (k == "brick_size" || k == "brick size") h_.extent = vec(v);
@@ -117,7 +117,7 @@ class BovParser {
       const size_t n = count(v, 1);
       if (n > 1000) fail(fmt::format("{} components", n));
       h_.components = int(n);
-    } else if (k != "has_boundary") context_.warn(fmt::format("{}: line {}: unknown key '{}' is left out", path_, number_, k));
+    } else if (k != "has_boundary") context_.warn(fmt::format("{}: line {}: unknown key '{}' is ignored", path_, number_, k));
   }
 
   std::string path_;
@@ -206,11 +206,11 @@ Data read_bare_bov(const std::string& path, const ReadOptions&, Context& context
   const MappedFile file(path);
   const auto guess = guess_raw(file);
   if (!guess)
-    fail_data("is not a BOV header, and its name and length say no size", path,
+    fail_data("is not a BOV header, and its name and length do not tell the size", path,
               "a header has lines like 'DATA_FILE: values.dat'; for raw numbers give --dims NX,NY,NZ and --type");
   BovHeader h;
   h.size = guess->dims, h.type = guess->type, h.big_endian = guess->big_endian;
-  context.warn(fmt::format("{}: has no header; read as {}, as its name and length say", path, guess->text()));
+  context.warn(fmt::format("{}: has no header; read as {}, judging by its name and length", path, guess->text()));
   return grid_of(h, brick_of(path, h, checked_product({h.size[0], h.size[1], h.size[2]}, path), context));
 }
 

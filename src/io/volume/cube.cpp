@@ -49,8 +49,7 @@ struct Lines {
 };
 
 DatasetPtr atoms_of(Lines& in, size_t count, const std::string& unit) {
-  if (count > (in.file.size() - in.at) / 10)
-    fail_data(fmt::format("{} atoms cannot be in {} bytes", count, in.file.size()), in.file.path());
+  if (count > (in.file.size() - in.at) / 10) fail_data(fmt::format("{} bytes cannot hold {} atoms", count, in.file.size()), in.file.path());
   std::vector<double> xyz;
   std::vector<int32_t> z;
   std::vector<double> charge;
@@ -103,7 +102,7 @@ Data read_cube(const std::string& path, const ReadOptions& options, Context&) {
   for (size_t a = 0; a < 3; ++a) {
     const auto v = in.numbers(4, "points along an axis, step x, y, z");
     const int64_t n = in.whole(v[0]);
-    if (n == 0) fail_data(fmt::format("line {}: no points along this axis", in.number), path);
+    if (n == 0) fail_data(fmt::format("line {}: there are no points along this axis", in.number), path);
     angstrom = angstrom || n < 0;
     grid.dims[a] = size_t(std::abs(n));
     axes[a] = {v[1], v[2], v[3]};

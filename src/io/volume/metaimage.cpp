@@ -71,7 +71,7 @@ Header parse_header(const MappedFile& file) {
     }
   }
   fail_data("the header has no ElementDataFile", h.path,
-            "the last line of the header says where the data are: LOCAL, a file, LIST or a pattern");
+            "the last line of the header must say where the data is: LOCAL, a file, LIST or a pattern");
 }
 
 bool parse_met_type(std::string_view name, ElementType& t) {
@@ -105,15 +105,15 @@ std::vector<BrickPart> find_parts(const Header& h, const MappedFile& file, size_
   if (!w.empty() && equal_ignoring_case(w[0], "LIST")) {
     for (std::string_view line : split(h.rest, '\n'))
       if (!line.empty()) names.emplace_back(line);
-    if (names.empty()) fail_data("ElementDataFile = LIST but no names follow", h.path);
-    if (names.size() > 1000000) fail_data("ElementDataFile = LIST with more than a million names", h.path);
+    if (names.empty()) fail_data("ElementDataFile = LIST is not followed by names", h.path);
+    if (names.size() > 1000000) fail_data("ElementDataFile = LIST has more than a million names", h.path);
   } else if (value.find('%') != std::string_view::npos && (w.size() >= 3 || !file_exists(path_beside(h.path, value)))) {
     int64_t n[3] = {1, int64_t(slices), 1};
     for (size_t i = 1; i < std::min<size_t>(w.size(), 4); ++i) {
       const auto v = parse_int(w[i]);
       if (!v)
         fail_data(fmt::format("ElementDataFile: '{}' is not a whole number", w[i]), h.path,
-                  "pattern first last step, like slice%03d.raw 1 93 1");
+                  "write pattern first last step, e.g. slice%03d.raw 1 93 1");
       n[i - 1] = *v;
     }
     names = pattern_names(std::string(w[0]), n[0], n[1], n[2], h.path);
@@ -197,7 +197,7 @@ Data read_metaimage(const std::string& path, const ReadOptions& options, Context
   }
   UniformGrid grid = make_grid(h, sizes);
   const size_t voxels = grid.dims[0] * grid.dims[1] * grid.dims[2], steps = total / voxels;  // axes beyond the third
-  if (steps > 1 << 20) fail_data(fmt::format("{} volumes in one file", steps), path);
+  if (steps > 1 << 20) fail_data(fmt::format("has {} volumes in one file", steps), path);
   l.count = total;
   l.components = int(channels);
   l.big_endian = h.flag({"ElementByteOrderMSB", "BinaryDataByteOrderMSB"});
@@ -236,7 +236,7 @@ Data read_metaimage(const std::string& path, const ReadOptions& options, Context
   }
   if (const auto v = h.get({"HeaderSize"}); !v.empty()) {
     const auto n = parse_int(v);
-    if (!n || *n < -1) fail_data(fmt::format("HeaderSize is '{}'", v), path, "a number of bytes, or -1 for 'the data are at the end'");
+    if (!n || *n < -1) fail_data(fmt::format("HeaderSize is '{}'", v), path, "give a number of bytes, or -1 if the data is at the end");
     for (BrickPart& p : parts) *n < 0 ? void(p.skip = -1) : void(p.begin += size_t(*n));
   }
   Array a = load_brick_part(l, part, parts, context);

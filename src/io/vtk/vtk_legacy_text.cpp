@@ -58,7 +58,7 @@ std::string_view LegacyText::need_word(std::string_view what) {
 double LegacyText::number(std::string_view what) {
   const std::string_view w = need_word(what);
   const auto v = parse_double(w);
-  if (!v) fail(fmt::format("'{}' should be {}", w.substr(0, 40), what));
+  if (!v) fail(fmt::format("found '{}' instead of {}", w.substr(0, 40), what));
   return *v;
 }
 
@@ -67,7 +67,7 @@ size_t LegacyText::count(std::string_view what) {
   size_t v = 0;
   const auto r = std::from_chars(w.data(), w.data() + w.size(), v);
   if (r.ec != std::errc{} || r.ptr != w.data() + w.size())
-    fail(fmt::format("'{}' should be {}", w.substr(0, 40), what), "a whole number, not negative");
+    fail(fmt::format("found '{}' instead of {}", w.substr(0, 40), what), "it must be a non-negative whole number");
   return v;
 }
 

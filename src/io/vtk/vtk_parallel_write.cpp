@@ -88,7 +88,7 @@ Index3 start_of(const Mesh& mesh) {
   return std::get<CurvilinearGrid>(mesh).extent_start;
 }
 
-const char* const many_grids = "write collections of any grids to .vtm";
+const char* const many_grids = "write collections of arbitrary grids to .vtm";
 
 // The whole grid, of which each piece is a box; together their own cells are all of its cells, each once.
 struct Whole {
@@ -108,7 +108,7 @@ void check_uniform(const std::vector<Piece>& pieces, const Whole& whole, const s
     const Vec3 there = whole.zero + first.direction * (first.spacing * Vec3(double(i[0]), double(i[1]), double(i[2])));
     bool same = g.spacing == first.spacing && length(there - g.origin) <= 1e-6 * length(first.spacing) + 1e-12 * length(there);
     for (int k = 0; k < 9; ++k) same = same && g.direction.m[k / 3][k % 3] == first.direction.m[k / 3][k % 3];
-    if (!same) fail_usage(fmt::format("part '{}' lies on another grid than part '{}'", p.name, pieces[0].name), path, many_grids);
+    if (!same) fail_usage(fmt::format("part '{}' lies on a different grid from part '{}'", p.name, pieces[0].name), path, many_grids);
   }
 }
 
@@ -165,7 +165,7 @@ Whole whole_of(std::vector<Piece>& pieces, const std::string& path) {
     }
   }
   const long long all = first[0] > last[0] ? 0 : cells_between(first, last);
-  if (cells != all) fail_usage(fmt::format("the parts have {} cells of the {} of the grid around them", cells, all), path, many_grids);
+  if (cells != all) fail_usage(fmt::format("the parts have {} of the {} cells of the grid around them", cells, all), path, many_grids);
   return w;
 }
 
@@ -271,7 +271,7 @@ std::vector<Piece> pieces_of(const Data& data, const Form& form, const std::stri
     const std::string_view right = extension_for(d->mesh());
     if (right != form.extension && !(right == "vtp" && form.extension == "vtu"))
       fail_usage(fmt::format("part '{}' is a mesh of kind {}, which cannot be a piece of a .{}", name, d->kind(), extension_of(path)), path,
-                 "write collections of any meshes to .vtm");
+                 "write collections of arbitrary meshes to .vtm");
     pieces.push_back({name, d});
   });
   if (pieces.empty()) fail_usage("there is no mesh to write", path);

@@ -35,7 +35,7 @@ PartsFolder::PartsFolder(const std::string& path) {
       if (!entry.starts_with(stem_ + "_") || !extension_of(entry).starts_with("vt"))
         fail_usage(fmt::format("the folder for the parts holds other files ('{}')", entry), folder_, "choose another name");
   } else if (file_exists(folder_)) {
-    fail_usage("a file has the name that the folder of parts needs", folder_, "choose another name");
+    fail_usage("a file already has the name needed for the folder of parts", folder_, "choose another name");
   }
   header_.emplace(std::vector<std::string>{path});
   partial_ = make_partial_folder(folder_, false), old_ = partial_ + "-old";

@@ -99,7 +99,7 @@ std::vector<pugi::xml_node> Document::children(pugi::xml_node parent, std::strin
   for (const pugi::xml_node& n : parent.children()) {
     if (named(n, name)) out.push_back(resolve(n));
     if (!named(n, "include")) continue;
-    if (out.size() > 1000000) fail("has too many elements by inclusion", parent);
+    if (out.size() > 1000000) fail("has too many elements through inclusion", parent);
     if (const std::string_view href = n.attribute("href").value(); !href.empty() && href != file_name_of(path_))
       fail(fmt::format("includes '{}': parts of other files are not supported", href), n, "put the grids into one file");
     std::string_view pointer = trim(n.attribute("xpointer").value());

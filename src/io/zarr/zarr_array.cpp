@@ -35,7 +35,7 @@ void parse_v2_type(ZarrArray& a, const Json& json, const std::string& path) {
       }
   }
   fail_data(fmt::format("numbers of type '{}' are not supported", text.substr(0, 40)), path,
-            "int and uint of 8 to 64 bits, float of 32 and 64");
+            "supported: int and uint of 8 to 64 bits, float of 32 and 64");
 }
 
 void set_fill(ZarrArray& a, const Json& v, const std::string& path) {
@@ -74,14 +74,15 @@ void check_sizes(const ZarrArray& a, const std::string& path) {
   for (const size_t n : a.shape)
     if (!multiply(elements, n, elements) || elements > most_elements) fail_data("the shape has more than 2^56 elements", path);
   for (const size_t n : a.chunk)
-    if (!multiply(chunk, n, chunk) || chunk > largest_chunk) fail_data("a chunk has more than 1 GiB", path, "chunks of some MiB are usual");
+    if (!multiply(chunk, n, chunk) || chunk > largest_chunk)
+      fail_data("a chunk has more than 1 GiB", path, "chunks of a few MiB are usual");
 }
 
 void add_codec(ZarrArray& a, const std::string& name, const std::string& path) {
   Codec c;
   if (!parse_codec(name, c))
     fail_data(fmt::format("chunks packed by '{}' are not supported", name.substr(0, 40)), path,
-              "zlib, gzip, bz2, zstd, blosc, lz4, or none");
+              "supported: zlib, gzip, bz2, zstd, blosc, lz4, none");
   a.codecs.push_back(c);
 }
 
@@ -121,7 +122,7 @@ void parse_v3_codecs(ZarrArray& a, const Json& json, const std::string& path) {
       add_codec(a, name, path);
     }
   }
-  if (!bytes) fail_data("the codecs do not say how numbers become bytes", path, "one is called 'bytes'");
+  if (!bytes) fail_data("the codecs do not say how numbers are stored as bytes", path, "expected a codec 'bytes'");
 }
 
 ZarrArray parse_v3(const Json& json, const std::string& folder, const std::string& path) {
@@ -141,7 +142,7 @@ ZarrArray parse_v3(const Json& json, const std::string& folder, const std::strin
     const bool v2 = text_of(*key, "name", "default") == "v2";
     const Json* config = object_of(*key, "configuration");
     const std::string separator = config ? text_of(*config, "separator", v2 ? "." : "/") : v2 ? "." : "/";
-    if (separator != "." && separator != "/") fail_data("the separator of chunk names is neither . nor /", path);
+    if (separator != "." && separator != "/") fail_data("the separator of chunk names is neither '.' nor '/'", path);
     a.separator = separator[0];
     a.before = v2 ? "" : std::string("c") + separator;
   }

@@ -77,11 +77,11 @@ void decode(std::span<const Codec> codecs, std::span<const std::byte> in, std::b
     in = in.first(in.size() - 4), codecs = codecs.first(codecs.size() - 1);
   }
   if (codecs.empty()) {
-    if (in.size() != bytes) fail_data(fmt::format("has {} bytes, a chunk has {}", in.size(), bytes), where);
+    if (in.size() != bytes) fail_data(fmt::format("has {} bytes, but a chunk has {}", in.size(), bytes), where);
     std::memcpy(out, in.data(), bytes);
     return;
   }
-  if (codecs.size() > 1) fail_data(fmt::format("is packed {} times", codecs.size()), where, "one compressor is supported");
+  if (codecs.size() > 1) fail_data(fmt::format("is compressed {} times", codecs.size()), where, "only one compressor is supported");
   decode_last(codecs[0], in, out, bytes, where);
 }
 

@@ -67,7 +67,7 @@ class GraphBuilder {
     try {
       Schema schema = schema_of(params);
       set_params(schema, step.words, "read");
-      if (params.path.empty()) fail_usage("no file is named", "read path", "write read: FILE");
+      if (params.path.empty()) fail_usage("no file is given", "read path", "write read: FILE");
       check(params.options);
     } catch (const Error& e) {
       mistake(step.line, fmt::format("step '{}': {}", step.name, e.what()));
@@ -79,8 +79,8 @@ class GraphBuilder {
   }
 
   NodeId add_memory(const PipelineFile::Step& step) {
-    mistake(step.line, fmt::format("step '{}': its numbers ({}) were in the memory of the program that made this, not in a file; have it "
-                                   "write them and read that file, then its pictures can be made again",
+    mistake(step.line, fmt::format("step '{}': its numbers ({}) were in the memory of the program that made this, not in a file; make that "
+                                   "program write them to a file and read the file, so that pictures can be remade",
                                    step.name, word_value(step.words, "data").value_or("not described")));
     return built_.graph.add_data(DatasetPtr(), "mistake", step.name);
   }

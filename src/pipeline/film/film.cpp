@@ -120,7 +120,7 @@ std::vector<double> make_film(PipelineFile plain, const FilmParams& params, cons
   fix_ranges(base, some, context);
 
   const bool prefetch = outer.memory_limit == 0 || 2 * one_step < outer.memory_limit;
-  if (!prefetch) context.info("two steps do not fit into the memory allowed: each is read when it is drawn");
+  if (!prefetch) context.info("two steps do not fit into the allowed memory: each is read when it is drawn");
   std::unique_ptr<Ahead> ahead;
   for (size_t n = 0; n < count; ++n) {
     context.check();

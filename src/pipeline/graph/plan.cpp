@@ -113,7 +113,7 @@ Plan Planner::make(const Graph& graph, std::span<const Target> targets, const st
   auto find_step = [&](NodeId node, const Request& request) {
     for (size_t r = 0; r < wanted[size_t(node)].size(); ++r)
       if (can_merge(wanted[size_t(node)][r], request)) return step_of[size_t(node)][r];
-    fail_internal("a request was lost on its way");
+    fail_internal("a request got lost");
   };
   for (size_t i = 0; i < g.nodes.size(); ++i) {
     const Node& node = g.nodes[i];

@@ -57,7 +57,7 @@ TEST_CASE("json: an object of 100,000 members is read and searched without looki
   CHECK(v.find("m100000") == nullptr);
 }
 
-TEST_CASE("json: what is no JSON, and what is nested too deeply, names the file") {
+TEST_CASE("json: what is no JSON, and what is nested too deeplyly, names the file") {
   for (const char* bad : {"", "{", "[1,]", "{\"a\":}", "NaN", "[1] 2", "\"\xff\"", "{1:2}"}) {
     CAPTURE(bad);
     try {

@@ -52,7 +52,7 @@ TEST_CASE("join_fields: hidden in one is hidden, and places that differ are told
   const DatasetPtr all = join({grid(3, {{"u", 1}}), make_dataset(std::move(parts))}, {}, &told);
   CHECK(all->cell_ghost().get(0) == ghost_hidden_cell);
   REQUIRE(told.size() == 1);
-  CHECK(told[0].find("lie up to 0.1 beside those of the first") != std::string::npos);
+  CHECK(told[0].find("lie up to 0.1 away from those of the first") != std::string::npos);
   CHECK(all->bounds().lo.x == 0);
 }
 

@@ -232,7 +232,7 @@ TEST_CASE("streamlines: bad input is named") {
   PointCloud cloud{{Array::from_vector(std::vector<float>(30), 3), {}}};
   FieldSet fields;
   fields.add({"u", Association::point, Array::from_vector(std::vector<float>(30, 1), 3), "", Role::vectors});
-  CHECK(contains(error_with(make_dataset(cloud, fields), {}), "no flow between the points"));
+  CHECK(contains(error_with(make_dataset(cloud, fields), {}), "no flow between its points"));
 }
 
 TEST_CASE("streamlines: lines end where the flow is NaN, and at cells that are hidden") {
@@ -364,7 +364,7 @@ TEST_CASE("seeds: bright pixels of a picture on a plane") {
     CHECK(std::abs(x.y) <= 0.5);
     CHECK(x.z == 0);
   }
-  CHECK(contains(error_of([&] { seeds_of(mesh, p, mesh); }), "need a picture"));
+  CHECK(contains(error_of([&] { seeds_of(mesh, p, mesh); }), "needs a picture"));
   std::vector<uint8_t> black(2400);
   FieldSet none;
   none.add({"picture", Association::point, Array::from_vector(black, 3), "", Role::none});

@@ -174,7 +174,7 @@ TEST_CASE("tensor operations name what is wrong with their input") {
   p.tensors.field = {"w"};
   CHECK(error_of([&] { tensor_eigen(in, p, context); }).find("belongs to the whole") != std::string::npos);
   p.tensors.field = {"v"}, p.tensors.order = TensorOrder::voigt;
-  CHECK(error_of([&] { tensor_eigen(in, p, context); }).find("which the order 'voigt' does not fit") != std::string::npos);
+  CHECK(error_of([&] { tensor_eigen(in, p, context); }).find("which does not fit the order 'voigt'") != std::string::npos);
   TensorMeasuresParams m;
   m.tensors.field = {"v"};  // as xx yy xy
   CHECK(error_of([&] { tensor_measures(in, m, context); }).find("'RA' is not defined for the 2D tensors") != std::string::npos);

@@ -362,7 +362,7 @@ TEST_CASE("openfoam: errors say what is wrong and where") {
   CHECK(contains(refused("10/p", "nonuniform List<scalar> 6", "nonuniform List<scalar> 5"), "due"));
   CHECK(contains(refused("10/U", "(1 2 -3)", "(1 2)"), "is not a number"));
   CHECK(contains(refused("10/p", "internalField", "internal"), "has no internalField"));
-  CHECK(contains(refused("10/p", "[1 -1", "[a -1"), "dimensions are seven numbers"));
+  CHECK(contains(refused("10/p", "[1 -1", "[a -1"), "dimensions must be seven numbers"));
   const std::string missing = [] {
     CaseFiles files = foam_case({});
     files.erase("constant/polyMesh/faces");

@@ -135,8 +135,8 @@ TEST_CASE("json: lists of objects, objects of lists, grids, and named tables") {
 }
 
 TEST_CASE("json: what is no table, cut off or too deep is refused") {
-  CHECK(error("t.json", R"({"a":1})").find("no table") != std::string::npos);
-  CHECK(error("t.json", R"([{"a":1})").find("no valid JSON") != std::string::npos);
+  CHECK(error("t.json", R"({"a":1})").find("not a table") != std::string::npos);
+  CHECK(error("t.json", R"([{"a":1})").find("not valid JSON") != std::string::npos);
   CHECK(error("t.json", std::string(100000, '[')).find("deep") != std::string::npos);
   CHECK(error("t.json", R"({"width":9999999999999999999,"height":2,"values":[1]})").size() > 0);
   CHECK(error("t.json", R"({"width":3,"height":2,"values":[1]})").find("1 values for 3 x 2") != std::string::npos);

@@ -177,7 +177,7 @@ TEST_CASE("xdmf: hyperslabs and functions") {
                                             fmt::format("<DataItem ItemType=\"Function\" Function=\"{}\" Dimensions=\"4\">", function) +
                                                 item("4", "0 1 2 3") + "</DataItem>"))));
   };
-  CHECK(contains(wrong("$1"), "names an argument that is not there"));
+  CHECK(contains(wrong("$1"), "names an argument that does not exist"));
   CHECK(contains(wrong("WHERE($0)"), "calls 'where'"));
   CHECK(contains(wrong(std::string(500, '(').c_str()), "nested too deep"));
   CHECK(contains(refusal("t.xdmf", file(grid(triangle_mesh + attribute("h", "",

@@ -78,8 +78,7 @@ Data read(const std::string& path, const ReadOptions& options, Context& context)
     base.node = node;
     base.version = version;
     const std::vector<int64_t> dims = file.integers(node);
-    if (dims.size() != 2 || dims[0] < 1 || dims[0] > 3 || dims[1] < dims[0] || dims[1] > 3)
-      file.fail("is of no dimension that is known", node);
+    if (dims.size() != 2 || dims[0] < 1 || dims[0] > 3 || dims[1] < dims[0] || dims[1] > 3) file.fail("has an unknown dimension", node);
     base.cell_dimension = int(dims[0]), base.physical_dimension = int(dims[1]);
     const std::vector<Node> parts = file.children(node);
     std::vector<double> times = times_of(file, parts);

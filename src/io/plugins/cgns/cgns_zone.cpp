@@ -39,7 +39,7 @@ ZoneSize size_of(const CgFile& file, const Node& zone, const std::vector<Node>& 
     file.fail(fmt::format("is a zone of type '{}'", text), zone, "supported: Structured and Unstructured");
   const std::vector<int64_t> n = file.integers(zone);
   const size_t rank = zone.dims.empty() ? 0 : zone.dims[0];
-  if (rank < 1 || rank > 3 || n.size() < 2 * rank) file.fail("does not say its size", zone);
+  if (rank < 1 || rank > 3 || n.size() < 2 * rank) file.fail("does not give its size", zone);
   for (size_t a = 0; a < rank; ++a) {
     if (n[a] < 0 || n[rank + a] < 0) file.fail(fmt::format("has {} points and {} cells", n[a], n[rank + a]), zone);
     z.points.push_back(size_t(n[a])), z.cells.push_back(size_t(n[rank + a]));
@@ -147,7 +147,7 @@ class Fields {
     const Node* location = CgFile::labelled(parts, "GridLocation_t");
     const std::string where = location ? file_.text(*location) : "Vertex";
     if (where != "Vertex" && where != "CellCenter") {
-      context_.info(fmt::format("{}: {} is on {}, which is not read", file_.path(), solution.path, where));
+      context_.info(fmt::format("{}: {} is on {}, which is not supported; it is left out", file_.path(), solution.path, where));
       return;
     }
     const Association association = where == "Vertex" ? Association::point : Association::cell;

@@ -56,14 +56,14 @@ struct Walker {
       }
     }
     if (h.length == undefined) h.sequence = true;
-    else if (h.length > end - h.e.value) fail(at, h.e.tag, fmt::format("tells {} bytes, {} follow", h.length, end - h.e.value));
+    else if (h.length > end - h.e.value) fail(at, h.e.tag, fmt::format("announces {} bytes, but {} follow", h.length, end - h.e.value));
     h.e.end = h.length == undefined ? end : h.e.value + h.length;
     return h;
   }
 
   // Items of a sequence from `at`; returns where it ends.
   size_t sequence(size_t at, size_t end, bool open, int depth, bool keep) {
-    if (depth > 16) fail_data(fmt::format("byte {}: sequences nest deeper than 16", at), d.path);
+    if (depth > 16) fail_data(fmt::format("byte {}: sequences are nested more than 16 deep", at), d.path);
     while (at < end) {
       const Head h = head(at, end);
       if (h.e.tag == sequence_end && open) return h.e.value;
@@ -97,7 +97,7 @@ struct Walker {
       d.fragment_bytes += h.length;
       at = h.e.end;
     }
-    fail_data(fmt::format("byte {}: the pixel data have no end", at), d.path);
+    fail_data(fmt::format("byte {}: the pixel data has no end", at), d.path);
   }
 
   void dataset(size_t at) {
@@ -168,7 +168,7 @@ DicomElements walk_dicom(std::span<const std::byte> bytes, const std::string& pa
     // Group 2 is always explicit little endian.
     for (at = 132; at + 8 <= bytes.size() && load<uint16_t>(bytes.data() + at) == 2;) {
       const auto h = w.head(at, bytes.size());
-      if (h.sequence) w.fail(at, h.e.tag, "is a sequence where none belongs");
+      if (h.sequence) w.fail(at, h.e.tag, "is an unexpected sequence");
       if (h.e.tag == 0x00020010) d.transfer_syntax = d.text(h.e);
       at = h.e.end;
     }

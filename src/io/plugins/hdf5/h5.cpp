@@ -73,7 +73,7 @@ herr_t check_link(const char* parent, const char*, const char* child, const char
 void guard_links() {
   static const bool done = [] {
     for (const hid_t list : {H5P_LINK_ACCESS_DEFAULT, H5P_DATASET_ACCESS_DEFAULT, H5P_GROUP_ACCESS_DEFAULT})
-      if (H5Pset_elink_cb(list, check_link, nullptr) < 0) fail_internal("HDF5 takes no guard of external links");
+      if (H5Pset_elink_cb(list, check_link, nullptr) < 0) fail_internal("HDF5 does not accept a callback for external links");
     return true;
   }();
   (void)done;
@@ -96,7 +96,7 @@ File::File(const std::string& path, Unprobed) : path_(path) {
   H5Pset_file_locking(access, false, true);  // reading needs no lock, and some shared folders have none
   H5Pset_fclose_degree(access, H5F_CLOSE_SEMI);
   file_ = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access));
-  if (!file_.good()) fail_data("cannot be opened as HDF5" + said(), path, "the file is truncated, damaged or no HDF5 file");
+  if (!file_.good()) fail_data("cannot be opened as HDF5" + said(), path, "the file is truncated, damaged or not HDF5");
   hsize_t size = 0;
   if (H5Fget_filesize(file_, &size) < 0) fail_data("cannot be measured" + said(), path);
   size_ = size;

@@ -16,7 +16,7 @@ namespace {
 uint64_t total(const Group& g, const std::string& what, const std::vector<uint64_t>& counts) {
   uint64_t n = 0;
   for (const uint64_t c : counts)
-    if (!add(n, c, n) || n > (uint64_t(1) << 60)) g.file.fail("adds up to more than can be counted", g.at(what), "the file is damaged");
+    if (!add(n, c, n) || n > (uint64_t(1) << 60)) g.file.fail("adds up to too many to count", g.at(what), "the file is damaged");
   return n;
 }
 
@@ -75,7 +75,7 @@ CellLists read_lists(const Group& g, const Partitions& p, const std::string& at,
   for (size_t i = 0; i < p.size(); ++i) {
     const size_t n = r.cells[i], m = r.ids[i];
     if (n > 0)
-      r.lists[i] = with_context(fmt::format("taking apart the cells of partition {} in '{}'", p.first + i, g.at(at)),
+      r.lists[i] = with_context(fmt::format("splitting the cells of partition {} in '{}'", p.first + i, g.at(at)),
                                 [&] { return vtk::cells_from_starts(offsets.slice(o, o + n + 1), ids.slice(c, c + m)); });
     o += n + 1, c += m;
   }
@@ -181,7 +181,7 @@ void read_unstructured(const Group& g, DatasetParts& parts) {
     vtk::set_types(mesh, types);
     if (has_polyhedra(mesh)) {
       if (!g.file.is_dataset(g.at("FaceConnectivity")))
-        g.file.fail("holds polyhedra without their faces", g.path, "faces are kept since version 2.5 of the format");
+        g.file.fail("has polyhedra without faces", g.path, "faces are stored since version 2.5 of the format");
       read_faces(g, p, cells, mesh);
     }
   }

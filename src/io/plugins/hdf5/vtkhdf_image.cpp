@@ -103,7 +103,7 @@ void read_image(const Group& g, DatasetParts& parts) {
   for (const std::string& name : field_names(g, "PointData"))
     parts.fields.add(field_of(g, "PointData", name, Association::point, read_array(g, "PointData", name, points)));
   if (!with_cells) {
-    parts.notes.emplace_back("crop", "cell fields were left out: cells do not survive a stride");
+    parts.notes.emplace_back("crop", "cell fields were left out: a stride keeps points, not cells");
     return;
   }
   for (const std::string& name : field_names(g, "CellData"))

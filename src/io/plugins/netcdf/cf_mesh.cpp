@@ -43,7 +43,7 @@ Axis axis_of(const NcFile& file, const CfModel& model, int dim, CfMesh& out, Con
       return axis;
     }
     if (axis.at.size() > 1)
-      context.warn(fmt::format("{}: variable {} is not monotone; its axis is counted 0, 1, 2, ...", file.path(), v->name));
+      context.warn(fmt::format("{}: variable {} is not monotone; its axis is numbered 0, 1, 2, ...", file.path(), v->name));
   }
   axis.at.resize(d.length);
   axis.single = false;

@@ -48,7 +48,7 @@ std::optional<Array> ExodusMesh::values(const ObjectKind& kind, size_t i, const 
                         : file_.find(fmt::format("vals_nod_var{}", i + 1));
   const size_t n = o ? o->size : nodes_;
   if (v) {
-    if (!v->is_number() || v->shape.size() != 2 || v->shape[1] != n) file_.fail(fmt::format("must hold {} numbers a step", n), v->name);
+    if (!v->is_number() || v->shape.size() != 2 || v->shape[1] != n) file_.fail(fmt::format("must hold {} numbers per step", n), v->name);
     if (step_ >= v->shape[0]) return {};
     if (options_.header_only) return unread_values(ElementType::f64, n);
     return file_.read(*v, {step_, 0}, {1, n}, ElementType::f64);

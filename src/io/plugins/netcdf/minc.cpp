@@ -39,7 +39,7 @@ MincLayout layout_of(const NcFile& file, const Variable& image) {
     else file.fail(fmt::format("has the dimension '{}'", name), image.name, "supported: xspace, yspace, zspace, time and vector_dimension");
   }
   for (size_t a = 0; a < l.axes.size(); ++a)
-    if (std::count(l.space.begin(), l.space.end(), l.space[a]) > 1) file.fail("has one direction twice", image.name);
+    if (std::count(l.space.begin(), l.space.end(), l.space[a]) > 1) file.fail("has the same direction twice", image.name);
   if (l.axes.empty() || l.components < 1 || l.components > 64) file.fail("is not a volume", image.name);
   return l;
 }
@@ -117,7 +117,7 @@ class Scaling {
     if (!used_) return;
     for (size_t k = 0; k < low_->dims.size(); ++k)
       if (k >= image.dims.size() || low_->dims[k] != image.dims[k])
-        file.fail("must have the slowest dimensions of image", low_->name, "one number a slice");
+        file.fail("must have the slowest dimensions of 'image'", low_->name, "expected one number per slice");
     min_ = file.doubles(*low_), max_ = file.doubles(*high_);
     for (size_t k = low_->dims.size(); k < image.dims.size(); ++k) slice_ *= image.shape[k];
   }

@@ -219,7 +219,7 @@ Array NcFile::read(const Variable& v, const std::vector<size_t>& start, const st
   uint64_t n = 1, bytes = 0;
   for (size_t k = 0; k < v.shape.size(); ++k) {
     if (count[k] > v.shape[k] || start[k] > v.shape[k] - count[k])
-      fail(fmt::format("numbers {}..{} of dimension {} are wanted, which has {}", start[k], start[k] + count[k], k, v.shape[k]), v.name);
+      fail(fmt::format("numbers {}..{} of dimension {} are requested, which has {}", start[k], start[k] + count[k], k, v.shape[k]), v.name);
     if (!multiply(n, count[k], n)) fail("has more numbers than can be counted", v.name);
   }
   if (!multiply(n, element_size(v.element()), bytes) || bytes > most_bytes())
@@ -241,7 +241,7 @@ std::vector<double> NcFile::doubles(const Variable& v) const {
 }
 
 std::vector<std::string> NcFile::strings(const Variable& v) const {
-  if (!v.is_text()) fail("holds no text", v.name);
+  if (!v.is_text()) fail("contains no text", v.name);
   if (v.shape.empty()) return {};
   const size_t n = v.count(), width = v.shape.back();
   if (n > most_bytes()) fail("is larger than the file", v.name);

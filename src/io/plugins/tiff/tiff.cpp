@@ -41,7 +41,7 @@ struct Tiff {
         o, [](TIFF*, void*, const char*, const char*, va_list) { return 1; }, nullptr);
     t = TIFFOpenExt(path.c_str(), "rm", o);
     TIFFOpenOptionsFree(o);
-    if (!t) fail("it cannot be opened");
+    if (!t) fail("cannot open it");
   }
   ~Tiff() {
     if (t) TIFFClose(t);
@@ -70,7 +70,7 @@ Page read_head(const Tiff& f) {
   TIFFGetFieldDefaulted(f.t, TIFFTAG_PLANARCONFIG, &p.planar);
   TIFFGetField(f.t, TIFFTAG_PHOTOMETRIC, &p.photometric);
   TIFFGetFieldDefaulted(f.t, TIFFTAG_COMPRESSION, &p.packing);
-  if (p.width == 0 || p.height == 0) f.fail(fmt::format("a page of {} x {} pixels", p.width, p.height));
+  if (p.width == 0 || p.height == 0) f.fail(fmt::format("a page has {} x {} pixels", p.width, p.height));
   const bool is_float = p.format == SAMPLEFORMAT_IEEEFP, is_signed = p.format == SAMPLEFORMAT_INT;
   p.as_rgb = p.photometric == PHOTOMETRIC_PALETTE || p.photometric == PHOTOMETRIC_YCBCR || p.bits < 8;
   using enum ElementType;
@@ -97,10 +97,10 @@ std::vector<tdir_t> pages_like(Tiff& f, Page& first, size_t file_size, Context& 
     if (pages.empty()) first = p;
     if (kind & FILETYPE_REDUCEDIMAGE || !p.like(first)) ++others;
     else pages.push_back(tdir_t(n));
-    if (++n > file_size / 16) f.fail("more pages than fit in it");
+    if (++n > file_size / 16) f.fail("has more pages than fit in it");
   } while (TIFFReadDirectory(f.t));
-  if (pages.empty()) f.fail("no page with a picture");
-  if (others) context.warn(fmt::format("{}: {} pages of another size or type are left out", f.path, others));
+  if (pages.empty()) f.fail("has no page with a picture");
+  if (others) context.warn(fmt::format("{}: {} pages of a different size or type are left out", f.path, others));
   return pages;
 }
 
@@ -110,7 +110,7 @@ void read_page(Tiff& f, tdir_t number, const Page& first, size_t file_size, std:
   const Page p = read_head(f);
   if (!p.like(first)) f.fail(fmt::format("page {} has changed", number + 1));
   const size_t row = p.row(), size = element_size(p.type);
-  auto fail = [&] { f.fail(fmt::format("page {} cannot be unpacked", number + 1)); };
+  auto fail = [&] { f.fail(fmt::format("page {} cannot be decompressed", number + 1)); };
   if (p.as_rgb) {
     check_plausible(uint64_t(p.width) * p.height, 4, file_size, f.path);
     std::vector<uint32_t> raster(size_t(p.width) * p.height);

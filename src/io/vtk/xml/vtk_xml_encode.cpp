@@ -69,10 +69,10 @@ XmlWriter::XmlWriter(const std::string& path, const WriteOptions& options, Conte
     case Compression::zlib: codec_ = Codec::zlib; break;
     case Compression::lz4: codec_ = Codec::lz4; break;
     case Compression::lzma: codec_ = Codec::lzma; break;
-    default: fail_usage(fmt::format("VTK XML cannot be compressed with '{}'", word_of(c)), path, "none, zlib, lz4 or lzma");
+    default: fail_usage(fmt::format("VTK XML cannot be compressed with '{}'", word_of(c)), path, "use none, zlib, lz4 or lzma");
   }
   if (encoding_ == VtkEncoding::ascii && codec_ != Codec::none)
-    fail_usage("text cannot be compressed", path, "encoding base64 or appended, or compression none");
+    fail_usage("text cannot be compressed", path, "use encoding base64 or appended, or compression none");
 }
 
 void XmlWriter::open(std::string_view element, const XmlAttributes& attributes, bool empty) {

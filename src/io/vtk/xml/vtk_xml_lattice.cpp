@@ -42,9 +42,9 @@ Extent parse_extent(const XmlFile& file, pugi::xml_node element, const char* att
     e.lo[a] = v[2 * a], e.hi[a] = v[2 * a + 1];
     constexpr long long most = 1ll << 60;
     if (e.lo[a] < -most || e.hi[a] > most || e.hi[a] < e.lo[a] - 1)
-      file.fail(fmt::format("{} runs from {} to {} along {}", attribute, e.lo[a], e.hi[a], "xyz"[a]), element);
+      file.fail(fmt::format("{} extends from {} to {} along {}", attribute, e.lo[a], e.hi[a], "xyz"[a]), element);
     if (!multiply(n, std::max<size_t>(e.points(a), 1), n) || n > uint64_t(1) << 62)
-      file.fail(fmt::format("{} has more points than can be counted", attribute), element);
+      file.fail(fmt::format("{} has too many points to count", attribute), element);
   }
   return e;
 }
@@ -106,11 +106,11 @@ void choose_region(const XmlRead& read, Layout& l) {
   const LatticeRegion& r = read.options.region;
   const Size3 dims = l.box.dims();
   for (size_t a = 0; a < 3; ++a) {
-    if (r.stride[a] == 0) fail_usage("a stride of 0", read.file.path(), "1 keeps every point");
+    if (r.stride[a] == 0) fail_usage("the stride is 0", read.file.path(), "use 1 to keep every point");
     const size_t last = std::min(r.hi[a], dims[a] - 1);
     if (r.lo[a] > last)
-      fail_usage(fmt::format("points {} to {} along {} of a grid with {} points", r.lo[a], r.hi[a], "xyz"[a], dims[a]), read.file.path(),
-                 fmt::format("0 to {}", dims[a] - 1));
+      fail_usage(fmt::format("points {} to {} along {} do not exist: the grid has {} points there", r.lo[a], r.hi[a], "xyz"[a], dims[a]),
+                 read.file.path(), fmt::format("0 to {}", dims[a] - 1));
     const size_t stride = std::min(r.stride[a], dims[a]), cells = std::max<size_t>(dims[a], 2) - 1;
     l.lo[a] = r.lo[a];
     l.points.base[a] = l.box.lo[a] + static_cast<long long>(r.lo[a]);
@@ -162,7 +162,7 @@ Layout lay_out(const XmlRead& read) {
   }
   for (size_t a = 0; a < 3; ++a)
     if (!multiply(n, l.box.points(a), n)) read.file.fail("has pieces too far apart", dataset);
-  if (n / 64 > sum) read.file.fail(fmt::format("has pieces of {} points in a box of {}", sum, n), dataset, "pieces that touch");
+  if (n / 64 > sum) read.file.fail(fmt::format("has pieces of {} points in a box of {}", sum, n), dataset, "the pieces must touch");
   choose_region(read, l);
   drop_idle_pieces(l);
   return l;
@@ -300,7 +300,7 @@ void put_all_fields(const XmlRead& read, const Layout& l, DatasetParts& parts) {
   std::vector<XmlField> dropped = list_fields(read, l.pieces, "CellData", Association::cell);
   std::erase_if(dropped, [](const XmlField& f) { return is_ghost_name(f.field.name); });
   if (const size_t n = dropped.size())
-    parts.notes.emplace_back("crop", fmt::format("{} cell fields were left out: cells do not survive a stride", n));
+    parts.notes.emplace_back("crop", fmt::format("{} cell fields were left out: a stride keeps points, not cells", n));
 }
 
 }  // namespace
@@ -341,7 +341,7 @@ void read_rectilinear(const XmlRead& read, DatasetParts& parts) {
     const XmlFile& file = *l.pieces[p].file;
     pugi::xml_node n = l.pieces[p].node.child("Coordinates").child("DataArray");
     for (size_t a = 0; a < 3; ++a, n = n.next_sibling("DataArray")) {
-      if (!n) file.fail("has no three arrays of Coordinates", l.pieces[p].node, "the file is truncated or not complete");
+      if (!n) file.fail("does not have three arrays of Coordinates", l.pieces[p].node, "the file is truncated or not complete");
       if (!l.point_shares[p]) continue;  // gives cells only
       const Share& s = *l.point_shares[p];
       const Window w{{l.extents[p].points(a), 1, 1}, {s.window.lo[a], 0, 0}, {s.window.count[a], 1, 1}, {s.window.stride[a], 1, 1}};

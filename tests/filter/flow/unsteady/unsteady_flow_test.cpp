@@ -176,7 +176,7 @@ TEST_CASE("unsteady flow: bad series are refused with their reason") {
   };
   CHECK(make({3}).find("1 time step; two at least; streamlines") != std::string::npos);
   CHECK(make({0, 2, 1}).find("step 1 has 2, step 2 has 1") != std::string::npos);
-  CHECK(make({0, 2, 2}).find("do not grow") != std::string::npos);
+  CHECK(make({0, 2, 2}).find("do not increase") != std::string::npos);
   CHECK(make({0, NAN}).find("step 1") != std::string::npos);
   UnsteadyFlow flow(series_of({0, 1}, box, wave), "speed", TimeInterpolation::linear, context);
   const std::string text = test::error_of([&] { flow.open(0, context); });

@@ -231,7 +231,7 @@ TEST_CASE("unsteady: bad requests say what is wrong") {
   CHECK(message(streak, oscillating_series(3)).find("releases") != std::string::npos);
   TimelinesParams time;
   time.seeds.points = {0, 0, 0};
-  CHECK(message(time, oscillating_series(3)).find("makes no line") != std::string::npos);
+  CHECK(message(time, oscillating_series(3)).find("does not make a line") != std::string::npos);
   CHECK(message(TimelinesParams{}, oscillating_series(3)).find("random seeds do not make a line") != std::string::npos);
 }
 

@@ -417,7 +417,7 @@ std::unique_ptr<LatticeWalker> walker_of(const std::shared_ptr<const Volume>& v,
     case ElementType::u16: return std::make_unique<LatticeRay<uint16_t>>(v, invisible, std::move(second));
     case ElementType::i16: return std::make_unique<LatticeRay<int16_t>>(v, invisible, std::move(second));
     case ElementType::f32: return std::make_unique<LatticeRay<float>>(v, invisible, std::move(second));
-    default: fail_internal("a volume's samples were not narrowed");
+    default: fail_internal("the samples of a volume were not narrowed");
   }
 }
 
