@@ -54,7 +54,7 @@ decltype(auto) with_context(std::string_view doing, F&& f) {
 /// The candidate nearest to `name` (Damerau-Levenshtein, case ignored), or "" when none is close enough to be meant.
 std::string nearest_name(std::string_view name, std::span<const std::string> candidates);
 
-/// Hint for an unknown name: "did you mean 'temperature'? available: temperature, pressure".
+/// Hint for an unknown name: "did you mean 'temperature'? has: temperature, pressure".
 std::string unknown_name_hint(std::string_view name, std::span<const std::string> candidates);
 
 }  // namespace sg
