@@ -238,7 +238,7 @@ const char* const overview =
     "  sightglass run PIPELINE.yaml                                  run a pipeline file\n"
     "  sightglass open PICTURE.png                                   remake a picture from the recipe stored in it\n"
     "  sightglass ops [NAME] [--json]                                list operations and their parameters\n"
-    "  sightglass colormap [NAME or FILE[:NAME]]                    list colour maps and analyse their lightness\n"
+    "  sightglass colormap [NAME or FILE[:NAME]]                     list colour maps and analyse their lightness\n"
     "  sightglass demo                                               render sample pictures into out/\n"
     "  sightglass completions bash|zsh|fish                          print a shell's completion script\n"
     "  sightglass man                                                print the manual page: sightglass man | man -l -\n\n"

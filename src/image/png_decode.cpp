@@ -109,7 +109,7 @@ Image decode_png(std::span<const std::byte> bytes, const std::string& name) {
   const size_t row = png_get_rowbytes(r.png, r.info);
   uint64_t size = 0, packed = 0;
   if (!multiply(row, uint64_t(r.image.height), size) || !multiply(bytes.size(), 8 * 1040, packed) || size > packed)
-    fail_data(fmt::format("damaged PNG: {} bytes cannot hold {} x {} pixels", r.image.width, r.image.height, bytes.size()), name);
+    fail_data(fmt::format("damaged PNG: {} x {} pixels do not fit into {} bytes", r.image.width, r.image.height, bytes.size()), name);
   if (size > (uint64_t(256) << 20) + 100 * uint64_t(bytes.size()))
     fail_data(
         fmt::format("{} x {} pixels from a file of {} bytes would fill {} MiB", r.image.width, r.image.height, bytes.size(), size >> 20),

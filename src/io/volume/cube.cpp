@@ -49,7 +49,7 @@ struct Lines {
 };
 
 DatasetPtr atoms_of(Lines& in, size_t count, const std::string& unit) {
-  if (count > (in.file.size() - in.at) / 10) fail_data(fmt::format("{} bytes cannot hold {} atoms", count, in.file.size()), in.file.path());
+  if (count > (in.file.size() - in.at) / 10) fail_data(fmt::format("{} atoms do not fit into {} bytes", count, in.file.size()), in.file.path());
   std::vector<double> xyz;
   std::vector<int32_t> z;
   std::vector<double> charge;

@@ -131,7 +131,7 @@ Data read_png_grid(const std::string& path, const ReadOptions& options, Context&
   const size_t row = p.width * p.channels * (p.depth / 8);
   uint64_t size = 0;
   if (!multiply(row, p.height, size) || size / 1040 > file.size())
-    fail_data(fmt::format("damaged PNG: {} bytes cannot hold {} x {} pixels", p.width, p.height, file.size()), path);
+    fail_data(fmt::format("damaged PNG: {} x {} pixels do not fit into {} bytes", p.width, p.height, file.size()), path);
   if (options.header_only) return picture(p.width, p.height, "PNGImage", {}, options.region);
   std::byte* to = nullptr;
   Array a = Array::make_raw(p.depth == 16 ? ElementType::u16 : ElementType::u8, p.width * p.height, int(p.channels), &to);
@@ -151,7 +151,7 @@ Data read_jpeg_grid(const std::string& path, const ReadOptions& options, Context
   const bool grey = space == TJCS_GRAY;
   const size_t numbers = size_t(width) * size_t(height) * (grey ? 1 : 3);
   if (numbers / 4000 > file.size())
-    fail_data(fmt::format("damaged JPEG: {} bytes cannot hold {} x {} pixels", width, height, file.size()), path);
+    fail_data(fmt::format("damaged JPEG: {} x {} pixels do not fit into {} bytes", width, height, file.size()), path);
   if (options.header_only) return picture(size_t(width), size_t(height), "JPEGImage", {}, options.region);
   uint8_t* to = nullptr;
   Array a = Array::make<uint8_t>(size_t(width) * size_t(height), grey ? 1 : 3, &to);
