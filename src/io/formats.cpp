@@ -69,7 +69,7 @@ const Format* raw_format() {
 const Format& format_of_folder(const std::string& path) {
   for (const Format& f : formats())
     if (f.sniff_folder && f.sniff_folder(path)) return f;
-  fail_data("is not a folder of a known kind", path,
+  fail_data("is a folder of unknown kind", path,
             "supported folders: DICOM slices, OpenFOAM cases, AMReX plotfiles, Zarr images, stacks of pictures");
 }
 

@@ -64,7 +64,7 @@ TEST_CASE("render: a series that cannot be is told") {
   const std::string out = test::temp_folder() + "bad_{n}.png";
   CHECK(has(sightglass({"render", "-s", "drift size=9", "-o", out}).err, "--times"));
   CHECK(has(sightglass({"render", "-s", "drift size=9", "--times", "0:1:2:3", "-o", out}).err, "not a list of times"));
-  CHECK(has(sightglass({"render", "-s", "tangle size=9", "--times", "0,1", "-o", out}).err, "has no time"));
+  CHECK(has(sightglass({"render", "-s", "tangle size=9", "--times", "0,1", "-o", out}).err, "has no parameter 'time'"));
   CHECK(has(sightglass({"render", "-s", "drift size=9", "--times", "0,1", "-o", test::temp_folder() + "x.png"}).err, "{n}"));
   CHECK(has(sightglass({"render", "-s", "drift size=9", "--times", "1:0", "-o", out}).err, "not a range of times"));
 }

@@ -123,7 +123,7 @@ TEST_CASE("calc: mistakes say where and what would be right") {
   CHECK(error("sqr(T)").find("did you mean 'sqrt'") != std::string::npos);
   CHECK(error("(T").find("a ')' is missing") != std::string::npos);
   CHECK(error("T T").find("character 3") != std::string::npos);
-  CHECK(error("velocity + grad").find("joins 3 numbers with 9") != std::string::npos);
+  CHECK(error("velocity + grad").find("combines 3 numbers with 9") != std::string::npos);
   CHECK(error("velocity[3]").find("component 3 of 3") != std::string::npos);
   CHECK(error("sqrt(T, 2)").find("takes 1 argument, not 2") != std::string::npos);
   CHECK(error("T * rho").find("cell_to_point") != std::string::npos);

@@ -212,7 +212,7 @@ TEST_CASE("streamlines: bad input is named") {
   CHECK(contains(error_with(plain, {}), "no vector field"));
   CHECK(contains(error_with(with_velocity(plain, [](Vec3) { return Vec3(); }), {}), "zero or NaN everywhere"));
   CHECK(contains(error_with(with_velocity(plain, [](Vec3) { return Vec3(NAN, NAN, NAN); }), {}), "zero or NaN everywhere"));
-  CHECK(contains(error_with(good, from_points({7, 7, 7})), "none of 1 seeds lies in the flow; the mesh lies in x -1 to 1"));
+  CHECK(contains(error_with(good, from_points({7, 7, 7})), "none of 1 seeds lies in the flow; the mesh extends over x -1 to 1"));
   CHECK(contains(error_with(good, from_points({7, 7})), "2 numbers do not make points"));
   StreamlinesParams p;
   p.field.name = "velocity";

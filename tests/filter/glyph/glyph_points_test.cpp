@@ -181,7 +181,7 @@ TEST_CASE("trails: the stretch before a time, cut exactly, with ages and heads")
   CHECK(faded.role == Role::colors);
   CHECK(faded.array.get(size_t(lines.point(0, 1)), 3) == 128);
   CHECK(faded.array.get(size_t(lines.point(0, 2)), 3) == 255);
-  CHECK(error_of([&] { trails(two_lines(), {.color = {1}}, context); }).find("no colour") != std::string::npos);
+  CHECK(error_of([&] { trails(two_lines(), {.color = {1}}, context); }).find("not make a colour") != std::string::npos);
   CHECK(trails(two_lines(), {.time = 20, .length = 1}, context)->cell_count() == 0);
   CHECK(trails(two_lines(), {}, context)->as<SurfaceMesh>()->lines.size() == 1);  // the last second: 9 to 10
   CHECK(error_of([&] { trails(two_lines(), {.field = {"tim"}}, context); }).find("'tim'") != std::string::npos);

@@ -129,7 +129,7 @@ TEST_CASE("threshold: several ranges, several fields") {
   p.ranges = {5};
   CHECK(error_of([&] { threshold(box, p, ctx); }).find("pairs") != std::string::npos);
   p.ranges = {0, 1}, p.min = 2;
-  CHECK(error_of([&] { threshold(box, p, ctx); }).find("both given") != std::string::npos);
+  CHECK(error_of([&] { threshold(box, p, ctx); }).find("together with") != std::string::npos);
 }
 
 TEST_CASE("threshold: a lattice by bits keeps the cells that a list of them keeps") {

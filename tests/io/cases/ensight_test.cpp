@@ -372,7 +372,7 @@ TEST_CASE("ensight: errors say what is wrong and where") {
     return error_of([&] { read_any(write_case("ens_bad", files) + "m.case"); });
   };
   CHECK(contains(refused("m.case", "ensight gold", "ensight"), "type 'ensight' is not supported"));
-  CHECK(contains(refused("m.case", "model: m.geo", ""), "no geometry"));
+  CHECK(contains(refused("m.case", "model: m.geo", ""), "not name a geometry"));
   CHECK(contains(refused("m.case", "pressure m.scl", "pressure"), "line 8"));
   CHECK(contains(refused("m.case", "pressure m.scl", "pressure none.scl"), "none.scl"));
   CHECK(contains(refused("m.case", "pressure m.scl", "3 pressure m.scl"), "time set 3"));

@@ -219,7 +219,7 @@ TEST_CASE("ply: bad files are refused") {
   CHECK(contains(refusal("b.ply", header("ascii", xyz + face) + rows + "3 0 1 7\n"), "point id 7"));
   CHECK(contains(refusal("b.ply", header("ascii", xyz + face) + rows + "3 0 1 -1\n"), "point id -1"));
   CHECK(contains(refusal("b.ply", header("ascii", xyz + face) + rows + "3 0 1\n"), "does not have the 3 numbers"));
-  CHECK(contains(refusal("b.ply", header("ascii", xyz + face) + rows + "300000 0 1 2\n"), "promises 300000 entries"));
+  CHECK(contains(refusal("b.ply", header("ascii", xyz + face) + rows + "300000 0 1 2\n"), "announces 300000 entries"));
   CHECK(contains(
       refusal("b.ply", header("ascii", "element vertex 4000000000000000000\nproperty float x\nproperty float y\nproperty float z\n")),
       "do not fit"));

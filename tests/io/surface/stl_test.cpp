@@ -161,7 +161,7 @@ TEST_CASE("stl: bad files are refused") {
   std::vector<float> nan{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, std::nanf(""), 0};
   CHECK(contains(refusal("b.stl", binary_stl(nan)), "triangle 1 has a coordinate"));
   const std::string facet = "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
-  CHECK(contains(refusal("b.stl", "solid\n" + facet), "cut off"));
+  CHECK(contains(refusal("b.stl", "solid\n" + facet), "truncated"));
   CHECK(contains(refusal("b.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0\n"), "line 4: 'vertex' does not have three numbers"));
   CHECK(contains(
       refusal("b.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 0 1 0\nendloop\nendfacet\n" + facet + "endsolid\n"),

@@ -293,7 +293,7 @@ TEST_CASE("dicom: what cannot be read is said") {
   for (int i = 0; i < 1000; ++i)
     deep.body += i % 2 ? std::string("\xfe\xff\x00\xe0\xff\xff\xff\xff", 8) : std::string("\x08\x00\x40\x11SQ\0\0\xff\xff\xff\xff", 12);
   CHECK(contains(refusal("b.dcm", deep.file()), "more than 16 deep"));
-  CHECK(contains(error_of([] { read_file(folder("empty")); }), "not a folder of a known kind"));
+  CHECK(contains(error_of([] { read_file(folder("empty")); }), "folder of unknown kind"));
 }
 
 TEST_CASE("dicom: cut and damaged files give errors, never crashes") {

@@ -126,7 +126,7 @@ TEST_CASE("metaimage: bad headers are refused") {
   CHECK(contains(refusal("b.mha", "NDims = 30\nDimSize = 3 2\n" + end), "NDims is '30'"));
   CHECK(contains(refusal("b.mha", "NDims = 2\nDimSize = 3 x\n" + end), "'x' is not a valid size"));
   CHECK(contains(refusal("b.mha", head + "ElementType = MET_STRING\nElementDataFile = LOCAL\n"), "'MET_STRING' is unknown"));
-  CHECK(contains(refusal("b.mha", head + "ElementSpacing = 1 1\n" + end), "2 numbers, 3 are needed"));
+  CHECK(contains(refusal("b.mha", head + "ElementSpacing = 1 1\n" + end), "2 numbers, but 3 are needed"));
   CHECK(contains(refusal("b.mha", head + "ElementSpacing = 1 1 nan\n" + end), "is not a number"));
   CHECK(contains(refusal("b.mha", head + "TransformMatrix = 1 0 0 1 0 0 0 0 1\n" + end), "coplanar"));
   CHECK(contains(refusal("b.mha", head + "ElementType = MET_SHORT\n"), "no ElementDataFile"));

@@ -49,7 +49,7 @@ void check_regions(const std::string& path, ReadOptions o = {}) {
   CHECK(contains(error_of([&] { read_file(path, o); }), "axis y"));
   o.region.lo = {0, 0, 0};
   o.region.stride = {1, 0, 1};
-  CHECK(contains(error_of([&] { read_file(path, o); }), "stride of 0"));
+  CHECK(contains(error_of([&] { read_file(path, o); }), "stride is 0"));
 }
 
 }  // namespace

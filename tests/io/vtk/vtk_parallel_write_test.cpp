@@ -137,7 +137,7 @@ TEST_CASE("vtk parallel writing: parts that are no boxes of one grid are refused
   Collection gap = c;
   gap.parts.erase(gap.parts.begin() + 1);
   CHECK(error(gap).find("48 cells") == std::string::npos);
-  CHECK(error(gap).find("24 cells of the 30") != std::string::npos);
+  CHECK(error(gap).find("24 of the 30 cells") != std::string::npos);
   Collection moved = c;
   DatasetParts p = std::get<DatasetPtr>(c.parts[2].data)->parts();
   std::get<UniformGrid>(p.mesh).origin.x += 0.05;

@@ -155,11 +155,11 @@ TEST_CASE("zarr: descriptions that cannot be right are refused, and say where") 
   };
   CHECK(contains(moved(R"({"type": "scale", "scale": [1, 1]})"), "2 numbers for 3"));
   CHECK(contains(moved(R"({"type": "scale", "scale": [1, 0, 1]})"), "above 0"));
-  CHECK(contains(moved(R"({"type": "scale", "scale": [1, "a", 1]})"), "no number"));
+  CHECK(contains(moved(R"({"type": "scale", "scale": [1, "a", 1]})"), "not a number"));
   CHECK(contains(moved(R"({"type": "affine", "affine": []})"), "affine"));
   // Levels must go together.
   CHECK(contains(described(R"({"multiscales": [{"axes": ["z", "y", "x"], "datasets": [{"path": "1"}, {"path": "0"}]}]})"), "in level 0"));
-  CHECK(contains(refused(fresh("empty.zarr")), "not a folder of a known kind"));
+  CHECK(contains(refused(fresh("empty.zarr")), "folder of unknown kind"));
 }
 
 TEST_CASE("zarr: version 3 that cannot be right is refused") {

@@ -168,10 +168,10 @@ Data read_here(const std::string& path, size_t file_size, const ReadOptions& opt
   uint64_t bytes = 0;
   const size_t ratio = first.packing == COMPRESSION_NONE ? first.as_rgb ? 24 : 1 : 5000;
   if (!multiply(first.row(), first.height, bytes) || bytes / ratio > file_size || bytes > uint64_t(1) << 40)
-    f.fail(fmt::format("{} x {} pixels cannot be in {} bytes", first.width, first.height, file_size));
+    f.fail(fmt::format("{} x {} pixels do not fit into {} bytes", first.width, first.height, file_size));
   // Pages have their own bytes each.
   if (uint64_t all = 0; !multiply(bytes, pages.size(), all) || all / ratio > file_size)
-    f.fail(fmt::format("{} pages of {} x {} pixels cannot be in {} bytes", pages.size(), first.width, first.height, file_size));
+    f.fail(fmt::format("{} pages of {} x {} pixels do not fit into {} bytes", pages.size(), first.width, first.height, file_size));
   UniformGrid grid;
   grid.dims = {first.width, first.height, pages.size()};
   const LatticePart part = cut_grid(grid, options.region);

@@ -329,7 +329,7 @@ TEST_CASE("lic: bad inputs are named") {
   FieldSet fields;
   fields.add({"v", Association::point, Array::from_vector(std::vector<float>{1, 0, 0, 1, 0, 0}, 3), "", Role::vectors});
   p = {};
-  CHECK(error_of([&] { lic(make_dataset(cloud, fields), nullptr, p, c); }).find("no room") != std::string::npos);
+  CHECK(error_of([&] { lic(make_dataset(cloud, fields), nullptr, p, c); }).find("cannot carry a texture") != std::string::npos);
   bool warned = false;
   c.on_log = [&](LogLevel l, std::string_view) { warned = warned || l == LogLevel::warning; };
   lic(flow_2d(32, 32, [](double, double, float*) {}), nullptr, p, c);
