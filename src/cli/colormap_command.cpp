@@ -56,7 +56,7 @@ std::string verdict(const Colormap& map, const LightnessReport& r) {
 
 std::string hex_or_none(const std::optional<Vec3f>& c) { return c ? color_text(*c) : std::string("none"); }
 
-// What a file says beyond the colours, as JSON members or one line of text.
+// A file's data besides the colours, as JSON members or one line of text.
 std::string file_facts(const FileColormap& f, bool json) {
   if (json) {
     auto color = [](const std::optional<Vec3f>& c) { return c ? json_string(color_text(*c)) : std::string("null"); };

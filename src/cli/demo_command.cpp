@@ -133,7 +133,7 @@ void find_files(const std::string& folder, std::vector<std::string>& found) {
   }
 }
 
-// Why a file of a folder is passed over: it is a table or a colour map, which no picture shows as it stands. Broken files are not.
+// Why a file of a folder is passed over: it is a table or a colour map, which cannot be drawn directly. Broken files are not.
 std::optional<std::string> why_skipped(const std::string& path) {
   const std::string ext = extension_of(path);
   if (ext != "csv" && ext != "tsv" && ext != "txt" && ext != "json" && ext != "gml") return {};

@@ -12,7 +12,7 @@ namespace sg {
 
 namespace {
 
-// Text that troff takes as it stands.
+// Text escaped for troff.
 std::string plain(std::string_view text) {
   std::string r;
   for (const char c : text) {
@@ -48,7 +48,7 @@ bool has_flag(const CommandDoc& command, const FlagDoc& flag) {
 }
 
 std::string commands_text(const std::vector<CommandDoc>& commands) {
-  // What all commands take is told once.
+  // Options common to all commands are listed once.
   const auto common = [&](const FlagDoc& f) {
     return std::all_of(commands.begin(), commands.end(), [&](const CommandDoc& c) { return has_flag(c, f); });
   };

@@ -76,7 +76,7 @@ void add_common(CLI::App& a, Options& o, RawText& raw) {
 }
 
 void add_reading(CLI::App& a, Options& o, RawText& raw) {
-  // The declarations bound to what is read, under the names of the flags, so that mistakes are told by these.
+  // The declarations bound to the read options, under the names of the flags, so that errors use these names.
   const auto schema = std::make_shared<Schema>(schema_of(o.read));
   for (ParamDecl& d : schema->decls()) {
     const std::string flag = flag_of(d.name, reading_flags);
@@ -211,7 +211,7 @@ void finish_raw(const RawText& raw, Options& o) {
   }
 }
 
-// CLI11 says "The following argument was not expected: --sise"; say what was meant.
+// CLI11 says "The following argument was not expected: --sise"; suggest what was meant.
 [[noreturn]] void fail_unknown(const CLI::App& command, const CLI::ParseError& e) {
   const std::string text = e.what();
   const size_t at = text.find(": ");
@@ -397,7 +397,7 @@ std::vector<CommandDoc> command_docs() {
     declare(d, a, o, raw);
     CommandDoc doc{name, a.get_description(), {}, {}, {}};
     for (const CLI::Option* option : a.get_options()) {
-      std::vector<std::string> choices;  // CLI11 tells of them in the text of the type: "TEXT:{a,b}"
+      std::vector<std::string> choices;  // CLI11 lists them in the text of the type: "TEXT:{a,b}"
       const std::string type = option->get_type_name();
       const size_t open = type.find('{'), close = type.find('}');
       if (open != type.npos && close != type.npos)

@@ -87,7 +87,7 @@ std::string describe(const PictureDraft& d) {
   return text;
 }
 
-// Writes each picture as soon as it is there. What is said about one goes on when the next begins.
+// Writes each picture as soon as it is there. Messages about one continue when the next begins.
 void set_drafts(PictureOptions& options, const PipelineFile& file, const std::string& output, const Options& o) {
   if (!o.progressive && !(o.within > 0)) return;
   options.on_draft = [&file, output, quiet = o.quiet](const Picture& picture, const PictureDraft& draft) {
@@ -132,7 +132,7 @@ int render_to(PipelineFile& file, const std::string& output, PictureOptions opti
 
 namespace {
 
-// The parameters of the film with what the command line says of them.
+// The parameters of the film, set from the command line.
 void take_film_flags(const Options& o, FilmParams& film) {
   Schema schema = schema_of(film);
   set_params(schema, o.film, "film");

@@ -59,7 +59,7 @@ std::string spooled(const std::string& path, size_t most, const Context& context
     ::close(from);
     fail_data("is a terminal, not a file", path);
   }
-  // In a folder of its own: what comes out of the pipe may name no file beside it.
+  // In a folder of its own: data from the pipe may not name files next to it.
   static std::deque<PartialFile> kept;  // removed at the end
   const char* chosen = std::getenv("TMPDIR");
   const std::string name = kept.emplace_back((chosen && *chosen ? std::string(chosen) : std::string("/tmp")) + "/sightglass-pipe").name();

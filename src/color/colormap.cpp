@@ -56,7 +56,7 @@ std::vector<Vec3f> jet() {
 
 std::vector<Vec3f> rainbow() { return {{0, 0, 1}, {0, 1, 1}, {0, 1, 0}, {1, 1, 0}, {1, 0, 0}}; }
 
-/// Eight that please beside each other, then farthest points: each the colour of a CIELAB grid (L* 30 to 88, chroma 18 to 85)
+/// Eight hand-picked colours that work together, then farthest points: each the colour of a CIELAB grid (L* 30 to 88, chroma 18 to 85)
 /// whose smallest CIEDE2000 distance to all before it, to white, to black and to the NaN grey is largest. No two are closer
 /// than 18, no two of the first eight closer than 24; the test measures that.
 std::vector<Vec3f> labels() {
@@ -107,7 +107,7 @@ constexpr std::pair<std::string_view, std::string_view> elsewhere[] = {
     {"tab20", "labels"},     {"glasbey", "labels"},    {"turbo", "sight"},   {"spectral", "coolwarm"},
 };
 
-/// Built at first use, each alone: a picture needs one map.
+/// Each built on first use: a picture needs one map.
 const Colormap& built(size_t i) {
   static std::array<std::once_flag, count> once;
   static std::array<Colormap, count> maps;

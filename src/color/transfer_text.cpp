@@ -15,7 +15,7 @@ namespace {
 const char* opacity_form = "write position:opacity pairs, e.g. 0:0,0.3:0.1,1:0.8, or @value:opacity, e.g. @-500:0,@200:0.4";
 const char* stops_form = "write position:colour pairs, e.g. 0:#000000,0.4:#aa3311,1:white, or @value:colour";
 
-// A place as a position on the axis; nothing for what is no number.
+// A place as a position on the axis; nothing for what is not a number.
 std::optional<double> place(std::string_view text, const ColorScale& axis) {
   const bool absolute = text.starts_with('@');
   const auto v = parse_double(trim(absolute ? text.substr(1) : text));
@@ -107,7 +107,7 @@ std::string opacity_text(const OpacityCurve& curve) {
 }
 
 void parse_color_stops(const std::string& text, ColorScale& scale, bool keep_range) {
-  // Commas also stand within "r,g,b": a part without a colon belongs to the one before it.
+  // Commas also occur within "r,g,b": a part without a colon belongs to the previous one.
   std::vector<std::string> parts;
   for (const std::string_view part : split(text, ',')) {
     if (part.find(':') == part.npos && !parts.empty()) parts.back() += "," + std::string(part);

@@ -67,7 +67,7 @@ void add_text(std::vector<uint8_t>& out, const std::string& key, const std::stri
   if (text.find('\0') != std::string::npos) fail_usage(fmt::format("text entry '{}' contains a zero byte", key), "PNG");
   const bool packed = text.size() > compress_text_above;
   const std::string name = key + '\0', body = packed ? zlib_packed(text) : text;
-  // Bytes that are no UTF-8 can only be Latin-1.
+  // Bytes that are not UTF-8 can only be Latin-1.
   const bool latin1 = is_ascii(text) || !is_utf8(text);
   if (!latin1) add_chunk(out, "iTXt", name + char(packed) + '\0' + '\0' + '\0' + body);
   else if (packed) add_chunk(out, "zTXt", name + '\0' + body);

@@ -14,7 +14,7 @@ namespace sg {
 
 namespace {
 
-// Element ids, as they stand in the file (RFC 9559, section 5).
+// Element ids, as stored in the file (RFC 9559, section 5).
 enum Id : uint32_t {
   ebml = 0x1A45DFA3,
   ebml_version = 0x4286,

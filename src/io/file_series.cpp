@@ -149,7 +149,7 @@ std::vector<double> stated_times(const std::string& text, size_t steps) {
   return times;
 }
 
-// Finds the steps, and what the files themselves say of their times; false when these are to be counted. `order`: they have to grow.
+// Finds the steps, and the times given in the files themselves; false when these are to be counted. `order`: they have to grow.
 bool own_times(Steps& s, bool order, const ReadOptions& options, Context& context) {
   bool known = true, inside = false;
   for (size_t i = 0; i < s.files.size(); ++i) {

@@ -103,13 +103,13 @@ const Format& format_of(std::string& path, const ReadOptions& options) {
   return is_folder(path) ? format_of_folder(path) : format_of_file(path, options);
 }
 
-/// Runs f(format, path); errors that do not say where get the path.
+/// Runs f(format, path); errors without a location get the path.
 template <class F>
 auto with_format(std::string path, const ReadOptions& options, F&& f) {
   trust_folder_of(path);
   try {
     return f(format_of(path, options), path);
-  } catch (Error& e) {  // most say where; those found when the dataset is made cannot
+  } catch (Error& e) {  // most have a location; those found when the dataset is made cannot
     if (e.where().find(path) == std::string::npos) e.add_context(fmt::format("reading '{}'", path));
     throw;
   }

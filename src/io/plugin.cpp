@@ -38,7 +38,7 @@ const Package& package_of(std::string_view plugin) {
   fail_internal(fmt::format("plug-in '{}' has no package", plugin));
 }
 
-// The file that this code runs from: the program, or the library that a program of somebody else's loaded.
+// The file that this code runs from: the program, or the library loaded by another program.
 struct OwnFile {
   std::string path;  // "" when it is not known
   bool library = false;
@@ -58,9 +58,9 @@ OwnFile own_file() {
   return {::realpath(ours.dli_fname, path) ? path : "", true};
 }
 
-// Where plug-ins are looked for: the environment's folder alone; else beside the program, in the installation's lib (from bin/), and beside
-// the installed library (lib/, or one folder below: lib/x86_64-linux-gnu). A folder or file that anybody may write, or that belongs to
-// somebody who neither runs nor owns the program or library, is passed over with a word: what lies there would run as this user.
+// Where plug-ins are looked for: only the environment's folder; else next to the program, in the installation's lib (from bin/), and next
+// to the installed library (lib/, or one folder below: lib/x86_64-linux-gnu). A folder or file that anyone may write, or whose owner
+// neither runs nor owns the program or library, is skipped with a note: what lies there would run as this user.
 std::vector<std::string> plugin_folders(const OwnFile& own) {
   if (const char* set = std::getenv("SIGHTGLASS_PLUGINS")) return {std::string(set) + "/"};
   if (own.path.empty()) return {};

@@ -84,7 +84,7 @@ void look_at_grid(const Dataset& d, const Field& f, Look& look) {
   volume.coloring.field.name = f.name;
   if (habit_of(f).shows == FieldHabit::Shows::fibres)
     if (const Field* speed = d.fields().find("speed", f.association); speed && speed->components() == 1)
-      volume.color_by.name = speed->name, volume.sampling.tolerance = 0.01;  // one colour says less
+      volume.color_by.name = speed->name, volume.sampling.tolerance = 0.01;  // a single colour would show less
   add_show(look, volume, true);
   if (is_turned(d)) add_show(look, OutlineShow(), true);
   ColoringParams params;
@@ -167,7 +167,7 @@ Look choose_look(const Dataset& d, const std::string& field, const std::string& 
     }
   SurfaceShow surface;
   const bool simulation = !d.as<SurfaceMesh>() && !is_lattice(d.mesh());
-  const bool bare_map = look.parallel && d.fields().empty() && d.as<SurfaceMesh>();  // nothing but its edges tells its parts apart
+  const bool bare_map = look.parallel && d.fields().empty() && d.as<SurfaceMesh>();  // only edges distinguish its parts
   const bool show_edges = (simulation && d.cell_count() <= 12000) || (bare_map && d.cell_count() <= 2000);
   surface.edges = show_edges;
   const bool filled_contours = flat && field.empty() && is_banded(d);

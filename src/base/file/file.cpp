@@ -123,7 +123,7 @@ bool natural_less(std::string_view a, std::string_view b) {
   size_t i = 0, j = 0;
   while (i < a.size() && j < b.size()) {
     if (digit(a, i) && digit(b, j)) {
-      while (i < a.size() && a[i] == '0') ++i;  // leading zeros count only when all else is equal
+      while (i < a.size() && a[i] == '0') ++i;  // leading zeros count only when everything else is equal
       while (j < b.size() && b[j] == '0') ++j;
       const size_t i0 = i, j0 = j;
       while (digit(a, i)) ++i;

@@ -36,7 +36,7 @@ bool anywhere() {
   return set && std::string_view(set) == "1";
 }
 
-// Absolute, without "." and "..", and with a '/' at the end; "" when it cannot be said, or is the root: all lies below that.
+// Absolute, without "." and "..", and with a '/' at the end; "" when it is unknown or the root: all lies below that.
 std::string folder_text(const fs::path& path) {
   std::string text = path.lexically_normal().string();
   if (text.empty() || text[0] != '/') return "";
@@ -107,7 +107,8 @@ void check_may_write(const std::string& path) {
 
 int open_plain_file(const std::string& path) {
   check_may_read(path);
-  // Not to wait: a pipe would keep the program until somebody writes. Looked at twice, so that no device is opened and none can slip in.
+  // Not to wait: a pipe would block the program until someone writes to it. Looked at twice, so that no device is opened and none can slip
+  // in.
   struct stat st {};
   int fd = -1;
   const bool there = ::stat(path.c_str(), &st) == 0;

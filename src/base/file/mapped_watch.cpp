@@ -146,7 +146,7 @@ class Watch final : public MappedWatch {
   std::map<uintptr_t, Mapped> mapped_;
   std::vector<Place*> free_;
   uint64_t count_ = 0, gone_number_ = 0, bytes_ever_ = 0;
-  std::string gone_;  // a file that had changed when it was let go
+  std::string gone_;  // a file that had changed when it was unmapped
 };
 
 std::atomic<MappedWatch*> shared{nullptr};

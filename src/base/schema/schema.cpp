@@ -53,7 +53,7 @@ class Check {
         part == written_ ? fmt::format("'{}' is not {}", part, wanted) : fmt::format("'{}' in '{}' is not {}", part, written_, wanted),
         where_);
   }
-  // How an element is told: alone as it was written.
+  // How an element is told: unquoted, as written.
   std::string told(const Value& element) const { return given_.index() == element.index() ? written_ : value_text(element); }
 
   std::string a_number() const { return decl_.unit_.empty() || decl_.unit_[0] == '@' ? "a number" : "a number in " + decl_.unit_; }

@@ -10,7 +10,7 @@ namespace sg {
 
 namespace {
 
-// Reads text as the type of a parameter; what fits is for set_value() to say.
+// Reads text as the type of a parameter; set_value() decides what fits.
 class Parse {
  public:
   Parse(const ParamDecl& decl, std::string where, std::string_view text)

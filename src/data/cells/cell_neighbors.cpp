@@ -43,7 +43,7 @@ class FaceSource {
   }
 
   size_t count() const { return count_; }
-  /// Of the mesh; or as many as the ids tell, when only topology was given.
+  /// Of the mesh; or as many as the ids imply, when only topology was given.
   size_t points() const {
     if (points_ > 0) return points_;
     const IndexView& ids = cells_.connectivity;
@@ -250,7 +250,7 @@ class Matcher {
     full_ = n >= 32;
     return false;
   }
-  // What the key does not tell.
+  // What the key does not contain.
   bool equal(const Open& have, size_t cell, uint32_t face) {
     if (!(face & many) && !source_.beyond_32_bits()) return true;
     source_.corners(cell, face & ~many, a_);

@@ -54,7 +54,7 @@ detail::ClaimWatch::~ClaimWatch() { innermost = outer_; }
 void detail::claim_memory(size_t bytes) {
   if (innermost) innermost->on_claim(bytes);
   const size_t before = in_use.fetch_add(bytes);
-  // Nobody said: all of the machine's. The system would promise more and end the program when it is used.
+  // Not given: all of the machine's. The system would promise more and end the program when it is used.
   const bool stated = limit != 0;
   const size_t most = stated ? limit.load() : machine_memory();
   if (before <= most && bytes <= most - before) return;

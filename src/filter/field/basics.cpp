@@ -79,7 +79,7 @@ DatasetPtr scale_field(const DatasetPtr& in, const ScaleFieldParams& p, Context&
     ctx.info(fmt::format("scale: '{}' loses its unit {}; unit=... names the new one", f.name, f.unit));
   const bool wide = float_type(f.array.type()) == ElementType::f64;
   Array a = wide ? scaled<double>(f.array, p.factor, p.offset) : scaled<float>(f.array, p.factor, p.offset);
-  // Scaled normals, ids or labels are no longer that; scalars and vectors are (an offset moves a vector's tip, not its kind).
+  // Scaled normals, ids or labels lose that role; scalars and vectors are (an offset moves a vector's tip, not its kind).
   const Role role = f.role == Role::scalars || f.role == Role::vectors ? f.role : Role::none;
   return with_field(in, {p.name.empty() ? f.name : p.name, f.association, std::move(a),
                          !p.unit.empty() ? p.unit

@@ -26,7 +26,7 @@ inline void describe(Schema& s, MagnitudeParams& p) {
   s("field", p.field, "Field of several components; default: the active vectors.").takes({.scalars = false});
   s("name", p.name, "Name of the result; default: the field's name followed by '_magnitude'.");
 }
-/// Length of each tuple (Euclidean) as a field of its own beside the others: f64 for 64-bit fields, else f32; same unit; NaN stays.
+/// Length of each tuple (Euclidean) as an additional field: f64 for 64-bit fields, else f32; same unit; NaN stays.
 DatasetPtr magnitude(const DatasetPtr& in, const MagnitudeParams& p, Context& ctx);
 
 struct ScaleFieldParams {
@@ -56,7 +56,7 @@ inline void describe(Schema& s, ComponentParams& p) {
   s("component", p.component, "Component to take, counted from 0.").at_least(0);
   s("name", p.name, "Name of the result; default: the field's name followed by '_x', '_y', '_z' or the component's number.");
 }
-/// One component as a field of its own beside the others; shares the bytes, same type and unit.
+/// One component as an additional field; shares the bytes, same type and unit.
 DatasetPtr component(const DatasetPtr& in, const ComponentParams& p, Context& ctx);
 
 }  // namespace sg

@@ -57,7 +57,7 @@ FlowField::FlowField(DatasetPtr dataset, const std::string& name, Context& conte
   measure_speeds(context);
 }
 
-// The largest speed. Infinities, and what is infinite once it is squared, are no velocities: they become NaN.
+// The largest speed. Infinities, and what is infinite once it is squared, are not velocities: they become NaN.
 void FlowField::measure_speeds(Context& context) {
   struct Speeds {
     double largest2 = 0;

@@ -24,7 +24,7 @@ std::string squeezed(std::string_view unit) {
   return r;
 }
 
-// Metres a second in the unit; 0 when it is no speed.
+// Metres a second in the unit; 0 when it is not a speed.
 double metres_per_second(std::string_view unit) {
   struct Known {
     std::string_view text;

@@ -41,8 +41,8 @@ std::string no_line_hint(const FlowParts& parts, std::span<const Vec3> seeds) {
                      b.lo.z, b.hi.z);
 }
 
-// How many of these lines can still be told apart, lines of a default picture drawn on the box that they fill: those that cover a good half
-// of its shadow in space, two fifths of it when flat.
+// How many of these lines can still be distinguished, lines of a default picture drawn on the box that they fill: those that cover a good
+// half of its shadow in space, two fifths of it when flat.
 size_t most_apart(const Dataset& lines, const std::string& velocity, const Box3& box) {
   const Vec3 e = box.size();
   const bool flat = std::min({e.x, e.y, e.z}) < 1e-6 * box.diagonal();
@@ -73,7 +73,7 @@ Data streamlines(const std::vector<Data>& inputs, const StreamlinesParams& p, Co
   StopParams stop = p.stop;
   // Lines that circle would fill the picture.
   if (!stop.max_length && !stop.max_time) stop.max_length = 1.5 * parts.bounds().diagonal();
-  if (stop.min_speed == StopParams().min_speed)  // nobody said
+  if (stop.min_speed == StopParams().min_speed)  // not given
     for (const FlowField& f : parts.fields())
       if (noise_speed(*f.dataset(), f.dataset()->fields().require(parts.name())) > 0) {
         stop.min_speed = 0.02;
@@ -85,7 +85,7 @@ Data streamlines(const std::vector<Data>& inputs, const StreamlinesParams& p, Co
   std::vector<DatasetPtr> meshes;
   for (const FlowField& f : parts.fields()) meshes.push_back(f.dataset());
   PartsCursor cursor(parts);
-  // Seeds that nobody placed go where much flows: into vessels, not into the still parts around them.
+  // Seeds without a given place go where the flow is strong: into vessels, not into the still parts around them.
   double much = 0;
   uint64_t asked = 0;
   const bool chosen = p.seeds.seeds.has_value();

@@ -40,7 +40,7 @@ DatasetPtr barb(int knots, double side) {
   }
   const BarbStrokes s = barb_strokes(knots);
   const double needed = pennant * s.pennants + (s.pennants ? after_pennants : 0) + gap * (s.barbs + s.half);
-  const double tight = std::min(1.0, 0.95 / needed);  // more strokes than a staff holds stand closer
+  const double tight = std::min(1.0, 0.95 / needed);  // more strokes than fit on a staff are drawn closer together
   b.point({0, 0, 0}), b.point({-1, 0, 0}), b.line(0, 1);
   double x = -1;
   for (int k = 0; k < s.pennants; ++k, x += pennant * tight) {
@@ -59,7 +59,7 @@ DatasetPtr barb(int knots, double side) {
   if (s.pennants) x += after_pennants * tight;
   for (int k = 0; k < s.barbs; ++k, x += gap * tight) stroke_of(b, {x, 0, 0}, {x - lean, side * stroke, 0});
   if (s.half) {
-    if (knots == barb_step) x += gap;  // alone it must not look like the end of a whole one
+    if (knots == barb_step) x += gap;  // on its own it must not look like the end of a full one
     stroke_of(b, {x, 0, 0}, {x - 0.5 * lean, side * 0.5 * stroke, 0});
   }
   return std::move(b).made();

@@ -70,7 +70,7 @@ GlyphPointsParams placement(const Dataset& d, const GlyphParams& p, const Field*
   GlyphPointsParams q;
   q.every = p.every, q.seed = p.seed, q.spacing = p.spacing;
   int64_t fitting = barbs ? 180 : flat_axis >= 0 ? 900 : 2500;
-  // A long and narrow box is small on the picture: no more of them along it than can be told apart.
+  // A long and narrow box is small on the picture: no more of them along it than can be distinguished.
   const Vec3 size = d.bounds().size();
   const double along = (barbs ? 22 : 45), step = d.bounds().empty() ? 0 : std::max({size.x, size.y, size.z}) / along;
   if (step > 0) {
@@ -164,7 +164,7 @@ double distance_of_places(const Dataset& input, const Dataset& places) {
   return std::min(mean, 1.25 * nearest[nearest.size() / 2]);
 }
 
-// Scale of the rule from the size asked for, or from the distance of the places.
+// Scale of the rule from the requested size, or from the distance between points.
 void choose_size(const Dataset& input, const GlyphParams& p, bool in_pixels, int flat_axis, ChosenGlyphs& out) {
   if (p.size > 0 && p.factor > 0) fail_usage("size and factor both set the size of glyphs", "glyphs", "give one of them");
   GlyphRule& r = out.rule;

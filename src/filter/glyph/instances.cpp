@@ -35,7 +35,7 @@ struct Inputs {
 
 const double* values(const Array& a) { return a.empty() ? nullptr : reinterpret_cast<const double*>(a.raw()); }
 
-// The 3x3 part; false where no glyph stands.
+// The 3x3 part; false where there is no glyph.
 bool matrix_of(const Inputs& in, const GlyphRule& rule, size_t i, Mat3& m) {
   double factor = rule.scale;
   if (!in.frames.empty()) {

@@ -65,7 +65,7 @@ bool fills_its_box(const Dataset& d, const Box3& box) {
   if (axes < 2) return false;
   const CellReader first(DatasetPtr(&d, [](const Dataset*) {}));
   CellReader reader = first;
-  int most = 0;  // a few cells tell the dimension of the mesh
+  int most = 0;  // a few cells give the dimension of the mesh
   for (size_t k = 0; k < 64; ++k) {
     reader.open(k * (d.cell_count() - 1) / 63);
     most = std::max(most, reader.dimension());

@@ -7,7 +7,7 @@
 
 namespace sg {
 
-/// Where glyphs stand, see glyph_points().
+/// Where glyphs are placed, see glyph_points().
 enum class GlyphPlaces { all, every, even, cells, random, apart, lines };
 constexpr auto enum_words(GlyphPlaces) {
   using enum GlyphPlaces;

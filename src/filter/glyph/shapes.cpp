@@ -84,7 +84,7 @@ void superquadric(ShapeBuilder& b, double alpha, double beta, int sides) {
     else
       for (int k = 0; k < sides; ++k) {
         const double t = 2 * pi * k / sides;
-        // Exact zeros where the angle is a quarter: a power below 1 would make much of rounding.
+        // Exact zeros where the angle is a quarter: a power below 1 would amplify rounding errors.
         auto clean = [](double v) { return std::abs(v) < 1e-12 ? 0.0 : v; };
         now.push_back(b.point({0.5 * (std::abs(cf) < 1e-9 ? 0.0 : cf), 0.5 * power(clean(std::cos(t)), alpha) * sf,
                                0.5 * power(clean(std::sin(t)), alpha) * sf}));

@@ -152,7 +152,7 @@ DatasetPtr trails(const DatasetPtr& data, const TrailsParams& p, Context& contex
   carry_gathered(fields, data->fields(), Association::cell, std::span<const int64_t>(cells), Association::cell);
   carry_whole(fields, data->fields());
   const Array rgba = faded(p.color, out.age);
-  std::vector<Field> renamed;  // pictures colour by what fades unless they are told
+  std::vector<Field> renamed;  // pictures are coloured by the fading unless specified
   for (const Field& f : fields)
     if (f.role == Role::scalars || f.role == Role::colors) renamed.push_back(f), renamed.back().role = Role::none;
   for (Field& f : renamed) fields.add(std::move(f));

@@ -18,8 +18,8 @@ inline void describe(Schema& s, AppendParams& p) {
 
 /// All datasets of all inputs (collections by their parts) as one mesh: a surface when all are surfaces, a point cloud when all are
 /// clouds, else unstructured. Points are not merged (see merge_points). Fields keep their type when all inputs agree, else become
-/// f64; those with different numbers of components are dropped, with a note. An input without points (cells) has no say about fields at
-/// points (cells). Ghosts are kept.
+/// f64; those with different numbers of components are dropped, with a note. An input without points (cells) does not affect point (cell)
+/// fields. Ghosts are kept.
 DatasetPtr append(const std::vector<Data>& inputs, const AppendParams& p, Context& ctx);
 
 }  // namespace sg

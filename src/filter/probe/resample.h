@@ -41,7 +41,7 @@ inline void describe(Schema& s, ResampleParams& p) {
 /// for boxes without extent, dims that fit no box, and conservative mode on a mesh without solid cells.
 DatasetPtr resample(const DatasetPtr& input, const ResampleParams& params, Context& context);
 
-/// The grid that the parameters ask for.
+/// The grid that the parameters request.
 UniformGrid resample_grid(const Dataset& input, const ResampleParams& params);
 /// mode=conservative.
 DatasetPtr resample_conservative(const DatasetPtr& input, const UniformGrid& grid, double tolerance, Context& context);

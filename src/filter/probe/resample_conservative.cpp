@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Averages that keep integrals: every solid cell is cut along the grid, and what each part holds goes to its grid cell.
+// Averages that keep integrals: every solid cell is cut along the grid, and each part's content is added to its grid cell.
 #include <fmt/core.h>
 
 #include <algorithm>

@@ -16,7 +16,7 @@ struct ClipVertex {
 };
 
 /// Calls emit(volume, mean, i, j, k) for each part within grid cells [lo, hi) per axis: volume in grid cells, mean[4] the barycentric
-/// coordinates of its centroid. Parts of one grid cell may come apart.
+/// coordinates of its centroid. Parts of one grid cell may be disconnected.
 template <class Emit>
 class TetClipper {
  public:

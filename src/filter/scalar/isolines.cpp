@@ -50,7 +50,7 @@ class Joints {
     for (size_t i = 0; i < s.ends.size(); ++i)
       for (int64_t p : s.ends[i]) list_[next[size_t(p)]++] = i;
   }
-  /// The one segment that goes on from `segment` at its end `point`; -1 where the line ends.
+  /// The one segment that continues `segment` at its end `point`; -1 where the line ends.
   int64_t beyond(size_t segment, int64_t point) const {
     const size_t b = start_[size_t(point)];
     if (start_[size_t(point) + 1] - b != 2) return -1;
@@ -177,7 +177,7 @@ DatasetPtr isolines(const DatasetPtr& in, const IsolinesParams& p, Context& ctx)
     lines.fields.add(
         {"contour value", Association::cell, Array::from_vector(std::vector<double>(mesh.cell_count(), c.values[0])), "", Role::none});
   }
-  // A line crosses many cells: nobody expects their fields on it, so polylines need not say that they are gone.
+  // A line crosses many cells: their fields are not expected on it, so polylines need not report them as dropped.
   FieldSet kept;
   for (const Field& f : lines.fields)
     if (f.association != Association::cell || f.name == "contour value") kept.add(f);

@@ -25,8 +25,8 @@ std::pair<Vec3, Vec3> label_page(Vec3 normal);
 
 /// Places for labels along the lines of a mesh, as a point cloud: fields 'value' (f64), 'angle' (f64, degrees from the reader's right,
 /// above -90 up to 90, so that text is never upside down) and 'line' (i32, number of the joined line), and 'normal' of the whole. Each line
-/// (see polylines) is cut into equal stretches of about the spacing; a label sits in the straightest place of its stretch, at ties nearest
-/// to its middle, at least 1.2 widths from all labels before it. Throws Error(usage) for meshes without lines and a normal of no length.
+/// (see polylines) is cut into equal stretches of about the spacing; a label is put at the straightest part of its stretch, at ties nearest
+/// to its middle, at least 1.2 widths from all earlier labels. Throws Error(usage) for meshes without lines and for a zero normal.
 DatasetPtr line_labels(const DatasetPtr& in, const LineLabelsParams& p, Context& ctx);
 
 }  // namespace sg

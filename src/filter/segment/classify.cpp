@@ -168,7 +168,7 @@ DensityTable density_table(const TissueModel& m) {
 
 constexpr size_t max_classes = 17;
 
-// Expected shares of one sample from its densities and what its neighbours say (factor[c], 1 when they say nothing).
+// Expected shares of one sample from its densities and its neighbours (factor[c], 1 when they have no influence).
 inline void expected_shares(const DensityTable& t, float y, float corrected, const float* factor, float* share) {
   const float* bright_row = t.row(corrected);
   const float* dark_row = t.background ? t.row(y) : bright_row;

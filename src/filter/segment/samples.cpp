@@ -150,7 +150,7 @@ LabelCodes label_codes(const SampleImage& image, std::optional<double> backgroun
   std::sort(list.begin(), list.end());
   const size_t n = image.count();
   LabelCodes r;
-  // A pass in the native type tells whether all numbers are whole and fit 32 bits.
+  // A pass in the native type checks whether all numbers are whole and fit 32 bits.
   struct Check {
     size_t bad = SIZE_MAX;
     bool wide = false;

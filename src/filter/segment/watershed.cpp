@@ -48,7 +48,7 @@ Plane<float> values_of(const SampleImage& image) {
   return f;
 }
 
-// Length of the gradient; one-sided at borders and beside samples without a value.
+// Length of the gradient; one-sided at borders and next to samples without a value.
 Plane<float> gradient_length(const SampleImage& image, const Plane<float>& f) {
   const auto d = image.dims;
   const auto stride = image.strides();

@@ -124,7 +124,7 @@ TablePtr integrate(const Data& in, const IntegrateParams& p, Context& ctx) {
   for (const std::string& name : p.fields) {
     bool found = false;
     for (const DatasetPtr& d : parts) found = found || d->fields().find(name);
-    if (!found) (void)parts[0]->fields().require(name);  // says what there is
+    if (!found) (void)parts[0]->fields().require(name);  // lists what there is
   }
   for (const DatasetPtr& d : parts) {
     std::vector<Column> columns;

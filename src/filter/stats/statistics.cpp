@@ -24,7 +24,7 @@ const Array& ghosts_of(const DatasetPtr& in, const Field& f) {
 
 bool left_out(const Array& ghost, size_t i) { return !ghost.empty() && ghost.view<uint8_t>()[i] != 0; }
 
-// The finite values, in order, and how many are none.
+// The finite values, in order, and how many are not finite.
 struct Numbers {
   std::vector<double> finite;
   size_t missing = 0, infinite = 0;
@@ -175,7 +175,7 @@ TablePtr histogram(const DatasetPtr& in, const HistogramParams& p, Context& ctx)
   if (lo == hi) hi = std::nextafter(lo + std::max(std::fabs(lo), 1.0) * 1e-6, HUGE_VAL);  // one value: the first bin holds it
   const auto bins = size_t(p.bins);
   std::vector<double> edge(bins + 1);
-  const bool far = !std::isfinite(hi - lo);  // then halves: the difference is none
+  const bool far = !std::isfinite(hi - lo);  // then halves: the difference is meaningless
   for (size_t i = 0; i <= bins; ++i) {
     const double t = double(i) / double(bins);
     edge[i] = i == bins ? hi : far ? lo * (1 - t) + hi * t : lo + (hi - lo) * t;

@@ -19,7 +19,7 @@ class Columns {
       if (!t.words(i) && t.columns[i].components() == 1) numbers_.push_back(i);
     }
   }
-  /// The column asked for, one with a usual name, or the nth column of numbers; -1 when there is none.
+  /// The requested column, one with a usual name, or the nth numeric column; -1 when there is none.
   int find(const std::string& asked, std::initializer_list<std::string_view> usual, size_t nth) const {
     if (!asked.empty()) {
       for (size_t i = 0; i < names_.size(); ++i)

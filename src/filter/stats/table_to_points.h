@@ -17,7 +17,7 @@ inline void describe(Schema& s, TableToPointsParams& p) {
 }
 
 /// A point cloud with one point per row and every column as a point field; words by the number of their label. Rows without a
-/// coordinate (NaN) are left out. Throws Error(usage) for unknown columns, columns of words as coordinates, and data that is no table.
+/// coordinate (NaN) are left out. Throws Error(usage) for unknown columns, columns of words as coordinates, and data that is not a table.
 DatasetPtr table_to_points(const Data& in, const TableToPointsParams& p, Context& ctx);
 
 }  // namespace sg

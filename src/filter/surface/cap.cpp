@@ -24,7 +24,7 @@ struct BorderLoop {
   double perimeter = 0, off = 0;  // largest distance from the plane
 };
 
-// Borders as rings of points; where several meet, the first edge goes on.
+// Borders as rings of points; where several meet, the first edge continues.
 std::vector<BorderLoop> border_loops(const Edges& edges, const std::vector<Vec3>& at, size_t& open) {
   struct Side {
     uint32_t from, to, polygon;

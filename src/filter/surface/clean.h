@@ -20,8 +20,8 @@ inline void describe(Schema& s, CleanParams& p) {
 }
 
 /// merge_points, then no degenerate cells, no doubled cells (in whatever order they list their points; the first stays) and no unused
-/// points. Fields are carried; the log tells what went. Grids have nothing to clean and come back as they are; point clouds are merged;
-/// AMR is refused (Error(usage)).
+/// points. Fields are carried; the log reports what was removed. Grids have nothing to clean and come back as they are; point clouds are
+/// merged; AMR is refused (Error(usage)).
 DatasetPtr clean(const DatasetPtr& in, const CleanParams& p, Context& ctx);
 
 }  // namespace sg

@@ -74,7 +74,7 @@ void average_inside(std::vector<double>& values, const Edges& edges, const std::
     for (const auto& [p, q] : {std::pair(edges.lo[e], edges.hi[e]), std::pair(edges.hi[e], edges.lo[e])})
       if (place[p] == inside && place[q] == inside) sum[p] += sums[q].area * values[q], weight[p] += sums[q].area;
   for (size_t p = 0; p < values.size(); ++p)
-    if (weight[p] > 0) {  // a point of little area says little
+    if (weight[p] > 0) {  // a point of small area carries little information
       const double w = weight[p] / 6 + sums[p].area;
       values[p] = (sums[p].area * values[p] + sum[p] / 6) / w;
     }

@@ -18,7 +18,7 @@ namespace {
 
 constexpr size_t grain = 1 << 13;
 
-// A surface of other cells: `cells` tells for each new cell whose fields it has.
+// A surface of other cells: `cells` gives for each new cell the cell whose fields it has.
 DatasetPtr with_cells(const Dataset& in, SurfaceMesh mesh, const std::vector<int64_t>& cells) {
   DatasetParts out;
   for (const Field& f : in.fields())

@@ -13,7 +13,7 @@ namespace sg::surface {
 
 /// The surface of any mesh with faces: a SurfaceMesh as it is (hidden and duplicate cells removed), the skin of solids, flat grids
 /// as polygons. Strips become triangles. The patches of an AMR grid share their common points. An empty mesh stays one; throws
-/// Error(usage) naming `who` for point clouds and meshes of points and lines alone.
+/// Error(usage) naming `who` for point clouds and meshes of points and lines only.
 DatasetPtr polygon_surface(const DatasetPtr& in, std::string_view who, Context& ctx);
 
 /// The same with triangles only (tessellate_face's split), and without vertices and lines.

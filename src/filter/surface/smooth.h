@@ -29,8 +29,8 @@ inline void describe(Schema& s, SmoothParams& p) {
 /// Taubin 1995: x += lambda L x, then x += mu L x with mu < -lambda, L the mean of the neighbours less the point: a low-pass filter
 /// that keeps the volume to first order; as its low frequencies grow a little with every pair, closed pieces are scaled back. Points on
 /// open, sharp and many-sided edges follow their neighbours on such edges, ends and crossings of those stay. Points at equal places move
-/// together. The field of role normals is dropped, as it no longer fits. Other mesh kinds: their surface. Throws Error(usage) when mu would
-/// not be below -lambda. Parallel, O(iterations * edges).
+/// together. The field with role normals is dropped, since it is no longer valid. Other mesh kinds: their surface. Throws Error(usage) when
+/// mu would not be below -lambda. Parallel, O(iterations * edges).
 DatasetPtr smooth(const DatasetPtr& in, const SmoothParams& p, Context& ctx);
 
 }  // namespace sg

@@ -179,7 +179,7 @@ Data read_amrex(const std::string& path, const ReadOptions& options, Context& co
   for (size_t i = 0; i < p.names.size(); ++i)
     if (is_wanted(options.fields, p.names[i])) wanted.push_back(i);
 
-  // All FABs are found and measured before memory is asked for: their bytes back every cell.
+  // All FABs are found and measured before memory is allocated: their bytes back every cell.
   struct Work {
     OpenFab fab;
     AmrGrid::Patch patch;

@@ -119,7 +119,7 @@ class Parser {
   }
 
   void variable(const std::string& key, std::string_view value) {
-    if (key.empty() && !case_.variables.empty() && case_.variables.back().kind == VariableKind::constant) {  // a long list goes on
+    if (key.empty() && !case_.variables.empty() && case_.variables.back().kind == VariableKind::constant) {  // a long list continues
       for (std::string_view w : words(value)) case_.variables.back().constants.push_back(number(w));
       return;
     }

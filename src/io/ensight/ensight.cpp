@@ -36,7 +36,7 @@ Stream open_at(const CaseFile& c, const FileRef& ref, std::optional<double> time
   return s;
 }
 
-/// The particles of a measured geometry as one more part; their numbers stand in `particles`.
+/// The particles of a measured geometry as one more part; their numbers are in `particles`.
 void add_measured(const CaseFile& c, std::optional<double> time, Geometry& g) {
   Stream s = open_at(c, *c.measured, time, {});
   if (s.form() != Form::ascii) s.line("the form");

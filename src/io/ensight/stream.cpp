@@ -72,7 +72,7 @@ void Stream::fail(const std::string& problem, const std::string& hint) const {
   fail_data(where + ": " + problem, path_, hint);
 }
 
-// Copies what stands between the marks, so that the rest is read like C binary.
+// Copies what is between the record markers, so that the rest is read like C binary.
 void Stream::unframe() {
   const std::string_view t = file_.text();
   if (t.size() < 4) fail_data("is too short for Fortran records", path_);

@@ -26,7 +26,7 @@ class Values {
  public:
   Values(size_t count, int components, bool look_only) : count_(count), components_(components), look_only_(look_only) {}
 
-  /// `n` tuples from `first` on; the line that begins them may say undef or partial.
+  /// `n` tuples from `first` on; the line that begins them may contain undef or partial.
   void read(Stream& s, VariableKind kind, const std::string& line, size_t first, size_t n) {
     const auto w = words(line);
     const bool undef = std::find(w.begin(), w.end(), "undef") != w.end(), partial = std::find(w.begin(), w.end(), "partial") != w.end();

@@ -23,7 +23,7 @@ namespace sg {
 FfmpegPipe::FfmpegPipe(std::string path, int width, int height, double fps)
     : path_(std::move(path)), partial_(path_), log_(partial_.folder() + "log"), width_(width), height_(height) {
   int ends[2];
-  // A socket and not a pipe: writing to one that nobody reads can be told not to raise a signal.
+  // A socket and not a pipe: writing to one without a reader can be made not to raise a signal.
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
     fail_data(fmt::format("cannot create a pipe: {}", std::strerror(errno)), path_);
   socket_ = ends[0];

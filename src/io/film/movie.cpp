@@ -34,7 +34,7 @@ Image in_rgb(const Image& image) {
 
 MovieWriter::MovieWriter(std::string path, MovieSettings settings) : path_(std::move(path)), settings_(settings) {
   if (!is_movie(path_)) fail_usage(fmt::format("'{}' is not a film format", extension_of(path_)), path_, "supported: .webm .mp4");
-  AtomicFile probe(path_);  // a film that cannot be written is found out before it is drawn
+  AtomicFile probe(path_);  // detects a film that cannot be written before it is drawn
   if (extension_of(path_) == "webm") plugin_format("vpx", "webm");
 }
 

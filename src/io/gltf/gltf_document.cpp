@@ -22,7 +22,7 @@ bool is_harmless(std::string_view name) {
   return name == "KHR_mesh_quantization" || name == "KHR_animation_pointer" || name == "KHR_xmp_json_ld";
 }
 
-// Walks the JSON; says where it is when something is wrong.
+// Walks the JSON; reports its location when something is wrong.
 struct Parser {
   const std::string& path;
   const Json& root;
@@ -36,7 +36,7 @@ struct Parser {
     if (v->is_real() && v->number() >= 0 && v->number() < 9e15 && std::floor(v->number()) == v->number()) return uint64_t(v->number());
     fail(where, fmt::format("'{}' is not a whole number of 0 or more", key));
   }
-  // A place in the list `of`, or -1 when there is none.
+  // An index into the list `of`, or -1 when there is none.
   int place(const Json& o, const char* key, const char* of, const std::string& where) const {
     if (!o.contains(key)) return -1;
     return checked(whole(o, key, 0, where), of, where, key);

@@ -222,7 +222,7 @@ struct Reader {
     }
   }
 
-  // Names of parts tell them apart.
+  // Names of parts distinguish them.
   void number_names() {
     std::vector<std::string> names;
     for (const auto& p : parts) names.push_back(p.name);

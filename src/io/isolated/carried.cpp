@@ -35,7 +35,7 @@ void CarryWriter::array(const Array& a) {
   for (const Place& p : same)
     if (alike(p.array, a)) return number(uint64_t(p.offset));
   number(uint64_t(array_bytes_));
-  same.push_back({a, array_bytes_});  // keeps the bytes alive, so that no other array comes to lie at their address
+  same.push_back({a, array_bytes_});  // keeps the bytes alive, so that no other array can reuse their address
   arrays.push_back(one ? a.slice(0, 1).component(0).made_packed() : a.made_packed());
   array_bytes_ += rounded(arrays.back().bytes());
 }

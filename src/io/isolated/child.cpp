@@ -65,7 +65,7 @@ void wait_a_little(int process, int milliseconds) {
   ::poll(&ends, 1, milliseconds);
 }
 
-/// Is every thread of a process in a wait without end for a lock of the process itself? Then nobody will ever wake it.
+/// Whether every thread of a process waits without timeout for a lock of the process itself, so that nothing will ever wake it.
 bool waits_for_itself(pid_t process) {
   const std::string folder = fmt::format("/proc/{}/task", process);
   DIR* tasks = ::opendir(folder.c_str());
@@ -87,7 +87,7 @@ bool waits_for_itself(pid_t process) {
   return any && all;
 }
 
-/// Looks one after the other at which it does that before it counts: threads may wake each other in between.
+/// Number of consecutive checks in which it does so before it counts: threads may wake each other in between.
 constexpr int most_looks = 5;
 /// Starts of a child, of which each may meet a lock that is held.
 constexpr int most_starts = 20;
@@ -135,7 +135,7 @@ void become_child(const ChildLimits& limits) {
 
 namespace {
 
-/// run_child() for one child. Sets `stuck`, where that is asked for, when it had to be killed because it waits for itself.
+/// run_child() for one child. Sets `stuck`, if given, when it had to be killed because it waits for itself.
 int wait_for(pid_t child, const ChildLimits& limits, const std::string& path, const Context& context, bool* stuck) {
   const auto begin = std::chrono::steady_clock::now();
 #ifdef SYS_pidfd_open
@@ -161,8 +161,8 @@ int wait_for(pid_t child, const ChildLimits& limits, const std::string& path, co
   if (late) fail_time("of wall-clock time", limits.wall, path);
   if (stuck && *stuck) return status;
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM) fail_time("of wall-clock time", limits.wall, path);
-  // The processor's limit ends a child by SIGXCPU, or by SIGKILL where both limits are one; nobody else but the system short of memory
-  // kills it so.
+  // The processor's limit ends a child by SIGXCPU, or by SIGKILL where both limits are one; only the system, when short of memory, kills it
+  // like this.
   if (WIFSIGNALED(status) && (WTERMSIG(status) == SIGXCPU || WTERMSIG(status) == SIGKILL))
     fail_time("of processor time", limits.processor, path);
   if (WIFSIGNALED(status) && WTERMSIG(status) == SIGXFSZ) fail_child_memory(limits, path);
@@ -173,7 +173,7 @@ int wait_for(pid_t child, const ChildLimits& limits, const std::string& path, co
 
 int run_child(const ChildLimits& limits, const std::string& path, const Context& context, const std::function<void()>& work) {
   for (int start = 1;; ++start) {
-    // The child must not say again what the parent has still to say.
+    // The child must not print again what the parent still has to print.
     std::fflush(nullptr);
     const pid_t child = ::fork();
     if (child < 0) fail_data(fmt::format("cannot start a process for reading: {}", std::strerror(errno)), path);

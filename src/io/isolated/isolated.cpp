@@ -173,7 +173,7 @@ void try_in_child(const std::string& path, std::string_view library, const std::
       read();
     } catch (const std::bad_alloc&) {
       ::_exit(end_no_memory);
-    } catch (...) {  // said again, and heard, in the parent
+    } catch (...) {  // reported again in the parent
     }
     ::_exit(end_good);
   });

@@ -16,7 +16,7 @@ namespace sg::openfoam {
 
 namespace {
 
-/// A value as it stands in the file.
+/// A value as written in the file.
 struct Value {
   bool given = false, uniform = false;
   std::vector<double> one;
@@ -71,7 +71,7 @@ class FieldReader {
       const std::string why = f_.directive().empty() ? "" : fmt::format("; '{}' is not expanded", f_.directive());
       f_.fail(fmt::format("has no internalField{}", why), "use 'uniform VALUE' or 'nonuniform List<TYPE> N(...)'");
     }
-    // An empty list stands for no values at all: a processor without cells.
+    // An empty list means no values at all: a processor without cells.
     type_ = inner_.uniform || inner_.list.empty() ? ElementType::f32 : inner_.list.type();
     r.inner.array = array_of(inner_, count, "internalField");
     if (kind_.only_inner) return r;

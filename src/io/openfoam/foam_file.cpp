@@ -226,7 +226,7 @@ std::vector<int32_t> FoamFile::labels(std::string_view what) {
       v[i] =
           label_bytes_ == 8 ? narrow(load<int64_t>(bytes.data() + 8 * i, big_endian_)) : load<int32_t>(bytes.data() + 4 * i, big_endian_);
   } else if (uniform) {
-    // One number stands for all: a list of any length from a few bytes, so it must be in proportion to the file.
+    // One number applies to all: a list of any length from a few bytes, so it must be in proportion to the file.
     const std::string_view t = next();
     const auto x = parse_int(t);
     if (!x) fail(fmt::format("'{}' is not a whole number ({})", t.substr(0, 40), what));
@@ -285,7 +285,7 @@ ElementType FoamFile::text_type() {
   return *text_type_;
 }
 
-// Null when the text is no n tuples.
+// Null when the text does not hold n tuples.
 template <class T>
 const char* FoamFile::scan_tuples(const char* p, const char* end, size_t n, int components, T* out) const {
   auto blanks = [&] {

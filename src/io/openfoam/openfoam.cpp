@@ -96,7 +96,7 @@ class Part {
   }
 
  private:
-  // Meshes may move: the last time folder up to now that has the file goes before constant.
+  // Meshes may move: the last time folder so far that has the file takes precedence over constant.
   std::string find(const std::string& name) const {
     for (size_t i = times_.empty() ? 0 : step_ + 1; i-- > 0;)
       if (std::string p = existing(folder_ + times_[i].name + "/" + region_ + "polyMesh/" + name); !p.empty()) return p;
@@ -133,7 +133,7 @@ class Part {
         patches_[i].fields.add(std::move(f.patches[i]));
       }
     } catch (const Error& e) {
-      // A field that hangs on another file's macros must not keep the rest from being seen, unless it was asked for.
+      // A field that depends on another file's macros must not hide the rest, unless it was requested.
       if (!o_.fields.empty() || e.problem().find("is not expanded") == std::string::npos) throw;
       context_.warn(fmt::format("field '{}' is left out: {}", name, e.what()));
     }

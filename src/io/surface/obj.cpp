@@ -330,7 +330,7 @@ Array fit(const Array& a, size_t count) {
   return r;
 }
 
-// What write_obj() makes of a surface without points; any other text without a vertex is no OBJ file.
+// What write_obj() makes of a surface without points; any other text without a vertex is not an OBJ file.
 bool only_comments(std::string_view text) {
   bool comment = false;
   while (!text.empty()) {

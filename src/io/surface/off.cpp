@@ -77,7 +77,7 @@ void read_text(const std::string& path, std::string_view text, const OffHeader& 
   m.vertices = in.count("the number of vertices", 6);
   m.faces = in.count("the number of faces", 2);
   std::vector<double> rest;
-  rest_of_line(in, rest);  // the number of edges, which nobody needs
+  rest_of_line(in, rest);  // the number of edges, which is not needed
   for (size_t i = 0; i < m.vertices; ++i) {
     for (int a = 0; a < 3; ++a) {
       const double x = in.number("a coordinate");

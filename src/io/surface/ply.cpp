@@ -57,7 +57,7 @@ struct Reader {
            (options.fields.empty() || std::find(options.fields.begin(), options.fields.end(), name) != options.fields.end());
   }
 
-  // Makes a field of each property (or group of them) and tells decode_ply to fill it. `used` properties are left out.
+  // Makes a field of each property (or group of them) and lets decode_ply fill it. `used` properties are left out.
   void add_fields(PlyElement& e, Association association, std::vector<bool> used, const PlyHeader& header) {
     add_named_fields(e, association, used, header);
     for (const Group& g : groups) {
@@ -90,7 +90,7 @@ struct Reader {
     }
   }
 
-  // Fields whose names stand in comments of our own files. A comment that does not fit the properties is only a comment.
+  // Fields whose names are in comments of our own files. A comment that does not fit the properties is only a comment.
   void add_named_fields(PlyElement& e, Association association, std::vector<bool>& used, const PlyHeader& header) {
     for (const auto& [key, text] : header.notes) {
       const auto w = words(text);
@@ -200,7 +200,7 @@ Data read_ply(const std::string& path, const ReadOptions& options, Context& cont
   if (face) {
     face->wanted_list = index_list(*face);
     if (face->wanted_list < 0 && face->count > 0) fail_data("the faces have no list 'vertex_indices'", path);
-    // Cell fields are numbered over all cells, so they need faces alone.
+    // Cell fields are numbered over all cells, so they require a mesh of faces only.
     if (!strip || strip->count == 0) r.add_fields(*face, Association::cell, std::vector<bool>(face->properties.size(), false), h);
     else context.warn(path + ": face properties are ignored, since there are triangle strips");
   }
@@ -239,7 +239,7 @@ struct Column {
   Array values;  ///< one component, of a type that PLY has
 };
 
-// `comments` gets the names of the fields that their properties do not tell.
+// `comments` gets the names of fields that are not clear from their properties.
 std::vector<Column> columns_of(const Dataset& d, Association association, std::string& comments, WriteLosses& losses) {
   std::vector<Column> r;
   for (const Field& f : d.fields()) {

@@ -320,7 +320,7 @@ size_t decode_binary(const MappedFile& file, const PlyHeader& h, PlyElement& e, 
   return begin + p;
 }
 
-// Scans one number of an ASCII row; false at the end of the line or at something that is no number.
+// Scans one number of an ASCII row; false at the end of the line or at something that is not a number.
 template <class T>
 bool next_number(const char*& p, const char* end, T& v) {
   p = skip_blanks(p, end);

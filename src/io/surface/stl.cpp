@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // STL, binary and ASCII. Points are merged exactly; facet normals and attribute bytes are not kept (normals follow from the
-// points). A file is binary when its length is just what its triangle count asks for, even when it begins with "solid".
+// points). A file is binary when its length matches its triangle count exactly, even when it begins with "solid".
 #include <fmt/core.h>
 
 #include <algorithm>

@@ -60,7 +60,7 @@ uint64_t hash_of(Key k) {
   return h ^ h >> 32;
 }
 
-constexpr size_t chunk_corners = 3 * 8192;  ///< so many corners share a table that stays in the second-level cache
+constexpr size_t chunk_corners = 3 * 8192;  ///< number of corners that share a table, which stays in the second-level cache
 constexpr size_t partitions = 64;
 
 // A chunk's distinct corners in order of first use.

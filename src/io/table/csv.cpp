@@ -127,8 +127,8 @@ struct Record {
   std::vector<bool> in_quotes;
 };
 
-// Whether a first record names the columns: it has no numbers; or all of it stands in quotes and no number of the second does, as
-// write_csv has it; or a word stands above a number. Else its numbers are data.
+// Whether a first record names the columns: it has no numbers; or all of it is quoted and no number of the second line is, as write_csv
+// writes it; or a word is above a number. Else its numbers are data.
 bool is_header(const Record& first, const Record* second) {
   bool any = false, numbers = false, quotes = true;
   for (size_t i = 0; i < first.cells.size(); ++i) {

@@ -49,7 +49,7 @@ struct Scanner {
     while (p < text.size() && !blank(text[p]) && text[p] != '[' && text[p] != ']' && text[p] != '"') ++p;
     return text.substr(begin, p - begin);
   }
-  // A quoted string, with the entities that stand for quotes and ampersands.
+  // A quoted string, with the entities for quotes and ampersands.
   std::string quoted() {
     const size_t close = text.find('"', p + 1);
     if (close == std::string_view::npos) fail("a string has no end");

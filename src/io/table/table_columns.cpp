@@ -83,7 +83,7 @@ Array number_column(const std::vector<std::string>& cells) {
     const std::string_view word = trim(cell);
     if (is_missing(word)) {
       missing = true;
-      any = any || to_lower(word) == "nan";  // said to be a number that is none
+      any = any || to_lower(word) == "nan";  // claimed to be a number but is not
       v.push_back(std::nan(""));
       continue;
     }

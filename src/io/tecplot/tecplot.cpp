@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tecplot ASCII: ordered zones become curvilinear grids, finite-element zones unstructured meshes; several zones a collection. Zones of
-// different solution times are steps. Values are f32 unless the zone says DOUBLE.
+// different solution times are steps. Values are f32 unless the zone states DOUBLE.
 #include <fmt/core.h>
 
 #include <algorithm>

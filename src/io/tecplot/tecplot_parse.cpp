@@ -212,7 +212,7 @@ class Parser {
     }
   }
 
-  /// What a zone's header says beside the zone itself.
+  /// Data of a zone's header besides the zone itself.
   struct ZoneHeader {
     std::vector<std::pair<size_t, size_t>> shared;  ///< variable, zone
     std::vector<bool> passive;
@@ -325,7 +325,7 @@ class Parser {
       for (size_t& d : z.dims) d = std::max<size_t>(d, 1);
       if (!multiply(z.dims[0], z.dims[1], points) || !multiply(points, z.dims[2], points)) points = UINT64_MAX;
     }
-    // A repeat count ("1000*0.5") may stand for many values, yet not for any number of them.
+    // A repeat count ("1000*0.5") may stand for many values, but not for an arbitrary number.
     const auto left = uint64_t(end_ - p_);
     if (points > 64 * left + 1024 || z.elements > left)
       fail(fmt::format("a zone of {} points and {} elements is followed by only {} bytes", points, z.elements, left));

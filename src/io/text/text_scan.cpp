@@ -24,7 +24,7 @@ const char* slow_number(const char* p, const char* end, T& v) {
     return r.ptr == end || is_space(*r.ptr) || *r.ptr == ',' || *r.ptr == '/' ? r.ptr : is_digit(r.ptr[-1]) ? r.ptr : nullptr;
   }
   if (r.ec != std::errc::result_out_of_range) return nullptr;
-  Decimal d;  // too large or too small: the exponent of the leading digit tells
+  Decimal d;  // too large or too small: the exponent of the leading digit decides
   if (!scan_decimal(p, end, d)) return nullptr;
   ptrdiff_t lead = d.exponent;
   bool point = false, counting = false;

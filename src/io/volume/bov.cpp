@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// BOV, "brick of values": a text header of KEY: VALUE lines beside one or several raw files. Source: VisIt, "Getting Data Into VisIt",
-// chapter 3. Also a raw file that is called .bov and says its size in its name only.
+// BOV, "brick of values": a text header of KEY: VALUE lines describing one or several raw files. Source: VisIt, "Getting Data Into VisIt",
+// chapter 3. Also a raw file named .bov whose size is only in its name.
 #include <fmt/core.h>
 
 #include <algorithm>

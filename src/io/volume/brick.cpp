@@ -111,7 +111,7 @@ Array load_brick(const BrickLayout& l, const std::vector<BrickPart>& parts, Cont
   if (need % (parts.size() * size)) fail_data(fmt::format("{} bytes do not divide evenly among {} files", need, parts.size()));
   const size_t share = need / parts.size();
 
-  // Everything that can be known without memory is checked before memory is asked for.
+  // Everything that can be checked without memory is checked before allocating it.
   for (const BrickPart& p : parts) switch (l.encoding) {
       case BrickEncoding::raw: raw_window(p, share, context); break;
       case BrickEncoding::hex:

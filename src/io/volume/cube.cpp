@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Gaussian cube: two lines of title, atoms, and numbers on a grid (its third axis fastest) whose axes may be skewed. Lengths are in
-// Bohr, in Angstrom where the counts of the grid are negative. A negative number of atoms tells that orbitals follow, several numbers a
+// Bohr, in Angstrom where the counts of the grid are negative. A negative number of atoms means that orbitals follow, several numbers per
 // point. Gives two parts, "grid" and "atoms".
 #include <fmt/core.h>
 
@@ -49,7 +49,8 @@ struct Lines {
 };
 
 DatasetPtr atoms_of(Lines& in, size_t count, const std::string& unit) {
-  if (count > (in.file.size() - in.at) / 10) fail_data(fmt::format("{} atoms do not fit into {} bytes", count, in.file.size()), in.file.path());
+  if (count > (in.file.size() - in.at) / 10)
+    fail_data(fmt::format("{} atoms do not fit into {} bytes", count, in.file.size()), in.file.path());
   std::vector<double> xyz;
   std::vector<int32_t> z;
   std::vector<double> charge;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// MetaImage (.mhd with data files beside it, .mha in one file): "Key = value" lines, the last of which is ElementDataFile.
+// MetaImage (.mhd with separate data files, .mha in one file): "Key = value" lines, the last of which is ElementDataFile.
 // The consecutive numbers of TransformMatrix are the directions of the axes, one axis after the other.
 #include <fmt/core.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// MetaImage: .mha with the numbers behind the header, .mhd with a .raw or .zraw file beside it.
+// MetaImage: .mha with the numbers after the header, .mhd with a separate .raw or .zraw file.
 #include <fmt/core.h>
 #include <libdeflate.h>
 

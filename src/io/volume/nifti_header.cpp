@@ -44,7 +44,7 @@ void set_dims(NiftiHeader& h, const std::array<int64_t, 8>& dim, const std::stri
   if (dim[0] < 0 || dim[0] > 7)
     fail_data(fmt::format("byte {}: {} dimensions", h.version == 2 ? 16 : 40, dim[0]), where, "dim[0] must be 0 to 7");
   h.stored_dims = int(dim[0]);
-  // Files of one voxel exist that tell 0 dimensions: then all sizes count.
+  // Some files of one voxel state 0 dimensions: then all sizes count.
   for (int a = 1; a <= (dim[0] ? int(dim[0]) : 7); ++a) {
     if (dim[size_t(a)] < 0) fail_data(fmt::format("dim[{}] is {}", a, dim[size_t(a)]), where, "sizes must be 1 or more");
     h.dims[size_t(a) - 1] = std::max<size_t>(size_t(dim[size_t(a)]), 1);

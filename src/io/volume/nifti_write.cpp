@@ -103,7 +103,7 @@ void write_nifti(const std::string& path, const Data& data, const WriteOptions&,
 
   std::byte header[header_bytes]{};
   fill_header(header, *d, *grid, f);
-  // Components of other than colours lie apart: one volume after the other.
+  // Components other than colours are stored separately: one volume after the other.
   std::vector<Array> blocks;
   if (f.components() == 1 || is_colors(f)) blocks.push_back(f.array.made_packed());
   else

@@ -89,7 +89,7 @@ Array gather_components(const Array& stored, const NrrdHeader& h, size_t tuples,
   return r;
 }
 
-// Symmetric matrices are stored as xx xy xz yy yz zz; nine numbers, rows first, say the same to every filter.
+// Symmetric matrices are stored as xx xy xz yy yz zz; nine numbers, row by row, mean the same to every filter.
 Array full_tensor(const Array& six, int first) {
   const Array f = six.converted(six.type() == ElementType::f64 ? ElementType::f64 : ElementType::f32);
   static constexpr int place[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};

@@ -125,7 +125,7 @@ bool Parser::geometry_field(const std::string& name, std::string_view value) {
         continue;
       }
       const Vec3 v = vector(name, s);
-      // A vector of NaN says "none" in files of some programs.
+      // A vector of NaN means "none" in files of some programs.
       if (std::isnan(v.x) && std::isnan(v.y)) axis.no_direction = true;
       else axis.direction = v, axis.has_direction = true;
     }

@@ -187,7 +187,7 @@ Data read_picture_stack(const std::string& path, const ReadOptions& options, Con
       {size[0], size[1], 1}, {part.lo[0], part.lo[1], 0}, {part.count[0], part.count[1], 1}, {part.stride[0], part.stride[1], 1}};
   std::byte* to = nullptr;
   Array a;
-  // Memory for the volume is asked for when the last picture has been seen to be like the first, at least in its header.
+  // Memory for the volume is allocated once the last picture is known to match the first, at least in its header.
   for (const size_t i : {names.size() / 2, names.size() - 1})
     if (lattice_dims(read(i, true)->mesh()) != size) fail_data(fmt::format("'{}' and '{}' differ in size", names[0], names[i]), path);
   a = Array::make_raw(like.array.type(), part.points(), like.components(), &to);

@@ -13,7 +13,7 @@ namespace sg {
 
 namespace {
 
-// Without a word from the caller: what the name and the length say, told as a warning.
+// Without a word from the caller: what the name and the length imply, reported as a warning.
 ReadOptions described(const std::string& path, ReadOptions o, Context& context) {
   if (o.raw_dims[0] > 0) return o;
   const auto guess = guess_raw(MappedFile(path));
@@ -49,7 +49,7 @@ Data read_raw(const std::string& path, const ReadOptions& given, Context& contex
                                        l.components > 1 ? fmt::format(" x {}", l.components) : "");
   const uint64_t have = file.file.size() - std::min(file.file.size(), o.raw_header);
   if (!multiply(l.count, size * uint64_t(l.components), need) || need != have) {
-    // A brick of another size than told is nearly always a wrong size or type: what would fit is said.
+    // A brick of a different size than stated nearly always means a wrong size or type: the message says what would fit.
     std::string hint = fmt::format("{} bytes are {} numbers of {}", have, have / size, element_name(l.type));
     if (have > need && need > 0) hint += fmt::format("; with a header of {} bytes it would fit", o.raw_header + (have - need));
     fail_data(fmt::format("{} needs {} bytes, but there are {}{}", what, need, have,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// SLC, the volumes of VolVis: a header in text that ends with 'X', a small picture, then the slices of bytes, each alone packed by
-// run lengths (a byte with the top bit set and n below: n bytes follow; without: the next byte n times; 0 ends).
+// SLC, the volumes of VolVis: a header in text that ends with 'X', a small picture, then the slices of bytes, each packed separately by run
+// lengths (a byte with the top bit set and n below: n bytes follow; without: the next byte n times; 0 ends).
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -101,7 +101,7 @@ Data read_slc(const std::string& path, const ReadOptions& options, Context&) {
   if (3 * width * height > file.size() - w.at) fail_data("the file ends inside its icon", path);
   w.at += 3 * width * height;
 
-  // Where each slice lies, before memory is asked for.
+  // Where each slice lies, before memory is allocated.
   const size_t slice = grid.dims[0] * grid.dims[1];
   std::vector<std::span<const std::byte>> slices;
   const std::span<const std::byte> bytes(file.data(), file.size());

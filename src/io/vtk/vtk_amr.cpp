@@ -118,7 +118,7 @@ class AmrReader {
     Patch p{level, n, {}, {}};
     parse_longs(file_, n, "amr_box", p.box.data(), 6);
     const std::string_view source = n.attribute("file").value();
-    if (source.empty()) return;  // a patch that nobody wrote
+    if (source.empty()) return;  // a patch that was not written
     if (!sources_.insert(source).second) file_.fail(fmt::format("names '{}' a second time", source), n, "name each patch once");
     auto sane = [](long long i) { return i >= -(1ll << 40) && i <= 1ll << 40; };
     for (size_t a = 0; a < 3; ++a)

@@ -47,7 +47,7 @@ Array as_coordinates(const Array& a) {
 
 namespace {
 
-constexpr int most_points = 4096;  // of cells of one size; larger ones are worth their offsets
+constexpr int most_points = 4096;  // of cells of one size; for larger ones the offsets pay off
 
 template <class T, bool BIG>
 int uniform_size_of(const std::byte* p, size_t n) {
@@ -198,7 +198,7 @@ void FaceCollector::finish(UnstructuredMesh& mesh) {
 
 void expand_polyhedra(UnstructuredMesh& mesh) {
   const size_t n = mesh.cells.size();
-  if (n == 0 || mesh.types.count() != n) return;  // a wrong number of types is for validate() to tell
+  if (n == 0 || mesh.types.count() != n) return;  // a wrong number of types is reported by validate()
   const auto types = mesh.types.view<uint8_t>();
   constexpr auto polyhedron = uint8_t(CellType::polyhedron);
   if (all_of(n, [&](size_t i) { return types[i] != polyhedron; })) return;

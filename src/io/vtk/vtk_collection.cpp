@@ -31,7 +31,7 @@ bool is_multiblock(std::string_view type) {
 
 // Time steps of a .pvd file, ascending, and the DataSet elements of each.
 struct Steps {
-  std::vector<double> times;  // empty when the file says none
+  std::vector<double> times;  // empty when the file has none
   std::vector<std::vector<pugi::xml_node>> sets;
 };
 
@@ -195,7 +195,7 @@ class TreeReader {
     return CollectionPtr(std::move(collection));
   }
 
-  // A document with these elements alone, for counting.
+  // A document with only these elements, for counting.
   pugi::xml_node only(const std::vector<pugi::xml_node>& sets) {
     counting_.reset();
     for (const pugi::xml_node& n : sets) counting_.append_copy(n);

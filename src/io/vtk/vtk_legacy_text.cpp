@@ -81,7 +81,7 @@ const std::byte* LegacyText::take(uint64_t bytes, std::string_view what) {
 }
 
 Array LegacyText::text_array(ElementType type, size_t tuples, size_t components, std::string_view what) {
-  // A number takes a character and a blank, so a count beyond that is wrong before memory is asked for.
+  // A number takes a character and a blank, so larger counts are rejected before memory is allocated.
   const size_t rest = all_.size() - at_;
   size_t n = 0;
   if (__builtin_mul_overflow(tuples, components, &n) || n > (rest + 1) / 2)
@@ -191,7 +191,7 @@ void LegacyText::skip_strings(size_t n) {
       line();
       continue;
     }
-    // The two high bits of the first byte tell how many bytes the length takes: 8, 4, 2 or 1.
+    // The two high bits of the first byte give the number of bytes of the length: 8, 4, 2 or 1.
     const unsigned lead = static_cast<unsigned char>(all_[at_]) >> 6;
     const size_t width = size_t(8) >> lead;
     const std::byte* p = take(width, "the length of a string");

@@ -45,7 +45,7 @@ struct Piece {
   std::string name;  ///< of the part, for messages
   DatasetPtr data;
   Index3 lo{0, 0, 0}, hi{0, 0, 0};           ///< points of a grid, by their indices in the whole
-  Index3 own_lo{0, 0, 0}, own_hi{-1, 0, 0};  ///< cells that are no ghosts; none when hi < lo
+  Index3 own_lo{0, 0, 0}, own_hi{-1, 0, 0};  ///< cells that are not ghosts; none when hi < lo
 };
 
 Index3 cells_end(const Piece& p) {  // of all its cells, inclusive; a flat axis has one cell
@@ -186,7 +186,7 @@ std::string extent_text(const Whole& w, const Index3& lo, const Index3& hi) {
 
 std::string three(Vec3 v) { return fmt::format("{} {} {}", exact_number(v.x), exact_number(v.y), exact_number(v.z)); }
 
-// What shapes high-order cells, where a mesh has it (write_dataset writes it as f64 beside the fields).
+// Data that shapes high-order cells, if a mesh has it (write_dataset writes it as f64 besides the fields).
 Array shaping_of(const Dataset& d, Association association) {
   const auto* u = d.as<UnstructuredMesh>();
   return !u ? Array() : association == Association::point ? u->weights : u->degrees;

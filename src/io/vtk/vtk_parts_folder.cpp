@@ -17,7 +17,7 @@ namespace sg::vtk {
 
 namespace {
 
-// The folder holds files only; what is no file stays, and the folder with it.
+// The folder holds files only; what is not a file stays, and the folder with it.
 void remove_folder(const std::string& folder) {
   if (!is_folder(folder)) return;
   for (const std::string& name : folder_entries(folder)) ::unlink((folder + "/" + name).c_str());

@@ -117,7 +117,7 @@ struct Reader {
     return read_topology(doc, topology, read_points(doc, geometry));
   }
 
-  // XX XY XZ YY YZ ZZ as rows of the whole tensor, so that nobody has to know the order.
+  // XX XY XZ YY YZ ZZ as rows of the whole tensor, so that the order need not be known.
   static Array whole_tensors(const Array& six) {
     constexpr int from[9] = {0, 1, 2, 1, 3, 4, 2, 4, 5};
     std::byte* out = nullptr;
@@ -200,7 +200,7 @@ struct Reader {
   }
 };
 
-// A grid that only lends its mesh to others is no data of its own.
+// A grid that only lends its mesh to others is not data of its own.
 std::vector<pugi::xml_node> top_grids(const Document& doc) {
   const pugi::xml_node domain = doc.child(doc.root(), "Domain");
   if (!domain) fail_data("has no Domain", doc.path(), "the file is truncated or not complete");

@@ -71,7 +71,7 @@ bool parse_codec(std::string_view name, Codec& codec) {
 }
 
 void decode(std::span<const Codec> codecs, std::span<const std::byte> in, std::byte* out, size_t bytes, const std::string& where) {
-  // Checksums stand behind what they guard; damage shows in the stream itself.
+  // Checksums follow what they protect; damage shows in the stream itself.
   while (!codecs.empty() && codecs.back() == Codec::crc32c) {
     if (in.size() < 4) fail_data("is shorter than its checksum", where);
     in = in.first(in.size() - 4), codecs = codecs.first(codecs.size() - 1);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr size_t most_levels = 64;
 
-// Names of axes, as they stand in the order of the shape.
+// Names of axes, in the order of the shape.
 struct Axes {
   std::vector<std::string> names, types, units;
 };
@@ -115,7 +115,7 @@ void read_levels(Image& image, const Json& multiscale, const std::string& where)
     image.time_step = places[0][0][size_t(image.time_axis)], image.first_time = places[0][1][size_t(image.time_axis)];
 }
 
-// `own`: what this program wrote beside the attributes of the standard.
+// `own`: what this program wrote besides the attributes of the standard.
 void read_extras(Image& image, const Json& attributes, const Json& own) {
   if (const Json* omero = object_of(attributes, "omero"))
     if (const Json* channels = list_of(*omero, "channels"))

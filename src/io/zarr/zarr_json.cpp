@@ -16,7 +16,7 @@ std::optional<Json> read_json(const std::string& path) {
   if (!file_exists(path)) return std::nullopt;
   const MappedFile file(path);
   if (file.size() > longest) fail_data(fmt::format("has {} bytes", file.size()), path, "array metadata must be smaller than 16 MiB");
-  // NaN and Infinity as bare words, which Python writes, are no JSON; the standard says "NaN" in quotes.
+  // NaN and Infinity as bare words, which Python writes, are not JSON; the standard says "NaN" in quotes.
   Json json = parse_json(file.text(), path);
   if (!json.is_object()) fail_data("is not a JSON object", path);
   return json;

@@ -50,7 +50,7 @@ Field read_field(const Image& image, size_t level, size_t step, const LatticePar
   const size_t n = planned.channels.size();
   const Role role = image.labels ? Role::labels : n == 3 && is_float(type) ? Role::vectors : Role::scalars;
   if (header_only) return {planned.name, Association::point, unread_values(type, part.points(), int(n)), image.unit, role};
-  // Sparse arrays are right, but nothing at all of much is a mistake, and not worth the memory.
+  // Sparse arrays are fine, but a large array without any chunk is an error, and not worth the memory.
   if (part.points() > (size_t(1) << 22) && !any_chunk(box_of(image, level, step, planned.channels[0])))
     fail_data("no chunk of this array exists", image.levels[level].array.folder, "expected one file per chunk");
   std::byte* out = nullptr;

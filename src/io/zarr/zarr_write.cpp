@@ -156,7 +156,7 @@ class Writer {
       for (size_t a = 0; a < 3; ++a) {
         l.chunk[a] = std::min(a == 2 ? thick : edge, l.dims[a]);
         if (a == 2 && l.dims[2] > thick) l.chunk[a] = thick;
-        l.halved[a] = l.dims[a] > std::min<size_t>(32, edge);  // or a level that is not the last would be no coarser
+        l.halved[a] = l.dims[a] > std::min<size_t>(32, edge);  // or a level other than the last would not be coarser
         more = more || l.dims[a] > edge;
       }
       if (!more) l.halved = {};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a recipe may not do. The fence around the process (file/file_fence.h) holds whatever is overlooked here; these rules say it before
-// anything runs, step by step.
+// What a recipe may not do. The fence around the process (file/file_fence.h) holds whatever is overlooked here; these rules report it
+// before anything runs, step by step.
 #include <fmt/core.h>
 
 #include <map>
@@ -32,7 +32,7 @@ Units units_of_step(const PipelineFile::Step& step) {
     return units_of(schema_of(params));
   }
   const Operation* op = known_operation(step.operation);
-  return op ? units_of(op->make_params().schema) : Units{};  // an unknown one is told later, with "did you mean"
+  return op ? units_of(op->make_params().schema) : Units{};  // an unknown one is reported later, with "did you mean"
 }
 
 class Rules {

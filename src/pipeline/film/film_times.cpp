@@ -15,7 +15,7 @@ namespace sg {
 
 namespace {
 
-// Writes the time where a parameter asks for it: 'lic kernel=ripple phase={t}'. False when none does.
+// Writes the time where a parameter requests it: 'lic kernel=ripple phase={t}'. False when none does.
 bool write_time(PipelineFile& file, double time) {
   constexpr std::string_view here = "{t}";
   bool written = false;

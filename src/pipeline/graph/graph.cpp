@@ -122,7 +122,7 @@ std::optional<std::vector<std::string>> known_fields(const Node& node, const Gra
   }
   auto* given = std::get_if<DataNode>(&node.what);
   if (!given || std::holds_alternative<TablePtr>(given->data)) return std::nullopt;
-  if (auto* d = std::get_if<DatasetPtr>(&given->data); d && !*d) return std::nullopt;  // stands for what is not at hand
+  if (auto* d = std::get_if<DatasetPtr>(&given->data); d && !*d) return std::nullopt;  // placeholder for what is not available
   std::vector<std::string> names;
   std::unordered_set<std::string> known;
   for_each_dataset(given->data, [&](const std::string&, const DatasetPtr& d) {

@@ -34,7 +34,7 @@ std::vector<double> parse_times(std::string_view text, std::string_view who) {
 
 namespace {
 
-// What the nodes above say of time.
+// Times known to the nodes above.
 struct Above {
   std::vector<double> times;   // of files
   std::string file;            // the first that has them
@@ -99,7 +99,7 @@ Series SeriesInput::open(const Graph& graph, const Node& consumer, const Request
     fail_usage(fmt::format("'{}' can be computed for any time, so times are needed", above.any_time), who,
                "give times=FIRST:LAST:COUNT, e.g. times=0:10:101");
   if (times.empty()) times = {0};
-  // One step after the other says the same.
+  // Every step gives the same note.
   auto told = std::make_shared<std::set<std::string>>();
   Series series;
   series.times = times;

@@ -38,7 +38,7 @@ SlabSource slabs_of_source(const std::string& operation, const std::vector<std::
       params.schema.find("dims") && params.schema.find("bounds") && params.schema.find("size") && !params.schema.find("seed");
   if (!by_place) return slabs_of_dataset(single_dataset(run_operation(op, {}, words, context), operation), operation, context);
 
-  // A few points of it tell its box, its field and its type.
+  // A few points of it give its box, its field and its type.
   std::vector<std::string> few = without_grid(words);
   for (const std::string& w : words)
     if (says(w, "bounds")) few.push_back(w);

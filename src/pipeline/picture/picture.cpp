@@ -121,7 +121,7 @@ bool has_nan(const Scene& scene) {
   return false;
 }
 
-// What the results of all shows come to.
+// The combined results of all shows.
 struct Shown {
   Scene scene;
   std::vector<Legend> legends;  // each once
@@ -175,7 +175,7 @@ Annotation annotation_of(const StatedPicture& stated, const Shown& shown, const 
 Picture make_picture(PipelineFile& file, const PictureOptions& options, Context& context) {
   const StatedPicture stated = stated_in(file);
   load_transfer_files(file);
-  stated_shows(file);  // mistakes are told before anything runs
+  stated_shows(file);  // mistakes are reported before anything runs
   const auto cache = options.cache ? options.cache : std::make_shared<Cache>(0);
   std::vector<Data> held;
   Picture picture;
@@ -190,7 +190,7 @@ Picture make_picture(PipelineFile& file, const PictureOptions& options, Context&
   const std::vector<Data> results = built.graph.evaluate(targets, context);
   held.clear();
 
-  // What the notes say already, and what several parts say alike, is said once.
+  // What the notes already say, or several parts say alike, is given once.
   Context once(context, 0, 1);
   std::vector<std::string> said = picture.notes;
   once.on_log = [&](LogLevel level, std::string_view text) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the rasterizer draws from: flat arrays per item. Internal to rendering.
+// Input of the rasterizer: flat arrays per item. Internal to rendering.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -105,7 +105,7 @@ struct Positions {
 };
 Positions packed_positions(const DatasetPtr& data, const Points& points);
 
-/// Remembers what was derived from a dataset until the dataset is gone. `make` must not keep a DatasetPtr.
+/// Caches what was derived from a dataset until the dataset is destroyed. `make` must not keep a DatasetPtr.
 std::shared_ptr<const void> remembered(const DatasetPtr& data, const std::string& key, std::shared_ptr<const void> (*make)(void*),
                                        void* argument);
 template <class T, class F>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// RayFunction: what a ray through a volume collects, and one row for each that says what is special about it. To add one: a row here, a
+// RayFunction: what a ray through a volume collects, with one row each for its properties. To add one: a row here, a
 // case in Caster::collect (render/volume/rays/cast.cpp), its search in rays/functions.h.
 #pragma once
 #include <array>
@@ -24,7 +24,7 @@ enum class RayFunction {
 };
 
 struct RayFunctionInfo {
-  /// What the colours (and the axis of the opacity) stand for. Lengths are world lengths.
+  /// What the colours (and the axis of the opacity) represent. Lengths are world lengths.
   enum class Axis { value, value_times_length, length };
   /// Where a ray need not look.
   enum class Skips { nothing, transparent, below_level, without_level };
@@ -35,8 +35,8 @@ struct RayFunctionInfo {
   bool needs_level = false;
   bool absorbs = false;        ///< takes light away along its way: has shadows, occlusion and an extinction
   bool in_parts = false;       ///< parts of a ray, put together, are the ray
-  bool classifies = false;     ///< asks for an opacity that tells materials apart
-  bool shows_opacity = false;  ///< the opacity of values can be read from the picture, and stands in the legend
+  bool classifies = false;     ///< needs an opacity that distinguishes materials
+  bool shows_opacity = false;  ///< the opacity of values can be read from the picture and is shown in the legend
   Skips skips = Skips::nothing;
 
   bool collects() const { return axis != Axis::value; }  ///< what is drawn has another axis than the field's values

@@ -122,7 +122,7 @@ void take_second_axis(const VolumeShow& p, const Fields& fields, const ColorScal
   }
 }
 
-// The value at which something begins, when nobody says.
+// The default level: the value at which something begins.
 void choose_level(const Field& field, VolumeItem& item, Context& context) {
   const Range r = item.data->range(field, field.components() > 1 ? item.component : 0);
   if (r.empty()) return item.levels.push_back(0);
@@ -242,7 +242,7 @@ std::optional<Legend> add(Scene& scene, const DatasetPtr& input, const VolumeSho
   item.light = p.light;
   if (!p.clip.empty()) item.clip = parse_clip(p.clip);
 
-  // Colours as asked for, over the field that they belong to.
+  // Colours as requested, over the field that they belong to.
   ColoringParams coloring = p.coloring;
   coloring.component = component_of(p, fields, *fields.color);
   ColorScale colors = choose_scale(*input, *fields.color, coloring, context);

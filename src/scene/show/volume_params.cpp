@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The declaration of the words, and what can be said about them without data.
+// The declaration of the words, and the checks possible without data.
 #include <fmt/core.h>
 
 #include "base/text/text.h"
@@ -62,7 +62,7 @@ void describe(Schema& s, VolumeShow& p) {
 
 namespace {
 
-// Are there positions beside @values, so that only data can tell which comes first?
+// Whether there are positions as well as @values, so that only data can decide which comes first.
 bool mixes_places(const std::string& points) {
   int values = 0, positions = 0;
   for (const std::string_view part : split(points, ','))

@@ -32,7 +32,7 @@ inline void describe(Schema& s, CalcParams& p) {
 }
 
 /// Adds a field computed from others, tuple by tuple, in double; the result is f32 when every field used is f32 or a small
-/// integer, else f64; comparisons are 0 or 1. NaN goes through.
+/// integer, else f64; comparisons are 0 or 1. NaN propagates.
 ///
 ///   expression   or && ||, comparison < <= > >= == !=, + -, * / %, ^ (right to left), - !, a ? b : c, a.x .y .z, a[i], (a)
 ///   numbers      1.5e-3, pi, e, nan
@@ -41,7 +41,7 @@ inline void describe(Schema& s, CalcParams& p) {
 ///                atan2 pow mod min max hypot clamp(a,lo,hi) if(c,a,b) isnan
 ///   vectors      mag norm dot cross vec(a,b,c) sum; a scalar meets each component of a vector; trace det of 3x3 tensors
 ///
-/// Units are carried: products and powers combine them, sums need equal ones (else the result has none, and a note says so).
+/// Units are carried: products and powers combine them, sums need equal ones (otherwise the result has no unit, and a note says so).
 /// Throws Error(usage) with the place in the expression, and for point fields mixed with cell fields.
 DatasetPtr calc(const DatasetPtr& in, const CalcParams& p, Context& ctx);
 

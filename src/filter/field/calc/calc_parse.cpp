@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Recursive descent from text to instructions; sizes and units are checked here, so that running is arithmetic alone.
+// Recursive descent from text to instructions; sizes and units are checked here, so that running is pure arithmetic.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -152,7 +152,7 @@ class Parser {
   }
   int constant(double v) { return emit({Op::constant, 1, -1, -1, -1, v}, {}); }
 
-  // The size of a result of two operands; a scalar goes with every component of the other.
+  // The size of a result of two operands; a scalar is combined with every component of the other.
   int joint(int a, int b, size_t place) {
     const int m = components(a), n = components(b);
     if (m != n && m != 1 && n != 1) fail(fmt::format("combines {} numbers with {}", m, n), "use components, e.g. v.x or v[0]", place);

@@ -39,7 +39,7 @@ inline void describe(Schema& s, HessianParams& p) {
 /// bend of a cubic (with_border_derivatives), of second order; curvilinear ones of first order in the two outer layers. Other meshes: of
 /// the fitted parabola, exact for quadratic fields, of second order where neighbours lie on both sides alike (inside smooth meshes of
 /// hexahedra, wedges, tetrahedra), of first elsewhere, up to the border. Along lines and surfaces: the covariant one. What too few
-/// neighbours do not determine is 0, and a warning says at how many places.
+/// neighbours leave undetermined is 0, and a warning says at how many points.
 DatasetPtr hessian(const DatasetPtr& in, const HessianParams& p, Context& ctx);
 
 }  // namespace sg

@@ -18,7 +18,7 @@ namespace sg {
 
 namespace {
 
-// Ids without repetition, in the order in which they came: that order depends on the mesh alone.
+// Ids without repetition, in the order in which they came: that order depends only on the mesh.
 class IdList {
  public:
   void clear() {
@@ -86,7 +86,7 @@ class CellDimensions {
 };
 
 // What surrounds a place, ring by ring: other places, the dimension of the cells there, and across surfaces their normal.
-// Cells of less dimension than the place's own do not count: the points of a line that ends on a surface are none of the surface.
+// Cells of less dimension than the place's own do not count: the points of a line that ends on a surface do not belong to the surface.
 class Surroundings {
  public:
   Surroundings(const CellReader& reader, Association on, const PointCells& cells, const CellDimensions* dimensions, const Array& at)

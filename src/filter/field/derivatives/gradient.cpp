@@ -34,7 +34,7 @@ const Field& choose_field(const Dataset& input, const FieldName& name) {
   return *f;
 }
 
-// One row of a lattice, with one-sided differences beside missing values. T is the number type of both.
+// One row of a lattice, with one-sided differences next to missing values. T is the number type of both.
 template <class T>
 void row_gradient(const LatticeFrame& frame, const View<T>& f, T* out, size_t r) {
   const size_t nx = frame.dims[0], ny = frame.dims[1], n = size_t(f.components);

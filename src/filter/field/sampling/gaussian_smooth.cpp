@@ -26,7 +26,7 @@ std::vector<AxisSum> gaussian_sums(const std::vector<double>& at, double sigma) 
     return sums;
   }
   const auto width = [&](size_t i) { return 0.5 * std::abs(at[std::min(i + 1, n - 1)] - at[i > 0 ? i - 1 : 0]); };
-  // The outermost stand for a full width: the other half lies beyond the border.
+  // The outermost represent a full width: the other half lies beyond the border.
   const auto share = [&](size_t i) { return i == 0 || i + 1 == n ? 2 * width(i) : width(i); };
   size_t first = 0;
   for (size_t i = 0; i < n; ++i) {

@@ -65,7 +65,7 @@ class LinearCell {
   Vec3& at() { return r_; }
 
   /// Newton from at(). False where it does not converge near the cell. `quick`: also true when it is clear that x lies well outside; at()
-  /// then tells the direction alone.
+  /// then gives only the direction.
   bool invert(Vec3 x, bool quick) {
     for (int n = 0; n < 20; ++n) {
       Vec3 d[3];

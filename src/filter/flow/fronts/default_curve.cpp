@@ -12,7 +12,7 @@ namespace sg {
 
 namespace {
 
-// A place where much flows, and how far the flow goes from there.
+// A point with strong flow, and how far the flow travels from there.
 class Middle {
  public:
   Middle(const FlowParts& parts, std::string_view who, Context& context)
@@ -53,7 +53,7 @@ class Middle {
     Vec3 v;
     return flow_(x, v) ? length(v) : 0.0;
   }
-  // How far the flow goes from there before it all but stands still, up to the diagonal.
+  // How far the flow travels from there before it nearly stops, up to the diagonal.
   double way(Vec3 x) {
     constexpr int steps = 200;
     const double h = box_.diagonal() / steps;

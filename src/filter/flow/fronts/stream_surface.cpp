@@ -50,7 +50,7 @@ double noise_of(const FlowParts& parts) {
 }
 
 constexpr int deepest = 20;                  // halvings of a gap
-constexpr uint8_t open_end = 1, parted = 2;  // why a front is torn behind a member: there is no more of it, or neighbours went apart
+constexpr uint8_t open_end = 1, parted = 2;  // why a front is torn behind a member: it has ended, or neighbours separated
 constexpr double narrowest = 3;              // spacings: between two tears narrower strips are rags
 
 class Growth {
@@ -212,7 +212,7 @@ class Growth {
         if (k >= behind.size() || behind[k] != i) continue;
         Trajectory& path = paths_[added[k]];
         path.depth = std::max(paths_[f.members[i]].depth, paths_[f.members[(i + 1) % n]].depth) + 1;
-        // One that ends on its way shows where the flow parts.
+        // One that ends early shows where the flow separates.
         if (path.at.size() > level) more.members.push_back(added[k]), more.torn.push_back(0);
         else more.torn.back() = open_end;
         ++k;
@@ -296,7 +296,7 @@ class Growth {
     return kept;
   }
 
-  /// Takes out what is narrow and next to a gap where the flow parted: a surface that has torn twice in a short front is no surface.
+  /// Takes out what is narrow and next to a gap where the flow parted: a surface that has torn twice in a short front is not a surface.
   void drop_rags(Front& f, size_t level) const {
     const size_t n = f.members.size();
     const auto tear = std::find_if(f.torn.begin(), f.torn.end(), [](uint8_t t) { return t != 0; });
@@ -350,7 +350,7 @@ Data stream_surface(const std::vector<Data>& inputs, const StreamSurfaceParams& 
   const double diagonal = parts.bounds().diagonal();
   const double spacing = p.spacing.value_or(std::min(diagonal / 100, chosen ? curve.whole() / 12 : HUGE_VAL));
   const double far = p.max_length.value_or(diagonal);
-  // The mean speed on the curve tells how long `far` takes.
+  // The mean speed on the curve gives the time to travel `far`.
   PartsCursor flow(parts);
   double sum = 0;
   int inside = 0;

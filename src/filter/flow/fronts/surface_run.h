@@ -28,7 +28,7 @@ struct Collected {
 /// With the fields of unsteady_surfaces.h, as data of the time `end`; `releases`: with "release time".
 DatasetPtr surface_dataset(Collected c, const Field& velocity, double start, double end, bool releases);
 
-/// A run over a curve, whose seeds are even and at most `spacing` apart.
+/// A run over a curve, with evenly spaced seeds at most `spacing` apart.
 struct CurveRun {
   SeedCurve curve;
   double spacing;

@@ -25,7 +25,7 @@ void describe(Schema& s, EvenStreamlinesParams& p) {
 
 namespace {
 
-// Places of the lines, found by cubes as large as the largest distance that is asked for.
+// Points of the lines, found by cubes as large as the largest distance queried.
 class Places {
  public:
   explicit Places(double edge) : edge_(edge) {}
@@ -92,7 +92,7 @@ class Filler {
     return true;
   }
 
-  /// Seeds beside the line, at every spacing along it.
+  /// Seeds on both sides of the line, at every spacing along it.
   void seeds_beside(size_t line, std::deque<Vec3>& queue) {
     double next = -HUGE_VAL;
     for (size_t i = lines.begin[line]; i < lines.begin[line + 1]; ++i) {

@@ -99,7 +99,7 @@ struct Sizes {
 };
 
 // The share of the diagonal, but no more than lets bodies `across` times as wide as the result cover the shadow of the lines' box once:
-// single ones can still be told apart. Not less than a fifth of the share.
+// single ones can still be distinguished. Not less than a fifth of the share.
 double width_for(const Dataset& d, double share, double across) {
   const Vec3 e = d.bounds().size();
   const double shadow = (e.x * e.y + e.y * e.z + e.z * e.x) * (std::min({e.x, e.y, e.z}) > 1e-6 * d.bounds().diagonal() ? 0.5 : 1.0);

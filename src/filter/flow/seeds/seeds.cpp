@@ -138,7 +138,7 @@ std::vector<Vec3> on_plane(const SeedParams& p, const Box3& box) {
   return out;
 }
 
-// Pixels of a picture that is laid over the plane, bright ones more often: about as many as are asked for.
+// Pixels of a picture that is laid over the plane, bright ones more often: about as many as requested.
 std::vector<Vec3> of_pixels(const SeedParams& p, const Box3& box, const DatasetPtr& picture) {
   if (!picture || !is_lattice(picture->mesh()) || lattice_dims(picture->mesh())[2] != 1)
     fail_usage("seeding from pixels needs a picture as second input", "seeds",

@@ -65,7 +65,7 @@ Target target_grid(const Dataset& d, int64_t resolution, std::string_view who) {
   }
   if (axes < 2) fail_usage("the data extends along one axis only", std::string(who), "use a flat or a solid mesh");
   if (!u && !d.as<RectilinearGrid>()) {
-    // Numbers of points along the axes of a bent grid or of cells say little about pixels: their density decides.
+    // The numbers of points along the axes of a curved grid, or of cells, say little about pixels: their density decides.
     const double per_axis = std::pow(double(d.point_count()), 1.0 / axes);
     for (int a = 0; a < 3; ++a) own[a] = extent[a] > 0 ? std::max<size_t>(2, size_t(per_axis * extent[a] / longest)) : 1;
   }

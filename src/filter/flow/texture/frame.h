@@ -55,16 +55,16 @@ void velocity_of(const Frame& frame, size_t begin, size_t end, float* out);
 Plane<float> velocity_of(const Frame& frame, const Context& context);
 
 /// `field`: of velocities; empty: the active vectors. `resolution`: pixels along the longest side; 0: the grid's own, or whole multiples up
-/// to 1024 where it is coarser and flat (128 in 3D). Uniform grids of square pixels of that number are taken as they are; all else is
-/// resampled (with a note in the log). Vectors are projected on the plane of flat data. Throws Error(usage) naming `who`, for fields that
-/// are no vectors, for curved surfaces and points, and for sizes beyond 2^31 pixels.
+/// to 1024 where it is coarser and flat (128 in 3D). Uniform grids of square pixels of that number are taken as they are; everything else
+/// is resampled (with a note in the log). Vectors are projected on the plane of flat data. Throws Error(usage) naming `who`, for fields
+/// that are not vectors, for curved surfaces and points, and for sizes beyond 2^31 pixels.
 Frame make_frame(const DatasetPtr& input, const std::string& field, int64_t resolution, std::string_view who, Context& context);
 
 /// The dataset of the frame with one more point field (or several).
 DatasetPtr frame_dataset(const Frame& frame, std::vector<Field> more);
 
 /// A point field of `from` on the frame's pixels, f32 and packed: as it is when there are as many points, else resampled, the image's box
-/// stretched over the frame's. Throws Error(usage) when `from` is no uniform grid of the frame's dimension.
+/// stretched over the frame's. Throws Error(usage) when `from` is not a uniform grid of the frame's dimension.
 Array field_on_frame(const Frame& frame, const DatasetPtr& from, const Field& field, std::string_view who);
 
 }  // namespace sg::texture

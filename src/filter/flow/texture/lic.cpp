@@ -76,7 +76,7 @@ Plane<uint32_t> directions_of(const Frame& f, double still, const Context& conte
   return codes;
 }
 
-// Part of the pixels that have a direction: strands are to be as many in a vessel alone as in a full box.
+// Part of the pixels that have a direction: a single vessel should have as many strands as a full box.
 double flowing_share(const Plane<uint32_t>& codes) {
   const auto still = size_t(std::count(codes.begin(), codes.end(), 0u));
   return std::max(1e-3, double(codes.size() - still) / double(std::max<size_t>(codes.size(), 1)));
@@ -117,7 +117,7 @@ Array image_of(const Frame& f, const DatasetPtr& image, const LicParams& p) {
   return field_on_frame(f, image, *field, "lic");
 }
 
-// One component: convolved as often as asked for, into `out`.
+// One component: convolved as often as requested, into `out`.
 void average(const DirectionGrid& directions, const float* what, const LicParams& p, double reach, float* out, const Context& context) {
   DirectionGrid grid = directions;
   const Weights weights = kernel_weights(p.kernel, int(std::lround(reach / p.step)), p.phase, p.ripples);

@@ -132,7 +132,7 @@ struct Sums {
   double n = 0, sum = 0, squares = 0;
 };
 
-// Mean 0 and the standard deviation asked for; NaN where the flow has no value.
+// Mean 0 and the requested standard deviation; NaN where the flow has no value.
 void standardise(const PixelFlow& flow, double deviation, float* v, size_t n, const Context& context) {
   parallel_for(n, 1 << 14, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i)

@@ -55,7 +55,7 @@ class Finder {
     }
   }
 
-  // Some at a time, so that many that come to one orbit cost little more than one; the first finds it. Which are on their way no longer.
+  // A few at a time, so that many that approach one orbit cost little more than one; the first finds it. Those that have ended.
   std::vector<uint8_t> test(const std::vector<Candidate>& candidates) {
     std::vector<uint8_t> done(candidates.size(), 0);
     constexpr size_t batch = 8;
@@ -105,7 +105,7 @@ class Finder {
       if (centre || is_repelling(c.flow.type)) seeds.push_back({at, 1, {}});
       if (centre || is_attracting(c.flow.type)) seeds.push_back({at, -1, {}});
     }
-    // The saddles' lines part the plane into regions whose lines all begin at one and end at one limit: a line in each region beside a
+    // The saddles' lines part the plane into regions whose lines all begin at one and end at one limit: a line in each region next to a
     // saddle, and one on each stretch of the border, so that no hole and no group of points inside an orbit hides it.
     for (const CriticalPoint& c : critical_.points) {
       if (!is_saddle(c.flow.type)) continue;

@@ -79,7 +79,7 @@ bool are_one(const Found& f, const Found& g, bool several, bool flat) {
   if (d <= 1e-5 * small) return apart || (a.border && b.border);
   auto negative = [&](const Mat3& m) {
     if (!flat) return determinant(m) < 0;
-    double product = 0;  // of the two eigenvalues beside the zero across the plane
+    double product = 0;  // of the two eigenvalues other than the zero across the plane
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < i; ++j) product += m.m[i][i] * m.m[j][j] - m.m[i][j] * m.m[j][i];
     return product < 0;
@@ -131,7 +131,7 @@ std::vector<Found> merged(std::vector<Found> zeros, bool several, bool flat) {
   return out;
 }
 
-// Where the gradient does not tell the index: by a walk around the point.
+// Where the gradient does not decide the index: by a walk around the point.
 int index_about(PartsCursor& cursor, const PlaneFrame& frame, Vec3 at, double radius) {
   constexpr size_t n = 720;
   std::vector<Vec2> v;
@@ -144,7 +144,7 @@ int index_about(PartsCursor& cursor, const PlaneFrame& frame, Vec3 at, double ra
   return winding_index(v).value_or(0);
 }
 
-// Of slow points those that are crowded are noise: a flow that is sampled well enough has its few cells apart.
+// Of slow points those that are crowded are noise: in a sufficiently sampled flow its few cells are far apart.
 void drop_noise(CriticalPoints& r, double slow) {
   const auto& points = r.points;
   std::vector<size_t> order(points.size());
@@ -316,7 +316,7 @@ DatasetPtr critical_points_dataset(const CriticalPoints& found) {
 DatasetPtr critical_points(const Data& in, const CriticalPointsParams& p, Context& context) {
   const FlowParts flow(in, p.field.name, "critical_points", context);
   CriticalOptions options = p.options;
-  if (options.noise == 0)  // nobody said
+  if (options.noise == 0)  // not given
     for (const FlowField& f : flow.fields())
       if (noise_speed(*f.dataset(), f.field()) > 0) {
         options.noise = 0.02;

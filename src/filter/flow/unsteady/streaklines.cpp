@@ -41,7 +41,7 @@ StreakFront release(const UnsteadyRun& run, std::optional<double> every, const c
 }
 
 // Lines of one seed after the other, the newest particle first. Gaps that refinement could not fill (wider than `torn`: what stretches by
-// thousands in one interval) are no lines, and what it left alone is left out.
+// thousands in one interval) are not lines, and isolated particles are left out.
 LinePoints streaks(const StreakFront& r, std::vector<double>& age, double time, double torn) {
   constexpr size_t grain = 64;
   const size_t seeds = r.seeds();

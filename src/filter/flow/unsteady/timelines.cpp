@@ -41,7 +41,7 @@ class Front {
   std::vector<double> position;
   bool full = false;
 
-  /// New particles between those that are too far apart, as often as it takes.
+  /// New particles between those that are too far apart, as often as necessary.
   void refine(const UnsteadyFlow& flow) {
     UnsteadyCursor cursor(flow);
     for (int pass = 0; pass < 12 && insert_between(cursor); ++pass) {

@@ -99,7 +99,7 @@ DatasetPtr of_mesh(const DatasetPtr& given, const VortexCoresParams& p, Context&
     const uint32_t a = lines.segments[2 * s], b = lines.segments[2 * s + 1];
     const Vec3 along = lines.points[b].at - lines.points[a].at;
     reader.open(size_t(lines.cells[s]));
-    // Between points that rounding alone parts, as beside a corner amid an edge, there is no direction.
+    // Between points separated only by rounding, as next to a corner within an edge, there is no direction.
     const bool apart = length(along) > 1e3 * nothing * reader.box().diagonal();
     const double turn = apart ? angle_between(along, at[a].u + at[b].u) : 0;
     if (swirl[a] < least || swirl[b] < least || turn > p.max_angle) continue;

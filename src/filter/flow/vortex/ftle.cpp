@@ -109,9 +109,9 @@ DatasetPtr ftle_of(const UniformGrid& grid, double duration, std::optional<doubl
     if ((counts[a] = n[size_t(a)] > 1)) axes.push_back(a);
   const int dimension = int(axes.size());
   if (dimension == 0) fail_usage("one seed has no neighbours", "dims", "give two or more along some axis");
-  // The seeds, and behind each the places beside it.
+  // The seeds, each followed by its offset points.
   const size_t each = offset ? 1 + 2 * axes.size() : 1;
-  const double bytes_a_seed = 200 * double(each) + 60;  // with its neighbours: where they begin and end, particles; what is told of it
+  const double bytes_a_seed = 200 * double(each) + 60;  // with its neighbours: where they begin and end, particles; what is reported of it
   need_memory(double(n[0]) * double(n[1]) * double(n[2]) * bytes_a_seed, fmt::format("{}x{}x{} seeds", n[0], n[1], n[2]), "ftle",
               "give a smaller size");
   std::vector<Vec3> from(count * each), to;
@@ -193,7 +193,7 @@ DatasetPtr ftle(const Series& given, const FtleParams& p, Context& context) {
   if (const FlowField& first = flow.steps()[flow.base()]; !p.geographic) warn_of_degrees(*first.dataset(), first.field(), "ftle", context);
   StopParams stop;
   stop.max_steps = most_steps, stop.closed = false;
-  // Nobody sees the ways themselves: the tolerance alone says how long steps may be.
+  // Nobody sees the ways themselves: only the tolerance limits the steps.
   IntegrationParams integration = p.integration;
   if (!integration.max_step) integration.max_step = 8 * integration.step;
   const TraceOptions options = trace_options(integration, stop, flow.largest_speed());

@@ -56,7 +56,7 @@ size_t corner_count(const CellReader& reader) {
 }
 
 // The solid cells in which the fields may be parallel. Of their points: the largest lengths of both fields in those cells around, and
-// where the fields are parallel. Points of faces on which they are parallel everywhere (walls, where nothing moves) are none.
+// where the fields are parallel. Faces on which they are parallel everywhere (walls, where nothing moves) have no points.
 struct Around {
   std::vector<size_t> cells;
   bool solid = false;

@@ -64,14 +64,14 @@ double mean_cell(const Dataset& d, int dimension, int flat) {
 double strength_at(const Height& x, int flat, double off) {
   const Eigen3 e = eigen_of(x.h);
   int least = 2;
-  if (flat >= 0) {  // the normal is no direction of the mesh
+  if (flat >= 0) {  // the normal is not a direction of the mesh
     double lowest = HUGE_VAL;
     for (int k = 0; k < 3; ++k)
       if (std::abs(e.vector[k][flat]) < 0.5 && e.value[k] < lowest) lowest = e.value[k], least = k;
   }
   if (!(e.value[least] < 0)) return 0;
-  // The gradient must be free of this eigenvector: Newton's step to the crest is short. (Where it is free of another one, the step is
-  // long, except beside a peak, where all of them meet.)
+  // The gradient must be free of this eigenvector: Newton's step to the crest is short. (Where it is separated from another one, the step
+  // is long, except next to a peak, where all meet.)
   if (std::abs(dot(x.g, e.vector[least])) > -off * e.value[least]) return 0;
   return -e.value[least];
 }
@@ -177,7 +177,7 @@ std::vector<int64_t> cells_on_ridges(const DatasetPtr& all, const RidgesParams& 
   const View<double> ha = all->fields().require(bend_name, Association::point).array.view<double>();
   const Array values = scalar_of(all->fields().require(field.name, Association::point), 0, ElementType::f64);
   const View<double> v = values.view<double>();
-  // A third of a cell off is on the crest; up to half of one counts beside such a place, so that a line does not break where it is sharp.
+  // A third of a cell off is on the crest; up to half of one counts next to such a point, so that a line does not break where it is sharp.
   strength.resize(all->point_count());
   std::vector<uint8_t> on(strength.size());
   parallel_for(strength.size(), 1 << 12, [&](size_t begin, size_t end) {

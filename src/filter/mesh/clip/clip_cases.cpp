@@ -29,7 +29,7 @@ std::vector<std::array<double, 3>> places_of(CellType type) {
   }
 }
 
-// Groups of polygons that hang together by edges.
+// Groups of polygons that are connected by edges.
 std::vector<std::vector<const Polygon*>> components(const std::vector<Polygon>& polygons) {
   std::vector<std::vector<const Polygon*>> r;
   std::vector<char> seen(polygons.size());
@@ -183,7 +183,7 @@ void ClipTable::divide(std::span<const uint8_t> face, uint32_t pattern, bool joi
 
 namespace {
 
-// Chains of edges that have no partner. Where corners are zero a chain can come to a point again: each round trip is a loop of its own.
+// Chains of edges that have no partner. Where corners are zero a chain can return to a point: each round trip is a loop of its own.
 std::vector<Polygon> open_loops(const std::vector<Polygon>& polygons) {
   std::vector<Edge> open;
   for (const Polygon& p : polygons)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a cell falls apart along a function: solid pieces for the corners on either side, made from the cell's faces alone.
+// How a cell is split along a function: solid pieces for the corners on either side, made only from the cell's faces.
 //
-// A corner is inside when its value is >= 0. Each face is divided into triangles and quads by its own values alone, so that the cells on
-// both sides of it divide it alike:
+// A corner is inside when its value is >= 0. Each face is divided into triangles and quads only by its own values, so that the cells on
+// both sides divide it alike:
 //
 //   one corner cut off        two and two           opposite corners joined
 //   d--e..o                   D----C                D..,--C

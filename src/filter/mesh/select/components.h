@@ -18,9 +18,9 @@ inline void describe(Schema& s, ComponentsParams& p) {
   s("points", p.points, "Keep only the components with these mesh points (by number).").at_least(0);
 }
 
-/// Cells that share a point hang together. Adds a cell field 'component' (i32): 0 is the component with most cells; equals in order of
+/// Cells that share a point are connected. Adds a cell field 'component' (i32): 0 is the component with most cells; equals in order of
 /// their first cell. Hidden, refined and duplicate cells belong to none (-1) and join nothing. With keep, at or points, the other cells
-/// are removed (see extract_cells). Point clouds: each point is a component. The patches of an AMR grid hang together
+/// are removed (see extract_cells). Point clouds: each point is a component. The patches of an AMR grid are connected
 /// where their points lie at the same place. Throws Error(usage) for point numbers beyond the mesh. O(corners) union-find.
 DatasetPtr components(const DatasetPtr& in, const ComponentsParams& p, Context& ctx);
 

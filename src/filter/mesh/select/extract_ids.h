@@ -37,8 +37,8 @@ inline void describe(Schema& s, ExtractParams& p) {
 
 /// The chosen cells as a mesh of their own (see extract_cells), in input order, with all fields. With of=point: the cells that use one
 /// of the points; of a PointCloud the points. Of several conditions (ids, a region, types, levels) all must hold.
-/// Throws Error(usage) when there is none, numbers that are not there (without `by`), and
-/// for a field `by` of several components or on another place than `of`.
+/// Throws Error(usage) when nothing is selected, for nonexistent numbers (without `by`), and for a field `by` of several components or on
+/// an association other than `of`.
 DatasetPtr extract(const DatasetPtr& in, const ExtractParams& p, Context& ctx);
 /// The parts of a collection that `blocks` names (all where it is empty), by name, path of names or number among the top parts; those of
 /// which something is left after extract(), when there are other conditions.

@@ -31,7 +31,7 @@ inline void describe(Schema& s, ThresholdParams& p) {
 /// Keeps the cells (of a PointCloud: the points) whose value lies in [min, max], or in one of several ranges, for each of the fields. NaN
 /// is in no range; hidden, refined and duplicate cells never stay, inverted or not. A SurfaceMesh stays one, a PointCloud stays one, every
 /// other kind becomes an UnstructuredMesh. Only used points are kept; all fields are carried, polyhedra keep their faces. Throws
-/// Error(usage) for unknown fields, fields of the whole, an empty range (min > max), ranges that are no pairs. O(cells), parallel.
+/// Error(usage) for unknown fields, fields of the whole, an empty range (min > max), ranges that are not pairs. O(cells), parallel.
 DatasetPtr threshold(const DatasetPtr& in, const ThresholdParams& p, Context& ctx);
 
 }  // namespace sg

@@ -369,7 +369,7 @@ DatasetPtr slice_one(const DatasetPtr& in, const DatasetPtr& surface, const Impl
   return slice_box(in, {Vec3(p.box[0], p.box[2], p.box[4]), Vec3(p.box[1], p.box[3], p.box[5])}, along, ctx);
 }
 
-// The planes that the parameters ask for, one after the other.
+// The planes that the parameters request, one after the other.
 std::vector<ImplicitParams> planes_of(const Dataset& in, const SliceParams& p) {
   std::vector<ImplicitParams> r;
   const bool several = p.planes != CutPlanes::none;

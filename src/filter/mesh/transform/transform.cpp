@@ -86,7 +86,7 @@ Points moved(const Points& in, const Affine& t) {
   std::byte* out = nullptr;
   r.xyz = Array::make_raw(is_float(in.xyz.type()) ? in.xyz.type() : ElementType::f32, in.xyz.count(), 3, &out);
   if (in.xyz.empty()) return r;
-  // Without an origin the shift goes into f64 numbers; f32 numbers keep it apart when it is large for them.
+  // Without an origin the shift goes into f64 numbers; f32 numbers keep it separate when it is large for them.
   const bool wide = in.xyz.type() == ElementType::f64;
   Vec3 inside;
   if (wide && in.origin == Vec3()) inside = r.origin, r.origin = {};
@@ -134,7 +134,8 @@ struct Mover {
   const Mesh& whole;
 
   Mesh operator()(const UniformGrid& g) const {
-    // The images of the axes must stay at right angles; directions are kept as unit columns, lengths (and the sign of the spacing) apart.
+    // The images of the axes must stay at right angles; directions are kept as unit columns, lengths (and the sign of the spacing)
+    // separately.
     UniformGrid r = g;
     r.origin = t(g.origin);
     Vec3 column[3];
@@ -154,7 +155,7 @@ struct Mover {
         c.extent_start = g.extent_start;
         return c;
       }
-    // A pure scaling along the grid's own axes changes the spacing alone, a mirrored axis keeps its direction and gets a negative one.
+    // A pure scaling along the grid's own axes changes only the spacing; a mirrored axis keeps its direction and gets a negative spacing.
     for (int a = 0; a < 3; ++a) {
       const Vec3 old = g.direction.column(a);
       const double old_size = length(old);

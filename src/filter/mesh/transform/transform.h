@@ -46,9 +46,8 @@ inline void describe(Schema& s, TransformParams& p) {
 /// right angles, a rectilinear grid when only scaled along its axes and moved, an AMR grid likewise; otherwise both become
 /// curvilinear (an AMR grid: Error(usage)). Listed points keep their element type and their double origin, which takes the large part of
 /// the result. Fields change by field_law(): a vector is multiplied by the linear part M, a tensor T becomes M T M^T. Mirrored cells are
-/// listed the other way round (turn_mirrored_cells), so that volumes stay positive and faces point outwards; of mirrored grids, points and
-/// cells are numbered anew. Throws Error(usage) for a matrix that is not 16 numbers or singular, a zero scale, or a zero axis with an
-/// angle.
+/// listed the other way round (turn_mirrored_cells), so that volumes stay positive and faces point outwards; points and cells of mirrored
+/// grids are renumbered. Throws Error(usage) for a matrix that is not 16 numbers or singular, a zero scale, or a zero axis with an angle.
 DatasetPtr transform(const DatasetPtr& in, const TransformParams& p, Context& ctx);
 
 }  // namespace sg

@@ -27,7 +27,7 @@ std::string lower(std::string s) {
   return s;
 }
 
-// Names of three numbers that are no direction in space.
+// Names of three numbers that are not a direction in space.
 bool says_colors_or_texture(const std::string& name) {
   const std::string s = lower(name);
   for (const char* word : {"color", "colour", "rgb", "hsv", "albedo", "diffuse_", "texture", "texcoord", "tcoord"})
@@ -125,7 +125,7 @@ Array changed_vectors(const Field& f, FieldLaw law, const Maps& maps, const Cont
   });
 }
 
-// An order that is said is for the fields of its size.
+// An explicit order applies to fields of its size.
 bool order_fits(std::optional<TensorOrder> order, int n) {
   if (order == TensorOrder::rows) return n == 9 || n == 4;
   if (order == TensorOrder::masked) return n == 7;

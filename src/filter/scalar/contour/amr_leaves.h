@@ -40,7 +40,7 @@ class AmrLeaves {
 
  private:
   struct Level {
-    Place block{};  ///< patches are looked up by blocks of so many cells
+    Place block{};  ///< patches are looked up by blocks of this many cells
     std::unordered_map<uint64_t, std::vector<uint32_t>> patches;
   };
   static uint64_t key(int64_t x, int64_t y, int64_t z) {

@@ -49,7 +49,7 @@ const Field& choose_field(const Dataset& input, const FieldName& name) {
   for (const Field& p : input.fields())
     if (p.association == Association::point && p.components() == 1) return p;
   for (const Field& p : input.fields())
-    if (p.association == Association::point) return p;  // a vector: the next check says what to do
+    if (p.association == Association::point) return p;  // a vector: the next check reports what to do
   if (f) fail_usage(fmt::format("the mesh has no point field to contour, only the cell field '{}'", f->name), "contour", cell_hint);
   fail_usage("the mesh has no point field to contour", "contour");
 }
@@ -194,7 +194,7 @@ Array repeated(const std::vector<size_t>& counts, const std::vector<double>& num
   return a;
 }
 
-// One isovalue per point; integer fields become f32, as 0.5 is no integer.
+// One isovalue per point; integer fields become f32, since 0.5 is not an integer.
 Array isovalues(const std::vector<Piece>& pieces, const std::vector<double>& values, ElementType type) {
   std::vector<size_t> counts;
   for (const Piece& p : pieces) counts.push_back(p.point_count());

@@ -96,7 +96,7 @@ class Builder {
     return false;
   }
 
-  // Leaves in whose neighbourhood the field reaches a value; those beside finer ones always.
+  // Leaves in whose neighbourhood the field reaches a value; those next to finer ones always.
   std::vector<Leaf> leaves_near() const {
     struct Row {
       uint32_t level, patch;

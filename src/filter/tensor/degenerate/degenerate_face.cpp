@@ -93,7 +93,7 @@ class Search {
   }
 
  private:
-  // A face that is degenerate all over, but for rounding, has parts without end in which nothing is found; others a few beside each place.
+  // A face that is degenerate all over, but for rounding, has parts without end in which nothing is found; others a few around each place.
   static constexpr int most_fruitless = 100;
 
   void look_in(const Corners& k) {

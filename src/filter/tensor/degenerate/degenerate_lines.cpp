@@ -70,8 +70,8 @@ void cut_cell(CellReader& reader, std::vector<Tetra>& out) {
   }
 }
 
-// Eigenvalues of a sum move apart or together by no more than sqrt(2) times the norm of what is added (Weyl): where the mean's differ by
-// more than that of the corners from it, no combination of the corners has equal ones.
+// The distance between eigenvalues of a sum changes by no more than sqrt(2) times the norm of what is added (Weyl): where the mean's differ
+// by more than that of the corners from it, no combination of the corners has equal ones.
 bool may_be_degenerate(std::span<const int64_t> ids, const std::vector<SymTensor>& d) {
   SymTensor mean;
   for (int64_t id : ids) mean = mean + d[size_t(id)];
@@ -82,7 +82,7 @@ bool may_be_degenerate(std::span<const int64_t> ids, const std::vector<SymTensor
   return !(std::min(e.value[0] - e.value[1], e.value[1] - e.value[2]) > 1.42 * most);
 }
 
-// Numbers in [-1, 1] that depend on the point alone.
+// Numbers in [-1, 1] that depend only on the point.
 SymTensor noise(int64_t id) {
   double v[6];
   for (uint64_t k = 0; k < 6; ++k) v[k] = 2 * random_unit(0x7e2507, uint64_t(id) * 6 + k) - 1;

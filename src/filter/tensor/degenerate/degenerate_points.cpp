@@ -79,7 +79,7 @@ void add(std::vector<Found>& out, const Plane& plane, double u, double w, double
   out.push_back(x);
 }
 
-// Nothing is rounded away at corners and edges; who finds a point twice is sorted out later.
+// Nothing is rounded away at corners and edges; points found twice are removed later.
 constexpr double slack = 1e-12;
 
 bool in_triangle(const Plane& plane, const Corner& p, const Corner& q, const Corner& r, int64_t cell, std::vector<Found>& out) {

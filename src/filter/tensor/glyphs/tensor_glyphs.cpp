@@ -106,7 +106,7 @@ int extents(const Box3& box, double& volume) {
   return dimension;
 }
 
-// A long and narrow box is small on the picture: no more glyphs along it than can be told apart.
+// A long and narrow box is small on the picture: no more glyphs along it than can be distinguished.
 int64_t fitting(const DatasetPtr& in, const TensorGlyphsParams& p) {
   if (p.count > 0) return p.count;
   const Vec3 size = in->bounds().size();
@@ -147,7 +147,7 @@ std::vector<int64_t> in_cubes(const std::vector<Vec3>& at, const std::vector<uin
   }
 }
 
-// Median distance to the nearest other place: what keeps glyphs on curves and in clusters apart. 0 when there are too many to look at.
+// Median distance to the nearest other place: keeps glyphs on curves and in clusters separate. 0 when there are too many to look at.
 double usual_distance(const std::vector<Vec3>& at) {
   if (at.size() < 2 || at.size() > 5000) return 0;
   std::vector<double> nearest(at.size(), HUGE_VAL);

@@ -30,7 +30,7 @@ void describe(Schema& s, TensorLicParams& p) {
 
 namespace {
 
-/// What is no tensor of this surface is refused before work is done; the name of the field.
+/// What is not a tensor of this surface is refused before work is done; the name of the field.
 std::string accepted(const Dataset& surface, const TensorSource& source, Context& ctx) {
   if (const Field* f = find_tensors(surface, source.field); f && f->role == Role::vectors && !source.order)
     fail_usage(fmt::format("field '{}' holds vectors, not tensors", f->name), "tensor_lic",

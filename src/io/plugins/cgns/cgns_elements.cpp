@@ -97,7 +97,7 @@ const ElementKind* element_kind(int64_t type) {
   return type >= 2 && type <= type_pyra13 && kinds[size_t(type)].dimension >= 0 ? &kinds[size_t(type)] : nullptr;
 }
 
-// Version 3.0 alone put PYRA_13 before PYRA_14.
+// Only version 3.0 put PYRA_13 before PYRA_14.
 int64_t numbered(int64_t type, double version) {
   if (std::fabs(version - 3.0) > 0.005 || type < 13 || type > 21) return type;
   return type == 13 ? int64_t(type_pyra13) : type - 1;

@@ -23,7 +23,7 @@ std::vector<Node> bases_of(const CgFile& file) {
   return bases;
 }
 
-/// Time values of a base; their numbers when only iterations are told.
+/// Time values of a base; their numbers when only iterations are given.
 std::vector<double> times_of(const CgFile& file, const std::vector<Node>& parts) {
   const Node* iterative = CgFile::labelled(parts, "BaseIterativeData_t");
   if (!iterative) return {};
@@ -36,7 +36,7 @@ std::vector<double> times_of(const CgFile& file, const std::vector<Node>& parts)
   return {};
 }
 
-/// Zones that exist at the step, where the file tells it (ZonePointers); else all.
+/// Zones that exist at the step, if the file states it (ZonePointers); else all.
 std::vector<Node> zones_at(const CgFile& file, const std::vector<Node>& parts, size_t step) {
   std::vector<Node> zones;
   std::vector<std::string> active;

@@ -61,7 +61,7 @@ std::vector<size_t> rind_of(const CgFile& file, const std::vector<Node>& parts, 
   return rind;
 }
 
-/// The numbers of a node without its rind (or stand-ins for them); empty when its size does not fit `n`.
+/// The numbers of a node without its rind (or placeholders for them); empty when its size does not fit `n`.
 Array inner(const CgFile& file, const Node& node, const std::vector<size_t>& n, const std::vector<size_t>& rind, bool header_only = false) {
   std::vector<size_t> whole = n;
   bool cut = false;
@@ -162,7 +162,7 @@ class Fields {
       std::vector<Array> members;
       for (const size_t k : group.members) {
         Array a = inner(file_, *nodes[k], n, rind, options_.header_only);
-        // An unstructured mesh may hold fewer cells than its zone says: those of lower dimension are left out.
+        // An unstructured mesh may have fewer cells than its zone states: those of lower dimension are left out.
         const size_t expected = association == Association::point ? ZoneSize::product(size_.points) : cells_;
         if (a.count() == expected && expected > 0) members.push_back(std::move(a));
         else
@@ -189,7 +189,7 @@ class Fields {
     }
     return false;
   }
-  // DimensionalUnits: five words of 32 characters; told only where a single one is not "Null" or "UserDefined".
+  // DimensionalUnits: five words of 32 characters; given only where a single one is not "Null" or "UserDefined".
   std::string unit_of(const Node& array) const {
     const std::vector<Node> parts = file_.children(array, "Descriptor_t");
     for (const Node& d : parts)

@@ -48,7 +48,7 @@ std::vector<Group> group(const std::vector<DicomPicture>& pictures) {
     if (!home) home = &groups.emplace_back(Group{p.description.empty() ? "series" : p.description, {}});
     home->pictures.push_back(&p);
   }
-  // Names tell apart.
+  // Names are distinguished.
   for (size_t i = 0; i < groups.size(); ++i) {
     size_t same = 0;
     for (size_t j = 0; j < i; ++j) same += groups[j].pictures[0]->description == groups[i].pictures[0]->description;

@@ -140,7 +140,7 @@ Decoded decode(const DicomPicture& p) {
   auto* r = new (shared) Result;
   char* out = static_cast<char*>(shared) + sizeof(Result);
 
-  const ChildLimits limits = reading_limits(room);  // unpacking goes through a few copies of the pixels
+  const ChildLimits limits = reading_limits(room);  // decompression makes a few copies of the pixels
   run_child(limits, p.path, Context(), [&] {
     try {
       decode_here(minimal, p, *r, out, room);

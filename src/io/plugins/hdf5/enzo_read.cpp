@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ENZO output: grids of the hierarchy as an AMR grid, their fields from the HDF5 files beside it, in CGS units where the parameter
+// ENZO output: grids of the hierarchy as an AMR grid, their fields from the HDF5 files next to it, in CGS units where the parameter
 // file gives factors.
 #include <fmt/core.h>
 
@@ -35,7 +35,7 @@ AmrGrid amr_of(const EnzoHierarchy& h, const std::string& path) {
       const auto i = size_t(a);
       const double spacing = (g.right[a] - g.left[a]) / double(n[i]);
       if (fresh) level.spacing[a] = spacing;
-      // Edges are written with few digits: cells sit where the nearest whole number of cells says.
+      // Edges are written with few digits: positions are rounded to whole cells.
       if (std::fabs(spacing / level.spacing[a] - 1) > 1e-3)
         fail_data(fmt::format("grid {} has cells of {}, but others of its level have {}", g.number, spacing, level.spacing[a]), path);
       patch.lo[i] = std::llround((g.left[a] - amr.origin[a]) / level.spacing[a]);

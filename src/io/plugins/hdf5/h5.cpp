@@ -43,7 +43,7 @@ std::string library_message() {
 
 namespace {
 
-// "" or what the library said, in brackets, without line ends.
+// "" or the library's message, in brackets, without line ends.
 std::string said() {
   std::string t = library_message();
   for (char& c : t)
@@ -82,7 +82,7 @@ void guard_links() {
 }  // namespace
 
 static const std::string& probed(const std::string& path) {
-  if (!is_plain_file(path)) MappedFile missing(path);  // says why it cannot be read
+  if (!is_plain_file(path)) MappedFile missing(path);  // explains why it cannot be read
   probe(path);
   return path;
 }
@@ -206,8 +206,8 @@ hid_t native_type(ElementType t) {
   fail_internal("native_type: unknown element type");
 }
 
-// Integers and IEEE floats of 1, 2, 4 or 8 bytes in one of the two byte orders, and enumerations of such. The library converts other
-// types, but trusts what the file says about their bits.
+// Integers and IEEE floats of 1, 2, 4 or 8 bytes in one of the two byte orders, and enumerations of such. The library converts other types,
+// but trusts the file's description of their bits.
 bool plain_type(hid_t type, ElementType& out, bool& big_endian) {
   const Handle base(H5Tget_class(type) == H5T_ENUM ? H5Tget_super(type) : H5Tcopy(type));
   if (!base.good()) return false;

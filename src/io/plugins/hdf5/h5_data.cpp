@@ -149,7 +149,7 @@ class ChunkReader {
   }
 
  private:
-  // The library copies as many bytes of an unfiltered chunk as its index says. Looking at every entry takes time with the square of
+  // The library copies as many bytes of an unfiltered chunk as its index states. Looking at every entry takes time with the square of
   // their number, so that of many only the sum is checked.
   void check_sizes() const {
     const hid_t all = H5Dget_space(set_);

@@ -64,7 +64,8 @@ std::optional<Array> read_levels(const Group& g, const AmrGrid& grid, const std:
   return vtk::concatenated(parts);
 }
 
-// Whether every level has a cell field as long as its boxes say: what is computed for each cell must not be asked for by boxes alone.
+// Whether every level has a cell field of the length that its boxes imply: memory per cell must not be allocated on the word of the boxes
+// alone.
 bool fields_back(const Group& g, const AmrGrid& grid) {
   for (size_t l = 0; l < grid.levels.size(); ++l) {
     uint64_t n = 0;
@@ -102,7 +103,7 @@ void read_amr(const Group& g, DatasetParts& parts) {
       else g.context.warn(fmt::format("{}: array '{}' differs between levels and is left out", g.file.path(), name));
     }
   }
-  // Whoever wrote no ghosts means that finer levels cover coarser ones.
+  // Files without ghosts mean that finer levels cover coarser ones.
   const bool marked = parts.fields.find("vtkGhostType", Association::cell) != nullptr;
   const size_t cells = cell_count(grid);
   if (!marked) {

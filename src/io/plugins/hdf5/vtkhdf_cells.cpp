@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // VTKHDF: unstructured grids and polygonal data. Partitions lie one after the other in every array, each numbering its points from 0;
-// they are merged here. In a series, tables in Steps say which partitions, points, cells and ids belong to a step.
+// they are merged here. In a series, tables in Steps give the partitions, points, cells and ids of a step.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -91,7 +91,7 @@ std::vector<size_t> starts(const std::vector<uint64_t>& counts) {
 
 /// Faces of polyhedra since version 2.5: lists of faces, and for each cell the numbers of its faces.
 void read_faces(const Group& g, const Partitions& p, const CellLists& cells, UnstructuredMesh& mesh) {
-  auto before_and_here = [&](const char* name) {  // what stands before the step's partitions, and their counts
+  auto before_and_here = [&](const char* name) {  // what precedes the step's partitions, and their counts
     std::vector<uint64_t> all = h5::read_counts(g.file, g.at(name), 0, p.first + p.size());
     uint64_t before = 0;
     for (uint64_t i = 0; i < p.first; ++i) before += all[i];

@@ -61,7 +61,7 @@ class Writer {
     const Handle space(H5Screate_simple(1, &n, nullptr));
     attribute(object, name, h5::native_type(element_type_of<T>()), space, values.data());
   }
-  /// An array with the dimensions `dims`, slowest first; chunked and packed when asked for and worth it.
+  /// An array with the dimensions `dims`, slowest first; chunked and compressed when requested and worthwhile.
   void array(const std::string& path, const Array& values, std::vector<hsize_t> dims) {
     context_.check();
     const Array packed = values.made_packed();

@@ -207,7 +207,7 @@ Data read_cf(const NcFile& file, const ReadOptions& options, Context& context) {
     time = times[step];
   }
   const auto one = [&](size_t i) { return read_grid(file, model, model.grids()[i], i == 0, step, time, options, context); };
-  // Grids that hold nothing of what is asked for are left out.
+  // Grids with nothing that is requested are left out.
   std::vector<size_t> chosen;
   for (size_t i = 0; i < model.grids().size() && !options.fields.empty(); ++i) {
     const auto& variables = model.grids()[i].variables;

@@ -73,7 +73,7 @@ void note_axis(const NcFile& file, const Variable& v, char letter, CfMesh& out) 
   out.notes.emplace_back(fmt::format("{} axis", letter), text);
 }
 
-// Which dimension goes along x, y, z: as their letters say; those without one take what is left, the fastest first.
+// Which dimension goes along x, y, z: as their letters indicate; those without one take what is left, the fastest first.
 std::vector<int> axis_order(const CfModel& model, const CfGrid& grid) {
   std::vector<int> order(3, -1), rest;
   for (size_t k = grid.dims.size(); k-- > 0;) {

@@ -30,7 +30,7 @@ const BlockCells& ExodusMesh::cells_of(const ExodusObject& o) {
   if (polyhedra) v = of_faces;
   if (!v || !v->is_number()) file_.fail(fmt::format("block {} has no elements", o.number), v ? v->name : std::string_view());
   const ElementType type = v->element() == ElementType::i64 ? ElementType::i64 : ElementType::i32;
-  // Elements of different sizes stand one after the other, with their sizes beside them.
+  // Elements of different sizes are stored one after the other, with a list of their sizes.
   const Variable* sizes = file_.find(fmt::format("{}epecnt{}",
                                                  o.kind == &face_blocks   ? "fb"
                                                  : o.kind == &edge_blocks ? "ed"

@@ -79,7 +79,7 @@ UniformGrid grid_of(const NcFile& file, const Variable& image, const MincLayout&
   return g;
 }
 
-// Stored numbers with the sign that "signtype" says: netCDF's types are signed, MINC's bytes are not.
+// Stored numbers with the sign given by "signtype": netCDF's types are signed, MINC's bytes are not.
 Array with_sign(const NcFile& file, const Variable& image, const Array& read) {
   const std::string sign = file.text(&image, "signtype");
   const bool is_unsigned = sign.empty() ? image.type == NC_BYTE : sign.starts_with("unsigned");
@@ -138,7 +138,7 @@ class Scaling {
   std::vector<double> min_, max_;
 };
 
-/// Components that stand one after the other in the file (vector_dimension is not the fastest) go side by side.
+/// Components stored one after the other in the file (vector_dimension is not the fastest) are interleaved.
 struct Components {
   size_t components, points, inner = 1;  // inner: numbers from one component to the next
   Components(const MincLayout& l, const std::vector<size_t>& count, size_t numbers)
@@ -156,7 +156,7 @@ Array real_values(const Array& stored, const Variable& image, const MincLayout& 
                   const Components& order) {
   float* out = nullptr;
   Array real = Array::make<float>(order.points, int(order.components), &out);
-  // With a time dimension, one step is read: its slices lie elsewhere in the file.
+  // With a time dimension, one step is read: its slices are elsewhere in the file.
   size_t after = 1;
   for (size_t k = 0; l.time >= 0 && k < image.shape.size(); ++k)
     if (int(k) > l.time) after *= image.shape[k];

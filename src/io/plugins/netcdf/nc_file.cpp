@@ -73,7 +73,7 @@ size_t Variable::count() const {
 
 NcFile::NcFile(const std::string& path) : path_(path) {
 #ifdef SG_QUIET_HDF5
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // belongs to the thread; the library says so for the first one alone
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // belongs to the thread; the library reports only the first one
 #endif
   check_classic(path);
   {
@@ -167,7 +167,7 @@ std::string NcFile::text(const Variable* v, const char* name) const {
   int type = 0;
   size_t n = 0;
   if (std::string_view(name) == "units" && nc_inq_att(id_, id, name, &type, &n) != NC_NOERR)
-    for (const char* other : {"Unit", "Units", "unit"})  // not as CF says, but as some write
+    for (const char* other : {"Unit", "Units", "unit"})  // not according to CF, but written by some programs
       if (nc_inq_att(id_, id, other, &type, &n) == NC_NOERR) name = other;
   if (nc_inq_att(id_, id, name, &type, &n) != NC_NOERR || n == 0 || n > file_size_ * most_packing) return {};
   if (type == NC_CHAR) {

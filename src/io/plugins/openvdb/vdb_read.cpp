@@ -179,7 +179,7 @@ std::vector<openvdb::GridBase::ConstPtr> load_grids(const std::string& path, con
   file.open(false);
   for (auto name = file.beginName(); name != file.endName(); ++name) {
     std::string plain = name.gridName();
-    plain.resize(std::min(plain.find('['), plain.size()));  // name[1], name[2] tell apart grids of one name
+    plain.resize(std::min(plain.find('['), plain.size()));  // name[1], name[2] distinguish grids of the same name
     if (plain.empty()) plain = "values";
     const bool wanted = options.fields.empty() || std::find(options.fields.begin(), options.fields.end(), plain) != options.fields.end();
     const auto head = file.readGridMetadata(name.gridName());

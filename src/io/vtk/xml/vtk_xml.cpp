@@ -38,7 +38,7 @@ XmlFile::XmlFile(const std::string& path) : file_(path) {
 }
 
 // Gives the XML parser the elements of `head` and `tail`, but not the long texts of DataArrays: it would copy them and look at
-// each character. They are left in the mapped file; an attribute tells the parsed element which text is its own.
+// each character. They are left in the mapped file; an attribute tells the parsed element which text belongs to it.
 void XmlFile::parse_elements(std::string_view head, std::string_view tail) {
   // Nothing in these files needs entities of their own; what comes with them is a bomb.
   if (const size_t at = head.substr(0, head.find("<VTKFile")).find("<!ENTITY"); at != std::string_view::npos)

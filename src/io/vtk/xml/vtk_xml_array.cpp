@@ -19,7 +19,7 @@
 
 namespace sg::vtk {
 
-// What the element asks for.
+// What the element requires.
 struct XmlFile::Wanted {
   pugi::xml_node element;
   ElementType type = ElementType::f32;
@@ -136,7 +136,7 @@ Array XmlFile::plain(const Wanted& want, const Source& s) const {
     fail(fmt::format("announces {} bytes, but its text has {}", available, s.bytes.size()), want.element,
          "the file is truncated or damaged");
   const size_t bytes = bytes_to_read(want, available);
-  // Size and numbers are one stream; decoded so that the numbers come to lie on a cache line.
+  // Size and numbers are one stream; decoded so that the numbers start on a cache line.
   std::byte* out = nullptr;
   const Buffer b = Buffer::allocate(64 + bytes, &out);
   if (decode_base64(s.bytes, out + 64 - header, header + bytes) == SIZE_MAX)
@@ -240,7 +240,7 @@ static bool narrow(const std::byte* from, size_t n, int32_t* to) {
   return odd == 0;
 }
 
-// Memory of the thread's own for a block on its way, which stays in the cache.
+// Thread-local memory for a block in transit, which stays in the cache.
 static std::byte* scratch(size_t bytes) {
   thread_local std::vector<std::byte> own;
   if (own.size() < bytes) own.resize(bytes);

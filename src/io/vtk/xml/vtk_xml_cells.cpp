@@ -54,7 +54,7 @@ void read_face_lists(const XmlFile& file, pugi::xml_node cells, UnstructuredMesh
       if (at >= of_cell.count() || face[at] < 0 || size_t(face[at]) >= faces.count)
         fail_data(fmt::format("cell {} has a face that does not exist", c),
                   fmt::format("{}: DataArray 'polyhedron_to_faces'", file.path()));
-      // A face belongs to two cells; a file that hangs one face on thousands of them would fill the memory.
+      // A face belongs to two cells; a file that attaches one face to thousands of them would fill the memory.
       if (ids.size() > 8 * all.connectivity.count() + 4096)
         file.fail("has faces that belong to far more than two cells", cells, "the file is damaged");
       for (size_t k = 0; k < faces.size(size_t(face[at])); ++k) ids.push_back(faces.point(size_t(face[at]), k));

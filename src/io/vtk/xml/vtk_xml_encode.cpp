@@ -21,7 +21,8 @@ constexpr size_t header_bytes = 8;  // header_type UInt64
 }  // namespace
 
 std::string escaped_xml(std::string_view s) {
-  // Bytes that are no UTF-8 can only be Latin-1; controls other than tab and line ends cannot stand in XML 1.0, not even as references.
+  // Bytes that are not UTF-8 can only be Latin-1; control characters other than tab and line ends are not allowed in XML 1.0, not even as
+  // references.
   std::string from_latin1, r;
   if (!is_utf8(s)) {
     for (const char c : s) append_utf8(from_latin1, static_cast<unsigned char>(c));

@@ -57,7 +57,7 @@ std::string unit_of(pugi::xml_node array) {
   return std::string(trim(key.child_value()));
 }
 
-// Orders of cells and weights of points shape the mesh, so they are read whatever fields are asked for.
+// Orders of cells and weights of points shape the mesh, so they are read whatever fields are requested.
 bool shapes_mesh(pugi::xml_node data, std::string_view name) {
   for (const char* attribute : {"HigherOrderDegrees", "RationalWeights"})
     if (name == attribute || (data.attribute(attribute) && name == data.attribute(attribute).value())) return true;

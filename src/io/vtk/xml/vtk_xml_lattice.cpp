@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // VTK XML image data, rectilinear and structured grids. Pieces are boxes of the whole extent; they share the layer of
-// points where they touch. The grid that is read is the smallest box with all pieces, or the part of it that is asked for
-// (ReadOptions::region); of the pieces only what lies in that part is read.
+// points where they touch. The grid that is read is the smallest box with all pieces, or the requested part of it (ReadOptions::region); of
+// the pieces only what lies in that part is read.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -83,7 +83,7 @@ struct Layout {
   std::vector<XmlPiece> pieces;
   std::vector<Extent> extents;
   Extent box;                                                   // of all pieces
-  Size3 lo{0, 0, 0};                                            // the part asked for, in points of the box
+  Size3 lo{0, 0, 0};                                            // the requested part, in points of the box
   Grid points, cells;                                           // what is made of it
   bool keep_cells = true;                                       // cells do not survive a stride
   std::vector<std::optional<Share>> point_shares, cell_shares;  // of the pieces
@@ -116,7 +116,7 @@ void choose_region(const XmlRead& read, Layout& l) {
     l.points.base[a] = l.box.lo[a] + static_cast<long long>(r.lo[a]);
     l.points.count[a] = (last - r.lo[a]) / stride + 1;
     l.points.stride[a] = stride;
-    l.cells.base[a] = l.box.lo[a] + static_cast<long long>(std::min(r.lo[a], cells - 1));  // the last layer takes the cells before it
+    l.cells.base[a] = l.box.lo[a] + static_cast<long long>(std::min(r.lo[a], cells - 1));  // the last layer takes the preceding cells
     l.cells.count[a] = std::max<size_t>(l.points.count[a], 2) - 1;
     l.keep_cells = l.keep_cells && (stride == 1 || dims[a] == 1);
   }

@@ -99,7 +99,7 @@ Spectrum::Spectrum(const Stage& s, Of what) {
   transform_z(s.context);
 }
 
-/// Rows of samples, eight at a time: four in the real parts, four in the imaginary ones, told apart by their symmetry.
+/// Rows of samples, eight at a time: four in the real parts, four in the imaginary ones, distinguished by their symmetry.
 void Spectrum::transform_x(const Stage& s, Of what) {
   const Volume& v = s.volume;
   std::vector<float> weight[3];

@@ -64,7 +64,7 @@ Array convolve_surface(const RefinedSurface& r, const Walk& walk, const SurfaceC
   for (size_t t = 0; t < r.triangles.size(); ++t)
     for (const uint32_t q : r.triangles[t])
       if (home[q] == UINT32_MAX) home[q] = uint32_t(t), order.push_back(q);
-  std::vector<double> noises(n);  // asked for often: each line passes many points
+  std::vector<double> noises(n);  // queried often: each line passes many points
   parallel_for(n, 1 << 15, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) noises[i] = random_unit(uint64_t(p.seed), i);
   });

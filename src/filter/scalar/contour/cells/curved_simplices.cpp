@@ -270,7 +270,7 @@ void CurvedSimplices::halve() {
   std::erase_if(middles_, [](const auto& m) { return m.second.number != UINT32_MAX; });  // those edges are gone
 }
 
-// The longest marked edge first; a tie by name. All of it is known from the edge alone.
+// The longest marked edge first; a tie by name. All of it follows from the edge alone.
 void CurvedSimplices::split(const Simplex& s, std::vector<Simplex>& out) const {
   int best = -1;
   uint32_t middle = 0;

@@ -120,7 +120,7 @@ struct Cutter {
   void tube_or_discs();
 };
 
-// The disc of a short loop: the lattice table's choice of diagonals for this loop alone.
+// The disc of a short loop: the lattice table's choice of diagonals for this loop only.
 void Cutter::fill(int l) {
   const auto all = lattice_cases().triangles(pattern, joined);
   uint32_t mine = 0;

@@ -220,7 +220,7 @@ class LatticeRay final : public LatticeWalker {
       else upper = border_slope(upper, lower);
     }
   }
-  /// What stands for a slope of find_slopes() where a neighbour is no number.
+  /// What stands for a slope of find_slopes() where a neighbour is not a number.
   float one_sided(const DerivativeWeights& w, float before, float here, float after) const {
     const float back = here - before, on = after - here, whole = std::sqrt(w.back * w.on);
     const float slope = back == back ? back * (w.back + whole) : on * (w.on + whole);
