@@ -90,8 +90,8 @@ int run_man(const Options&, Context&) {
   for (const CommandDoc& c : commands)
     r += ".B sightglass " + plain(c.name) + "\n[\\fIoptions\\fR]" +
          (c.input.empty() ? std::string() : " \\fI" + (c.words.empty() ? "input" : plain("name")) + "\\fR") + "\n.br\n";
-  r += ".SH DESCRIPTION\nReads meshes and images, filters them, and renders surfaces and volumes with legends, axes and units. Without\n"
-       "options it looks at the data, chooses, and says on one line what it chose and why. Every PNG carries its recipe, which\n"
+  r += ".SH DESCRIPTION\nReads meshes and images, filters them, and renders surfaces and volumes with legends, axes and units. Whatever\n"
+       "is not specified is chosen from the data, and one line says what was chosen and why. Every PNG contains its recipe, which\n"
        ".B sightglass open\nfollows. The same input gives the same bytes on any number of threads.\n";
   r += commands_text(commands) + operations_text();
   r += ".SH EXIT STATUS\n0 done, 2 usage, 3 data, 4 internal; 130, 143 and 129 when stopped by SIGINT, SIGTERM and SIGHUP.\n";

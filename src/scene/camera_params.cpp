@@ -67,7 +67,7 @@ Camera make_camera(const CameraParams& p, const Box3& box, double aspect, Vec3 d
     fail_usage("the camera has no direction to look along", "camera", "position and target must differ; direction must not be 0,0,0");
   if (!(length(up) > 0)) fail_usage("up must not be 0,0,0", "camera up");
   if (length(cross(normalize(direction), normalize(up))) < 1e-9) {
-    if (p.up) fail_usage("up lies along the line of sight", "camera up", "choose another up");
+    if (p.up) fail_usage("up is parallel to the line of sight", "camera up", "choose another up");
     up = std::abs(normalize(direction).z) < 0.9 ? Vec3{0, 0, 1} : Vec3{0, 1, 0};
   }
   up = normalize(up);

@@ -32,7 +32,7 @@ struct Look {
 const std::vector<Look>& looks() {
   using enum Look::Axis;
   static const std::vector<Look> all{
-      {{"ct_bone", "CT: bone alone"},
+      {{"ct_bone", "CT: bone only"},
        hounsfield,
        {{180, 0}, {260, 0.25}, {450, 0.6}, {1000, 0.85}, {3000, 0.95}},
        {{100, "#b5651d"}, {250, "#d9a066"}, {450, "#efdcb8"}, {1000, "#fbf6e8"}, {1800, "#ffffff"}},
