@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small operations on fields; the mesh stays as it is.
+// Small operations on fields; the mesh is unchanged.
 #pragma once
 #include "base/context.h"
 #include "base/schema/schema.h"

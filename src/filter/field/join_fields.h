@@ -16,8 +16,8 @@ inline void describe(Schema& s, JoinFieldsParams& p) {
 }
 
 /// The first input with the fields of the others, whose meshes have the same kind, dimensions and numbers of points and cells; positions
-/// are those of the first (a warning says if they differ). A field that the first has with the same values is left out; another field of a
-/// name that is taken gets the number of its input behind it ("T_2"). What one of them hides is hidden. Collections: part by part. Throws
+/// are those of the first (a warning says if they differ). A field that the first has with the same values is left out; another field with
+/// a name already in use gets the number of its input appended ("T_2"). What any of them hides is hidden. Collections: part by part. Throws
 /// Error(usage) for meshes of another shape, and for fields that none of the further inputs has.
 Data join_fields(const std::vector<Data>& inputs, const JoinFieldsParams& p, Context& context);
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cuts a tetrahedron along the planes of a grid. What comes out are tetrahedra again, each within one grid cell; they fill the first one
-// exactly.
+// Cuts a tetrahedron along the planes of a grid. The pieces are tetrahedra, each within one grid cell, that fill the original exactly.
 #pragma once
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the operations on lattice images share: a scalar field on points or cells as an image of samples, which of them count,
+// Common base of operations on lattice images: a scalar field on points or cells as an image of samples, which of them count,
 // and labels of any number type as 32-bit codes.
 #pragma once
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers about fields, as tables.
+// Statistics of fields, as tables.
 #pragma once
 #include "base/context.h"
 #include "base/schema/schema.h"
@@ -12,8 +12,8 @@ struct StatisticsParams {
 };
 inline void describe(Schema& s, StatisticsParams& p) { s("fields", p.fields, "Fields to describe; default: all on points and cells."); }
 
-/// One row per component of each field (and one for the length of a vector): field, association, component, count, missing (NaN), infinite,
-/// min, quartile1, median, quartile3, max, mean, deviation (of the sample: n-1), sum, sum_of_squares: all but `missing` and
+/// One row per component of each field (and one for the magnitude of a vector): field, association, component, count, missing (NaN),
+/// infinite, min, quartile1, median, quartile3, max, mean, deviation (of the sample: n-1), sum, sum_of_squares: all but `missing` and
 /// `infinite` of the finite values; a warning names fields with infinities. Hidden and duplicate cells and points
 /// are left out. Quartiles by linear interpolation between order statistics (Hyndman and Fan 1996, type 7). Sums are exact to the last
 /// places for any number of threads (fixed chunks, each summed with Neumaier's compensation). O(n) memory for the order statistics.

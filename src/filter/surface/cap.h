@@ -19,11 +19,12 @@ inline void describe(Schema& s, CapParams& p) {
   s("only_cap", p.only_cap, "Return only the caps, without the surface.");
 }
 
-/// Triangles over the loops of open edges. Points at equal places count as one; polygons are turned to agree first. Loops in one
-/// plane are closed together by even-odd nesting: a loop within another is a hole of its cap. A loop that lies in no plane is closed in
-/// its best one, with a note. The caps face as the surface around them does, and use all points of the loops: the result is closed where
-/// all loops are. Cell field 'cap' (u8: 1 on caps); other cell fields come from the polygon at the loop's first edge. With a point field
-/// of role normals, caps have points of their own with the normal of their plane; else they share them. Other mesh kinds: their surface.
+/// Triangles over the loops of open edges. Points at equal places count as one; polygons are first oriented consistently. Loops in one
+/// plane are closed together by even-odd nesting: a loop within another is a hole of its cap. A loop that is not planar is closed in its
+/// best-fitting plane, with a note. The caps face as the surface around them does, and use all points of the loops: the result is closed
+/// where all loops are. Cell field 'cap' (u8: 1 on caps); other cell fields come from the polygon at the loop's first edge. With a point
+/// field of role normals, caps have points of their own with the normal of their plane; else they share them. Other mesh kinds: their
+/// surface.
 DatasetPtr cap(const DatasetPtr& in, const CapParams& p, Context& ctx);
 
 }  // namespace sg

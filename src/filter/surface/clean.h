@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mesh without leftovers.
+// Removes unused points, degenerate and duplicate cells.
 #pragma once
 #include "base/context.h"
 #include "base/schema/schema.h"
@@ -19,7 +19,7 @@ inline void describe(Schema& s, CleanParams& p) {
   s("flat", p.flat, "Also drop polygons without area and solids without volume, even if neighbours depend on them.");
 }
 
-/// merge_points, then no degenerate cells, no doubled cells (in whatever order they list their points; the first stays) and no unused
+/// merge_points, then no degenerate cells, no duplicate cells (in whatever order they list their points; the first stays) and no unused
 /// points. Fields are carried; the log reports what was removed. Grids have nothing to clean and come back as they are; point clouds are
 /// merged; AMR is refused (Error(usage)).
 DatasetPtr clean(const DatasetPtr& in, const CleanParams& p, Context& ctx);

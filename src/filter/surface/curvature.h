@@ -21,10 +21,10 @@ inline void describe(Schema& s, CurvatureParams& p) {
 }
 
 /// Point fields (f64) after Meyer, Desbrun, Schroeder and Barr (2003): mean curvature from the cotangent formula, Gaussian curvature
-/// from the angle defect, both over the mixed Voronoi area of the point. Polygons count by their triangles; neighbours are turned to agree
-/// first. At open edges neither formula holds: such points take the mean of their neighbours within (angle defect: pi less the angles, so
-/// that its sum stays exact). NaN where there is no such neighbour, on edges of three polygons, and at points without area. Sums run
-/// in a fixed order. Other mesh kinds: their surface, as triangles.
+/// from the angle defect, both over the mixed Voronoi area of the point. Polygons are treated as triangles; neighbours are first oriented
+/// consistently. At open edges neither formula holds: such points take the mean of their neighbours within (angle defect: pi less the
+/// angles, so that its sum stays exact). NaN where there is no such neighbour, on edges of three polygons, and at points without area. Sums
+/// run in a fixed order. Other mesh kinds: their surface, as triangles.
 DatasetPtr curvature(const DatasetPtr& in, const CurvatureParams& p, Context& ctx);
 
 }  // namespace sg

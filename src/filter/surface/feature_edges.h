@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Edges of a surface that mean something, and its outline seen from somewhere.
+// Feature edges of a surface, and its silhouette.
 #pragma once
 #include "base/context.h"
 #include "base/schema/schema.h"

@@ -33,10 +33,10 @@ inline void describe(Schema& s, NormalsParams& p) {
 
 /// Point field "Normals" (f32, unit, role normals): the mean of the normals of the polygons at a point, weighted by their angle
 /// there (Thuermer and Wuethrich 1998), so that it does not depend on how a face is cut into triangles. Points on edges sharper than the
-/// feature angle, on edges of more than two polygons and where two pieces touch in a point are doubled, behind the points of the input:
-/// one per smooth piece of surface around it. Polygons without area do not count; a point with no others gets the zero vector.
-/// Consistent orientation follows edges of two polygons; in each piece most polygons stay as they are. All fields are carried;
-/// vertices and lines pass. Other mesh kinds: their surface (see surface::polygon_surface). O(corners).
+/// feature angle, on edges of more than two polygons and where two pieces touch in a point are duplicated, after the points of the input:
+/// one per smooth piece of surface around it. Polygons without area do not count; a point with no others gets the zero vector. Consistent
+/// orientation follows edges of two polygons; in each piece most polygons stay as they are. All fields are carried; vertices and lines
+/// pass. Other mesh kinds: their surface (see surface::polygon_surface). O(corners).
 DatasetPtr normals(const DatasetPtr& in, const NormalsParams& p, Context& ctx);
 
 }  // namespace sg

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How well cells are shaped.
+// Quality measures of cells.
 #pragma once
 #include <string>
 #include <vector>

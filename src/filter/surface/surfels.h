@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Isosurfaces as little discs.
+// Isosurfaces as small discs.
 #pragma once
 #include "base/context.h"
 #include "base/schema/schema.h"
@@ -19,7 +19,7 @@ inline void describe(Schema& s, SurfelsParams& p) {
 }
 
 /// One disc for each cell of a grid of three axes that the surface field = value cuts: a point cloud with point fields
-/// 'Normals' (f32, role normals, towards the smaller values) and 'radius' (f32, length). The places lie on the trilinear surface (two
+/// 'Normals' (f32, role normals, towards the smaller values) and 'radius' (f32, length). The points lie on the trilinear surface (two
 /// Newton steps from the middle of the cell, held within it); other point fields are interpolated there, cell fields become point
 /// fields. Cells with NaN or a hidden point and ghost cells have none. Nothing is shared or joined. Throws Error(usage) for other meshes
 /// and cell fields. Order of the cells; the same bytes for any number of threads.

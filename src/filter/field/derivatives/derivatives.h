@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// divergence, curl, hessian: what is made of the derivatives of a field.
+// divergence, curl, hessian: operators on the derivatives of a field.
 #pragma once
 #include "filter/field/derivatives/gradient.h"
 
