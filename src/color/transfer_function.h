@@ -84,7 +84,7 @@ class FastCurve {
   float most(float lo, float hi) const;
   /// Length of the shortest line; infinite when there is none.
   float narrow() const;
-  /// Does a line shorter than this reach into [lo, hi]?
+  /// Whether a line shorter than this reaches into [lo, hi].
   bool shorter_line(float lo, float hi, float length) const;
   /// Where it jumps, or begins to be more than zero.
   struct Edge {

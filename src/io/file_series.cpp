@@ -39,7 +39,7 @@ std::string escaped(const std::string& name) {
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-// Does `name` have the form of `pattern`? reach[i]: the pattern so far can end before letter i; never more than letters times marks.
+// Whether `name` has the form of `pattern`. reach[i]: the pattern so far can end before letter i; never more than letters times marks.
 bool matches(std::string_view pattern, std::string_view name) {
   if (!name.empty() && name[0] == '.' && (pattern.empty() || pattern[0] != '.')) return false;
   std::vector<char> reach(name.size() + 1, 0);

@@ -13,7 +13,7 @@
 
 namespace sg {
 
-/// Is it a pattern or a list, and not a file that is there?
+/// Whether it is a pattern or a list, and not an existing file.
 bool names_series(const std::string& path);
 /// The files: those of a pattern so that numbers in names count ("s2" before "s10"), those of a list in its order. Throws Error(data) when
 /// there is none: what was looked for, where, and what is there that is near.

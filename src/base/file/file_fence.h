@@ -39,7 +39,7 @@ void check_may_write(const std::string& path);
 /// A descriptor for reading a plain file: never waits for the other end of a pipe, never opens a device. Throws Error(data) for what is
 /// not a plain file, and outside of the fence.
 int open_plain_file(const std::string& path);
-/// Is there a plain file, or a link to one?
+/// Whether there is a plain file, or a link to one.
 bool is_plain_file(const std::string& path);
 
 }  // namespace sg

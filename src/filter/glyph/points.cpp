@@ -57,7 +57,7 @@ std::vector<int64_t> visible_points(const Dataset& d, int64_t every) {
 
 bool all_finite(Vec3 p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
-// Can places between the points be probed? Solids, and what is flat along an axis.
+// Whether positions between the points can be probed: solids, and what is flat along an axis.
 bool fills_its_box(const Dataset& d, const Box3& box) {
   if (d.as<PointCloud>() || d.cell_count() == 0) return false;
   const int axes = extended_axes(box);

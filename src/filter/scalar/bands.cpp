@@ -97,7 +97,7 @@ class Cutter {
     for (const Ring& ring : rings) out.add(ring, highest, cell);
   }
 
-  // Does the saddle of a quadrilateral lie above the level?
+  // Whether the saddle of a quadrilateral lies above the level.
   bool joins_high(std::span<const int64_t> p, int32_t level) const {
     const auto at = [&](size_t k) { return f_[size_t(p[k])] - levels_[size_t(level)]; };
     return p.size() == 4 && joined_inside(at(0), at(1), at(2), at(3));

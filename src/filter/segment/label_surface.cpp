@@ -50,7 +50,7 @@ Points place_vertices(const Dataset& in, const SampleImage& image, const LabelNe
   return points;
 }
 
-// Does a grid with these axes turn counterclockwise into clockwise?
+// Whether a grid with these axes reverses orientation.
 bool mirrored(const Dataset& in, const SampleImage& image) {
   double sign = 1;
   for (const auto& x : image.at) sign *= x.size() > 1 && x.back() < x.front() ? -1 : 1;

@@ -67,7 +67,7 @@ double power(double x, int n) {
   return r;
 }
 
-/// Does the element use simplex coordinates along (0, 1), (0, 1, 2), or none?
+/// Whether the element uses simplex coordinates along (0, 1), (0, 1, 2), or none.
 int simplex_axes(Geometry g) { return g == Geometry::triangle || g == Geometry::prism ? 2 : g == Geometry::tetrahedron ? 3 : 1; }
 
 /// Position of the node at a lattice place: 1D points along tensor axes, their normalised products (Warburton's blend) on simplices.

@@ -125,7 +125,7 @@ void resolve_all(ObjFile& o, Context& context) {
   o.has_n = o.has_n && !drop_n;
 }
 
-// Does every corner take the texture coordinate and normal of its vertex's own number?
+// Whether every corner takes the texture coordinate and normal with its vertex's number.
 bool same_indices(const ObjFile& o) {
   if (!o.has_t && !o.has_n) return true;
   return parallel_reduce(

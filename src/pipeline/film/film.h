@@ -10,7 +10,7 @@
 
 namespace sg {
 
-/// Is it the name of a film or of numbered pictures?
+/// Whether it is the name of a film or of numbered pictures.
 bool is_film(const std::string& output);
 
 /// One picture of a film.

@@ -94,7 +94,7 @@ Scalars scalars_of(const Field& f, int component) {
   return s;
 }
 
-/// May a pixel of this field be left out (out of range and not clamped)?
+/// Whether a pixel of this field may be left out (out of range and not clamped).
 bool may_vanish(const Dataset& data, const Field& f, const FieldColor& c) {
   if (c.scale.clamp) return false;
   const Range r = data.range(f, c.component);

@@ -39,7 +39,7 @@ inline FaceExit exit_of(CellType base, Vec3 r, double tolerance) {
 
 class LinearCell {
  public:
-  /// Has this class a map for the type?
+  /// Whether this class has a map for the type.
   static bool knows(CellType t) {
     return t == CellType::hexahedron || t == CellType::tetra || t == CellType::wedge || t == CellType::pyramid || t == CellType::voxel;
   }

@@ -30,7 +30,7 @@ class Places {
  public:
   explicit Places(double edge) : edge_(edge) {}
   void add(Vec3 x) { cubes_[key(x, 0, 0, 0)].push_back(x); }
-  /// Is any place nearer than `distance` <= edge?
+  /// Whether any point is nearer than `distance` <= edge.
   bool near(Vec3 x, double distance) const {
     for (int k = -1; k <= 1; ++k)
       for (int j = -1; j <= 1; ++j)

@@ -41,7 +41,7 @@ SeedKind seed_kind(const SeedParams& p, bool mesh);
 /// count, or its default: 200, on a line 40, at random in meshes of surfaces 60 (their lines lie side by side).
 int64_t seed_count(const SeedParams& p, SeedKind kind, int dimension);
 
-/// Is there a place for a seed? Asked from one thread.
+/// Whether a seed may be placed there. Called from one thread.
 using SeedPlace = std::function<bool(Vec3)>;
 
 /// The seeds about the meshes `parts` (those of one dimension; their box places what has no place of its own). `mesh`: the points of a

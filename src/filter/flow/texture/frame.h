@@ -31,7 +31,7 @@ struct Frame {
   Vec3 to_pixels(Vec3 world) const;
 };
 
-/// Is there room for a texture: an extent along two axes at least, and cells? Operations leave such parts of collections as they are.
+/// Whether it can carry a texture: an extent along at least two axes, and cells. Operations leave other parts of collections unchanged.
 bool has_room(const Dataset& data);
 /// f for each dataset; parts of collections that have no room, or fewer dimensions than the others (the skins of a solid), stay as they
 /// are, with a note.

@@ -79,7 +79,7 @@ int solve_triangle(const Corner* c[3], Found out[3]) {
   return n;
 }
 
-// Is there a place in the tetrahedron where the fields have this angle? The null vector of a 3x4 matrix, by its minors.
+// Whether the fields have this angle somewhere in the tetrahedron: the null vector of a 3x4 matrix, by its minors.
 bool inside_at(const Corner* c[4], double la, double lb, double angle) {
   Vec3 d[4];
   for (int k = 0; k < 4; ++k) d[k] = c[k]->a * (std::cos(angle) / la) - c[k]->b * (std::sin(angle) / lb);
@@ -191,7 +191,7 @@ struct TetraPoints {
     }
   }
 
-  // Are the fields parallel half way between two points, and no third point there?
+  // Whether the fields are parallel half way between two points, with no third point there.
   bool straight(int i, int j) const {
     Vec3 a, b;
     double most_a = 0, most_b = 0, along = 0;

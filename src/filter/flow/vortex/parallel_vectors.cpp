@@ -24,7 +24,7 @@ namespace {
 
 using namespace parallel;
 
-// Can the cross product of the two fields vanish between these corners? Its components are quadratic forms in the barycentric
+// Whether the cross product of the two fields can vanish between these corners. Its components are quadratic forms in the barycentric
 // coordinates: no, when all coefficients of one have the same sign. `at(i)`: the fields of corner i; `least`: what counts as nothing.
 template <class At>
 bool may_vanish(size_t n, double least, At&& at) {

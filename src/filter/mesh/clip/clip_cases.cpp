@@ -75,7 +75,7 @@ void add_cone(const Polygon& p, uint8_t apex, Region& out) {
   else add_piece(out, CellType::tetra, {p[0], p[2], p[1], apex});
 }
 
-// Is the polyhedron a standard cell? Its faces look outward.
+// Whether the polyhedron is a standard cell. Its faces look outward.
 bool standard_cell(const std::vector<const Polygon*>& polygons, size_t vertices, Piece& out) {
   size_t quads = 0;
   for (const Polygon* p : polygons) quads += p->size() == 4;

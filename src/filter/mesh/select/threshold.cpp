@@ -70,7 +70,7 @@ std::vector<uint8_t> in_range(const Field& field, const ThresholdParams& p, cons
   return r;
 }
 
-// Does every point of the cell (or any) pass?
+// Whether every point of the cell (or any) passes.
 template <class ForEachPoint>
 bool passes(bool all, const std::vector<uint8_t>& ok, ForEachPoint for_each) {
   size_t points = 0, good = 0;

@@ -57,7 +57,7 @@ class Footprints {
   double depth(Vec3 q) const { return origin_.z + dot(depth_, q); }
   /// Largest reach of any kernel in depth.
   double reach() const { return reach_; }
-  /// Are voxels in the middle of the box larger than pixels, so that splats are not widened?
+  /// Whether voxels in the middle of the box are larger than pixels, so that splats are not widened.
   bool resolved() const { return resolved_; }
   /// q of the place at a depth on the ray through (x, y) in pixels.
   Vec3 q_at(double x, double y, double depth) const;

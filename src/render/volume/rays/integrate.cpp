@@ -349,7 +349,7 @@ class LitStretch {
     if (!look_.medium.clear(lo, hi)) part(p, lo, hi, first, last, cuts, may_be_off);
   }
 
-  /// Does the light jump, as where a surface turns over? Then between two places next to each other, which count as one.
+  /// Whether the light jumps, as where a surface turns over; then between two adjacent samples, which count as one.
   bool jumps(const Stretch& s, const LitPlace& first, const LitPlace& middle, const LitPlace& last, LitPlace& before,
              LitPlace& after) const {
     const float all = difference(first.light, last.light), front = difference(first.light, middle.light),

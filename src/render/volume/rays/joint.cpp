@@ -161,7 +161,7 @@ class JointPart {
     return out;
   }
 
-  /// May a medium of more than the value have been missed?
+  /// Whether a medium that depends on more than the value may have been missed.
   bool overlook(double from, double to) const {
     return std::any_of(media_.begin(), media_.end(), [&](const Joint* j) {
       if (!j->look->detail) return false;

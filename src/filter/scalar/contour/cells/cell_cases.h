@@ -86,7 +86,7 @@ std::vector<std::array<uint32_t, 3>> fill_loop(size_t n, const std::function<dou
 /// What a diagonal that lies in a face adds to its squared length (in units of the cell's size), by the rule above.
 inline double face_penalty(bool from_entry_to_entry) { return from_entry_to_entry ? 1e3 : 1e6; }
 
-/// Does the bilinear function on a face with alternating signs join its corners >= 0? Values minus the isovalue, in order around.
+/// Whether the bilinear function on a face with alternating signs joins its corners >= 0. Values minus the isovalue, in order around.
 inline bool joined_inside(double a, double b, double c, double d) { return a >= 0 ? a * c >= b * d : b * d >= a * c; }
 
 }  // namespace sg

@@ -109,7 +109,7 @@ Plane<float> stored_values(const Field& field, int component, bool shift, float&
   return out;
 }
 
-/// Does each point have a finite value and place?
+/// Whether each point has a finite value and position.
 std::vector<uint8_t> missing_points(const DatasetPtr& data, std::span<const float> values, bool& any) {
   const size_t n = data->point_count();
   std::vector<uint8_t> missing(n);

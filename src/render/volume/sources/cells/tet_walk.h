@@ -13,7 +13,7 @@
 
 namespace sg::volume {
 
-/// Is the turn from a to b, seen from the point (0, 0), to the left? Never the same for (a, b) and (b, a), unless a = b.
+/// Whether the turn from a to b, seen from the point (0, 0), is to the left. Never the same for (a, b) and (b, a), unless a = b.
 inline bool turns_left(double ax, double ay, double bx, double by) {
   const double p = ax * by, q = ay * bx;
   if (p != q) return p > q;
